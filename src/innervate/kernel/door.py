@@ -1,0 +1,92 @@
+"""The compile door: which plain functions Numba may compile, and where compiled code is kept.
+
+Numba's own cache does not notice an edit in another file, so the cache folder carries a hash of
+every source that can end up in compiled code, and of the compiler's version.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import os
+import shutil
+import sys
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numba
+from numba.extending import register_jitable
+
+SOURCE_ROOMS = ("protocol", "kernel", "sim", "verify")
+FOLDERS_KEPT = 4
+
+_registered: set[Callable[..., Any]] = set()
+
+
+def register(*modules: ModuleType) -> None:
+    """Let compiled code call every function that these modules define; each only once."""
+    for module in modules:
+        for function in vars(module).values():
+            if inspect.isfunction(function) and function.__module__ == module.__name__:
+                register_functions(function)
+
+
+def register_functions(*functions: Callable[..., Any]) -> None:
+    """Let compiled code call these plain functions."""
+    for function in functions:
+        if function not in _registered:
+            register_jitable(forceinline=True)(function)
+            _registered.add(function)
+
+
+def source_hash() -> str:
+    """Hash of all sources that compiled code can come from, and of the tools that compile it."""
+    root = Path(__file__).resolve().parent.parent
+    digest = hashlib.blake2b(digest_size=10)
+    digest.update(f"{sys.version_info[:3]} {numba.__version__}".encode())
+    for path in sorted(p for room in SOURCE_ROOMS for p in (root / room).rglob("*.py")):
+        digest.update(path.relative_to(root).as_posix().encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def cache_root() -> Path:
+    """Where compiled code is kept: INNERVATE_CACHE, else the user's cache folder."""
+    chosen = os.environ.get("INNERVATE_CACHE")
+    if chosen:
+        return Path(chosen)
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "innervate"
+
+
+def open_cache() -> Path:
+    """Point Numba at the cache folder of the present sources; forget the oldest others."""
+    folder = cache_root() / source_hash()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        os.utime(folder)
+        _forget_old(folder)
+    except OSError:
+        pass  # a read-only home: Numba then compiles without keeping the result
+    numba.config.CACHE_DIR = str(folder)
+    return folder
+
+
+def _forget_old(keep: Path) -> None:
+    others = [p for p in keep.parent.iterdir() if p.is_dir() and p != keep and len(p.name) == 20]
+    others.sort(key=lambda p: p.stat().st_mtime, reverse=True)
+    for stale in others[FOLDERS_KEPT - 1 :]:
+        shutil.rmtree(stale, ignore_errors=True)
+
+
+def is_cached(names: Iterable[str]) -> bool:
+    """True if compiled code of every named function lies in the cache folder."""
+    folder = Path(numba.config.CACHE_DIR or "")
+    return all(any(folder.rglob(f"*{name}*.nbi")) for name in names)
+
+
+def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+    """`function` compiled by Numba, kept in the cache folder, without the interpreter lock."""
+    open_cache()
+    return numba.njit(cache=True, nogil=True, error_model="numpy")(function)

@@ -1,0 +1,48 @@
+"""Record types and plain twins from field declarations."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+Field = tuple[str, int | str, int, int, str, str]
+Declaration = tuple[Field, ...]
+
+
+def dtype(declaration: Declaration, itemsize: int = 0) -> np.dtype[Any]:
+    """The NumPy record of a declaration: int32 throughout, padded to `itemsize` bytes if given."""
+    names: list[str] = []
+    formats: list[Any] = []
+    offsets: list[int] = []
+    offset = 0
+    for name, length, *_ in declaration:
+        count = int(length)
+        names.append(name)
+        formats.append((np.int32, (count,)) if count else np.int32)
+        offsets.append(offset)
+        offset += 4 * max(count, 1)
+    size = max(offset, itemsize)
+    layout = {"names": names, "formats": formats, "offsets": offsets, "itemsize": size}
+    return np.dtype(layout, align=True)
+
+
+def zeros(declaration: Declaration, count: int, itemsize: int = 0) -> np.ndarray[Any, Any]:
+    """`count` records, each field at the value in range nearest 0."""
+    records = np.zeros(count, dtype(declaration, itemsize))
+    for name, _length, low, high, *_ in declaration:
+        start = min(max(0, low), high)
+        if start:
+            records[name] = start
+    return records
+
+
+def bounds(declaration: Declaration) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    """Lowest and highest value of every 32-bit word of a record, for range checks."""
+    low: list[int] = []
+    high: list[int] = []
+    for _name, length, lowest, highest, *_ in declaration:
+        words = max(int(length), 1)
+        low += [lowest] * words
+        high += [highest] * words
+    return np.array(low, np.int32), np.array(high, np.int32)

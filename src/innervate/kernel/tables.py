@@ -1,0 +1,155 @@
+"""Tables as compiled code sees them: a bare address and a length, without reference counting.
+
+A tuple of dozens of NumPy arrays costs an atomic count up and down for each at every call between
+compiled functions: a microsecond an event. A `Table` borrows the memory of an array that the caller
+keeps alive. `table[i]` is a number, or a record whose fields are read and written in place;
+negative indices are not supported.
+"""
+
+from __future__ import annotations
+
+import operator
+from typing import Any
+
+import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.core.datamodel import StructModel
+from numba.extending import (
+    NativeValue,
+    intrinsic,
+    overload,
+    register_model,
+    typeof_impl,
+    unbox,
+)
+from numba.np import numpy_support
+
+
+class Table:
+    """Borrows a contiguous one-dimensional array; keeps a reference to it."""
+
+    __slots__ = ("address", "array", "length")
+
+    def __init__(self, array: np.ndarray[Any, Any]) -> None:
+        if not array.flags.c_contiguous:
+            raise ValueError("a table needs contiguous memory")
+        self.array = array
+        self.address = int(array.ctypes.data)
+        self.length = len(array)
+
+
+class TableType(types.Type):  # type: ignore[misc]
+    """Numba's type of a Table; `row` > 0 makes its items rows of that many numbers."""
+
+    def __init__(self, dtype: Any, row: int) -> None:
+        self.dtype = dtype
+        self.row = row
+        super().__init__(name=f"Table({dtype}, {row})")
+
+
+@register_model(TableType)
+class _TableModel(StructModel):  # type: ignore[misc]
+    def __init__(self, manager: Any, table: Any) -> None:
+        members = [("address", types.CPointer(types.uint8)), ("length", types.int64)]
+        super().__init__(manager, table, members)
+
+
+@typeof_impl.register(Table)
+def _typeof_table(value: Table, _context: Any) -> TableType:
+    dtype = numpy_support.from_dtype(value.array.dtype)
+    return TableType(dtype, value.array.shape[1] if value.array.ndim == 2 else 0)
+
+
+@unbox(TableType)
+def _unbox_table(table: Any, obj: Any, c: Any) -> Any:
+    proxy = cgutils.create_struct_proxy(table)(c.context, c.builder)
+    for name in ("address", "length"):
+        value = c.pyapi.object_getattr_string(obj, name)
+        number = c.pyapi.long_as_longlong(value)
+        if name == "address":
+            number = c.builder.inttoptr(number, ir.IntType(8).as_pointer())
+        setattr(proxy, name, number)
+        c.pyapi.decref(value)
+    is_error = cgutils.is_not_null(c.builder, c.pyapi.err_occurred())
+    return NativeValue(proxy._getvalue(), is_error=is_error)
+
+
+def _item_pointer(context: Any, builder: Any, table: Any, value: Any, index: Any) -> Any:
+    proxy = cgutils.create_struct_proxy(table)(context, builder, value=value)
+    size = context.get_abi_sizeof(context.get_data_type(table.dtype)) * max(table.row, 1)
+    offset = builder.mul(index, ir.Constant(ir.IntType(64), size), flags=["nsw"])
+    return builder.gep(proxy.address, [offset], inbounds=True)
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def _load(typing_context: Any, table: Any, index: Any) -> Any:
+    if table.row:
+        result: Any = TableType(table.dtype, 0)
+    else:
+        result = table.dtype
+    widen = isinstance(result, types.Integer)
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        pointer = _item_pointer(context, builder, table, args[0], args[1])
+        if table.row:
+            proxy = cgutils.create_struct_proxy(result)(context, builder)
+            proxy.address = pointer
+            proxy.length = ir.Constant(ir.IntType(64), table.row)
+            return proxy._getvalue()
+        data = context.get_data_type(table.dtype)
+        if widen:
+            value = builder.load(builder.bitcast(pointer, data.as_pointer()))
+            return context.cast(builder, value, table.dtype, types.int64)
+        return builder.bitcast(pointer, context.get_value_type(table.dtype))
+
+    return (types.int64 if widen else result)(table, types.int64), generate
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def _store(typing_context: Any, table: Any, index: Any, value: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        pointer = _item_pointer(context, builder, table, args[0], args[1])
+        data = context.get_data_type(table.dtype)
+        number = context.cast(builder, args[2], types.int64, table.dtype)
+        builder.store(number, builder.bitcast(pointer, data.as_pointer()))
+        return context.get_dummy_value()
+
+    return types.void(table, types.int64, types.int64), generate
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def _length(typing_context: Any, table: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return cgutils.create_struct_proxy(table)(context, builder, value=args[0]).length
+
+    return types.int64(table), generate
+
+
+@overload(operator.getitem, jit_options={"forceinline": True})  # type: ignore[untyped-decorator]
+def _getitem(table, index):
+    if isinstance(table, TableType):
+        return lambda table, index: _load(table, index)
+    return None
+
+
+@overload(operator.setitem, jit_options={"forceinline": True})  # type: ignore[untyped-decorator]
+def _setitem(table, index, value):
+    if isinstance(table, TableType):
+        return lambda table, index, value: _store(table, index, value)
+    return None
+
+
+@overload(len, jit_options={"forceinline": True})  # type: ignore[untyped-decorator]
+def _len(table):
+    if isinstance(table, TableType):
+        return lambda table: _length(table)
+    return None
+
+
+def borrowed(value: Any) -> Any:
+    """A (nested) tuple of arrays as the same tuple of tables."""
+    if isinstance(value, np.ndarray):
+        return Table(value)
+    return type(value)(*(borrowed(part) for part in value))

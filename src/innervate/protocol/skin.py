@@ -1,0 +1,384 @@
+"""One cell of a robot's skin: finds its way to the PC, mends it, balances it, forwards touch.
+
+Spec: the dynamic distance-vector protocol of Bader, Bergner and Cheng [skin II-B], with the
+readings E1-E34. The paper's master port is called parent here, its slave ports children.
+A route is safe to take when (sequence number, distance) is nearer than fd, the nearest this cell
+has ever announced: fd of a cell is then always worse than its parent's, so parents never close
+a ring, whatever is lost or late (rule `feasible`). `strict` and `paper` are kept for comparison.
+"""
+
+from innervate.protocol.arith import MASK30, after, later
+from innervate.protocol.outbox import FLUSH, URGENT, report, send, set_timer
+from innervate.protocol.rng import draw
+
+PORTS = 4
+NONE = -1
+INFINITY = 255
+ONE = 840
+LOAD_MAX = 4095
+
+BEACON = 1
+DATA = 2
+RESTART = 3
+
+RULE_FEASIBLE = 0
+RULE_STRICT = 1
+RULE_PAPER = 2
+RULE_STATIC = 3
+
+PERIODIC = 0
+TRIGGERED = 1
+WAVE = 2
+
+TICK = 0
+SOON = 1
+TIMERS = 2
+
+SAMPLE = 1  # on_input: the cell's own sensors, as a frame without addresses
+
+REPORT_PARENT = 1  # a old port, b new port
+REPORT_BALANCE = 2  # the same, to balance the load
+REPORT_BROKEN = 3  # a port, b 1 broken / 0 works again
+REPORT_DROP = 4  # a reason
+REPORT_FORGET = 5  # fd was forgotten
+DROP_NO_ROUTE = 1
+DROP_LOOP = 2
+
+
+def copy_frame(to, frm):
+    """Copy a frame, field by field; a beacon has no more than its first six."""
+    to.kind = frm.kind
+    to.dist = frm.dist
+    to.sq = frm.sq
+    to.load = frm.load
+    to.size = frm.size
+    to.parent = frm.parent
+    if frm.kind == DATA:
+        to.cell = frm.cell
+        to.seq = frm.seq
+        to.hops = frm.hops
+        copy_sample(to, frm)
+
+
+def copy_sample(to, frm):
+    """Copy what the sensors say."""
+    to.proximity = frm.proximity
+    to.temperature = frm.temperature
+    for i in range(3):
+        to.force[i] = frm.force[i]
+        to.accel[i] = frm.accel[i]
+
+
+def on_start(cell, params, now, cause, out):
+    """Switch on with nothing known; number, rng and choice are the driver's and stay."""
+    for p in range(PORTS):
+        cell.dist[p] = INFINITY
+        cell.sq[p] = 0
+        cell.load[p] = 0
+        cell.size[p] = 0
+        cell.child[p] = 0
+        cell.heard[p] = 0
+        cell.pf[p] = 0
+    cell.parent = NONE
+    cell.sq_known = 0
+    cell.sq_own = 0
+    cell.fd_known = 0
+    cell.fd_sq = 0
+    cell.fd_dist = INFINITY
+    cell.own_load = 1
+    cell.hold = 0
+    cell.sent_dist = -1
+    cell.sent_parent = NONE
+    cell.sent_sq = 0
+    cell.sent_at = (now - params.gap_us) & MASK30
+    cell.soon = 0
+    cell.seq = 0
+    cell.countdown = 0
+    if params.balance_periods > 0:
+        cell.countdown = 1 + draw(cell, params.balance_periods)
+    cell.tick_at = now
+    set_timer(out, TICK, now)
+
+
+def on_frame(cell, params, now, port, frame, out):
+    """A frame with a good CRC came in on a port."""
+    if frame.kind == BEACON:
+        hear(cell, params, now, port, frame, out)
+    elif frame.kind == DATA:
+        forward(cell, params, frame, out)
+
+
+def on_timer(cell, params, now, timer, out):
+    """TICK: our beacon period. SOON: a triggered beacon that had to keep the gap."""
+    if timer == TICK:
+        tick(cell, params, now, out)
+    else:
+        cell.soon = 0
+        if is_news(cell, params):
+            announce(cell, now, out)
+
+
+def on_input(cell, params, now, kind, item, out):
+    """SAMPLE: our own sensors were read; `item` carries them."""
+    if cell.parent == NONE:
+        report(out, REPORT_DROP, DROP_NO_ROUTE, 0)
+    else:
+        frame = out.frame[send(out, cell.parent, 0, 0)]
+        frame.kind = DATA
+        frame.cell = cell.number
+        frame.seq = cell.seq
+        frame.hops = 0
+        copy_sample(frame, item)
+    cell.seq = (cell.seq + 1) & 255
+
+
+def forward(cell, params, frame, out):
+    """Pass a data frame on toward the PC."""
+    if frame.hops >= params.max_depth:
+        report(out, REPORT_DROP, DROP_LOOP, 0)
+    elif cell.parent == NONE:
+        report(out, REPORT_DROP, DROP_NO_ROUTE, 0)
+    else:
+        onward = out.frame[send(out, cell.parent, 0, 0)]
+        copy_frame(onward, frame)
+        onward.hops = frame.hops + 1
+
+
+def hear(cell, params, now, port, beacon, out):
+    """Store what a neighbour says; triggered modes act on it at once [skin II-B.1]."""
+    worse = beacon.dist > cell.dist[port] or later(cell.sq[port], beacon.sq)
+    cell.dist[port] = beacon.dist
+    cell.sq[port] = beacon.sq
+    cell.load[port] = beacon.load
+    cell.size[port] = beacon.size
+    cell.child[port] = beacon.parent
+    cell.heard[port] = 1
+    if params.updates != PERIODIC:
+        if port == cell.parent and (worse or not is_usable(cell, params, port)):
+            select(cell, params, 0, out)
+        else:
+            reconsider(cell, params, port, out)
+        if is_news(cell, params):
+            announce_soon(cell, params, now, out)
+
+
+def tick(cell, params, now, out):
+    """Supervise the links, choose the parent, add up the load, send a beacon on every port."""
+    supervise(cell, params, out)
+    may_balance = 0
+    if params.balance_periods > 0:
+        cell.countdown = cell.countdown - 1
+        if cell.countdown <= 0:
+            may_balance = 1
+            cell.countdown = params.balance_periods
+    hold_feasible(cell, params, out)
+    select(cell, params, may_balance, out)
+    cell.own_load = sum_load(cell)
+    silent = (
+        params.updates == WAVE
+        and ((now - cell.sent_at) & MASK30) < params.skip_us
+        and not is_news(cell, params)
+    )
+    if not silent:
+        announce(cell, now, out)
+    cell.tick_at = (cell.tick_at + params.beacon_us) & MASK30
+    if after(now, cell.tick_at):
+        cell.tick_at = (now + params.beacon_us) & MASK30
+    set_timer(out, TICK, cell.tick_at)
+
+
+def supervise(cell, params, out):
+    """Failure penalty of every port, within [0, 2] in units of 1/ONE [skin II-B.3, E16-E19]."""
+    for p in range(PORTS):
+        penalty = cell.pf[p]
+        if cell.heard[p]:
+            changed = max(0, penalty - params.r_r)
+        else:
+            changed = min(2 * ONE, penalty + params.r_f)
+        cell.heard[p] = 0
+        cell.pf[p] = changed
+        if (changed >= ONE) != (penalty >= ONE):
+            report(out, REPORT_BROKEN, p, 1 if changed >= ONE else 0)
+
+
+def hold_feasible(cell, params, out):
+    """Forget fd after FD_HOLD periods without a route: a restarted PC may count from anew [E27]."""
+    if cell.parent != NONE:
+        cell.hold = 0
+        return
+    cell.hold = cell.hold + 1
+    if cell.hold >= params.hold_periods:
+        cell.hold = 0
+        if cell.fd_known or cell.sq_known:
+            report(out, REPORT_FORGET, 0, 0)
+        cell.fd_known = 0
+        cell.fd_dist = INFINITY
+        cell.sq_known = 0
+
+
+def is_usable(cell, params, p):
+    """1 if the neighbour on p has a route, the cable works and its route is not through us."""
+    return cell.dist[p] < params.max_depth and cell.pf[p] < ONE and cell.child[p] == 0
+
+
+def is_allowed(cell, params, p):
+    """1 if a usable port may become the parent under the rule [skin II-B.2, E25, F1, F2]."""
+    if params.rule == RULE_FEASIBLE:
+        return nearer_than_fd(cell, cell.sq[p], cell.dist[p])
+    if cell.sq_known == 0 or later(cell.sq[p], cell.sq_own):
+        return True
+    return params.rule == RULE_PAPER and cell.sq[p] == cell.sq_own
+
+
+def nearer_than_fd(cell, sq, dist):
+    """1 if (sq, dist) is newer, or as new and nearer, than the best this cell ever announced."""
+    if cell.fd_known == 0 or later(sq, cell.fd_sq):
+        return True
+    return sq == cell.fd_sq and dist < cell.fd_dist
+
+
+def distance(cell):
+    """D: our own hops to the PC; 255 without a route."""
+    if cell.parent == NONE:
+        return INFINITY
+    return min(cell.dist[cell.parent] + 1, INFINITY)
+
+
+def select(cell, params, may_balance, out):
+    """Choose the parent among all ports [skin Alg. 2 and 3, E5-E13]."""
+    old = cell.parent
+    if old != NONE and not is_usable(cell, params, old):
+        cell.parent = NONE
+    current = INFINITY
+    if cell.parent != NONE:
+        current = cell.dist[cell.parent]
+    best = INFINITY
+    count = 0
+    lightest = NONE
+    for p in range(PORTS):
+        if p != cell.parent and is_usable(cell, params, p) and is_allowed(cell, params, p):
+            if cell.dist[p] < best:
+                best = cell.dist[p]
+                count = 1
+                lightest = p
+            elif cell.dist[p] == best:
+                count = count + 1
+                if cell.size[p] < cell.size[lightest]:
+                    lightest = p
+    if best < current:
+        cell.parent = pick(cell, params, best, count)
+    elif may_balance and cell.parent != NONE and best == current:
+        if cell.size[cell.parent] - cell.size[lightest] > cell.own_load:
+            cell.parent = lightest
+            report(out, REPORT_BALANCE, old, lightest)
+            old = lightest
+    if cell.parent != old:
+        report(out, REPORT_PARENT, old, cell.parent)
+    adopt(cell)
+
+
+def pick(cell, params, best, count):
+    """One of the `count` allowed ports at distance `best`, at random."""
+    skip = 0
+    if count > 1:
+        skip = draw(cell, count)
+    chosen = NONE
+    for p in range(PORTS):
+        if p != cell.parent and is_usable(cell, params, p) and is_allowed(cell, params, p):
+            if cell.dist[p] == best and chosen == NONE:
+                if skip == 0:
+                    chosen = p
+                skip = skip - 1
+    return chosen
+
+
+def reconsider(cell, params, port, out):
+    """select(0) when only `port` changed since the last one, and not for the worse as parent.
+
+    No other port was nearer before, so none is now; saves looking at all of them.
+    """
+    if port != cell.parent:
+        current = INFINITY
+        if cell.parent != NONE:
+            current = cell.dist[cell.parent]
+        if cell.dist[port] >= current:
+            return
+        if not (is_usable(cell, params, port) and is_allowed(cell, params, port)):
+            return
+        report(out, REPORT_PARENT, cell.parent, port)
+        cell.parent = port
+    adopt(cell)
+
+
+def adopt(cell):
+    """Take over the parent's sequence number; fd only ever gets nearer."""
+    if cell.parent == NONE:
+        return
+    cell.sq_own = cell.sq[cell.parent]
+    cell.sq_known = 1
+    dist = distance(cell)
+    if nearer_than_fd(cell, cell.sq_own, dist):
+        cell.fd_known = 1
+        cell.fd_sq = cell.sq_own
+        cell.fd_dist = dist
+
+
+def sum_load(cell):
+    """L: ourselves and the load of our children [skin Eq. 1]; saturates."""
+    load = 1
+    for p in range(PORTS):
+        if cell.child[p] and cell.pf[p] < ONE:
+            load = load + cell.load[p]
+    return min(load, LOAD_MAX)
+
+
+def is_news(cell, params):
+    """1 if our neighbours should hear from us before the next tick."""
+    if distance(cell) != cell.sent_dist or cell.parent != cell.sent_parent:
+        return True
+    return (
+        params.updates == WAVE
+        and cell.parent != NONE
+        and later(cell.sq[cell.parent], cell.sent_sq)
+    )
+
+
+def announce_soon(cell, params, now, out):
+    """Set the send-soon timer, at least GAP after the last beacon."""
+    if cell.soon:
+        return
+    cell.soon = 1
+    at = (cell.sent_at + params.gap_us) & MASK30
+    if after(now, at):
+        at = now
+    set_timer(out, SOON, at)
+
+
+def announce(cell, now, out):
+    """Send our beacon on every port and remember what we said."""
+    size = 0
+    if cell.parent != NONE:
+        size = cell.size[cell.parent]
+    cell.sent_dist = distance(cell)
+    cell.sent_parent = cell.parent
+    cell.sent_sq = cell.sq_own
+    cell.sent_at = now
+    send_beacons(cell, size, out)
+
+
+def send_beacons(cell, size, out):
+    """What we said last, on every port, broken ones included; a broken port's queue is given up."""
+    load = cell.own_load
+    if cell.sq_known == 0:
+        load = 0
+    for p in range(PORTS):
+        flags = URGENT
+        if cell.pf[p] >= ONE:
+            flags = URGENT | FLUSH
+        frame = out.frame[send(out, p, 0, flags)]
+        frame.kind = BEACON
+        frame.dist = cell.sent_dist
+        frame.sq = cell.sent_sq
+        frame.load = load
+        frame.size = size
+        frame.parent = 1 if p == cell.parent else 0

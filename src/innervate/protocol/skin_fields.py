@@ -1,0 +1,83 @@
+"""Declarations of the skin: every field once, as (name, length, low, high, unit, meaning).
+
+length 0 is a single integer, a number n an array of n, "ports" an array as long as the node has
+ports. Record types, plain classes, range checks, trace columns and the docs' tables come from here.
+"""
+
+FRAME = (
+    ("kind", 0, 0, 15, "type", "1 beacon, 2 data, 3 restart (static rule only)"),
+    ("dist", 0, 0, 255, "hops", "beacon: hops from its sender to the PC; 0 the PC, 255 no route"),
+    ("sq", 0, 0, 65535, "number", "beacon: sequence number of the sender's route"),
+    ("load", 0, 0, 4095, "cells", "beacon: cells whose data leave through it; 0 never had a route"),
+    ("size", 0, 0, 4095, "cells", "beacon: load of the interface port that serves the sender"),
+    ("parent", 0, 0, 1, "flag", "beacon: 1 = you, on this cable, are my parent"),
+    ("cell", 0, 0, 65535, "cell", "data: who measured it"),
+    ("seq", 0, 0, 255, "number", "data: counts the cell's samples"),
+    ("hops", 0, 0, 255, "hops", "data: cells that forwarded it so far"),
+    ("proximity", 0, 0, 65535, "raw", "data: nearness of an object, 0 far"),
+    ("force", 3, 0, 65535, "mN", "data: three force sensors"),
+    ("temperature", 0, -128, 127, "0.5 degC", "data: from 20 degC"),
+    ("accel", 3, -512, 511, "raw", "data: acceleration along x, y, z"),
+)
+
+CELL = (
+    ("dist", 4, 0, 255, "hops", "per port: distance last heard"),
+    ("sq", 4, 0, 65535, "number", "per port: sequence number last heard"),
+    ("load", 4, 0, 4095, "cells", "per port: load last heard"),
+    ("size", 4, 0, 4095, "cells", "per port: subnetwork size last heard"),
+    ("child", 4, 0, 1, "flag", "per port: the neighbour says that we are its parent"),
+    ("heard", 4, 0, 1, "flag", "per port: a beacon came since our last tick"),
+    ("pf", 4, 0, 1680, "1/840", "per port: failure penalty p_f; broken from 840 on"),
+    ("parent", 0, -1, 3, "port", "our way to the PC; -1 none"),
+    ("sq_known", 0, 0, 1, "flag", "sq_own says something: we have had a route"),
+    ("sq_own", 0, 0, 65535, "number", "sequence number of our present or last route"),
+    ("fd_known", 0, 0, 1, "flag", "fd is set"),
+    ("fd_sq", 0, 0, 65535, "number", "feasible distance: sequence number"),
+    ("fd_dist", 0, 0, 255, "hops", "feasible distance: hops"),
+    ("own_load", 0, 1, 4095, "cells", "L: cells whose data leave through us, ourselves included"),
+    ("countdown", 0, 0, 65535, "periods", "until we may balance again"),
+    ("hold", 0, 0, 65535, "periods", "since we lost the route"),
+    ("sent_dist", 0, -1, 255, "hops", "distance we last sent; -1 nothing yet"),
+    ("sent_parent", 0, -1, 3, "port", "parent we last sent"),
+    ("sent_sq", 0, 0, 65535, "number", "sequence number we last sent"),
+    ("sent_at", 0, 0, 1073741823, "us", "when we last sent"),
+    ("soon", 0, 0, 1, "flag", "the send-soon timer is set"),
+    ("tick_at", 0, 0, 1073741823, "us", "when the next tick is due"),
+    ("number", 0, 0, 65535, "cell", "who we are, in our data frames"),
+    ("seq", 0, 0, 255, "number", "counts our samples"),
+    ("rng", 0, 1, 1073741823, "state", "generator of random choices"),
+    ("choice", 0, -1, 1073741823, "value", "what the next draw shall return; -1 = generate"),
+    ("asked", 0, 0, 1073741823, "count", "out of how many the last scripted draw was"),
+)
+
+SINK = (
+    ("ports", 0, 0, 1048576, "ports", "interface ports of the PC"),
+    ("sq", 0, 0, 65535, "number", "sequence number of all routes"),
+    ("sq_known", 0, 0, 1, "flag", "sq was sent or adopted since the start"),
+    ("periods", 0, 0, 65535, "periods", "since sq was last counted up"),
+    ("listen", 0, 0, 65535, "periods", "left to listen before the first beacon"),
+    ("tick_at", 0, 0, 1073741823, "us", "when the next tick is due"),
+    ("repair", 0, 0, 1, "flag", "static rule: the network is down for a restart"),
+)
+
+SINK_PORT = (
+    ("size", "ports", 0, 4095, "cells", "per port: load of the cell on it, if we are its parent"),
+)
+
+PARAMS = (
+    ("rule", 0, 0, 3, "choice", "0 feasible, 1 strict, 2 paper, 3 static"),
+    ("updates", 0, 0, 2, "choice", "0 periodic, 1 triggered, 2 wave"),
+    ("beacon_us", 0, 100, 1000000, "us", "period T_b of beacons"),
+    ("r_f", 0, 1, 1680, "1/840", "penalty of a period without a beacon"),
+    ("r_r", 0, 1, 1680, "1/840", "relief of a period with a beacon"),
+    ("k", 0, 1, 840, "periods", "missed beacons until a port is broken"),
+    ("max_depth", 0, 1, 254, "hops", "MAXD: longer routes are refused"),
+    ("seq_every", 0, 1, 255, "periods", "M: the PC counts sq up every M periods"),
+    ("balance_periods", 0, 0, 65535, "periods", "between attempts to balance; 0 = never"),
+    ("hold_periods", 0, 1, 65535, "periods", "FD_HOLD: without a route until fd is forgotten"),
+    ("gap_us", 0, 0, 1000000, "us", "GAP: least time between triggered beacons"),
+    ("skip_us", 0, 0, 1000000, "us", "wave: a tick stays silent this long after a send"),
+    ("restart_us", 0, 0, 268435455, "us", "static rule: dead time of a restart"),
+    ("forward_min_us", 0, 0, 1000000, "us", "static rule: least delay of a set-up frame"),
+    ("forward_max_us", 0, 0, 1000000, "us", "static rule: greatest delay of a set-up frame"),
+)

@@ -1,0 +1,1 @@
+"""Simulated networks: event queue, wires, faults and the compiled loop."""

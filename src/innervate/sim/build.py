@@ -1,0 +1,221 @@
+"""From a plan to a world: all tables of a simulation, compiled (arrays) or plain (lists)."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import Any
+
+import numpy as np
+
+from innervate.kernel import records
+from innervate.protocol import rng, skin_fields
+from innervate.sim import commands
+from innervate.sim import world as w
+from innervate.sim.wheel import FREE, FRESH, LAST, LEVELS, NIL, SIZE, WORDS
+from innervate.sim.wires import COUNTERS, LOSSY
+
+GAMMA = 0x9E3779B97F4A7C15
+ROWS = 1 << 16
+CELL_BYTES = 256
+
+Numbers = np.ndarray[Any, np.dtype[np.int64]]
+
+
+def uniform(seed: int, name: str, count: int, n: int) -> Numbers:
+    """`count` integers 0 <= x < n <= 2^30 of the stream `name`; the same on any machine."""
+    key = hashlib.blake2b(f"{seed}/{name}".encode(), digest_size=8).digest()
+    z = np.arange(1, count + 1, dtype=np.uint64) * np.uint64(GAMMA)
+    z += np.uint64(int.from_bytes(key, "big"))
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    z ^= z >> np.uint64(31)
+    return (((z >> np.uint64(32)) * np.uint64(n)) >> np.uint64(32)).astype(np.int64)
+
+
+def build(
+    plan: Any,
+    plain: bool = False,
+    checks: bool = True,
+    deliveries: bool = False,
+    trail: bool = False,
+) -> w.World:
+    """The world of a plan, before its first event.
+
+    `deliveries` keeps a row per tactile sample the PC receives, `trail` a row per handler call.
+    """
+    tables = w.Tables(plain)
+    graph = plan.graph
+    cells, nodes, ends = graph.cells, graph.cells + 1, len(graph.peer)
+    tx_slots = nodes << w.SLOT_BITS
+    pool_slots = tx_slots + (ends if plan.data_period_us else 0)
+    pool = 2 * ends + 2 * graph.interfaces + 64
+    limit = max(16, graph.interfaces + 4)
+    states = tables.states(skin_fields.CELL, cells, CELL_BYTES)
+    world = w.World(
+        run=tables.records(w.RUN, 1),
+        wheel=w.Wheel(
+            clock=tables.numbers(1, 0, np.int64),
+            heads=tables.numbers(LEVELS * SIZE, NIL),
+            tails=tables.numbers(LEVELS * SIZE, NIL),
+            words=tables.numbers(LEVELS * WORDS, 0, np.int64),
+            tops=tables.numbers(LEVELS, 0, np.int64),
+            events=tables.records(w.EVENT, pool_slots + pool, fresh=True),
+            pool=tables.numbers(4, 0, np.int64),
+        ),
+        frames=tables.states(skin_fields.FRAME, pool),
+        queue=tables.states(
+            skin_fields.FRAME, ends * plan.queue_frames if plan.data_period_us else 1
+        ),
+        cells=states,
+        pc=w.Sink(tables.states(skin_fields.SINK, 1), tables.numbers(graph.interfaces)),
+        params=tables.states(skin_fields.PARAMS, 1),
+        clocks=tables.records(w.CLOCK, nodes),
+        alive=tables.numbers(nodes, w.OFF),
+        ends=tables.records(w.END, ends),
+        epoch=tables.numbers(ends),
+        out=w.Out(
+            count=tables.numbers(1, 0, np.int64),
+            limit=tables.numbers(1, limit, np.int64),
+            overflow=tables.numbers(1, 0, np.int64),
+            action=tables.records(w.ACTION, limit),
+            frame=tables.states(skin_fields.FRAME, limit),
+        ),
+        sample=tables.states(skin_fields.FRAME, 1),
+        counters=tables.numbers(COUNTERS, 0, np.int64),
+        watch=_watch(tables, cells, states),
+        commands=tables.records(w.COMMAND, len(plan.faults) + 1),
+        rows=tables.records(w.ROW, ROWS + 8 * limit, fresh=True),
+        deliveries=tables.records(w.DELIVERY, ROWS if deliveries else 1, fresh=True),
+        trail=tables.records(w.TRAIL, ROWS if trail else 1, fresh=True),
+        touch_x=_numbers(tables, plan.touch.x_um if plan.touch else ()),
+        touch_y=_numbers(tables, plan.touch.y_um if plan.touch else ()),
+        touch_span=_numbers(
+            tables,
+            (plan.touch.radius_um, plan.touch.force_mn, plan.touch.step_us)
+            if plan.touch
+            else (0, 0, 1),
+        ),
+        place=_numbers(tables, _places(plan)),
+    )
+    _fill(world.wheel.events, "bucket", NIL, pool_slots)
+    world.wheel.pool[FREE] = NIL
+    world.wheel.pool[FRESH] = pool_slots
+    world.wheel.pool[LAST] = pool
+    _set_run(world, plan, tx_slots, pool_slots)
+    put(world.run, 0, checks=int(checks), row_limit=len(world.rows))
+    put(world.run, 0, delivery_limit=ROWS if deliveries else 0, trail_limit=ROWS if trail else 0)
+    put(world.params, 0, **{field[0]: plan.params[field[0]] for field in skin_fields.PARAMS})
+    put(world.pc.own, 0, ports=graph.interfaces)
+    _set_wires(world, plan)
+    _set_nodes(world, plan)
+    _set_commands(world, plan)
+    return world
+
+
+def put(table: Any, place: int, /, **values: int) -> None:
+    """Set fields of one record."""
+    for name, value in values.items():
+        if isinstance(table, list):
+            setattr(table[place], name, int(value))
+        else:
+            table[name][place] = value
+
+
+def _fill(table: Any, name: str, values: Any, count: int) -> None:
+    """Set a field of the first `count` records: to one value, or to one each."""
+    if isinstance(table, list):
+        for i in range(count):
+            setattr(table[i], name, values if isinstance(values, int) else int(values[i]))
+    else:
+        table[name][:count] = values
+
+
+def _numbers(tables: w.Tables, values: Any) -> Any:
+    made = np.array(values, np.int64)
+    return made.tolist() if tables.plain else made
+
+
+def _watch(tables: w.Tables, cells: int, states: Any) -> w.Watch:
+    low, high = records.bounds(skin_fields.CELL)
+    return w.Watch(
+        port=tables.numbers(cells, NIL),
+        routed=tables.numbers(cells),
+        joined=tables.numbers(cells),
+        ring=tables.numbers(cells, NIL),
+        stack=tables.numbers(2 * cells),
+        low=low.tolist() if tables.plain else low,
+        high=high.tolist() if tables.plain else high,
+        words=tables.words(states, skin_fields.CELL),
+    )
+
+
+def _places(plan: Any) -> Any:
+    """Place of every cell, x and y in um, only where a touch needs it."""
+    if not plan.touch:
+        return ()
+    return [round(1000 * value) for place in plan.graph.layout() for value in place]
+
+
+def _set_run(world: w.World, plan: Any, tx_slots: int, pool_slots: int) -> None:
+    low, high = plan.latency_us
+    put(
+        world.run,
+        0,
+        cells=plan.graph.cells,
+        nodes=plan.graph.cells + 1,
+        tx_slots=tx_slots,
+        pool_slots=pool_slots,
+        wire_us=plan.wire_us,
+        latency_low=low,
+        latency_high=high,
+        latency_per_frame=int(plan.latency_per_frame),
+        queue_frames=plan.queue_frames,
+        source_us=plan.data_period_us,
+        rule=plan.params["rule"],
+        rng=rng.seeded(int(uniform(plan.seed, "medium", 1, 1 << 30)[0])),
+    )
+
+
+def _set_wires(world: w.World, plan: Any) -> None:
+    ends = len(plan.graph.peer)
+    low, high = plan.latency_us
+    _fill(world.ends, "peer", np.frombuffer(plan.graph.peer, np.int32), ends)
+    _fill(world.ends, "latency", low + uniform(plan.seed, "latency", ends, high - low + 1), ends)
+    if plan.loss_q15:
+        _fill(world.ends, "loss", plan.loss_q15, ends)
+        _fill(world.ends, "impaired", LOSSY, ends)
+
+
+def _set_nodes(world: w.World, plan: Any) -> None:
+    """Clocks, generators, and the moment each node is switched on."""
+    cells, nodes = plan.graph.cells, plan.graph.cells + 1
+    steep = 0 if plan.lock_step else round(plan.drift_ppm * (1 << 30) / 1_000_000)
+    _fill(world.clocks, "rate", uniform(plan.seed, "drift", nodes, 2 * steep + 1) - steep, nodes)
+    _fill(world.clocks, "offset", uniform(plan.seed, "offset", nodes, 1 << 30), nodes)
+    seeds = uniform(plan.seed, "nodes", cells, rng.FIXED_POINT - 1) + 1
+    _fill(world.cells, "rng", seeds, cells)
+    _fill(world.cells, "number", np.arange(cells) & 0xFFFF, cells)
+    _fill(world.cells, "choice", rng.GENERATE, cells)
+    period = 1 if plan.lock_step else plan.params["beacon_us"]
+    phases = uniform(plan.seed, "phase", nodes, period)
+    if plan.data_period_us:
+        source = uniform(plan.seed, "source", nodes, plan.data_period_us)
+        _fill(world.clocks, "source", source, nodes)
+    _fill(world.clocks, "phase", phases, nodes)
+
+
+def _set_commands(world: w.World, plan: Any) -> None:
+    put(world.run, 0, commands=len(plan.faults) + 1)
+    put(world.commands, 0, at=0, action=commands.BEGIN, end=NIL, node=NIL, index=NIL)
+    for i, fault in enumerate(plan.faults):
+        value = fault.frames if fault.action == commands.LOSE else fault.loss_q15
+        put(
+            world.commands,
+            i + 1,
+            at=fault.at_us,
+            action=fault.action,
+            end=fault.end,
+            node=fault.node,
+            value=value,
+            index=fault.index,
+        )

@@ -1,0 +1,180 @@
+"""The simulation loop: one function, compiled on arrays or plain on lists.
+
+It takes events off the wheel, lets the node's protocol handle them, drains the outbox, and stops
+when the time, the commands or the room in a table is used up; `run.status` says which.
+"""
+
+from innervate.kernel.bits import mix
+from innervate.protocol.arith import MASK30
+from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER
+from innervate.sim import clocks, commands, touch, wires
+from innervate.sim import wheel as queue
+from innervate.sim.observer import BROKEN_OUTBOX
+from innervate.sim.wheel import LAST, LIVE, NIL
+from innervate.sim.wires import OFFERED
+from innervate.sim.world import ALIVE, DEAD, OFF, SLOT_BITS, SOURCE
+
+# Why the loop stopped.
+DONE = 0
+POOL_FULL = 1
+ROWS_FULL = 2
+BROKEN = 3
+BUDGET = 4
+
+ON_START = 0
+ON_FRAME = 1
+ON_TIMER = 2
+ON_INPUT = 3
+
+COLD = 0
+MEMORY_LOST = 1
+
+
+def build(stack):
+    """The loop for a stack: an object with start, hear, fire, sample, digest, report, stopped,
+    check, deliver and copy_frame (see skin_stack.py)."""
+    start, hear, fire, sample = stack.start, stack.hear, stack.fire, stack.sample
+    digest, report, stopped = stack.digest, stack.report, stack.stopped
+    check, deliver, copy_frame = stack.check, stack.deliver, stack.copy_frame
+
+    def drain(world, node, time, now):
+        """Carry out what a handler put into the outbox; fold it into the fingerprint."""
+        run = world.run[0]
+        out = world.out
+        mark = run.fingerprint
+        first_end = 4 * node
+        for i in range(out.count[0]):
+            act = out.action[i]
+            if act.kind == SEND:
+                word = digest(out.frame[i]) ^ ((act.a * 4 + act.c) << 53) ^ (act.b << 20)
+                mark = mix(mark, word)
+                if act.b > 0:
+                    wires.delay(world, first_end + act.a, out.frame[i], time + act.b, act.c,
+                                copy_frame)  # fmt: skip
+                else:
+                    wires.transmit(world, first_end + act.a, out.frame[i], time, act.c, copy_frame)
+            else:
+                mark = mix(mark, act.kind ^ (act.a << 3) ^ (act.b << 20) ^ (act.c << 50))
+                if act.kind == SET_TIMER:
+                    slot = (node << SLOT_BITS) + act.a
+                    if world.wheel.events[slot].bucket != NIL:
+                        queue.remove(world.wheel, slot)
+                    at = clocks.true_time(world.clocks[node], time, act.b)
+                    queue.insert(world.wheel, slot, at)
+                elif act.kind == REPORT:
+                    report(world, time, node, act.a, act.b, act.c)
+                elif act.kind == DELIVER:
+                    mark = mix(mark, digest(out.frame[i]))
+                    deliver(world, time, world.run[0].touched, out.frame[i])
+        out.count[0] = 0
+        run.fingerprint = mark
+        if out.overflow[0] and run.broken == 0:
+            run.broken = BROKEN_OUTBOX
+            run.broken_node = node
+
+    def finish(world, node, time, now, handler, port):
+        """After a handler: account for it, carry out what it asked for, check."""
+        run = world.run[0]
+        run.handled += 1
+        run.touched = port
+        run.fingerprint = mix(
+            run.fingerprint, (time << 26) ^ (node << 6) ^ (port << 40) ^ handler
+        )
+        drain(world, node, time, now)
+        if run.checks:
+            check(world, node)
+        if run.trail_limit > 0:
+            row = world.trail[run.trail]
+            run.trail += 1
+            row.time = time
+            row.node = node
+            row.handler = handler
+            row.port = port
+            row.fingerprint = run.fingerprint
+
+    def switch_on(world, node, time, cause):
+        """Start a node, and its source of samples if it has one."""
+        run = world.run[0]
+        clock = world.clocks[node]
+        now = clocks.reading(clock, time)
+        world.alive[node] = ALIVE
+        start(world, node, now & MASK30, cause)
+        finish(world, node, time, now, ON_START, cause)
+        if run.source_us > 0 and node < run.cells:
+            slot = (node << SLOT_BITS) + SOURCE
+            if world.wheel.events[slot].bucket == NIL:
+                wait = clocks.true_delay(clock, time, clock.source)
+                queue.insert(world.wheel, slot, time + wait)
+
+    def on_timer_slot(world, slot, time):
+        """A node's timer, its first switching on, or its next sample."""
+        node = slot >> SLOT_BITS
+        timer = slot - (node << SLOT_BITS)
+        if world.alive[node] == OFF:
+            switch_on(world, node, time, COLD)
+        elif world.alive[node] == DEAD:
+            return
+        elif timer == SOURCE:
+            now = clocks.reading(world.clocks[node], time)
+            world.counters[OFFERED] += 1
+            touch.read_sensors(world, node, time)
+            sample(world, node, now & MASK30)
+            finish(world, node, time, now, ON_INPUT, 0)
+            wait = clocks.true_delay(world.clocks[node], time, world.run[0].source_us)
+            queue.insert(world.wheel, slot, time + wait)
+        else:
+            now = clocks.reading(world.clocks[node], time)
+            fire(world, node, now & MASK30, timer)
+            finish(world, node, time, now, ON_TIMER, timer)
+
+    def on_arrival(world, slot, time):
+        """A frame at the end of its cable."""
+        run = world.run[0]
+        run.arrived += 1
+        end = wires.land(world, slot)
+        if end != NIL:
+            node = min(end >> 2, run.cells)
+            port = end - 4 * node
+            now = clocks.reading(world.clocks[node], time)
+            hear(world, node, now & MASK30, port, world.frames[slot - run.pool_slots])
+            finish(world, node, time, now, ON_FRAME, port)
+        queue.give(world.wheel, slot)
+
+    def advance(world, until, budget):
+        """Run up to, not including, time `until` (us), or about `budget` events."""
+        run = world.run[0]
+        wheel = world.wheel
+        room = world.out.limit[0] + 8
+        run.status = DONE
+        for _ in range(budget):
+            if wheel.pool[LIVE] + room > wheel.pool[LAST]:
+                run.status = POOL_FULL
+                return
+            if run.rows + 4 * room > run.row_limit or (
+                run.deliveries >= run.delivery_limit > 0 or run.trail >= run.trail_limit > 0
+            ):
+                run.status = ROWS_FULL
+                return
+            limit = until
+            if run.next_command < run.commands:
+                limit = min(until, world.commands[run.next_command].at)
+            slot = queue.pop(wheel, limit)
+            if slot == NIL:
+                if limit >= until:
+                    return
+                commands.obey(world, world.commands[run.next_command], switch_on, stopped)
+                run.next_command += 1
+            elif slot < run.tx_slots:
+                on_timer_slot(world, slot, wheel.clock[0])
+            elif slot < run.pool_slots:
+                wires.wire_free(world, slot - run.tx_slots, wheel.clock[0], copy_frame)
+            elif wheel.events[slot].kind == wires.DELAYED:
+                wires.release(world, slot, wheel.clock[0], copy_frame)
+            else:
+                on_arrival(world, slot, wheel.clock[0])
+            if run.broken:
+                run.status = BROKEN
+                return
+        run.status = BUDGET
+
+    return drain, finish, switch_on, on_timer_slot, on_arrival, advance

@@ -1,0 +1,168 @@
+"""Cables: 4 Mbit/s each way, a queue per port, latency, loss, loose and cut connections.
+
+A frame occupies its wire for `wire_us` and arrives `latency` after its start. Urgent frames
+(beacons) take the wire as soon as the frame on it is out; others wait in the port's drop-tail queue.
+A cable's `epoch` is odd while it is down; a frame arrives only if the epoch did not change.
+"""
+
+from innervate.protocol.outbox import FLUSH, URGENT
+from innervate.protocol.rng import LOW15, step
+from innervate.sim import wheel as queue
+from innervate.sim.wheel import NIL
+
+# Kinds of pool slots.
+ARRIVAL = 0
+DELAYED = 1
+
+# Words of `world.counters`; the second block counts urgent frames, the first all others.
+SENT = 0
+ARRIVED = 1
+LOST_CUT = 2
+LOST_NOISE = 3
+LOST_OFF = 4
+LOST_QUEUE = 5
+LOST_BROKEN = 6
+URGENT_BLOCK = 8
+# What the protocol says of its data, and the user's side of it.
+OFFERED = 16
+DELIVERED = 17
+NO_ROUTE = 18
+LOOPED = 19
+COUNTERS = 24
+
+# Bits of `end.impaired`.
+DOWN = 1
+LOSSY = 2
+
+
+def transmit(world, end, frame, time, flags, copy_frame):
+    """A node hands a frame to its port at true time `time` (us)."""
+    wire = world.ends[end]
+    if wire.peer < 0:
+        return
+    if flags & FLUSH and wire.queued > 0:
+        world.counters[LOST_BROKEN] += wire.queued
+        wire.queued = 0
+    if flags & URGENT:
+        launch(world, wire, frame, max(time, wire.busy), URGENT_BLOCK, copy_frame)
+    elif wire.waiting == 0 and time >= wire.busy:
+        launch(world, wire, frame, time, 0, copy_frame)
+    elif wire.queued >= world.run[0].queue_frames:
+        world.counters[SENT] += 1
+        world.counters[LOST_QUEUE] += 1
+    else:
+        room = world.run[0].queue_frames
+        place = (wire.first + wire.queued) % room
+        copy_frame(world.queue[end * room + place], frame)
+        wire.queued += 1
+        if wire.waiting == 0:
+            wire.waiting = 1
+            queue.insert(world.wheel, world.run[0].tx_slots + end, wire.busy)
+
+
+def wire_free(world, end, time, copy_frame):
+    """The frame on the wire is out: start the next of the queue."""
+    wire = world.ends[end]
+    slot = world.run[0].tx_slots + end
+    if wire.queued == 0:
+        wire.waiting = 0
+    elif time < wire.busy:
+        queue.insert(world.wheel, slot, wire.busy)
+    else:
+        room = world.run[0].queue_frames
+        launch(world, wire, world.queue[end * room + wire.first], time, 0, copy_frame)
+        wire.first = (wire.first + 1) % room
+        wire.queued -= 1
+        if wire.queued == 0:
+            wire.waiting = 0
+        else:
+            queue.insert(world.wheel, slot, wire.busy)
+
+
+def launch(world, wire, frame, start, block, copy_frame):
+    """Put a frame on the wire at `start`; a queue slot brings it to the other side."""
+    run = world.run[0]
+    wire.busy = start + run.wire_us
+    world.counters[SENT + block] += 1
+    wire.sent += 1
+    if wire.impaired and is_lost(world, wire, block):
+        return
+    latency = wire.latency
+    if run.latency_per_frame:
+        latency = run.latency_low + chance(run, run.latency_high - run.latency_low + 1)
+    slot = queue.take(world.wheel)
+    event = world.wheel.events[slot]
+    event.kind = ARRIVAL
+    event.target = wire.peer
+    event.epoch = world.epoch[wire.peer]
+    copy_frame(world.frames[slot - run.pool_slots], frame)
+    queue.insert(world.wheel, slot, start + latency)
+
+
+def is_lost(world, wire, block):
+    """True if a cut or loose cable, or a planned loss, takes the frame; counts it."""
+    if wire.impaired & DOWN:
+        world.counters[LOST_CUT + block] += 1
+        return True
+    if wire.lose > 0:
+        wire.lose -= 1
+        if wire.lose == 0 and wire.loss == 0:
+            wire.impaired &= ~LOSSY
+        world.counters[LOST_NOISE + block] += 1
+        return True
+    if wire.loss > 0 and chance(world.run[0], 32768) < wire.loss:
+        world.counters[LOST_NOISE + block] += 1
+        return True
+    return False
+
+
+def chance(run, n):
+    """A uniform integer 0 <= result < n <= 2^15 from the medium's own stream."""
+    run.rng = step(run.rng)
+    return ((run.rng & LOW15) * n) >> 15
+
+
+def land(world, slot):
+    """A frame reaches the end of its cable: its end, or NIL if it does not get through."""
+    event = world.wheel.events[slot]
+    end = event.target
+    block = 0
+    if world.frames[slot - world.run[0].pool_slots].kind == 1:
+        block = URGENT_BLOCK
+    if event.epoch != world.epoch[end]:
+        world.counters[LOST_CUT + block] += 1
+        return NIL
+    node = min(end >> 2, world.run[0].cells)
+    if world.alive[node] != 1:
+        world.counters[LOST_OFF + block] += 1
+        return NIL
+    world.counters[ARRIVED + block] += 1
+    return end
+
+
+def drop_queue(world, end):
+    """Empty a port's queue because its node is switched off."""
+    wire = world.ends[end]
+    world.counters[LOST_OFF] += wire.queued
+    wire.queued = 0
+
+
+def delay(world, end, frame, at, flags, copy_frame):
+    """Hand a frame to its port later, at true time `at` (us)."""
+    slot = queue.take(world.wheel)
+    event = world.wheel.events[slot]
+    event.kind = DELAYED
+    event.target = end
+    event.epoch = flags
+    copy_frame(world.frames[slot - world.run[0].pool_slots], frame)
+    queue.insert(world.wheel, slot, at)
+
+
+def release(world, slot, time, copy_frame):
+    """The delay of a frame is over; a node that went off meanwhile sends nothing."""
+    event = world.wheel.events[slot]
+    end = event.target
+    frame = world.frames[slot - world.run[0].pool_slots]
+    if world.alive[min(end >> 2, world.run[0].cells)] == 1:
+        transmit(world, end, frame, time, event.epoch, copy_frame)
+    queue.give(world.wheel, slot)

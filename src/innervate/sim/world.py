@@ -1,0 +1,173 @@
+"""Everything a running simulation holds, as tuples of tables.
+
+Compiled, a table is an array of numbers or records; plain, it is a list of numbers or objects.
+Records are declared like the protocols' (see `protocol/skin_fields.py`), with 64-bit fields where
+the simulator keeps true time.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from innervate.kernel import records
+from innervate.protocol import plain
+
+# All fields have 32 bits, those named in WIDE and all of RUN 64.
+EVENT = ("time", "next", "prev", "bucket", "kind", "target", "epoch")
+END = ("busy", "peer", "latency", "impaired", "loss", "lose", "queued", "first", "waiting", "sent")
+CLOCK = ("offset", "rate", "source", "phase")
+RUN = (
+    "cells", "nodes", "tx_slots", "pool_slots", "wire_us", "latency_low", "latency_high",
+    "latency_per_frame", "queue_frames", "source_us", "checks", "fingerprint", "handled",
+    "arrived", "rng", "commands", "next_command", "row_limit", "rows", "delivery_limit",
+    "deliveries", "trail_limit", "trail", "status", "broken", "broken_node", "broken_other",
+    "unrouted", "loops", "loops_open", "rule", "touched",
+)  # fmt: skip
+COMMAND = ("at", "action", "end", "node", "value", "index")
+ROW = ("time", "node", "code", "a", "b")
+DELIVERY = ("time", "port", "cell", "seq", "hops", "proximity", "force", "temperature", "accel")
+TRAIL = ("time", "node", "handler", "port", "fingerprint")
+ACTION = ("kind", "a", "b", "c")
+WIDE = {"time", "busy", "offset", "rate", "source", "at", "fingerprint"} | set(RUN)
+
+# States of a node.
+OFF = 0
+ALIVE = 1
+DEAD = 2
+
+# Timer slots of a node: the protocol's own timers first, then the driver's source of samples.
+SLOT_BITS = 2
+SOURCE = 3
+
+
+class Wheel(NamedTuple):
+    """The event queue's tables (see wheel.py)."""
+
+    clock: Any
+    heads: Any
+    tails: Any
+    words: Any
+    tops: Any
+    events: Any
+    pool: Any
+
+
+class Sink(NamedTuple):
+    """The PC's state: one record and a number per port."""
+
+    own: Any
+    size: Any
+
+
+class Out(NamedTuple):
+    """The outbox (see protocol/outbox.py)."""
+
+    count: Any
+    limit: Any
+    overflow: Any
+    action: Any
+    frame: Any
+
+
+class Watch(NamedTuple):
+    """What the observer knows of every cell (see observer.py)."""
+
+    port: Any  # parent port in force, -1 none
+    routed: Any  # 1 = chain of parents reaches the PC over live cables
+    joined: Any  # 1 = physically connected to the PC
+    ring: Any  # start of the forwarding loop the cell is in, -1 none
+    stack: Any
+    low: Any  # range of every word of a cell's record
+    high: Any
+    words: Any  # the cells' records as rows of words
+
+
+class World(NamedTuple):
+    """All of it."""
+
+    run: Any
+    wheel: Wheel
+    frames: Any
+    queue: Any
+    cells: Any
+    pc: Sink
+    params: Any
+    clocks: Any
+    alive: Any
+    ends: Any
+    epoch: Any
+    out: Out
+    sample: Any
+    counters: Any
+    watch: Watch
+    commands: Any
+    rows: Any
+    deliveries: Any
+    trail: Any
+    touch_x: Any
+    touch_y: Any
+    touch_span: Any
+    place: Any
+
+
+class _Words:
+    """A plain object's fields as one row of numbers, in order of declaration."""
+
+    def __init__(self, target: Any, declaration: records.Declaration) -> None:
+        self._target = target
+        self._where = [
+            (name, i) if int(length) else (name, -1)
+            for name, length, *_ in declaration
+            for i in range(max(int(length), 1))
+        ]
+
+    def __getitem__(self, index: int) -> int:
+        name, i = self._where[index]
+        value = getattr(self._target, name)
+        return int(value if i < 0 else value[i])
+
+
+class Tables:
+    """Makes tables of one form: compiled (arrays) or plain (lists)."""
+
+    def __init__(self, plain_form: bool) -> None:
+        self.plain = plain_form
+
+    def numbers(self, count: int, value: int = 0, kind: type = np.int32) -> Any:
+        """`count` integers."""
+        if self.plain:
+            return [value] * count
+        return np.full(count, value, kind) if value else np.zeros(count, kind)
+
+    def records(self, names: tuple[str, ...], count: int, fresh: bool = False) -> Any:
+        """`count` simulator records; with `fresh` their content is not initialised."""
+        if self.plain:
+            declaration = tuple((name, _length(name), 0, 0, "", "") for name in names)
+            make = plain.make("Record", declaration)
+            return [make() for _ in range(count)]
+        dtype = np.dtype([_column(name) for name in names], align=True)
+        return np.empty(count, dtype) if fresh else np.zeros(count, dtype)
+
+    def states(self, declaration: Any, count: int, itemsize: int = 0) -> Any:
+        """`count` records of a protocol's declaration."""
+        if self.plain:
+            make = plain.make("State", declaration)
+            return [make() for _ in range(count)]
+        return records.zeros(declaration, count, itemsize)
+
+    def words(self, states: Any, declaration: Any) -> Any:
+        """The states as rows of words."""
+        if self.plain:
+            return [_Words(state, declaration) for state in states]
+        return states.view(np.int32).reshape(len(states), -1)
+
+
+def _length(name: str) -> int:
+    return 3 if name in ("force", "accel") else 0
+
+
+def _column(name: str) -> tuple[Any, ...]:
+    kind = np.int64 if name in WIDE else np.int32
+    return (name, kind, (3,)) if _length(name) else (name, kind)
