@@ -153,13 +153,32 @@ def hear(cell, params, now, port, beacon, out):
     cell.size[port] = beacon.size
     cell.child[port] = beacon.parent
     cell.heard[port] = 1
-    if params.updates != PERIODIC:
-        if port == cell.parent and (worse or not is_usable(cell, params, port)):
-            select(cell, params, 0, out)
-        else:
-            reconsider(cell, params, port, out)
+    if params.updates != PERIODIC and react(cell, params, port, worse, out):
         if is_news(cell, params):
             announce_soon(cell, params, now, out)
+
+
+def react(cell, params, port, worse, out):
+    """select(0) when only `port` changed since the last one; 1 if our own beacon may change.
+
+    No other port was nearer than the parent before. So all need a look only if the parent got
+    worse; and a port that is not nearer than the parent changes nothing.
+    """
+    parent = cell.parent
+    if port == parent:
+        if worse or not is_usable(cell, params, port):
+            select(cell, params, 0, out)
+        else:
+            adopt(cell)
+        return True
+    if parent != NONE and cell.dist[port] >= cell.dist[parent]:
+        return False
+    if not (is_usable(cell, params, port) and is_allowed(cell, params, port)):
+        return False
+    report(out, REPORT_PARENT, parent, port)
+    cell.parent = port
+    adopt(cell)
+    return True
 
 
 def tick(cell, params, now, out):
@@ -252,22 +271,24 @@ def select(cell, params, may_balance, out):
     current = INFINITY
     if cell.parent != NONE:
         current = cell.dist[cell.parent]
+    limit = current + may_balance  # a port that is not nearer than this changes nothing
     best = INFINITY
     count = 0
     lightest = NONE
     for p in range(PORTS):
-        if p != cell.parent and is_usable(cell, params, p) and is_allowed(cell, params, p):
-            if cell.dist[p] < best:
-                best = cell.dist[p]
-                count = 1
-                lightest = p
-            elif cell.dist[p] == best:
-                count = count + 1
-                if cell.size[p] < cell.size[lightest]:
+        if cell.dist[p] < limit and p != cell.parent and is_usable(cell, params, p):
+            if is_allowed(cell, params, p):
+                if cell.dist[p] < best:
+                    best = cell.dist[p]
+                    count = 1
                     lightest = p
+                elif cell.dist[p] == best:
+                    count = count + 1
+                    if cell.size[p] < cell.size[lightest]:
+                        lightest = p
     if best < current:
         cell.parent = pick(cell, params, best, count)
-    elif may_balance and cell.parent != NONE and best == current:
+    elif lightest != NONE:
         if cell.size[cell.parent] - cell.size[lightest] > cell.own_load:
             cell.parent = lightest
             report(out, REPORT_BALANCE, old, lightest)
@@ -292,24 +313,6 @@ def pick(cell, params, best, count):
     return chosen
 
 
-def reconsider(cell, params, port, out):
-    """select(0) when only `port` changed since the last one, and not for the worse as parent.
-
-    No other port was nearer before, so none is now; saves looking at all of them.
-    """
-    if port != cell.parent:
-        current = INFINITY
-        if cell.parent != NONE:
-            current = cell.dist[cell.parent]
-        if cell.dist[port] >= current:
-            return
-        if not (is_usable(cell, params, port) and is_allowed(cell, params, port)):
-            return
-        report(out, REPORT_PARENT, cell.parent, port)
-        cell.parent = port
-    adopt(cell)
-
-
 def adopt(cell):
     """Take over the parent's sequence number; fd only ever gets nearer."""
     if cell.parent == NONE:
@@ -327,8 +330,8 @@ def sum_load(cell):
     """L: ourselves and the load of our children [skin Eq. 1]; saturates."""
     load = 1
     for p in range(PORTS):
-        if cell.child[p] and cell.pf[p] < ONE:
-            load = load + cell.load[p]
+        if cell.pf[p] < ONE:
+            load = load + cell.child[p] * cell.load[p]
     return min(load, LOAD_MAX)
 
 

@@ -1,1 +1,1 @@
-"""Simulated networks: event queue, wires, faults and the compiled loop."""
+"""The simulator: event queue, cables, faults, touch, observers and the compiled loop."""

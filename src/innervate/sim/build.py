@@ -10,13 +10,15 @@ import numpy as np
 from innervate.kernel import records
 from innervate.protocol import rng, skin_fields
 from innervate.sim import commands
+from innervate.sim.loop import BATCH
 from innervate.sim import world as w
-from innervate.sim.wheel import FREE, FRESH, LAST, LEVELS, NIL, SIZE, WORDS
+from innervate.sim.wheel import BUCKETS, FREE, FRESH, LAST, LEVELS, NIL, PENDING, WORDS
 from innervate.sim.wires import COUNTERS, LOSSY
 
 GAMMA = 0x9E3779B97F4A7C15
 ROWS = 1 << 16
-CELL_BYTES = 256
+CELL_BYTES = 256  # whole cache lines
+FRAME_BYTES = 128
 
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
 
@@ -48,21 +50,20 @@ def build(
     cells, nodes, ends = graph.cells, graph.cells + 1, len(graph.peer)
     tx_slots = nodes << w.SLOT_BITS
     pool_slots = tx_slots + (ends if plan.data_period_us else 0)
-    pool = 2 * ends + 2 * graph.interfaces + 64
     limit = max(16, graph.interfaces + 4)
+    pool = 2 * ends + BATCH * 16 + 4 * limit
     states = tables.states(skin_fields.CELL, cells, CELL_BYTES)
     world = w.World(
         run=tables.records(w.RUN, 1),
         wheel=w.Wheel(
-            clock=tables.numbers(1, 0, np.int64),
-            heads=tables.numbers(LEVELS * SIZE, NIL),
-            tails=tables.numbers(LEVELS * SIZE, NIL),
+            clock=tables.numbers(2, 0, np.int64),
+            links=tables.numbers(BUCKETS + pool_slots + pool),
+            tails=tables.numbers(BUCKETS),
             words=tables.numbers(LEVELS * WORDS, 0, np.int64),
-            tops=tables.numbers(LEVELS, 0, np.int64),
             events=tables.records(w.EVENT, pool_slots + pool, fresh=True),
             pool=tables.numbers(4, 0, np.int64),
         ),
-        frames=tables.states(skin_fields.FRAME, pool),
+        frames=tables.states(skin_fields.FRAME, pool, FRAME_BYTES),
         queue=tables.states(
             skin_fields.FRAME, ends * plan.queue_frames if plan.data_period_us else 1
         ),
@@ -72,6 +73,7 @@ def build(
         clocks=tables.records(w.CLOCK, nodes),
         alive=tables.numbers(nodes, w.OFF),
         ends=tables.records(w.END, ends),
+        buffers=tables.records(w.BUFFER, ends),
         epoch=tables.numbers(ends),
         out=w.Out(
             count=tables.numbers(1, 0, np.int64),
@@ -98,11 +100,16 @@ def build(
         place=_numbers(tables, _places(plan)),
     )
     _fill(world.wheel.events, "bucket", NIL, pool_slots)
+    for bucket in range(BUCKETS):
+        world.wheel.tails[bucket] = bucket
+        world.wheel.links[bucket] = NIL
+    world.wheel.clock[PENDING] = NIL
     world.wheel.pool[FREE] = NIL
     world.wheel.pool[FRESH] = pool_slots
     world.wheel.pool[LAST] = pool
     _set_run(world, plan, tx_slots, pool_slots)
-    put(world.run, 0, checks=int(checks), row_limit=len(world.rows))
+    put(world.run, 0, checks=int(checks), watchful=int(checks or trail), broken_at=-1)
+    put(world.run, 0, row_limit=len(world.rows))
     put(world.run, 0, delivery_limit=ROWS if deliveries else 0, trail_limit=ROWS if trail else 0)
     put(world.params, 0, **{field[0]: plan.params[field[0]] for field in skin_fields.PARAMS})
     put(world.pc.own, 0, ports=graph.interfaces)
@@ -119,6 +126,33 @@ def put(table: Any, place: int, /, **values: int) -> None:
             setattr(table[place], name, int(value))
         else:
             table[name][place] = value
+
+
+def grow_pool(world: w.World) -> w.World:
+    """The same world with twice the room for frames on their way."""
+    pool = world.wheel.pool
+    first, last = int(get(world.run, 0, "pool_slots")), int(pool[LAST])
+    events = _longer(world.wheel.events, first + 2 * last)
+    links = _longer(world.wheel.links, BUCKETS + first + 2 * last)
+    pool[LAST] = 2 * last
+    return world._replace(
+        frames=_longer(world.frames, 2 * last),
+        wheel=world.wheel._replace(events=events, links=links),
+    )
+
+
+def _longer(table: Any, length: int) -> Any:
+    if isinstance(table, list):
+        make = (lambda: 0) if isinstance(table[0], int) else type(table[0])
+        return table + [make() for _ in range(length - len(table))]
+    longer = np.zeros(length, table.dtype)
+    longer[: len(table)] = table
+    return longer
+
+
+def get(table: Any, place: int, name: str) -> Any:
+    """A field of one record, compiled or plain."""
+    return getattr(table[place], name) if isinstance(table, list) else table[name][place]
 
 
 def _fill(table: Any, name: str, values: Any, count: int) -> None:
@@ -182,7 +216,7 @@ def _set_wires(world: w.World, plan: Any) -> None:
     _fill(world.ends, "peer", np.frombuffer(plan.graph.peer, np.int32), ends)
     _fill(world.ends, "latency", low + uniform(plan.seed, "latency", ends, high - low + 1), ends)
     if plan.loss_q15:
-        _fill(world.ends, "loss", plan.loss_q15, ends)
+        _fill(world.buffers, "loss", plan.loss_q15, ends)
         _fill(world.ends, "impaired", LOSSY, ends)
 
 

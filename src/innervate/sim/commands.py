@@ -6,14 +6,15 @@ from innervate.sim.wheel import NIL
 from innervate.sim.wires import DOWN, LOSSY
 from innervate.sim.world import ALIVE, DEAD, SLOT_BITS
 
-BEGIN = 0
-CUT = 1
-RESTORE = 2
-KILL = 3
-REVIVE = 4
-LOOSE = 5
-RESTART = 6
-LOSE = 7
+# As in a plan's faults; the loop begins with a command of its own.
+BEGIN = -1
+CUT = 0
+RESTORE = 1
+KILL = 2
+REVIVE = 3
+LOOSE = 4
+RESTART = 5
+LOSE = 6
 
 MEMORY_LOST = 1
 
@@ -103,11 +104,12 @@ def forget(world, time, node, stopped):
 def impair(world, command):
     """A loose cable loses frames both ways with a probability (2^-15), or the next few for sure."""
     for end in (command.end, world.ends[command.end].peer):
-        wire = world.ends[end]
+        buffer = world.buffers[end]
         if command.action == LOOSE:
-            wire.loss = command.value
+            buffer.loss = command.value
         else:
-            wire.lose = command.value
+            buffer.lose = command.value
+        wire = world.ends[end]
         wire.impaired &= ~LOSSY
-        if wire.loss > 0 or wire.lose > 0:
+        if buffer.loss > 0 or buffer.lose > 0:
             wire.impaired |= LOSSY

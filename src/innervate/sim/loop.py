@@ -30,6 +30,26 @@ COLD = 0
 MEMORY_LOST = 1
 
 
+# Events between two looks at the room left in the tables.
+BATCH = 64
+ROWS_PER_EVENT = 24
+
+
+def pressing(world):
+    """Why the loop has to stop before the next batch, or DONE."""
+    run = world.run[0]
+    pool = world.wheel.pool
+    if run.broken:
+        return BROKEN
+    if pool[LIVE] + BATCH * 16 + 2 * world.out.limit[0] > pool[LAST]:
+        return POOL_FULL
+    if run.rows + BATCH * ROWS_PER_EVENT > run.row_limit:
+        return ROWS_FULL
+    if run.deliveries + BATCH > run.delivery_limit > 0 or run.trail + BATCH > run.trail_limit > 0:
+        return ROWS_FULL
+    return DONE
+
+
 def build(stack):
     """The loop for a stack: an object with start, hear, fire, sample, digest, report, stopped,
     check, deliver and copy_frame (see skin_stack.py)."""
@@ -81,8 +101,16 @@ def build(stack):
             run.fingerprint, (time << 26) ^ (node << 6) ^ (port << 40) ^ handler
         )
         drain(world, node, time, now)
+        if run.watchful:
+            look(world, node, time, handler, port)
+
+    def look(world, node, time, handler, port):
+        """Checkers, and the trail of all handler calls."""
+        run = world.run[0]
         if run.checks:
             check(world, node)
+            if run.broken and run.broken_at < 0:
+                run.broken_at = time
         if run.trail_limit > 0:
             row = world.trail[run.trail]
             run.trail += 1
@@ -140,41 +168,40 @@ def build(stack):
             finish(world, node, time, now, ON_FRAME, port)
         queue.give(world.wheel, slot)
 
+    def dispatch(world, slot, time):
+        """Hand an event to what it is for."""
+        run = world.run[0]
+        if slot >= run.pool_slots:
+            if world.wheel.events[slot].kind == wires.DELAYED:
+                wires.release(world, slot, time, copy_frame)
+            else:
+                on_arrival(world, slot, time)
+        elif slot < run.tx_slots:
+            on_timer_slot(world, slot, time)
+        else:
+            wires.wire_free(world, slot - run.tx_slots, time, copy_frame)
+
     def advance(world, until, budget):
         """Run up to, not including, time `until` (us), or about `budget` events."""
         run = world.run[0]
         wheel = world.wheel
-        room = world.out.limit[0] + 8
-        run.status = DONE
-        for _ in range(budget):
-            if wheel.pool[LIVE] + room > wheel.pool[LAST]:
-                run.status = POOL_FULL
-                return
-            if run.rows + 4 * room > run.row_limit or (
-                run.deliveries >= run.delivery_limit > 0 or run.trail >= run.trail_limit > 0
-            ):
-                run.status = ROWS_FULL
+        for _ in range(0, budget, BATCH):
+            run.status = pressing(world)
+            if run.status != DONE:
                 return
             limit = until
             if run.next_command < run.commands:
                 limit = min(until, world.commands[run.next_command].at)
-            slot = queue.pop(wheel, limit)
-            if slot == NIL:
+            for _ in range(BATCH):
+                slot = queue.pop(wheel, limit)
+                if slot == NIL:
+                    break
+                dispatch(world, slot, wheel.clock[queue.NOW])
+            if slot == NIL and run.broken == 0:
                 if limit >= until:
                     return
                 commands.obey(world, world.commands[run.next_command], switch_on, stopped)
                 run.next_command += 1
-            elif slot < run.tx_slots:
-                on_timer_slot(world, slot, wheel.clock[0])
-            elif slot < run.pool_slots:
-                wires.wire_free(world, slot - run.tx_slots, wheel.clock[0], copy_frame)
-            elif wheel.events[slot].kind == wires.DELAYED:
-                wires.release(world, slot, wheel.clock[0], copy_frame)
-            else:
-                on_arrival(world, slot, wheel.clock[0])
-            if run.broken:
-                run.status = BROKEN
-                return
         run.status = BUDGET
 
-    return drain, finish, switch_on, on_timer_slot, on_arrival, advance
+    return drain, look, finish, switch_on, on_timer_slot, on_arrival, dispatch, advance

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
 
@@ -14,7 +14,7 @@ import numpy as np
 from innervate.sim import build as builder
 from innervate.sim import loop, skin_stack, static_stack
 from innervate.sim import world as w
-from innervate.sim.wheel import FRESH, LAST
+from innervate.sim.build import get
 
 RULE_STATIC = 3
 SLICE_EVENTS = 1_000_000
@@ -30,7 +30,9 @@ class InvariantBroken(Exception):
 class Result:
     """What a simulation leaves: the world at its end and all rows.
 
-    Rows are structured arrays (compiled) or lists of objects (plain).
+    `rows` are what nodes and the observer reported, `deliveries` the tactile samples that the PC
+    received, `trail` all handler calls; structured arrays, with the fields of `world.ROW`,
+    `world.DELIVERY` and `world.TRAIL`, times in us.
     """
 
     plan: Any
@@ -38,12 +40,13 @@ class Result:
     rows: Any
     deliveries: Any
     trail: Any
+    counters: list[int]
     ended_us: int
     wall_s: float
-    fingerprint: int
+    fingerprint: str
     handled: int
     arrived: int
-    interrupted: bool = False
+    interrupted: bool
 
 
 def _modules() -> list[ModuleType]:
@@ -63,6 +66,7 @@ def compiled_loop(static: bool) -> Callable[..., None]:
     from innervate.kernel import door, tables
 
     door.register(*_modules())
+    door.register_functions(loop.pressing)
     parts = loop.build(static_stack if static else skin_stack)
     door.register_functions(*parts[:-1])
     advance = door.compiled(parts[-1])
@@ -72,3 +76,102 @@ def compiled_loop(static: bool) -> Callable[..., None]:
 def plain_loop(static: bool) -> Callable[..., None]:
     """The same loop, uncompiled."""
     return loop.build(static_stack if static else skin_stack)[-1]
+
+
+def simulate(
+    plan: Any,
+    *,
+    plain: bool = False,
+    checks: bool = True,
+    deliveries: bool = False,
+    trail: bool = False,
+    progress: Progress | None = None,
+) -> Result:
+    """Run a plan to its end; an interrupt (Ctrl-C) ends it early and keeps what was done.
+
+    `plain` runs the same loop uncompiled. `progress(time_us, duration_us)` is called now and then.
+    Raises InvariantBroken.
+    """
+    started = time.perf_counter()
+    advance = (plain_loop if plain else compiled_loop)(plan.params["rule"] == RULE_STATIC)
+    world = builder.build(plan, plain, checks, deliveries, trail)
+    keep = _Keep(world)
+    interrupted = False
+    while True:
+        try:
+            advance(world, plan.duration_us, SLICE_EVENTS)
+        except KeyboardInterrupt:  # only between slices, or in the plain loop between events
+            interrupted = True
+        status = int(get(world.run, 0, "status"))
+        if status == loop.BROKEN:
+            raise InvariantBroken(_story(plan, world))
+        if status == loop.POOL_FULL:
+            world = builder.grow_pool(world)
+        keep.collect(world, final=False)
+        now = plan.duration_us if status == loop.DONE else int(world.wheel.clock[0])
+        if progress is not None:
+            progress(now, plan.duration_us)
+        if interrupted or status == loop.DONE:
+            break
+    rows, delivered, steps = keep.collect(world, final=True)
+    return Result(
+        plan=plan,
+        world=world,
+        rows=rows,
+        deliveries=delivered,
+        trail=steps,
+        counters=[int(count) for count in world.counters],
+        ended_us=now,
+        wall_s=time.perf_counter() - started,
+        fingerprint=f"{int(get(world.run, 0, 'fingerprint')) & (1 << 64) - 1:016x}",
+        handled=int(get(world.run, 0, "handled")),
+        arrived=int(get(world.run, 0, "arrived")),
+        interrupted=interrupted,
+    )
+
+
+class _Keep:
+    """Moves filled rows out of the loop's tables, so that these can stay small."""
+
+    def __init__(self, world: w.World) -> None:
+        self.parts: dict[str, list[Any]] = {"rows": [], "deliveries": [], "trail": []}
+        self.names = {"rows": w.ROW, "deliveries": w.DELIVERY, "trail": w.TRAIL}
+
+    def collect(self, world: w.World, final: bool) -> tuple[Any, ...]:
+        for name, parts in self.parts.items():
+            count = int(get(world.run, 0, name))
+            table = getattr(world, name)
+            if count > len(table) // 2 or final:
+                parts.append(self._array(table, name, count))
+                builder.put(world.run, 0, **{name: 0})
+        if not final:
+            return ()
+        return tuple(np.concatenate(parts) for parts in self.parts.values())
+
+    def _array(self, table: Any, name: str, count: int) -> Any:
+        if not isinstance(table, list):
+            return table[:count].copy()
+        fields = self.names[name]
+        tuples = [
+            tuple(tuple(v) if isinstance(v := getattr(r, f), list) else v for f in fields)
+            for r in table[:count]
+        ]
+        return np.array(tuples, w.row_dtype(fields))
+
+
+def _story(plan: Any, world: w.World) -> str:
+    """A broken invariant in one line."""
+    from innervate.sim import observer
+
+    node = int(get(world.run, 0, "broken_node"))
+    other = int(get(world.run, 0, "broken_other"))
+    at = max(int(get(world.run, 0, "broken_at")), 0) / 1e6
+    label = plan.graph.label
+    what = {
+        observer.BROKEN_LOOP: f"forwarding loop through {label(node)}",
+        observer.BROKEN_FEASIBLE: f"feasible distance of {label(node)} is not worse than that of "
+        f"its parent {label(other)}",
+        observer.BROKEN_RANGE: f"a value of {label(node)} is out of its declared range",
+        observer.BROKEN_OUTBOX: f"outbox of {label(node)} overflowed",
+    }[int(get(world.run, 0, "broken"))]
+    return f"invariant broken at {at:.6f} s (seed {plan.seed}): {what}"

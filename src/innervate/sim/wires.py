@@ -10,8 +10,7 @@ from innervate.protocol.rng import LOW15, step
 from innervate.sim import wheel as queue
 from innervate.sim.wheel import NIL
 
-# Kinds of pool slots.
-ARRIVAL = 0
+# Kinds of pool slots; an arrival is marked by the block of counters its frame belongs to.
 DELAYED = 1
 
 # Words of `world.counters`; the second block counts urgent frames, the first all others.
@@ -40,77 +39,89 @@ def transmit(world, end, frame, time, flags, copy_frame):
     wire = world.ends[end]
     if wire.peer < 0:
         return
-    if flags & FLUSH and wire.queued > 0:
-        world.counters[LOST_BROKEN] += wire.queued
-        wire.queued = 0
+    if flags & FLUSH and world.buffers[end].queued > 0:
+        world.counters[LOST_BROKEN] += world.buffers[end].queued
+        world.buffers[end].queued = 0
     if flags & URGENT:
-        launch(world, wire, frame, max(time, wire.busy), URGENT_BLOCK, copy_frame)
+        launch(world, end, frame, max(time, wire.busy), URGENT_BLOCK, copy_frame)
     elif wire.waiting == 0 and time >= wire.busy:
-        launch(world, wire, frame, time, 0, copy_frame)
-    elif wire.queued >= world.run[0].queue_frames:
-        world.counters[SENT] += 1
-        world.counters[LOST_QUEUE] += 1
+        launch(world, end, frame, time, 0, copy_frame)
     else:
-        room = world.run[0].queue_frames
-        place = (wire.first + wire.queued) % room
-        copy_frame(world.queue[end * room + place], frame)
-        wire.queued += 1
-        if wire.waiting == 0:
-            wire.waiting = 1
-            queue.insert(world.wheel, world.run[0].tx_slots + end, wire.busy)
+        enqueue(world, end, frame, copy_frame)
+
+
+def enqueue(world, end, frame, copy_frame):
+    """Put a frame into its port's drop-tail queue."""
+    buffer = world.buffers[end]
+    room = world.run[0].queue_frames
+    world.counters[SENT] += 1
+    if buffer.queued >= room:
+        world.counters[LOST_QUEUE] += 1
+        return
+    place = (buffer.first + buffer.queued) % room
+    copy_frame(world.queue[end * room + place], frame)
+    buffer.queued += 1
+    wire = world.ends[end]
+    if wire.waiting == 0:
+        wire.waiting = 1
+        queue.insert(world.wheel, world.run[0].tx_slots + end, wire.busy)
 
 
 def wire_free(world, end, time, copy_frame):
     """The frame on the wire is out: start the next of the queue."""
     wire = world.ends[end]
+    buffer = world.buffers[end]
     slot = world.run[0].tx_slots + end
-    if wire.queued == 0:
+    if buffer.queued == 0:
         wire.waiting = 0
     elif time < wire.busy:
         queue.insert(world.wheel, slot, wire.busy)
     else:
         room = world.run[0].queue_frames
-        launch(world, wire, world.queue[end * room + wire.first], time, 0, copy_frame)
-        wire.first = (wire.first + 1) % room
-        wire.queued -= 1
-        if wire.queued == 0:
+        world.counters[SENT] -= 1  # launch counts it again
+        launch(world, end, world.queue[end * room + buffer.first], time, 0, copy_frame)
+        buffer.first = (buffer.first + 1) % room
+        buffer.queued -= 1
+        if buffer.queued == 0:
             wire.waiting = 0
         else:
             queue.insert(world.wheel, slot, wire.busy)
 
 
-def launch(world, wire, frame, start, block, copy_frame):
+def launch(world, end, frame, start, block, copy_frame):
     """Put a frame on the wire at `start`; a queue slot brings it to the other side."""
     run = world.run[0]
+    wire = world.ends[end]
     wire.busy = start + run.wire_us
     world.counters[SENT + block] += 1
-    wire.sent += 1
-    if wire.impaired and is_lost(world, wire, block):
+    if wire.impaired and is_lost(world, end, block):
         return
     latency = wire.latency
     if run.latency_per_frame:
         latency = run.latency_low + chance(run, run.latency_high - run.latency_low + 1)
     slot = queue.take(world.wheel)
     event = world.wheel.events[slot]
-    event.kind = ARRIVAL
+    event.kind = block
     event.target = wire.peer
-    event.epoch = world.epoch[wire.peer]
+    event.epoch = world.epoch[end]
     copy_frame(world.frames[slot - run.pool_slots], frame)
     queue.insert(world.wheel, slot, start + latency)
 
 
-def is_lost(world, wire, block):
+def is_lost(world, end, block):
     """True if a cut or loose cable, or a planned loss, takes the frame; counts it."""
+    wire = world.ends[end]
     if wire.impaired & DOWN:
         world.counters[LOST_CUT + block] += 1
         return True
-    if wire.lose > 0:
-        wire.lose -= 1
-        if wire.lose == 0 and wire.loss == 0:
+    buffer = world.buffers[end]
+    if buffer.lose > 0:
+        buffer.lose -= 1
+        if buffer.lose == 0 and buffer.loss == 0:
             wire.impaired &= ~LOSSY
         world.counters[LOST_NOISE + block] += 1
         return True
-    if wire.loss > 0 and chance(world.run[0], 32768) < wire.loss:
+    if buffer.loss > 0 and chance(world.run[0], 32768) < buffer.loss:
         world.counters[LOST_NOISE + block] += 1
         return True
     return False
@@ -126,9 +137,7 @@ def land(world, slot):
     """A frame reaches the end of its cable: its end, or NIL if it does not get through."""
     event = world.wheel.events[slot]
     end = event.target
-    block = 0
-    if world.frames[slot - world.run[0].pool_slots].kind == 1:
-        block = URGENT_BLOCK
+    block = event.kind
     if event.epoch != world.epoch[end]:
         world.counters[LOST_CUT + block] += 1
         return NIL
@@ -142,9 +151,9 @@ def land(world, slot):
 
 def drop_queue(world, end):
     """Empty a port's queue because its node is switched off."""
-    wire = world.ends[end]
-    world.counters[LOST_OFF] += wire.queued
-    wire.queued = 0
+    buffer = world.buffers[end]
+    world.counters[LOST_OFF] += buffer.queued
+    buffer.queued = 0
 
 
 def delay(world, end, frame, at, flags, copy_frame):

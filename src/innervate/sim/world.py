@@ -15,13 +15,14 @@ from innervate.kernel import records
 from innervate.protocol import plain
 
 # All fields have 32 bits, those named in WIDE and all of RUN 64.
-EVENT = ("time", "next", "prev", "bucket", "kind", "target", "epoch")
-END = ("busy", "peer", "latency", "impaired", "loss", "lose", "queued", "first", "waiting", "sent")
+EVENT = ("time", "bucket", "kind", "target", "epoch")
+END = ("busy", "peer", "latency", "impaired", "waiting")
+BUFFER = ("loss", "lose", "queued", "first")
 CLOCK = ("offset", "rate", "source", "phase")
 RUN = (
     "cells", "nodes", "tx_slots", "pool_slots", "wire_us", "latency_low", "latency_high",
     "latency_per_frame", "queue_frames", "source_us", "checks", "fingerprint", "handled",
-    "arrived", "rng", "commands", "next_command", "row_limit", "rows", "delivery_limit",
+    "arrived", "rng", "commands", "next_command", "row_limit", "rows", "delivery_limit", "watchful", "broken_at",
     "deliveries", "trail_limit", "trail", "status", "broken", "broken_node", "broken_other",
     "unrouted", "loops", "loops_open", "rule", "touched",
 )  # fmt: skip
@@ -46,10 +47,9 @@ class Wheel(NamedTuple):
     """The event queue's tables (see wheel.py)."""
 
     clock: Any
-    heads: Any
+    links: Any
     tails: Any
     words: Any
-    tops: Any
     events: Any
     pool: Any
 
@@ -96,7 +96,8 @@ class World(NamedTuple):
     params: Any
     clocks: Any
     alive: Any
-    ends: Any
+    ends: Any  # what every frame needs of a cable's end
+    buffers: Any  # what only waiting, loose or lost frames need
     epoch: Any
     out: Out
     sample: Any
@@ -147,7 +148,7 @@ class Tables:
             declaration = tuple((name, _length(name), 0, 0, "", "") for name in names)
             make = plain.make("Record", declaration)
             return [make() for _ in range(count)]
-        dtype = np.dtype([_column(name) for name in names], align=True)
+        dtype = row_dtype(names)
         return np.empty(count, dtype) if fresh else np.zeros(count, dtype)
 
     def states(self, declaration: Any, count: int, itemsize: int = 0) -> Any:
@@ -162,6 +163,11 @@ class Tables:
         if self.plain:
             return [_Words(state, declaration) for state in states]
         return states.view(np.int32).reshape(len(states), -1)
+
+
+def row_dtype(names: tuple[str, ...]) -> np.dtype[Any]:
+    """The array form of simulator records with these fields."""
+    return np.dtype([_column(name) for name in names], align=True)
 
 
 def _length(name: str) -> int:

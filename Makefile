@@ -1,0 +1,69 @@
+# Everything by one word; each target sets up what it needs, in .venv, by itself.
+#
+#   make demo     the main job: a skin, a cut cable, the recovery
+#   make test     the tests in small sizes (minutes)     make full    all of them (long)
+#   make lint     style, types, import walls             make bench   how fast it is
+#   make papers   the published figures, redrawn         make clean   remove what these made
+
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+.DEFAULT_GOAL := help
+
+BIN := .venv/bin
+# The environment is made again when pyproject.toml says something else, and only then.
+STAMP := .venv/stamp-$(shell cksum < pyproject.toml | cut -d ' ' -f 1)
+WORKERS ?= 2
+PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
+
+.PHONY: help demo test full lint bench papers clean
+
+help:
+	@sed -n '2,/^$$/s/^# \{0,1\}//p' Makefile
+
+$(STAMP):
+	@rm -f .venv/stamp-*
+	@if [ -n "$(PYTHON)" ]; then candidates="$(PYTHON)"; \
+	else candidates="python3 python python3.14 python3.13 python3.12 python3.11"; fi; \
+	new='import sys; sys.exit(sys.version_info < (3, 11))'; python=; \
+	for p in $$candidates; do \
+	  if "$$p" -c "$$new" 2>/dev/null; then python=$$(command -v "$$p"); break; fi; \
+	done; \
+	if command -v uv >/dev/null; then \
+	  echo "Setting up .venv with uv (once) ..."; \
+	  uv venv --quiet --allow-existing --python "$${python:->=3.11}" .venv; \
+	  uv pip install --quiet --python $(BIN)/python -e '.[all,dev]'; \
+	else \
+	  if [ -z "$$python" ]; then \
+	    echo "innervate needs Python 3.11 or newer; tried: $$candidates (choose with: make PYTHON=...)" >&2; exit 1; fi; \
+	  if ! "$$python" -c 'import venv, ensurepip' 2>/dev/null; then \
+	    echo "$$python has no venv module; install it (Debian, Ubuntu: apt install python3-venv)" >&2; exit 1; fi; \
+	  echo "Setting up .venv with pip (once, a minute or two) ..."; \
+	  "$$python" -m venv .venv; \
+	  $(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[all,dev]'; \
+	fi
+	@touch $@
+
+demo: $(STAMP)
+	@$(BIN)/innervate demo
+
+test: $(STAMP)
+	$(PYTEST) -m "not slow"
+
+full: $(STAMP)
+	$(PYTEST)
+
+lint: $(STAMP)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: $(STAMP)
+	@$(BIN)/python -m benchmarks
+
+papers: $(STAMP)
+	@$(BIN)/innervate papers
+
+clean:
+	rm -rf .venv build dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	find src tests benchmarks examples -name __pycache__ -type d -prune -exec rm -rf {} +

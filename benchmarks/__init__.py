@@ -1,0 +1,1 @@
+"""How fast things are: ratios measured in one run, on one machine."""

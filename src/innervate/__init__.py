@@ -1,0 +1,25 @@
+"""The networks inside and between robots, from one protocol source.
+
+`innervate.run(scenario)` runs a scenario, given as a file, as a dictionary or built in code. The
+simulator behind it is loaded at the first use, so that `import innervate` stays cheap.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from innervate.run import run as run
+
+__version__ = "0.1.0"
+__all__ = ["__version__", "run"]
+
+
+def __getattr__(name: str) -> Any:
+    """Load the room `run` when it is first asked for.
+
+    Importing a subpackage sets the attribute of its name, here the module `innervate.run`. That
+    module is therefore callable itself (see its end): one name, whichever way it was imported.
+    """
+    if name == "run":
+        return import_module("innervate.run")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,0 +1,1 @@
+"""Summary figures from rows: recovery, loss, balance, closed forms, intervals."""

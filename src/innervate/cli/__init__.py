@@ -1,0 +1,1 @@
+"""The command line; heavy rooms are imported inside commands."""

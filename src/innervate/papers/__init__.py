@@ -1,0 +1,1 @@
+"""One file per published figure: scenario, run, measure, draw, claim against measurement."""

@@ -1,0 +1,67 @@
+"""A scenario as TOML text, defaults and overrides written out."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from innervate.scenario.load import Scenario
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def dump(scenario: Scenario) -> str:
+    """TOML that loads to the same scenario.
+
+    A relative `urdf` becomes the full path, since the text may be kept elsewhere.
+    """
+    tables = msgspec.to_builtins(scenario.model)
+    body = tables.get("body")
+    if body is not None and not body["urdf"].startswith("package:"):
+        body["urdf"] = str((Path(scenario.source.folder) / body["urdf"]).absolute())
+    return to_toml(tables)
+
+
+def to_toml(tables: dict[str, Any]) -> str:
+    """TOML of nested tables; None and empty lists are left out.
+
+    Plain values come first, then [tables], then [[lists of tables]], each in the given order.
+    """
+    lines: list[str] = []
+    later: list[tuple[str, dict[str, Any]]] = []
+    for key, value in tables.items():
+        if isinstance(value, dict):
+            later.append((f"[{_key(key)}]", value))
+        elif isinstance(value, list | tuple) and value and isinstance(value[0], dict):
+            later.extend((f"[[{_key(key)}]]", item) for item in value)
+        elif _present(value):
+            lines.append(f"{_key(key)} = {_value(value)}")
+    for head, table in later:
+        lines += ["", head]
+        lines += [f"{_key(k)} = {_value(v)}" for k, v in table.items() if _present(v)]
+    return "\n".join(lines).strip("\n") + "\n"
+
+
+def _present(value: Any) -> bool:
+    return value is not None
+
+
+def _key(key: str) -> str:
+    return key if _BARE.fullmatch(key) else _value(key)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, dict):
+        inside = ", ".join(f"{_key(k)} = {_value(v)}" for k, v in value.items() if _present(v))
+        return f"{{ {inside} }}"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(_value(item) for item in value)}]"
+    return repr(value)

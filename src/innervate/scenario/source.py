@@ -1,0 +1,110 @@
+"""Where a scenario's values came from, so that an error can point at the line."""
+
+from __future__ import annotations
+
+import datetime
+import json
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+from innervate.scenario.errors import ScenarioError
+from innervate.scenario.lines import Key
+
+INTEGER_MAX = 2**63 - 1
+DEPTH_MAX = 16
+
+
+@dataclass(slots=True)
+class Source:
+    """A scenario's origin.
+
+    Attributes:
+        path: the file as the user named it; "" for a scenario made in code.
+        folder: where relative paths in it start; "" is the working folder.
+        lines: line of every key (see lines.py).
+        sets: the `--set` text that gave a key its value.
+    """
+
+    path: str = ""
+    folder: str = ""
+    lines: dict[Key, int] = field(default_factory=dict)
+    sets: dict[Key, str] = field(default_factory=dict)
+
+    def error(self, key: Key, message: str) -> ScenarioError:
+        """The error for a key: placed at the nearest `--set` or line above it."""
+        for length in range(len(key), -1, -1):
+            part = key[:length]
+            if part and part not in self.lines:
+                below = [text for path, text in self.sets.items() if path[:length] == part]
+                if below:
+                    return ScenarioError(message, f"--set {below[-1]}", 0, dotted(key))
+            if part in self.sets:
+                return ScenarioError(message, f"--set {self.sets[part]}", 0, dotted(key))
+            if part in self.lines:
+                return ScenarioError(message, self.path, self.lines[part], dotted(key))
+        return ScenarioError(message, self.path, 0, dotted(key))
+
+
+def dotted(key: Key) -> str:
+    """A key path as it is written after `--set`: "event.0.at_s"."""
+    return ".".join(str(part) for part in key)
+
+
+def table_name(key: Key) -> str:
+    """A table in words: "[protocol]", "[[event]] 0", "event.0.cell"."""
+    if len(key) == 1:
+        return f"[{key[0]}]"
+    if len(key) == 2 and isinstance(key[1], int):
+        return f"[[{key[0]}]] {key[1]}"
+    return dotted(key) if key else "a scenario"
+
+
+def shown(value: Any) -> str:
+    """A value as the user would have written it, at most some 60 characters."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, str):
+        short = value if len(value) <= 48 else value[:45] + "..."
+        return json.dumps(short, ensure_ascii=False)
+    if isinstance(value, list | tuple):
+        inside = ", ".join(shown(item) for item in value[:4]) + (", ..." if len(value) > 4 else "")
+        return f"[{inside}]" if len(inside) <= 48 else "a list"
+    if isinstance(value, int) and abs(value) > 10**20:
+        return "a number that long"
+    return str(value)[:60]
+
+
+def check_plain(source: Source, value: Any, key: Key = ()) -> None:
+    """Refuse what no scenario can hold: odd types, NaN, huge integers, deep nesting.
+
+    Raises:
+        ScenarioError: naming the key.
+    """
+    name = dotted(key) or "the scenario"
+    if len(key) > DEPTH_MAX:
+        raise source.error(key, f"{dotted(key[:3])}... is nested too deeply")
+    if isinstance(value, dict):
+        for part, inner in value.items():
+            if not isinstance(part, str):
+                raise source.error(key, f"{name} has a key that is no string: {shown(part)}")
+            check_plain(source, inner, (*key, part))
+    elif isinstance(value, list | tuple):
+        for index, inner in enumerate(value):
+            check_plain(source, inner, (*key, index))
+    elif isinstance(value, str):
+        if any("\ud800" <= char <= "\udfff" for char in value):
+            raise source.error(key, f"{name} holds half a character; write whole ones")
+    elif isinstance(value, bool) or value is None:
+        return
+    elif isinstance(value, int):
+        if abs(value) > INTEGER_MAX:
+            raise source.error(key, f"{name} must be a number below 2^63")
+    elif isinstance(value, float):
+        if not math.isfinite(value):
+            raise source.error(key, f"{name} must be a finite number, not {value}")
+    elif not isinstance(value, datetime.date | datetime.time):
+        kind = type(value).__name__
+        raise source.error(key, f"{name} must be a number, string, list or table, not a {kind}")

@@ -1,0 +1,181 @@
+"""Robot bodies: cells at given places, each wired to its nearest neighbours.
+
+A cell has four ports and a cable has a length. The shortest cables that hold everything together
+come first (so that the skin is connected where it can be), then the shortest others while both
+ends have a port left.
+"""
+
+from __future__ import annotations
+
+import math
+from array import array
+from collections.abc import Sequence
+from pathlib import Path
+
+from innervate.topology.errors import TopologyError
+from innervate.topology.graph import Graph
+from innervate.topology.patch import NOTHING, PORTS
+from innervate.topology.urdf import Vector, find_urdf, read_positions
+
+CELLS_MAX = 5000
+Pair = tuple[float, int, int]
+
+
+def cells_from_urdf(
+    urdf: str, pattern: str, folder: Path | None = None
+) -> tuple[list[str], list[Vector]]:
+    """(names, positions in mm) of the links of a robot description that are cells.
+
+    Args:
+        urdf: a path, relative to `folder`, or "package:<distribution>/<robot>".
+        pattern: glob or regular expression for the names of the links.
+        folder: where relative paths start; the working folder if left out.
+
+    Raises:
+        TopologyError: nothing to read, or nothing matches (see urdf.py).
+    """
+    return read_positions(find_urdf(urdf, folder or Path()), pattern)
+
+
+def body_graph(
+    names: Sequence[str],
+    positions: Sequence[Vector],
+    reach_mm: float,
+    interfaces: int | Sequence[str],
+) -> Graph:
+    """Cells at `positions` (mm), wired to their nearest neighbours, with interface ports.
+
+    Args:
+        names: one a cell.
+        positions: x, y, z in mm, one a cell; at most 5,000.
+        reach_mm: longest cable, > 0.
+        interfaces: how many interface ports to propose, or the names of the cells to put them on.
+
+    Raises:
+        TopologyError: cells out of reach of the others, or no free port for an interface.
+    """
+    if len(names) > CELLS_MAX:
+        raise TopologyError(f"{len(names)} links match; at most {CELLS_MAX} can be cells", "links")
+    wanted = interfaces if isinstance(interfaces, int) else len(interfaces)
+    cells = len(names)
+    flat = array("d", (value for point in positions for value in point))
+    peer = array("i", [NOTHING]) * (PORTS * cells)
+    graph = Graph(cells, 0, peer, (), tuple(names), flat)
+    pairs = [pair for pair in _pairs(positions) if pair[0] <= reach_mm]
+    group = _hold_together(graph, pairs)
+    _say_if_apart(graph, group, positions, reach_mm)
+    spare = max(0, PORTS * cells - 2 * (cells - 1) - wanted)
+    for _, a, b in pairs:
+        free_a, free_b = graph.free_ports(a), graph.free_ports(b)
+        if spare >= 2 and free_a and free_b and b not in graph.neighbours(a):
+            graph.connect(graph.end(a, free_a[0]), graph.end(b, free_b[0]))
+            spare -= 2
+    chosen = propose(graph, interfaces) if isinstance(interfaces, int) else []
+    for name in [] if isinstance(interfaces, int) else interfaces:
+        if name not in names:
+            raise TopologyError(f'interfaces names "{name}", which is no cell', "interfaces")
+        chosen.append(list(names).index(name))
+    for cell in chosen:
+        try:
+            graph.add_interface(cell)
+        except TopologyError as error:
+            raise TopologyError(str(error), "interfaces") from None
+    return graph
+
+
+def _pairs(positions: Sequence[Vector]) -> list[Pair]:
+    """All pairs (distance, a, b), a < b, nearest first."""
+    count = len(positions)
+    return sorted(
+        (round(math.dist(positions[a], positions[b]), 6), a, b)
+        for a in range(count)
+        for b in range(a + 1, count)
+    )
+
+
+def _hold_together(graph: Graph, pairs: Sequence[Pair]) -> list[int]:
+    """Plug the shortest cables that join separate groups; the group of every cell comes back."""
+    group = list(range(graph.cells))
+    for _, a, b in pairs:
+        if group[a] == group[b]:
+            continue
+        free_a, free_b = graph.free_ports(a), graph.free_ports(b)
+        if free_a and free_b:
+            graph.connect(graph.end(a, free_a[0]), graph.end(b, free_b[0]))
+            old, new = group[b], group[a]
+            group = [new if g == old else g for g in group]
+    return group
+
+
+def _say_if_apart(
+    graph: Graph, group: list[int], positions: Sequence[Vector], reach_mm: float
+) -> None:
+    """Raise if the cells are not one group, with the reach that would make them one."""
+    if len(set(group)) <= 1:
+        return
+    biggest = max(sorted(set(group)), key=group.count)
+    out = [graph.names[c] for c in range(graph.cells) if group[c] != biggest]
+    trial = Graph(graph.cells, 0, graph.peer[:], (), graph.names)
+    needed = 0.0
+    for pair in _pairs(positions):
+        before = len(set(group))
+        group = _join_one(trial, group, pair)
+        if len(set(group)) < before:
+            needed = max(needed, pair[0])
+    some = ", ".join(out[:4]) + (f" and {len(out) - 4} more" if len(out) > 4 else "")
+    raise TopologyError(
+        f"cables of {reach_mm:g} mm leave out {some}; "
+        f"reach_mm = {math.ceil(needed * 10) / 10:g} would join them",
+        "reach_mm",
+    )
+
+
+def _join_one(graph: Graph, group: list[int], pair: Pair) -> list[int]:
+    _, a, b = pair
+    free_a, free_b = graph.free_ports(a), graph.free_ports(b)
+    if group[a] == group[b] or not free_a or not free_b:
+        return group
+    graph.connect(graph.end(a, free_a[0]), graph.end(b, free_b[0]))
+    return [group[a] if g == group[b] else g for g in group]
+
+
+def propose(graph: Graph, count: int) -> list[int]:
+    """Cells for `count` interface ports: far apart, with a free port, at the border first.
+
+    An even number of hops between them is preferred: on a bipartite graph cells tied between two
+    interface ports exist only then [skin E15].
+
+    Raises:
+        TopologyError: fewer cells with a free port than that.
+    """
+    free = [c for c in range(graph.cells) if graph.free_ports(c)]
+    if len(free) < count:
+        message = f"only {len(free)} cells have a free port for {count} interfaces; ask for fewer"
+        raise TopologyError(message, "interfaces")
+    if count == 0 or not free:
+        return []
+    centre = [math.fsum(graph.positions[a::3]) / graph.cells for a in range(3)]
+    away = {c: math.dist(graph.positions[3 * c : 3 * c + 3], centre) for c in free}
+    chosen = [max(free, key=lambda c: (len(graph.free_ports(c)) > 1, away[c], -c))]
+    nearest = _hops(graph, chosen[0])
+    even = [d % 2 == 0 for d in nearest]
+    while len(chosen) < count:
+        left = [c for c in free if c not in chosen]
+        best = max(left, key=lambda c: (nearest[c] - (0 if even[c] else 1.5), away[c], -c))
+        chosen.append(best)
+        hops = _hops(graph, best)
+        nearest = [min(x, y) for x, y in zip(nearest, hops, strict=True)]
+    return chosen
+
+
+def _hops(graph: Graph, start: int) -> list[int]:
+    """Hops from a cell to every cell, over cables between cells."""
+    hops = [graph.cells] * graph.cells
+    hops[start] = 0
+    queue = [start]
+    for cell in queue:
+        for other in graph.neighbours(cell):
+            if other < graph.cells and hops[other] > hops[cell] + 1:
+                hops[other] = hops[cell] + 1
+                queue.append(other)
+    return hops

@@ -1,0 +1,1 @@
+"""What a run records: rows, tables, provenance, fingerprint, named random streams."""

@@ -1,0 +1,1 @@
+"""Frame records to bytes and back: bit layouts, CRC. Runs on boards."""

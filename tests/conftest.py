@@ -1,0 +1,80 @@
+"""What every test may rely on: INNERVATE_NO_SKIP, and the marks for what a machine may lack."""
+
+import os
+import shutil
+import subprocess
+from functools import cache
+
+import pytest
+
+NEEDS = {
+    "needs_root": "root",
+    "needs_netns": "network namespaces",
+    "needs_gpu": "an NVIDIA GPU",
+}
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--no-skip",
+        action="store_true",
+        default=os.environ.get("INNERVATE_NO_SKIP", "") not in ("", "0"),
+        help="a skipped test fails, unless it is marked needs_* (also: INNERVATE_NO_SKIP=1)",
+    )
+
+
+@cache
+def machine_has(need):
+    if need == "needs_root":
+        return hasattr(os, "geteuid") and os.geteuid() == 0
+    if need == "needs_gpu":
+        return succeeds("nvidia-smi", "-L")
+    return succeeds("unshare", "--net", "true")
+
+
+def succeeds(*command):
+    if shutil.which(command[0]) is None:
+        return False
+    return subprocess.run(command, capture_output=True, timeout=20, check=False).returncode == 0
+
+
+def pytest_runtest_setup(item):
+    for need, what in NEEDS.items():
+        if item.get_closest_marker(need) and not machine_has(need):
+            pytest.skip(f"this machine lacks {what}")
+
+
+def fail_instead(report):
+    """Turn a skip into a failure that says what to do."""
+    reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)
+    report.outcome = "failed"
+    report.longrepr = (
+        f"{report.nodeid} was skipped, which counts as a failure here.\n{reason}\n"
+        "Install what is missing: pip install -e '.[all,dev]' for Python packages, the list "
+        "in .ci/run for Debian packages."
+    )
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item, call):
+    report = yield
+    is_expected = hasattr(report, "wasxfail") or any(map(item.get_closest_marker, NEEDS))
+    if report.skipped and not is_expected and item.config.getoption("--no-skip"):
+        fail_instead(report)
+    return report
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(collector):
+    report = yield
+    if report.skipped and collector.config.getoption("--no-skip"):
+        fail_instead(report)
+    return report
+
+
+def pytest_terminal_summary(terminalreporter):
+    skipped = terminalreporter.stats.get("skipped", [])
+    for need, what in NEEDS.items():
+        count = sum(need in getattr(report, "keywords", ()) for report in skipped)
+        if count:
+            terminalreporter.write_line(f"{count} not run for want of {what}")

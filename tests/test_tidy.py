@@ -1,0 +1,104 @@
+"""House rules that a reader would otherwise have to remember (CONTRIBUTING.md)."""
+
+import ast
+import importlib.util
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+FUNCTION_LINES_MAX = 70
+FILE_LINES_MAX = 400
+COLUMNS_MAX = 100
+SUFFIXES = {".py", ".c", ".toml", ".sh"}
+UNFINISHED = ("TO" + "DO", "FIX" + "ME", "X" * 3)
+FIELD_MAX = 1 << 30
+
+
+def sources(*folders, suffixes=SUFFIXES):
+    return sorted(
+        path for folder in folders for path in (ROOT / folder).rglob("*") if path.suffix in suffixes
+    )
+
+
+CODE = sources("src", "tests", "benchmarks", "examples")
+PYTHON = [path for path in CODE if path.suffix == ".py"]
+
+
+def lines_with(paths, is_bad):
+    return [
+        f"{path.relative_to(ROOT)}:{number}"
+        for path in paths
+        for number, line in enumerate(path.read_text().splitlines(), 1)
+        if is_bad(line)
+    ]
+
+
+def own_lines(function):
+    """Lines of a function without those of the functions that it builds (factories)."""
+    inner = [
+        node
+        for node in ast.walk(function)
+        if node is not function and isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+    ]
+    lines = set(range(function.lineno, function.end_lineno + 1))
+    return len(lines.difference(*(range(f.lineno, f.end_lineno + 1) for f in inner)))
+
+
+def test_functions_are_short():
+    long = [
+        f"{path.relative_to(ROOT)}:{node.lineno} {node.name}"
+        for path in PYTHON
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        and own_lines(node) > FUNCTION_LINES_MAX
+    ]
+    assert long == []
+
+
+def test_files_are_short():
+    assert [
+        str(path.relative_to(ROOT))
+        for path in PYTHON
+        if len(path.read_text().splitlines()) > FILE_LINES_MAX
+    ] == []
+
+
+def test_lines_are_short():
+    assert lines_with(CODE, lambda line: len(line) > COLUMNS_MAX) == []
+
+
+def test_nothing_is_left_unfinished():
+    assert lines_with(CODE, lambda line: any(mark in line for mark in UNFINISHED)) == []
+
+
+def test_no_path_of_somebodys_machine():
+    folders = tuple("/" + name + "/" for name in ("work", "root", "tmp", "home"))
+    paths = sources("src", "docs", "examples", suffixes=SUFFIXES | {".md"})
+    assert lines_with(paths, lambda line: any(folder in line for folder in folders)) == []
+
+
+def field_tables():
+    for path in sorted((ROOT / "src/innervate/protocol").rglob("*_fields.py")):
+        spec = importlib.util.spec_from_file_location(path.stem, path)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        for name, table in vars(module).items():
+            if name.isupper() and isinstance(table, tuple):
+                yield pytest.param(table, id=f"{path.stem}.{name}")
+
+
+def test_there_are_field_tables():
+    assert len(list(field_tables())) >= 3
+
+
+@pytest.mark.parametrize("table", list(field_tables()))
+def test_every_field_says_what_it_is(table):
+    names = [field[0] for field in table]
+    assert len(set(names)) == len(names)
+    for name, length, low, high, unit, meaning in table:
+        assert name.isidentifier(), name
+        assert length == "ports" or length >= 0, name
+        assert -FIELD_MAX < low <= high < FIELD_MAX, name
+        assert unit.strip(), name
+        assert meaning.strip(), name

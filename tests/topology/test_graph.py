@@ -1,0 +1,128 @@
+"""Patches, cables and the graph's table."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from innervate.topology import Graph, Patch, TopologyError, from_patches, join_chain, port_number
+
+shapes = st.tuples(st.integers(1, 7), st.integers(1, 7), st.sampled_from("ZS"))
+
+
+@given(st.lists(shapes, min_size=1, max_size=4))
+def test_every_cable_has_two_ends(patches: list[tuple[int, int, str]]) -> None:
+    graph = from_patches(patches)
+    assert len(graph.peer) == 4 * graph.cells + graph.interfaces
+    for end, other in enumerate(graph.peer):
+        if other >= 0:
+            assert graph.peer[other] == end
+            assert graph.port_of(other) == graph.port_of(end) ^ 1
+            assert graph.patch_of(graph.node_of(end)) == graph.patch_of(graph.node_of(other))
+
+
+@given(shapes)
+def test_neighbours_touch_on_the_honeycomb(shape: tuple[int, int, str]) -> None:
+    graph = from_patches([shape])
+    points = graph.layout()
+    for a, b in graph.links():
+        assert math.dist(points[a // 4], points[b // 4]) == pytest.approx(14.0)
+
+
+@given(st.integers(1, 9), st.integers(1, 9))
+def test_rule_s_wires_as_many_cells_as_rule_z_or_fewer(columns: int, rows: int) -> None:
+    counts = [sum(1 for _ in from_patches([(columns, rows, w)]).links()) for w in "ZS"]
+    assert counts[0] == rows * (columns - 1) + columns * (rows - 1)
+    assert counts[1] <= counts[0]
+
+
+def test_ends_and_labels() -> None:
+    graph = from_patches([(3, 2, "Z"), (2, 2, "Z")])
+    assert graph.add_interface(graph.patches[1].cell(0, 1), "E") == 0
+    assert graph.label(graph.patches[0].cell(1, 2)) == "p0 r1 c2"
+    end = graph.end(graph.patches[1].cell(0, 1), 1)
+    assert graph.label_end(end) == "p1 r0 c1 E"
+    assert graph.label_end(graph.peer[end]) == "pc.0"
+    assert graph.label(graph.sink) == "pc"
+    assert graph.node_of(graph.peer[end]) == graph.sink == graph.nodes - 1
+    assert graph.neighbours(graph.sink) == [graph.patches[1].cell(0, 1)]
+    assert list(graph.depths()) == [-1] * 6 + [2, 1, 3, 2]
+
+
+def test_connect_names_both_sides() -> None:
+    graph = from_patches([(3, 3, "Z"), (2, 2, "Z")])
+    with pytest.raises(TopologyError, match="port p0 r0 c0 E is already cabled to p0 r0 c1 W"):
+        graph.connect(graph.end(0, 1), graph.end(9, 0))
+    with pytest.raises(TopologyError, match="join p0 r0 c0 to itself"):
+        graph.connect(graph.end(0, 0), graph.end(0, 2))
+    with pytest.raises(TopologyError, match="p0 r1 c1 has no free port; choose a border cell"):
+        graph.add_interface(4)
+    with pytest.raises(TopologyError, match="already cabled"):
+        graph.add_interface(0, "E")
+    assert graph.interfaces == 0
+    assert len(graph.peer) == 4 * graph.cells
+
+
+@pytest.mark.parametrize(
+    ("port", "number"), [("W", 0), ("e", 1), ("up", 2), ("Down", 3), ("2", 2), (1, 1)]
+)
+def test_port_names(port: str | int, number: int) -> None:
+    assert port_number(port) == number
+
+
+@pytest.mark.parametrize("port", ["X", "", 4, -1, "10"])
+def test_unknown_ports(port: str | int) -> None:
+    with pytest.raises(TopologyError, match="no port is called"):
+        port_number(port)
+
+
+def test_cells_out_of_the_patch() -> None:
+    patch = Patch(3, 2, "Z", 10)
+    assert patch.row_column(patch.cell(1, 2)) == (1, 2)
+    with pytest.raises(TopologyError, match="no row 2; rows are 0 to 1"):
+        patch.cell(2, 0)
+    with pytest.raises(TopologyError, match="no column -1"):
+        patch.cell(0, -1)
+
+
+def test_too_many_cells() -> None:
+    with pytest.raises(TopologyError, match="more than 4,000,000"):
+        from_patches([(4000, 4000, "Z")])
+
+
+def joined(count: int) -> Graph:
+    graph = from_patches([(6, 10, "Z")] * count)
+    join_chain(graph, 0, count)
+    for patch in graph.patches:
+        graph.add_interface(patch.cell(0, 3))
+    return graph
+
+
+def test_patches_never_overlap() -> None:
+    for count in (1, 5, 40, 70):
+        points = joined(count).layout()
+        assert len(points) == 60 * count
+        assert len({(round(x), round(y)) for x, y in points}) == 60 * count
+        assert min(x for x, _ in points) >= 0
+        assert min(y for _, y in points) >= 0
+
+
+def test_joined_patches_lie_side_by_side() -> None:
+    graph = from_patches([(6, 10, "Z")] * 2)
+    graph.connect(graph.end(5, 1), graph.end(60, 0))
+    points = graph.layout()
+    assert math.dist(points[5], points[60]) < 45
+
+
+def test_a_million_cells_are_quick() -> None:
+    start = time.perf_counter()
+    graph = joined(1667)
+    depths = graph.depths()
+    assert time.perf_counter() - start < 2.0  # a tenth of a million in a tenth of the time
+    assert graph.cells == 100_020
+    assert max(depths) == 13
+    assert min(depths) == 1
