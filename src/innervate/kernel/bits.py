@@ -1,4 +1,4 @@
-"""Three small things that plain Python and compiled code must spell differently.
+"""Two small things that plain Python and compiled code must spell differently.
 
 Each has a plain body and a compiled one with the same result; `tests/parity` holds them together.
 """
@@ -27,10 +27,6 @@ def mix(state: int, word: int) -> int:
     return mixed - (1 << 64) if mixed >> 63 else mixed
 
 
-def prefetch(array: Any, index: int) -> None:
-    """Ask the processor to fetch array[index]; changes nothing."""
-
-
 @intrinsic  # type: ignore[untyped-decorator]
 def _count_trailing_zeros(typing_context: Any, word: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -56,27 +52,3 @@ def _lowest_bit(word):
 @overload(mix, inline="always")  # type: ignore[untyped-decorator]
 def _mix(state, word):
     return lambda state, word: _mix64(state, word)
-
-
-@intrinsic  # type: ignore[untyped-decorator]
-def _prefetch(typing_context: Any, array: Any, index: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        array_type = signature.args[0]
-        header = context.make_array(array_type)(context, builder, args[0])
-        base = builder.bitcast(header.data, ir.IntType(8).as_pointer())
-        size = context.get_abi_sizeof(context.get_data_type(array_type.dtype))
-        offset = builder.mul(args[1], ir.Constant(ir.IntType(64), size))
-        address = builder.gep(base, [offset])
-        flag = ir.IntType(32)
-        pointer = ir.IntType(8).as_pointer()
-        kind = ir.FunctionType(ir.VoidType(), [pointer, flag, flag, flag])
-        function = builder.module.declare_intrinsic("llvm.prefetch", [pointer], kind)
-        builder.call(function, [address, flag(1), flag(3), flag(1)])
-        return context.get_dummy_value()
-
-    return types.void(array, types.int64), generate
-
-
-@overload(prefetch, inline="always")  # type: ignore[untyped-decorator]
-def _prefetch_overload(array, index):
-    return lambda array, index: _prefetch(array, index)

@@ -148,6 +148,30 @@ def _len(table):
     return None
 
 
+@intrinsic  # type: ignore[untyped-decorator]
+def _prefetch(typing_context: Any, table: Any, index: Any, line: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        pointer = _item_pointer(context, builder, table, args[0], args[1])
+        offset = builder.mul(args[2], ir.Constant(ir.IntType(64), 64))
+        address = builder.gep(pointer, [offset])
+        flag, kind = ir.IntType(32), ir.IntType(8).as_pointer()
+        shape = ir.FunctionType(ir.VoidType(), [kind, flag, flag, flag])
+        function = builder.module.declare_intrinsic("llvm.prefetch", [kind], shape)
+        builder.call(function, [address, flag(1), flag(3), flag(1)])
+        return context.get_dummy_value()
+
+    return types.void(table, types.int64, types.int64), generate
+
+
+def fetch(table: Any, index: int, line: int) -> None:
+    """Have the processor fetch a cache line of table[index]; changes nothing."""
+
+
+@overload(fetch, jit_options={"forceinline": True})  # type: ignore[untyped-decorator]
+def _fetch(table, index, line):
+    return lambda table, index, line: _prefetch(table, index, line)
+
+
 def borrowed(value: Any) -> Any:
     """A (nested) tuple of arrays as the same tuple of tables."""
     if isinstance(value, np.ndarray):

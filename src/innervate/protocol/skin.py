@@ -47,13 +47,19 @@ DROP_LOOP = 2
 
 def copy_frame(to, frm):
     """Copy a frame, field by field; a beacon has no more than its first six."""
-    to.kind = frm.kind
-    to.dist = frm.dist
-    to.sq = frm.sq
-    to.load = frm.load
-    to.size = frm.size
-    to.parent = frm.parent
-    if frm.kind == DATA:
+    kind = frm.kind
+    dist = frm.dist
+    sq = frm.sq
+    load = frm.load
+    size = frm.size
+    parent = frm.parent
+    to.kind = kind
+    to.dist = dist
+    to.sq = sq
+    to.load = load
+    to.size = size
+    to.parent = parent
+    if kind == DATA:
         to.cell = frm.cell
         to.seq = frm.seq
         to.hops = frm.hops
@@ -146,12 +152,17 @@ def forward(cell, params, frame, out):
 
 def hear(cell, params, now, port, beacon, out):
     """Store what a neighbour says; triggered modes act on it at once [skin II-B.1]."""
-    worse = beacon.dist > cell.dist[port] or later(cell.sq[port], beacon.sq)
-    cell.dist[port] = beacon.dist
-    cell.sq[port] = beacon.sq
-    cell.load[port] = beacon.load
-    cell.size[port] = beacon.size
-    cell.child[port] = beacon.parent
+    dist = beacon.dist
+    sq = beacon.sq
+    load = beacon.load
+    size = beacon.size
+    child = beacon.parent
+    worse = dist > cell.dist[port] or later(cell.sq[port], sq)
+    cell.dist[port] = dist
+    cell.sq[port] = sq
+    cell.load[port] = load
+    cell.size[port] = size
+    cell.child[port] = child
     cell.heard[port] = 1
     if params.updates != PERIODIC and react(cell, params, port, worse, out):
         if is_news(cell, params):
@@ -183,15 +194,18 @@ def react(cell, params, port, worse, out):
 
 def tick(cell, params, now, out):
     """Supervise the links, choose the parent, add up the load, send a beacon on every port."""
-    supervise(cell, params, out)
+    changed = supervise(cell, params, out)
     may_balance = 0
     if params.balance_periods > 0:
         cell.countdown = cell.countdown - 1
         if cell.countdown <= 0:
             may_balance = 1
             cell.countdown = params.balance_periods
-    hold_feasible(cell, params, out)
-    select(cell, params, may_balance, out)
+    if cell.parent == NONE:
+        hold_feasible(cell, params, out)
+    # Between ticks `react` keeps the choice up to date, except in periodic mode.
+    if changed or may_balance or params.updates == PERIODIC or cell.parent == NONE:
+        select(cell, params, may_balance, out)
     cell.own_load = sum_load(cell)
     silent = (
         params.updates == WAVE
@@ -207,24 +221,27 @@ def tick(cell, params, now, out):
 
 
 def supervise(cell, params, out):
-    """Failure penalty of every port, within [0, 2] in units of 1/ONE [skin II-B.3, E16-E19]."""
+    """Failure penalty of every port, within [0, 2] in units of 1/ONE [skin II-B.3, E16-E19].
+
+    1 if a port broke or works again.
+    """
+    change = False
     for p in range(PORTS):
         penalty = cell.pf[p]
         if cell.heard[p]:
-            changed = max(0, penalty - params.r_r)
+            after_tick = max(0, penalty - params.r_r)
         else:
-            changed = min(2 * ONE, penalty + params.r_f)
+            after_tick = min(2 * ONE, penalty + params.r_f)
         cell.heard[p] = 0
-        cell.pf[p] = changed
-        if (changed >= ONE) != (penalty >= ONE):
-            report(out, REPORT_BROKEN, p, 1 if changed >= ONE else 0)
+        cell.pf[p] = after_tick
+        if (after_tick >= ONE) != (penalty >= ONE):
+            change = True
+            report(out, REPORT_BROKEN, p, 1 if after_tick >= ONE else 0)
+    return change
 
 
 def hold_feasible(cell, params, out):
     """Forget fd after FD_HOLD periods without a route: a restarted PC may count from anew [E27]."""
-    if cell.parent != NONE:
-        cell.hold = 0
-        return
     cell.hold = cell.hold + 1
     if cell.hold >= params.hold_periods:
         cell.hold = 0
@@ -317,6 +334,7 @@ def adopt(cell):
     """Take over the parent's sequence number; fd only ever gets nearer."""
     if cell.parent == NONE:
         return
+    cell.hold = 0
     cell.sq_own = cell.sq[cell.parent]
     cell.sq_known = 1
     dist = distance(cell)
@@ -374,14 +392,17 @@ def send_beacons(cell, size, out):
     load = cell.own_load
     if cell.sq_known == 0:
         load = 0
+    dist = cell.sent_dist
+    sq = cell.sent_sq
+    parent = cell.parent
     for p in range(PORTS):
         flags = URGENT
         if cell.pf[p] >= ONE:
             flags = URGENT | FLUSH
         frame = out.frame[send(out, p, 0, flags)]
         frame.kind = BEACON
-        frame.dist = cell.sent_dist
-        frame.sq = cell.sent_sq
+        frame.dist = dist
+        frame.sq = sq
         frame.load = load
         frame.size = size
-        frame.parent = 1 if p == cell.parent else 0
+        frame.parent = 1 if p == parent else 0

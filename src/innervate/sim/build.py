@@ -48,7 +48,7 @@ def build(
     tables = w.Tables(plain)
     graph = plan.graph
     cells, nodes, ends = graph.cells, graph.cells + 1, len(graph.peer)
-    tx_slots = nodes << w.SLOT_BITS
+    tx_slots = nodes * w.TIMER_SLOTS
     pool_slots = tx_slots + (ends if plan.data_period_us else 0)
     limit = max(16, graph.interfaces + 4)
     pool = 2 * ends + BATCH * 16 + 4 * limit
@@ -71,6 +71,7 @@ def build(
         pc=w.Sink(tables.states(skin_fields.SINK, 1), tables.numbers(graph.interfaces)),
         params=tables.states(skin_fields.PARAMS, 1),
         clocks=tables.records(w.CLOCK, nodes),
+        starts=tables.records(w.START, nodes),
         alive=tables.numbers(nodes, w.OFF),
         ends=tables.records(w.END, ends),
         buffers=tables.records(w.BUFFER, ends),
@@ -224,7 +225,9 @@ def _set_nodes(world: w.World, plan: Any) -> None:
     """Clocks, generators, and the moment each node is switched on."""
     cells, nodes = plan.graph.cells, plan.graph.cells + 1
     steep = 0 if plan.lock_step else round(plan.drift_ppm * (1 << 30) / 1_000_000)
-    _fill(world.clocks, "rate", uniform(plan.seed, "drift", nodes, 2 * steep + 1) - steep, nodes)
+    rates = uniform(plan.seed, "drift", nodes, 2 * steep + 1) - steep
+    _fill(world.clocks, "rate", rates, nodes)
+    _fill(world.starts, "inverse", (1 << 60) // ((1 << 30) + rates) - 1, nodes)
     _fill(world.clocks, "offset", uniform(plan.seed, "offset", nodes, 1 << 30), nodes)
     seeds = uniform(plan.seed, "nodes", cells, rng.FIXED_POINT - 1) + 1
     _fill(world.cells, "rng", seeds, cells)
@@ -234,8 +237,8 @@ def _set_nodes(world: w.World, plan: Any) -> None:
     phases = uniform(plan.seed, "phase", nodes, period)
     if plan.data_period_us:
         source = uniform(plan.seed, "source", nodes, plan.data_period_us)
-        _fill(world.clocks, "source", source, nodes)
-    _fill(world.clocks, "phase", phases, nodes)
+        _fill(world.starts, "source", source, nodes)
+    _fill(world.starts, "phase", phases, nodes)
 
 
 def _set_commands(world: w.World, plan: Any) -> None:

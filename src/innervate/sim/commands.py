@@ -2,9 +2,10 @@
 
 from innervate.sim import observer, wires
 from innervate.sim import wheel as queue
+from innervate.sim.clocks import timer_slot
 from innervate.sim.wheel import NIL
 from innervate.sim.wires import DOWN, LOSSY
-from innervate.sim.world import ALIVE, DEAD, SLOT_BITS
+from innervate.sim.world import ALIVE, DEAD, TIMER_SLOTS
 
 # As in a plan's faults; the loop begins with a command of its own.
 BEGIN = -1
@@ -25,7 +26,7 @@ def obey(world, command, switch_on, stopped):
     time = command.at
     if action == BEGIN:
         for node in range(world.run[0].nodes):
-            queue.insert(world.wheel, node << SLOT_BITS, world.clocks[node].phase)
+            queue.insert(world.wheel, node, world.starts[node].phase)
     elif action == CUT:
         change_link(world, command.end, 1)
     elif action == RESTORE:
@@ -92,7 +93,8 @@ def switch_off(world, time, node, stopped):
 
 def forget(world, time, node, stopped):
     """A node loses its memory: timers and queues go."""
-    for slot in range(node << SLOT_BITS, (node + 1) << SLOT_BITS):
+    for timer in range(TIMER_SLOTS):
+        slot = timer_slot(world, node, timer)
         if world.wheel.events[slot].bucket != NIL:
             queue.remove(world.wheel, slot)
     first, behind = ends_of(world, node)

@@ -5,14 +5,15 @@ when the time, the commands or the room in a table is used up; `run.status` says
 """
 
 from innervate.kernel.bits import mix
+from innervate.kernel.tables import fetch
 from innervate.protocol.arith import MASK30
 from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER
 from innervate.sim import clocks, commands, touch, wires
 from innervate.sim import wheel as queue
 from innervate.sim.observer import BROKEN_OUTBOX
-from innervate.sim.wheel import LAST, LIVE, NIL
+from innervate.sim.wheel import FRESH, LAST, NIL
 from innervate.sim.wires import OFFERED
-from innervate.sim.world import ALIVE, DEAD, OFF, SLOT_BITS, SOURCE
+from innervate.sim.world import ALIVE, DEAD, OFF, SOURCE
 
 # Why the loop stopped.
 DONE = 0
@@ -32,6 +33,7 @@ MEMORY_LOST = 1
 
 # Events between two looks at the room left in the tables.
 BATCH = 64
+FORESEE_CELLS = 2000  # fewer fit into the processor's caches anyway
 ROWS_PER_EVENT = 24
 
 
@@ -41,13 +43,32 @@ def pressing(world):
     pool = world.wheel.pool
     if run.broken:
         return BROKEN
-    if pool[LIVE] + BATCH * 16 + 2 * world.out.limit[0] > pool[LAST]:
+    if pool[FRESH] + BATCH * 16 + 2 * world.out.limit[0] > run.pool_slots + pool[LAST]:
         return POOL_FULL
     if run.rows + BATCH * ROWS_PER_EVENT > run.row_limit:
         return ROWS_FULL
     if run.deliveries + BATCH > run.delivery_limit > 0 or run.trail + BATCH > run.trail_limit > 0:
         return ROWS_FULL
     return DONE
+
+
+def foresee(world, wheel):
+    """Have the state of the next event's node fetched while this event is handled."""
+    slot = wheel.clock[queue.PENDING]
+    if slot == NIL:
+        index = queue.first(wheel, 0, wheel.clock[queue.NOW] & queue.MASK)
+        if index == NIL:
+            return
+        slot = wheel.links[index]
+    run = world.run[0]
+    if slot >= run.pool_slots:
+        node = wheel.events[slot].target >> 2
+    else:
+        node = slot - clocks.timer_of(world, slot) * run.nodes
+    node = min(node, run.cells - 1)
+    fetch(world.cells, node, 0)
+    fetch(world.cells, node, 1)
+    fetch(world.cells, node, 2)
 
 
 def build(stack):
@@ -57,7 +78,7 @@ def build(stack):
     digest, report, stopped = stack.digest, stack.report, stack.stopped
     check, deliver, copy_frame = stack.check, stack.deliver, stack.copy_frame
 
-    def drain(world, node, time, now):
+    def drain(world, node, time, port):
         """Carry out what a handler put into the outbox; fold it into the fingerprint."""
         run = world.run[0]
         out = world.out
@@ -65,42 +86,41 @@ def build(stack):
         first_end = 4 * node
         for i in range(out.count[0]):
             act = out.action[i]
-            if act.kind == SEND:
-                word = digest(out.frame[i]) ^ ((act.a * 4 + act.c) << 53) ^ (act.b << 20)
-                mark = mix(mark, word)
-                if act.b > 0:
-                    wires.delay(world, first_end + act.a, out.frame[i], time + act.b, act.c,
-                                copy_frame)  # fmt: skip
+            kind, a, b, c = act.kind, act.a, act.b, act.c
+            if kind == SEND:
+                frame = out.frame[i]
+                mark = mix(mark, digest(frame) ^ ((a * 4 + c) << 53) ^ (b << 20))
+                if b > 0:
+                    wires.delay(world, first_end + a, frame, time + b, c, copy_frame)
                 else:
-                    wires.transmit(world, first_end + act.a, out.frame[i], time, act.c, copy_frame)
-            else:
-                mark = mix(mark, act.kind ^ (act.a << 3) ^ (act.b << 20) ^ (act.c << 50))
-                if act.kind == SET_TIMER:
-                    slot = (node << SLOT_BITS) + act.a
-                    if world.wheel.events[slot].bucket != NIL:
-                        queue.remove(world.wheel, slot)
-                    at = clocks.true_time(world.clocks[node], time, act.b)
-                    queue.insert(world.wheel, slot, at)
-                elif act.kind == REPORT:
-                    report(world, time, node, act.a, act.b, act.c)
-                elif act.kind == DELIVER:
-                    mark = mix(mark, digest(out.frame[i]))
-                    deliver(world, time, world.run[0].touched, out.frame[i])
+                    wires.transmit(world, first_end + a, frame, time, c, copy_frame)
+                continue
+            mark = mix(mark, kind ^ (a << 3) ^ (b << 20) ^ (c << 50))
+            if kind == SET_TIMER:
+                slot = clocks.timer_slot(world, node, a)
+                if world.wheel.events[slot].bucket != NIL:
+                    queue.remove(world.wheel, slot)
+                queue.insert(world.wheel, slot, clocks.true_time(world, node, time, b))
+            elif kind == REPORT:
+                report(world, time, node, a, b, c)
+            elif kind == DELIVER:
+                mark = mix(mark, digest(out.frame[i]))
+                deliver(world, time, port, out.frame[i])
         out.count[0] = 0
         run.fingerprint = mark
         if out.overflow[0] and run.broken == 0:
             run.broken = BROKEN_OUTBOX
             run.broken_node = node
 
-    def finish(world, node, time, now, handler, port):
+    def finish(world, node, time, handler, port):
         """After a handler: account for it, carry out what it asked for, check."""
         run = world.run[0]
         run.handled += 1
-        run.touched = port
         run.fingerprint = mix(
             run.fingerprint, (time << 26) ^ (node << 6) ^ (port << 40) ^ handler
         )
-        drain(world, node, time, now)
+        if world.out.count[0] > 0:
+            drain(world, node, time, port)
         if run.watchful:
             look(world, node, time, handler, port)
 
@@ -127,17 +147,17 @@ def build(stack):
         now = clocks.reading(clock, time)
         world.alive[node] = ALIVE
         start(world, node, now & MASK30, cause)
-        finish(world, node, time, now, ON_START, cause)
+        finish(world, node, time, ON_START, cause)
         if run.source_us > 0 and node < run.cells:
-            slot = (node << SLOT_BITS) + SOURCE
+            slot = clocks.timer_slot(world, node, SOURCE)
             if world.wheel.events[slot].bucket == NIL:
-                wait = clocks.true_delay(clock, time, clock.source)
+                wait = clocks.true_delay(world, node, time, world.starts[node].source)
                 queue.insert(world.wheel, slot, time + wait)
 
     def on_timer_slot(world, slot, time):
         """A node's timer, its first switching on, or its next sample."""
-        node = slot >> SLOT_BITS
-        timer = slot - (node << SLOT_BITS)
+        timer = clocks.timer_of(world, slot)
+        node = slot - timer * world.run[0].nodes
         if world.alive[node] == OFF:
             switch_on(world, node, time, COLD)
         elif world.alive[node] == DEAD:
@@ -147,35 +167,35 @@ def build(stack):
             world.counters[OFFERED] += 1
             touch.read_sensors(world, node, time)
             sample(world, node, now & MASK30)
-            finish(world, node, time, now, ON_INPUT, 0)
-            wait = clocks.true_delay(world.clocks[node], time, world.run[0].source_us)
+            finish(world, node, time, ON_INPUT, 0)
+            wait = clocks.true_delay(world, node, time, world.run[0].source_us)
             queue.insert(world.wheel, slot, time + wait)
         else:
             now = clocks.reading(world.clocks[node], time)
             fire(world, node, now & MASK30, timer)
-            finish(world, node, time, now, ON_TIMER, timer)
+            finish(world, node, time, ON_TIMER, timer)
 
-    def on_arrival(world, slot, time):
+    def on_arrival(world, event, slot, time):
         """A frame at the end of its cable."""
         run = world.run[0]
-        run.arrived += 1
-        end = wires.land(world, slot)
-        if end != NIL:
-            node = min(end >> 2, run.cells)
+        end = event.target
+        node = min(end >> 2, run.cells)
+        if wires.lands(world, event, node):
             port = end - 4 * node
             now = clocks.reading(world.clocks[node], time)
             hear(world, node, now & MASK30, port, world.frames[slot - run.pool_slots])
-            finish(world, node, time, now, ON_FRAME, port)
+            finish(world, node, time, ON_FRAME, port)
         queue.give(world.wheel, slot)
 
     def dispatch(world, slot, time):
         """Hand an event to what it is for."""
         run = world.run[0]
         if slot >= run.pool_slots:
-            if world.wheel.events[slot].kind == wires.DELAYED:
+            event = world.wheel.events[slot]
+            if event.kind == wires.DELAYED:
                 wires.release(world, slot, time, copy_frame)
             else:
-                on_arrival(world, slot, time)
+                on_arrival(world, event, slot, time)
         elif slot < run.tx_slots:
             on_timer_slot(world, slot, time)
         else:
@@ -196,6 +216,8 @@ def build(stack):
                 slot = queue.pop(wheel, limit)
                 if slot == NIL:
                     break
+                if run.cells > FORESEE_CELLS:
+                    foresee(world, wheel)
                 dispatch(world, slot, wheel.clock[queue.NOW])
             if slot == NIL and run.broken == 0:
                 if limit >= until:

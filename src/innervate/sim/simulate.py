@@ -15,6 +15,7 @@ from innervate.sim import build as builder
 from innervate.sim import loop, skin_stack, static_stack
 from innervate.sim import world as w
 from innervate.sim.build import get
+from innervate.sim.wires import ARRIVED, URGENT_BLOCK
 
 RULE_STATIC = 3
 SLICE_EVENTS = 1_000_000
@@ -52,12 +53,19 @@ class Result:
 def _modules() -> list[ModuleType]:
     from innervate.protocol import arith, outbox, skin, skin_sink, skin_static
     from innervate.protocol import rng as generator
-    from innervate.sim import checks, clocks, commands, observer, touch, wheel, wires
+    from innervate.sim import checks, clocks, wheel, wires
 
     return [
         arith, outbox, generator, skin, skin_sink, skin_static,
-        wheel, clocks, touch, wires, observer, checks, commands, skin_stack, static_stack,
+        wheel, clocks, wires, checks, skin_stack, static_stack,
     ]  # fmt: skip
+
+
+def _rare() -> list[ModuleType]:
+    """What runs too seldom to be worth copying into every caller."""
+    from innervate.sim import commands, observer, touch
+
+    return [observer, commands, touch]
 
 
 @functools.cache
@@ -65,8 +73,9 @@ def compiled_loop(static: bool) -> Callable[..., None]:
     """The compiled loop of the skin, or of its static baseline."""
     from innervate.kernel import door, tables
 
+    door.register(*_rare(), hot=False)
     door.register(*_modules())
-    door.register_functions(loop.pressing)
+    door.register_functions(loop.pressing, loop.foresee)
     parts = loop.build(static_stack if static else skin_stack)
     door.register_functions(*parts[:-1])
     advance = door.compiled(parts[-1])
@@ -125,7 +134,7 @@ def simulate(
         wall_s=time.perf_counter() - started,
         fingerprint=f"{int(get(world.run, 0, 'fingerprint')) & (1 << 64) - 1:016x}",
         handled=int(get(world.run, 0, "handled")),
-        arrived=int(get(world.run, 0, "arrived")),
+        arrived=int(world.counters[ARRIVED] + world.counters[ARRIVED + URGENT_BLOCK]),
         interrupted=interrupted,
     )
 

@@ -28,7 +28,6 @@ PENDING = 1  # rest of that time's list, not yet taken
 FREE = 0  # head of the list of slots given back
 FRESH = 1  # first slot never used
 LAST = 2  # end of the pool
-LIVE = 3  # pool slots in use
 
 
 def insert(wheel, slot, time):
@@ -159,7 +158,6 @@ def take(wheel):
         pool[FRESH] = slot + 1
     else:
         pool[FREE] = wheel.links[BUCKETS + slot]
-    pool[LIVE] += 1
     return slot
 
 
@@ -167,4 +165,3 @@ def give(wheel, slot):
     """Hand a pool slot back."""
     wheel.links[BUCKETS + slot] = wheel.pool[FREE]
     wheel.pool[FREE] = slot
-    wheel.pool[LIVE] -= 1

@@ -8,7 +8,7 @@ A cable's `epoch` is odd while it is down; a frame arrives only if the epoch did
 from innervate.protocol.outbox import FLUSH, URGENT
 from innervate.protocol.rng import LOW15, step
 from innervate.sim import wheel as queue
-from innervate.sim.wheel import NIL
+from innervate.sim.world import ALIVE
 
 # Kinds of pool slots; an arrival is marked by the block of counters its frame belongs to.
 DELAYED = 1
@@ -92,18 +92,20 @@ def launch(world, end, frame, start, block, copy_frame):
     """Put a frame on the wire at `start`; a queue slot brings it to the other side."""
     run = world.run[0]
     wire = world.ends[end]
+    peer = wire.peer
+    latency = wire.latency
+    epoch = world.epoch[end]
     wire.busy = start + run.wire_us
     world.counters[SENT + block] += 1
     if wire.impaired and is_lost(world, end, block):
         return
-    latency = wire.latency
     if run.latency_per_frame:
         latency = run.latency_low + chance(run, run.latency_high - run.latency_low + 1)
     slot = queue.take(world.wheel)
     event = world.wheel.events[slot]
     event.kind = block
-    event.target = wire.peer
-    event.epoch = world.epoch[end]
+    event.target = peer
+    event.epoch = epoch
     copy_frame(world.frames[slot - run.pool_slots], frame)
     queue.insert(world.wheel, slot, start + latency)
 
@@ -133,20 +135,17 @@ def chance(run, n):
     return ((run.rng & LOW15) * n) >> 15
 
 
-def land(world, slot):
-    """A frame reaches the end of its cable: its end, or NIL if it does not get through."""
-    event = world.wheel.events[slot]
-    end = event.target
+def lands(world, event, node):
+    """True if a frame gets through to the node at the end of its cable; counts it either way."""
     block = event.kind
-    if event.epoch != world.epoch[end]:
+    if event.epoch != world.epoch[event.target]:
         world.counters[LOST_CUT + block] += 1
-        return NIL
-    node = min(end >> 2, world.run[0].cells)
-    if world.alive[node] != 1:
+        return False
+    if world.alive[node] != ALIVE:
         world.counters[LOST_OFF + block] += 1
-        return NIL
+        return False
     world.counters[ARRIVED + block] += 1
-    return end
+    return True
 
 
 def drop_queue(world, end):
@@ -172,6 +171,6 @@ def release(world, slot, time, copy_frame):
     event = world.wheel.events[slot]
     end = event.target
     frame = world.frames[slot - world.run[0].pool_slots]
-    if world.alive[min(end >> 2, world.run[0].cells)] == 1:
+    if world.alive[min(end >> 2, world.run[0].cells)] == ALIVE:
         transmit(world, end, frame, time, event.epoch, copy_frame)
     queue.give(world.wheel, slot)

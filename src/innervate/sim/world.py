@@ -18,11 +18,12 @@ from innervate.protocol import plain
 EVENT = ("time", "bucket", "kind", "target", "epoch")
 END = ("busy", "peer", "latency", "impaired", "waiting")
 BUFFER = ("loss", "lose", "queued", "first")
-CLOCK = ("offset", "rate", "source", "phase")
+CLOCK = ("offset", "rate")
+START = ("inverse", "source", "phase")
 RUN = (
     "cells", "nodes", "tx_slots", "pool_slots", "wire_us", "latency_low", "latency_high",
     "latency_per_frame", "queue_frames", "source_us", "checks", "fingerprint", "handled",
-    "arrived", "rng", "commands", "next_command", "row_limit", "rows", "delivery_limit", "watchful", "broken_at",
+    "rng", "commands", "next_command", "row_limit", "rows", "delivery_limit", "watchful", "broken_at",
     "deliveries", "trail_limit", "trail", "status", "broken", "broken_node", "broken_other",
     "unrouted", "loops", "loops_open", "rule", "touched",
 )  # fmt: skip
@@ -31,16 +32,16 @@ ROW = ("time", "node", "code", "a", "b")
 DELIVERY = ("time", "port", "cell", "seq", "hops", "proximity", "force", "temperature", "accel")
 TRAIL = ("time", "node", "handler", "port", "fingerprint")
 ACTION = ("kind", "a", "b", "c")
-WIDE = {"time", "busy", "offset", "rate", "source", "at", "fingerprint"} | set(RUN)
+WIDE = {"time", "busy", "offset", "rate", "inverse", "source", "at", "fingerprint"} | set(RUN)
 
 # States of a node.
 OFF = 0
 ALIVE = 1
 DEAD = 2
 
-# Timer slots of a node: the protocol's own timers first, then the driver's source of samples.
-SLOT_BITS = 2
+# Timers of a node: the protocol's own first, then the driver's source of samples.
 SOURCE = 3
+TIMER_SLOTS = 4
 
 
 class Wheel(NamedTuple):
@@ -95,6 +96,7 @@ class World(NamedTuple):
     pc: Sink
     params: Any
     clocks: Any
+    starts: Any  # what else is fixed of every clock: its inverse rate, first sample, first tick
     alive: Any
     ends: Any  # what every frame needs of a cable's end
     buffers: Any  # what only waiting, loose or lost frames need
