@@ -25,7 +25,7 @@ def dtype(declaration: Declaration, itemsize: int = 0) -> np.dtype[Any]:
         offsets.append(offset)
         offset += 4 * max(count, 1)
     size = max(offset, itemsize)
-    layout = {"names": names, "formats": formats, "offsets": offsets, "itemsize": size}
+    layout: Any = {"names": names, "formats": formats, "offsets": offsets, "itemsize": size}
     return np.dtype(layout, align=True)
 
 

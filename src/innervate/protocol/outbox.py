@@ -1,7 +1,8 @@
 """The outbox: what a handler wants done. Drivers drain it; no driver knows a protocol by name.
 
-`out` has `count[0]` (actions so far), `limit[0]` (room), `overflow[0]` (1 = an action did not fit, a
-broken invariant), and two tables of equal length: `action[i]` with kind, a, b, c and `frame[i]`.
+`out` has `count[0]` (actions so far), `limit[0]` (room), `overflow[0]` (1 = an action did not
+fit, a broken invariant), and two tables of equal length: `action[i]` with kind, a, b, c and
+`frame[i]`.
 """
 
 SEND = 1

@@ -358,9 +358,7 @@ def is_news(cell, params):
     if distance(cell) != cell.sent_dist or cell.parent != cell.sent_parent:
         return True
     return (
-        params.updates == WAVE
-        and cell.parent != NONE
-        and later(cell.sq[cell.parent], cell.sent_sq)
+        params.updates == WAVE and cell.parent != NONE and later(cell.sq[cell.parent], cell.sent_sq)
     )
 
 

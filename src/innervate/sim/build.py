@@ -10,8 +10,8 @@ import numpy as np
 from innervate.kernel import records
 from innervate.protocol import rng, skin_fields
 from innervate.sim import commands
-from innervate.sim.loop import BATCH
 from innervate.sim import world as w
+from innervate.sim.loop import BATCH
 from innervate.sim.wheel import BUCKETS, FREE, FRESH, LAST, LEVELS, NIL, PENDING, WORDS
 from innervate.sim.wires import COUNTERS, LOSSY
 
@@ -38,6 +38,7 @@ def build(
     plan: Any,
     plain: bool = False,
     checks: bool = True,
+    observe: bool = True,
     deliveries: bool = False,
     trail: bool = False,
 ) -> w.World:
@@ -52,21 +53,13 @@ def build(
     pool_slots = tx_slots + (ends if plan.data_period_us else 0)
     limit = max(16, graph.interfaces + 4)
     pool = 2 * ends + BATCH * 16 + 4 * limit
+    queue_frames = ends * plan.queue_frames if plan.data_period_us else 1
     states = tables.states(skin_fields.CELL, cells, CELL_BYTES)
     world = w.World(
         run=tables.records(w.RUN, 1),
-        wheel=w.Wheel(
-            clock=tables.numbers(2, 0, np.int64),
-            links=tables.numbers(BUCKETS + pool_slots + pool),
-            tails=tables.numbers(BUCKETS),
-            words=tables.numbers(LEVELS * WORDS, 0, np.int64),
-            events=tables.records(w.EVENT, pool_slots + pool, fresh=True),
-            pool=tables.numbers(4, 0, np.int64),
-        ),
+        wheel=_wheel(tables, pool_slots, pool),
         frames=tables.states(skin_fields.FRAME, pool, FRAME_BYTES),
-        queue=tables.states(
-            skin_fields.FRAME, ends * plan.queue_frames if plan.data_period_us else 1
-        ),
+        queue=tables.states(skin_fields.FRAME, queue_frames),
         cells=states,
         pc=w.Sink(tables.states(skin_fields.SINK, 1), tables.numbers(graph.interfaces)),
         params=tables.states(skin_fields.PARAMS, 1),
@@ -76,13 +69,7 @@ def build(
         ends=tables.records(w.END, ends),
         buffers=tables.records(w.BUFFER, ends),
         epoch=tables.numbers(ends),
-        out=w.Out(
-            count=tables.numbers(1, 0, np.int64),
-            limit=tables.numbers(1, limit, np.int64),
-            overflow=tables.numbers(1, 0, np.int64),
-            action=tables.records(w.ACTION, limit),
-            frame=tables.states(skin_fields.FRAME, limit),
-        ),
+        out=_outbox(tables, limit),
         sample=tables.states(skin_fields.FRAME, 1),
         counters=tables.numbers(COUNTERS, 0, np.int64),
         watch=_watch(tables, cells, states),
@@ -90,27 +77,11 @@ def build(
         rows=tables.records(w.ROW, ROWS + 8 * limit, fresh=True),
         deliveries=tables.records(w.DELIVERY, ROWS if deliveries else 1, fresh=True),
         trail=tables.records(w.TRAIL, ROWS if trail else 1, fresh=True),
-        touch_x=_numbers(tables, plan.touch.x_um if plan.touch else ()),
-        touch_y=_numbers(tables, plan.touch.y_um if plan.touch else ()),
-        touch_span=_numbers(
-            tables,
-            (plan.touch.radius_um, plan.touch.force_mn, plan.touch.step_us)
-            if plan.touch
-            else (0, 0, 1),
-        ),
-        place=_numbers(tables, _places(plan)),
+        **_touch(tables, plan),
     )
-    _fill(world.wheel.events, "bucket", NIL, pool_slots)
-    for bucket in range(BUCKETS):
-        world.wheel.tails[bucket] = bucket
-        world.wheel.links[bucket] = NIL
-    world.wheel.clock[PENDING] = NIL
-    world.wheel.pool[FREE] = NIL
-    world.wheel.pool[FRESH] = pool_slots
-    world.wheel.pool[LAST] = pool
     _set_run(world, plan, tx_slots, pool_slots)
     put(world.run, 0, checks=int(checks), watchful=int(checks or trail), broken_at=-1)
-    put(world.run, 0, row_limit=len(world.rows))
+    put(world.run, 0, row_limit=len(world.rows), observe=int(observe or checks))
     put(world.run, 0, delivery_limit=ROWS if deliveries else 0, trail_limit=ROWS if trail else 0)
     put(world.params, 0, **{field[0]: plan.params[field[0]] for field in skin_fields.PARAMS})
     put(world.pc.own, 0, ports=graph.interfaces)
@@ -118,6 +89,49 @@ def build(
     _set_nodes(world, plan)
     _set_commands(world, plan)
     return world
+
+
+def _wheel(tables: w.Tables, pool_slots: int, pool: int) -> w.Wheel:
+    """An empty event queue."""
+    wheel = w.Wheel(
+        clock=tables.numbers(2, 0, np.int64),
+        links=tables.numbers(BUCKETS + pool_slots + pool),
+        tails=tables.numbers(BUCKETS),
+        words=tables.numbers(LEVELS * WORDS, 0, np.int64),
+        events=tables.records(w.EVENT, pool_slots + pool, fresh=True),
+        pool=tables.numbers(3, 0, np.int64),
+    )
+    for bucket in range(BUCKETS):
+        wheel.tails[bucket] = bucket
+        wheel.links[bucket] = NIL
+    _fill(wheel.events, "bucket", NIL, pool_slots)
+    wheel.clock[PENDING] = NIL
+    wheel.pool[FREE], wheel.pool[FRESH], wheel.pool[LAST] = NIL, pool_slots, pool
+    return wheel
+
+
+def _outbox(tables: w.Tables, limit: int) -> w.Out:
+    """An empty outbox with room for `limit` actions."""
+    return w.Out(
+        count=tables.numbers(1, 0, np.int64),
+        limit=tables.numbers(1, limit, np.int64),
+        overflow=tables.numbers(1, 0, np.int64),
+        action=tables.records(w.ACTION, limit),
+        frame=tables.states(skin_fields.FRAME, limit),
+    )
+
+
+def _touch(tables: w.Tables, plan: Any) -> dict[str, Any]:
+    """Tables of the synthetic touch, empty without one."""
+    touch = plan.touch
+    span = (touch.radius_um, touch.force_mn, touch.step_us) if touch else (0, 0, 1)
+    places = [round(1000 * x) for place in plan.graph.layout() for x in place] if touch else ()
+    return {
+        "touch_x": _numbers(tables, touch.x_um if touch else ()),
+        "touch_y": _numbers(tables, touch.y_um if touch else ()),
+        "touch_span": _numbers(tables, span),
+        "place": _numbers(tables, places),
+    }
 
 
 def put(table: Any, place: int, /, **values: int) -> None:
@@ -177,18 +191,12 @@ def _watch(tables: w.Tables, cells: int, states: Any) -> w.Watch:
         routed=tables.numbers(cells),
         joined=tables.numbers(cells),
         ring=tables.numbers(cells, NIL),
-        stack=tables.numbers(2 * cells),
+        before=tables.numbers(cells),
+        stack=tables.numbers(cells),
         low=low.tolist() if tables.plain else low,
         high=high.tolist() if tables.plain else high,
         words=tables.words(states, skin_fields.CELL),
     )
-
-
-def _places(plan: Any) -> Any:
-    """Place of every cell, x and y in um, only where a touch needs it."""
-    if not plan.touch:
-        return ()
-    return [round(1000 * value) for place in plan.graph.layout() for value in place]
 
 
 def _set_run(world: w.World, plan: Any, tx_slots: int, pool_slots: int) -> None:

@@ -1,4 +1,4 @@
-"""Invariants asserted while a skin runs: ranges and feasible distances; loops are the observer's."""
+"""Invariants asserted while a skin runs: ranges and fd; loops are the observer's."""
 
 from innervate.protocol.arith import later
 from innervate.protocol.skin import NONE, RULE_FEASIBLE

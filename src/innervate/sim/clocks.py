@@ -35,9 +35,12 @@ def true_delay(world, node, time, delay):
     return wait
 
 
-def true_time(world, node, time, at):
-    """True time at which a timer for clock reading `at` (mod 2^30) fires; overdue ones now."""
-    delay = (at - reading(world.clocks[node], time)) & MASK30
+def true_time(world, node, time, now, at):
+    """True time at which a timer for clock reading `at` (mod 2^30) fires; overdue ones now.
+
+    `now` is the node's reading at true time `time`.
+    """
+    delay = (at - now) & MASK30
     if delay >= HALF30:
         return time
     return time + true_delay(world, node, time, delay)

@@ -1,4 +1,4 @@
-"""What is done to a running network from outside: cut, restore, kill, revive, loose, restart, lose."""
+"""What is done to a running network from outside: cables cut, nodes killed, frames lost."""
 
 from innervate.sim import observer, wires
 from innervate.sim import wheel as queue
@@ -24,6 +24,8 @@ def obey(world, command, switch_on, stopped):
     """Carry out one command at its time."""
     action = command.action
     time = command.at
+    if world.run[0].observe:
+        observer.remember(world)
     if action == BEGIN:
         for node in range(world.run[0].nodes):
             queue.insert(world.wheel, node, world.starts[node].phase)
@@ -43,7 +45,9 @@ def obey(world, command, switch_on, stopped):
             switch_on(world, command.node, time, MEMORY_LOST)
     elif action == LOOSE or action == LOSE:
         impair(world, command)
-    observer.on_links_changed(world, time, max(command.node, command.end >> 2), command.index)
+    if world.run[0].observe:
+        node = max(command.node, command.end >> 2)
+        observer.on_links_changed(world, time, min(node, world.run[0].cells), command.index)
 
 
 def change_link(world, end, by):

@@ -34,6 +34,7 @@ MEMORY_LOST = 1
 # Events between two looks at the room left in the tables.
 BATCH = 64
 FORESEE_CELLS = 2000  # fewer fit into the processor's caches anyway
+FORESEE_EVENTS = 4
 ROWS_PER_EVENT = 24
 
 
@@ -53,8 +54,12 @@ def pressing(world):
 
 
 def foresee(world, wheel):
-    """Have the state of the next event's node fetched while this event is handled."""
+    """Have what an event a little later needs fetched from memory while others are handled."""
     slot = wheel.clock[queue.PENDING]
+    for _ in range(FORESEE_EVENTS):
+        if slot == NIL:
+            break
+        slot = wheel.links[queue.BUCKETS + slot]
     if slot == NIL:
         index = queue.first(wheel, 0, wheel.clock[queue.NOW] & queue.MASK)
         if index == NIL:
@@ -62,23 +67,31 @@ def foresee(world, wheel):
         slot = wheel.links[index]
     run = world.run[0]
     if slot >= run.pool_slots:
-        node = wheel.events[slot].target >> 2
+        end = wheel.events[slot].target
+        node = min(end >> 2, run.cells - 1)
+        fetch(world.epoch, end, 0)
     else:
-        node = slot - clocks.timer_of(world, slot) * run.nodes
-    node = min(node, run.cells - 1)
+        node = min(slot - clocks.timer_of(world, slot) * run.nodes, run.cells - 1)
+        fetch(world.ends, 4 * node, 0)
+        fetch(world.ends, 4 * node, 1)
+        fetch(world.cells, node, 3)
+        fetch(world.starts, node, 0)
     fetch(world.cells, node, 0)
     fetch(world.cells, node, 1)
     fetch(world.cells, node, 2)
+    fetch(world.clocks, node, 0)
+    fetch(world.alive, node, 0)
 
 
 def build(stack):
     """The loop for a stack: an object with start, hear, fire, sample, digest, report, stopped,
-    check, deliver and copy_frame (see skin_stack.py)."""
+    check, deliver and copy_frame (see skin_stack.py).
+    """
     start, hear, fire, sample = stack.start, stack.hear, stack.fire, stack.sample
     digest, report, stopped = stack.digest, stack.report, stack.stopped
     check, deliver, copy_frame = stack.check, stack.deliver, stack.copy_frame
 
-    def drain(world, node, time, port):
+    def drain(world, node, time, now, port):
         """Carry out what a handler put into the outbox; fold it into the fingerprint."""
         run = world.run[0]
         out = world.out
@@ -100,7 +113,7 @@ def build(stack):
                 slot = clocks.timer_slot(world, node, a)
                 if world.wheel.events[slot].bucket != NIL:
                     queue.remove(world.wheel, slot)
-                queue.insert(world.wheel, slot, clocks.true_time(world, node, time, b))
+                queue.insert(world.wheel, slot, clocks.true_time(world, node, time, now, b))
             elif kind == REPORT:
                 report(world, time, node, a, b, c)
             elif kind == DELIVER:
@@ -112,15 +125,13 @@ def build(stack):
             run.broken = BROKEN_OUTBOX
             run.broken_node = node
 
-    def finish(world, node, time, handler, port):
+    def finish(world, node, time, now, handler, port):
         """After a handler: account for it, carry out what it asked for, check."""
         run = world.run[0]
         run.handled += 1
-        run.fingerprint = mix(
-            run.fingerprint, (time << 26) ^ (node << 6) ^ (port << 40) ^ handler
-        )
+        run.fingerprint = mix(run.fingerprint, (time << 26) ^ (node << 6) ^ (port << 40) ^ handler)
         if world.out.count[0] > 0:
-            drain(world, node, time, port)
+            drain(world, node, time, now, port)
         if run.watchful:
             look(world, node, time, handler, port)
 
@@ -147,7 +158,7 @@ def build(stack):
         now = clocks.reading(clock, time)
         world.alive[node] = ALIVE
         start(world, node, now & MASK30, cause)
-        finish(world, node, time, ON_START, cause)
+        finish(world, node, time, now, ON_START, cause)
         if run.source_us > 0 and node < run.cells:
             slot = clocks.timer_slot(world, node, SOURCE)
             if world.wheel.events[slot].bucket == NIL:
@@ -167,13 +178,13 @@ def build(stack):
             world.counters[OFFERED] += 1
             touch.read_sensors(world, node, time)
             sample(world, node, now & MASK30)
-            finish(world, node, time, ON_INPUT, 0)
+            finish(world, node, time, now, ON_INPUT, 0)
             wait = clocks.true_delay(world, node, time, world.run[0].source_us)
             queue.insert(world.wheel, slot, time + wait)
         else:
             now = clocks.reading(world.clocks[node], time)
             fire(world, node, now & MASK30, timer)
-            finish(world, node, time, ON_TIMER, timer)
+            finish(world, node, time, now, ON_TIMER, timer)
 
     def on_arrival(world, event, slot, time):
         """A frame at the end of its cable."""
@@ -184,7 +195,7 @@ def build(stack):
             port = end - 4 * node
             now = clocks.reading(world.clocks[node], time)
             hear(world, node, now & MASK30, port, world.frames[slot - run.pool_slots])
-            finish(world, node, time, ON_FRAME, port)
+            finish(world, node, time, now, ON_FRAME, port)
         queue.give(world.wheel, slot)
 
     def dispatch(world, slot, time):

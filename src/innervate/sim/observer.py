@@ -45,14 +45,14 @@ def on_report(world, time, node, code, a, b):
     if code == REPORT_DROP:
         world.counters[NO_ROUTE if a == DROP_NO_ROUTE else LOOPED] += 1
         return
+    if world.run[0].observe == 0:
+        return
     if code == REPORT_BROKEN and world.ends[4 * node + a].peer < 0:
         return
     note(world, time, node, code, a, b)
     if code == REPORT_PARENT or code == REPORT_BALANCE:
-        before = world.run[0].unrouted
         follow(world, time, node, b)
-        if world.run[0].unrouted != before:
-            note(world, time, node, UNROUTED, world.run[0].unrouted, 0)
+        note_unrouted(world, time, node)
 
 
 def next_hop(world, cell):
@@ -172,22 +172,24 @@ def peer_of_parent(world, cell):
     return min(peer >> 2, world.run[0].cells)
 
 
+def remember(world):
+    """Before a command: who has a route now."""
+    for cell in range(world.run[0].cells):
+        world.watch.before[cell] = world.watch.routed[cell]
+
+
 def on_links_changed(world, time, node, index):
     """Cables or nodes went down or came back: settle everything anew; the cells it cut off."""
     run = world.run[0]
     watch = world.watch
-    lost = 0
     for cell in range(run.cells):
         if watch.ring[cell] != NONE and ring_is_broken(world, cell):
             close_loop(world, time, cell)
-    before = run.unrouted
     for cell in range(run.cells):
-        watch.stack[cell] = watch.routed[cell]
         watch.routed[cell] = 0
-    trace_routes(world)
     for cell in range(run.cells):
-        if watch.stack[cell] == 1 and watch.routed[cell] == 0:
-            lost += 1
+        if next_hop(world, cell) == run.cells:
+            spread(world, cell, 1)
     for cell in range(run.cells):
         if watch.routed[cell] == 0 and watch.ring[cell] == NONE and watch.port[cell] != NONE:
             hop = next_hop(world, cell)
@@ -195,11 +197,19 @@ def on_links_changed(world, time, node, index):
                 open_loop(world, time, cell)
     trace_cables(world)
     run.unrouted = 0
+    lost = 0
     for cell in range(run.cells):
-        if watch.joined[cell] and watch.routed[cell] == 0:
-            run.unrouted += 1
+        run.unrouted += watch.joined[cell] & (1 - watch.routed[cell])
+        lost += watch.before[cell] & (1 - watch.routed[cell])
     note(world, time, node, CUT_OFF, index, lost)
-    if run.unrouted != before:
+    note_unrouted(world, time, node)
+
+
+def note_unrouted(world, time, node):
+    """A row whenever the number of connected cells without a route has changed."""
+    run = world.run[0]
+    if run.unrouted != run.noted:
+        run.noted = run.unrouted
         note(world, time, node, UNROUTED, run.unrouted, 0)
 
 
@@ -214,42 +224,6 @@ def ring_is_broken(world, cell):
         if node == start:
             return False
     return True
-
-
-def trace_routes(world):
-    """From the PC outwards along parents: who has a route."""
-    run = world.run[0]
-    watch = world.watch
-    for cell in range(run.cells):
-        if next_hop(world, cell) == run.cells:
-            spread_quietly(world, cell)
-    return watch
-
-
-def spread_quietly(world, cell):
-    """Mark a cell and all that go through it as routed, without counting."""
-    watch = world.watch
-    keep = world.run[0].unrouted
-    # The stack table holds the former states meanwhile: its upper half serves as the stack.
-    base = world.run[0].cells
-    watch.stack[base] = cell
-    count = 1
-    while count > 0:
-        count -= 1
-        node = watch.stack[base + count]
-        watch.routed[node] = 1
-        for p in range(PORTS):
-            peer = world.ends[4 * node + p].peer
-            if peer >= 0 and peer >> 2 < world.run[0].cells:
-                child = peer >> 2
-                if (
-                    watch.port[child] == peer & 3
-                    and (world.epoch[4 * node + p] & 1) == 0
-                    and watch.routed[child] == 0
-                ):
-                    watch.stack[base + count] = child
-                    count += 1
-    world.run[0].unrouted = keep
 
 
 def trace_cables(world):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import functools
-import time
+import signal
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import ModuleType
@@ -11,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.kernel.wall import wall_s
 from innervate.sim import build as builder
 from innervate.sim import loop, skin_stack, static_stack
 from innervate.sim import world as w
@@ -92,37 +94,35 @@ def simulate(
     *,
     plain: bool = False,
     checks: bool = True,
+    observe: bool = True,
     deliveries: bool = False,
     trail: bool = False,
     progress: Progress | None = None,
 ) -> Result:
     """Run a plan to its end; an interrupt (Ctrl-C) ends it early and keeps what was done.
 
-    `plain` runs the same loop uncompiled. `progress(time_us, duration_us)` is called now and then.
+    `plain` runs the same loop uncompiled. Without `checks` and `observe` no rows are kept.
+    `progress(time_us, duration_us)` is called now and then.
     Raises InvariantBroken.
     """
-    started = time.perf_counter()
+    started = wall_s()
     advance = (plain_loop if plain else compiled_loop)(plan.params["rule"] == RULE_STATIC)
-    world = builder.build(plan, plain, checks, deliveries, trail)
+    world = builder.build(plan, plain, checks, observe, deliveries, trail)
     keep = _Keep(world)
-    interrupted = False
-    while True:
-        try:
+    with _Stop() as stop:
+        status = loop.BUDGET
+        while status != loop.DONE and not stop.asked:
             advance(world, plan.duration_us, SLICE_EVENTS)
-        except KeyboardInterrupt:  # only between slices, or in the plain loop between events
-            interrupted = True
-        status = int(get(world.run, 0, "status"))
-        if status == loop.BROKEN:
-            raise InvariantBroken(_story(plan, world))
-        if status == loop.POOL_FULL:
-            world = builder.grow_pool(world)
-        keep.collect(world, final=False)
-        now = plan.duration_us if status == loop.DONE else int(world.wheel.clock[0])
-        if progress is not None:
-            progress(now, plan.duration_us)
-        if interrupted or status == loop.DONE:
-            break
-    rows, delivered, steps = keep.collect(world, final=True)
+            status = int(get(world.run, 0, "status"))
+            if status == loop.BROKEN:
+                raise InvariantBroken(_story(plan, world))
+            if status == loop.POOL_FULL:
+                world = builder.grow_pool(world)
+            keep.collect(world, final=False)
+            now = plan.duration_us if status == loop.DONE else int(world.wheel.clock[0])
+            if progress is not None:
+                progress(now, plan.duration_us)
+        rows, delivered, steps = keep.collect(world, final=True)
     return Result(
         plan=plan,
         world=world,
@@ -131,12 +131,33 @@ def simulate(
         trail=steps,
         counters=[int(count) for count in world.counters],
         ended_us=now,
-        wall_s=time.perf_counter() - started,
+        wall_s=wall_s() - started,
         fingerprint=f"{int(get(world.run, 0, 'fingerprint')) & (1 << 64) - 1:016x}",
         handled=int(get(world.run, 0, "handled")),
         arrived=int(world.counters[ARRIVED] + world.counters[ARRIVED + URGENT_BLOCK]),
-        interrupted=interrupted,
+        interrupted=status != loop.DONE,
     )
+
+
+class _Stop:
+    """Turns Ctrl-C into a request to stop after the present slice, where a signal can be caught."""
+
+    def __init__(self) -> None:
+        self.asked = False
+        self._catches = threading.current_thread() is threading.main_thread()
+        self._before: Any = None
+
+    def __enter__(self) -> _Stop:
+        if self._catches:
+            self._before = signal.signal(signal.SIGINT, self._ask)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._catches:
+            signal.signal(signal.SIGINT, self._before)
+
+    def _ask(self, _number: int, _frame: object) -> None:
+        self.asked = True
 
 
 class _Keep:

@@ -57,7 +57,7 @@ def report(world, time, node, code, a, b):
 
 def stopped(world, time, node):
     """A node lost its memory or went dark: it has no parent any more."""
-    if node < world.run[0].cells:
+    if node < world.run[0].cells and world.run[0].observe:
         follow(world, time, node, NONE)
 
 

@@ -1,7 +1,8 @@
 """Cables: 4 Mbit/s each way, a queue per port, latency, loss, loose and cut connections.
 
 A frame occupies its wire for `wire_us` and arrives `latency` after its start. Urgent frames
-(beacons) take the wire as soon as the frame on it is out; others wait in the port's drop-tail queue.
+(beacons) take the wire as soon as the frame on it is out; others wait in the port's drop-tail
+queue.
 A cable's `epoch` is odd while it is down; a frame arrives only if the epoch did not change.
 """
 

@@ -21,11 +21,13 @@ BUFFER = ("loss", "lose", "queued", "first")
 CLOCK = ("offset", "rate")
 START = ("inverse", "source", "phase")
 RUN = (
-    "cells", "nodes", "tx_slots", "pool_slots", "wire_us", "latency_low", "latency_high",
-    "latency_per_frame", "queue_frames", "source_us", "checks", "fingerprint", "handled",
-    "rng", "commands", "next_command", "row_limit", "rows", "delivery_limit", "watchful", "broken_at",
-    "deliveries", "trail_limit", "trail", "status", "broken", "broken_node", "broken_other",
-    "unrouted", "loops", "loops_open", "rule", "touched",
+    "cells", "nodes", "tx_slots", "pool_slots", "rule",
+    "wire_us", "latency_low", "latency_high", "latency_per_frame", "queue_frames", "source_us",
+    "checks", "observe", "watchful", "status", "fingerprint", "handled", "rng",
+    "commands", "next_command", "rows", "row_limit", "deliveries", "delivery_limit",
+    "trail", "trail_limit",
+    "unrouted", "noted", "loops", "loops_open",
+    "broken", "broken_at", "broken_node", "broken_other",
 )  # fmt: skip
 COMMAND = ("at", "action", "end", "node", "value", "index")
 ROW = ("time", "node", "code", "a", "b")
@@ -79,6 +81,7 @@ class Watch(NamedTuple):
     routed: Any  # 1 = chain of parents reaches the PC over live cables
     joined: Any  # 1 = physically connected to the PC
     ring: Any  # start of the forwarding loop the cell is in, -1 none
+    before: Any  # `routed` as it was before the present command
     stack: Any
     low: Any  # range of every word of a cell's record
     high: Any

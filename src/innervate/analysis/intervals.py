@@ -1,0 +1,108 @@
+"""Means, quantiles and shares with their confidence intervals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from math import atan, cos, pi, sin, sqrt
+from statistics import NormalDist
+from typing import NamedTuple
+
+EXACT_UP_TO = 200  # degrees of freedom; beyond, a series about the normal quantile
+
+
+class Interval(NamedTuple):
+    """An estimate and its confidence interval."""
+
+    value: float
+    low: float
+    high: float
+
+
+def mean_interval(values: Sequence[float], level: float = 0.95) -> Interval:
+    """Mean and Student's confidence interval; one value alone has no width.
+
+    Raises:
+        ValueError: no values, or a level outside (0, 1).
+    """
+    count = len(values)
+    if count == 0:
+        raise ValueError("a mean needs at least one value")
+    mean = sum(values) / count
+    if count == 1:
+        return Interval(mean, mean, mean)
+    spread = sqrt(sum((value - mean) ** 2 for value in values) / (count - 1))
+    half = t_quantile((1 + level) / 2, count - 1) * spread / sqrt(count)
+    return Interval(mean, mean - half, mean + half)
+
+
+def quantile(values: Sequence[float], share: float) -> float:
+    """The value below which a share of the values lies, linear between neighbours.
+
+    Raises:
+        ValueError: no values, or a share outside 0..1.
+    """
+    if not values or not 0 <= share <= 1:
+        raise ValueError("a quantile needs at least one value and a share from 0 to 1")
+    ordered = sorted(values)
+    place = share * (len(ordered) - 1)
+    below = int(place)
+    above = min(below + 1, len(ordered) - 1)
+    return ordered[below] + (place - below) * (ordered[above] - ordered[below])
+
+
+def wilson(hits: int, trials: int, level: float = 0.95) -> Interval:
+    """Share of hits and Wilson's interval, which holds at 0 and 1 as well.
+
+    Raises:
+        ValueError: no trials, or hits outside 0..trials.
+    """
+    if trials < 1 or not 0 <= hits <= trials:
+        raise ValueError("a share needs trials >= 1 and 0 <= hits <= trials")
+    z = NormalDist().inv_cdf((1 + level) / 2)
+    share = hits / trials
+    widened = 1 + z * z / trials
+    centre = (share + z * z / (2 * trials)) / widened
+    half = z / widened * sqrt(share * (1 - share) / trials + z * z / (4 * trials * trials))
+    # Exactly 0 and 1 at the edges, where rounding may miss them.
+    low = 0.0 if hits == 0 else centre - half
+    high = 1.0 if hits == trials else centre + half
+    return Interval(share, low, high)
+
+
+@cache
+def t_quantile(share: float, freedom: int) -> float:
+    """Quantile of Student's t distribution, 0.5 <= share < 1, degrees of freedom >= 1."""
+    if not 0.5 <= share < 1 or freedom < 1:
+        raise ValueError("t_quantile needs 0.5 <= share < 1 and freedom >= 1")
+    if freedom > EXACT_UP_TO:
+        z = NormalDist().inv_cdf(share)
+        first = (z**3 + z) / 4
+        second = (5 * z**5 + 16 * z**3 + 3 * z) / 96
+        return z + first / freedom + second / freedom**2
+    low, high = 0.0, 1.0
+    while _t_share(high, freedom) < share:
+        high *= 2
+    for _ in range(80):
+        middle = (low + high) / 2
+        if _t_share(middle, freedom) < share:
+            low = middle
+        else:
+            high = middle
+    return (low + high) / 2
+
+
+def _t_share(t: float, freedom: int) -> float:
+    """Share of Student's t distribution below t >= 0: finite sums for whole degrees of freedom."""
+    angle = atan(t / sqrt(freedom))
+    square = cos(angle) ** 2
+    odd = freedom % 2
+    term = cos(angle) if odd else 1.0
+    total = 0.0
+    for i in range(freedom // 2):
+        total += term
+        n = 2 * i + 1 + odd
+        term *= square * n / (n + 1)
+    if odd:
+        return 0.5 + (angle + sin(angle) * total) / pi
+    return 0.5 + sin(angle) * total / 2

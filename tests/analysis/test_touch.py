@@ -1,0 +1,47 @@
+import numpy as np
+import pytest
+
+from innervate.analysis.touch import felt_image, received_image
+
+
+@pytest.fixture(scope="module")
+def touched(go):
+    return go("demo", seconds=2.3, deliveries=True)
+
+
+def test_while_all_is_well_the_pc_has_what_cells_felt(touched):
+    had, felt = received_image(touched, 1.9), felt_image(touched, 1.9)
+    assert had.known.all()
+    assert felt.force_mn.max() > 1000
+    # The image is up to a sample's period and the way old; the touch moves a little in it.
+    assert np.abs(had.force_mn - felt.force_mn).max() < 1500
+    touched_cells = felt.force_mn > 500
+    assert (had.force_mn[touched_cells] > 0).all()
+    assert had.age_us.max() < 50_000
+
+
+def test_loss_during_a_recovery_is_a_hole(touched):
+    before = received_image(touched, 1.999, window_s=0.016)
+    during = received_image(touched, 2.016, window_s=0.016)
+    after = received_image(touched, 2.2, window_s=0.016)
+    assert before.known.mean() > 0.95
+    assert during.known.mean() < 0.6
+    assert after.known.mean() > 0.95
+    assert (during.force_mn[~during.known] == 0).all()
+    assert (during.age_us[~during.known] == -1).all()
+
+
+def test_nothing_received_yet(touched):
+    assert not received_image(touched, 0.0).known.any()
+
+
+def test_a_run_will_do_as_well(touched):
+    class Run:
+        result = touched
+
+    assert received_image(Run(), 1.0).known.all()
+    assert felt_image(Run(), 1.0).force_mn.max() > 0
+
+
+def test_no_touch(go):
+    assert felt_image(go("setup-3", seconds=0.05), 0.01).force_mn.max() == 0

@@ -1,0 +1,108 @@
+import itertools
+
+import numpy as np
+import pytest
+
+from innervate import scenario
+from innervate.run import RunError, compare, run
+from innervate.run.compare import differences
+from innervate.run.trail import FIELDS, first_difference, trail
+from innervate.sim.simulate import simulate
+from innervate.sim.world import TRAIL, row_dtype
+
+
+@pytest.fixture
+def written(four, tmp_path, page):
+    numbers = itertools.count()
+
+    def write(seed=1, **changes):
+        folder = tmp_path / f"run-{next(numbers)}"
+        run(four(**changes), seed=seed, out=folder)
+        return folder
+
+    return write
+
+
+def test_the_same_run_twice(written):
+    found = compare(written(), written())
+    assert found.same
+    assert (found.scenario, found.summary, found.divergence, found.notes) == ([], [], None, [])
+
+
+def test_another_seed(written):
+    found = compare(written(), written(seed=2))
+    assert found.scenario == [("seed", 1, 2)]
+    assert not found.same
+    assert found.divergence.time_s < 0.01
+    assert "pc: switched on" in found.divergence.a
+    assert "p0 r0 c2: switched on" in found.divergence.b
+    assert " against " in str(found.divergence)
+
+
+def test_an_event_at_another_time(written):
+    later = [{"at_s": 0.35, "action": "cut", "interface": 1}]
+    found = compare(written(), written(event=later))
+    assert found.scenario == [("event.0.at_s", 0.3, 0.35)]
+    assert 0.3 <= found.divergence.time_s < 0.31
+    assert "recoveries.0.at_s" in [key for key, _, _ in found.summary]
+
+
+def test_another_parameter_shows_where_it_first_matters(written):
+    found = compare(written(protocol={"k": 5}), written(protocol={"k": 3}))
+    assert ("protocol.k", 5, 3) in found.scenario
+    assert found.divergence.same_call
+    assert str(found.divergence).endswith("beacon period: the same call, but another outcome")
+
+
+def test_a_longer_run_goes_on_where_the_other_ended(written):
+    found = compare(written(), written(duration_s=0.6))
+    assert found.divergence.a == "nothing more"
+    assert 0.5 <= found.divergence.time_s < 0.51
+
+
+def test_what_is_no_run_folder(written, tmp_path):
+    with pytest.raises(RunError, match="no such folder"):
+        compare(tmp_path / "nowhere", written())
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(RunError, match=r"has no summary\.json"):
+        compare(tmp_path / "empty", written())
+    broken = written()
+    (broken / "scenario.toml").write_text("kind =")
+    with pytest.raises(RunError, match="damaged"):
+        compare(broken, written())
+
+
+def test_the_trail_in_pieces_is_the_trail(four):
+    plan = scenario.plan(scenario.from_dict(four(duration_s=2.0)))
+    whole = simulate(plan, trail=True).trail
+    pieces = np.concatenate(list(trail(plan, plan.duration_us)))
+    for name in FIELDS:
+        assert (whole[name] == pieces[name]).all()
+
+
+def pieces_of(times, *cuts):
+    table = np.zeros(len(times), row_dtype(TRAIL))
+    table["time"] = times
+    yield from np.split(table, cuts)
+
+
+@pytest.mark.parametrize("cuts", [(), (2,), (0, 0, 3), (1, 2, 3, 4)])
+def test_pieces_of_any_length(cuts):
+    def first(a, b):
+        return first_difference(pieces_of(a, *cuts), pieces_of(b, 1, 1))
+
+    assert first([1, 2, 3, 4, 5], [1, 2, 3, 4, 5]) is None
+    a, b = first([1, 2, 3, 4, 5], [1, 2, 3, 9, 5])
+    assert (a["time"], b["time"]) == (4, 9)
+    a, b = first([1, 2, 3, 4, 5], [1, 2, 3])
+    assert (a["time"], b) == (4, None)
+
+
+def test_differences_by_dotted_key():
+    a = {"x": 1, "y": {"z": [1, 2]}, "list": [{"u": 1}, {"u": 2}], "gone": 0}
+    b = {"x": 1, "y": {"z": [1, 3]}, "list": [{"u": 1}], "new": None}
+    assert differences(a, b) == [
+        ("y.z", [1, 2], [1, 3]),
+        ("list.1", {"u": 2}, None),
+        ("gone", 0, None),
+    ]

@@ -1,0 +1,46 @@
+import json
+import subprocess
+
+import innervate
+from innervate.trace.provenance import checkout, provenance
+
+
+def git(folder, *words):
+    identity = ["-c", "user.name=t", "-c", "user.email=t@example.org", "-c", "commit.gpgsign=false"]
+    subprocess.run(["git", "-C", str(folder), *identity, *words], check=True, capture_output=True)
+
+
+def test_what_it_says():
+    said = provenance(
+        scenario_toml='kind = "skin"\n',
+        seeds=[4, 5],
+        fingerprint="00ff",
+        wall_s=0.5,
+        checks=True,
+        interrupted=False,
+    )
+    assert json.loads(json.dumps(said)) == said
+    assert said["innervate"] == innervate.__version__
+    assert (said["seeds"], said["fingerprint"], said["wall_s"]) == ([4, 5], "00ff", 0.5)
+    assert len(said["scenario_sha256"]) == 64
+    assert said["packages"]["numpy"]
+
+
+def test_outside_a_checkout(tmp_path):
+    assert checkout(tmp_path) == (None, None)
+    (tmp_path / ".git").mkdir()
+    assert checkout(tmp_path) == (None, None)
+
+
+def test_in_a_checkout(tmp_path):
+    git(tmp_path, "init")
+    (tmp_path / "a").write_text("1")
+    git(tmp_path, "add", "a")
+    git(tmp_path, "commit", "-m", "first")
+    git(tmp_path, "tag", "v1.0-rc")
+    commit, modified = checkout(tmp_path)
+    assert commit is not None
+    assert len(commit) == 40
+    assert modified is False
+    (tmp_path / "a").write_text("2")
+    assert checkout(tmp_path) == (commit, True)

@@ -1,0 +1,50 @@
+import subprocess
+import sys
+
+import polars
+import pytest
+
+from innervate.trace import tables
+from innervate.trace.tables import LOOPS, RECEIVED, TABLES
+
+
+def test_names_and_types_are_declared_once():
+    assert [table.name for table in TABLES] == ["routes", "links", "outages", "loops", "received"]
+    for table in TABLES:
+        names = [column.name for column in table.columns]
+        assert len(set(names)) == len(names)
+        for column in table.columns:
+            assert isinstance(getattr(polars, column.kind)(), polars.DataType)
+            assert column.meaning
+        empty = tables.frame(table, {name: [] for name in names})
+        assert empty.columns == names
+
+
+def test_round_trip(tmp_path):
+    columns = {
+        "opened_us": [1_000_000, 2_000_000],
+        "closed_us": [1_000_500, None],
+        "cell": [3, 4],
+        "length": [4, 2],
+    }
+    path = tables.write(LOOPS, columns, tmp_path)
+    assert path.name == "loops.parquet"
+    read = tables.read(LOOPS, tmp_path).collect()
+    assert read.to_dict(as_series=False) == columns
+    assert read.schema["opened_us"] == polars.Int64
+
+
+def test_missing_and_strange_columns_are_refused():
+    with pytest.raises(ValueError, match="table loops has columns"):
+        tables.frame(LOOPS, {"opened_us": []})
+    with pytest.raises(ValueError, match="not"):
+        tables.frame(RECEIVED, {"time": []})
+
+
+def test_the_room_loads_without_numpy_and_polars():
+    code = (
+        "import sys, innervate.trace.tables, innervate.trace.provenance, innervate.trace.streams;"
+        "print([m for m in ('numpy', 'polars', 'numba') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
