@@ -1,6 +1,7 @@
 """[script]: steps that replace the clock, so that a counterexample is a scenario.
 
 - "tick n1": the node's period is over
+- "soon n1": its timer for a triggered beacon fires
 - "deliver n1->n2": the oldest frame under way from n1 arrives at n2; "n1.2->n2.0" says on which
   cable
 - "lose n1->n2": that frame is lost
@@ -19,8 +20,8 @@ from innervate.scenario.source import Source, dotted
 from innervate.scenario.targets import find_link
 from innervate.topology import Graph
 
-TICK, DELIVER, STEP_LOSE, DETECT, DRAW = range(5)
-STEP_NAMES = ("tick", "deliver", "lose", "detect", "draw")
+TICK, DELIVER, STEP_LOSE, DETECT, DRAW, SOON = range(6)
+STEP_NAMES = ("tick", "deliver", "lose", "detect", "draw", "soon")
 DRAW_MAX = 2**30 - 1
 
 
@@ -29,7 +30,7 @@ class Step:
     """One step.
 
     Attributes:
-        action: TICK, DELIVER, STEP_LOSE, DETECT or DRAW.
+        action: TICK, SOON, DELIVER, STEP_LOSE, DETECT or DRAW.
         node: who acts or receives; -1 for a draw.
         end: where the frame was sent from (deliver, lose) or which is broken (detect); else -1.
         value: what the draw returns, 0 .. 2^30-1.
@@ -57,7 +58,7 @@ def _step(source: Source, graph: Graph, text: str, key: Key) -> Step:
     verb, _, rest = text.strip().partition(" ")
     rest = rest.strip()
     if verb not in STEP_NAMES or not rest:
-        message = f'{dotted(key)}: "{text[:60]}" is no step; they are tick n, deliver a->b'
+        message = f'{dotted(key)}: "{text[:60]}" is no step; they are tick n, soon n, deliver a->b'
         raise source.error(key, f"{message}, lose a->b, detect n.port, draw v")
     action = STEP_NAMES.index(verb)
     if action == DRAW:
@@ -74,10 +75,10 @@ def _step(source: Source, graph: Graph, text: str, key: Key) -> Step:
             raise source.error(key, f"{dotted(key)}: no cable leads from {a[:60]} to {b[:60]}")
         return Step(action, there[0], end)
     node, port = node_and_port(source, graph, rest, key)
-    if action == TICK:
+    if action in (TICK, SOON):
         if port >= 0:
             raise source.error(key, f"{dotted(key)}: a node ticks, not a port; leave the port out")
-        return Step(TICK, node)
+        return Step(action, node)
     if port < 0 or node == graph.cells:
         raise source.error(key, f"{dotted(key)}: detect takes a cell's port, like detect n1.2")
     return Step(DETECT, node, graph.end(node, port))

@@ -4,6 +4,9 @@ It takes events off the wheel, lets the node's protocol handle them, drains the 
 when the time, the commands or the room in a table is used up; `run.status` says which.
 """
 
+from collections.abc import Callable
+from typing import NamedTuple
+
 from innervate.kernel.bits import mix
 from innervate.kernel.tables import fetch
 from innervate.protocol.arith import MASK30
@@ -36,6 +39,20 @@ BATCH = 64
 FORESEE_CELLS = 2000  # fewer fit into the processor's caches anyway
 FORESEE_EVENTS = 4
 ROWS_PER_EVENT = 24
+
+
+class Handlers(NamedTuple):
+    """A loop's parts, bound to a stack; `advance` is the loop itself."""
+
+    drain: Callable[..., None]
+    look: Callable[..., None]
+    finish: Callable[..., None]
+    switch_on: Callable[..., None]
+    on_timer_slot: Callable[..., None]
+    on_arrival: Callable[..., None]
+    dispatch: Callable[..., None]
+    report: Callable[..., None]
+    advance: Callable[..., None]
 
 
 def pressing(world):
@@ -237,4 +254,6 @@ def build(stack):
                 run.next_command += 1
         run.status = BUDGET
 
-    return drain, look, finish, switch_on, on_timer_slot, on_arrival, dispatch, advance
+    return Handlers(
+        drain, look, finish, switch_on, on_timer_slot, on_arrival, dispatch, report, advance
+    )

@@ -14,7 +14,7 @@ import numpy as np
 
 from innervate.kernel.wall import wall_s
 from innervate.sim import build as builder
-from innervate.sim import loop, skin_stack, static_stack
+from innervate.sim import loop, script, skin_stack, static_stack
 from innervate.sim import world as w
 from innervate.sim.build import get
 from innervate.sim.wires import ARRIVED, URGENT_BLOCK
@@ -103,12 +103,20 @@ def simulate(
 
     `plain` runs the same loop uncompiled. Without `checks` and `observe` no rows are kept.
     `progress(time_us, duration_us)` is called now and then.
-    Raises InvariantBroken.
+    A plan with a script plays that instead, on plain state.
+    Raises InvariantBroken, and ScenarioError for a step that cannot be taken.
     """
     started = wall_s()
-    advance = (plain_loop if plain else compiled_loop)(plan.params["rule"] == RULE_STATIC)
+    static = plan.params["rule"] == RULE_STATIC
+    if plan.script:
+        stack = static_stack if static else skin_stack
+        world, now = script.play(plan, stack, checks, trail)
+        if int(get(world.run, 0, "status")) == loop.BROKEN:
+            raise InvariantBroken(_story(plan, world))
+        return _result(plan, world, _Keep(), now, wall_s() - started, False)
+    advance = (plain_loop if plain else compiled_loop)(static)
     world = builder.build(plan, plain, checks, observe, deliveries, trail)
-    keep = _Keep(world)
+    keep = _Keep()
     with _Stop() as stop:
         status = loop.BUDGET
         while status != loop.DONE and not stop.asked:
@@ -122,7 +130,13 @@ def simulate(
             now = plan.duration_us if status == loop.DONE else int(world.wheel.clock[0])
             if progress is not None:
                 progress(now, plan.duration_us)
-        rows, delivered, steps = keep.collect(world, final=True)
+        return _result(plan, world, keep, now, wall_s() - started, status != loop.DONE)
+
+
+def _result(
+    plan: Any, world: w.World, keep: _Keep, ended_us: int, took_s: float, interrupted: bool
+) -> Result:
+    rows, delivered, steps = keep.collect(world, final=True)
     return Result(
         plan=plan,
         world=world,
@@ -130,12 +144,12 @@ def simulate(
         deliveries=delivered,
         trail=steps,
         counters=[int(count) for count in world.counters],
-        ended_us=now,
-        wall_s=wall_s() - started,
+        ended_us=ended_us,
+        wall_s=took_s,
         fingerprint=f"{int(get(world.run, 0, 'fingerprint')) & (1 << 64) - 1:016x}",
         handled=int(get(world.run, 0, "handled")),
         arrived=int(world.counters[ARRIVED] + world.counters[ARRIVED + URGENT_BLOCK]),
-        interrupted=status != loop.DONE,
+        interrupted=interrupted,
     )
 
 
@@ -163,7 +177,7 @@ class _Stop:
 class _Keep:
     """Moves filled rows out of the loop's tables, so that these can stay small."""
 
-    def __init__(self, world: w.World) -> None:
+    def __init__(self) -> None:
         self.parts: dict[str, list[Any]] = {"rows": [], "deliveries": [], "trail": []}
         self.names = {"rows": w.ROW, "deliveries": w.DELIVERY, "trail": w.TRAIL}
 

@@ -1,0 +1,97 @@
+"""Plays a scenario's [script]: its steps replace the clock, everything else is the simulator's.
+
+Nothing happens by itself. Timers and frames on their way lie in the event queue; a step picks the
+one it names and has it handled. A step takes a millisecond, so that rows have a time.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from innervate.protocol import skin
+from innervate.scenario import ScenarioError
+from innervate.scenario import script as steps
+from innervate.sim import loop, wheel
+from innervate.sim.build import build, get
+from innervate.sim.wheel import NIL
+from innervate.sim.wires import LOST_NOISE
+from innervate.sim.world import World
+
+STEP_US = 1000
+
+
+def play(plan: Any, stack: Any, checks: bool, trail: bool) -> tuple[World, int]:
+    """Play all steps of `plan.script` on plain state; the world after them and its time (us).
+
+    Raises ScenarioError if a step asks for a frame that is not on its way or a timer not set.
+    """
+    world = build(plan, plain=True, checks=checks, trail=trail, deliveries=True)
+    handle = loop.build(stack)
+    for node in range(get(world.run, 0, "nodes")):
+        world.starts[node].phase = 0
+    handle.advance(world, 1, 1)  # the command that begins a run
+    for node in range(get(world.run, 0, "nodes")):
+        wheel.remove(world.wheel, node)
+        handle.switch_on(world, node, 0, loop.COLD)
+    time = 0
+    for number, step in enumerate(plan.script):
+        time += STEP_US
+        _take(plan, world, handle, step, time, number)
+        if get(world.run, 0, "broken"):
+            world.run[0].status = loop.BROKEN
+            world.run[0].broken_at = time
+            return world, time
+    world.run[0].status = loop.DONE
+    return world, time
+
+
+def _take(plan: Any, world: World, handle: Any, step: Any, time: int, number: int) -> None:
+    label = plan.graph.label
+    if step.action == steps.DRAW:
+        for cell in world.cells:
+            cell.choice = step.value
+        return
+    if step.action == steps.DETECT:
+        cell, port = world.cells[step.node], step.end - 4 * step.node
+        cell.pf[port] = 2 * skin.ONE
+        cell.heard[port] = 0
+        handle.report(world, time, step.node, skin.REPORT_BROKEN, port, 1)
+    elif step.action in (steps.TICK, steps.SOON):
+        timer = skin.TICK if step.action == steps.TICK else skin.SOON
+        slot = timer * get(world.run, 0, "nodes") + step.node
+        if world.wheel.events[slot].bucket == NIL:
+            raise _refused(plan, number, f"{label(step.node)} has nothing to send soon")
+        wheel.remove(world.wheel, slot)
+        handle.on_timer_slot(world, slot, time)
+    else:
+        slot = _oldest(world, step.end)
+        if slot == NIL:
+            where = f"{plan.graph.label_end(step.end)} to {label(step.node)}"
+            raise _refused(plan, number, f"no frame is on its way from {where}")
+        wheel.remove(world.wheel, slot)
+        if step.action == steps.DELIVER:
+            handle.on_arrival(world, world.wheel.events[slot], slot, time)
+        else:
+            world.counters[LOST_NOISE + world.wheel.events[slot].kind] += 1
+            wheel.give(world.wheel, slot)
+    for cell in world.cells:
+        cell.choice = -1
+
+
+def _refused(plan: Any, number: int, why: str) -> ScenarioError:
+    key = ("script", "steps", number)
+    error: ScenarioError = plan.scenario.source.error(key, f"script.steps.{number}: {why}")
+    return error
+
+
+def _oldest(world: World, end: int) -> int:
+    """The slot of the frame sent from `end` that is longest on its way, or NIL."""
+    target = world.ends[end].peer
+    first = get(world.run, 0, "pool_slots")
+    last = world.wheel.pool[wheel.FRESH]
+    waiting = [
+        (event.time, slot)
+        for slot in range(first, last)
+        if (event := world.wheel.events[slot]).bucket != NIL and event.target == target
+    ]
+    return min(waiting)[1] if waiting else NIL
