@@ -1,0 +1,115 @@
+"""Makes what is generated in the documentation: tables of declared fields, the picture.
+
+    python docs/make.py            writes them
+    python docs/make.py --check    says what is out of date, without writing; exit code 1 if so
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+from innervate.protocol import skin_fields
+from innervate.trace.tables import TABLES
+
+FOLDER = Path(__file__).resolve().parent
+PICTURE = FOLDER / "images" / "recovery.svg"
+
+
+def field_table(fields: Iterable[tuple[str, object, int, int, str, str]]) -> str:
+    """Declared fields of a protocol as a Markdown table."""
+    rows = ["| field | range | unit | meaning |", "|---|---|---|---|"]
+    for name, length, low, high, unit, meaning in fields:
+        many = {0: "", "ports": " per port"}.get(length, f", {length} of them")  # type: ignore[call-overload]
+        rows.append(f"| `{name}` | {low} .. {high}{many} | {unit} | {meaning} |")
+    return "\n".join(rows)
+
+
+def run_tables() -> str:
+    """The tables of a run folder as Markdown."""
+    parts = []
+    for table in TABLES:
+        rows = [f"**`{table.name}.parquet`**: one row where {table.row}.", ""]
+        rows += ["| column | type | unit | meaning |", "|---|---|---|---|"]
+        rows += [f"| `{c.name}` | {c.kind} | {c.unit} | {c.meaning} |" for c in table.columns]
+        parts.append("\n".join(rows))
+    return "\n\n".join(parts)
+
+
+# (page, name of the part, how it is made)
+PARTS = (
+    ("skin.md", "parameters", lambda: field_table(skin_fields.PARAMS)),
+    ("skin.md", "frame", lambda: field_table(skin_fields.FRAME)),
+    ("skin.md", "cell", lambda: field_table(skin_fields.CELL)),
+    ("reading-a-report.md", "tables", run_tables),
+)
+
+
+def renewed(text: str, name: str, content: str) -> str:
+    """A page with the part `name` replaced.
+
+    Raises:
+        ValueError: the page has no such part.
+    """
+    begin, end = f"<!-- {name}: made by docs/make.py -->", f"<!-- end of {name} -->"
+    before, found, rest = text.partition(begin)
+    _, closed, after = rest.partition(end)
+    if not found or not closed:
+        raise ValueError(f"there is no part {name}")
+    return f"{before}{begin}\n{content}\n{end}{after}"
+
+
+def pages() -> dict[Path, str]:
+    """Every page with generated parts, as it should be."""
+    made: dict[Path, str] = {}
+    for page, name, make in PARTS:
+        path = FOLDER / page
+        text = made.get(path) or path.read_text(encoding="utf-8")
+        made[path] = renewed(text, name, make())
+    return made
+
+
+def draw() -> None:
+    """The README's picture: four moments of the bundled scenario `demo`."""
+    import innervate
+    from innervate.plot import skinmap, svg, theme
+    from innervate.plot.skin_report import legend
+    from innervate.plot.story import Story
+
+    done = innervate.run("demo")
+    story = Story(done.result, done.summary)
+    sheet = story.sheet
+    step, head = sheet.width - 30, 46.0
+    picture = svg.Drawing(4 * step + 30, sheet.height + head + 26, story.headlines()[0])
+    for i, (title, time_us) in enumerate(story.moments()):
+        inner = skinmap.route_map(sheet, story.history.at(time_us), title, tips=False)
+        picture.text((i * step + 28, 20), title, "strong")
+        if i:
+            after = f"{(time_us - story.incidents[0].at_us) / 1000:.1f} ms after the cut"
+            picture.text((i * step + 28, 38), after, "small")
+        picture.place(inner, (i * step, head - 8))
+    across = 28.0
+    for icon, words in legend(story):
+        picture.place(icon, (across, picture.height - 26))
+        picture.text((across + 28, picture.height - 13), words)
+        across += 7.4 * len(words) + 52
+    PICTURE.parent.mkdir(exist_ok=True)
+    picture.save(PICTURE, theme.drawing_style())
+
+
+def main(arguments: list[str]) -> int:
+    """Write everything, or with --check say what is out of date."""
+    stale = [p for p, text in pages().items() if p.read_text(encoding="utf-8") != text]
+    if "--check" in arguments:
+        for path in stale:
+            print(f"docs/{path.name} is out of date; run: python docs/make.py")
+        return 1 if stale else 0
+    for path, text in pages().items():
+        path.write_text(text, encoding="utf-8")
+    draw()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
