@@ -1,7 +1,7 @@
 """Makes what is generated in the documentation: tables of declared fields, the picture.
 
-    python docs/make.py            writes them
-    python docs/make.py --check    says what is out of date, without writing; exit code 1 if so
+`python docs/make.py` writes them; with `--check` it only says which tables are out of date, and
+ends with exit code 1 if one is.
 """
 
 from __future__ import annotations
@@ -86,8 +86,9 @@ def draw() -> None:
         inner = skinmap.route_map(sheet, story.history.at(time_us), title, tips=False)
         picture.text((i * step + 28, 20), title, "strong")
         if i:
-            after = f"{(time_us - story.incidents[0].at_us) / 1000:.1f} ms after the cut"
-            picture.text((i * step + 28, 38), after, "small")
+            after_ms = (time_us - story.incidents[0].at_us) / 1000
+            when = f"{after_ms:.1f} ms after the cut" if after_ms else "at the cut"
+            picture.text((i * step + 28, 38), when, "small")
         picture.place(inner, (i * step, head - 8))
     across = 28.0
     for icon, words in legend(story):

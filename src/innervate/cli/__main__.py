@@ -1,0 +1,7 @@
+"""`python -m innervate.cli` is `innervate`."""
+
+import sys
+
+from innervate.cli.app import main
+
+sys.exit(main())

@@ -1,0 +1,108 @@
+"""What a failure is to the user: one line that says what to change, and an exit code."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+from typing import Any
+
+USERS = 2
+OURS = 1
+INTERRUPTED = 130
+PIPE_CLOSED = 141
+
+# Which extra brings a module that is not there.
+_EXTRAS = {
+    "numba": "sim", "llvmlite": "sim", "numpy": "sim", "polars": "sim",
+    "matplotlib": "plot",
+    "icub_models": "body",
+}  # fmt: skip
+# Errors whose text is one line for the user: module and class, and whose mistake they are.
+_KNOWN = (
+    ("innervate.scenario.errors", "ScenarioError", USERS),
+    ("innervate.run.errors", "RunError", USERS),
+    ("cyclopts", "CycloptsError", USERS),
+    ("innervate.sim.simulate", "InvariantBroken", OURS),
+    ("innervate.analysis.frames", "FramesLost", OURS),
+)
+
+
+class UserError(Exception):
+    """A mistake of the user, in one line that says what to change."""
+
+
+def conclude(error: BaseException) -> int:
+    """Tell the user about an error; the exit code."""
+    if isinstance(error, SystemExit):
+        code = error.code or 0
+        return code if isinstance(code, int) else OURS
+    if isinstance(error, BrokenPipeError):
+        _drop_stdout()
+        return PIPE_CLOSED
+    if os.environ.get("INNERVATE_TRACEBACK", "") not in ("", "0"):
+        import traceback
+
+        traceback.print_exception(error)
+    if isinstance(error, KeyboardInterrupt):
+        say("interrupted")
+        return INTERRUPTED
+    text, code = explain(error)
+    say(text)
+    return code
+
+
+def explain(error: BaseException) -> tuple[str, int]:
+    """An error in one line, and the exit code for it."""
+    if isinstance(error, UserError):
+        return str(error), USERS
+    if isinstance(error, ModuleNotFoundError) and _extra_of(error) is not None:
+        name = (error.name or "").partition(".")[0]
+        return f"this needs {name}; install it with: pip install '{_extra_of(error)}'", USERS
+    if type(error).__name__ == "MissingArgumentError":
+        return _missing(error), USERS
+    for module, name, code in _KNOWN:
+        kind: Any = getattr(sys.modules.get(module), name, None)
+        if kind is not None and isinstance(error, kind):
+            hint = "" if code == USERS else "; please report it with the scenario"
+            return _one_line(str(error)) + hint, code
+    if isinstance(error, MemoryError):
+        return "not enough memory; make the scenario smaller or shorter", OURS
+    if isinstance(error, OSError) and error.strerror:
+        where = f"{error.filename}: " if error.filename else ""
+        return f"{where}{error.strerror}", OURS
+    what = f"{type(error).__name__}: {_one_line(str(error))}"
+    return f"internal error, {what} (INNERVATE_TRACEBACK=1 shows where)", OURS
+
+
+def say(text: str) -> None:
+    """One line on standard error."""
+    with contextlib.suppress(OSError, ValueError):  # perhaps nobody is listening any more
+        print(f"innervate: {text}", file=sys.stderr, flush=True)
+
+
+def _missing(error: Any) -> str:
+    """An argument that was left out."""
+    command = " ".join(error.command_chain or ())
+    name = error.argument.name if error.argument is not None else "an argument"
+    what = f"{name} needs a value" if name.startswith("-") else f"{command} needs {name}"
+    return f"{what}; see: innervate {command} --help"
+
+
+def _extra_of(error: ModuleNotFoundError) -> str | None:
+    extra = _EXTRAS.get((error.name or "").partition(".")[0])
+    return None if extra is None else f"innervate[{extra}]"
+
+
+def _one_line(text: str) -> str:
+    """The text in one line; what a terminal would not print is escaped."""
+    words = " ".join(text.split())
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in words)
+
+
+def _drop_stdout() -> None:
+    """Nobody reads standard output any more: what is still in it goes nowhere."""
+    with contextlib.suppress(OSError, ValueError):
+        devnull = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(devnull, sys.stdout.fileno())
+        os.close(devnull)

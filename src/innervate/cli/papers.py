@@ -1,0 +1,52 @@
+"""`innervate papers`."""
+
+from __future__ import annotations
+
+import csv
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from innervate.cli import errors
+from innervate.cli.progress import Display
+
+
+def papers(system: str, only: list[str], quick: bool, redraw: bool, out: Path) -> int:
+    """Draw and tabulate a paper's figures; say how many claims hold."""
+    room: Any = import_module("innervate.papers")
+    with Display() as display:
+        display.begin(f"papers {system}: figures and table into {out}", line=True)
+
+        def tell(step: Any) -> None:
+            what = f"{step.done} of {step.total} done: {step.what}"
+            display.show(what, step.done, step.total, step.left_s)
+
+        try:
+            page = room.main(system, out, quick=quick, only=only, progress=tell, redraw=redraw)
+        except KeyboardInterrupt:
+            errors.say(
+                "interrupted; what was done is kept, and the same command goes on from there"
+            )
+            return errors.INTERRUPTED
+    for line in verdict_lines(page.with_suffix(".csv")):
+        print(line)
+    print(f"Look at them in a browser: {page}")
+    return 0
+
+
+def verdict_lines(table: Path) -> list[str]:
+    """What the table says: how many claims hold, and which do not."""
+    with table.open(encoding="utf-8", newline="") as file:
+        claims = list(csv.DictReader(file))
+    failed = [claim for claim in claims if claim["verdict"].startswith("does not")]
+    read = sum(" reading " in claim["verdict"] for claim in claims)
+    lines = [
+        f"{len(claims)} claims: {len(claims) - len(failed)} hold, {read} of them with a reading "
+        f"of ours; {len(failed)} {'does' if len(failed) == 1 else 'do'} not."
+    ]
+    for claim in failed:
+        lines.append(f"  {claim['figure']}: {claim['claim']}")
+        lines.append(f"      measured: {claim['measurement']}")
+        if claim["reason"]:
+            lines.append(f"      because: {claim['reason']}")
+    return lines

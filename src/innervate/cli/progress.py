@@ -1,0 +1,115 @@
+"""What a person sees while work goes on: a bar on a terminal, lines elsewhere; on stderr."""
+
+from __future__ import annotations
+
+import sys
+import time
+from types import TracebackType
+from typing import Any, Self
+
+COMPILING = "compiling the simulation, once on this machine: about half a minute"
+LINE_EVERY_S = 10.0
+
+
+class Display:
+    """Shows how far some work is; use it as a context manager.
+
+    Args:
+        quiet: show nothing unless standard error is a terminal (for --json).
+    """
+
+    def __init__(self, quiet: bool = False) -> None:
+        self._terminal = sys.stderr.isatty()
+        self._silent = quiet and not self._terminal
+        self._bars: Any = None
+        self._task: Any = None
+        self._last_line = time.monotonic()
+
+    def __enter__(self) -> Self:
+        self._last_line = time.monotonic()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._bars is not None:
+            self._bars.stop()
+
+    def begin(self, what: str, line: bool) -> None:
+        """Say what is being done while nobody knows how long it takes; `line`: elsewhere too."""
+        if self._terminal:
+            self._open_bars(what)
+        elif line and not self._silent:
+            self._line(what)
+
+    def show(self, what: str, done: int, total: int, left_s: float | None) -> None:
+        """So far `done` of `total`; lines come only now and then."""
+        if self._bars is not None:
+            self._bars.update(self._task, description=what, completed=done, total=total or None)
+            return
+        if self._silent or time.monotonic() - self._last_line <= LINE_EVERY_S or done >= total:
+            return
+        self._line(what if left_s is None else f"{what}, about {left_s:.0f} s left")
+
+    def _open_bars(self, what: str) -> None:
+        from rich.console import Console
+        from rich.progress import (
+            BarColumn,
+            SpinnerColumn,
+            TextColumn,
+            TimeElapsedColumn,
+            TimeRemainingColumn,
+        )
+        from rich.progress import Progress as Bars
+
+        self._bars = Bars(
+            SpinnerColumn(),
+            TextColumn("{task.description}", markup=False),
+            BarColumn(bar_width=24),
+            TimeElapsedColumn(),
+            TextColumn("left"),
+            TimeRemainingColumn(),
+            console=Console(stderr=True),
+            transient=True,
+        )
+        self._task = self._bars.add_task(what, total=None)
+        self._bars.start()
+
+    def _line(self, text: str) -> None:
+        self._last_line = time.monotonic()
+        print(text, file=sys.stderr, flush=True)
+
+
+class Progress(Display):
+    """How far a simulation is; it is called with the simulated time."""
+
+    def __init__(self, quiet: bool = False) -> None:
+        super().__init__(quiet)
+        self._first: tuple[float, int] | None = None
+
+    def __enter__(self) -> Self:
+        super().__enter__()
+        compiled = is_compiled()
+        self.begin("preparing" if compiled else COMPILING, line=not compiled)
+        return self
+
+    def __call__(self, now_us: int, duration_us: int) -> None:
+        """The simulation has come to `now_us` of `duration_us`."""
+        clock = time.monotonic()
+        if self._first is None:  # all before was compiling and building
+            self._first = (clock, now_us)
+        took, came = clock - self._first[0], now_us - self._first[1]
+        left_s = took * (duration_us - now_us) / came if came > 0 else None
+        what = f"simulated {now_us / 1e6:.2f} of {duration_us / 1e6:g} s"
+        self.show(what, now_us, duration_us, left_s)
+
+
+def is_compiled() -> bool:
+    """True if the cache folder of the present sources holds compiled code."""
+    from innervate.kernel import door
+
+    door.open_cache()
+    return door.is_cached(["advance"])

@@ -1,0 +1,53 @@
+"""`innervate run`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from innervate.cli import errors
+from innervate.cli.progress import Progress
+
+if TYPE_CHECKING:
+    from innervate.run import Run
+
+
+def run(
+    file: str,
+    sets: list[str],
+    seed: int | None,
+    out: Path | None,
+    as_json: bool,
+    report: bool,
+) -> int:
+    """Run a scenario, write its folder, say what came of it."""
+    done = simulate(file, sets, seed, out, as_json)
+    folder = done.write(out, report=report)
+    if as_json:
+        print(json.dumps(done.summary, indent=2, allow_nan=False))
+    else:
+        from innervate.cli import show
+
+        for line in show.summary_lines(done):
+            print(line)
+        print(f"Written: {folder / 'report.html' if report else folder}")
+    return errors.INTERRUPTED if done.interrupted else 0
+
+
+def simulate(
+    file: str, sets: list[str], seed: int | None, out: Path | None, quiet: bool = False
+) -> Run:
+    """Run a scenario behind a progress display; what is wrong with it is found out before."""
+    from innervate import scenario as scenarios
+
+    loaded = scenarios.load(file, sets, seed)
+    scenarios.plan(loaded)  # the simulator takes a second to load: mistakes first
+    from innervate import run as room
+    from innervate.run import folder as folders
+
+    if out is None:
+        out = folders.default_folder(loaded.name, loaded.seed)
+    folders.check_target(out)
+    with Progress(quiet) as progress:
+        return room.run(loaded, progress=progress)

@@ -1,0 +1,84 @@
+"""A run's summary for a terminal, in plain words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from innervate.plot import words
+
+if TYPE_CHECKING:
+    from innervate.run import Run
+
+EVENTS_MAX = 8
+BROKEN_MAX = 5
+
+
+def summary_lines(run: Run) -> list[str]:
+    """What a person wants to know first."""
+    summary = run.summary
+    return [_first(run), *event_lines(run), *_broken(summary), *state_lines(summary)]
+
+
+def _first(run: Run) -> str:
+    summary, graph = run.summary, run.plan.graph
+    length = f"{summary['duration_s']:g} s"
+    if "interrupted_at_s" in summary:
+        length = f"{summary['interrupted_at_s']:.3g} of {length}"
+    return (
+        f"{summary['name']}: {words.number_of(graph.cells, 'cell')}, "
+        f"{words.number_of(graph.interfaces, 'interface port')}, "
+        f"at most {words.number_of(summary['depth_max'], 'hop')} deep; "
+        f"{length} simulated in {summary['wall_s']:.2f} s, "
+        f"seed {summary['seed']}"
+    )
+
+
+def event_lines(run: Run) -> list[str]:
+    """A sentence for every event of the scenario."""
+    summary, plan = run.summary, run.plan
+    pairs = list(zip(plan.faults, summary["recoveries"], strict=False))
+    lines = [words.headline(plan.graph, *pair) for pair in pairs[:EVENTS_MAX]]
+    if len(pairs) > EVENTS_MAX:
+        lines.append(f"... and {words.number_of(len(pairs) - EVENTS_MAX, 'more event')}.")
+    if "interrupted_at_s" in summary:
+        lines.append(f"Interrupted at {summary['interrupted_at_s']:.3f} s of simulated time.")
+    return lines
+
+
+def state_lines(summary: dict[str, Any]) -> list[str]:
+    """Samples, ports, loops."""
+    lines = []
+    data, loads = summary["data"], summary["port_loads"]
+    if data["sent"]:
+        share = words.share_words(data["loss_ratio"])
+        lines.append(
+            f"Samples: {data['sent']:,} sent, {data['lost']:,} lost ({share}){_why(data)}."
+        )
+    if len(loads) > 1 and summary["balance_factor"] is not None:
+        shown = ", ".join(f"{load:,}" for load in loads[:8]) + (", ..." if len(loads) > 8 else "")
+        factor = f"balance factor {summary['balance_factor']:.3f}"
+        lines.append(f"Cells behind each interface port: {shown} ({factor}).")
+    loops = summary["loops"]
+    if loops["episodes"]:
+        longest = words.ms_words(loops["longest_ms"])
+        count = words.number_of(loops["episodes"], "forwarding loop")
+        lines.append(f"{count}, the longest for {longest}.")
+    else:
+        lines.append("No forwarding loop.")
+    return lines
+
+
+def _why(data: dict[str, Any]) -> str:
+    """The reasons of lost samples, the greatest first."""
+    lost = sorted(((n, why) for why, n in data["lost_by"].items() if n), reverse=True)
+    return "".join(f", {n:,} {words.LOST.get(why, why)}" for n, why in lost)
+
+
+def _broken(summary: dict[str, Any]) -> list[str]:
+    cables = words.broken_cables(summary["broken"])
+    if not cables:
+        return ["No cable is broken at the end."]
+    lines = [f"Broken at the end: {cable}." for cable in cables[:BROKEN_MAX]]
+    if len(cables) > BROKEN_MAX:
+        lines.append(f"... and {len(cables) - BROKEN_MAX} more.")
+    return lines

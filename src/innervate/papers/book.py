@@ -1,0 +1,194 @@
+"""Runs a paper's experiments over all cores, keeps what comes, draws and tabulates.
+
+Results are stored one by one in `results.jsonl` of the output folder. A second run does only what
+is missing: after an interrupt, for other figures, or when the sources have changed.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from innervate.papers import PAPERS, output
+from innervate.papers.errors import PapersError
+from innervate.papers.experiment import Claim, Experiment, Point
+from innervate.papers.store import Store, stamp
+from innervate.plot import style
+
+RESULTS = "results.jsonl"
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """How far the work is.
+
+    Attributes:
+        done, total: pieces of work; `total` counts only those that had to be run.
+        what: what is being done, in words.
+        left_s: about how long it will take from here; None while nobody can know.
+    """
+
+    done: int
+    total: int
+    what: str
+    left_s: float | None
+
+
+Progress = Callable[[Step], None]
+
+
+def main(
+    system: str = "skin",
+    out: str | os.PathLike[str] = "papers",
+    quick: bool = False,
+    only: Iterable[str] = (),
+    progress: Progress | None = None,
+    redraw: bool = False,
+) -> Path:
+    """Draw and tabulate the figures of a paper.
+
+    Args:
+        system: which paper: "skin".
+        out: folder for the figures, tables and kept results.
+        quick: few seeds and settings, in under a minute.
+        only: names of figures ("fig8a"); empty = all.
+        progress: called with a Step after each piece of work.
+        redraw: use kept results even if they are of other sources than the present ones.
+
+    Returns:
+        The page with everything, papers-<system>.html; beside it stand a PNG and an SVG for each
+        figure and the table as CSV and Markdown. With `only` the page has those figures alone.
+
+    Raises:
+        PapersError: no such paper or figure, or the folder cannot be used.
+        KeyboardInterrupt: it was interrupted; what was done is kept.
+    """
+    if system not in PAPERS:
+        raise PapersError(f'there is no paper "{system}"; choose from: {", ".join(PAPERS)}')
+    paper = import_module(f"innervate.papers.{system}")
+    experiments = [paper.experiment(name) for name in _chosen(paper, only)]
+    folder = Path(out)
+    _prepare(folder)
+    mark = stamp()
+    store = Store(folder / RESULTS, mark, any_stamp=redraw)
+    book = _Book(folder, store, quick, progress or (lambda step: None))
+    started = time.perf_counter()
+    with style.house():
+        book.work(experiments)
+    heading = output.Heading(system, paper.TITLE, paper.AUTHORS, quick, mark, redraw)
+    return output.write(folder, heading, experiments, book.claims, time.perf_counter() - started)
+
+
+def _chosen(paper: ModuleType, only: Iterable[str]) -> list[str]:
+    """Names of figures in the paper's order."""
+    wanted = [name.strip() for name in only]
+    for name in wanted:
+        if name not in paper.FIGURES:
+            message = f'there is no figure "{name}"; choose from: {", ".join(paper.FIGURES)}'
+            raise PapersError(message)
+    return [name for name in paper.FIGURES if name in wanted or not wanted]
+
+
+def _prepare(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with (folder / RESULTS).open("a", encoding="utf-8"):
+            pass
+    except OSError as error:
+        raise PapersError(f"{folder}: {error.strerror or error}; name another folder") from None
+
+
+class _Book:
+    """Runs what is missing, and draws each experiment as soon as it has all its results."""
+
+    def __init__(self, folder: Path, store: Store, quick: bool, progress: Progress) -> None:
+        self.folder = folder
+        self.store = store
+        self.quick = quick
+        self.progress = progress
+        self.claims: dict[str, list[Claim]] = {}
+        self._started = time.perf_counter()
+        self._spent = self._whole = 0.0
+        self._done = self._total = 0
+
+    def work(self, experiments: Sequence[Experiment]) -> None:
+        needs = {e.name: {p.key: p for p in e.points(self.quick)} for e in experiments}
+        missing = {
+            key: point
+            for points in needs.values()
+            for key, point in points.items()
+            if key not in self.store.values
+        }
+        self._total = len(missing)
+        self._whole = sum(point.cost_s for point in missing.values())
+        waiting = list(experiments)
+        if missing:
+            self._say("compiling the simulation, unless it is compiled")
+            warm_up()
+            self._started = time.perf_counter()
+        workers = _cores()
+        with ThreadPoolExecutor(workers) as pool:
+            running = {pool.submit(self._run, point): point for point in missing.values()}
+            try:
+                self._finish(waiting, needs)
+                while running:
+                    self._collect(running)
+                    self._finish(waiting, needs)
+            except BaseException:
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
+
+    def _run(self, point: Point) -> None:
+        self.store.put(point.key, point.work())
+
+    def _collect(self, running: dict[Future[None], Point]) -> None:
+        done, _ = wait(running, return_when=FIRST_COMPLETED)
+        for future in done:
+            point = running.pop(future)
+            future.result()
+            self._done += 1
+            self._spent += point.cost_s
+            self._say(point.key)
+
+    def _finish(self, waiting: list[Experiment], needs: dict[str, Any]) -> None:
+        """Draw and judge those that have everything."""
+        for experiment in list(waiting):
+            if self.store.missing(list(needs[experiment.name])):
+                continue
+            waiting.remove(experiment)
+            self._say(f"drawing {experiment.name}")
+            results = self.store.values
+            style.save(experiment.draw(results, self.quick), self.folder, experiment.name)
+            self.claims[experiment.name] = experiment.judge(results, self.quick)
+
+    def _say(self, what: str) -> None:
+        left = None
+        if self._spent > 0:
+            took = time.perf_counter() - self._started
+            left = took * (self._whole - self._spent) / self._spent
+        self.progress(Step(self._done, self._total, what, left))
+
+
+def warm_up() -> None:
+    """Compile both loops before threads want them at the same time."""
+    from innervate import scenario
+    from innervate.sim.simulate import simulate
+
+    tiny = {"kind": "skin", "duration_s": 0.01, "patch": [{"columns": 2, "rows": 1}]}
+    for rule in ("feasible", "static"):
+        tables = tiny | {"interface": [{"row": 0, "column": 0}], "protocol": {"rule": rule}}
+        simulate(scenario.plan(scenario.from_dict(tables)))
+
+
+def _cores() -> int:
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:  # not on every system
+        return os.cpu_count() or 1

@@ -1,0 +1,9 @@
+"""The error of this room."""
+
+from __future__ import annotations
+
+from innervate.run.errors import RunError
+
+
+class PapersError(RunError):
+    """A paper or figure that is not there, or a folder that cannot be used: one line."""

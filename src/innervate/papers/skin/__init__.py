@@ -1,0 +1,19 @@
+"""The skin paper: Bader, Bergner and Cheng, a dynamic network protocol for an artificial skin."""
+
+from importlib import import_module
+
+from innervate.papers.experiment import Experiment
+
+TITLE = "A robust and efficient dynamic network protocol for a large-scale artificial robotic skin"
+AUTHORS = "C. Bader, F. Bergner, G. Cheng"
+# One module each, in the order of the paper; the last two are beyond it.
+FIGURES = (
+    "fig5", "fig6", "fig8a", "fig8b", "eq7", "fig10", "eq9", "fig11", "loop", "modes",
+)  # fmt: skip
+
+
+def experiment(name: str) -> Experiment:
+    """The experiment of a figure, loaded when it is asked for."""
+    found = import_module(f"innervate.papers.skin.{name}").EXPERIMENT
+    assert isinstance(found, Experiment)
+    return found

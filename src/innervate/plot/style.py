@@ -1,0 +1,117 @@
+"""How matplotlib figures look: column widths, type, colours that colour-blind readers can tell.
+
+Figures are made without pyplot, so that they may be drawn in any thread and leave no state behind.
+Series differ by marker or dash as well as by colour.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+COLUMN_IN = 3.5  # one column of a two-column page
+WIDE_IN = 7.16  # both
+DPI = 300
+
+# Hues of Okabe and Ito.
+BLACK = "#000000"
+BLUE = "#0072B2"
+VERMILION = "#D55E00"
+GREEN = "#009E73"
+ORANGE = "#E69F00"
+PURPLE = "#CC79A7"
+SKY = "#56B4E9"
+SERIES = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK)
+MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+DASHES = ("-", (0, (5, 1.5)), (0, (1.5, 1.2)), (0, (5, 1.2, 1.2, 1.2)))
+
+INK = "#1c2430"
+SOFT = "#5b6675"
+FAINT = "#d5dae1"
+PALE = "#eef1f5"
+
+# Any: which keys there are differs between releases of matplotlib.
+_RC: Any = {
+    "font.family": "DejaVu Sans",
+    "font.size": 7.5,
+    "axes.titlesize": 8,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.labelsize": 7.5,
+    "axes.linewidth": 0.6,
+    "axes.edgecolor": SOFT,
+    "axes.labelcolor": INK,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": FAINT,
+    "grid.linewidth": 0.4,
+    "text.color": INK,
+    "xtick.labelsize": 7,
+    "ytick.labelsize": 7,
+    "xtick.color": SOFT,
+    "ytick.color": SOFT,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.major.size": 2.5,
+    "ytick.major.size": 2.5,
+    "legend.fontsize": 6.8,
+    "legend.frameon": False,
+    "legend.handlelength": 1.8,
+    "legend.borderaxespad": 0.2,
+    "lines.linewidth": 1.2,
+    "lines.markersize": 3.5,
+    "savefig.dpi": DPI,
+    "figure.dpi": DPI,
+    "svg.fonttype": "path",
+    "svg.hashsalt": "innervate",
+}
+
+
+@contextmanager
+def house() -> Iterator[None]:
+    """Draw and save inside this: the house style, whatever the user's own settings are."""
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(_RC)
+        yield
+
+
+def figure(width_in: float, height_in: float) -> Figure:
+    """An empty figure whose parts are laid out so that no labels overlap."""
+    engine = ConstrainedLayoutEngine(w_pad=0.03, h_pad=0.03)
+    made = Figure(figsize=(width_in, height_in), layout=engine)
+    FigureCanvasAgg(made)
+    return made
+
+
+def panels(
+    width_in: float, height_in: float, rows: int = 1, columns: int = 1, **options: Any
+) -> tuple[Figure, list[Axes]]:
+    """A figure with a grid of axes, row by row; `options` go to `Figure.subplots`."""
+    made = figure(width_in, height_in)
+    grid = made.subplots(rows, columns, squeeze=False, **options)
+    return made, list(grid.flat)
+
+
+def save(made: Figure, folder: str | os.PathLike[str], name: str) -> list[Path]:
+    """Write `name`.png and `name`.svg, the same bytes for the same figure; their paths."""
+    paths = [Path(folder) / f"{name}.{kind}" for kind in ("png", "svg")]
+    for path in paths:
+        fresh = path.with_name(path.name + ".part")
+        metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
+        made.savefig(fresh, format=path.suffix[1:], metadata=metadata)
+        fresh.replace(path)
+    return paths

@@ -1,0 +1,144 @@
+"""A small writer of SVG: shapes with classes, styled by the page that holds them.
+
+Drawings carry their natural size; in a page they shrink to the width there is. Alone
+(`standalone`), they carry their style sheet themselves.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from xml.sax.saxutils import escape, quoteattr
+
+Point = tuple[float, float]
+Value = str | float | int | None
+
+# What XML 1.0 cannot hold, even escaped.
+_FORBIDDEN = {c: "\ufffd" for c in (*range(9), 11, 12, *range(14, 32), 0xFFFE, 0xFFFF)}
+
+
+def number(value: float) -> str:
+    """A coordinate, to a hundredth.
+
+    Raises:
+        ValueError: it is not a finite number.
+    """
+    if not math.isfinite(value):
+        raise ValueError(f"a coordinate must be finite, not {value}")
+    text = f"{value:.2f}".rstrip("0").rstrip(".")
+    return "0" if text in ("-0", "") else text
+
+
+def clean(text: str) -> str:
+    """Text with what XML cannot hold replaced, and the rest escaped."""
+    return escape(_valid(text))
+
+
+def attribute(text: str) -> str:
+    """Text as a quoted attribute value."""
+    return quoteattr(_valid(text))
+
+
+def _valid(text: str) -> str:
+    text = text.translate(_FORBIDDEN)
+    return "".join("\ufffd" if "\ud800" <= c <= "\udfff" else c for c in text)
+
+
+def polyline(points: Iterable[Point]) -> str:
+    """Path data of a line through points."""
+    return "M" + "L".join(f"{number(x)},{number(y)}" for x, y in points)
+
+
+def polygon(x: float, y: float, corners: Sequence[Point]) -> str:
+    """Path data of a closed shape round (x, y); corners relative to it."""
+    first, *rest = corners
+    steps = [f"M{number(x + first[0])},{number(y + first[1])}"]
+    here = first
+    for corner in rest:
+        steps.append(f"l{number(corner[0] - here[0])},{number(corner[1] - here[1])}")
+        here = corner
+    return "".join(steps) + "z"
+
+
+def cross(x: float, y: float, size: float) -> str:
+    """Path data of a diagonal cross."""
+    near, far, whole = number(x - size), number(y - size), number(2 * size)
+    return f"M{near},{far}l{whole},{whole}M{near},{number(y + size)}l{whole},-{whole}"
+
+
+class Drawing:
+    """An SVG drawing that is filled piece by piece.
+
+    Attributes:
+        width, height: natural size in px, > 0.
+        label: what a screen reader says of it.
+    """
+
+    def __init__(self, width: float, height: float, label: str) -> None:
+        self.width = width
+        self.height = height
+        self.label = label
+        self._parts: list[str] = []
+
+    def add(self, tag: str, content: str | None = None, **attributes: Value) -> None:
+        """An element; `class_` stands for class, underscores for hyphens. `content` is text."""
+        words = [tag]
+        for name, value in attributes.items():
+            if value is None:
+                continue
+            text = value if isinstance(value, str) else number(value)
+            words.append(f"{name.rstrip('_').replace('_', '-')}={attribute(text)}")
+        head = " ".join(words)
+        inside = None if content is None else clean(content)
+        self._parts.append(f"<{head}/>" if inside is None else f"<{head}>{inside}</{tag}>")
+
+    def path(self, data: str, kind: str, tip: str = "") -> None:
+        """A path; `tip` appears under the pointer."""
+        if tip:
+            shape = f"<path class={attribute(kind)} d={attribute(data)}>"
+            self._parts.append(f"{shape}<title>{clean(tip)}</title></path>")
+        elif data:
+            self.add("path", class_=kind, d=data)
+
+    def line(self, start: Point, end: Point, kind: str) -> None:
+        """A straight line."""
+        self.add("line", class_=kind, x1=start[0], y1=start[1], x2=end[0], y2=end[1])
+
+    def rect(self, corner: Point, size: Point, kind: str, tip: str = "") -> None:
+        """A rectangle; negative sizes count as nothing."""
+        wide, high = max(size[0], 0.0), max(size[1], 0.0)
+        data = f"M{number(corner[0])},{number(corner[1])}h{number(wide)}v{number(high)}"
+        self.path(f"{data}h{number(-wide)}z", kind, tip)
+
+    def circle(self, centre: Point, radius: float, kind: str) -> None:
+        """A circle."""
+        self.add("circle", class_=kind, cx=centre[0], cy=centre[1], r=radius)
+
+    def text(self, at: Point, words: str, kind: str = "", anchor: str = "start") -> None:
+        """Words; `anchor` is start, middle or end."""
+        self.add(
+            "text", words, class_=kind or None, x=at[0], y=at[1],
+            text_anchor=None if anchor == "start" else anchor,
+        )  # fmt: skip
+
+    def place(self, inner: Drawing, at: Point) -> None:
+        """Another drawing inside this one, its corner at `at`."""
+        shift = f"translate({number(at[0])} {number(at[1])})"
+        self._parts += [f'<g transform="{shift}">', *inner._parts, "</g>"]
+
+    def render(self, style: str = "") -> str:
+        """The drawing as one <svg> element; with `style` it can stand alone."""
+        wide, high = number(self.width), number(self.height)
+        parts = [
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {high}" '
+            f'width="{wide}" height="{high}" role="img" aria-label={attribute(self.label)}>'
+        ]
+        if style:
+            parts.append(f"<title>{clean(self.label)}</title><style>{clean(style)}</style>")
+            parts.append(f'<rect class="ground" width="{wide}" height="{high}"/>')
+        return "\n".join([*parts, *self._parts, "</svg>"])
+
+    def save(self, path: Path, style: str) -> None:
+        """Write it to a file of its own."""
+        path.write_text(self.render(style) + "\n", encoding="utf-8")

@@ -1,0 +1,128 @@
+"""Numbers and events of a run in plain words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from innervate.protocol.skin import PORTS
+from innervate.scenario.plan import (
+    CUT,
+    KILL,
+    LOOSE,
+    LOSE,
+    LOSS_ONE,
+    RESTART,
+    RESTORE,
+    REVIVE,
+    Fault,
+)
+from innervate.topology import Graph
+
+LOST = {
+    "cut": "on a cut cable",
+    "noise": "noise or a loose plug",
+    "off": "cell switched off",
+    "queue_full": "queue full",
+    "broken_link": "queue of a broken port",
+    "no_route": "no known way to the PC",
+    "loop": "after too many hops",
+}
+
+
+def ms_words(value_ms: float) -> str:
+    """A time: "8.43 ms", "17.0 ms", "1.25 s"."""
+    if value_ms >= 1000:
+        return f"{value_ms / 1000:.3g} s"
+    return f"{value_ms:.1f} ms" if value_ms >= 10 else f"{value_ms:.3g} ms"
+
+
+def count_words(value: float) -> str:
+    """A count or a tick: "12", "12,000", "1.2 M", "0.5"."""
+    if abs(value) >= 1e6:
+        return f"{value / 1e6:.4g} M"
+    return f"{round(value):,}" if abs(value) >= 10 else f"{value:g}"
+
+
+def number_of(count: int, thing: str) -> str:
+    """A count with its noun: "1 cell", "12 cells"."""
+    return f"{count:,} {thing}{'' if count == 1 else 's'}"
+
+
+def share_words(ratio: float) -> str:
+    """A fraction as a percentage: "0.678 %", "less than 0.001 %"."""
+    if 0 < ratio < 1e-5:
+        return "less than 0.001 %"
+    return f"{100 * ratio:.3g} %"
+
+
+def end_words(graph: Graph, end: int) -> str:
+    """A cable by one of its ends: "cable to interface 1" or "cable p0 r1 c2 E - p0 r1 c3 W"."""
+    far = graph.peer[end]
+    for one in (end, far):
+        if one >= PORTS * graph.cells:
+            return f"cable to interface {one - PORTS * graph.cells}"
+    return f"cable {graph.label_end(end)} - {graph.label_end(far)}"
+
+
+def fault_words(graph: Graph, fault: Fault) -> str:
+    """What happened: "cable to interface 1 cut"."""
+    if fault.end >= 0:
+        cable = end_words(graph, fault.end)
+        percent = share_words(fault.loss_q15 / LOSS_ONE)
+        return {
+            CUT: f"{cable} cut",
+            RESTORE: f"{cable} put back",
+            LOOSE: f"{cable} loose, losing {percent}" if fault.loss_q15 else f"{cable} tight again",
+            LOSE: f"{cable} loses {number_of(fault.frames, 'frame')}",
+        }[fault.action]
+    node = "the PC" if fault.node == graph.sink else f"cell {graph.label(fault.node)}"
+    verb = {KILL: "switched off", REVIVE: "switched on again", RESTART: "restarted"}
+    return f"{node} {verb[fault.action]}"
+
+
+def headline(graph: Graph, fault: Fault, recovery: Mapping[str, Any], still: str = "") -> str:
+    """One event and what came of it, as a sentence; `still`: see outcome()."""
+    what = fault_words(graph, fault)
+    begin = f"{what[0].upper()}{what[1:]} at {recovery['at_s']:.3f} s"
+    return f"{begin}: {outcome(recovery, still)}."
+
+
+def outcome(recovery: Mapping[str, Any], still: str = "") -> str:
+    """What came of an event: noticed when, all routed when.
+
+    `still` says it where not all cells were routed again: "3 cells still had no way at the end".
+    """
+    detected, routed = recovery.get("detected_ms"), recovery.get("routed_ms")
+    parts = []
+    if detected is not None:
+        parts.append(f"noticed after {ms_words(detected)}")
+    if routed is None:
+        parts.append(still or "some cells still had no way to the PC afterwards")
+    elif routed > 0:
+        parts.append(f"every cell had a way again after {ms_words(routed)}")
+    else:
+        settled = recovery.get("converged_ms")
+        parts.append("every cell kept its way to the PC")
+        if settled:
+            parts.append(f"the last one changed it after {ms_words(settled)}")
+    return ", ".join(parts)
+
+
+def broken_cables(broken: Iterable[Mapping[str, Any]]) -> list[str]:
+    """The cables behind a summary's `broken`, each once although both its ends may notice."""
+    since: dict[frozenset[str], float | None] = {}
+    names: dict[frozenset[str], str] = {}
+    for port in broken:
+        here, there = f"{port['cell']} {port['port']}", str(port.get("to") or "")
+        cable = frozenset((here, there))
+        times = [t for t in (since.get(cable), port.get("since_s")) if t is not None]
+        since[cable] = min(times, default=None)
+        if there.startswith("pc."):
+            names[cable] = f"cable from interface {there[3:]} to {here}"
+        else:
+            names.setdefault(cable, f"cable {here} - {there}" if there else f"cable at {here}")
+    return [
+        name if (at := since[cable]) is None else f"{name}, since {at:.3f} s"
+        for cable, name in names.items()
+    ]

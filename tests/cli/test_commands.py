@@ -1,0 +1,151 @@
+import json
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import innervate
+from innervate import scenario
+from innervate.cli import demo as demo_command
+
+
+def test_version(sh):
+    assert sh("--version") == 0
+    assert sh.out == f"innervate {innervate.__version__}\n"
+
+
+@pytest.mark.parametrize("tokens", [(), ("--help",), ("-h",)])
+def test_help_names_every_command(sh, tokens):
+    assert sh(*tokens) == 0
+    for command in ("demo", "run", "papers", "scenarios", "new", "check", "compare"):
+        assert f" {command} " in sh.out
+    assert sh.err == ""
+
+
+def test_run_says_what_happened_and_writes_a_folder(sh):
+    assert sh("run", "four.toml") == 0
+    first, event, broken, *_, last = sh.out.splitlines()
+    assert first.startswith("four: 4 cells, 2 interface ports, at most 2 hops deep; 0.4 s")
+    assert event.startswith("Cable to interface 1 cut at 0.300 s: noticed after")
+    assert broken.startswith("Broken at the end: cable from interface 1 to p0 r0 c3 E, since 0.3")
+    assert last == f"Written: {Path('runs/four-1/report.html')}"
+    found = {path.name for path in Path("runs/four-1").iterdir()}
+    assert {"scenario.toml", "summary.json", "provenance.json", "report.html"} <= found
+
+
+def test_json_prints_the_summary_alone(sh):
+    assert sh("run", "four.toml", "--json", "--out", "there") == 0
+    assert json.loads(sh.out) == json.loads(Path("there/summary.json").read_text())
+    assert sh.err == ""
+
+
+def test_set_and_seed(sh):
+    changes = ("--set", "protocol.k=3", "--set", "name=other", "--seed", "7")
+    assert sh("run", "four.toml", *changes, "--json", "--no-report") == 0
+    assert not Path("runs/other-7/report.html").exists()
+    tables = tomllib.loads(Path("runs/other-7/scenario.toml").read_text())
+    assert (tables["protocol"]["k"], tables["seed"]) == (3, 7)
+
+
+def test_a_run_is_repeated_from_its_folder(sh):
+    sh("run", "four.toml", "--json", "--out", "first")
+    first = json.loads(sh.out)
+    sh("run", Path("first/scenario.toml"), "--json", "--out", "second")
+    assert json.loads(sh.out)["fingerprint"] == first["fingerprint"]
+    assert sh("compare", "first", "second") == 0
+    assert "same, event by event" in sh.out
+
+
+def test_compare_names_what_differs(sh):
+    sh("run", "four.toml", "--out", "one")
+    sh("run", "four.toml", "--out", "two", "--set", "protocol.k=3")
+    assert sh("compare", "one", "two") == 0
+    assert "protocol.k  not set -> 3" in sh.out
+    assert "recoveries.0.detected_ms" in sh.out
+    assert "First event that differs:" in sh.out
+
+
+def test_scenarios_lists_all_with_a_line_each(sh):
+    assert sh("scenarios") == 0
+    lines = sh.out.splitlines()
+    assert [line.split()[0] for line in lines] == list(scenario.bundled())
+    assert all(len(line.split(maxsplit=1)[1]) > 20 for line in lines)
+
+
+def test_new_prints_or_writes_what_check_accepts(sh):
+    assert sh("new", "skin") == 0
+    assert sh.out == scenario.template("skin")
+    assert sh("new", "skin", "mine.toml") == 0
+    assert Path("mine.toml").read_text() == scenario.template("skin")
+    assert sh("check", "mine.toml") == 0
+    assert sh.out.startswith("my-skin: a skin scenario of 4 s, seed 1\n")
+
+
+def test_new_keeps_what_is_there(sh):
+    assert sh("new", "skin", "four.toml") == 2
+    assert "four.toml is there already" in sh.err
+    assert 'name = "four"' in Path("four.toml").read_text()
+
+
+def test_check_takes_changes(sh):
+    assert sh("check", "setup-1", "--set", "protocol.k=8", "--seed", "12") == 0
+    assert "k = 8" in sh.out
+    assert "seed 12" in sh.out
+    assert not Path("runs").exists()
+
+
+def test_demo_tells_the_story(sh, monkeypatch):
+    opened = []
+    monkeypatch.setattr(demo_command.webbrowser, "open", opened.append)
+    assert sh("demo", "--out", "there", "--open") == 0
+    for words in (
+        "204 cells", "cable to interface 1 cut", "102 of 204 cells have lost their way",
+        "every cell has a way again", "cable to interface 1 put back", "No forwarding loop",
+        str(Path("there/report.html")),
+    ):  # fmt: skip
+        assert words in sh.out
+    assert opened == [Path("there/report.html").resolve().as_uri()]
+
+
+CLAIMS = """figure,claim,measurement,verdict,reason
+Fig. 5,k + 3 periods,8 periods,holds,
+Fig. 8a,Eq. 4,19 of 20,holds with reading E21,a mean
+Fig. 9,never,always,does not hold,because
+"""
+
+
+def test_papers_runs_and_counts_verdicts(sh, monkeypatch):
+    seen = []
+
+    def main(system, out, **options):
+        options.pop("progress")
+        seen.append((system, out, options))
+        out.mkdir()
+        (out / "papers-skin.csv").write_text(CLAIMS)
+        return out / "papers-skin.html"
+
+    room = type("Room", (), {"main": staticmethod(main)})
+    monkeypatch.setattr("innervate.cli.papers.import_module", lambda name: room)
+    assert sh("papers", "--quick", "--out", "figures", "--only", "fig5", "--only", "loop") == 0
+    options = {"quick": True, "only": ["fig5", "loop"], "redraw": False}
+    assert seen == [("skin", Path("figures"), options)]
+    first, *rest, last = sh.out.splitlines()
+    assert first == "3 claims: 2 hold, 1 of them with a reading of ours; 1 does not."
+    assert [line.split(":")[0].strip() for line in rest] == ["Fig. 9", "measured", "because"]
+    assert last == f"Look at them in a browser: {Path('figures/papers-skin.html')}"
+
+
+def test_interrupted_papers_can_be_taken_up_again(sh, monkeypatch):
+    def main(*_, **__):
+        raise KeyboardInterrupt
+
+    room = type("Room", (), {"main": staticmethod(main)})
+    monkeypatch.setattr("innervate.cli.papers.import_module", lambda name: room)
+    assert sh("papers") == 130
+    assert "goes on from there" in sh.err
+
+
+@pytest.mark.parametrize("tokens", [("mesh",), ("--only", "fig99")])
+def test_papers_and_figures_that_are_not_there(sh, tokens):
+    assert sh("papers", *tokens, "--out", "figures") == 2
+    assert "choose from:" in sh.err

@@ -1,0 +1,129 @@
+import signal
+from pathlib import Path
+
+import pytest
+
+from innervate.cli import errors
+from innervate.sim.simulate import InvariantBroken
+
+WRONG = {
+    "unknown command": (("runn", "x"), 'Did you mean "run"?'),
+    "unknown option": (("run", "four.toml", "--sed", "3"), "Did you mean --seed?"),
+    "no file named": (("run",), "run needs FILE"),
+    "no value": (("run", "four.toml", "--seed"), "--seed needs a value"),
+    "not a number": (("run", "four.toml", "--seed", "x"), '"x"'),
+    "negative seed": (("run", "four.toml", "--seed", "-3"), "seed must be a whole number from 0"),
+    "no such file": (("run", "fuor.toml"), "fuor.toml: no such file"),
+    "a folder": (("run", "."), "this is a folder"),
+    "no such bundled one": (("check", "setup-11"), 'did you mean "setup-1"?'),
+    "wrong key": (("run", "four.toml", "--set", "protocol.kk=3"), 'did you mean "k"?'),
+    "no value to set": (("run", "four.toml", "--set", "protocol.k"), "write it as key=value"),
+    "no such cell": (("check", "four.toml", "--set", "interface.0.row=9"), "there is no row 9"),
+    "later kind": (("new", "radio"), 'kind "radio" is not in this version'),
+    "not a run": (("compare", ".", "."), "is not a run folder"),
+    "out is a file": (("run", "four.toml", "--out", "four.toml"), "choose another folder"),
+    "out is somebody's": (("run", "four.toml", "--out", "."), "not a run folder and not empty"),
+    "too many words": (("check", "four.toml", "more"), "more"),
+}
+
+
+@pytest.mark.parametrize(("tokens", "says"), WRONG.values(), ids=WRONG.keys())
+def test_mistakes_of_the_user_are_one_line_and_2(sh, tokens, says):
+    assert sh(*tokens) == 2
+    assert sh.out == ""
+    assert sh.err.count("\n") == 1
+    assert sh.err.startswith("innervate: ")
+    assert says in sh.err
+    assert sorted(path.name for path in Path().iterdir()) == ["four.toml"]
+
+
+def test_a_line_number_where_there_is_one(sh):
+    Path("bad.toml").write_text('kind = "skin"\n[[patch]]\ncolumns = 0\nrows = 1\n')
+    assert sh("check", "bad.toml") == 2
+    assert sh.err.startswith("innervate: bad.toml:3: ")
+
+
+def failing(error):
+    def fail(*_, **__):
+        raise error
+
+    return fail
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "says"),
+    [
+        (InvariantBroken("invariant broken at 2.000000 s (seed 1): forwarding loop through "
+                         "p0 r1 c2"), 1, "seed 1): forwarding loop through p0 r1 c2; please"),
+        (RuntimeError("first\nsecond"), 1, "internal error, RuntimeError: first second"),
+        (MemoryError(), 1, "not enough memory"),
+        (OSError(28, "No space left on device"), 1, "No space left on device"),
+        (KeyboardInterrupt(), 130, "interrupted"),
+        (errors.UserError("change this"), 2, "change this"),
+    ],
+)  # fmt: skip
+def test_exit_codes(sh, monkeypatch, error, code, says):
+    monkeypatch.setattr("innervate.cli.files.scenarios", failing(error))
+    assert sh("scenarios") == code
+    assert says in sh.err
+    assert sh.err.count("\n") == 1
+    assert "Traceback" not in sh.err
+
+
+def test_a_traceback_on_request(sh, monkeypatch):
+    monkeypatch.setattr("innervate.cli.files.scenarios", failing(RuntimeError("x")))
+    monkeypatch.setenv("INNERVATE_TRACEBACK", "1")
+    assert sh("scenarios") == 1
+    assert "Traceback" in sh.err
+    assert sh.err.endswith("(INNERVATE_TRACEBACK=1 shows where)\n")
+
+
+@pytest.mark.parametrize(
+    ("module", "extra"), [("numba", "sim"), ("polars.x", "sim"), ("matplotlib", "plot")]
+)
+def test_a_missing_part_says_what_to_install(sh, monkeypatch, module, extra):
+    error = ModuleNotFoundError(f"No module named '{module}'", name=module)
+    monkeypatch.setattr("innervate.cli.files.scenarios", failing(error))
+    assert sh("scenarios") == 2
+    name = module.partition(".")[0]
+    assert f"needs {name}; install it with: pip install 'innervate[{extra}]'" in sh.err
+
+
+def test_a_missing_module_of_our_own_is_our_mistake(sh, monkeypatch):
+    error = ModuleNotFoundError("No module named 'innervate.nowhere'", name="innervate.nowhere")
+    monkeypatch.setattr("innervate.cli.files.scenarios", failing(error))
+    assert sh("scenarios") == 1
+
+
+def test_nothing_is_left_of_a_run_that_fails(sh, monkeypatch):
+    from innervate.plot import report
+
+    monkeypatch.setattr(report, "render", failing(RuntimeError("no ink")))
+    assert sh("run", "four.toml") == 1
+    assert list(Path("runs").rglob("*.*")) == []
+
+
+def test_control_characters_do_not_reach_the_terminal(sh):
+    assert sh("check", "a\x1b[31mb\nc") == 2
+    assert "\x1b" not in sh.err
+    assert sh.err.count("\n") == 1
+
+
+def test_interrupted_runs_end_with_130(sh, monkeypatch):
+    from innervate.cli import progress
+    from innervate.sim import simulate as room
+
+    def interrupt(*_):
+        signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(progress.Progress, "__call__", interrupt)
+    monkeypatch.setattr(room, "SLICE_EVENTS", 500)
+    assert sh("run", "four.toml") == 130
+    assert "Interrupted at 0." in sh.out
+    assert Path("runs/four-1/summary.json").exists()
+
+
+def test_sys_exit_inside_is_kept():
+    assert errors.conclude(SystemExit(3)) == 3
+    assert errors.conclude(SystemExit()) == 0
+    assert errors.conclude(SystemExit("why")) == 1

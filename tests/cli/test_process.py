@@ -1,0 +1,101 @@
+import os
+import signal
+import time
+
+import pytest
+
+HEAVY = ("numba", "llvmlite", "numpy", "polars", "matplotlib")
+TIMEOUT_S = 120
+
+
+def test_help_is_quick_and_light(process):
+    code = (
+        "import sys; from innervate.cli import main; main(['--help']); main(['run', '--help']);"
+        f"print([m for m in {HEAVY} if m in sys.modules], file=sys.stderr)"
+    )
+    out, err = process(code=code).communicate(timeout=TIMEOUT_S)
+    assert "Usage: innervate" in out
+    assert err.strip() == "[]"
+    best = 99.0
+    for _ in range(5):
+        start = time.perf_counter()
+        process("--help").communicate(timeout=TIMEOUT_S)
+        best = min(best, time.perf_counter() - start)
+    assert best < 0.3
+
+
+def test_commands_that_do_not_simulate_stay_light(process, tmp_path):
+    code = (
+        "import sys; from innervate.cli import main;"
+        "main(['check', 'demo']); main(['scenarios']); main(['new', 'skin']); main(['runn']);"
+        f"print([m for m in {HEAVY} if m in sys.modules])"
+    )
+    out, _ = process(code=code, cwd=tmp_path).communicate(timeout=TIMEOUT_S)
+    assert out.splitlines()[-1] == "[]"
+
+
+def test_a_closed_pipe_is_no_error(process, tmp_path):
+    started = process("scenarios", cwd=tmp_path)
+    started.stdout.close()
+    assert "Traceback" not in started.stderr.read()
+    assert started.wait(timeout=TIMEOUT_S) in (0, 141)
+    started.stderr.close()
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")
+def test_a_full_disk_is_one_line(process):
+    code = (
+        "import os, sys; full = os.open('/dev/full', os.O_WRONLY); os.dup2(full, 1);"
+        "from innervate.cli import main; sys.exit(main(['scenarios']))"
+    )
+    started = process(code=code)
+    _, err = started.communicate(timeout=TIMEOUT_S)
+    assert started.returncode == 1
+    assert "No space left on device" in err
+    assert "Traceback" not in err
+
+
+def test_without_the_simulator_it_says_what_to_install(process, tmp_path):
+    code = (
+        "import sys; sys.modules.update(dict.fromkeys(['numba', 'numpy', 'polars']));"
+        "from innervate.cli import main; sys.exit(main(['run', 'setup-1']))"
+    )
+    started = process(code=code, cwd=tmp_path)
+    out, err = started.communicate(timeout=TIMEOUT_S)
+    assert (started.returncode, out) == (2, "")
+    assert err.count("\n") == 1
+    assert "install it with: pip install 'innervate[sim]'" in err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_first_run_says_that_it_compiles(process, tmp_path):
+    code = (
+        "import sys; from innervate.kernel import door; from innervate.cli.progress import *;"
+        "door.is_cached = lambda names: False\n"
+        "with Progress() as p: p(0, 1)\n"
+        "with Progress(quiet=True) as p: p(0, 1)\n"
+    )
+    out, err = process(code=code, cwd=tmp_path).communicate(timeout=TIMEOUT_S)
+    assert (out, err.count("compiling"), err.count("\n")) == ("", 1, 1)
+    assert "about half a minute" in err
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals as on POSIX")
+def test_ctrl_c_keeps_what_is_done(process, tmp_path):
+    code = (
+        "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler);"
+        "from innervate.cli import progress, main\n"
+        "def tell(self, now, end, first=[]):\n"
+        "    first or print('go', file=sys.stderr, flush=True)\n"
+        "    first.append(now)\n"
+        "progress.Progress.__call__ = tell\n"
+        "sys.exit(main(['run', 'setup-1', '--set', 'duration_s=100000', '--json']))"
+    )
+    started = process(code=code, cwd=tmp_path)
+    while started.stderr.readline().strip() != "go":
+        assert started.poll() is None
+    started.send_signal(signal.SIGINT)
+    out, err = started.communicate(timeout=TIMEOUT_S)
+    assert started.returncode == 130, err
+    assert '"interrupted_at_s"' in out
+    assert (tmp_path / "runs" / "setup-1-1" / "report.html").exists()

@@ -1,0 +1,60 @@
+import re
+
+import pytest
+
+from innervate.cli import progress
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    """Time that moves by hand."""
+
+    class Clock:
+        now = 100.0
+
+        def monotonic(self):
+            return self.now
+
+    made = Clock()
+    monkeypatch.setattr(progress, "time", made)
+    monkeypatch.setattr(progress, "is_compiled", lambda: True)
+    return made
+
+
+def test_short_runs_show_nothing(clock, capsys):
+    with progress.Progress() as show:
+        for step in range(5):
+            clock.now += 1
+            show(step * 200_000, 1_000_000)
+    assert capsys.readouterr().err == ""
+
+
+def test_long_runs_tell_how_long_they_take(clock, capsys):
+    with progress.Progress() as show:
+        for step in range(1, 101):
+            clock.now += 1
+            show(step * 10_000, 1_000_000)
+    lines = capsys.readouterr().err.splitlines()
+    assert 8 <= len(lines) <= 10
+    assert re.fullmatch(r"simulated 0\.\d\d of 1 s, about \d+ s left", lines[0])
+    left = [int(line.split("about ")[1].split()[0]) for line in lines]
+    assert left == sorted(left, reverse=True)
+
+
+def test_json_is_silent_unless_somebody_watches(clock, capsys):
+    with progress.Progress(quiet=True) as show:
+        for step in range(1, 101):
+            clock.now += 1
+            show(step * 10_000, 1_000_000)
+    assert capsys.readouterr().err == ""
+
+
+def test_a_terminal_gets_bars(monkeypatch):
+    monkeypatch.setattr(progress, "is_compiled", lambda: False)
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
+    with progress.Progress(quiet=True) as show:
+        task = show._bars.tasks[0]
+        assert "half a minute" in task.description
+        show(500_000, 2_000_000)
+        assert task.description == "simulated 0.50 of 2 s"
+        assert (task.completed, task.total) == (500_000, 2_000_000)

@@ -1,0 +1,132 @@
+"""What the documentation says is so: generated parts, keys, commands, files and numbers."""
+
+import importlib.util
+import re
+import tomllib
+import typing
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from innervate import scenario
+from innervate.cli.app import app
+from innervate.scenario import model
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
+TABLES = {
+    model.PatchTable: "[[patch]]",
+    model.InterfaceTable: "[[interface]]",
+    model.CableTable: "[[cable]]",
+    model.LinkTable: "[[link]]",
+    model.BodyTable: "[body]",
+    model.ProtocolTable: "[protocol]",
+    model.TimingTable: "[timing]",
+    model.DataTable: "[data]",
+    model.TouchTable: "[touch]",
+    model.EventTable: "[[event]]",
+}
+
+
+def load_maker():
+    spec = importlib.util.spec_from_file_location("docs_make", DOCS / "make.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def blocks(path, language):
+    return re.findall(rf"```{language}\n(.*?)```", path.read_text(encoding="utf-8"), re.DOTALL)
+
+
+def test_generated_parts_are_current(capsys):
+    assert load_maker().main(["--check"]) == 0, capsys.readouterr().out
+
+
+def test_a_page_without_the_part_is_refused():
+    with pytest.raises(ValueError, match="no part parameters"):
+        load_maker().renewed("# Page", "parameters", "x")
+
+
+@pytest.mark.parametrize("table", TABLES, ids=TABLES.values())
+def test_every_key_is_documented(table):
+    """Keys of a table stand in the rows below its name, and no others do."""
+    text = (DOCS / "scenarios.md").read_text(encoding="utf-8")
+    rows = text.split(f"| `{TABLES[table]}` |")[1].split("\n\n")[0].splitlines()[2:]
+    found = {key for row in rows for key in re.findall(r"`(\w+)`", row.split("|")[1])}
+    assert found == {field.encode_name for field in msgspec.structs.fields(table)}
+
+
+def test_every_key_at_the_top_is_documented():
+    text = (DOCS / "scenarios.md").read_text(encoding="utf-8")
+    for field in msgspec.structs.fields(model.SkinScenario):
+        assert f"`{field.encode_name}`" in text or f"[{field.encode_name}]" in text
+
+
+def test_defaults_in_the_protocols_table():
+    """What stands there as left out is what the model takes."""
+    text = (DOCS / "scenarios.md").read_text(encoding="utf-8")
+    rows = text.split("| `[protocol]` |")[1].split("\n\n")[0].splitlines()[2:]
+    cells = {row.split("|")[1].strip(" `"): row.split("|")[3].strip(" `") for row in rows}
+    made = model.ProtocolTable()
+    for key in ("beacon_hz", "max_depth", "gap_us", "restart_s"):
+        assert float(cells[key]) == getattr(made, key)
+    for key in ("rule", "updates"):
+        assert cells[key] == f'"{getattr(made, key)}"'
+    assert tuple(tomllib.loads(f"v={cells['forward_us']}")["v"]) == made.forward_us
+
+
+def test_every_event_action_is_documented():
+    text = (DOCS / "scenarios.md").read_text(encoding="utf-8")
+    rows = text.split("| action |")[1].split("\n\n")[0].splitlines()[2:]
+    assert {row.split("`")[1] for row in rows} == set(typing.get_args(model.Action))
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_scenarios_in_pages_can_be_run(page):
+    for block in blocks(page, "toml"):
+        scenario.plan(scenario.loads(block))
+
+
+def test_commands_in_pages_exist():
+    known = {name for name in app if not name.startswith("-")}
+    for page in PAGES:
+        for words in re.findall(r"innervate (\w+)", " ".join(
+            re.findall(r"`(innervate [^`]*)`", page.read_text(encoding="utf-8"))
+            + blocks(page, "console")
+        )):  # fmt: skip
+            assert words in known, (page.name, words)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page):
+    for target in re.findall(r"\]\(([^)#]+)", page.read_text(encoding="utf-8")):
+        assert (page.parent / target).exists(), target
+
+
+def test_the_readmes_numbers_are_the_demos(capsys, tmp_path, monkeypatch):
+    from innervate.cli import main
+
+    monkeypatch.chdir(tmp_path)
+    assert main(["demo"]) == 0
+    out = capsys.readouterr().out
+    (block,) = blocks(ROOT / "README.md", "text")
+    for line in filter(None, block.splitlines()):
+        assert line in out
+
+
+def test_the_readmes_picture_shows_the_demo():
+    text = (DOCS / "images" / "recovery.svg").read_text(encoding="utf-8")
+    (block,) = blocks(ROOT / "README.md", "text")
+    routed = re.search(r"\+([\d.]+ ms) +every cell", block)[1]
+    assert f"{routed} after the cut" in text
+    assert len(text) < 150_000
+
+
+def test_pages_have_no_long_lines():
+    for page in PAGES:
+        plain = [line for line in page.read_text(encoding="utf-8").splitlines()
+                 if not line.startswith("|")]  # fmt: skip
+        assert max(map(len, plain)) <= 150, page.name

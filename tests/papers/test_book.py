@@ -1,0 +1,154 @@
+import sys
+from types import ModuleType
+
+import pytest
+
+from innervate.papers import PapersError, book, main
+from innervate.papers.experiment import HOLDS, Claim, Experiment, Point
+from innervate.plot import style
+
+
+class Toy:
+    """A paper of two figures, a and b, with three points each, one of them shared."""
+
+    def __init__(self, monkeypatch):
+        self.ran = []
+        module = ModuleType("innervate.papers.toy")
+        module.TITLE, module.AUTHORS, module.FIGURES = "Toys & <b>", "A. Nobody", ("a", "b")
+        module.experiment = self.experiment
+        monkeypatch.setitem(sys.modules, "innervate.papers.toy", module)
+        monkeypatch.setattr(book, "PAPERS", ("skin", "toy"))
+        monkeypatch.setattr(book, "warm_up", lambda: None)
+
+    def experiment(self, name):
+        keys = [f"{name}1", f"{name}2", "shared"]
+
+        def points(quick):
+            return [Point.of(key, 1.0, self.work, key) for key in keys[: 2 if quick else 3]]
+
+        def draw(results, quick):
+            figure, (ax,) = style.panels(2, 2)
+            ax.plot([results[keys[0]], results[keys[1]]])
+            return figure
+
+        def judge(results, quick):
+            return [Claim(name, f"the claim | of {name}", str(results[keys[0]]), HOLDS, "<why>")]
+
+        return Experiment(name, f"Figure {name}", "A caption & more", points, draw, judge)
+
+    def work(self, key):
+        self.ran.append(key)
+        return len(key)
+
+
+@pytest.fixture
+def toy(monkeypatch):
+    return Toy(monkeypatch)
+
+
+def test_everything_is_written(toy, tmp_path):
+    page = main("toy", tmp_path)
+    assert page == tmp_path / "papers-toy.html"
+    assert sorted(toy.ran) == ["a1", "a2", "b1", "b2", "shared"]
+    made = {path.name for path in tmp_path.iterdir()}
+    pictures = {f"{name}.{kind}" for name in "ab" for kind in ("png", "svg")}
+    tables = {f"papers-toy.{kind}" for kind in ("csv", "md", "html")}
+    assert made == pictures | tables | {book.RESULTS}
+
+
+def test_the_page_stands_alone(toy, tmp_path):
+    text = main("toy", tmp_path).read_text()
+    assert text.count('src="data:image/svg+xml;base64,') == 2
+    assert text.count("src=") == 2
+    assert "href=" not in text
+    assert "Toys &amp; &lt;b&gt;" in text
+    assert "&lt;why&gt;" in text
+    assert "<why>" not in text
+
+
+def test_the_tables_hold_every_claim(toy, tmp_path):
+    main("toy", tmp_path)
+    rows = (tmp_path / "papers-toy.csv").read_text().splitlines()
+    assert rows[0] == "figure,claim,measurement,verdict,reason"
+    assert rows[1:] == ["a,the claim | of a,2,holds,<why>", "b,the claim | of b,2,holds,<why>"]
+    text = (tmp_path / "papers-toy.md").read_text()
+    assert "the claim \\| of a" in text
+    assert "2 claims: 2 hold" in text
+    assert "sources: " in text
+
+
+def test_a_second_run_runs_nothing_again(toy, tmp_path):
+    main("toy", tmp_path)
+    toy.ran.clear()
+    main("toy", tmp_path)
+    assert toy.ran == []
+
+
+def test_only_some_figures(toy, tmp_path):
+    main("toy", tmp_path, only=["b"])
+    assert sorted(toy.ran) == ["b1", "b2", "shared"]
+    assert not (tmp_path / "a.png").exists()
+    assert "Figure a" not in (tmp_path / "papers-toy.html").read_text()
+
+
+def test_quick_asks_for_less(toy, tmp_path):
+    main("toy", tmp_path, quick=True)
+    assert "shared" not in toy.ran
+    assert "quick: few seeds" in (tmp_path / "papers-toy.md").read_text()
+
+
+def test_an_interrupt_loses_nothing(toy, tmp_path, monkeypatch):
+    monkeypatch.setattr(book, "_cores", lambda: 1)
+
+    def stop(step):
+        if step.done == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        main("toy", tmp_path, progress=stop)
+    before = list(toy.ran)
+    assert 3 <= len(before) <= 5
+    main("toy", tmp_path)
+    assert sorted(toy.ran) == ["a1", "a2", "b1", "b2", "shared"]
+
+
+def test_new_sources_run_again_unless_redrawn(toy, tmp_path, monkeypatch):
+    main("toy", tmp_path)
+    toy.ran.clear()
+    monkeypatch.setattr(book, "stamp", lambda: "changed")
+    main("toy", tmp_path, redraw=True)
+    assert toy.ran == []
+    main("toy", tmp_path)
+    assert len(toy.ran) == 5
+
+
+def test_progress_counts_and_ends(toy, tmp_path):
+    steps = []
+    main("toy", tmp_path, progress=steps.append)
+    assert steps[0].left_s is None
+    assert [step.total for step in steps] == [5] * len(steps)
+    assert [step.done for step in steps] == sorted(step.done for step in steps)
+    assert steps[-1].done == 5
+    assert any(step.left_s is not None for step in steps)
+
+
+def test_a_failing_point_ends_the_run(toy, tmp_path):
+    def broken(key):
+        raise ValueError(key)
+
+    toy.work = broken
+    with pytest.raises(ValueError, match="1"):
+        main("toy", tmp_path)
+
+
+def test_mistakes_are_one_line(toy, tmp_path):
+    (tmp_path / "file").write_text("x")
+    for arguments, words in (
+        (("brain", tmp_path), 'no paper "brain"; choose from: skin'),
+        (("toy", tmp_path, False, ["c"]), 'no figure "c"; choose from: a, b'),
+        (("toy", tmp_path / "file"), "name another folder"),
+        (("toy", tmp_path / "file" / "below"), "name another folder"),
+    ):
+        with pytest.raises(PapersError, match=words) as caught:
+            main(*arguments)
+        assert "\n" not in str(caught.value)

@@ -1,0 +1,144 @@
+"""What must come out of the figures, in quick mode; the bars with real seeds are in test_bars."""
+
+import numpy as np
+import pytest
+
+from innervate.papers.experiment import FAILS, HOLDS
+from innervate.papers.skin import arm, eq7, fig8a, fig10, modes, steady
+from innervate.papers.skin.common import Case, measure_recoveries, seeds_of
+
+
+def verdicts(made, name):
+    return [claim.verdict for claim in made.claims[name]]
+
+
+def test_fig5_is_exactly_k_plus_3_in_lock_step(made):
+    first, *_, line = made.claims["fig5"]
+    assert first.verdict == "holds with reading E20"
+    assert first.measurement.startswith("k+3.00 to k+3.00")
+    assert line.verdict == "holds with reading E21"
+    assert "3.000 to 3.000" in line.measurement
+
+
+def test_fig5_tells_the_captions_story(made):
+    events = made.values["fig5 story k=5"]["events"]
+    after = [(at, cell, new) for at, cell, _, new in events if at > 0]
+    assert after == [
+        (5.0, "n1", ""), (6.0, "n2", "a2"), (6.0, "n3", ""), (7.0, "n1", "n2"), (7.0, "n4", "a3"),
+        (8.0, "n3", "n1"),
+    ]  # fmt: skip
+
+
+def test_fig6_finds_the_loose_cable_only_with_the_second_setting(made):
+    assert all(v.startswith("holds") for v in verdicts(made, "fig6"))
+
+
+def test_fig8b_the_printed_rule_is_slower(made):
+    feasible, _, printed, _ = made.claims["fig8b"]
+    assert "rule feasible" in feasible.measurement
+    assert printed.verdict == FAILS
+
+
+def test_eq9_the_printed_numbers_are_ten_times_too_high(made):
+    formula, printed, wave = made.claims["eq9"]
+    assert formula.verdict == HOLDS
+    assert printed.verdict == FAILS
+    assert "E28" in printed.reason
+    assert wave.verdict == HOLDS
+
+
+def test_fig11_the_arm_hardly_notices(made):
+    assert all(v.startswith("holds") for v in verdicts(made, "fig11"))
+
+
+def test_the_printed_rule_loops_and_the_others_do_not(made):
+    printed, cured, slower = made.claims["loop"]
+    assert printed.verdict == FAILS
+    assert printed.measurement.startswith("5 of 5")
+    assert cured.verdict == HOLDS
+    assert slower.verdict == FAILS
+
+
+def test_the_drawn_ring_is_a_ring(made):
+    from innervate.analysis.recovery import next_hops
+    from innervate.papers.skin import loop
+
+    shown = made.values[f"loop picture seed {loop.SHOWN_SEED}"]
+    graph = loop.SHOWN.plan(loop.SHOWN_SEED).graph
+    hops = next_hops(graph, np.array(shown["then"]))
+    ring = shown["ring"]
+    assert len(ring) >= 2
+    assert [int(hops[cell]) for cell in ring] == ring[1:] + ring[:1]
+
+
+@pytest.mark.parametrize("k", [2, 5])
+def test_setup_1_lies_in_the_band_of_eq_4(k):
+    case = Case("setup-1", 250, k)
+    found = measure_recoveries(case, seeds_of(3))
+    off = np.array(found["converged_ms"]) / case.period_ms - 7 - k
+    assert np.abs(off).max() <= fig8a.BAND
+    late = np.array(found["detected_ms"]) / case.period_ms - k
+    assert np.abs(late).max() < 1
+
+
+def test_a_case_says_all_that_decides_it():
+    keys = {
+        Case("setup-1", 250, 3, gap_us=gap, m=m, cut=cut).key(seeds_of(2))
+        for gap in (-1, 0, 60)
+        for m in (0, 1)
+        for cut in ("interface 1", "random link")
+    }
+    assert len(keys) == 12
+
+
+def test_waves_are_near_the_floor():
+    found = measure_recoveries(modes.case("setup-1", 3, modes.WAVE), seeds_of(3))
+    after = np.array(found["routed_ms"]) - np.array(found["detected_ms"])
+    assert after.max() < modes.floor_ms(3, 7) - 12 + 2
+
+
+def test_random_cables_cut_off_few():
+    found = measure_recoveries(eq7.case("setup-3", eq7.RULES[0], "random link"), seeds_of(3))
+    bound = (eq7.depth("setup-3") + eq7.K) * 4
+    assert all(ms is None or ms <= bound for ms in found["converged_ms"])
+
+
+def test_waves_take_the_shortest_ways():
+    assert steady.longer("setup-3", steady.WAVE, 1) == [[0, 0, 0], [0, 0, 0]]
+
+
+def test_static_trees_lose_more_than_balanced_ones():
+    tree = fig10.measure("setup-6", fig10.STATIC, 1, 1.0)
+    balanced = fig10.measure("setup-6", fig10.DYNAMIC._replace(settle_s=12.0), 1, 1.0)
+    assert sum(tree["loads"]) == sum(balanced["loads"]) == 150
+    assert balanced["beta"] > tree["beta"]
+    assert 0.1 < balanced["loss"] < tree["loss"]
+
+
+def samples(rows):
+    kind = [("time", np.int64), ("cell", np.int32), ("force", np.int32, (3,))]
+    return np.array([(time, cell, (force,) * 3) for time, cell, force in rows], kind)
+
+
+def test_an_arm_at_rest_stays():
+    moved = arm.move(samples([]), arm.torque_table(5, 7), 200_000)
+    assert np.allclose(moved["angle"], arm.REST_RAD)
+    assert moved["heard"].max() == 0
+
+
+def test_an_arm_gives_way_and_comes_back():
+    torques = arm.torque_table(5, 7)
+    push = [(1000 * t, 33, 3000) for t in range(0, 1000, 10)]
+    leave = [(1_000_000, 33, 0)]
+    moved = arm.move(samples(push + leave), torques, 6_000_000)
+    gone = moved["angle"] - np.array(arm.REST_RAD)
+    assert gone[499].min() > 0.01
+    assert np.abs(gone[-1]).max() < 0.1 * np.abs(gone).max()
+    assert moved["heard"][250] == 1
+    assert moved["heard"][-1] == 0
+
+
+def test_both_sides_of_the_forearm_push_apart():
+    torques = arm.torque_table(5, 7).reshape(5, 7, 2)
+    assert np.allclose(torques[0], -torques[4])
+    assert np.allclose(torques[2], 0)

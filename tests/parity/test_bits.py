@@ -1,0 +1,65 @@
+"""The few functions that compiled code spells differently say the same as their plain bodies."""
+
+import numba
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from innervate.kernel import bits, door
+from innervate.protocol import arith, rng, skin
+
+SIGNED = st.integers(-(2**63), 2**63 - 1)
+HALF = st.integers(0, 2**30 - 1)
+
+
+@pytest.fixture(scope="module")
+def compiled():
+    """Compiled twins of the small functions."""
+    door.register(arith, rng, skin)
+
+    @numba.njit
+    def mix(state, word):
+        return bits.mix(state, word)
+
+    @numba.njit
+    def lowest_bit(word):
+        return bits.lowest_bit(word)
+
+    @numba.njit
+    def compare(a, b):
+        return arith.after(a, b), arith.later(a, b), rng.step(a)
+
+    return mix, lowest_bit, compare
+
+
+@given(state=SIGNED, word=SIGNED)
+def test_mix(compiled, state, word):
+    mixed = bits.mix(state, word)
+    assert compiled[0](state, word) == mixed
+    assert -(2**63) <= mixed < 2**63
+
+
+@given(SIGNED.filter(bool))
+def test_lowest_bit(compiled, word):
+    lowest = bits.lowest_bit(word)
+    assert compiled[1](word) == lowest
+    assert word >> lowest & 1
+    assert word & (1 << lowest) - 1 == 0
+
+
+@pytest.mark.parametrize("bit", range(64))
+def test_lowest_bit_of_every_place(compiled, bit):
+    word = 1 << bit if bit < 63 else -(1 << 63)
+    assert compiled[1](word) == bits.lowest_bit(word) == bit
+
+
+@given(a=HALF, b=HALF)
+def test_comparisons_and_generator(compiled, a, b):
+    after, later, step = compiled[2](a, b)
+    assert (bool(after), bool(later)) == (bool(arith.after(a, b)), bool(arith.later(a, b)))
+    assert step == rng.step(a)
+
+
+def test_mix_tells_words_apart():
+    marks = {bits.mix(state, word) for state in range(64) for word in range(64)}
+    assert len(marks) > 4000 - 64

@@ -1,0 +1,94 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from innervate.plot import charts
+from innervate.plot.charts import Axis, Bar, Mark
+
+TIMES, VALUES = np.array([0.0, 5.0, 9.0]), np.array([0, 100, 0])
+
+
+@given(st.floats(-1e6, 1e6), st.floats(1e-3, 1e6), st.integers(2, 8))
+def test_ticks_are_inside_and_few(low, span, count):
+    found = charts.ticks(low, low + span, count)
+    slack = 1e-6 * max(1.0, abs(low), span)
+    assert all(low - slack <= tick <= low + span + slack for tick in found)
+    assert len(found) <= 2 * count + 2
+
+
+def test_ticks_of_nothing():
+    assert charts.ticks(3.0, 3.0) == [3.0]
+
+
+@given(st.lists(st.floats(0, 10), min_size=1, max_size=8))
+def test_mark_labels_do_not_overlap(at):
+    marks = [Mark(x, f"label {x:.2f}") for x in at]
+    inner = charts.WIDTH - charts.LEFT - charts.RIGHT
+    rows = charts._rows(marks, lambda x: charts.LEFT + inner * x / 10)
+    spans = []
+    for mark, (row, anchor) in zip(marks, rows, strict=True):
+        x = charts.LEFT + inner * mark.at / 10
+        long = charts.LETTER * len(mark.label)
+        spans.append((row, x, x + long) if anchor == "start" else (row, x - long, x))
+    for i, (row, a, b) in enumerate(spans):
+        assert a >= 0
+        assert b <= charts.WIDTH
+        assert all(row != r or b <= c or d <= a for r, c, d in spans[:i])
+
+
+def test_step_chart_shows_marks_and_numbers(texts):
+    marks = [Mark(5.0, "cut"), Mark(9.0, "all routed 4 ms")]
+    drawing = charts.step_chart(
+        TIMES, VALUES, Axis(0, 10, "ms"), Axis(0, 110), marks, "cells without a way"
+    )
+    words = texts(drawing)
+    assert {"cut", "all routed 4 ms", "ms", "0", "100", "10"} <= set(words)
+
+
+def test_step_chart_of_nothing(parse):
+    empty = np.array([])
+    parse(charts.step_chart(empty, empty, Axis(0, 1), Axis(0, 1), (), "nothing"))
+
+
+def test_step_chart_starts_with_the_value_before_its_window(parse):
+    def first_level(low):
+        drawing = charts.step_chart(TIMES, VALUES, Axis(low, 10), Axis(0, 100), (), "x")
+        line = next(n for n in parse(drawing).iter() if n.get("class") == "series")
+        return float(line.get("d")[1:].split("L")[0].split(",")[1])
+
+    assert first_level(6.0) < first_level(1.0)  # 100 lies above 0
+
+
+def test_dense_steps_are_thinned_but_keep_their_extremes(parse):
+    times = np.arange(200_000) / 20_000.0
+    values = np.zeros(200_000)
+    values[77_777] = 100.0
+    drawing = charts.step_chart(times, values, Axis(0, 10), Axis(0, 100), (), "x")
+    assert len(drawing.render()) < 60_000
+    line = next(n for n in parse(drawing).iter() if n.get("class") == "series")
+    levels = {point.split(",")[1] for point in line.get("d")[1:].split("L")}
+    assert len(levels) == 2
+
+
+def test_bars(texts):
+    bars = [Bar("port 0", 67, "67 cells", "p0"), Bar("port 1", 0, "0 cells", "p1")]
+    words = texts(charts.bar_chart(bars, "loads", even=33.5))
+    assert words == ["port 0", "67 cells", "port 1", "0 cells", "even share: 33.5"]
+
+
+def test_bars_of_zeros(parse):
+    parse(charts.bar_chart([Bar("a", 0, "0")], "zeros"))
+
+
+def test_many_bars_become_a_profile(texts):
+    bars = [Bar(f"port {i}", i, f"{i} cells") for i in range(200)]
+    words = texts(charts.bar_chart(bars, "loads", even=99.5))
+    assert "200 of them, the largest first" in words
+    assert "port 7" not in words
+
+
+@pytest.mark.parametrize("values", [[5, 5, 5], [0, 0, 0]])
+def test_flat_profiles(parse, values):
+    bars = [Bar(str(i), v, str(v)) for i, v in enumerate(values * 10)]
+    parse(charts.bar_chart(bars, "flat", even=float(values[0])))

@@ -1,0 +1,66 @@
+"""`Run.plot`: figures of one run by matplotlib."""
+
+import matplotlib.image
+import pytest
+
+from innervate import run
+from innervate.plot import figures, style
+
+TABLES = {
+    "kind": "skin",
+    "duration_s": 0.5,
+    "patch": [{"columns": 5, "rows": 6}],
+    "interface": [{"row": 0, "column": 1}, {"row": 5, "column": 3}],
+    "protocol": {"k": 3},
+    "data": {"rate_hz": 100},
+    "touch": {"path": [(0.0, 30.0, 30.0)]},
+    "event": [{"at_s": 0.3, "action": "cut", "interface": 1}],
+}
+FREE = {
+    "kind": "skin",
+    "duration_s": 0.1,
+    "link": [{"a": "pc.0", "b": "n1"}, {"a": "n1", "b": "n2"}],
+}
+
+
+@pytest.fixture(scope="module")
+def skin():
+    return run(TABLES)
+
+
+@pytest.mark.parametrize("name", figures.FIGURES)
+def test_each_figure_draws(skin, name, tmp_path):
+    made = skin.plot(name)
+    style.save(made, tmp_path, name)
+    picture = matplotlib.image.imread(tmp_path / f"{name}.png")
+    assert 0.003 < (picture[..., :3].min(axis=2) < 0.9).mean() < 0.9
+
+
+@pytest.mark.parametrize("name", figures.FIGURES)
+def test_each_figure_draws_a_free_graph(name):
+    run(FREE).plot(name).canvas.draw()
+
+
+def test_recovery_shows_the_time_round_the_event(skin):
+    (ax,) = skin.plot().axes
+    low, high = ax.get_xlim()
+    assert low < 0.3 < high < 0.4
+    (ax,) = skin.plot("recovery", from_s=0.1, to_s=0.45).axes
+    assert ax.get_xlim() == (0.1, 0.45)
+    assert any("interface 1" in text.get_text() for text in ax.texts)
+
+
+def test_routes_at_a_time(skin):
+    before, after = skin.plot("routes", time_s=0.29), skin.plot("routes")
+    assert before.axes[0].get_title(loc="left") == "routes at 0.290 s"
+    assert after.axes[0].get_title(loc="left") == "routes at 0.500 s"
+
+
+def test_loads_are_counted(skin):
+    (ax,) = skin.plot("loads").axes
+    assert [bar.get_height() for bar in ax.patches] == [30, 0]
+
+
+def test_an_unknown_figure_is_refused(skin):
+    with pytest.raises(ValueError, match='no figure "map"; there are recovery, routes'):
+        skin.plot("map")

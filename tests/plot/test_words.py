@@ -1,0 +1,71 @@
+import pytest
+
+from innervate.plot import words
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.183, "0.183 ms"), (8.4321, "8.43 ms"), (17.011, "17.0 ms"), (1443.03, "1.44 s")],
+)
+def test_times(value, text):
+    assert words.ms_words(value) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(0.5, "0.5"), (12.0, "12"), (12000, "12,000"), (3_077_159, "3.077 M")]
+)
+def test_counts(value, text):
+    assert words.count_words(value) == text
+
+
+def test_shares():
+    assert words.share_words(0.00653) == "0.653 %"
+    assert words.share_words(1e-7) == "less than 0.001 %"
+    assert words.share_words(0) == "0 %"
+
+
+def test_every_kind_of_event_has_words(many):
+    graph = many.plan.graph
+    found = [words.fault_words(graph, fault) for fault in many.plan.faults]
+    assert found[0] == "cable to interface 1 cut"
+    assert found[1] == "cell p0 r2 c2 switched off"
+    assert found[2].startswith("cable p0 r")
+    assert found[3] == "cable to interface 1 put back"
+    assert found[4] == "cell p0 r2 c2 switched on again"
+    assert found[5] == "cell p0 r3 c1 restarted"
+    assert found[6].endswith("loose, losing 40 %")
+    assert found[7] == "the PC restarted"
+    assert found[8] == "cable to interface 0 loses 2 frames"
+
+
+def test_headline(cut):
+    recovery = cut.summary["recoveries"][0]
+    sentence = words.headline(cut.plan.graph, cut.plan.faults[0], recovery)
+    detected, routed = (words.ms_words(recovery[k]) for k in ("detected_ms", "routed_ms"))
+    assert sentence == (
+        f"Cable to interface 1 cut at 0.300 s: noticed after {detected}, "
+        f"every cell had a way again after {routed}."
+    )
+
+
+def test_outcomes():
+    never = {"detected_ms": None, "routed_ms": None, "converged_ms": None}
+    assert "still had no way" in words.outcome(never)
+    assert words.outcome(never, "3 cells are lost") == "3 cells are lost"
+    kept = {"detected_ms": None, "routed_ms": 0.0, "converged_ms": 18.5}
+    assert words.outcome(kept) == (
+        "every cell kept its way to the PC, the last one changed it after 18.5 ms"
+    )
+
+
+def test_a_broken_cable_is_named_once():
+    both = [
+        {"cell": "p0 r0 c0", "port": "E", "since_s": 1.5, "to": "p0 r0 c1 W"},
+        {"cell": "p0 r0 c1", "port": "W", "since_s": 1.25, "to": "p0 r0 c0 E"},
+        {"cell": "p0 r5 c3", "port": "down", "since_s": None, "to": "pc.1"},
+    ]
+    assert words.broken_cables(both) == [
+        "cable p0 r0 c0 E - p0 r0 c1 W, since 1.250 s",
+        "cable from interface 1 to p0 r5 c3 down",
+    ]
+    assert words.broken_cables([]) == []

@@ -1,0 +1,149 @@
+"""Many seeds, everything breaks, checkers on: no forwarding loop, no disorder, nothing lost.
+
+A failure names the seed; `faulty(seed, ...)` of tests/skin_runs.py makes the scenario again.
+"""
+
+import random
+
+import pytest
+
+from innervate.scenario import plan as planning
+from innervate.sim import build
+from innervate.sim.simulate import InvariantBroken, simulate
+from tests.skin_checks import random_links
+from tests.skin_runs import faulty, free, keys_of, loops_closed, plan_of, random_events, run
+
+SAFE = ("feasible", "strict")
+UPDATES = ("periodic", "triggered", "wave")
+SHAPES = {
+    "square": (5, 5, ((0, 2), (4, 2))),
+    "long": (3, 9, ((0, 1),)),
+    "wide": (8, 3, ((0, 0), (2, 7), (1, 0))),
+}
+BREAK = ["cut", "cut", "restore", "cut pc", "restore pc"]
+DIE = ["cut", "restore", "kill", "kill", "revive", "cut pc", "restore pc"]
+LOOSEN = ["cut", "restore", "loose", "lose"]
+RESTART = ["restart", "restart", "cut", "restore", "restart pc"]
+PLAN = {"break": BREAK, "die": DIE, "loosen": LOOSEN, "restart": RESTART}
+
+
+def soak(seeds, keys_for):
+    """Run every seed; fail with all broken invariants, by seed."""
+    broken = []
+    for seed in seeds:
+        try:
+            run(keys_for(seed))
+        except InvariantBroken as error:
+            broken.append(f"seed {seed}: {error}")
+    assert not broken, f"{len(broken)} of {len(seeds)} runs:\n" + "\n".join(broken[:9])
+
+
+@pytest.mark.parametrize("what", PLAN)
+@pytest.mark.parametrize("updates", UPDATES)
+@pytest.mark.parametrize("rule", SAFE)
+def test_no_loop_and_no_disorder_whatever_breaks(rule, updates, what):
+    for number, shape in enumerate(SHAPES.values()):
+        gap_s = (0.003, 0.02, 0.1)[number]
+        soak(
+            range(8),
+            lambda seed, shape=shape, gap_s=gap_s: faulty(
+                seed, PLAN[what], shape, gap_s=gap_s, rule=rule, updates=updates, k=2 + seed % 5
+            ),
+        )
+
+
+# A node that lost its memory does not know its feasible distance: routes may lead through it.
+@pytest.mark.parametrize("updates", UPDATES)
+@pytest.mark.parametrize("rule", SAFE)
+def test_no_loop_when_cells_lose_their_memory_all_the_time(rule, updates):
+    for gap_s in (0.002, 0.01):
+        soak(
+            range(20),
+            lambda seed, gap_s=gap_s: faulty(
+                seed, ["restart"], (4, 4, ((0, 2), (3, 2))), count=40, gap_s=gap_s,
+                rule=rule, updates=updates, k=2 + seed % 4,
+            ),
+        )  # fmt: skip
+
+
+# [issue 2, 4] "No forwarding loop in 1,000 seeded runs of random cuts, heals, deaths and 10 %
+# beacon loss under `feasible` and `strict`"
+@pytest.mark.slow
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("what", PLAN)
+@pytest.mark.parametrize("updates", UPDATES)
+@pytest.mark.parametrize("rule", SAFE)
+def test_no_loop_in_a_thousand_runs(rule, updates, what, shape):
+    soak(
+        range(1000, 2000),
+        lambda seed: faulty(
+            seed, PLAN[what], SHAPES[shape], gap_s=(0.003, 0.02, 0.06)[seed % 3],
+            rule=rule, updates=updates, k=2 + seed % 5,
+        ),
+    )  # fmt: skip
+
+
+# "the `paper` rule shows its loops in the same runs (the checker can fail)"
+@pytest.mark.parametrize("what", ["break", "die"])
+@pytest.mark.parametrize("updates", UPDATES)
+def test_the_paper_rule_loops_in_the_same_runs(updates, what):
+    loops = [
+        loops_closed(run(faulty(seed, PLAN[what], rule="paper", updates=updates, k=2 + seed % 5)))
+        for seed in range(24)
+    ]
+    assert sum(count > 0 for count in loops) >= 4, loops
+
+
+def test_a_loop_under_a_rule_that_promises_none_is_an_error(monkeypatch):
+    # The checker itself: the paper's rule under a feasible label.
+    for seed in range(24):
+        keys = faulty(seed, BREAK, rule="paper", updates="wave")
+        if loops_closed(run(keys)):
+            break
+    plan = plan_of(keys)
+    set_run = build._set_run
+
+    def mislabelled(world, *args):
+        set_run(world, *args)
+        build.put(world.run, 0, rule=planning.RULES.index("feasible"))
+
+    monkeypatch.setattr(build, "_set_run", mislabelled)
+    with pytest.raises(InvariantBroken, match=rf"\(seed {seed}\).*(loop|not worse)"):
+        simulate(plan)
+
+
+def random_free_graph(seed, **protocol):
+    """Free graphs of any form under faults, not only patches."""
+    draw = random.Random(seed)
+    links = random_links(draw, draw.randrange(4, 14), draw.randrange(12))
+    events, last = random_events(seed, 15, DIE, most=3)
+    return free(
+        links, seed=seed, event=events, duration_s=last + 0.2, timing={"loss": 0.1},
+        protocol=protocol,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("rule", SAFE)
+def test_so_it_is_on_random_graphs(rule):
+    soak(range(30), lambda seed: random_free_graph(seed, rule=rule, updates=UPDATES[seed % 3]))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rule", SAFE)
+def test_so_it_is_on_a_thousand_random_graphs(rule):
+    soak(range(1000), lambda seed: random_free_graph(seed, rule=rule, updates=UPDATES[seed % 3]))
+
+
+def test_the_static_baseline_breaks_nothing_either():
+    def keys(seed):
+        made = faulty(seed, PLAN["die"], rule="static", restart_s=0.1)
+        return made | {"data": {"rate_hz": 100}}
+
+    soak(range(12), keys)
+
+
+def test_joined_copies_break_nothing():
+    events, last = random_events(3, 12, DIE)
+    patches = [{"columns": 3, "rows": 4, "count": 5, "interfaces_every": 2}]
+    keys = keys_of(patch=patches, event=events, duration_s=last + 0.2, timing={"loss": 0.1})
+    soak(range(6), lambda seed: keys | {"seed": seed})
