@@ -5,64 +5,73 @@ are its only events, so that a test can play any interleaving. `check` asserts t
 [skin 6]. A bench runs on the real protocol or on a changed copy of it (see `changed_protocol`).
 """
 
-import inspect
+import importlib
 import itertools
 import sys
+import tempfile
 import types
-from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
 
-from innervate.protocol import arith, outbox, plain, rng, skin, skin_fields, skin_sink, skin_static
+from innervate import protocol as protocol_room
 from innervate.scenario.model import ProtocolTable
 from innervate.scenario.plan import parameters
-from innervate.sim import skin_stack, static_stack
+from innervate.sim import skin_stack
 
-PARTS = (arith, outbox, rng, plain, skin_fields, skin, skin_sink, skin_static)
-STACKS = (skin_stack, static_stack)
+ROOM = Path(protocol_room.__file__).parent
+STACKS = Path(skin_stack.__file__).parent
 NO_CHANGE = types.MappingProxyType({})
 _count = itertools.count(1)
 
 
-@dataclass(frozen=True)
-class Protocol:
-    """The modules of a protocol, and the stacks that bind them to the simulator."""
+def protocol_of(load):
+    """The modules of a protocol under one roof; `load` imports one by name.
 
-    outbox: types.ModuleType = outbox
-    plain: types.ModuleType = plain
-    rng: types.ModuleType = rng
-    skin: types.ModuleType = skin
-    skin_fields: types.ModuleType = skin_fields
-    skin_sink: types.ModuleType = skin_sink
-    skin_static: types.ModuleType = skin_static
-    skin_stack: types.ModuleType = skin_stack
-    static_stack: types.ModuleType = static_stack
-
-
-REAL = Protocol()
+    `skin` holds everything that a cell's modules define, wherever in the room it stands.
+    """
+    parts = {path.stem: load(path.stem) for path in sorted(ROOM.glob("[a-z]*.py"))}
+    cell = {}
+    for name, part in parts.items():
+        if name.startswith("skin_") and name not in ("skin_sink", "skin_static"):
+            cell |= vars(part)
+    stacks = {name: load(name) for name in ("skin_stack", "static_stack")}
+    return SimpleNamespace(**parts | stacks | {"skin": SimpleNamespace(**cell | vars(parts["skin"]))})
 
 
-def changed_protocol(changes=NO_CHANGE):
-    """A second copy of the protocol with texts replaced: {"skin": [(old, new), ...], ...}."""
+def _real(name):
+    room = "sim" if name.endswith("_stack") else "protocol"
+    return importlib.import_module(f"innervate.{room}.{name}")
+
+
+REAL = protocol_of(_real)
+
+
+def changed_protocol(*changes):
+    """A second copy of the protocol with texts (old, new) replaced; each stands in it once."""
     package = f"innervate_changed_{next(_count)}"
-    sys.modules[package] = types.ModuleType(package)
-    made = {}
-    try:
-        for part in PARTS + STACKS:
-            name = part.__name__.rpartition(".")[2]
-            text = inspect.getsource(part)
-            for old, new in changes.get(name, ()):
-                assert text.count(old) == 1, f"{name}: {old!r} is there {text.count(old)} times"
-                text = text.replace(old, new)
+    sources = {path.name: path.read_text() for path in ROOM.glob("*.py")}
+    for old, new in changes:
+        places = [name for name, text in sources.items() if old in text]
+        count = sum(text.count(old) for text in sources.values())
+        assert count == 1, f"{old!r} stands {count} times in {places}"
+        sources[places[0]] = sources[places[0]].replace(old, new)
+    for name in ("skin_stack.py", "static_stack.py"):
+        sources[name] = (STACKS / name).read_text()
+    with tempfile.TemporaryDirectory() as folder:
+        home = Path(folder, package)
+        home.mkdir()
+        for name, text in sources.items():
             text = text.replace("innervate.protocol", package)
             text = text.replace("innervate.sim.skin_stack", f"{package}.skin_stack")
-            module = types.ModuleType(f"{package}.{name}")
-            sys.modules[module.__name__] = module
-            setattr(sys.modules[package], name, module)
-            exec(compile(text, f"<changed {name}>", "exec"), vars(module))
-            made[name] = module
-    finally:
-        for name in [name for name in sys.modules if name.partition(".")[0] == package]:
-            del sys.modules[name]
-    return Protocol(**{name: made[name] for name in Protocol.__dataclass_fields__})
+            (home / name).write_text(text)
+        sys.path.insert(0, folder)
+        importlib.invalidate_caches()
+        try:
+            return protocol_of(lambda name: importlib.import_module(f"{package}.{name}"))
+        finally:
+            sys.path.remove(folder)
+            for name in [name for name in sys.modules if name.partition(".")[0] == package]:
+                del sys.modules[name]
 
 
 def params_of(protocol=REAL, depth_max=8, *, numbers=NO_CHANGE, **keys):
@@ -154,7 +163,7 @@ def new_cell(protocol=REAL, number=0, seed=1):
 def beacon(protocol=REAL, dist=0, sq=1, load=1, size=1, parent=0):
     """A beacon."""
     frame = protocol.plain.make("Frame", protocol.skin_fields.FRAME)()
-    frame.kind = protocol.skin.BEACON
+    frame.kind = protocol.skin_words.BEACON
     frame.dist, frame.sq, frame.load, frame.size, frame.parent = dist, sq, load, size, parent
     return frame
 
@@ -193,7 +202,7 @@ class OneCell:
         """The cell's period is over; its actions."""
         self.now = max(self.now, self.cell.tick_at)
         skin = self.protocol.skin
-        skin.on_timer(self.cell, self.params, self.now, skin.TICK, self.box.out)
+        skin.on_timer(self.cell, self.params, self.now, self.protocol.skin_words.TICK, self.box.out)
         return self.box.take()
 
     def period(self, *silent):

@@ -7,13 +7,15 @@ from unittest import mock
 import numpy as np
 
 from innervate import scenario
-from innervate.protocol.skin import NONE, REPORT_BROKEN, REPORT_PARENT
+from innervate.protocol.skin_words import NONE, REPORT_BROKEN, REPORT_PARENT
 from innervate.sim import loop
 from innervate.sim import simulate as simulator
 from innervate.sim.observer import CUT_OFF, LOOP_OPEN, UNROUTED
 from innervate.sim.simulate import simulate
 
 PERIOD_US = 4000  # at 250 beacons per second
+EVERYTHING = ["cut", "restore", "kill", "revive", "loose", "lose", "restart", "restart pc",
+              "cut pc", "restore pc"]  # fmt: skip
 # [skin Fig. 5] n1 is cut off; n2 knows a longer way, n4 another, both without a tie.
 FIGURE_5 = [("pc.0", "n1"), ("n1", "n2"), ("n1", "n3"), ("n3", "n4"), ("n2", "n5"), ("n5", "n6"),
             ("n6", "pc.1"), ("n4", "n7"), ("n7", "n5")]  # fmt: skip
@@ -107,6 +109,16 @@ def faulty(seed, actions, shape=None, *, count=20, gap_s=0.02, loss=0.1, timing=
         columns, rows, *roots,
         seed=seed, duration_s=last + 0.2, event=events, protocol=protocol,
         timing={"loss": loss, **(timing or {})},
+    )  # fmt: skip
+
+
+def busy(seed, rule="feasible", **timing):
+    """A small patch with sensor data, in all kinds of trouble."""
+    events, last = random_events(seed, 15, EVERYTHING, start_s=0.05)
+    return patch(
+        5, 5, (0, 2), (4, 2), seed=seed, event=events, duration_s=last + 0.1,
+        protocol={"rule": rule, "restart_s": 0.05, "k": 2 + seed % 4},
+        timing={"loss": 0.05, **timing}, data={"rate_hz": 400, "queue": 1 + seed % 8},
     )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from innervate import scenario
 from innervate.analysis.recovery import recoveries, start_up
-from innervate.protocol.skin import REPORT_BALANCE, REPORT_BROKEN, REPORT_PARENT
+from innervate.protocol.skin_words import REPORT_BALANCE, REPORT_BROKEN, REPORT_PARENT
 from innervate.scenario.plan import KILL, LOOSE
 from innervate.sim.observer import CUT_OFF, UNROUTED
 from innervate.sim.simulate import Result

@@ -70,10 +70,9 @@ def test_without_the_simulator_it_says_what_to_install(process, tmp_path):
 
 def test_the_first_run_says_that_it_compiles(process, tmp_path):
     code = (
-        "import sys; from innervate.kernel import door; from innervate.cli.progress import *;"
-        "door.is_cached = lambda names: False\n"
-        "with Progress() as p: p(0, 1)\n"
-        "with Progress(quiet=True) as p: p(0, 1)\n"
+        "from innervate.cli.progress import *\n"
+        "with Progress(compiled=False) as p: p(0, 1)\n"
+        "with Progress(compiled=False, quiet=True) as p: p(0, 1)\n"
     )
     out, err = process(code=code, cwd=tmp_path).communicate(timeout=TIMEOUT_S)
     assert (out, err.count("compiling"), err.count("\n")) == ("", 1, 1)

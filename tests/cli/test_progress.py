@@ -17,7 +17,6 @@ def clock(monkeypatch):
 
     made = Clock()
     monkeypatch.setattr(progress, "time", made)
-    monkeypatch.setattr(progress, "is_compiled", lambda: True)
     return made
 
 
@@ -50,9 +49,8 @@ def test_json_is_silent_unless_somebody_watches(clock, capsys):
 
 
 def test_a_terminal_gets_bars(monkeypatch):
-    monkeypatch.setattr(progress, "is_compiled", lambda: False)
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
-    with progress.Progress(quiet=True) as show:
+    with progress.Progress(compiled=False, quiet=True) as show:
         task = show._bars.tasks[0]
         assert "half a minute" in task.description
         show(500_000, 2_000_000)

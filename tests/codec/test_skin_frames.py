@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from innervate.protocol import plain
-from innervate.protocol.skin import BEACON, DATA, RESTART
 from innervate.protocol.skin_fields import FRAME
+from innervate.protocol.skin_words import BEACON, DATA, RESTART
 from innervate.wire import skin as wire
 
 Frame = plain.make("Frame", FRAME)

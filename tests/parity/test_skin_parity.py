@@ -11,9 +11,8 @@ from innervate.protocol import skin_fields
 from innervate.sim import skin_stack, static_stack
 from innervate.sim.simulate import InvariantBroken, simulate
 from innervate.wire import skin as wire
-from tests.skin_runs import free, keys_of, patch, plain_stack, plan_of, random_events
+from tests.skin_runs import EVERYTHING, free, keys_of, patch, plain_stack, plan_of, random_events
 
-ACTIONS = ["cut", "restore", "kill", "revive", "loose", "lose", "restart", "restart pc", "cut pc", "restore pc"]
 RULES = ["feasible", "strict", "paper", "static"]
 SHAPES = [
     patch(3, 3, (0, 1), (2, 1)),
@@ -34,7 +33,7 @@ def scenarios(draw):
     seed = draw(st.integers(0, 2**32))
     loss = draw(st.sampled_from([0.0, 0.1, 0.6]))
     events, last = random_events(
-        draw(st.integers(0, 2**16)), draw(st.integers(0, 6)), ACTIONS,
+        draw(st.integers(0, 2**16)), draw(st.integers(0, 6)), EVERYTHING,
         start_s=0.03, gap_s=0.01, most=2,
     )  # fmt: skip
     protocol = {
@@ -163,7 +162,7 @@ def test_frames_as_bytes_change_nothing_in_many_runs(keys):
 
 @pytest.mark.parametrize("rule", RULES)
 def test_a_busy_scenario_equals_plain_under_every_rule(rule):
-    events, last = random_events(11, 8, ACTIONS, start_s=0.05)
+    events, last = random_events(11, 8, EVERYTHING, start_s=0.05)
     keys = patch(
         4, 4, (0, 1), (3, 2),
         seed=5, event=events, duration_s=last + 0.05, touch=TOUCH,

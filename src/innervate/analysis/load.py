@@ -9,7 +9,7 @@ import numpy as np
 
 from innervate.analysis.recovery import NOBODY, next_hops
 from innervate.analysis.rows import Numbers
-from innervate.protocol.skin import NONE, PORTS
+from innervate.protocol.skin_words import NONE, PORTS
 
 NO_PORT = -1
 

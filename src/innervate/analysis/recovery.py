@@ -16,7 +16,7 @@ from innervate.analysis.rows import (
     parent_changes,
     unrouted_steps,
 )
-from innervate.protocol.skin import NONE, PORTS
+from innervate.protocol.skin_words import NONE, PORTS
 from innervate.scenario.plan import ACTIONS, CUT, KILL, RESTART, RESTORE, REVIVE, Fault
 
 NOBODY = -1

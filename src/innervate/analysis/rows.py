@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from innervate.protocol.skin import PORTS, REPORT_BALANCE, REPORT_BROKEN, REPORT_PARENT
+from innervate.protocol.skin_words import PORTS, REPORT_BALANCE, REPORT_BROKEN, REPORT_PARENT
 from innervate.sim.observer import CUT_OFF, LOOP_CLOSED, LOOP_OPEN, UNROUTED
 
 Numbers = np.ndarray[Any, np.dtype[np.int64]]

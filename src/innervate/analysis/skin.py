@@ -20,7 +20,7 @@ from innervate.analysis.rows import (
     parent_changes,
     unrouted_steps,
 )
-from innervate.protocol.skin import ONE, PORTS
+from innervate.protocol.skin_words import ONE, PORTS
 from innervate.sim.world import ALIVE
 from innervate.topology import PORT_NAMES
 

@@ -86,14 +86,14 @@ class Display:
 class Progress(Display):
     """How far a simulation is; it is called with the simulated time."""
 
-    def __init__(self, quiet: bool = False) -> None:
+    def __init__(self, compiled: bool = True, quiet: bool = False) -> None:
         super().__init__(quiet)
+        self._compiled = compiled
         self._first: tuple[float, int] | None = None
 
     def __enter__(self) -> Self:
         super().__enter__()
-        compiled = is_compiled()
-        self.begin("preparing" if compiled else COMPILING, line=not compiled)
+        self.begin("preparing" if self._compiled else COMPILING, line=not self._compiled)
         return self
 
     def __call__(self, now_us: int, duration_us: int) -> None:
@@ -107,9 +107,9 @@ class Progress(Display):
         self.show(what, now_us, duration_us, left_s)
 
 
-def is_compiled() -> bool:
-    """True if the cache folder of the present sources holds compiled code."""
+def is_compiled(plan: Any) -> bool:
+    """True if the loop that a plan runs on is compiled, or needs no compiling."""
     from innervate.kernel import door
+    from innervate.sim.simulate import loop_name
 
-    door.open_cache()
-    return door.is_cached(["advance"])
+    return bool(plan.script) or door.is_compiled(loop_name(plan))

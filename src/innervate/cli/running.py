@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from innervate.cli import errors
-from innervate.cli.progress import Progress
+from innervate.cli.progress import Progress, is_compiled
 
 if TYPE_CHECKING:
     from innervate.run import Run
@@ -42,12 +42,12 @@ def simulate(
     from innervate import scenario as scenarios
 
     loaded = scenarios.load(file, sets, seed)
-    scenarios.plan(loaded)  # the simulator takes a second to load: mistakes first
+    plan = scenarios.plan(loaded)  # the simulator takes a second to load: mistakes first
     from innervate import run as room
     from innervate.run import folder as folders
 
     if out is None:
         out = folders.default_folder(loaded.name, loaded.seed)
     folders.check_target(out)
-    with Progress(quiet) as progress:
+    with Progress(is_compiled(plan), quiet) as progress:
         return room.run(loaded, progress=progress)

@@ -6,12 +6,13 @@ every source that can end up in compiled code, and of the compiler's version.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import inspect
 import os
 import shutil
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -80,10 +81,15 @@ def _forget_old(keep: Path) -> None:
         shutil.rmtree(stale, ignore_errors=True)
 
 
-def is_cached(names: Iterable[str]) -> bool:
-    """True if compiled code of every named function lies in the cache folder."""
-    folder = Path(numba.config.CACHE_DIR or "")
-    return all(any(folder.rglob(f"*{name}*.nbi")) for name in names)
+def mark_compiled(name: str) -> None:
+    """Remember in the cache folder that a loop is compiled."""
+    with contextlib.suppress(OSError):  # nothing is kept where nothing can be written
+        (Path(numba.config.CACHE_DIR) / f"{name}.compiled").touch()
+
+
+def is_compiled(name: str) -> bool:
+    """True if the cache folder of the present sources holds that loop."""
+    return (cache_root() / source_hash() / f"{name}.compiled").exists()
 
 
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:

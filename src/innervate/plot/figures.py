@@ -12,10 +12,11 @@ from matplotlib.figure import Figure
 from innervate.analysis.load import port_loads
 from innervate.analysis.touch import WINDOW_S, received_image
 from innervate.plot import style
-from innervate.plot.history import History
+from innervate.plot.history import History, Moment
 from innervate.plot.skinaxes import SkinAxes, port_fills
 from innervate.plot.words import fault_words
-from innervate.protocol.skin import PORTS
+from innervate.protocol.skin_words import PORTS
+from innervate.topology import Graph
 
 MARKS_MAX = 12
 
@@ -93,11 +94,16 @@ def routes(run: Any, time_s: float | None = None) -> Figure:
     skin = SkinAxes(ax, graph)
     skin.cells(port_fills(moment.server))
     skin.tree(moment.hop)
-    first = PORTS * graph.cells
-    cut = [end - first for low in moment.down for end in (low, graph.peer[low]) if end >= first]
-    skin.ports(cut=cut)
+    skin.ports(cut=_cut_ports(moment, graph))
     ax.set_title(f"routes at {at_us / 1e6:.3f} s")
     return made
+
+
+def _cut_ports(moment: Moment, graph: Graph) -> list[int]:
+    """Interface ports whose cable is down."""
+    first = PORTS * graph.cells
+    ends = [end for low in moment.down for end in (low, graph.peer[low])]
+    return [end - first for end in ends if end >= first]
 
 
 def loads(run: Any) -> Figure:
@@ -128,7 +134,8 @@ def received(run: Any, time_s: float | None = None, window_s: float = WINDOW_S) 
         for force, known in zip(image.force_mn, image.known, strict=True)
     ]
     skin.cells(fills)
-    skin.ports()
+    moment = History(run.result).at(round(1e6 * at_s))
+    skin.ports(cut=_cut_ports(moment, run.plan.graph))
     ax.set_title(f"force known at {at_s:.3f} s, darkest {most / 1000:.2f} N")
     return made
 

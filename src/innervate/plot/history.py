@@ -9,7 +9,7 @@ import numpy as np
 
 from innervate.analysis import load, recovery, rows
 from innervate.analysis.rows import Numbers
-from innervate.protocol.skin import NONE, PORTS
+from innervate.protocol.skin_words import NONE, PORTS
 from innervate.scenario.plan import CUT, KILL, RESTART, RESTORE, REVIVE, Fault
 
 Flags = np.ndarray[Any, np.dtype[np.bool_]]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from innervate.plot.svg import Point
-from innervate.protocol.skin import PORTS
+from innervate.protocol.skin_words import PORTS
 from innervate.topology import Graph
 
 MARGIN = 40.0  # room for the ports' plugs; with less they are left out

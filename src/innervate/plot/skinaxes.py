@@ -11,7 +11,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 
 from innervate.plot import style
 from innervate.plot.sheet import Sheet
-from innervate.protocol.skin import PORTS
+from innervate.protocol.skin_words import PORTS
 from innervate.topology import Graph
 
 # Pale fills, so that dark arrows show on them.
@@ -26,6 +26,7 @@ PORT_FILLS = (
     "#dedede",
 )
 NO_ROUTE = "#ffffff"
+ARROWS_MAX = 600  # more get lines without heads
 
 
 class SkinAxes:
@@ -64,13 +65,17 @@ class SkinAxes:
     ) -> None:
         """A line with a head from every cell (or those in `only`) to its next hop."""
         places = self.sheet.points
-        chosen = range(len(hops)) if only is None else only
-        for cell in chosen:
+        lines = []
+        for cell in range(len(hops)) if only is None else only:
             hop = int(hops[cell])
-            if hop < 0:
-                continue
-            target = self._port_of(cell) if hop == self.graph.sink else places[hop]
-            self._arrow(places[cell], np.asarray(target), colour, strong)
+            if hop >= 0:
+                target = self._port_of(cell) if hop == self.graph.sink else places[hop]
+                lines.append((places[cell], np.asarray(target)))
+        if len(lines) > ARROWS_MAX:
+            self.ax.add_collection(LineCollection(lines, colors=[colour], linewidths=[0.3]))
+            return
+        for here, there in lines:
+            self._arrow(here, there, colour, strong)
 
     def _port_of(self, cell: int) -> Any:
         """Plug of the interface port that a cell is cabled to."""

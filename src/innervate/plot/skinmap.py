@@ -10,7 +10,7 @@ from innervate.plot import binned, svg
 from innervate.plot.history import Moment, hops_of
 from innervate.plot.sheet import NEAR, PLUGS_MAX, Sheet
 from innervate.plot.theme import PORT_COLOURS, shade
-from innervate.protocol.skin import PORTS
+from innervate.protocol.skin_words import PORTS
 
 TIPS_MAX = 700
 HEXAGONS_MAX = 1500

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from innervate.protocol.skin import PORTS
+from innervate.protocol.skin_words import PORTS
 from innervate.scenario.plan import (
     CUT,
     KILL,

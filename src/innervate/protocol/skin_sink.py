@@ -7,7 +7,8 @@ State: `pc.own[0]` (declared as SINK) and `pc.size[port]` (SINK_PORT).
 
 from innervate.protocol.arith import MASK16, MASK30, after, later
 from innervate.protocol.outbox import URGENT, deliver, send, set_timer
-from innervate.protocol.skin import BEACON, DATA, TICK, copy_frame
+from innervate.protocol.skin import copy_frame
+from innervate.protocol.skin_words import BEACON, DATA, TICK
 
 
 def on_start(pc, params, now, cause, out):

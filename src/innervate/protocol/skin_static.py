@@ -11,7 +11,7 @@ from innervate.protocol import skin, skin_sink
 from innervate.protocol.arith import MASK16, MASK30, after, later
 from innervate.protocol.outbox import URGENT, report, send, set_timer
 from innervate.protocol.rng import draw
-from innervate.protocol.skin import (
+from innervate.protocol.skin_words import (
     BEACON,
     INFINITY,
     NONE,

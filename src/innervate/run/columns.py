@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis import rows
-from innervate.protocol.skin import PORTS
+from innervate.protocol.skin_words import PORTS
 from innervate.trace.tables import LINKS, LOOPS, OUTAGES, RECEIVED, ROUTES, Table
 
 Columns = dict[str, Any]

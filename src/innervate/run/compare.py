@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from innervate import scenario as scenarios
-from innervate.protocol.skin import TICK
+from innervate.protocol.skin_words import TICK
 from innervate.run import folder as folders
 from innervate.run.errors import RunError
 from innervate.run.trail import first_difference, trail

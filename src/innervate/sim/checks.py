@@ -1,7 +1,7 @@
 """Invariants asserted while a skin runs: ranges and fd; loops are the observer's."""
 
 from innervate.protocol.arith import later
-from innervate.protocol.skin import NONE, RULE_FEASIBLE
+from innervate.protocol.skin_words import NONE, RULE_FEASIBLE
 from innervate.sim.observer import BROKEN_FEASIBLE, BROKEN_RANGE, next_hop
 
 

@@ -4,7 +4,7 @@ Keeps for every cell whether its chain of parents reaches the PC over live cable
 as much as the cells it concerns, so that it can stay on at any size.
 """
 
-from innervate.protocol.skin import (
+from innervate.protocol.skin_words import (
     DROP_NO_ROUTE,
     NONE,
     PORTS,

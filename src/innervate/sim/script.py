@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from innervate.protocol import skin
+from innervate.protocol import skin_words
 from innervate.scenario import ScenarioError
 from innervate.scenario import script as steps
 from innervate.sim import loop, wheel
@@ -53,11 +53,11 @@ def _take(plan: Any, world: World, handle: Any, step: Any, time: int, number: in
         return
     if step.action == steps.DETECT:
         cell, port = world.cells[step.node], step.end - 4 * step.node
-        cell.pf[port] = 2 * skin.ONE
+        cell.pf[port] = 2 * skin_words.ONE
         cell.heard[port] = 0
-        handle.report(world, time, step.node, skin.REPORT_BROKEN, port, 1)
+        handle.report(world, time, step.node, skin_words.REPORT_BROKEN, port, 1)
     elif step.action in (steps.TICK, steps.SOON):
-        timer = skin.TICK if step.action == steps.TICK else skin.SOON
+        timer = skin_words.TICK if step.action == steps.TICK else skin_words.SOON
         slot = timer * get(world.run, 0, "nodes") + step.node
         if world.wheel.events[slot].bucket == NIL:
             raise _refused(plan, number, f"{label(step.node)} has nothing to send soon")

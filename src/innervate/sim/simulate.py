@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.kernel import door, tables
 from innervate.kernel.wall import wall_s
 from innervate.sim import build as builder
 from innervate.sim import loop, script, skin_stack, static_stack
@@ -53,12 +54,12 @@ class Result:
 
 
 def _modules() -> list[ModuleType]:
-    from innervate.protocol import arith, outbox, skin, skin_sink, skin_static
+    from innervate.protocol import arith, outbox, skin, skin_route, skin_sink, skin_static
     from innervate.protocol import rng as generator
     from innervate.sim import checks, clocks, wheel, wires
 
     return [
-        arith, outbox, generator, skin, skin_sink, skin_static,
+        arith, outbox, generator, skin_route, skin, skin_sink, skin_static,
         wheel, clocks, wires, checks, skin_stack, static_stack,
     ]  # fmt: skip
 
@@ -73,8 +74,6 @@ def _rare() -> list[ModuleType]:
 @functools.cache
 def compiled_loop(static: bool) -> Callable[..., None]:
     """The compiled loop of the skin, or of its static baseline."""
-    from innervate.kernel import door, tables
-
     door.register(*_rare(), hot=False)
     door.register(*_modules())
     door.register_functions(loop.pressing, loop.foresee)
@@ -82,6 +81,11 @@ def compiled_loop(static: bool) -> Callable[..., None]:
     door.register_functions(*parts[:-1])
     advance = door.compiled(parts[-1])
     return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
+
+
+def loop_name(plan: Any) -> str:
+    """Which loop a plan runs on, for `kernel.door.is_compiled`."""
+    return "static" if plan.params["rule"] == RULE_STATIC else "skin"
 
 
 def plain_loop(static: bool) -> Callable[..., None]:
@@ -106,9 +110,9 @@ def simulate(
     A plan with a script plays that instead, on plain state.
     Raises InvariantBroken, and ScenarioError for a step that cannot be taken.
     """
-    started = wall_s()
     static = plan.params["rule"] == RULE_STATIC
     if plan.script:
+        started = wall_s()
         stack = static_stack if static else skin_stack
         world, now = script.play(plan, stack, checks, trail)
         if int(get(world.run, 0, "status")) == loop.BROKEN:
@@ -117,6 +121,10 @@ def simulate(
     advance = (plain_loop if plain else compiled_loop)(static)
     world = builder.build(plan, plain, checks, observe, deliveries, trail)
     keep = _Keep()
+    advance(world, 0, 1)  # nothing is due before time 0: only compiles, or loads what was compiled
+    if not plain:
+        door.mark_compiled(loop_name(plan))
+    started = wall_s()
     with _Stop() as stop:
         status = loop.BUDGET
         while status != loop.DONE and not stop.asked:

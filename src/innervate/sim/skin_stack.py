@@ -1,7 +1,8 @@
 """Binds the skin's state machines to the simulator: which node is what, what its words mean."""
 
 from innervate.protocol import skin, skin_sink
-from innervate.protocol.skin import DATA, NONE, copy_frame
+from innervate.protocol.skin import copy_frame
+from innervate.protocol.skin_words import DATA, NONE, REPORT_BALANCE, SAMPLE
 from innervate.sim.checks import check_cell, check_route
 from innervate.sim.observer import follow, on_report
 from innervate.sim.wires import DELIVERED
@@ -35,7 +36,8 @@ def fire(world, node, now, timer):
 
 def sample(world, node, now):
     """Hand a cell what its sensors say."""
-    skin.on_input(world.cells[node], world.params[0], now, skin.SAMPLE, world.sample[0], world.out)
+    cell, params = world.cells[node], world.params[0]
+    skin.on_input(cell, params, now, SAMPLE, world.sample[0], world.out)
 
 
 def digest(frame):
@@ -51,7 +53,7 @@ def digest(frame):
 def report(world, time, node, code, a, b):
     """A node reported something."""
     on_report(world, time, node, code, a, b)
-    if world.run[0].checks and code <= skin.REPORT_BALANCE:
+    if world.run[0].checks and code <= REPORT_BALANCE:
         check_route(world, node)
 
 

@@ -1,8 +1,9 @@
 """Binds the static baseline to the simulator; all but its handlers is the skin's."""
 
 from innervate.protocol import skin_sink, skin_static
-from innervate.protocol.skin import SAMPLE, on_input
 from innervate.protocol.skin import copy_frame as copy_frame
+from innervate.protocol.skin import on_input
+from innervate.protocol.skin_words import SAMPLE
 from innervate.sim.skin_stack import check as check
 from innervate.sim.skin_stack import deliver as deliver
 from innervate.sim.skin_stack import digest as digest

@@ -3,7 +3,7 @@
 LAYOUTS is the one description: encoder, decoder and whatever else speaks of the bytes read it.
 """
 
-from innervate.protocol.skin import BEACON, DATA, RESTART
+from innervate.protocol.skin_words import BEACON, DATA, RESTART
 from innervate.wire.bits import get, put, signed
 from innervate.wire.crc import crc16
 

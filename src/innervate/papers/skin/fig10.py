@@ -115,7 +115,16 @@ def draw(results: Results, quick: bool) -> Figure:
     for ax, name, scale in zip(axes, ("beta", "loss"), (1, 100), strict=True):
         for x, setup in enumerate(SETUPS):
             _setup(ax, results, quick, setup, name, scale, x)
-        ax.set_xticks(range(len(SETUPS)), [f"setup {setup[-1]}" for setup in SETUPS])
+        digits = 3 if name == "beta" else 1
+        means = [
+            [scale * values(results, quick, setup, mode, name).mean() for mode in MODES]
+            for setup in SETUPS
+        ]
+        ticks = [
+            f"{static:.{digits}f}   {dynamic:.{digits}f}\nsetup {setup[-1]}"
+            for setup, (static, dynamic) in zip(SETUPS, means, strict=True)
+        ]
+        ax.set_xticks(range(len(SETUPS)), ticks)
         ax.grid(axis="x", visible=False)
     axes[0].set_ylabel("balance factor $\\beta$")
     axes[0].set_ylim(0, 1.3)
@@ -146,11 +155,6 @@ def _setup(
         ax.bar(place, found.mean(), 0.36, color=colour, alpha=0.35, lw=0)
         jitter = rng.uniform(-0.1, 0.1, len(found))
         ax.plot(place + jitter, found, style.MARKERS[i], color=colour, ms=2, mew=0)
-        digits = 3 if name == "beta" else 1
-        ax.text(
-            place, 0.02, f"{found.mean():.{digits}f}", transform=ax.get_xaxis_transform(),
-            ha="center", va="bottom", fontsize=6.5,
-        )  # fmt: skip
     if name == "loss":
         least = scale * bound(results, quick, setup)
         ax.plot([x - 0.4, x + 0.4], [least, least], color=style.BLACK, lw=1.4)

@@ -17,7 +17,7 @@ from innervate.papers.experiment import Claim, Experiment, Point, Results, verdi
 from innervate.papers.skin.common import joined, percent, seeds_of, simulated
 from innervate.papers.skin.steps import Steps
 from innervate.plot import style
-from innervate.protocol.skin import ONE
+from innervate.protocol.skin_words import ONE
 
 HZ = 250
 LOSS = 0.2  # between the limits of the two settings, 50 % and 11 %

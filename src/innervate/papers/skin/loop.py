@@ -15,7 +15,7 @@ from innervate.papers.experiment import Claim, Experiment, Point, Results, verdi
 from innervate.papers.skin.common import Case, joined, seeds_of
 from innervate.plot import style
 from innervate.plot.skinaxes import NO_ROUTE, SkinAxes
-from innervate.protocol.skin import NONE
+from innervate.protocol.skin_words import NONE
 from innervate.sim.observer import LOOP_OPEN
 from innervate.sim.simulate import simulate
 

@@ -11,7 +11,7 @@ from innervate import scenario
 from innervate.papers.experiment import Claim, Point, Results, verdict
 from innervate.papers.skin.common import joined, seeds_of
 from innervate.papers.skin.steps import Steps
-from innervate.protocol.skin import NONE
+from innervate.protocol.skin_words import NONE
 
 HZ = 250
 K = 3

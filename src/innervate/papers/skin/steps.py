@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from innervate import scenario
-from innervate.protocol.skin import RULE_PAPER
+from innervate.protocol.skin_words import RULE_PAPER
 from innervate.scenario import Plan, Scenario
 from innervate.sim import build, loop
 from innervate.sim.simulate import SLICE_EVENTS, InvariantBroken, compiled_loop

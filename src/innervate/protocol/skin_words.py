@@ -1,0 +1,34 @@
+"""Names and numbers that all parts of the skin's protocol share [skin 2, 3, 5]."""
+
+PORTS = 4
+NONE = -1
+INFINITY = 255
+ONE = 840
+LOAD_MAX = 4095
+
+BEACON = 1
+DATA = 2
+RESTART = 3
+
+RULE_FEASIBLE = 0
+RULE_STRICT = 1
+RULE_PAPER = 2
+RULE_STATIC = 3
+
+PERIODIC = 0
+TRIGGERED = 1
+WAVE = 2
+
+TICK = 0
+SOON = 1
+TIMERS = 2
+
+SAMPLE = 1  # on_input: the cell's own sensors, as a frame without addresses
+
+REPORT_PARENT = 1  # a old port, b new port
+REPORT_BALANCE = 2  # the same, to balance the load
+REPORT_BROKEN = 3  # a port, b 1 broken / 0 works again
+REPORT_DROP = 4  # a reason
+REPORT_FORGET = 5  # fd was forgotten
+DROP_NO_ROUTE = 1
+DROP_LOOP = 2
