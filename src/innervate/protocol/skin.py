@@ -20,6 +20,7 @@ from innervate.protocol.skin_words import (
     DROP_NO_ROUTE,
     INFINITY,
     LOAD_MAX,
+    MEMORY_LOST,
     NONE,
     ONE,
     PERIODIC,
@@ -87,6 +88,11 @@ def on_start(cell, params, now, cause, out):
     cell.sent_at = (now - params.gap_us) & MASK30
     cell.soon = 0
     cell.seq = 0
+    # Children of our former life give us up within k + 1 periods: they hear that we have no route,
+    # or nothing. Only then may we take one, or it could lead through them.
+    cell.wait = 0
+    if cause == MEMORY_LOST:
+        cell.wait = params.k + 2
     cell.countdown = 0
     if params.balance_periods > 0:
         cell.countdown = 1 + draw(cell, params.balance_periods)
@@ -207,6 +213,7 @@ def supervise(cell, params, out):
 
 def hold_feasible(cell, params, out):
     """Forget fd after FD_HOLD periods without a route: a restarted PC may count from anew [E27]."""
+    cell.wait = max(0, cell.wait - 1)
     cell.hold = cell.hold + 1
     if cell.hold >= params.hold_periods:
         cell.hold = 0

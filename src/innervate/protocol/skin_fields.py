@@ -48,6 +48,7 @@ CELL = (
     ("rng", 0, 1, 1073741823, "state", "generator of random choices"),
     ("choice", 0, -1, 1073741823, "value", "what the next draw shall return; -1 = generate"),
     ("asked", 0, 0, 1073741823, "count", "out of how many the last scripted draw was"),
+    ("wait", 0, 0, 1023, "periods", "after a restart, until we may take a parent"),
 )
 
 SINK = (

@@ -51,6 +51,8 @@ def distance(cell):
 
 def select(cell, params, may_balance, out):
     """Choose the parent among all ports [skin Alg. 2 and 3, E5-E13]."""
+    if cell.wait > 0:
+        return
     old = cell.parent
     if old != NONE and not is_usable(cell, params, old):
         cell.parent = NONE
@@ -128,7 +130,7 @@ def react(cell, params, port, worse, out):
         return True
     if parent != NONE and cell.dist[port] >= cell.dist[parent]:
         return False
-    if not (is_usable(cell, params, port) and is_allowed(cell, params, port)):
+    if cell.wait > 0 or not (is_usable(cell, params, port) and is_allowed(cell, params, port)):
         return False
     report(out, REPORT_PARENT, parent, port)
     cell.parent = port

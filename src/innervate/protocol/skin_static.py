@@ -40,7 +40,13 @@ def on_frame(cell, params, now, port, frame, out):
         cell.heard[port] = 1
         fresh = cell.sq_known == 0 or later(frame.sq, cell.sq_own)
         if fresh and frame.dist < params.max_depth and frame.parent == 0:
-            join(cell, params, now, port, out)
+            if cell.wait > 0:
+                # Back in a network that is set up: what goes through us must be set up anew.
+                cell.wait = 0
+                cell.sq_own = frame.sq
+                cell.sq_known = 1
+            else:
+                join(cell, params, now, port, out)
     elif frame.kind == RESTART:
         if cell.sq_known and frame.sq == cell.sq_own and cell.parent != NONE:
             give_up(cell, out)

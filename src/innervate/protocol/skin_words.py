@@ -23,6 +23,8 @@ TICK = 0
 SOON = 1
 TIMERS = 2
 
+MEMORY_LOST = 1  # on_start: a restart; 0 is the first switching on
+
 SAMPLE = 1  # on_input: the cell's own sensors, as a frame without addresses
 
 REPORT_PARENT = 1  # a old port, b new port

@@ -31,9 +31,13 @@ def check_route(world, cell):
 
 
 def is_worse(cell, parent):
-    """True if the feasible distance of `cell` is strictly worse than that of `parent`."""
+    """True if the feasible distance of `cell` is strictly worse than that of `parent`.
+
+    A parent that forgot its own (a restart, FD_HOLD) may stand until it has a route again: it
+    takes none before its children have given it up.
+    """
     if parent.fd_known == 0:
-        return False
+        return parent.parent == NONE
     if cell.fd_known == 0 or later(parent.fd_sq, cell.fd_sq):
         return True
     return cell.fd_sq == parent.fd_sq and cell.fd_dist > parent.fd_dist
