@@ -168,13 +168,11 @@ def beacon(protocol=REAL, dist=0, sq=1, load=1, size=1, parent=0):
     return frame
 
 
-class _Sink:
-    """The PC's state: `own[0]` and a number per port."""
-
-    def __init__(self, protocol, ports):
-        self.own = [protocol.plain.make("SinkState", protocol.skin_fields.SINK)()]
-        self.own[0].ports = ports
-        self.size = [0] * ports
+def sink_state(protocol, ports):
+    """The PC's state before it is switched on: `own[0]` and a number per port."""
+    own = protocol.plain.make("Sink", protocol.skin_fields.SINK)()
+    own.ports = ports
+    return SimpleNamespace(own=[own], size=[0] * ports)
 
 
 class OneCell:

@@ -3,7 +3,7 @@
 from innervate.protocol.arith import after, later
 from innervate.protocol.skin_words import NONE, PORTS
 from innervate.topology import free_graph
-from tests.skin_bench import REAL, Box, _Sink, clone, new_cell, out_of_range, params_of
+from tests.skin_bench import REAL, Box, clone, new_cell, out_of_range, params_of, sink_state
 
 BOOT = 0
 MEMORY_LOST = 1
@@ -25,7 +25,7 @@ class Net:
         self.params = params or params_of(protocol, max(self.graph.depths()), **keys)
         self.static = self.params.rule == protocol.skin_words.RULE_STATIC
         self.cells = [new_cell(protocol, i, seed + 7919 * i) for i in range(self.graph.cells)]
-        self.pc = _Sink(protocol, self.graph.interfaces)
+        self.pc = sink_state(protocol, self.graph.interfaces)
         self.box = Box(protocol, max(16, self.graph.interfaces + 4))
         self.names = {self.graph.label(node): node for node in range(self.graph.nodes)}
         self.now = 0
@@ -254,11 +254,18 @@ class Net:
                          f"{fd_words(before)} to {fd_words(state)}")  # fmt: skip
         self.fds[cell] = clone(state)
         hop = self.hop(cell)
-        if hop not in (NONE, self.graph.sink) and not nearer(self.cells[hop], state):
+        if hop in (NONE, self.graph.sink) or not is_in_force(self.cells[hop]):
+            return
+        if not nearer(self.cells[hop], state):
             raise Broken(
                 f"fd of {self.graph.label(cell)} {fd_words(state)} is not worse than "
                 f"{fd_words(self.cells[hop])} of its parent {self.graph.label(hop)}"
             )
+
+
+def is_in_force(parent):
+    """A parent that forgot its feasible distance may stand until it has a route again."""
+    return parent.fd_known or parent.parent != NONE
 
 
 def nearer(a, b):

@@ -28,31 +28,33 @@ def reading(world, node, time):
     return clocks.reading(world.clocks[node], time)
 
 
+def fires(world, node, time, delay):
+    """True time at which a timer set now fires that is due when the clock shows `delay` more."""
+    now = reading(world, node, time)
+    return clocks.true_time(world, node, time, now, (now + delay) & MASK30)
+
+
 @given(NODE, TIME, DELAY)
 def test_a_timer_is_never_early_and_at_most_1_us_late(node, time, delay):
     world = world_of()
     target = reading(world, node, time) + delay
-    fires = clocks.true_time(world, node, time, target & MASK30)
-    assert fires >= time
-    assert target <= reading(world, node, fires) <= target + 1
-    if fires > time:
-        assert reading(world, node, fires - 1) < target
+    at = fires(world, node, time, delay)
+    assert at >= time
+    assert target <= reading(world, node, at) <= target + 1
+    if at > time:
+        assert reading(world, node, at - 1) < target
 
 
 @given(NODE, TIME, DELAY, DELAY)
 def test_a_later_timer_does_not_fire_sooner(node, time, first, second):
     world = world_of()
-    now = reading(world, node, time)
     early, late = sorted((first, second))
-    fires = [clocks.true_time(world, node, time, (now + delay) & MASK30) for delay in (early, late)]
-    assert fires[0] <= fires[1]
+    assert fires(world, node, time, early) <= fires(world, node, time, late)
 
 
 @given(NODE, TIME, st.integers(1, 2**28))
 def test_an_overdue_timer_fires_at_once(node, time, overdue):
-    world = world_of()
-    at = (reading(world, node, time) - overdue) & MASK30
-    assert clocks.true_time(world, node, time, at) == time
+    assert fires(world_of(), node, time, -overdue) == time
 
 
 @given(NODE, TIME, st.integers(1, 10**6))
@@ -73,9 +75,7 @@ def test_clocks_drift_both_ways_and_start_apart():
 
 @given(NODE, TIME, st.integers(1, 10**6))
 def test_without_drift_a_period_is_a_period(node, time, period):
-    world = world_of(0)
-    at = (reading(world, node, time) + period) & MASK30
-    assert clocks.true_time(world, node, time, at) == time + period
+    assert fires(world_of(0), node, time, period) == time + period
 
 
 @pytest.mark.parametrize("nodes", [1, 7])

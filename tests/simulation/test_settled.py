@@ -26,9 +26,13 @@ SETUPS = {
 
 
 def assert_settled(result, what):
-    """[skin 6.4]: D = BFS depth, sizes add up to the cells, L(root) = S of its port."""
+    """[skin 6.4]: D = BFS depth, sizes add up to the cells, L(root) = S of its port.
+
+    Not the depth under `strict`, which refuses a nearer port with an equal number (F1, E26).
+    """
     graph = result.plan.graph
-    assert distances(result).tolist() == list(result.plan.depths), f"{what}: longer routes"
+    if result.plan.params["rule"] == 0:
+        assert distances(result).tolist() == list(result.plan.depths), f"{what}: longer routes"
     loads = true_loads(result)
     assert cells_at_end(result, "own_load").tolist() == loads, f"{what}: loads"
     sizes = port_sizes(result)
@@ -65,7 +69,8 @@ def test_many_skins_settle_on_shortest_routes(rule, updates):
     for seed in range(300):
         protocol = {"rule": rule, "updates": updates, "m": 3 + seed % 3}
         keys = SETUPS[list(SETUPS)[seed % len(SETUPS)]]
-        assert_settled(run(dict(keys, seed=seed, protocol=protocol)), f"seed {seed}")
+        keys = dict(keys, seed=seed, duration_s=3.0, protocol=protocol)
+        assert_settled(run(keys), f"seed {seed}")
 
 
 @pytest.mark.parametrize("rule", ["feasible", "strict"])

@@ -32,15 +32,20 @@ class Mode(NamedTuple):
     rule: str
     name: str
     settle_s: float
+    queue: int = 8
 
 
 STATIC = Mode("static", "static tree", 4.0)
 DYNAMIC = Mode("feasible", "dynamic, balanced", 120.0)
+# Where a subtree alone nearly fills its cable, the queue decides (setup 7).
+QUEUED = Mode("feasible", "dynamic, longer queues", 40.0, 16)
 MODES = (STATIC, DYNAMIC)
 
 
 def seeds(quick: bool, mode: Mode) -> range:
     """Static trees differ more and settle at once."""
+    if mode is QUEUED:
+        return seeds_of(1 if quick else 4)
     if quick:
         return seeds_of(1 if mode is DYNAMIC else 6)
     return seeds_of(10 if mode is DYNAMIC else 40)
@@ -54,20 +59,21 @@ def window_s(quick: bool) -> float:
 def _key(setup: str, mode: Mode, seed: int, quick: bool) -> str:
     return (
         f"fig10 {setup} {mode.rule} {BEACON_HZ} Hz, data {RATE_HZ} Hz, "
-        f"settled {mode.settle_s:g} s, counted {window_s(quick):g} s, seed {seed}"
+        f"queue {mode.queue}, settled {mode.settle_s:g} s, counted {window_s(quick):g} s, "
+        f"seed {seed}"
     )
 
 
 def points(quick: bool) -> list[Point]:
     """A run each; the long ones first."""
+    runs = [(setup, mode) for mode in reversed(MODES) for setup in SETUPS]
     return [
         Point.of(
             _key(setup, mode, seed, quick),
-            5.0 if mode is DYNAMIC else 0.3,
+            0.04 * (mode.settle_s + window_s(quick)),
             *(measure, setup, mode, seed, window_s(quick)),
         )
-        for mode in reversed(MODES)
-        for setup in SETUPS
+        for setup, mode in [*runs, (SETUPS[-1], QUEUED)]
         for seed in seeds(quick, mode)
     ]
 
@@ -79,6 +85,7 @@ def measure(setup: str, mode: Mode, seed: int, window: float) -> dict[str, Any]:
         ("protocol.updates", "periodic"),
         ("protocol.beacon_hz", BEACON_HZ),
         ("data.rate_hz", RATE_HZ),
+        ("data.queue", mode.queue),
         ("duration_s", mode.settle_s + window),
     ]
     steps = Steps(scenario.load(setup, overrides, seed))
@@ -187,15 +194,21 @@ def _balance(results: Results, quick: bool) -> Claim:
 def _loss(results: Results, quick: bool, setup: str) -> Claim:
     found = values(results, quick, setup, DYNAMIC, "loss")
     least = bound(results, quick, setup)
+    reason = ""
+    if setup == SETUPS[-1]:
+        longer = values(results, quick, setup, QUEUED, "loss").mean()
+        reason = (
+            f"above the bound because a queue of {DYNAMIC.queue} frames smooths little where a "
+            f"subtree alone nearly fills its cable: with {QUEUED.queue} frames the loss is "
+            f"{percent(longer, 2)}, the bound {percent(least, 2)}"
+        )
     return Claim(
         "10",
         f"setup {setup[-1]}: remaining loss is that of the network's capacity "
         f"({percent(least, 1)}; asked for: at most 2 points more)",
         f"mean {percent(found.mean(), 1)}, at most {percent(found.max(), 1)}, {len(found)} runs",
         verdict(float(found.mean()) <= least + LOSS_POINTS_BAR),
-        "a queue of 8 frames smooths little where a subtree alone nearly fills its cable"
-        if found.mean() > least + 0.005
-        else "",
+        reason,
     )
 
 
