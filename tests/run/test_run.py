@@ -127,7 +127,8 @@ def test_an_interrupted_run_keeps_what_was_done(four, tmp_path, page, monkeypatc
 
     def interrupted(world, until, budget):
         loop(world, until, 1200)
-        signal.raise_signal(signal.SIGINT)
+        if until > 0:  # the call that only loads the loop comes before anything can be kept
+            signal.raise_signal(signal.SIGINT)
 
     monkeypatch.setattr(simulation, "compiled_loop", lambda static: interrupted)
     early = [{"at_s": 0.1, "action": "cut", "interface": 1}]
