@@ -17,6 +17,7 @@ from innervate.protocol.skin_words import (
     NONE,
     ONE,
     PORTS,
+    REPORT_BROKEN,
     REPORT_PARENT,
     RESTART,
     SOON,
@@ -78,6 +79,10 @@ def on_timer(cell, params, now, timer, out):
 def join(cell, params, now, port, out):
     """The first set-up frame of a new number decides the parent."""
     report(out, REPORT_PARENT, cell.parent, port)
+    # A set-up frame came over this cable: what was missed before it, while the PC listened, is old.
+    if cell.pf[port] >= ONE:
+        report(out, REPORT_BROKEN, port, 0)
+    cell.pf[port] = 0
     cell.parent = port
     cell.sq_own = cell.sq[port]
     cell.sq_known = 1
