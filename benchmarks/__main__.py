@@ -27,10 +27,13 @@ def main():
     sizes = [n for n in beacons.SIZES if n <= 10_000] if options.quick else beacons.SIZES
     figures = {"machine": f"{platform.machine()}, {os.cpu_count()} cores", "beacons": []}
     print(f"machine: {figures['machine']}, Python {platform.python_version()}")
-    print(f"{'cells':>9} {'Mbeacons/s':>11} {'with checks':>12} {'Mevents/s':>10} "
+    print(f"{'cells':>9} {'Mbeacons/s':>11} {'with checks':>12} {'periodic':>9} {'Mevents/s':>10} "
           f"{'C heap':>8} {'ratio':>6} {'SimPy':>7} {'ratio':>6} {'ns-3*':>6}")  # fmt: skip
     for cells in sizes:
         figures["beacons"].append(row(cells))
+    print(
+        "Mbeacons/s: updates = wave, the default, without checks; then with; then periodic, without"
+    )
     print("Mevents/s = handler calls; C heap, SimPy = their events (M/s) with as many pending;")
     print("* beacons/s against ns-3's best build as measured elsewhere (no ns-3 here)")
     if not options.quick:
@@ -47,6 +50,7 @@ def row(cells):
     """One size: with and without checkers, beside the baselines at the same moment."""
     off = beacons.measure(cells)
     on = beacons.measure(cells, checks=True)
+    periodic = beacons.measure(cells, updates="periodic")
     heap = c_heap.measure(off["cells"], 0.6)
     simpy = simpy_timeouts.measure(off["cells"], 0.6) if cells <= 10_000 else None
     events = off["handlers_per_s"]
@@ -56,11 +60,19 @@ def row(cells):
         "ns3": off["beacons_per_s"] / NS3_BEST[off["cells"]] if off["cells"] in NS3_BEST else None,
     }
     cell = [f"{off['cells']:>9,}", f"{off['beacons_per_s'] / 1e6:>11.2f}",
-            f"{on['beacons_per_s'] / 1e6:>12.2f}", f"{events / 1e6:>10.2f}",
+            f"{on['beacons_per_s'] / 1e6:>12.2f}",
+            f"{periodic['beacons_per_s'] / 1e6:>9.2f}", f"{events / 1e6:>10.2f}",
             million(heap, 8), ratio(ratios["c_heap"]), million(simpy, 7), ratio(ratios["simpy"]),
             ratio(ratios["ns3"])]  # fmt: skip
     print(*cell, flush=True)
-    return {"off": off, "on": on, "c_heap": heap, "simpy": simpy, "ratios": ratios}
+    return {
+        "off": off,
+        "on": on,
+        "periodic": periodic,
+        "c_heap": heap,
+        "simpy": simpy,
+        "ratios": ratios,
+    }
 
 
 def million(baseline, width):

@@ -22,9 +22,9 @@ BEACONS_PER_SLICE = 2_000_000
 SETTLED_PERIODS = 40
 
 
-def skin(cells, beacon_hz=250.0):
+def skin(cells, beacon_hz=250.0, updates="wave"):
     """Setup 1 or 8 up to 204 cells; above, joined patches of 6 x 10 cells, an interface each."""
-    protocol = {"beacon_hz": beacon_hz}
+    protocol = {"beacon_hz": beacon_hz, "updates": updates}
     if cells <= 204:
         name = "setup-1" if cells == 99 else "setup-8"
         text = scenario.load(name)
@@ -38,9 +38,9 @@ def skin(cells, beacon_hz=250.0):
     return scenario.plan(scenario.from_dict(form))
 
 
-def measure(cells, checks=False):
+def measure(cells, checks=False, updates="wave"):
     """Beacons delivered and handler calls per second of one core."""
-    plan = skin(cells)
+    plan = skin(cells, updates=updates)
     advance = compiled_loop(False)
     world = build(plan, checks=checks, observe=checks)
     period_us = plan.params["beacon_us"]
@@ -58,7 +58,7 @@ def measure(cells, checks=False):
         rate = (after - beacons) / wall_s
         if rate > best["beacons_per_s"]:
             best = {"beacons_per_s": rate, "handlers_per_s": (after_handled - handled) / wall_s}
-    return {"cells": plan.graph.cells, "checks": checks, **best}
+    return {"cells": plan.graph.cells, "checks": checks, "updates": updates, **best}
 
 
 def _advance(advance, world, until_us):

@@ -212,6 +212,7 @@ def build(stack):
             port = end - 4 * node
             now = clocks.reading(world.clocks[node], time)
             hear(world, node, now & MASK30, port, world.frames[slot - run.pool_slots])
+            world.counters[wires.ARRIVED + event.kind] += 1
             finish(world, node, time, now, ON_FRAME, port)
         queue.give(world.wheel, slot)
 

@@ -138,15 +138,13 @@ def chance(run, n):
 
 def lands(world, event, node):
     """True if a frame gets through to the node at the end of its cable; counts it either way."""
-    block = event.kind
-    if event.epoch != world.epoch[event.target]:
-        world.counters[LOST_CUT + block] += 1
-        return False
-    if world.alive[node] != ALIVE:
-        world.counters[LOST_OFF + block] += 1
-        return False
-    world.counters[ARRIVED + block] += 1
-    return True
+    if event.epoch == world.epoch[event.target]:
+        if world.alive[node] == ALIVE:
+            return True
+        world.counters[LOST_OFF + event.kind] += 1
+    else:
+        world.counters[LOST_CUT + event.kind] += 1
+    return False
 
 
 def drop_queue(world, end):
