@@ -148,9 +148,7 @@ class TimingTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True)
         Literal["per_link", "per_frame"], Meta(description='"per_link" or "per_frame"')
     ] = "per_link"
     lock_step: Annotated[bool, Meta(description="true or false")] = False
-    loss: Annotated[
-        float, Meta(ge=0, le=1, description="a share of lost frames, 0 to 1")
-    ] = 0.0
+    loss: Annotated[float, Meta(ge=0, le=1, description="a share of lost frames, 0 to 1")] = 0.0
 
 
 class DataTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
