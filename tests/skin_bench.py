@@ -34,8 +34,8 @@ def protocol_of(load):
     for name, part in parts.items():
         if name.startswith("skin_") and name not in ("skin_sink", "skin_static"):
             cell |= vars(part)
-    stacks = {name: load(name) for name in ("skin_stack", "static_stack")}
-    return SimpleNamespace(**parts | stacks | {"skin": SimpleNamespace(**cell | vars(parts["skin"]))})
+    parts |= {name: load(name) for name in ("skin_stack", "static_stack")}
+    return SimpleNamespace(**parts | {"skin": SimpleNamespace(**cell | vars(parts["skin"]))})
 
 
 def _real(name):

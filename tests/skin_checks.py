@@ -96,8 +96,10 @@ def check_react(history, first_sq, protocol=REAL, **keys):
     compared = 0
     for place, step in enumerate(history):
         settled = is_settled(bench, twin, box)
-        assert settled or bench.params.rule != protocol.skin_words.RULE_FEASIBLE or (
-            bench.params.updates == protocol.skin_words.PERIODIC
+        assert (
+            settled
+            or bench.params.rule != protocol.skin_words.RULE_FEASIBLE
+            or (bench.params.updates == protocol.skin_words.PERIODIC)
         ), f"select(0) is not at rest before step {place} of {history}, {first_sq}, {keys}"
         actions = bench.play(step)
         if step[0] != "hear" or not settled:
@@ -188,6 +190,9 @@ def check_select(history, first_sq, protocol=REAL, may_balance=0, **keys):
 # Networks.
 
 STEPS = ("tick", "tick", "soon", "deliver", "deliver", "deliver", "lose", "cut", "restore", "pc")
+
+
+WITH_DETECT = (*STEPS, "detect")
 
 
 def random_links(draw, cells, extra):

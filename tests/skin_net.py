@@ -226,7 +226,7 @@ class Net:
             path, node = [], start
             while node not in (NONE, self.graph.sink) and node not in done:
                 if node in path:
-                    return [self.graph.label(member) for member in path[path.index(node):]]
+                    return [self.graph.label(member) for member in path[path.index(node) :]]
                 path.append(node)
                 node = self.hop(node)
             done.update(path)

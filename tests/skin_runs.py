@@ -61,7 +61,8 @@ def run(keys, **how):
 @contextmanager
 def plain_stack(stack):
     """Plain runs use this stack instead of the simulator's own."""
-    with mock.patch.object(simulator, "plain_loop", lambda static: loop.build(stack)[-1]):
+    advance = loop.build(stack)[-1]
+    with mock.patch.object(simulator, "plain_loop", return_value=advance):
         yield
 
 

@@ -19,9 +19,7 @@ SHAPES = [
     patch(4, 2, (0, 0)),
     patch(2, 5, (0, 0), (4, 1), (2, 0)),
     free([("pc.0", "a.2"), ("a.3", "b.0"), ("b.1", "c.0"), ("c.3", "pc.1"), ("a.0", "c.2")]),
-    keys_of(
-        patch=[{"columns": 2, "rows": 2, "count": 3, "interfaces_every": 2, "wiring": "S"}]
-    ),
+    keys_of(patch=[{"columns": 2, "rows": 2, "count": 3, "interfaces_every": 2, "wiring": "S"}]),
 ]
 TOUCH = {"path": [[0.0, 0.0, 0.0], [0.1, 40.0, 30.0]], "radius_mm": 25, "force_n": 3}
 QUIET = settings(deadline=None, suppress_health_check=list(HealthCheck))

@@ -61,7 +61,7 @@ class Model:
 
     def drain(self):
         while self.queued:
-                self.pop(0, 1 << 40)
+            self.pop(0, 1 << 40)
         assert wheel.pop(self.wheel, 1 << 40) == wheel.NIL
 
 

@@ -23,9 +23,12 @@ from pathlib import Path
 
 import pytest
 
+from innervate import scenario
 from innervate.protocol.skin_words import NONE
+from innervate.sim.simulate import simulate
 from tests.skin_bench import REAL
 from tests.skin_net import Net
+from tests.skin_runs import loops_closed
 
 REWRITE = os.environ.get("INNERVATE_REWRITE", "") not in ("", "0")
 FILES = sorted(Path(__file__).parent.glob("*.txt"))
@@ -224,6 +227,14 @@ def test_transcript(path):
         path.write_text(given)
     else:
         assert given.splitlines() == text.splitlines(), f"{path.name} gives something else"
+
+
+@pytest.mark.parametrize("rule", ["paper", "feasible", "strict"])
+@pytest.mark.parametrize("name", ["loop-five", "loop-three"])
+def test_bundled_counterexamples_loop_under_the_paper_rule_only(name, rule):
+    chosen = scenario.load(scenario.bundled()[name], [f"protocol.rule={rule}"])
+    result = simulate(scenario.plan(chosen))
+    assert (loops_closed(result) > 0) == (rule == "paper")
 
 
 def test_there_are_transcripts():
