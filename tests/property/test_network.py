@@ -75,7 +75,7 @@ def test_the_checker_sees_a_disorder_and_a_value_out_of_range():
     net.check()
     cell = net.cells[net.node("n2")]
     cell.fd_dist = 1
-    with pytest.raises(Broken, match="n2 .* is not worse than"):
+    with pytest.raises(Broken, match=r"n2 .* is not worse than"):
         net.check()
     net = Net(LINE)
     net.cells[1].pf[2] = 1681

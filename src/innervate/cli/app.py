@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,6 +20,18 @@ Start with: innervate demo. The first run on a machine compiles for about half a
 _SET = Parameter(name=["--set"], negative="", allow_leading_hyphen=True)
 Sets = Annotated[list[str] | None, _SET]
 
+
+def _whole_seed(_type: Any, tokens: Sequence[Any]) -> int:
+    """What --seed takes: a library's guess at a number could run another seed than was meant."""
+    text = tokens[0].value
+    if not (text.isascii() and text.isdigit() and int(text) < 2**63):
+        message = f"--seed must be a whole number from 0, below 2^63, not {text[:40]}"
+        raise errors.UserError(message)
+    return int(text)
+
+
+Seed = Annotated[int | None, Parameter(converter=_whole_seed)]
+
 app = App(
     name="innervate",
     help=HELP,
@@ -33,7 +46,7 @@ app = App(
 @app.command
 def demo(
     *,
-    seed: int | None = None,
+    seed: Seed = None,
     out: Path | None = None,
     open_: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
@@ -59,7 +72,7 @@ def run(
     /,
     *,
     set_: Sets = None,
-    seed: int | None = None,
+    seed: Seed = None,
     out: Path | None = None,
     json: Annotated[bool, Parameter(negative="")] = False,
     report: bool = True,
@@ -141,7 +154,7 @@ def new(kind: str, file: Path | None = None, /) -> int:
 
 
 @app.command
-def check(file: str, /, *, set_: Sets = None, seed: int | None = None) -> int:
+def check(file: str, /, *, set_: Sets = None, seed: Seed = None) -> int:
     """Check a scenario without running it; says what it holds.
 
     Parameters
@@ -176,6 +189,9 @@ def compare(first: Path, second: Path, /) -> int:
 
 def main(tokens: Sequence[str] | None = None) -> int:
     """Carry out a command line; its exit code: 0, 1 our mistake, 2 the user's, 130 interrupted."""
+    for stream in (sys.stdout, sys.stderr):  # a terminal that is not UTF-8 gets escapes
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
     try:
         code = _parse_and_run(list(sys.argv[1:] if tokens is None else tokens))
         if sys.stdout is not None:  # it may be closed

@@ -61,6 +61,10 @@ def explain(error: BaseException) -> tuple[str, int]:
         return f"this needs {name}; install it with: pip install '{_extra_of(error)}'", USERS
     if type(error).__name__ == "MissingArgumentError":
         return _missing(error), USERS
+    if type(error).__name__ == "UnusedCliTokensError":
+        words = " ".join(getattr(error, "unused_tokens", None) or ())
+        command = " ".join(getattr(error, "command_chain", None) or ())
+        return f'"{_one_line(words)}" is too much; see: innervate {command} --help', USERS
     for module, name, code in _KNOWN:
         kind: Any = getattr(sys.modules.get(module), name, None)
         if kind is not None and isinstance(error, kind):

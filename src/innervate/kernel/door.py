@@ -12,6 +12,7 @@ import inspect
 import os
 import shutil
 import sys
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -54,11 +55,19 @@ def source_hash() -> str:
 
 
 def cache_root() -> Path:
-    """Where compiled code is kept: INNERVATE_CACHE, else the user's cache folder."""
+    """Where compiled code is kept: INNERVATE_CACHE, the user's cache folder, or a temporary one.
+
+    The first that can be written.
+    """
     chosen = os.environ.get("INNERVATE_CACHE")
-    if chosen:
-        return Path(chosen)
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "innervate"
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    spare = Path(tempfile.gettempdir()) / f"innervate-{os.getuid() if hasattr(os, 'getuid') else 0}"
+    for root in ([Path(chosen)] if chosen else []) + [Path(home) / "innervate"]:
+        with contextlib.suppress(OSError):
+            root.mkdir(parents=True, exist_ok=True)
+            if os.access(root, os.W_OK):
+                return root
+    return spare
 
 
 def open_cache() -> Path:

@@ -98,7 +98,7 @@ def outcome(recovery: Mapping[str, Any], still: str = "") -> str:
     if detected is not None:
         parts.append(f"noticed after {ms_words(detected)}")
     if routed is None:
-        parts.append(still or "some cells still had no way to the PC afterwards")
+        parts.append(still or "some cells still had no way to the PC by the next event or the end")
     elif routed > 0:
         parts.append(f"every cell had a way again after {ms_words(routed)}")
     else:

@@ -20,6 +20,7 @@ from innervate.scenario.rules import check, check_kind
 from innervate.scenario.source import Source, check_plain, shown
 
 SIZE_MAX = 64 * 1024 * 1024
+KEY_PARTS_MAX = 100
 _PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
@@ -93,6 +94,10 @@ def loads(
         ScenarioError: see load().
     """
     source = Source(path, folder)
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.partition("=")[0].count(".") > KEY_PARTS_MAX and not line.lstrip().startswith("#"):
+            source.lines = {(): number}
+            raise source.error((), f"a key has more than {KEY_PARTS_MAX} parts; none is that long")
     try:
         raw = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -131,6 +136,7 @@ def _build(
     if seed is not None:
         raw["seed"] = seed
         source.sets[("seed",)] = f"seed={seed}"
+        check_plain(source, seed, ("seed",))
     schema = raw.get("schema", SCHEMA)
     if isinstance(schema, int) and schema > SCHEMA:
         message = f"schema = {schema} is newer than this version knows ({SCHEMA}); update innervate"

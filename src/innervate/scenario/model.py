@@ -222,7 +222,9 @@ class SkinScenario(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
 
     kind: Annotated[Literal["skin"], Meta(description='"skin"')]
     schema: Annotated[int, Meta(ge=1, description="a whole number from 1")] = SCHEMA
-    name: Annotated[str, Meta(max_length=200, description="a string")] = ""
+    name: Annotated[str, Meta(max_length=200, description="a string of at most 200 characters")] = (
+        ""
+    )
     duration_s: Annotated[
         float, Meta(gt=0, le=1_000_000, description="a number of seconds > 0")
     ] = 4.0

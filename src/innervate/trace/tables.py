@@ -5,6 +5,7 @@ Polars is imported inside functions, so that reading a declaration stays cheap.
 
 from __future__ import annotations
 
+import io
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -121,7 +122,9 @@ def frame(table: Table, columns: Mapping[str, Any]) -> polars.DataFrame:
 def write(table: Table, columns: Mapping[str, Any], folder: Path) -> Path:
     """Write a table as `<name>.parquet` into a folder; the file comes back."""
     path = folder / f"{table.name}.parquet"
-    frame(table, columns).write_parquet(path, compression="zstd", statistics=True)
+    packed = io.BytesIO()  # written by ourselves, a full disk is an OSError that says so
+    frame(table, columns).write_parquet(packed, compression="zstd", statistics=True)
+    path.write_bytes(packed.getbuffer())
     return path
 
 
