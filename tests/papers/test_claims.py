@@ -108,11 +108,12 @@ def test_waves_take_the_shortest_ways():
 
 
 def test_static_trees_lose_more_than_balanced_ones():
-    tree = fig10.measure("setup-6", fig10.STATIC, 1, 1.0)
-    balanced = fig10.measure("setup-6", fig10.DYNAMIC._replace(settle_s=12.0), 1, 1.0)
-    assert sum(tree["loads"]) == sum(balanced["loads"]) == 150
-    assert balanced["beta"] > tree["beta"]
-    assert 0.1 < balanced["loss"] < tree["loss"]
+    seeds = (1, 2, 3)
+    trees = [fig10.measure("setup-5", fig10.STATIC, seed, 1.0) for seed in seeds]
+    balanced = fig10.measure("setup-5", fig10.DYNAMIC._replace(settle_s=20.0), 1, 1.0)
+    assert all(sum(run["loads"]) == 144 for run in (*trees, balanced))
+    assert balanced["beta"] > sum(tree["beta"] for tree in trees) / len(seeds)
+    assert 0.05 < balanced["loss"] < sum(tree["loss"] for tree in trees) / len(seeds)
 
 
 def samples(rows):

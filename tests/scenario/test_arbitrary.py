@@ -123,7 +123,8 @@ def test_deep_and_long_things() -> None:
         "a" + ".a" * 3000 + " = 1",
         "[" + "a." * 3000 + "a]",
     ):
-        assert survives(lambda text=text: loads('kind = "skin"\n' + text)) is None  # type: ignore[misc]
+        whole = 'kind = "skin"\n' + text
+        assert survives(lambda whole=whole: loads(whole)) is None  # type: ignore[misc]
     ring: dict[str, Any] = {"kind": "skin"}
     ring["patch"] = ring
     assert survives(lambda: from_dict(ring)) is None

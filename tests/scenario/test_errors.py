@@ -88,7 +88,7 @@ SETS = [
     ("touch.path=[[0,1,2],[0,1,2]]", "touch.path goes back in time at point 1: 0 s after 0 s; put "
      "the points in order of time"),
     ("data.rate_hz=0.001", "data.rate_hz must be 0 (off) or at least 0.01"),
-    ("script.steps=['tickle n']", 'script.steps.0: "tickle n" is no step; they are tick n, '
+    ("script.steps=['tickle n']", 'script.steps.0: "tickle n" is no step; they are tick n, soon n, '
      "deliver a->b, lose a->b, detect n.port, draw v"),
     ("body.urdf=x", '[body] lacks "links"; give it a pattern for link names, like '
      '"r_forearm_skin_*"'),

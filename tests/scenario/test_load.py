@@ -76,7 +76,8 @@ def test_bundled_scenarios(name: str) -> None:
     assert plan(again).faults == made.faults
     summary = check(name)
     assert f"{made.graph.cells:,}" in summary
-    assert len(summary.splitlines()) == 4 + (made.touch is not None) + len(made.faults)
+    extra = (made.touch is not None) + bool(made.script) + len(made.faults)
+    assert len(summary.splitlines()) == 4 + extra
     first = bundled()[name].read_text(encoding="utf-8").splitlines()[0]
     assert first.startswith("# ")
 

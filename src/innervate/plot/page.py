@@ -50,7 +50,8 @@ summary{cursor:pointer;color:var(--accent)}
 footer{margin-top:3em;color:var(--soft);font-size:.85rem}
 @media (max-width:480px){main{padding:18px 14px 40px}h1{font-size:1.3rem}}
 @media print{main{max-width:none;padding:0}h2{break-after:avoid}body{font-size:11pt}
-.four{grid-template-columns:repeat(4,1fr)}.three{grid-template-columns:repeat(3,1fr)}.two{grid-template-columns:repeat(2,1fr)}
+.four{grid-template-columns:repeat(4,1fr)}.three{grid-template-columns:repeat(3,1fr)}
+.two{grid-template-columns:repeat(2,1fr)}
 pre{white-space:pre-wrap}details::details-content{content-visibility:visible;block-size:auto}}
 """
 
