@@ -121,7 +121,7 @@ def test_compiled_runs_equal_plain_ones_row_for_row(keys, checks):
 
 @pytest.mark.slow
 @given(scenarios(), st.booleans())
-@settings(QUIET, max_examples=600)
+@settings(QUIET, max_examples=250)
 def test_many_compiled_runs_equal_plain_ones(keys, checks):
     check_compiled_equals_plain(keys, checks)
 
@@ -153,7 +153,7 @@ def test_frames_as_bytes_change_nothing(keys):
 
 @pytest.mark.slow
 @given(scenarios())
-@settings(QUIET, max_examples=300)
+@settings(QUIET, max_examples=120)
 def test_frames_as_bytes_change_nothing_in_many_runs(keys):
     check_wire(keys)
 
