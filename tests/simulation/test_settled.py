@@ -2,7 +2,7 @@
 
 import pytest
 
-from innervate.protocol.skin_words import REPORT_BALANCE
+from innervate.protocol.skin_words import REPORT_BALANCE, REPORT_PARENT
 from tests.skin_runs import (
     cells_at_end,
     distances,
@@ -69,7 +69,7 @@ def test_a_skin_settles_on_shortest_routes(rule, updates, name):
 def test_many_skins_settle_on_shortest_routes(rule, updates):
     restless = 0  # one that balanced just now still counts its loads anew
     for seed in range(300):
-        protocol = {"rule": rule, "updates": updates, "m": 3 + seed % 3}
+        protocol = {"rule": rule, "updates": updates, "m": 3 + seed % 3, "balancing": False}
         keys = SETUPS[list(SETUPS)[seed % len(SETUPS)]]
         keys = dict(keys, seed=seed, duration_s=3.0, protocol=protocol)
         result = run(keys)
@@ -78,6 +78,19 @@ def test_many_skins_settle_on_shortest_routes(rule, updates):
         else:
             assert_settled(result, f"seed {seed}")
     assert restless < 60
+
+
+# E14 "One attempt per cell every 8*d_max periods settles"
+@pytest.mark.xfail(
+    strict=True,
+    reason="two cells whose turns come at the same moment move to and fro together, for long",
+)
+def test_balancing_comes_to_rest():
+    for seed in (38, 67, 92):
+        protocol = {"m": 3, "updates": "wave", "beacon_hz": 100}
+        keys = dict(SETUPS["three ports"], seed=seed, duration_s=12.0, protocol=protocol)
+        late = rows_since(run(keys), 5_000_000, REPORT_BALANCE)
+        assert len(late) == 0, f"seed {seed}: {len(late)} switches after 5 s"
 
 
 @pytest.mark.parametrize("rule", ["feasible", "strict"])
@@ -115,5 +128,5 @@ def test_a_quiet_skin_stays_as_it_is():
     # Nothing but balancing changes a parent once the skin has settled [skin II-B.4, E14].
     for seed in range(6):
         result = run(setup_1(seed=seed, duration_s=6.0, protocol={"m": 3}))
-        late = rows_since(result, 1_000_000, 1)
+        late = rows_since(result, 1_000_000, REPORT_PARENT)
         assert len(late) == 0, f"seed {seed}: {len(late)} switches, the first at {late['time'][0]}"
