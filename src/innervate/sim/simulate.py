@@ -125,7 +125,7 @@ def simulate(
     if not plain:
         door.mark_compiled(loop_name(plan))
     started = wall_s()
-    with _Stop() as stop:
+    with Stop() as stop:
         status = loop.BUDGET
         while status != loop.DONE and not stop.asked:
             advance(world, plan.duration_us, SLICE_EVENTS)
@@ -161,7 +161,7 @@ def _result(
     )
 
 
-class _Stop:
+class Stop:
     """Turns Ctrl-C into a request to stop after the present slice, where a signal can be caught."""
 
     def __init__(self) -> None:
@@ -169,7 +169,7 @@ class _Stop:
         self._catches = threading.current_thread() is threading.main_thread()
         self._before: Any = None
 
-    def __enter__(self) -> _Stop:
+    def __enter__(self) -> Stop:
         if self._catches:
             self._before = signal.signal(signal.SIGINT, self._ask)
         return self

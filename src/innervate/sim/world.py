@@ -35,6 +35,9 @@ DELIVERY = ("time", "port", "cell", "seq", "hops", "proximity", "force", "temper
 TRAIL = ("time", "node", "handler", "port", "fingerprint")
 ACTION = ("kind", "a", "b", "c")
 WIDE = {"time", "busy", "offset", "rate", "inverse", "source", "at", "fingerprint"} | set(RUN)
+# Of the radio (see radio/world.py).
+WIDE |= {"start", "end", "offered", "data_end", "now", "wanted", "completed", "decoded", "garbled",
+         "offers", "dropped", "silent", "partial", "again", "sent", "packets"}  # fmt: skip
 
 # States of a node.
 OFF = 0

@@ -1,0 +1,1 @@
+"""Stations that share one half-duplex radio channel, event by event."""

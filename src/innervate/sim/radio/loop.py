@@ -1,0 +1,342 @@
+"""The simulation loop of a radio channel: one function, compiled on arrays or plain on lists."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from innervate.kernel.bits import mix
+from innervate.protocol.arith import MASK16, MASK30
+from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER
+from innervate.protocol.radio_words import (
+    LEAVE,
+    PACKET,
+    QUEUE,
+    REPORT_DELIVERED,
+    REPORT_LEFT,
+)
+from innervate.scenario.radio_plan import BEGIN, FADE, GARBLE, JOIN, KILL
+from innervate.scenario.radio_plan import LEAVE as RETIRE
+from innervate.sim.loop import (
+    BROKEN,
+    BUDGET,
+    DONE,
+    ON_FRAME,
+    ON_INPUT,
+    ON_START,
+    ON_TIMER,
+    POOL_FULL,
+    ROWS_FULL,
+)
+from innervate.sim.radio import heap as queue
+from innervate.sim.radio import medium, traffic
+from innervate.sim.radio.heap import (
+    CARRIER,
+    ENDS,
+    OFFER,
+    RANK_SHIFT,
+    READY,
+    STARTS,
+    STATION_SHIFT,
+    STATIONS_MAX,
+    TIME_SHIFT,
+    TIMER,
+)
+from innervate.sim.radio.medium import NEVER
+from innervate.sim.radio.world import TIMERS
+
+ON_CARRIER = 4
+BROKEN_OUTBOX = 3
+BROKEN_RANGE = 4
+WHAT_MASK = (1 << STATION_SHIFT) - 1
+
+COLD, LATE = 0, 1
+ROWS_PER_EVENT = 24
+
+
+class Handlers(NamedTuple):
+    """A loop's parts, bound to a stack; `advance` is the loop itself."""
+
+    drain: Callable[..., None]
+    finish: Callable[..., None]
+    offer: Callable[..., None]
+    switch_on: Callable[..., None]
+    tell_carrier: Callable[..., None]
+    edge: Callable[..., None]
+    obey: Callable[..., None]
+    dispatch: Callable[..., None]
+    advance: Callable[..., None]
+
+
+def pressing(world):
+    """Why the loop has to stop before the next event, or DONE."""
+    run = world.run[0]
+    if run.broken:
+        return BROKEN
+    if run.rows + ROWS_PER_EVENT > run.row_limit > 0:
+        return ROWS_FULL
+    if run.sent + ROWS_PER_EVENT > run.sent_limit > 0:
+        return ROWS_FULL
+    if run.packets + ROWS_PER_EVENT > run.packet_limit > 0:
+        return ROWS_FULL
+    if run.trail + ROWS_PER_EVENT > run.trail_limit > 0:
+        return ROWS_FULL
+    if world.heap.size[0] + 4 * run.stations + 64 > len(world.heap.keys):
+        return POOL_FULL
+    return DONE
+
+
+def keep_row(world, time, node, code, a, b):
+    """A row of what stations report."""
+    run = world.run[0]
+    if run.row_limit > 0:
+        row = world.rows[run.rows]
+        run.rows += 1
+        row.time = time
+        row.node = node
+        row.code = code
+        row.a = a
+        row.b = b
+
+
+def keep_sent(world, node, frame, time):
+    """A row of what goes on the air."""
+    run = world.run[0]
+    start = time + run.ta_us
+    end = start + frame.slots * run.slot_us
+    if frame.count > 0:
+        traffic.note_sent(world, node, frame, end)
+    if run.sent_limit > 0:
+        row = world.sent[run.sent]
+        run.sent += 1
+        row.time = start
+        row.end = end
+        row.node = node
+        row.kind = frame.kind
+        row.slots = frame.slots
+        row.pos = frame.pos
+        row.next = frame.next
+        row.handle = frame.handle
+        row.count = frame.count
+        row.more = frame.more
+
+
+def watch(world, node, time, handler, port):
+    """Checkers, and the trail of all handler calls."""
+    run = world.run[0]
+    if run.checks and run.broken == 0:
+        words = world.words[node]
+        for i in range(len(world.low)):
+            if words[i] < world.low[i] or words[i] > world.high[i]:
+                run.broken, run.broken_node = BROKEN_RANGE, node
+    if run.trail_limit > 0:
+        row = world.trail[run.trail]
+        run.trail += 1
+        row.time = time
+        row.node = node
+        row.handler = handler
+        row.port = port
+        row.fingerprint = run.fingerprint
+
+
+def build(stack):
+    """The loop for a stack: an object with start, hear, fire, give, carrier, digest, copy_frame."""
+    start, hear, fire, give = stack.start, stack.hear, stack.fire, stack.give
+    carrier, digest, copy_frame = stack.carrier, stack.digest, stack.copy_frame
+
+    def drain(world, node, time, now):
+        """Carry out what a handler put into the outbox; fold it into the fingerprint."""
+        run, out = world.run[0], world.out
+        mark = run.fingerprint
+        for i in range(out.count[0]):
+            act = out.action[i]
+            kind, a, b, c = act.kind, act.a, act.b, act.c
+            mark = mix(mark, kind ^ (a << 3) ^ (b << 20) ^ (c << 50))
+            if kind == SEND:
+                mark = mix(mark, digest(out.frame[i]))
+                keep_sent(world, node, out.frame[i], time)
+                medium.transmit(world, node, out.frame[i], time, copy_frame)
+            elif kind == SET_TIMER:
+                at = time + max(0, ((b - now + (1 << 29)) & MASK30) - (1 << 29))
+                if world.due[node * TIMERS + a] != at:
+                    world.due[node * TIMERS + a] = at
+                    queue.push(world.heap, queue.key_of(at, TIMER, node, a))
+            elif kind == REPORT:
+                keep_row(world, time, node, a, b, c)
+                if a == REPORT_DELIVERED:
+                    for k in range(c):
+                        traffic.note_delivered(world, node, (b + k) & MASK16, time)
+                    world.radios[node].noted |= 2
+                elif a == REPORT_LEFT:
+                    world.radios[node].leaving = 2
+            elif kind == DELIVER:
+                traffic.note_received(world, node, out.frame[i])
+        out.count[0] = 0
+        run.fingerprint = mark
+        if out.overflow[0] and run.broken == 0:
+            run.broken, run.broken_node = BROKEN_OUTBOX, node
+
+    def finish(world, node, time, now, handler, port):
+        """After a handler: account for it, carry out what it asked for, check."""
+        run, radio = world.run[0], world.radios[node]
+        run.handled += 1
+        run.fingerprint = mix(run.fingerprint, (time << 26) ^ (node << 6) ^ (port << 40) ^ handler)
+        if world.out.count[0] > 0:
+            drain(world, node, time, now)
+        if run.watchful:
+            watch(world, node, time, handler, port)
+            if run.broken and run.broken_at < 0:
+                run.broken_at = time
+        if radio.noted & 2:
+            radio.noted &= 1
+            if (run.saturated or radio.backlog > 0) and radio.leaving == 0:
+                queue.push(world.heap, queue.key_of(time, OFFER, node, 1))
+        if radio.leaving == 2:
+            radio.alive = 0
+            run.hurt += 1
+
+    def offer(world, node, time):
+        """Hand packets down: of those that wait, and in saturation always new ones."""
+        run, radio = world.run[0], world.radios[node]
+        station = world.stations[node]
+        most = QUEUE
+        if run.saturated:
+            most = min(QUEUE, 2 * run.per_turn + 1)
+        for _ in range(QUEUE):
+            if station.queued >= most or radio.leaving or not radio.alive:
+                break
+            if run.saturated:
+                handle = traffic.make(world, node, time)
+            elif radio.backlog > station.queued:
+                handle = (radio.fresh - radio.backlog + station.queued) & MASK16
+            else:
+                break
+            traffic.fill_item(world, node, handle)
+            now = time + radio.offset
+            give(world, node, now & MASK30, PACKET)
+            finish(world, node, time, now, ON_INPUT, PACKET)
+
+    def switch_on(world, node, time, cause):
+        """Start a station; it learns at once whether there is a carrier."""
+        radio = world.radios[node]
+        radio.alive = 1
+        radio.leaving = 0
+        world.run[0].hurt -= 1
+        radio.candidate = NEVER
+        radio.cd, radio.voc, radio.noted = 0, 0, 0
+        now = time + radio.offset
+        for timer in range(TIMERS):
+            world.due[node * TIMERS + timer] = NEVER
+        start(world, node, now & MASK30, cause)
+        finish(world, node, time, now, ON_START, cause)
+        medium.note_carrier(world, node, time)
+        queue.push(world.heap, queue.key_of(time, OFFER, node, 1))
+
+    def tell_carrier(world, node, time):
+        """Tell a station what its radio hears."""
+        radio = world.radios[node]
+        radio.cd = 1 if radio.present > 0 else 0
+        radio.voc = 1 if radio.present == 1 else 0
+        now = time + radio.offset
+        carrier(world, node, now & MASK30, radio.cd, radio.voc)
+        finish(world, node, time, now, ON_CARRIER, radio.cd * 2 + radio.voc)
+
+    def edge(world, rank, node, what, time):
+        """A signal arrives at a station, or ends there."""
+        air, radio = world.air[what], world.radios[node]
+        sender = what >> queue.AIR_BITS
+        if rank == STARTS:
+            air.at_start += 1
+            medium.go_on(world, STARTS, what, air.start, air.at_start)
+            medium.begin_signal(world, node, what)
+        else:
+            first = sender * world.run[0].stations
+            if (
+                air.at_end >= world.degree[sender]
+                or air.end + world.delay[first + air.at_end] != time
+            ):
+                queue.pop(world.heap)  # its sender died before
+                return
+            air.at_end += 1
+            medium.go_on(world, ENDS, what, air.end, air.at_end)
+            if medium.end_signal(world, node, what):
+                world.run[0].decoded += 1
+                now = time + radio.offset
+                hear(world, node, now & MASK30, world.frames[what])
+                finish(world, node, time, now, ON_FRAME, world.frames[what].kind)
+        medium.note_carrier(world, node, time)
+
+    def obey(world, index, time):
+        """An event of the scenario."""
+        command = world.commands[index]
+        node = command.node
+        radio, run = world.radios[node], world.run[0]
+        if command.action == BEGIN:
+            for i in range(run.stations):
+                if world.radios[i].leaving == 0:
+                    switch_on(world, i, time, COLD)
+        elif command.action == JOIN and not radio.alive:
+            switch_on(world, node, time, LATE)
+        elif command.action == KILL and radio.alive:
+            radio.alive = 0
+            run.hurt += 1
+            medium.silence(world, node, time)
+        elif command.action == RETIRE and radio.alive:
+            radio.leaving = max(radio.leaving, 1)
+            now = time + radio.offset
+            give(world, node, now & MASK30, LEAVE)
+            finish(world, node, time, now, ON_INPUT, LEAVE)
+        elif command.action == GARBLE:
+            radio.garble = command.value
+        elif command.action == FADE:
+            radio.fade = command.value
+
+    def dispatch(world, key, time):
+        """Hand the first event of the queue to what it is for."""
+        rank = (key >> RANK_SHIFT) & 7
+        node = (key >> STATION_SHIFT) & (STATIONS_MAX - 1)
+        what = key & WHAT_MASK
+        if rank <= STARTS:
+            edge(world, rank, node, what, time)
+            return
+        queue.pop(world.heap)
+        radio = world.radios[node]
+        if rank == CARRIER:
+            radio.noted &= 2
+            if radio.alive and not radio.deaf:
+                tell_carrier(world, node, time)
+        elif rank == READY:
+            radio.deaf = 0
+            if radio.alive:
+                tell_carrier(world, node, time)
+        elif rank == TIMER:
+            if world.due[node * TIMERS + what] == time and radio.alive:
+                world.due[node * TIMERS + what] = NEVER
+                now = time + radio.offset
+                fire(world, node, now & MASK30, what)
+                finish(world, node, time, now, ON_TIMER, what)
+        elif rank == OFFER:
+            if what == 0:
+                traffic.make(world, node, time)
+                radio.next_offer += 1
+                traffic.schedule(world, node)
+            offer(world, node, time)
+        else:
+            obey(world, (node << STATION_SHIFT) | what, time)
+
+    def advance(world, until, budget):
+        """Run up to, not including, time `until` (us), or `budget` events."""
+        run, heap = world.run[0], world.heap
+        for _ in range(budget):
+            run.status = pressing(world)
+            if run.status != DONE:
+                return
+            if heap.size[0] == 0 or (run.completed >= run.wanted > 0):
+                return
+            key = heap.keys[0]
+            time = key >> TIME_SHIFT
+            if time >= until:
+                return
+            run.now = time
+            dispatch(world, key, time)
+        run.status = BUDGET
+
+    return Handlers(drain, finish, offer, switch_on, tell_carrier, edge, obey, dispatch, advance)
