@@ -6,7 +6,8 @@ import pytest
 from innervate import scenario
 from innervate.run import RunError, compare, run
 from innervate.run.compare import differences
-from innervate.run.trail import FIELDS, first_difference, trail
+from innervate.run.skin import trail
+from innervate.run.trail import FIELDS, first_difference
 from innervate.sim.simulate import simulate
 from innervate.sim.world import TRAIL, row_dtype
 

@@ -110,6 +110,9 @@ class Progress(Display):
 def is_compiled(plan: Any) -> bool:
     """True if the loop that a plan runs on is compiled, or needs no compiling."""
     from innervate.kernel import door
+
+    if plan.kind == "radio":
+        return door.is_compiled(plan.protocol.replace("/", "-"))
     from innervate.sim.simulate import loop_name
 
     return bool(plan.script) or door.is_compiled(loop_name(plan))

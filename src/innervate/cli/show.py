@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from innervate.cli import show_radio
 from innervate.plot import words
 
 if TYPE_CHECKING:
@@ -16,6 +17,8 @@ BROKEN_MAX = 5
 def summary_lines(run: Run) -> list[str]:
     """What a person wants to know first."""
     summary = run.summary
+    if summary["kind"] == "radio":
+        return show_radio.summary_lines(run)
     return [_first(run), *event_lines(run), *_broken(summary), *state_lines(summary)]
 
 

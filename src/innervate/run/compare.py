@@ -9,13 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from innervate import scenario as scenarios
-from innervate.protocol.skin_words import TICK
 from innervate.run import folder as folders
 from innervate.run.errors import RunError
-from innervate.run.trail import first_difference, trail
-from innervate.scenario import Plan, ScenarioError
-from innervate.sim.loop import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
-from innervate.topology import PORT_NAMES
+from innervate.run.rooms import room_of
+from innervate.run.trail import first_difference
+from innervate.scenario import ScenarioError
 
 # What says nothing about the trajectory.
 _ASIDE = ("wall_s", "events_per_s")
@@ -129,19 +127,22 @@ class _Recorded:
             raise RunError(f"{self.folder / folders.SUMMARY} is damaged; run the scenario again")
         return round(1e6 * ended)
 
-    def plan(self) -> Plan:
+    def plan(self) -> Any:
         """The plan of its scenario."""
         try:
-            return scenarios.plan(scenarios.load(self.folder / folders.SCENARIO))
+            made = scenarios.plan(scenarios.load(self.folder / folders.SCENARIO))
         except ScenarioError as error:
             raise RunError(f"its scenario cannot be run any more: {error}") from None
+        return made
 
 
 def _diverge(a: _Recorded, b: _Recorded) -> Divergence | None:
     plans = a.plan(), b.plan()
     rows = first_difference(
-        trail(plans[0], min(a.ended_us, plans[0].duration_us)),
-        trail(plans[1], min(b.ended_us, plans[1].duration_us)),
+        *(
+            room_of(plan.kind).trail(plan, min(run.ended_us, plan.duration_us))
+            for plan, run in zip(plans, (a, b), strict=True)
+        )
     )
     if rows is None:
         return None
@@ -150,23 +151,11 @@ def _diverge(a: _Recorded, b: _Recorded) -> Divergence | None:
     return Divergence(min(times) / 1e6, words[0], words[1], words[0] == words[1])
 
 
-def _in_words(plan: Plan, row: Any) -> str:
+def _in_words(plan: Any, row: Any) -> str:
     """A row of the trail: "2.016000 s, p0 r3 c4: beacon period"."""
     if row is None:
         return "nothing more"
-    node, handler, port = int(row["node"]), int(row["handler"]), int(row["port"])
-    where = f"{int(row['time']) / 1e6:.6f} s, {plan.graph.label(node)}"
-    what = {
-        ON_START: "switched on" if port == 0 else "restarted",
-        ON_FRAME: f"frame on port {_port(plan, node, port)}",
-        ON_TIMER: "beacon period" if port == TICK else "beacon that had to wait",
-        ON_INPUT: "sample of its sensors",
-    }[handler]
-    return f"{where}: {what}"
-
-
-def _port(plan: Plan, node: int, port: int) -> str:
-    return str(port) if node == plan.graph.sink else PORT_NAMES[port]
+    return f"{int(row['time']) / 1e6:.6f} s, {room_of(plan.kind).call_words(plan, row)}"
 
 
 def _notes(a: _Recorded, b: _Recorded) -> list[str]:

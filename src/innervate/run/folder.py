@@ -13,13 +13,14 @@ from pathlib import Path
 from typing import Any
 
 from innervate.run.errors import RunError
-from innervate.trace.tables import TABLES
+from innervate.trace import radio_tables, tables
 
 SCENARIO = "scenario.toml"
 SUMMARY = "summary.json"
 PROVENANCE = "provenance.json"
 REPORT = "report.html"
 REQUIRED = (SCENARIO, SUMMARY, PROVENANCE)
+TABLES = (*tables.TABLES, *radio_tables.TABLES)
 KNOWN = frozenset({*REQUIRED, REPORT, *(f"{table.name}.parquet" for table in TABLES)})
 
 _UNSUITABLE = re.compile(r"[^\w.+-]+")

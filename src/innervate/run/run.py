@@ -11,20 +11,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from innervate import scenario as scenarios
-from innervate.analysis import frames, skin
 from innervate.analysis.touch import WINDOW_S, Image, received_image
 from innervate.run import folder as folders
-from innervate.run.columns import columns
-from innervate.scenario import Plan, Scenario
-from innervate.sim.simulate import Result, simulate
+from innervate.run.rooms import room_of
+from innervate.scenario import Scenario
 from innervate.trace import tables
 from innervate.trace.provenance import provenance
 
 if TYPE_CHECKING:
     import polars
-
-# Received samples are kept by default as long as they fit easily: some 60 MB.
-RECEIVED_MAX = 1_000_000
 
 Progress = Callable[[int, int], None]
 Source = str | os.PathLike[str] | Scenario | dict[str, Any]
@@ -36,27 +31,28 @@ class Run:
 
     Attributes:
         scenario: as resolved.
-        plan: its graph and whole numbers.
-        result: the simulation's rows and its world at the end.
+        plan: its whole numbers; of a skin a Plan, of a radio team a RadioPlan.
+        result: the simulation's rows and its world at the end: a Result or RadioResult.
         summary: what a person wants to know, by the names of docs/summary.
-        received_kept: the table `received` holds all samples, rather than none.
         checks: the invariant checkers were on.
     """
 
     scenario: Scenario
-    plan: Plan
-    result: Result
+    plan: Any
+    result: Any
     summary: dict[str, Any]
-    received_kept: bool
     checks: bool = True
     written: Path | None = field(default=None)
 
     @cached_property
     def tables(self) -> dict[str, polars.LazyFrame]:
-        """The run's tables by name: routes, links, outages, loops, received."""
+        """The run's tables by name: of a skin routes, links, outages, loops, received; of a
+        radio team packets, transmissions, reports.
+        """
+        room = room_of(self.plan.kind)
         return {
-            table.name: tables.frame(table, columns(table, self.result)).lazy()
-            for table in tables.TABLES
+            table.name: tables.frame(table, room.columns(table, self.result)).lazy()
+            for table in room.TABLES
         }
 
     @cached_property
@@ -74,15 +70,17 @@ class Run:
     @property
     def interrupted(self) -> bool:
         """True if it was ended early; all it holds is then of the time until there."""
-        return self.result.interrupted
+        return bool(self.result.interrupted)
 
     def received_image(self, time_s: float, window_s: float = WINDOW_S) -> Image:
         """Force and proximity per cell as the PC had them at a time (see analysis/touch.py)."""
         return received_image(self.result, time_s, window_s)
 
-    def plot(self, figure: str = "recovery", **options: Any) -> Any:
+    def plot(self, figure: str = "", **options: Any) -> Any:
         """A matplotlib figure of the run; `innervate.plot.figures` says which there are."""
-        return import_module("innervate.plot.figures").draw(self, figure, **options)
+        name = "figures" if self.plan.kind == "skin" else f"{self.plan.kind}_figures"
+        drawn = (figure,) if figure else ()
+        return import_module(f"innervate.plot.{name}").draw(self, *drawn, **options)
 
     def report(self) -> str:
         """The run's report, one page of HTML."""
@@ -100,9 +98,10 @@ class Run:
         with folders.replacing(folder) as fresh:
             text = scenarios.dump(self.scenario)
             (fresh / folders.SCENARIO).write_text(text, encoding="utf-8")
-            for table in tables.TABLES:
-                if table is not tables.RECEIVED or self.received_kept:
-                    tables.write(table, columns(table, self.result), fresh)
+            room = room_of(self.plan.kind)
+            for table in room.TABLES:
+                if table is not tables.RECEIVED or self.result.received_kept:
+                    tables.write(table, room.columns(table, self.result), fresh)
             if report:
                 (fresh / folders.REPORT).write_text(self.report(), encoding="utf-8")
             folders.write_json(fresh / folders.SUMMARY, self.summary)
@@ -144,12 +143,9 @@ def run(
     plan = scenarios.plan(made)
     if out is not None:
         folders.check_target(out)
-    if received is None:
-        received = 0 < _samples(plan) <= RECEIVED_MAX
-    result = simulate(plan, plain=plain, checks=checks, deliveries=received, progress=progress)
-    if checks:
-        frames.check_conserved(result)
-    done = Run(made, plan, result, skin.summarize(result), received, checks)
+    room = room_of(plan.kind)
+    result = room.simulate(plan, plain=plain, checks=checks, received=received, progress=progress)
+    done = Run(made, plan, result, room.summarize(result), checks)
     if out is not None:
         done.write(out)
     return done
@@ -174,10 +170,3 @@ def resolve(
         return scenario
     text, source = scenarios.dump(scenario), scenario.source
     return scenarios.loads(text, changes, seed, source.path, source.folder)
-
-
-def _samples(plan: Plan) -> int:
-    """About how many samples all cells take."""
-    if plan.data_period_us == 0:
-        return 0
-    return plan.graph.cells * (plan.duration_us // plan.data_period_us + 1)

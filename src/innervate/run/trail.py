@@ -1,4 +1,4 @@
-"""The handler calls of a run one after the other, without keeping them all."""
+"""Where the handler calls of two runs begin to differ, without keeping them all."""
 
 from __future__ import annotations
 
@@ -7,31 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from innervate.scenario import Plan
-from innervate.sim import build, loop
-from innervate.sim.build import get, put
-from innervate.sim.simulate import RULE_STATIC, SLICE_EVENTS, compiled_loop
-
 FIELDS = ("time", "node", "handler", "port", "fingerprint")
-
-
-def trail(plan: Plan, until_us: int) -> Iterator[Any]:
-    """Pieces of the trail of a plan, in order: structured arrays with the fields FIELDS.
-
-    Each belongs to the caller; together they are what `simulate(plan, trail=True)` keeps.
-    """
-    advance = compiled_loop(plan.params["rule"] == RULE_STATIC)
-    world = build.build(plan, checks=False, observe=False, trail=True)
-    while True:
-        advance(world, until_us, SLICE_EVENTS)
-        status = int(get(world.run, 0, "status"))
-        if status == loop.POOL_FULL:
-            world = build.grow_pool(world)
-        count = int(get(world.run, 0, "trail"))
-        yield world.trail[:count].copy()
-        put(world.run, 0, trail=0)
-        if status == loop.DONE:
-            return
 
 
 def first_difference(one: Iterator[Any], other: Iterator[Any]) -> tuple[Any, Any] | None:

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from innervate.scenario import radio_planning
 from innervate.scenario.bundled import bundled
 from innervate.scenario.check import check, describe
 from innervate.scenario.emit import dump
@@ -17,8 +18,9 @@ from innervate.scenario.plan import (
     REVIVE,
     Fault,
     Plan,
-    plan,
 )
+from innervate.scenario.plan import plan as skin_planning
+from innervate.scenario.radio_plan import RadioFault, RadioPlan
 from innervate.scenario.templates import template
 from innervate.scenario.touch import Touch
 
@@ -32,6 +34,8 @@ __all__ = [
     "REVIVE",
     "Fault",
     "Plan",
+    "RadioFault",
+    "RadioPlan",
     "Scenario",
     "ScenarioError",
     "Touch",
@@ -48,10 +52,23 @@ __all__ = [
 ]
 
 
+def plan(scenario: Scenario) -> Any:
+    """The plan of a run, a Plan or a RadioPlan: same scenario and seed, same plan.
+
+    Raises:
+        ScenarioError: it cannot be run as written.
+    """
+    if scenario.kind == "radio":
+        return radio_planning.plan(scenario)
+    return skin_planning(scenario)
+
+
 def json_schema() -> dict[str, Any]:
     """The JSON Schema of scenario files, for editors."""
     import msgspec
 
-    from innervate.scenario.model import SkinScenario
+    from innervate.scenario.kinds import KINDS
 
-    return msgspec.json.schema(SkinScenario)
+    models = [kind.model for kind in KINDS.values()]
+    schemas, parts = msgspec.json.schema_components(models)
+    return {"anyOf": list(schemas), "$defs": parts}

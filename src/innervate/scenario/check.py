@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 
+from innervate.scenario import radio_planning, radio_words
 from innervate.scenario.load import load
 from innervate.scenario.overrides import Override
 from innervate.scenario.plan import ACTIONS, LOSS_ONE, RULES, UPDATES, Fault, Plan, plan
@@ -21,7 +22,10 @@ def check(
     Raises:
         ScenarioError: it cannot be run as written.
     """
-    return describe(plan(load(path, overrides, seed)))
+    loaded = load(path, overrides, seed)
+    if loaded.kind == "radio":
+        return radio_words.describe(radio_planning.plan(loaded))
+    return describe(plan(loaded))
 
 
 def describe(made: Plan) -> str:

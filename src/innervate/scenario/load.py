@@ -13,10 +13,11 @@ from typing import Any
 from innervate.scenario.bundled import bundled
 from innervate.scenario.errors import ScenarioError
 from innervate.scenario.explain import convert, nearest
+from innervate.scenario.kinds import KINDS, KINDS_TO_COME
 from innervate.scenario.lines import key_lines
-from innervate.scenario.model import KINDS, KINDS_TO_COME, SCHEMA, SkinScenario
+from innervate.scenario.model import SCHEMA
 from innervate.scenario.overrides import Override, apply
-from innervate.scenario.rules import check, check_kind
+from innervate.scenario.rules import check_kind
 from innervate.scenario.source import Source, check_plain, shown
 
 SIZE_MAX = 64 * 1024 * 1024
@@ -29,32 +30,32 @@ class Scenario:
     """A validated scenario.
 
     Attributes:
-        model: its tables (see model.py), overrides and defaults filled in.
+        model: its tables (see model.py, radio_model.py), overrides and defaults filled in.
         source: where it came from, for error messages.
     """
 
-    model: SkinScenario
+    model: Any
     source: Source = field(default_factory=Source, compare=False)
 
     @property
     def kind(self) -> str:
-        """What it describes: "skin" in this version."""
-        return self.model.kind
+        """What it describes: "skin" or "radio" in this version."""
+        return str(self.model.kind)
 
     @property
     def name(self) -> str:
         """Its name; the file's if it gives none."""
-        return self.model.name
+        return str(self.model.name)
 
     @property
     def duration_s(self) -> float:
         """Simulated time in seconds, > 0."""
-        return self.model.duration_s
+        return float(self.model.duration_s)
 
     @property
     def seed(self) -> int:
         """The root seed, 0 .. 2^63-1."""
-        return self.model.seed
+        return int(self.model.seed)
 
     @property
     def path(self) -> str:
@@ -145,8 +146,8 @@ def _build(
     if not raw.get("name", "x"):
         del raw["name"]
     raw.setdefault("name", Path(source.path).stem or kind)
-    model = convert(source, raw, KINDS[kind])
-    check(source, model)
+    model = convert(source, raw, KINDS[kind].model)
+    KINDS[kind].check(source, model)
     return Scenario(model, source)
 
 

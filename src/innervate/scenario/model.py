@@ -240,8 +240,3 @@ class SkinScenario(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
     touch: Annotated[TouchTable | None, Meta(description="a table [touch]")] = None
     event: Annotated[list[EventTable], Meta(description="tables [[event]]")] = []
     script: Annotated[ScriptTable | None, Meta(description="a table [script]")] = None
-
-
-# Later kinds add theirs here; each names its struct.
-KINDS: dict[str, type[SkinScenario]] = {"skin": SkinScenario}
-KINDS_TO_COME = ("radio", "mesh")

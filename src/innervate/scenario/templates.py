@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from innervate.scenario.errors import ScenarioError
 from innervate.scenario.explain import nearest
-from innervate.scenario.model import KINDS_TO_COME
+from innervate.scenario.kinds import KINDS_TO_COME
 
 SKIN = """\
 # A robot skin. Check it with `innervate check FILE`, run it with `innervate run FILE`.
@@ -68,7 +68,46 @@ interface = 1                 # or cell = { patch, row, column } with port = "E"
                               # node = "n1", pc = true (restart), random = "link"
 """
 
-_TEMPLATES = {"skin": SKIN}
+RADIO = """\
+# Robots that share one radio channel. Check it with `innervate check FILE`, run it with
+# `innervate run FILE`.
+kind = "radio"
+schema = 1
+name = "my-team"
+duration_s = 60.0             # simulated time, at most; it ends when all is delivered
+seed = 1                      # same seed, same run
+
+stations = 10
+packet_slots = 25             # 3 to 250; a slot is 8 bits; or a range: [3, 25]
+
+[traffic]
+kind = "disaster"             # disaster (all start at once) | saturated | poisson
+spread_us = 0                 # disaster: starts within this time
+# packets = 100               # saturated: per station, then the run ends
+# load = 0.3                  # poisson: packets per packet time, of all stations together
+
+[channel]
+level = "event"               # event (every frame, to the microsecond) | slotted (as published)
+bit_rate = 38400
+tau_us = [52, 104]            # delay between two stations: drawn for each pair, or one number
+turnaround_us = 0             # of a radio, each way; the paper's had 2000
+loss = 0.0                    # share of frames that a receiver cannot read
+# hidden = [[0, 3]]           # pairs that do not hear each other
+
+[protocol]
+mac = "csma-cd-r"             # csma-cd-d1 | csma-cd-d2 | csma-cd-d2p | slotted-aloha | dcf |
+                              # nonpersistent | p-persistent | tree | tdma
+mode = "practical"            # practical | paper
+# per_turn = 4                # packets a station sends in one turn
+# turns = 16                  # turns between two windows for newcomers
+
+# [[event]]
+# at_s = 1.0                  # or a range to draw from: [0.9, 1.1]
+# action = "kill"             # join | leave | kill | revive | garble | fade (the next CR-R)
+# station = 3                 # or "random"
+"""
+
+_TEMPLATES = {"skin": SKIN, "radio": RADIO}
 
 
 def template(kind: str = "skin") -> str:
@@ -80,6 +119,7 @@ def template(kind: str = "skin") -> str:
     if kind in _TEMPLATES:
         return _TEMPLATES[kind]
     if kind in KINDS_TO_COME:
-        raise ScenarioError(f'kind "{kind}" is not in this version, which has "skin"')
+        known = " and ".join(f'"{name}"' for name in _TEMPLATES)
+        raise ScenarioError(f'kind "{kind}" is not in this version, which has {known}')
     hint = nearest(kind, list(_TEMPLATES)).replace("it knows", "there is")
     raise ScenarioError(f'there is no kind "{kind[:40]}"{hint}')

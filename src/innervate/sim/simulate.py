@@ -36,7 +36,8 @@ class Result:
 
     `rows` are what nodes and the observer reported, `deliveries` the tactile samples that the PC
     received, `trail` all handler calls; structured arrays, with the fields of `world.ROW`,
-    `world.DELIVERY` and `world.TRAIL`, times in us.
+    `world.DELIVERY` and `world.TRAIL`, times in us. `received_kept`: `deliveries` holds all
+    samples, rather than none.
     """
 
     plan: Any
@@ -51,6 +52,7 @@ class Result:
     handled: int
     arrived: int
     interrupted: bool
+    received_kept: bool = False
 
 
 def _modules() -> list[ModuleType]:
@@ -138,7 +140,9 @@ def simulate(
             now = plan.duration_us if status == loop.DONE else int(world.wheel.clock[0])
             if progress is not None:
                 progress(now, plan.duration_us)
-        return _result(plan, world, keep, now, wall_s() - started, status != loop.DONE)
+        done = _result(plan, world, keep, now, wall_s() - started, status != loop.DONE)
+        done.received_kept = deliveries
+        return done
 
 
 def _result(

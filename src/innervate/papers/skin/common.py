@@ -78,7 +78,8 @@ class Case:
             overrides.append(("protocol.m", self.m))
         if self.gap_us >= 0:
             overrides.append(("protocol.gap_us", self.gap_us))
-        return scenario.plan(scenario.load(self.setup, overrides, seed))
+        made: Plan = scenario.plan(scenario.load(self.setup, overrides, seed))
+        return made
 
 
 def measure_recoveries(case: Case, seeds: Sequence[int]) -> dict[str, list[Any]]:

@@ -37,7 +37,7 @@ def cuts(setup: str) -> list[str]:
 
 def depth(setup: str) -> int:
     """The deepest cell of a setup, d_m."""
-    return scenario.plan(scenario.load(setup)).depth_max
+    return int(scenario.plan(scenario.load(setup)).depth_max)
 
 
 def case(setup: str, rule: tuple[str, int], cut: str) -> Case:

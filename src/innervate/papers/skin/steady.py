@@ -102,7 +102,10 @@ def _depths_after(setup: str) -> list[int]:
     """Shortest ways without interface 1."""
     ports = scenario.load(setup).model.interface
     left = [{"row": port.row, "column": port.column} for port in ports[:1]]
-    return scenario.plan(scenario.load(setup, [("interface", left), ("event", [])])).depths
+    depths: list[int] = scenario.plan(
+        scenario.load(setup, [("interface", left), ("event", [])])
+    ).depths
+    return depths
 
 
 def judge(setup: str, cells: int, results: Results, quick: bool) -> Claim:
