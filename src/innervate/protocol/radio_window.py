@@ -35,6 +35,7 @@ from innervate.protocol.rng import draw
 
 FIRST_SPAN = 6  # after several answered the first, single minislot
 GROWTH = 4  # a window in which hardly anybody was alone
+PROBE_WINDOW = 6  # enough to see whether a span is far too small
 SPAN_MOST = 1023
 REPORT_SLOTS = 5  # of a report without its two bits for each minislot
 
@@ -100,11 +101,12 @@ def check_bounds(station, params, rise, out):
     """A CR-R that came earlier or later than the configured delays allow is worth a word."""
     start = (station.ref + params.ta_us + 2 * params.dmin_us) & MASK30
     if not after(rise, start):
-        report(out, REPORT_BOUNDS, (start - rise) & MASK30, 0)
+        delay = params.dmin_us - ((start - rise) & MASK30) // 2
+        report(out, REPORT_BOUNDS, max(delay, 0), 0)
         return
     within = ((rise - start) & MASK30) % params.minislot_us
     if within > 2 * (params.dmax_us - params.dmin_us):
-        report(out, REPORT_BOUNDS, within, 1)
+        report(out, REPORT_BOUNDS, params.dmin_us + within // 2, 1)
 
 
 def hear_slot(station, params, now, out):
@@ -128,6 +130,7 @@ def burst(station, params, now, length, noise, out):
         return
     if noise:
         prove(station, out)
+        check_bounds(station, params, station.rise, out)
         place = minislot_of(station, params, station.rise) - station.ack
         if place >= 0:
             set_bit(station.bad, place)
@@ -173,7 +176,7 @@ def send_report(station, params, now, good, bad, out):
     """REPORT: minislots that are turns now, and the window that follows."""
     frame = blank(out)
     frame.kind = REPORT
-    frame.slots = REPORT_SLOTS + (station.window + 3) // 4
+    frame.slots = REPORT_SLOTS + (station.window + 4) // 5
     base = free_places(station, good)
     if base == NONE:
         good = 0
@@ -241,6 +244,8 @@ def plan_window(station, good, bad):
         station.split = bad
     span = min(span, SPAN_MOST)
     fresh = min(span, MINISLOTS - 2 * station.split)
+    if bad == window and station.split == 0:
+        fresh = min(fresh, PROBE_WINDOW)
     station.span = span
     station.window = 2 * station.split + fresh
     station.rest = span - fresh

@@ -248,11 +248,7 @@ def build(stack):
             medium.go_on(world, STARTS, what, air.start, air.at_start)
             medium.begin_signal(world, node, what)
         else:
-            first = sender * world.run[0].stations
-            if (
-                air.at_end >= world.degree[sender]
-                or air.end + world.delay[first + air.at_end] != time
-            ):
+            if not medium.is_end(world, sender, node, air, time):
                 queue.pop(world.heap)  # its sender died before
                 return
             air.at_end += 1

@@ -75,6 +75,16 @@ def go_on(world, rank, what, since, cursor):
         pop(world.heap)
 
 
+def is_end(world, sender, node, air, time):
+    """1 if this is where and when the signal's end is due; not so for the end of one cut short."""
+    at = sender * world.run[0].stations + air.at_end
+    return (
+        air.at_end < world.degree[sender]
+        and world.order[at] == node
+        and air.end + world.delay[at] == time
+    )
+
+
 def begin_signal(world, node, what):
     """A signal arrives at a station."""
     radio = world.radios[node]
