@@ -1,0 +1,121 @@
+"""CSMA/CD after IEEE 802.3 and 802.11 DCF: backoff counters. Times in ticks."""
+
+import numpy as np
+
+from innervate.sim.slotted_books import COLLISIONS, NEVER, deliver, going
+from innervate.sim.slotted_draws import draw
+
+DOUBLINGS_MAX = 10
+
+
+def contend(books, slot, packet, cost, turn, backoff, linear, redraw):
+    """1-persistent CSMA/CD with binary (or linear) backoff, which runs on while others send.
+
+    A station that decides at t is on air from t + turn; who decides before it can be heard, turn
+    and half a slot later, sends too. The channel is sensed idle a slot after a packet and `cost`
+    after the last station of a collision went on air. `redraw`: so does who got through.
+    """
+    half = slot // 2
+    count = len(books.offer)
+    due = np.zeros(count, np.int64)
+    tries = np.zeros(count, np.int64)
+    idle = 0
+    while going(books):
+        first, winner = _first(books, due, idle, slot)
+        last = first
+        senders = 0
+        for i in range(count):
+            at = _decision(books.offer[i], due[i], idle, slot)
+            if at < first + turn + half:
+                senders += 1
+                last = max(last, at)
+        if senders == 1:
+            end = first + turn + packet
+            heard = idle = end + slot
+            back = max(heard, end + turn)
+            tries[winner] = 0
+            due[winner] = back + draw(books.rng, 2) * backoff if redraw else back
+            deliver(books, winner, end)
+            continue
+        books.counts[COLLISIONS] += 1
+        before = idle
+        idle = last + turn + cost
+        back = max(idle, idle - slot + turn)
+        for i in range(count):
+            if _decision(books.offer[i], due[i], before, slot) < first + turn + half:
+                tries[i] += 1
+                window = tries[i] + 1 if linear else 1 << min(tries[i], DOUBLINGS_MAX)
+                due[i] = back + draw(books.rng, window) * backoff
+
+
+def _decision(offer, due, idle, slot):
+    """When a station sends: backoff over, channel idle, packet there at the slot's beginning."""
+    at = max(due, idle)
+    if offer <= at:
+        return at
+    return at + (offer - at + slot - 1) // slot * slot if offer < NEVER else NEVER
+
+
+def _first(books, due, idle, slot):
+    """The earliest decision, and whose it is."""
+    first = NEVER
+    winner = 0
+    for i in range(len(due)):
+        at = _decision(books.offer[i], due[i], idle, slot)
+        if at < first:
+            first = at
+            winner = i
+    return first, winner
+
+
+def distribute(books, slot, success, cost, window, stages, at_once):
+    """802.11 DCF as Bianchi's model has it: a busy period is one step of every counter.
+
+    Counters start drawn from `window` values, doubled at most `stages` times; `at_once`: at 0.
+    `success` and `cost` are the whole times that a packet and a collision take.
+    """
+    count = len(books.offer)
+    left = np.zeros(count, np.int64)
+    stage = np.zeros(count, np.int64)
+    time = 0
+    if not at_once:
+        for i in range(count):
+            left[i] = draw(books.rng, window)
+    while going(books):
+        wait = _shortest(books, left, time, slot)
+        senders = 0
+        winner = 0
+        start = time + wait * slot
+        for i in range(count):
+            here = _waiting_since(books.offer[i], time, slot)
+            if here + left[i] == wait:
+                senders += 1
+                winner = i
+        time = start + (success if senders == 1 else cost)
+        if senders > 1:
+            books.counts[COLLISIONS] += 1
+        for i in range(count):
+            here = _waiting_since(books.offer[i], start - wait * slot, slot)
+            if here + left[i] == wait:
+                stage[i] = 0 if senders == 1 else min(stage[i] + 1, stages)
+                left[i] = draw(books.rng, window << stage[i])
+            elif here <= wait:
+                left[i] -= wait - here + 1
+        if senders == 1:
+            deliver(books, winner, time)
+
+
+def _waiting_since(offer, time, slot):
+    """Idle steps from `time` until a station has a packet."""
+    return 0 if offer <= time else (offer - time + slot - 1) // slot
+
+
+def _shortest(books, left, time, slot):
+    """Idle steps until the first counter is at 0."""
+    wait = NEVER
+    for i in range(len(left)):
+        wait = min(wait, _waiting_since(books.offer[i], time, slot) + left[i])
+    return wait
+
+
+PARTS = (_decision, _first, _waiting_since, _shortest)
