@@ -96,11 +96,13 @@ def slotted(
             backoff: csma-cd-d*: "binary" (default), or "linear": k + 1 values after k collisions
                 [radio Q15].
             backoff_slots: csma-cd-d*: length of a backoff slot in slots, default 1.
-            turnaround_slots: csma-cd-r, -d2, -d2p: time to switch between reception and
-                transmission, default 0. A packet is on air that much after its decision, carriers
-                in between go unnoticed, and its sender decides again that much after its end at
-                the earliest; but everybody knows of every collision. csma-cd-r pays it at every
-                hand-over: opening, reservation, each turn.
+            turnaround_slots: csma-cd-r, -d2, -d2p: a packet is on air that long after its
+                decision, default 0; carriers that come up meanwhile go unnoticed. csma-cd-r pays
+                it at every hand-over: opening, reservation, each turn.
+            return_slots: csma-cd-d2, -d2p: how long after its end a sender knows the channel
+                again; default turnaround_slots, as on the medium [radio M4]. 0 is a gift to
+                CSMA/CD: its packets cost one turnaround instead of two. With either, everybody
+                knows of every collision, the last to finish too.
             dcf: a `Dcf`; default `dcf_here(packet_slots)`. Its slots are the result's.
 
     Raises:

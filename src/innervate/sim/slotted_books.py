@@ -38,7 +38,7 @@ class Books(NamedTuple):
 
 
 def open_books(traffic: int, stations: int, packets: int, rng: Numbers) -> Books:
-    """Books in which every station has a packet at time 0; Poisson traffic comes with `schedule`."""
+    """Books in which every station has a packet at time 0; `schedule` makes it Poisson traffic."""
     limit = stations * packets
     return Books(
         rng=rng,

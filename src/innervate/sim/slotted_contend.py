@@ -8,12 +8,13 @@ from innervate.sim.slotted_draws import draw
 DOUBLINGS_MAX = 10
 
 
-def contend(books, slot, packet, cost, turn, backoff, linear, redraw):
+def contend(books, slot, packet, cost, turn, back, backoff, linear, redraw):
     """1-persistent CSMA/CD with binary (or linear) backoff, which runs on while others send.
 
     A station that decides at t is on air from t + turn; who decides before it can be heard, turn
-    and half a slot later, sends too. The channel is sensed idle a slot after a packet and `cost`
-    after the last station of a collision went on air. `redraw`: so does who got through.
+    and half a slot later, sends too. The channel is sensed idle a slot after a packet, or `cost`
+    after the last station of a collision went on air; by its senders `back` after its end, if that
+    is later, and there their backoff begins. `redraw`: who got through draws 0 or 1 as well.
     """
     half = slot // 2
     count = len(books.offer)
@@ -31,21 +32,22 @@ def contend(books, slot, packet, cost, turn, backoff, linear, redraw):
                 last = max(last, at)
         if senders == 1:
             end = first + turn + packet
-            heard = idle = end + slot
-            back = max(heard, end + turn)
+            idle = end + slot
             tries[winner] = 0
-            due[winner] = back + draw(books.rng, 2) * backoff if redraw else back
+            due[winner] = max(idle, end + back)
+            if redraw:
+                due[winner] += draw(books.rng, 2) * backoff
             deliver(books, winner, end)
             continue
         books.counts[COLLISIONS] += 1
         before = idle
         idle = last + turn + cost
-        back = max(idle, idle - slot + turn)
+        known = max(idle, idle - slot + back)
         for i in range(count):
             if _decision(books.offer[i], due[i], before, slot) < first + turn + half:
                 tries[i] += 1
                 window = tries[i] + 1 if linear else 1 << min(tries[i], DOUBLINGS_MAX)
-                due[i] = back + draw(books.rng, window) * backoff
+                due[i] = known + draw(books.rng, window) * backoff
 
 
 def _decision(offer, due, idle, slot):

@@ -31,6 +31,7 @@ USED_BY = {
     "backoff": BACKOFF,
     "backoff_slots": BACKOFF,
     "turnaround_slots": TURNAROUND,
+    "return_slots": TURNAROUND - {"csma-cd-r"},
     "dcf": {"dcf"},
 }
 
@@ -48,6 +49,16 @@ class Dcf:
     collision_us: int
     window: int
     stages: int
+
+    @property
+    def sound(self) -> bool:
+        """All in range: times positive, 1 <= window doubled `stages` times <= 2^20."""
+        times = self.slot_us, self.payload_us, self.success_us, self.collision_us
+        return (
+            min(times) > 0
+            and self.stages in range(21)
+            and 0 < self.window << self.stages <= 1 << 20
+        )
 
 
 # Bianchi 2000: T_s and T_c of his Table II (1 Mbit/s, 8184 bits of payload, FHSS).
@@ -74,6 +85,7 @@ class Options:
     backoff: str = "binary"
     backoff_slots: int = 1
     turnaround_slots: float = 0.0
+    return_slots: float | None = None
     dcf: Dcf | None = None
 
     def check(self) -> None:
@@ -84,6 +96,8 @@ class Options:
         _require(self.backoff in ("binary", "linear"), "backoff is binary or linear")
         _require(1 <= self.backoff_slots <= 10_000, "backoff_slots is in 1..10,000")
         _require(0 <= self.turnaround_slots <= 10_000, "turnaround_slots is in 0..10,000")
+        _require(0 <= (self.return_slots or 0) <= 10_000, "return_slots is in 0..10,000")
+        _require(self.dcf is None or self.dcf.sound, "dcf needs times > 0 and a window >= 1")
 
 
 def _require(holds: bool, what: str) -> None:
@@ -104,10 +118,12 @@ class Job:
 
     @property
     def packet(self) -> int:
+        """Airtime of a packet."""
         return self.packet_slots * SLOT
 
     @property
     def turn(self) -> int:
+        """From a decision to the first bit on air."""
         return round(self.options.turnaround_slots * SLOT)
 
     def run(self, function: Callable[..., None], *values: int) -> None:
@@ -143,8 +159,10 @@ def _reserve(job: Job) -> int:
 def _contend(job: Job) -> int:
     cost = SLOT if job.mac == "csma-cd-d1" else job.packet + SLOT
     linear, redraw = job.options.backoff == "linear", job.mac == "csma-cd-d2p"
-    backoff = job.options.backoff_slots * SLOT
-    job.run(contend.contend, SLOT, job.packet, cost, job.turn, backoff, int(linear), int(redraw))
+    given = job.options.return_slots
+    back = job.turn if given is None else round(given * SLOT)
+    times = SLOT, job.packet, cost, job.turn, back, job.options.backoff_slots * SLOT
+    job.run(contend.contend, *times, int(linear), int(redraw))
     return SLOT
 
 
