@@ -26,7 +26,7 @@ import numpy as np
 
 from innervate.sim import slotted_books as shelf
 from innervate.sim.slotted_books import Books, open_books, schedule
-from innervate.sim.slotted_draws import generator
+from innervate.sim.slotted_draws import MEAN_MAX, generator
 from innervate.sim.slotted_drive import BY_CHANCE, MACS, SLOT, USED_BY, Job, Options, drive, loop
 
 TRAFFIC = {"saturated": shelf.SATURATED, "disaster": shelf.DISASTER, "poisson": shelf.POISSON}
@@ -82,7 +82,8 @@ def slotted(
         packet_slots: packet length T, 1..10,000 slots.
         traffic: "saturated", "disaster" (all at once, one packet each) or "poisson". Whoever has a
             packet in csma-cd-* sends as soon as the channel is idle.
-        packets: per station, >= 1. A Poisson run ends with the first station that has none left.
+        packets: per station in the mean, >= 1: a saturated run ends after stations * packets
+            successes, whosever they are; a Poisson run with the first station that has none left.
         seed: root seed >= 0; the streams of protocol and traffic are derived from it.
         warmup: share of the successes that is not measured, 0 <= warmup < 1; none in a disaster.
         load: Poisson: packets offered per packet time (T slots) by all stations together, up to
@@ -119,7 +120,9 @@ def slotted(
     kind = TRAFFIC[traffic] if stations else shelf.SATURATED
     books = open_books(kind, max(1, stations), packets, generator(seed, name))
     if load is not None and stations:
-        interval = round(stations * airtime / load)
+        interval = max(1, round(stations * airtime / load))
+        if interval > MEAN_MAX or interval * packets > shelf.NEVER // 64:
+            raise ValueError(f"{packets} packets take too long at a load of {load}")
         loop(schedule, plain)(books, generator(seed, f"{name}/arrivals"), interval)
     gap = drive(Job(mac, books, packet_slots, None if stations else load, given, plain))
     return _measure(books, slot, airtime, gap, warmup, endless=not stations)

@@ -20,54 +20,51 @@ def contend(books, slot, packet, cost, turn, back, backoff, linear, redraw):
     count = len(books.offer)
     due = np.zeros(count, np.int64)
     tries = np.zeros(count, np.int64)
+    found = np.zeros(count + 1, np.int64)
+    for i in range(count):
+        due[i] = _slot_of(books.offer[i], slot)
     idle = 0
     while going(books):
-        first, winner = _first(books, due, idle, slot)
-        last = first
+        first = max(idle, _least(due))
+        limit = first + turn + half
         senders = 0
-        for i in range(count):
-            at = _decision(books.offer[i], due[i], idle, slot)
-            if at < first + turn + half:
-                senders += 1
-                last = max(last, at)
+        for i in range(count):  # no branches: this is where the time goes
+            found[senders] = i
+            senders += due[i] < limit
         if senders == 1:
+            winner = found[0]
             end = first + turn + packet
             idle = end + slot
             tries[winner] = 0
-            due[winner] = max(idle, end + back)
+            deliver(books, winner, end)
+            due[winner] = max(idle, end + back, _slot_of(books.offer[winner], slot))
             if redraw:
                 due[winner] += draw(books.rng, 2) * backoff
-            deliver(books, winner, end)
             continue
         books.counts[COLLISIONS] += 1
-        before = idle
+        last = first
+        for j in range(senders):
+            last = max(last, due[found[j]])
         idle = last + turn + cost
         known = max(idle, idle - slot + back)
-        for i in range(count):
-            if _decision(books.offer[i], due[i], before, slot) < first + turn + half:
-                tries[i] += 1
-                window = tries[i] + 1 if linear else 1 << min(tries[i], DOUBLINGS_MAX)
-                due[i] = known + draw(books.rng, window) * backoff
+        for j in range(senders):
+            i = found[j]
+            tries[i] += 1
+            window = tries[i] + 1 if linear else 1 << min(tries[i], DOUBLINGS_MAX)
+            due[i] = known + draw(books.rng, window) * backoff
 
 
-def _decision(offer, due, idle, slot):
-    """When a station sends: backoff over, channel idle, packet there at the slot's beginning."""
-    at = max(due, idle)
-    if offer <= at:
-        return at
-    return at + (offer - at + slot - 1) // slot * slot if offer < NEVER else NEVER
+def _slot_of(offer, slot):
+    """The beginning of a slot at which a packet offered at `offer` can be sent."""
+    return (offer + slot - 1) // slot * slot
 
 
-def _first(books, due, idle, slot):
-    """The earliest decision, and whose it is."""
-    first = NEVER
-    winner = 0
-    for i in range(len(due)):
-        at = _decision(books.offer[i], due[i], idle, slot)
-        if at < first:
-            first = at
-            winner = i
-    return first, winner
+def _least(due):
+    """The earliest of these times; a loop of its own, which the compiler makes wide."""
+    first = due[0]
+    for i in range(1, len(due)):
+        first = min(first, due[i])
+    return first
 
 
 def distribute(books, slot, success, cost, window, stages, at_once):
@@ -120,4 +117,4 @@ def _shortest(books, left, time, slot):
     return wait
 
 
-PARTS = (_decision, _first, _waiting_since, _shortest)
+PARTS = (_slot_of, _least, _waiting_since, _shortest)

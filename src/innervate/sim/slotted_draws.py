@@ -10,6 +10,8 @@ FIRST = 2147483563
 SECOND = 2147483399
 RANGE = FIRST - 1
 UNIT = 1 << 30  # probabilities are whole numbers of 1 / UNIT
+MEAN_MAX = 1 << 42
+COARSE = 1 << 11
 
 
 def generator(seed, name):
@@ -39,7 +41,10 @@ def shuffle(state, items, count):
 
 
 def exponential(state, mean):
-    """An exponential interval in whole ticks, by comparisons alone (von Neumann 1951)."""
+    """An exponential interval in whole ticks, by comparisons alone (von Neumann 1951).
+
+    For 1 <= mean <= MEAN_MAX ticks, in steps of about a millionth of the mean.
+    """
     whole = 0
     while True:
         first = step(state)
@@ -52,7 +57,7 @@ def exponential(state, mean):
             last = following
             falling += 1
         if falling % 2 == 1:
-            return mean * whole + mean * first // RANGE
+            return mean * whole + mean * (first // COARSE) // (RANGE // COARSE)
         whole += 1
 
 

@@ -228,6 +228,6 @@ def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     door.register_functions(
         draws.step, draws.draw, draws.shuffle, draws.exponential, draws.choose,
         shelf.going, shelf.deliver, shelf.ready, shelf.opening,
-        *contend.PARTS, *turns.PARTS, *chance.PARTS, hot=False,
+        *contend.PARTS, *turns.PARTS, *chance.PARTS,
     )  # fmt: skip
     return door.compiled(function)
