@@ -176,7 +176,11 @@ def tick(cell, params, now, out):
         hold_feasible(cell, params, out)
     # Between ticks `react` keeps the choice up to date, except in periodic mode.
     if changed or may_balance or params.updates == PERIODIC or cell.parent == NONE:
+        before = cell.parent
         select(cell, params, may_balance, out)
+        # Another cell may have moved in this same turn: do not stay in step with it [skin E14].
+        if may_balance and cell.parent != before:
+            cell.countdown = 1 + draw(cell, params.balance_periods)
     cell.own_load = sum_load(cell)
     silent = (
         params.updates == WAVE
