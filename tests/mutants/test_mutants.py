@@ -71,7 +71,7 @@ MUTANTS = {
     ),
     # skin.py
     "nothing is waited for after a loss of memory": (
-        "cell.wait = params.k + 2", "cell.wait = 0", "restarts"
+        "cell.wait = params.k + 3 + params.k // 8", "cell.wait = 0", "restarts"
     ),
     "a cell that balanced keeps its turn": (
         "cell.countdown = 1 + draw(cell, params.balance_periods)\n    cell.own_load",
