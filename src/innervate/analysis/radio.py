@@ -6,7 +6,6 @@ saturation the first tenth of the successes is left out of every mean: the chann
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -42,13 +41,6 @@ __all__ = [
 ORDER_MAX = 1000
 PAIRS_FROM = 20_000  # successes whose order is looked at
 WARM_UP = 10  # in saturation one in so many successes is left out
-
-# What a station measured when it noticed a delay outside the configured bounds, by which bound
-# (b of REPORT_BOUNDS): from what it reported to the pair delay, us. Others report the delay.
-_MEASURED: dict[int, Callable[[Any, Any], Any]] = {
-    0: lambda params, a: params["dmin_us"] - a / 2,
-    1: lambda params, a: params["dmin_us"] + a / 2,
-}
 
 
 class Steps(NamedTuple):
@@ -230,9 +222,6 @@ def bounds_noticed(result: Any) -> dict[str, Any]:
     """
     rows = result.rows[result.rows["code"] == REPORT_BOUNDS]
     measured = rows["a"].astype(np.float64)
-    for bound, delay_of in _MEASURED.items():
-        which = rows["b"] == bound
-        measured[which] = delay_of(result.plan.params, measured[which])
     return {
         "count": len(rows),
         "stations": [

@@ -64,7 +64,7 @@ def _delivered(run: Run) -> str:
 
 def _noticed(summary: dict[str, Any]) -> list[str]:
     found = summary.get("bounds_noticed")
-    if not found:
+    if not found or not found["count"]:
         return []
     return [
         "Delays between stations lie outside the configured bounds; set protocol.tau_bounds_us "

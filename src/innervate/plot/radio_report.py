@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis import radio
-from innervate.plot import charts, radio_scene, radio_timeline, svg, words
+from innervate.plot import charts, radio_scene, radio_slotted_report, radio_timeline, svg, words
 from innervate.plot.page import details, element, figure, pictures, section, table, tiles
 from innervate.plot.radio_words import (
     fault_words,
@@ -29,6 +29,8 @@ STEPS_MAX = 2000  # of a cumulative curve
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
     """Headline, status, numbers and pictures of a radio run, as HTML."""
+    if summary.get("level") == "slotted":
+        return radio_slotted_report.body(result, summary)
     return "\n".join(
         part
         for part in (

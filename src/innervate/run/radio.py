@@ -10,6 +10,7 @@ import numpy as np
 
 from innervate.analysis import radio as analysis
 from innervate.protocol.radio_words import LEAVE, MAIN
+from innervate.run import radio_slotted
 from innervate.sim.loop import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.sim.radio import simulate as simulator
 from innervate.sim.radio.loop import ON_CARRIER
@@ -27,8 +28,26 @@ def simulate(
     received: bool | None,
     progress: Callable[[int, int], None] | None,
 ) -> Any:
-    """Run a radio plan; `received` is for skins."""
+    """Run a radio plan, on the level it asks for; `received` is for skins."""
+    if _is_slotted(plan):
+        return radio_slotted.simulate(plan, plain)
     return simulator.simulate(plan, plain=plain, checks=checks, progress=progress)
+
+
+def _is_slotted(plan: Any) -> bool:
+    return bool(plan.scenario.model.channel.level == "slotted")
+
+
+def summarize(result: Any) -> dict[str, Any]:
+    """The summary of a run; what never happened is None."""
+    if _is_slotted(result.plan):
+        return radio_slotted.summarize(result)
+    return analysis.summarize(result)
+
+
+def tables_of(result: Any) -> tuple[Table, ...]:
+    """The tables of a run; the slotted level has none."""
+    return () if _is_slotted(result.plan) else radio_tables.TABLES
 
 
 def columns(table: Table, result: Any) -> Columns:
@@ -75,9 +94,6 @@ _MAKERS = {
     radio_tables.SENT.name: _sent,
     radio_tables.REPORTS.name: _reports,
 }
-
-summarize = analysis.summarize
-TABLES = radio_tables.TABLES
 
 
 def trail(plan: Any, until_us: int) -> Iterator[Any]:

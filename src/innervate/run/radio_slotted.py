@@ -75,11 +75,10 @@ def summarize(result: SlottedRun) -> dict[str, Any]:
     """The summary of a slotted run, by the names of other radio runs."""
     plan, found = result.plan, result.found
     delays = found.delay_slots
-    quantiles = (
-        dict(zip(("p50", "p95", "p99"), np.quantile(delays, (0.5, 0.95, 0.99)).tolist(), strict=True))
-        if len(delays)
-        else dict.fromkeys(("p50", "p95", "p99"))
-    )
+    quantiles = {
+        name: float(np.quantile(delays, q)) if len(delays) else None
+        for name, q in (("p50", 0.5), ("p95", 0.95), ("p99", 0.99), ("max", 1.0))
+    }
     first = list(dict.fromkeys(found.order))
     done = result.counts["completed"]
     return {
@@ -97,10 +96,8 @@ def summarize(result: SlottedRun) -> dict[str, Any]:
         "duration_slots": found.duration_slots,
         "jain": found.jain,
         "jain_round": found.jain_round,
-        "delay_slots": quantiles | {"max": float(delays.max()) if len(delays) else None},
+        "delay_slots": quantiles,
         "collisions": found.collisions,
         "lost_silently": 0,
         "order": found.order[:1000] if plan.scenario.model.traffic.kind == "disaster" else first,
     }
-
-

@@ -52,7 +52,7 @@ class Run:
         room = room_of(self.plan.kind)
         return {
             table.name: tables.frame(table, room.columns(table, self.result)).lazy()
-            for table in room.TABLES
+            for table in room.tables_of(self.result)
         }
 
     @cached_property
@@ -99,7 +99,7 @@ class Run:
             text = scenarios.dump(self.scenario)
             (fresh / folders.SCENARIO).write_text(text, encoding="utf-8")
             room = room_of(self.plan.kind)
-            for table in room.TABLES:
+            for table in room.tables_of(self.result):
                 if table is not tables.RECEIVED or self.result.received_kept:
                     tables.write(table, room.columns(table, self.result), fresh)
             if report:

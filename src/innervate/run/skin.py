@@ -17,12 +17,17 @@ from innervate.sim.loop import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.sim.simulate import RULE_STATIC, SLICE_EVENTS, compiled_loop
 from innervate.topology import PORT_NAMES
 from innervate.trace import tables
+from innervate.trace.tables import Table
 
 # Received samples are kept by default as long as they fit easily: some 60 MB.
 RECEIVED_MAX = 1_000_000
-TABLES = tables.TABLES
 
-__all__ = ["TABLES", "columns", "simulate", "summarize"]
+__all__ = ["columns", "simulate", "summarize", "tables_of"]
+
+
+def tables_of(_result: Any) -> tuple[Table, ...]:
+    """The tables of a run."""
+    return tables.TABLES
 
 
 def simulate(
