@@ -9,6 +9,7 @@ from innervate.protocol.radio_words import (
     NONE,
     NOT_HEARD,
     OPEN,
+    REPORT_BOUNDS,
     REPORT_COLLISION,
 )
 from innervate.protocol.rng import draw
@@ -103,6 +104,14 @@ def wait_again(station, params, now, out):
     schedule(station, now, out)
 
 
+def notice_late_answer(station, params, out):
+    """Nobody answered our opening in its window, but somebody does right behind it."""
+    close = station.end + params.ta_us + 2 * params.dmin_us + 2 * params.minislot_us
+    late = (station.rise - close) & MASK30
+    if station.lonely and late < 2 * params.minislot_us:
+        report(out, REPORT_BOUNDS, params.dmax_us + late // 2, 3)
+
+
 def heard_noise(station, params, now, length, out):
     """A burst has ended: the rest of our own collision, or others' trouble that we leave alone."""
     if station.tail:
@@ -111,5 +120,7 @@ def heard_noise(station, params, now, length, out):
         return
     if length >= 2 * params.slot_us:
         station.collided = 1
+    else:
+        notice_late_answer(station, params, out)
     station.at = (now + params.join_us + draw(station, params.retry_us)) & MASK30
     schedule(station, now, out)
