@@ -93,6 +93,18 @@ def balances(protocol):
         assert bench.parent == chosen, sizes
 
 
+def turns(protocol):
+    """A cell that moved for balance does not keep its turn."""
+    bench = OneCell(protocol, balancing=True, balance_periods=40)
+    bench.hear(W, dist=2, sq=3, size=50)
+    bench.tick()
+    bench.hear(E, dist=2, sq=4, size=10)
+    bench.cell.countdown = 1
+    bench.cell.choice = 16
+    bench.tick()
+    assert (bench.parent, bench.cell.countdown) == (E, 17)
+
+
 def simulation(protocol):
     """No broken invariant in small plain simulations."""
     with plain_stack(protocol.skin_stack):
@@ -291,5 +303,6 @@ CHECKS = {
     for check in (
         react, select, network, settles, balances, simulation, restarts, penalty, forgets,
         believes, counts, listens, recovers, wave, gap, gap_wraps, data, wraps, draws, overflow,
+        turns,
     )
 }  # fmt: skip

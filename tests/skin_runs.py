@@ -58,6 +58,11 @@ def run(keys, **how):
     return simulate(plan_of(keys), **how)
 
 
+def run_bundled(name, overrides=()):
+    """Simulate a bundled scenario with some keys changed."""
+    return simulate(scenario.plan(scenario.load(name, list(overrides))))
+
+
 @contextmanager
 def plain_stack(stack):
     """Plain runs use this stack instead of the simulator's own."""

@@ -4,10 +4,12 @@
 simulator behind it is loaded at the first use, so that `import innervate` stays cheap.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from __future__ import annotations
 
+TYPE_CHECKING = False  # `typing` would be the slowest part of this import
 if TYPE_CHECKING:
+    from typing import Any
+
     from innervate.run import run as run
 
 __version__ = "0.1.0"
@@ -21,5 +23,7 @@ def __getattr__(name: str) -> Any:
     module is therefore callable itself (see its end): one name, whichever way it was imported.
     """
     if name == "run":
+        from importlib import import_module
+
         return import_module("innervate.run")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

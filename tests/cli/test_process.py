@@ -92,3 +92,20 @@ def test_ctrl_c_keeps_what_is_done(process, tmp_path):
     assert started.returncode == 130, err
     assert '"interrupted_at_s"' in out
     assert (tmp_path / "runs" / "setup-1-1" / "report.html").exists()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals as on POSIX")
+def test_ctrl_c_while_commands_load_is_one_line(process):
+    code = (
+        "import builtins, os, signal, sys\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "real = builtins.__import__\n"
+        "def slow(name, *rest):\n"
+        "    if name == 'cyclopts': os.kill(os.getpid(), signal.SIGINT)\n"
+        "    return real(name, *rest)\n"
+        "builtins.__import__ = slow\n"
+        "from innervate.cli import main; sys.exit(main(['--help']))"
+    )
+    started = process(code=code)
+    assert started.communicate(timeout=TIMEOUT_S) == ("", "innervate: interrupted\n")
+    assert started.returncode == 130

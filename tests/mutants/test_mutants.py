@@ -71,7 +71,12 @@ MUTANTS = {
     ),
     # skin.py
     "nothing is waited for after a loss of memory": (
-        "cell.wait = params.k + 2", "cell.wait = 0", "restarts"
+        "cell.wait = params.k + 3 + params.k // 8", "cell.wait = 0", "restarts"
+    ),
+    "a cell that balanced keeps its turn": (
+        "cell.countdown = 1 + draw(cell, params.balance_periods)\n    cell.own_load",
+        "cell.countdown = params.balance_periods\n    cell.own_load",
+        "turns",
     ),
     "p_f grows beyond 2": ("min(2 * ONE, penalty", "min(2 * ONE + 1, penalty", "penalty"),
     "p_f shrinks below 0": ("max(0, penalty - params.r_r)", "penalty - params.r_r", "penalty"),

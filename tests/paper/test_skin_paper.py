@@ -24,6 +24,7 @@ from tests.skin_runs import (
     port_sizes,
     routed_us,
     run,
+    run_bundled,
     setup_1,
     switches,
     true_loads,
@@ -85,6 +86,22 @@ def test_free_running_line_converges_d_minus_1_periods_after_detection(cells):
         assert depth in (cells // 2, cells // 2 + 1)
         took = periods(converged_us(result, CUT_US) - detected_us(result, CUT_US))
         assert took == depth - 1, f"seed {seed}: {took} periods, depth {depth}"
+
+
+# E21, the same in the bundled scenario; "when two neighbours tick closer than the hop latency a
+# whole T is added"
+def test_the_bundled_line_converges_d_minus_1_periods_after_detection():
+    def surplus(*overrides):
+        result = run_bundled("line", overrides)
+        cut_us = result.plan.faults[0].at_us
+        took = periods(converged_us(result, cut_us) - detected_us(result, cut_us))
+        return took - (cut_cells(result) - 1)
+
+    assert surplus() == 0
+    found = [surplus(f"seed={seed}") for seed in range(12)]
+    assert set(found) <= {0, 1, 2}
+    assert found.count(0) >= 9
+    assert surplus("protocol.m=5") == 2, "why the file says m = 3"
 
 
 # E21 "detection in (k-1, k+1) T"

@@ -206,6 +206,24 @@ def test_e14_balancing_waits_its_turn_and_keeps_to_shortest_paths():
     assert bench.parent == E
 
 
+# E14 leaves open what two cells do that have the same turn: whoever moved draws another one
+def test_e14_a_cell_that_moved_draws_its_next_turn():
+    for value in (0, 17, 63):
+        bench = OneCell(balancing=True)
+        bench.hear(W, dist=2, sq=3, size=90)
+        bench.tick()
+        bench.hear(E, dist=2, sq=4, size=10)
+        bench.cell.countdown = 1
+        bench.cell.choice = value
+        bench.tick()
+        assert bench.parent == E
+        assert bench.cell.countdown == 1 + value
+        bench.cell.countdown = 1
+        bench.period()
+        assert bench.parent == E
+        assert bench.cell.countdown == 64, "nothing moved: the turn stays"
+
+
 # [skin II-B.3] "whether it received the last k consecutive beacon packets at any port. If none of
 # the k packets arrived on port p_i, it sets p_i as broken"
 @pytest.mark.parametrize("k", [*range(1, 31), 32, 33, 34, 35, 40, 42, 60, 84])

@@ -8,7 +8,11 @@ from innervate.plot import words
     [(0.183, "0.183 ms"), (8.4321, "8.43 ms"), (17.011, "17.0 ms"), (1443.03, "1.44 s")],
 )
 def test_times(value, text):
-    assert words.ms_words(value) == text
+    assert words.ms_words(value) == words.stood_words(value) == text
+
+
+def test_what_stood_did_not_stand_for_nothing():
+    assert words.stood_words(0.0) == "less than 0.001 ms"
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,5 @@
 import itertools
+import json
 
 import numpy as np
 import pytest
@@ -71,6 +72,31 @@ def test_what_is_no_run_folder(written, tmp_path):
     (broken / "scenario.toml").write_text("kind =")
     with pytest.raises(RunError, match="damaged"):
         compare(broken, written())
+
+
+@pytest.mark.parametrize("harm", ["flip", "cut short", "missing"])
+@pytest.mark.parametrize("name", ["routes", "received"])
+def test_a_damaged_table_is_one_line(written, name, harm):
+    whole, broken = written(data={"rate_hz": 100}), written(data={"rate_hz": 100})
+    assert compare(whole, broken).same
+    path = broken / f"{name}.parquet"
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content[:-1] if harm == "cut short" else content)
+    if harm == "missing":
+        path.unlink()
+    words = "missing" if harm == "missing" else "damaged"
+    with pytest.raises(RunError) as caught:
+        compare(whole, broken)
+    assert str(caught.value) == f"{path} is {words}; run the scenario again"
+
+
+def test_a_folder_without_checksums_can_be_compared(written):
+    old = written()
+    said = json.loads((old / "provenance.json").read_text())
+    assert set(said.pop("tables_sha256")) >= {"routes.parquet", "links.parquet"}
+    (old / "provenance.json").write_text(json.dumps(said))
+    assert compare(old, written()).same
 
 
 def test_the_trail_in_pieces_is_the_trail(four):

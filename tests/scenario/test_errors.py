@@ -74,6 +74,12 @@ def test_mistakes_in_a_file(small: str, old: str, new: str, message: str) -> Non
 SETS = [
     ("protocol.kk=3", '[protocol] has no key "kk"; did you mean "k"?'),
     ("protocol.k=x", 'protocol.k must be a whole number of missed beacons, 1 to 100, not "x"'),
+    ("protocol.k=31", "protocol.k = 31 cannot be kept: a missed beacon is counted in 1/840; use 30 "
+     "or 32"),
+    ("protocol.k=66", "protocol.k = 66 cannot be kept: a missed beacon is counted in 1/840; use 65 "
+     "or 70"),
+    ("protocol.k=100", "protocol.k = 100 cannot be kept: a missed beacon is counted in 1/840; use "
+     "94"),
     ("protocol.k", "write it as key=value, like protocol.k=3"),
     ("..=3", "a key is names with dots between, like protocol.k"),
     ("event.3.at_s=3", "event is a list of 1; its elements are addressed by number from 0, and 1 "
@@ -101,6 +107,21 @@ def test_mistakes_in_an_override(small: str, text: str, message: str) -> None:
     with pytest.raises(ScenarioError) as caught:
         plan(loads(small, [text], path="demo.toml"))
     assert str(caught.value) == f"--set {text}: {message}"
+
+
+def test_clocks_do_not_overflow(small: str) -> None:
+    long = ["timing.drift_ppm=50000", "duration_s=160000"]
+    made = plan(loads(small, long))
+    rate = round(made.drift_ppm * 2**30 / 1e6)
+    assert made.duration_us * rate < 2**63
+    with pytest.raises(ScenarioError) as caught:
+        plan(loads(small, [long[0], "duration_s=160001"], path="demo.toml"))
+    assert str(caught.value) == (
+        "--set duration_s=160001: duration_s = 160001 is too long for clocks with "
+        "timing.drift_ppm = 50000; make it at most 160000 or the drift smaller"
+    )
+    assert plan(loads(small, ["duration_s=1000000", "timing.drift_ppm=8000"]))
+    assert plan(loads(small, [long[0], "duration_s=1000000", "timing.lock_step=true"]))
 
 
 def test_syntax_errors_have_a_line(small: str) -> None:

@@ -14,6 +14,7 @@ from innervate.scenario import (
     RESTORE,
     REVIVE,
     Plan,
+    ScenarioError,
     load,
     loads,
     plan,
@@ -47,7 +48,7 @@ def test_parameters(small: str) -> None:
     assert (made["forward_min_us"], made["forward_max_us"]) == (0, 2000)
     assert params(small, "protocol.balancing=false")["balance_periods"] == 0
     assert params(small, "protocol.balance_periods=7")["balance_periods"] == 7
-    assert params(small, "protocol.k=100")["seq_every"] == 5
+    assert params(small, "protocol.k=94")["seq_every"] == 5
     assert params(small, "protocol.m=1")["seq_every"] == 1
     assert params(small, "protocol.beacon_hz=30")["beacon_us"] == 33333
 
@@ -61,13 +62,19 @@ def test_fractions_are_exact(small: str, r_f: str, r_r: str, whole: tuple[int, .
     assert (made["r_f"], made["r_r"], made["k"]) == whole
 
 
+KEPT = [*range(1, 31), 32, 33, 34, 35, 37, 39, 40, 42, 45, 47, 50, 53, 56, 60, 65, 70, 77, 84, 94]
+
+
 @pytest.mark.parametrize("k", range(1, 101))
-def test_a_port_is_broken_after_k_misses(k: int) -> None:
-    r_f = -(-840 // k)
-    assert -(-840 // r_f) <= k  # k misses always reach ONE
-    made = params(f'kind = "skin"\nprotocol.k = {k}\n[[link]]\na = "n"\nb = "pc"\n')
-    assert made["r_f"] == r_f
-    assert made["k"] == -(-840 // r_f)
+def test_a_port_is_broken_after_k_misses_or_k_is_refused(k: int) -> None:
+    text = f'kind = "skin"\nprotocol.k = {k}\n[[link]]\na = "n"\nb = "pc"\n'
+    if k in KEPT:
+        made = params(text)
+        assert made["k"] == k
+        assert (k - 1) * made["r_f"] < 840 <= k * made["r_f"]
+    else:
+        with pytest.raises(ScenarioError, match=f"protocol.k = {k} cannot be kept"):
+            params(text)
 
 
 def test_timing_and_data(small: str) -> None:

@@ -64,6 +64,34 @@ def test_no_loop_when_cells_lose_their_memory_all_the_time(rule, updates):
         )  # fmt: skip
 
 
+def restart_in_a_ring(seed, k, drift_ppm, rule):
+    """x restarts, loses the PC and every frame to its child c, and hears e, which goes by c."""
+    links = [("pc", "x"), ("x", "c"), ("c", "d"), ("d", "e"), ("e", "x")]
+    events = [
+        {"at_s": 0.0, "action": "cut", "link": ["e", "x"]},
+        {"at_s": 1.0, "action": "restart", "node": "x"},
+        {"at_s": 1.0, "action": "cut", "link": ["pc", "x"]},
+        {"at_s": 1.0, "action": "loose", "link": ["x", "c"], "loss": 1.0},
+        {"at_s": 1.0, "action": "restore", "link": ["e", "x"]},
+    ]
+    return free(
+        links, seed=seed, event=events, duration_s=1.05 + 0.006 * k,
+        protocol={"k": k, "rule": rule}, timing={"drift_ppm": drift_ppm},
+    )  # fmt: skip
+
+
+# Seeds with phases and drifts that need nearly the whole wait; some found loops before it was long
+# enough (docs/decisions/0008).
+@pytest.mark.parametrize("rule", SAFE)
+@pytest.mark.parametrize(
+    ("k", "drift_ppm"),
+    [(1, 1000), (5, 1000), (3, 50_000), (7, 50_000), (15, 50_000), (94, 50_000)],
+)
+def test_a_restarted_cell_waits_long_enough(k, drift_ppm, rule):
+    seeds = [17, 47, 159, 188, 196, *range(10)]
+    soak(seeds, lambda seed: restart_in_a_ring(seed, k, drift_ppm, rule))
+
+
 # [issue 2, 4] "No forwarding loop in 1,000 seeded runs of random cuts, heals, deaths and 10 %
 # beacon loss under `feasible` and `strict`"
 @pytest.mark.slow

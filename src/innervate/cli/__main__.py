@@ -2,6 +2,6 @@
 
 import sys
 
-from innervate.cli.app import main
+from innervate.cli import main
 
 sys.exit(main())

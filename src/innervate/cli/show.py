@@ -63,7 +63,7 @@ def state_lines(summary: dict[str, Any]) -> list[str]:
         lines.append(f"Cells behind each interface port: {shown} ({factor}).")
     loops = summary["loops"]
     if loops["episodes"]:
-        longest = words.ms_words(loops["longest_ms"])
+        longest = words.stood_words(loops["longest_ms"])
         count = words.number_of(loops["episodes"], "forwarding loop")
         lines.append(f"{count}, the longest for {longest}.")
     else:

@@ -93,7 +93,7 @@ def _figures(story: Story) -> list[tuple[str, str]]:
     loops = summary["loops"]
     longest = loops["longest_ms"]
     note = (
-        f"forwarding loops, the longest {words.ms_words(longest)}"
+        f"forwarding loops, the longest {words.stood_words(longest)}"
         if longest is not None
         else "forwarding loops"
     )

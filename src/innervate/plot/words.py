@@ -37,6 +37,11 @@ def ms_words(value_ms: float) -> str:
     return f"{value_ms:.1f} ms" if value_ms >= 10 else f"{value_ms:.3g} ms"
 
 
+def stood_words(value_ms: float) -> str:
+    """How long something stood that was there: "17.0 ms", "less than 0.001 ms"."""
+    return ms_words(value_ms) if value_ms > 0 else "less than 0.001 ms"
+
+
 def count_words(value: float) -> str:
     """A count or a tick: "12", "12,000", "1.2 M", "0.5"."""
     if abs(value) >= 1e6:

@@ -126,6 +126,8 @@ def hear_slot(station, params, now, out):
 def burst(station, params, now, length, noise, out):
     """The end of a carrier in our window; a report or turn waits for it."""
     if noise and length >= 2 * params.slot_us:
+        if length < 3 * params.slot_us:  # no frame: CR-Rs that came one after another
+            report(out, REPORT_BOUNDS, params.dmin_us + (length - params.slot_us) // 2, 4)
         overrun(station, params, now, out)
         return
     if noise:

@@ -11,7 +11,11 @@ GENERATE = -1
 
 
 def seeded(seed):
-    """A usable generator state from any integer >= 0: never 0 and never the fixed point."""
+    """A usable generator state from any integer >= 0: never 0 and never the fixed point.
+
+    States near each other draw alike at first: drivers must mix what they pass (a hash of root
+    seed, purpose and node), never count nodes or seeds from 0.
+    """
     x = seed % FIXED_POINT
     if x == 0:
         x = 1

@@ -88,11 +88,12 @@ def on_start(cell, params, now, cause, out):
     cell.sent_at = (now - params.gap_us) & MASK30
     cell.soon = 0
     cell.seq = 0
-    # Children of our former life give us up within k + 1 periods: they hear that we have no route,
-    # or nothing. Only then may we take one, or it could lead through them.
+    # Children of our former life give us up within k + 1 of their periods: they hear that we have
+    # no route, or nothing. Only then may we take one, or it could lead through them. The tick of
+    # now is one of ours, and with clocks 5 % off theirs can be k/9 longer than as many of ours.
     cell.wait = 0
     if cause == MEMORY_LOST:
-        cell.wait = params.k + 2
+        cell.wait = params.k + 3 + params.k // 8
     cell.countdown = 0
     if params.balance_periods > 0:
         cell.countdown = 1 + draw(cell, params.balance_periods)
@@ -176,7 +177,11 @@ def tick(cell, params, now, out):
         hold_feasible(cell, params, out)
     # Between ticks `react` keeps the choice up to date, except in periodic mode.
     if changed or may_balance or params.updates == PERIODIC or cell.parent == NONE:
+        before = cell.parent
         select(cell, params, may_balance, out)
+        # Another cell may have moved in this same turn: do not stay in step with it [skin E14].
+        if may_balance and cell.parent != before:
+            cell.countdown = 1 + draw(cell, params.balance_periods)
     cell.own_load = sum_load(cell)
     silent = (
         params.updates == WAVE

@@ -105,6 +105,7 @@ class _Recorded:
             raise RunError(f"{folder} is not a run folder: there is no such folder")
         self.summary = folders.read_json(folder, folders.SUMMARY)
         self.provenance = folders.read_json(folder, folders.PROVENANCE)
+        folders.check_tables(folder, self.provenance.get("tables_sha256"))
         path = folder / folders.SCENARIO
         try:
             self.tables = tomllib.loads(path.read_text(encoding="utf-8"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import re
@@ -21,7 +22,8 @@ PROVENANCE = "provenance.json"
 REPORT = "report.html"
 REQUIRED = (SCENARIO, SUMMARY, PROVENANCE)
 TABLES = (*tables.TABLES, *radio_tables.TABLES)
-KNOWN = frozenset({*REQUIRED, REPORT, *(f"{table.name}.parquet" for table in TABLES)})
+TABLE_FILES = tuple(f"{table.name}.parquet" for table in TABLES)
+KNOWN = frozenset({*REQUIRED, REPORT, *TABLE_FILES})
 
 _UNSUITABLE = re.compile(r"[^\w.+-]+")
 
@@ -114,6 +116,38 @@ def read_json(folder: Path, name: str) -> dict[str, Any]:
     if not isinstance(content, dict):
         raise RunError(f"{_shown(folder / name)} is damaged; run the scenario again")
     return content
+
+
+def digests(folder: Path) -> dict[str, str]:
+    """The SHA-256 of every table in a run folder, by file name."""
+    return {name: _digest(folder / name) for name in TABLE_FILES if (folder / name).exists()}
+
+
+def check_tables(folder: Path, recorded: Any) -> None:
+    """That the tables are as they were written; `recorded` is what digests() said then.
+
+    Parquet itself has no checksums here: a flipped bit can read as another number.
+
+    Raises:
+        RunError: one is missing or damaged.
+    """
+    for name, digest in recorded.items() if isinstance(recorded, dict) else ():
+        if name not in TABLE_FILES:
+            continue
+        shown = _shown(folder / name)
+        try:
+            same = _digest(folder / name) == digest
+        except FileNotFoundError:
+            raise RunError(f"{shown} is missing; run the scenario again") from None
+        except OSError as error:
+            raise RunError(f"{shown} cannot be read: {error.strerror}") from None
+        if not same:
+            raise RunError(f"{shown} is damaged; run the scenario again")
+
+
+def _digest(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def _swap(fresh: Path, target: Path) -> None:

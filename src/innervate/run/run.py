@@ -105,7 +105,8 @@ class Run:
             if report:
                 (fresh / folders.REPORT).write_text(self.report(), encoding="utf-8")
             folders.write_json(fresh / folders.SUMMARY, self.summary)
-            folders.write_json(fresh / folders.PROVENANCE, self.provenance)
+            origin = self.provenance | {"tables_sha256": folders.digests(fresh)}
+            folders.write_json(fresh / folders.PROVENANCE, origin)
         self.written = Path(folder)
         return self.written
 

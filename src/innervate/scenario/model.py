@@ -104,6 +104,7 @@ class ProtocolTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     beacon_hz: Annotated[
         float, Meta(ge=1, le=1000, description="a number of beacons per second, 1 to 1000")
     ] = 250.0
+    # Which of these can be kept, rules.py says.
     k: (
         Annotated[int, Meta(ge=1, le=100, description="a whole number of missed beacons, 1 to 100")]
         | None

@@ -9,6 +9,7 @@ from math import ceil, floor
 from innervate.scenario.build import build_graph, check_reach
 from innervate.scenario.load import Scenario
 from innervate.scenario.model import EventTable, ProtocolTable, SkinScenario
+from innervate.scenario.rules import ONE
 from innervate.scenario.script import Step, steps
 from innervate.scenario.source import Source
 from innervate.scenario.targets import Damage, target
@@ -16,7 +17,6 @@ from innervate.scenario.touch import Touch, sample
 from innervate.topology import Graph
 from innervate.trace.streams import Stream, stream
 
-ONE = 840  # p_f = 1 in fixed point [skin 5]
 WIRE_US = 60  # a frame of 240 bit at 4 Mbit/s [skin 2]
 K = 5
 DEPTH_EXPECTED = 32  # MAXD' [skin 4]

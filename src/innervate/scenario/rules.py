@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from math import ceil
+
 from innervate.scenario.errors import ScenarioError
 from innervate.scenario.lines import Key
 from innervate.scenario.model import EventTable, SkinScenario
 from innervate.scenario.source import Source
 
+ONE = 840  # p_f = 1 in fixed point [skin 5]
+K_MAX = 100
+# sim/clocks.py computes time_us * drift_ppm * 2^30 / 10^6 in 64 bits with sign: duration_s *
+# drift_ppm has to stay below 2^33, less a little for the rounding of the drift.
+DRIFT_S_PPM = 8_000_000_000
 TARGETS = ("interface", "cell", "link", "node", "pc", "random")
 # Targets each action can have, and the words for them.
 CABLE_ACTIONS = ("cut", "restore", "loose", "lose")
@@ -32,7 +39,9 @@ def check(source: Source, model: SkinScenario) -> None:
     """Raise ScenarioError at the first thing that does not fit together."""
     _origin(source, model)
     _protocol(source, model)
+    _missed(source, model.protocol.k)
     _range(source, ("timing", "hop_latency_us"), model.timing.hop_latency_us)
+    _clocks(source, model)
     if 0 < model.data.rate_hz < 0.01:
         raise source.error(("data", "rate_hz"), "data.rate_hz must be 0 (off) or at least 0.01")
     for index, event in enumerate(model.event):
@@ -82,6 +91,33 @@ def _protocol(source: Source, model: SkinScenario) -> None:
         message = "protocol.balance_periods has no effect with balancing = false; leave one out"
         raise source.error(("protocol", "balance_periods"), message)
     _range(source, ("protocol", "forward_us"), protocol.forward_us)
+
+
+def _missed(source: Source, k: int | None) -> None:
+    """That k missed beacons can be counted: each weighs a whole number of 1/ONE."""
+    if k is None or _is_kept(k):
+        return
+    near = [next(filter(_is_kept, range(k, 0, -1))), *filter(_is_kept, range(k, K_MAX + 1))][:2]
+    raise source.error(
+        ("protocol", "k"),
+        f"protocol.k = {k} cannot be kept: a missed beacon is counted in 1/{ONE}; "
+        f"use {' or '.join(map(str, near))}",
+    )
+
+
+def _is_kept(k: int) -> bool:
+    return ceil(ONE / ceil(ONE / k)) == k
+
+
+def _clocks(source: Source, model: SkinScenario) -> None:
+    """That no clock overflows."""
+    drift_ppm = 0 if model.timing.lock_step else model.timing.drift_ppm
+    if model.duration_s * drift_ppm > DRIFT_S_PPM:
+        raise source.error(
+            ("duration_s",),
+            f"duration_s = {model.duration_s:g} is too long for clocks with timing.drift_ppm = "
+            f"{drift_ppm}; make it at most {DRIFT_S_PPM // drift_ppm} or the drift smaller",
+        )
 
 
 def _range(source: Source, key: Key, pair: tuple[float, float]) -> None:
