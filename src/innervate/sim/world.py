@@ -7,6 +7,7 @@ the simulator keeps true time.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,9 +36,6 @@ DELIVERY = ("time", "port", "cell", "seq", "hops", "proximity", "force", "temper
 TRAIL = ("time", "node", "handler", "port", "fingerprint")
 ACTION = ("kind", "a", "b", "c")
 WIDE = {"time", "busy", "offset", "rate", "inverse", "source", "at", "fingerprint"} | set(RUN)
-# Of the radio (see radio/world.py).
-WIDE |= {"start", "end", "offered", "data_end", "now", "wanted", "completed", "decoded", "garbled",
-         "offers", "dropped", "silent", "partial", "again", "sent", "packets"}  # fmt: skip
 
 # States of a node.
 OFF = 0
@@ -150,13 +148,22 @@ class Tables:
             return [value] * count
         return np.full(count, value, kind) if value else np.zeros(count, kind)
 
-    def records(self, names: tuple[str, ...], count: int, fresh: bool = False) -> Any:
-        """`count` simulator records; with `fresh` their content is not initialised."""
+    def records(
+        self,
+        names: tuple[str, ...],
+        count: int,
+        fresh: bool = False,
+        wide: Collection[str] = frozenset(WIDE),
+    ) -> Any:
+        """`count` simulator records; with `fresh` their content is not initialised.
+
+        Fields in `wide` have 64 bits, all others 32.
+        """
         if self.plain:
             declaration = tuple((name, _length(name), 0, 0, "", "") for name in names)
             make = plain.make("Record", declaration)
             return [make() for _ in range(count)]
-        dtype = row_dtype(names)
+        dtype = row_dtype(names, wide)
         return np.empty(count, dtype) if fresh else np.zeros(count, dtype)
 
     def states(self, declaration: Any, count: int, itemsize: int = 0) -> Any:
@@ -173,15 +180,15 @@ class Tables:
         return states.view(np.int32).reshape(len(states), -1)
 
 
-def row_dtype(names: tuple[str, ...]) -> np.dtype[Any]:
+def row_dtype(names: tuple[str, ...], wide: Collection[str] = frozenset(WIDE)) -> np.dtype[Any]:
     """The array form of simulator records with these fields."""
-    return np.dtype([_column(name) for name in names], align=True)
+    return np.dtype([_column(name, wide) for name in names], align=True)
 
 
 def _length(name: str) -> int:
     return 3 if name in ("force", "accel") else 0
 
 
-def _column(name: str) -> tuple[Any, ...]:
-    kind = np.int64 if name in WIDE else np.int32
+def _column(name: str, wide: Collection[str]) -> tuple[Any, ...]:
+    kind = np.int64 if name in wide else np.int32
     return (name, kind, (3,)) if _length(name) else (name, kind)

@@ -33,16 +33,16 @@ def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> r.Wo
     order, delay, degree = _neighbours(plan)
     rows = ROWS if keep else 1
     world = r.World(
-        run=tables.records(r.RUN, 1),
+        run=tables.records(r.RUN, 1, wide=r.WIDE),
         heap=r.Heap(tables.numbers(64 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64)),
         stations=stations,
         words=tables.words(stations, fields),
         low=low.tolist() if plain else low,
         high=high.tolist() if plain else high,
         params=tables.states(radio_fields.PARAMS, 1),
-        radios=tables.records(r.RADIO, n + 1),
+        radios=tables.records(r.RADIO, n + 1, wide=r.WIDE),
         due=tables.numbers(n * r.TIMERS, NEVER, np.int64),
-        air=tables.records(r.AIR, n * AIRS),
+        air=tables.records(r.AIR, n * AIRS, wide=r.WIDE),
         frames=tables.states(radio_fields.FRAME, n * AIRS),
         degree=_given(tables, degree),
         order=_given(tables, order),
@@ -61,11 +61,11 @@ def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> r.Wo
             action=tables.records(w.ACTION, OUTBOX),
             frame=tables.states(radio_fields.FRAME, OUTBOX),
         ),
-        commands=tables.records(r.COMMAND, len(plan.faults) + 1),
-        rows=tables.records(r.ROW, rows, fresh=True),
-        sent=tables.records(r.SENT, rows, fresh=True),
-        packets=tables.records(r.PACKET, rows, fresh=True),
-        trail=tables.records(r.TRAIL, ROWS if trail else 1, fresh=True),
+        commands=tables.records(r.COMMAND, len(plan.faults) + 1, wide=r.WIDE),
+        rows=tables.records(r.ROW, rows, fresh=True, wide=r.WIDE),
+        sent=tables.records(r.SENT, rows, fresh=True, wide=r.WIDE),
+        packets=tables.records(r.PACKET, rows, fresh=True, wide=r.WIDE),
+        trail=tables.records(r.TRAIL, ROWS if trail else 1, fresh=True, wide=r.WIDE),
     )
     _set_run(world, plan, checks, keep, trail)
     _set_stations(world, plan)

@@ -129,7 +129,7 @@ def _collect(world: w.World, parts: dict[str, list[Any]]) -> None:
         table, fields = getattr(world, name), NAMES[name]
         if isinstance(table, list):
             rows = [tuple(getattr(row, f) for f in fields) for row in table[:count]]
-            kept.append(np.array(rows, row_dtype(fields)))
+            kept.append(np.array(rows, row_dtype(fields, w.WIDE)))
         else:
             kept.append(table[:count].copy())
         put(world.run, 0, **{name: 0})

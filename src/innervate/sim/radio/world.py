@@ -26,6 +26,9 @@ SENT = ("time", "end", "node", "kind", "slots", "pos", "next", "handle", "count"
 PACKET = ("offered", "end", "time", "node", "handle", "slots", "receivers", "listeners", "tries")
 TRAIL = ("time", "node", "handler", "port", "fingerprint")
 
+# All fields have 32 bits, these and all of RUN 64.
+WIDE = frozenset({"time", "start", "end", "offered", "data_end", "offset", "fingerprint", *RUN})
+
 TIMERS = 2
 RING = 1024  # packets of a station whose fate is remembered
 
