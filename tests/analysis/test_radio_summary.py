@@ -6,7 +6,6 @@ import pytest
 from innervate.analysis import radio, radio_air
 from innervate.protocol.radio_words import CRR, DATA, OPEN, REPORT_BOUNDS, REPORT_LEFT
 from innervate.scenario.radio_plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
-from innervate.sim.loop import ON_TIMER
 from innervate.sim.radio import world as w
 from innervate.sim.radio.loop import ON_CARRIER
 from innervate.sim.radio.simulate import COUNTS
@@ -207,7 +206,7 @@ FAULTS = [
         (2, {}),
         (5, {"ta": 2000, "spread": 900}),
         (10, {"packet_slots": 5}),
-        (7, {"real": (52, 400), "packet_slots": 5}),
+        (7, {"real": (52, 400), "packet_slots": 5, "duration_s": 0.3}),
         (4, {"traffic": "saturated", "packets": 20}),
         (5, {"faults": FAULTS, "duration_s": 0.6, "traffic": "saturated", "packets": 1000}),
     ],
@@ -226,11 +225,10 @@ def test_signals_are_what_the_medium_told_the_stations(n, options):
         # Nothing changes untold, but by deafness and while it is off.
         edges = np.unique(np.concatenate([heard.cd.ravel(), heard.voc.ravel()]))
         shut = np.concatenate([heard.deaf, heard.off])
-        edges = edges[~np.isin(edges, shut.ravel()) & (edges <= result.ended_us)]
-        assert set(edges.tolist()) <= {*mine["time"].tolist(), result.ended_us + 1}
+        edges = edges[~np.isin(edges, shut.ravel()) & (edges < result.ended_us)]
+        assert set(edges.tolist()) <= set(mine["time"].tolist())
         compared += len(mine)
     assert compared > 4
-    assert ON_TIMER != ON_CARRIER
 
 
 @pytest.mark.parametrize("packet_slots", [5, 25])
