@@ -34,6 +34,8 @@ border:1px solid var(--good);color:var(--good);font-weight:600}
 .two{grid-template-columns:repeat(auto-fit,minmax(min(100%,400px),1fr))}
 figure{margin:0;min-width:0;break-inside:avoid}
 figure svg{display:block;max-width:100%;height:auto;margin:.3em 0}
+.wide{overflow-x:auto;margin:1em 0}
+.wide svg{max-width:none}
 .keys{display:flex;flex-wrap:wrap;gap:6px 18px;margin:.8em 0;font-size:.9rem;padding:0}
 .keys li{display:flex;align-items:center;gap:6px;list-style:none}
 .scroll{overflow-x:auto}
@@ -52,6 +54,7 @@ footer{margin-top:3em;color:var(--soft);font-size:.85rem}
 @media print{main{max-width:none;padding:0}h2{break-after:avoid}body{font-size:11pt}
 .four{grid-template-columns:repeat(4,1fr)}.three{grid-template-columns:repeat(3,1fr)}
 .two{grid-template-columns:repeat(2,1fr)}
+.wide svg{max-width:100%}
 pre{white-space:pre-wrap}details::details-content{content-visibility:visible;block-size:auto}}
 """
 

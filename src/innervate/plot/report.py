@@ -7,7 +7,7 @@ from html import escape
 from typing import Any, Protocol
 
 from innervate import scenario as scenarios
-from innervate.plot import skin_report
+from innervate.plot import radio_report, skin_report
 from innervate.plot.page import details, element, page, section, table
 
 
@@ -32,7 +32,10 @@ class Reportable(Protocol):
 
 
 # What a kind of network shows above the parts that all have; the other kinds add theirs.
-_BODIES: dict[str, Callable[[Any, Mapping[str, Any]], str]] = {"skin": skin_report.body}
+_BODIES: dict[str, Callable[[Any, Mapping[str, Any]], str]] = {
+    "skin": skin_report.body,
+    "radio": radio_report.body,
+}
 
 
 def render(run: Reportable) -> str:

@@ -75,6 +75,12 @@ text{font:12px system-ui,-apple-system,"Segoe UI",Roboto,sans-serif;fill:var(--i
 .bar{fill:var(--accent)}
 .mark{fill:none;stroke:var(--ink);stroke-width:1.2;stroke-dasharray:4 3}
 .even{fill:none;stroke:var(--ink);stroke-width:1.4;stroke-dasharray:5 3}
+.deaf{fill:var(--faint);fill-opacity:.5}
+.ones{fill:var(--soft)}
+.outlined{stroke:var(--ink);stroke-width:1.4}
+.struck{fill:none;stroke:var(--alarm);stroke-width:1.6}
+.warn{fill:var(--alarm)}
+.done{fill:none;stroke:var(--good);stroke-width:2.2;stroke-linecap:round;stroke-linejoin:round}
 """
 
 
