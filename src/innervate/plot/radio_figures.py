@@ -9,11 +9,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
 
 from innervate.analysis import radio
 from innervate.plot import style
 from innervate.plot.radio_scene import DONE, NOTICED, Scene, scene
-from innervate.plot.radio_words import FrameWords, fault_words
+from innervate.plot.radio_words import FrameWords
 
 BINS = 60
 NAMED_MAX = 40  # stations that each have a name on the axis
@@ -74,14 +75,19 @@ def _boxes(ax: Axes, shown: Scene, lanes: dict[int, int]) -> None:
     groups: dict[tuple[int, int, bool], list[Any]] = {}
     for box in shown.boxes:
         groups.setdefault((box.station, box.kind, box.collided), []).append(box)
+    least = 0.008 * (shown.window.to_us - shown.window.from_us) / 1e3
     for (station, _, collided), boxes in groups.items():
         words = boxes[0].words
         colour, hatch = _FILLS.get(words.kind.split()[0], _OTHER)
         parts = [(box.start_us / 1e3, (box.end_us - box.start_us) / 1e3) for box in boxes]
         edge = style.VERMILION if collided else style.INK
         high = 0.8 * words.height
+        # On thin boxes an edge or a hatch would leave nothing of the fill.
+        fine = max(wide for _, wide in parts) < least or len(lanes) > NAMED_MAX
+        hatch, width = ("", 0.0) if fine else (hatch, 0.9 if collided else 0.3)
         ax.broken_barh(parts, (lanes[station] + 0.4 - high, high), facecolor=colour,
-                       edgecolor=edge, hatch=hatch, lw=0.9 if collided else 0.3)  # fmt: skip
+                       edgecolor=edge, hatch=hatch or None,
+                       lw=0.6 if collided else width)  # fmt: skip
 
 
 def _notes(ax: Axes, shown: Scene, lanes: dict[int, int]) -> None:
@@ -112,7 +118,7 @@ def delay(result: Any) -> Figure:
             label = f"{share} %: {at:,.4g} slots"
             ax.axvline(at, color=style.INK, lw=0.8, ls=dash, label=label)
         ax.set_xlim(0, 1.04 * max(float(found[-1]), 1.0))
-        ax.legend(loc="lower right" if np.median(found) < 0.6 * found[-1] else "upper left")
+        ax.legend(loc="best")
     ax.set_ylim(0, 104)
     ax.set_xlabel("delay (slots)")
     ax.set_ylabel("packets delivered (%)")
@@ -131,6 +137,7 @@ def fairness(result: Any) -> Figure:
     ax.set_title(f"{words}; dashed: even share")
     if n <= 12:
         ax.set_xticks(range(n))
+    ax.yaxis.set_major_locator(MaxNLocator(integer=True))
     ax.grid(axis="x", visible=False)
     ax.set_xlabel("station")
     ax.set_ylabel("packets delivered")
@@ -147,13 +154,11 @@ def throughput(result: Any, bins: int = BINS) -> Figure:
     ax.step(at, values, where="post", color=style.BLUE)
     mean = radio.throughput(result)
     if mean is not None:
-        ax.axhline(mean, color=style.INK, lw=0.9, ls="--", label=f"throughput {mean:.3f}")
-        ax.legend(loc="lower right")
+        ax.axhline(mean, color=style.INK, lw=0.9, ls="--")
+        ax.set_title(f"dashed: throughput {mean:.3f}")
     inside = [fault for fault in result.plan.faults if at[0] <= fault.at_us / 1e6 <= at[-1]]
     for fault in inside[:FAULTS_MAX]:
         ax.axvline(fault.at_us / 1e6, color=style.VERMILION, lw=0.8, ls=":")
-    if len(inside) == 1:
-        ax.set_title(fault_words(inside[0]))
     ax.set_xlim(at[0], at[-1])
     ax.set_ylim(0, max(1.04, 1.04 * float(values.max())))
     ax.set_xlabel("time (s)")

@@ -44,11 +44,11 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
 
 def _top(result: Any, summary: Mapping[str, Any]) -> str:
     params = result.plan.params
+    switch = f"in {words.ms_words(params['ta_us'] / 1e3)}" if params["ta_us"] else "at once"
     over = (
         f"{summary['name']}: {words.number_of(summary['stations'], 'station')} on one radio "
         f"channel, {protocol_words(summary['protocol'])}, packets of "
-        f"{params['packet_slots']} slots, radios that switch in "
-        f"{words.ms_words(params['ta_us'] / 1e3)}; a slot is {params['slot_us']} us; "
+        f"{params['packet_slots']} slots of {params['slot_us']} us, radios that switch {switch}; "
         f"seed {summary['seed']}"
     )
     first, *others = sentences(result, summary)
@@ -110,9 +110,9 @@ def _collisions(result: Any, summary: Mapping[str, Any]) -> list[str]:
     found = radio.groups(result)
     struck = found.collision
     most = int(found.members[struck].max())
-    begin = "Once, frames" if count == 1 else f"{count:,} times, frames"
-    how = f"{most} of them" if count == 1 else f"at most {most} of them at once"
-    return [f"{begin} collided, {how}."]
+    if count == 1:
+        return [f"There was one collision, of {most} frames."]
+    return [f"There were {count:,} collisions, of up to {most} frames at once."]
 
 
 def _status(summary: Mapping[str, Any]) -> str:
@@ -148,22 +148,15 @@ def _timelines(result: Any) -> str:
     shown = radio_scene.scene(result, *whole)
     if not shown.boxes:
         return ""
-    collided = any(box.collided for box in shown.boxes)
-    what = "first collision and its resolution" if collided else "first transmissions"
-    parts = []
-    begin = radio_scene.contention(result, whole)
-    if begin is not None:
-        text = "From the first transmissions to the first packet delivered."
-        if collided:
-            text = "From the first collision to the first packet delivered."
-        parts.append(
-            _wide(radio_timeline.timeline(result, *begin), "How the order was found", text)
-        )
-    more = ""
+    first = "collision" if any(box.collided for box in shown.boxes) else "transmissions"
+    text = "A lane for each station; slots count from the first of these frames."
     if shown.cut:
-        more = f" Shown are {len(shown.stations)} stations and {len(shown.boxes):,} transmissions."
-    text = f"The {what}. A lane for each station; slots count from the first of these frames.{more}"
-    parts.append(_wide(radio_timeline.draw(shown), "Until everybody was served", text))
+        text += f" Shown are {len(shown.stations)} stations, {len(shown.boxes):,} transmissions."
+    head = f"The first {first}, and what followed"
+    parts = [_wide(radio_timeline.draw(shown), head, text)]
+    begin = radio_scene.beginning(result, whole)
+    if begin is not None:
+        parts.append(_wide(radio_timeline.timeline(result, *begin), "The beginning, enlarged", ""))
     listing = details("The same, event by event", _listing(result, shown))
     return section("On the air", "".join(parts) + listing)
 
@@ -240,14 +233,17 @@ def _delays(result: Any, summary: Mapping[str, Any]) -> str:
     shares = np.concatenate([[0.0], shares[::every], shares[-1:]])
     delay = summary["delay_slots"]
     marks = [
-        charts.Mark(delay[key], f"{name} {slots_words(delay[key])}")
+        charts.Mark(delay[key], name)
         for key, name in (("p50", "half"), ("p95", "95 %"), ("p99", "99 %"))
     ]
     # Quantiles that coincide get one mark: two labels would name the same line.
     marks = [mark for i, mark in enumerate(marks) if i == 0 or mark.at > 1.001 * marks[i - 1].at]
-    x = charts.Axis(0.0, 1.04 * max(float(found[-1]), 1.0), "slots from offer to end of frame")
+    x = charts.Axis(0.0, 1.15 * max(float(found[-1]), 1.0), "slots from offer to end of frame")
     head = "Packets delivered within a delay, in %"
-    return figure(charts.step_chart(at, shares, x, charts.Axis(0.0, 105.0), marks, head), head)
+    half, most, nearly = (slots_words(delay[key]) for key in ("p50", "p95", "p99"))
+    text = f"Half of them within {half}, 95 % within {most}, 99 % within {nearly}."
+    drawing = charts.step_chart(at, shares, x, charts.Axis(0.0, 105.0), marks, head)
+    return figure(drawing, head, text)
 
 
 def _fairness(result: Any, summary: Mapping[str, Any]) -> str:

@@ -22,6 +22,8 @@ LANES_MAX = 128
 BOXES_MAX = 4000
 PACKETS_MAX = 130  # a window chosen here is at most that many packets long, or 3 a station
 MARGIN = 0.015
+READABLE_SLOTS = 80
+ENLARGED = 0.3  # share of a resolution that is shown enlarged
 
 NOTICED, DONE, FAILED = "noticed", "done", "failed"
 MARKS = {REPORT_COLLISION: NOTICED, REPORT_DELIVERED: DONE, REPORT_FAILED: FAILED}
@@ -111,19 +113,18 @@ def resolution(result: Any) -> Window:
     return Window(origin - params["ta_us"] - edge, last + edge, origin)
 
 
-def contention(result: Any, whole: Window) -> Window | None:
-    """The beginning of a resolution, up to the end of its first success.
+def beginning(result: Any, whole: Window) -> Window | None:
+    """The first part of a resolution, up to its first success or an enlargement of 3.3.
 
-    None if that is most of it anyway.
+    None where the whole is short enough to be read.
     """
-    served = successes(result)
-    ends = served["end"][(served["end"] > whole.origin_us) & (served["end"] < whole.to_us)]
-    if len(ends) == 0:
+    length = whole.to_us - whole.from_us
+    if length < READABLE_SLOTS * int(result.plan.params["slot_us"]):
         return None
-    length = int(ends[0]) - whole.from_us
-    if length > 0.45 * (whole.to_us - whole.from_us):
-        return None
-    return Window(whole.from_us, whole.from_us + round(1.03 * length), whole.origin_us)
+    ends = successes(result)["end"]
+    ends = ends[(ends > whole.origin_us) & (ends < whole.to_us)]
+    success = 1.03 * (int(ends[0]) - whole.from_us) if len(ends) else length
+    return whole._replace(to_us=whole.from_us + round(min(success, ENLARGED * length)))
 
 
 def scene(
