@@ -96,7 +96,7 @@ _REASONS = {
 }
 _ACTIONS = {
     JOIN: "switched on",
-    KILL: "switched off, in the middle of everything",
+    KILL: "switched off without warning",
     LEAVE: "told to leave",
     GARBLE: "next {value} CR-Rs garbled",
     FADE: "next {value} CR-Rs not heard by anybody",
@@ -139,7 +139,7 @@ def report_words(protocol: str, code: int, a: int, b: int) -> str:
 def fault_words(fault: Any) -> str:
     """An event of the scenario."""
     what = _ACTIONS.get(fault.action, "something happened").format(value=fault.value)
-    return f"station {fault.node} {what}"
+    return f"station {fault.node}: {what}"
 
 
 def slots_words(slots: float) -> str:
