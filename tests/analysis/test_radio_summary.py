@@ -9,7 +9,6 @@ from innervate.scenario.radio_plan import FADE, GARBLE, JOIN, KILL, LEAVE, Radio
 from innervate.sim.radio import world as w
 from innervate.sim.radio.loop import ON_CARRIER
 from innervate.sim.radio.simulate import COUNTS
-from innervate.sim.world import row_dtype
 from tests.radio_runs import radio_plan, run
 
 SLOT = 208
@@ -19,7 +18,7 @@ def table(fields, *rows):
     """Rows as a structured array; what a row leaves out at its end is 0."""
     width = len(fields)
     full = [(*row, *[0] * (width - len(row))) for row in rows]
-    return np.array(full, row_dtype(fields))
+    return np.array(full, [(name, np.int64) for name in fields])
 
 
 def packet(offered_us, end_us, node, slots=5, receivers=1):
