@@ -132,8 +132,8 @@ def test_measured_delays():
     found = radio.bounds_noticed(made(rows=rows))
     assert found["count"] == 3
     assert found["stations"] == [
-        {"station": 0, "count": 1, "delay_us": {"min": 42.0, "max": 42.0}},
-        {"station": 1, "count": 2, "delay_us": {"min": 117.0, "max": 120.0}},
+        {"station": 0, "count": 1, "delay_us": {"min": 20.0, "max": 20.0}},
+        {"station": 1, "count": 2, "delay_us": {"min": 120.0, "max": 130.0}},
     ]
 
 

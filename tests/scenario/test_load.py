@@ -64,8 +64,18 @@ def _links_robot(scenario: Scenario) -> bool:
     return scenario.model.body is not None
 
 
+SKINS = [name for name in bundled() if not name.startswith("radio")]
+
+
 @pytest.mark.parametrize("name", sorted(bundled()))
-def test_bundled_scenarios(name: str) -> None:
+def test_bundled_scenarios_have_a_name_and_a_first_line(name: str) -> None:
+    assert load(name).name == name
+    assert loads(dump(load(name))).model == load(name).model
+    assert bundled()[name].read_text(encoding="utf-8").startswith("# ")
+
+
+@pytest.mark.parametrize("name", sorted(SKINS))
+def test_bundled_skins(name: str) -> None:
     scenario = load(name)
     assert scenario.name == name
     if _links_robot(scenario):

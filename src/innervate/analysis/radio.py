@@ -6,10 +6,6 @@ saturation the first tenth of the successes is left out of every mean: the chann
 
 from __future__ import annotations
 
-<<<<<<< HEAD
-=======
-from collections.abc import Callable
->>>>>>> ba2f3cfeb3fc9e9dc608d702489d2465f2a07f16
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -46,16 +42,6 @@ ORDER_MAX = 1000
 PAIRS_FROM = 20_000  # successes whose order is looked at
 WARM_UP = 10  # in saturation one in so many successes is left out
 
-<<<<<<< HEAD
-=======
-# What a station measured when it noticed a delay outside the configured bounds, by which bound
-# (b of REPORT_BOUNDS): from what it reported to the pair delay, us. Others report the delay.
-_MEASURED: dict[int, Callable[[Any, Any], Any]] = {
-    0: lambda params, a: params["dmin_us"] - a / 2,
-    1: lambda params, a: params["dmin_us"] + a / 2,
-}
-
->>>>>>> ba2f3cfeb3fc9e9dc608d702489d2465f2a07f16
 
 class Steps(NamedTuple):
     """A step function: `values[i]` from `time_us[i]` on, up to `time_us[i + 1]`."""
@@ -236,12 +222,6 @@ def bounds_noticed(result: Any) -> dict[str, Any]:
     """
     rows = result.rows[result.rows["code"] == REPORT_BOUNDS]
     measured = rows["a"].astype(np.float64)
-<<<<<<< HEAD
-=======
-    for bound, delay_of in _MEASURED.items():
-        which = rows["b"] == bound
-        measured[which] = delay_of(result.plan.params, measured[which])
->>>>>>> ba2f3cfeb3fc9e9dc608d702489d2465f2a07f16
     return {
         "count": len(rows),
         "stations": [

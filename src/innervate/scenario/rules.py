@@ -187,9 +187,10 @@ def check_kind(source: Source, kind: object, known: list[str], to_come: tuple[st
         raise source.error((), f'the scenario has no kind; add kind = "{known[0]}"')
     if isinstance(kind, str) and kind in known:
         return kind
-    one = ", ".join(f'"{name}"' for name in known)
     if isinstance(kind, str) and kind in to_come:
-        raise source.error(("kind",), f'kind = "{kind}" is not in this version, which runs {one}')
+        both = " and ".join(f'"{name}"' for name in known)
+        raise source.error(("kind",), f'kind = "{kind}" is not in this version, which runs {both}')
+    one = " or ".join(f'"{name}"' for name in known)
     shown = f'"{kind}"' if isinstance(kind, str) else str(kind)[:40]
     error: ScenarioError = source.error(("kind",), f"kind must be {one}, not {shown}")
     raise error
