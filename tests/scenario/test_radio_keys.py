@@ -30,7 +30,7 @@ MISTAKES = (
     (
         "stations = 4",
         "staions = 4",
-        '2: the scenario has no key "staions"; did you mean "stations"',
+        '2: a scenario has no key "staions"; did you mean "stations"?',
     ),
     ("packet_slots = 5", "packet_slots = 2", "3: packet_slots must be 3 to 250 slots, not 2"),
     ("packet_slots = 5", "packet_slots = [9, 5]", "3: packet_slots must be [least, most]"),
