@@ -123,6 +123,14 @@ PARAMS = (
     ("per_turn", 0, 1, 8, "packets", "most packets in one turn"),
     ("wait_us", 0, 0, 268435455, "us", "paper: W, bound of the random wait"),
     ("tail_rule", 0, 0, 1, "flag", "paper: T1, a tail shorter than tau is of one who ended before"),
+    (
+        "overlap_rule",
+        0,
+        0,
+        1,
+        "flag",
+        "paper: T4, a long noise is several CR-Rs; 0 = a burst is one",
+    ),
     ("window_slots", 0, 0, 4095, "slots", "paper: window for CR-Rs; 0 = T - Tc0"),
     ("dilate", 0, 1, 8190, "factor", "paper: CR-Rs stretched over the window; 1 = not"),
 )

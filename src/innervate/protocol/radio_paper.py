@@ -143,7 +143,7 @@ def carrier_went(station, params, now, out):
     if mode == TAIL:
         tail_ends(station, params, now, out)
         return
-    what = burst_ends(station, params, now, mode < RESERVE)
+    what = burst_ends(station, params, now, mode == RESERVE and not station.closing)
     if mode == IDLE or mode == JOIN:
         if what == REPORTS:
             follow(station, params, now, out)

@@ -32,7 +32,9 @@ def burst_begins(station, since, late):
 
 def count_reports(station, params, noise_us):
     """T4: noise is CR-Rs that overlap; who sent one of them began tau earlier than it heard."""
-    if station.late:
+    if not params.overlap_rule:
+        noise_us = min(noise_us, params.slot_us)
+    elif station.late:
         noise_us = max(noise_us - params.dmax_us, 0)
     count = (noise_us + params.slot_us - 1) // params.slot_us
     station.crrs = min(station.crrs + count, TURNS_MOST)
@@ -45,10 +47,10 @@ def frame_ends(station, params, now, length_us):
     station.late = 0
 
 
-def burst_ends(station, params, now, first):
-    """What it was. `first`: none of a resolution is known, so long noise is no CR-Rs.
+def burst_ends(station, params, now, window):
+    """What it was. T5: noise as long as a packet is one, garbled or collided.
 
-    T5: noise as long as a packet is one, garbled or collided.
+    Outside an open window CR-Rs come within tau of each other: two slots are a packet cut short.
     """
     noise = (now - station.mark) & MASK30
     longest = packet_us(params)
@@ -56,7 +58,7 @@ def burst_ends(station, params, now, first):
         longest = max(longest - params.slot_us - 2 * params.ta_us, 2 * params.slot_us)
     if station.data:
         return PACKET_ENDS
-    if first and not station.clear:
+    if not window and not station.clear:
         longest = 2 * params.slot_us
     if noise >= longest:
         return NOISE

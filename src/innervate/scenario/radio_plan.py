@@ -74,6 +74,7 @@ def parameters(
     per_turn: int = 1,
     wait_us: int = 0,
     tail_rule: bool = True,
+    overlap_rule: bool = True,
     window_slots: int = 0,
     dilate: int = 1,
 ) -> dict[str, int]:
@@ -88,6 +89,7 @@ def parameters(
         per_turn: most packets in one turn, 1 .. 7.
         wait_us: W, bound of the random wait (paper); 0 = two packets.
         tail_rule: T1, without which the last and the second to last both report (paper).
+        overlap_rule: T4, without which CR-Rs that overlap count as one (paper).
         window_slots: window for CR-Rs in slots; 0 = T - Tc0 (paper).
         dilate: factor on Tc, so that CR-Rs spread over the window; 2 T - 6 fills it (paper).
     """
@@ -112,6 +114,7 @@ def parameters(
         "per_turn": per_turn,
         "wait_us": wait_us or 2 * packet_slots * slot_us,
         "tail_rule": int(tail_rule),
+        "overlap_rule": int(overlap_rule),
         "window_slots": window_slots,
         "dilate": dilate,
     }
