@@ -2,7 +2,7 @@
 
 from innervate.protocol import plain, radio_fields, radio_paper
 from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER
-from innervate.protocol.radio_words import CRR, PACKET
+from innervate.protocol.radio_words import CRR, DATA, PACKET
 from innervate.scenario.radio_plan import parameters
 
 TAU, SLOT, BIT, T = 104, 208, 26, 25
@@ -18,9 +18,9 @@ Params = plain.make("Params", radio_fields.PARAMS)
 class Bench:
     """One station; time goes on only by `at`, the radio's deafness is this bench's business."""
 
-    def __init__(self, cause=0, start=(1 << 30) - 3000, **more):
+    def __init__(self, cause=0, start=(1 << 30) - 3000, ta=0, **more):
         self.params = Params()
-        for name, value in parameters(T, 0, (TAU, TAU), **more).items():
+        for name, value in parameters(T, ta, (TAU, TAU), **more).items():
             setattr(self.params, name, value)
         self.station = Station()
         self.station.number, self.station.rng, self.station.choice = 7, 1, 0
@@ -75,19 +75,37 @@ class Bench:
         self.call(radio_paper.on_input, kind, packet)
         return self
 
-    def hear(self, start, kind, length=None):
-        """A frame, alone on the channel."""
-        length = length or (SLOT if kind == CRR else LONG)
-        self.carrier(start, 1).at(start + length - 1)
-        self.time = start + length
+    def frame(self, kind):
+        """A frame ends now that was alone on the channel; its carrier's end is another call."""
         frame = Frame()
-        frame.kind, frame.slots, frame.source, frame.handle = kind, length // SLOT, 3, 99
+        frame.kind, frame.source, frame.handle = kind, 3, 99
+        frame.slots = 1 if kind == CRR else T
         self.call(radio_paper.on_frame, 0, frame)
-        self.call(radio_paper.on_carrier, 0, 0)
-        return self.at(start + length)
+        return self
+
+    def hear(self, start, kind):
+        """A frame with silence before and behind it."""
+        end = start + (SLOT if kind == CRR else LONG)
+        self.carrier(start, 1).at(end - 1)
+        self.time = end
+        self.frame(kind).call(radio_paper.on_carrier, 0, 0)
+        return self.at(end)
 
     def noise(self, start, end):
         return self.carrier(start, 1, 0).carrier(end, 0)
 
     def told(self, code):
         return [(a, b) for what, a, b in self.reports if what == code]
+
+
+def after_own_packet(**more):
+    """A station whose packet of 0..T has just ended; it listens again when told to."""
+    bench = Bench(**more)
+    bench.offer()
+    assert bench.sent == [(0, DATA)]
+    return bench
+
+
+def collided(tail, voc=1, **more):
+    """... and hears others until `tail` us later."""
+    return after_own_packet(**more).carrier(LONG, 1, voc).carrier(LONG + tail, 0)

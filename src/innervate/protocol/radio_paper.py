@@ -109,7 +109,7 @@ def on_carrier(station, params, now, cd, voc, out):
     if mode >= SEND_DATA:
         station.cd = cd
         if cd:
-            burst_begins(station, now - params.ta_us, 1)
+            burst_begins(station, now, 1)
         if mode == SEND_DATA:
             verify(station, params, now, cd, voc, out)
         else:
@@ -180,7 +180,7 @@ def on_timer(station, params, now, timer, out):
     """MAIN: a wait or deadline of the present mode. ACT: our CR-R, or our delayed turn."""
     mode = station.mode
     if timer == MAIN:
-        if not station.armed or mode >= SEND_DATA:
+        if not station.armed:
             return
         station.armed = 0
         if mode == IDLE:

@@ -146,5 +146,4 @@ def take_turn(station, params, now, out):
     report(out, REPORT_TURN, station.place, station.places)
     station.left = NONE
     station.total = max(station.total - 1, 0)
-    station.limit = dead_turn(params)
     transmit(station, params, now, 1, out)

@@ -31,11 +31,11 @@ def burst_begins(station, since, late):
 
 
 def count_reports(station, params, noise_us):
-    """T4: noise is CR-Rs that overlap; who sent one of them began tau earlier than it heard."""
+    """T4: noise is CR-Rs that overlap. What is heard up to tau after our own ended before it."""
     if not params.overlap_rule:
         noise_us = min(noise_us, params.slot_us)
     elif station.late:
-        noise_us = max(noise_us - params.dmax_us, 0)
+        noise_us = max(min(noise_us, noise_us + params.ta_us - params.dmax_us), 0)
     count = (noise_us + params.slot_us - 1) // params.slot_us
     station.crrs = min(station.crrs + count, TURNS_MOST)
 

@@ -44,7 +44,7 @@ def verify(station, params, now, cd, voc, out):
 
 def note_single(station, params, now, voc):
     """The last moment at which one signal was left: what is valid at once counts from our end."""
-    if voc and not station.single:
+    if voc:
         station.valid = now
         if now == (station.end + params.ta_us) & MASK30:
             station.valid = station.end
