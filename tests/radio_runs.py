@@ -27,7 +27,10 @@ def radio_plan(
     **more,
 ):
     """A plan; `spread` us between the starts of a disaster, `packets` per station in saturation."""
-    names = ("turns", "per_turn", "wait_us", "delay_us")
+    names = (
+        *("turns", "per_turn", "wait_us", "delay_us"),
+        *("tail_rule", "overlap_rule", "window_slots", "dilate"),
+    )
     params = parameters(packet_slots, ta, **{k: more.pop(k) for k in names if k in more})
     starts = (START_US + uniform(seed, "spread", n, spread + 1)).tolist()
     plan = RadioPlan(

@@ -75,6 +75,37 @@ PRACTICAL = (
     ("opener", 0, 0, 1, "flag", "reporter: this window follows our opening"),
 )
 
+PAPER = (
+    ("armed", 0, 0, 1, "flag", "the main timer means something"),
+    ("act", 0, 0, 1, "flag", "the act timer means something"),
+    ("free", 0, 0, 1, "flag", "idle for F or longer: a packet goes out at once"),
+    ("since", 0, 0, 1073741823, "us", "the channel counts as idle since then"),
+    ("turn", 0, 0, 1, "flag", "the packet we sent last was sent in a turn"),
+    ("again", 0, 0, 8, "collisions", "r: own turns that collided, in a row"),
+    ("known", 0, 0, 1, "flag", "our packet collided, and we know it"),
+    ("single", 0, 0, 1, "flag", "VOC: one signal is heard now"),
+    ("valid", 0, 0, 1073741823, "us", "v: since when; our own end if at once"),
+    ("tc", 0, 0, 268435455, "us", "Tc: from our end to that of the second to last"),
+    ("tc0", 0, 0, 268435455, "us", "Tc0: from that to the end of the last; 0 if unknown"),
+    ("role", 0, 0, 4, "role", "what we are in a resolution"),
+    ("mark", 0, 0, 1073741823, "us", "the present burst is accounted for up to here"),
+    ("late", 0, 0, 1, "flag", "it was there when our transmission ended"),
+    ("crrs", 0, 0, 4096, "CR-Rs", "in the present burst, as far as accounted for"),
+    ("clear", 0, 0, 1, "flag", "one of them could be read"),
+    ("data", 0, 0, 1, "flag", "a packet was received in it"),
+    ("until", 0, 0, 1073741823, "us", "when the window closes"),
+    ("closing", 0, 0, 1, "flag", "... it would, but for a carrier"),
+    ("due", 0, 0, 1, "flag", "our CR-R waits for the end of a carrier"),
+    ("sent", 0, 0, 1, "flag", "our CR-R is sent, or we owe none"),
+    ("reports", 0, 0, 4095, "CR-Rs", "M: all of them, our own too"),
+    ("behind", 0, 0, 4095, "CR-Rs", "n: those after our own; last: all"),
+    ("left", 0, -1, 4095, "turns", "before ours; -1 we have none"),
+    ("total", 0, 0, 4095, "turns", "to come in all, our own too"),
+    ("place", 0, 0, 4095, "turn", "which of them is ours, from 1; for the timeline"),
+    ("places", 0, 0, 4095, "turns", "how many there are; for the timeline"),
+    ("limit", 0, 0, 268435455, "us", "silence after which a turn is given up"),
+)
+
 PARAMS = (
     ("slot_us", 0, 1, 1000000, "us", "a slot: 8 bits"),
     ("bit_us", 0, 1, 100000, "us", "a bit"),
@@ -91,4 +122,15 @@ PARAMS = (
     ("turns", 0, 1, 65535, "turns", "practical: K, turns between open windows"),
     ("per_turn", 0, 1, 8, "packets", "most packets in one turn"),
     ("wait_us", 0, 0, 268435455, "us", "paper: W, bound of the random wait"),
+    ("tail_rule", 0, 0, 1, "flag", "paper: T1, a tail shorter than tau is of one who ended before"),
+    (
+        "overlap_rule",
+        0,
+        0,
+        1,
+        "flag",
+        "paper: T4, a long noise is several CR-Rs; 0 = a burst is one",
+    ),
+    ("window_slots", 0, 0, 4095, "slots", "paper: window for CR-Rs; 0 = T - Tc0"),
+    ("dilate", 0, 1, 8190, "factor", "paper: CR-Rs stretched over the window; 1 = not"),
 )

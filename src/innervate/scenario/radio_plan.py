@@ -43,6 +43,7 @@ class RadioPlan:
         sizes: per station, lengths in slots of its packets in turn; at most 1,024, repeated.
         absent: per station, 1 = switched off until it joins.
         faults: events in order of time.
+        forced: packets go out when offered, whatever the carrier says (paper mode's tests).
     """
 
     scenario: Any
@@ -60,6 +61,7 @@ class RadioPlan:
     sizes: list[list[int]] = field(default_factory=list)
     absent: list[int] = field(default_factory=list)
     faults: list[RadioFault] = field(default_factory=list)
+    forced: bool = False
 
 
 def parameters(
@@ -71,6 +73,10 @@ def parameters(
     turns: int = 16,
     per_turn: int = 1,
     wait_us: int = 0,
+    tail_rule: bool = True,
+    overlap_rule: bool = True,
+    window_slots: int = 0,
+    dilate: int = 1,
 ) -> dict[str, int]:
     """Derived times of CSMA/CD-R; names and reasons in docs/radio.md [radio 4, radio-practical 2].
 
@@ -82,6 +88,10 @@ def parameters(
         turns: turns of a round between two open windows.
         per_turn: most packets in one turn, 1 .. 7.
         wait_us: W, bound of the random wait (paper); 0 = two packets.
+        tail_rule: T1, without which the last and the second to last both report (paper).
+        overlap_rule: T4, without which CR-Rs that overlap count as one (paper).
+        window_slots: window for CR-Rs in slots; 0 = T - Tc0 (paper).
+        dilate: factor on Tc, so that CR-Rs spread over the window; 2 T - 6 fills it (paper).
     """
     slot_us = 8 * bit_us
     least, most = delay_us
@@ -103,4 +113,8 @@ def parameters(
         "turns": turns,
         "per_turn": per_turn,
         "wait_us": wait_us or 2 * packet_slots * slot_us,
+        "tail_rule": int(tail_rule),
+        "overlap_rule": int(overlap_rule),
+        "window_slots": window_slots,
+        "dilate": dilate,
     }

@@ -112,6 +112,7 @@ def _set_run(world: r.World, plan: Any, checks: bool, keep: bool, trail: bool) -
         loss=plan.loss_q15,
         rng=rng.seeded(int(uniform(plan.seed, "medium", 1, 1 << 30)[0])),
         saturated=int(plan.saturated),
+        forced=int(plan.forced),
         per_turn=plan.params["per_turn"],
         wanted=plan.wanted,
         checks=int(checks),

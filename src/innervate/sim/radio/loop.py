@@ -7,6 +7,7 @@ from innervate.kernel.bits import mix
 from innervate.protocol.arith import MASK16, MASK30
 from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER
 from innervate.protocol.radio_words import (
+    FORCE,
     LEAVE,
     PACKET,
     QUEUE,
@@ -211,8 +212,9 @@ def build(stack):
                 break
             traffic.fill_item(world, node, handle)
             now = time + radio.offset
-            give(world, node, now & MASK30, PACKET)
-            finish(world, node, time, now, ON_INPUT, PACKET)
+            kind = FORCE if run.forced else PACKET
+            give(world, node, now & MASK30, kind)
+            finish(world, node, time, now, ON_INPUT, kind)
 
     def switch_on(world, node, time, cause):
         """Start a station; it learns at once whether there is a carrier."""

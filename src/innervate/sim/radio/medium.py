@@ -35,10 +35,9 @@ def transmit(world, node, frame, time, copy_frame):
         return
     place = node * AIRS + radio.air
     air = world.air[place]
-    reach = world.degree[node]
-    if reach > 0 and air.end > 0:
-        if air.end + world.delay[node * run.stations + reach - 1] > time:
-            run.broken, run.broken_node = BROKEN_AIR, node
+    last = world.degree[node] - 1
+    if last >= 0 and air.end > 0 and air.end + world.delay[node * run.stations + last] > time:
+        run.broken, run.broken_node = BROKEN_AIR, node
     on, off = time + run.ta_us, time + run.ta_us + frame.slots * run.slot_us
     air.start, air.end, air.spoilt = on, off, 0
     air.at_start, air.at_end, air.fade = 0, 0, NOBODY

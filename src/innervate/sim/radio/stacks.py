@@ -11,6 +11,11 @@ from innervate.protocol import (
     radio_follow,
     radio_idle,
     radio_modes,
+    radio_paper,
+    radio_paper_idle,
+    radio_paper_reserve,
+    radio_paper_turns,
+    radio_paper_verify,
     radio_practical,
     radio_station,
     radio_turn,
@@ -53,6 +58,14 @@ PROTOCOLS: dict[str, Protocol] = {
             radio_practical,
         ),
         radio_fields.PRACTICAL,
+    ),
+    "csma-cd-r/paper": Protocol(
+        radio_paper,
+        (
+            radio_station, radio_paper_idle, radio_paper_turns, radio_paper_reserve,
+            radio_paper_verify, radio_paper,
+        ),
+        radio_fields.PAPER,
     ),
 }  # fmt: skip
 

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 from innervate.sim.world import Out
 
 RUN = (
-    "stations", "slot_us", "ta_us", "loss", "rng", "saturated", "per_turn", "wanted", "completed",
-    "checks", "keep", "watchful", "status", "fingerprint", "handled", "decoded", "garbled",
-    "now", "rows", "row_limit", "sent", "sent_limit", "packets", "packet_limit", "trail",
+    "stations", "slot_us", "ta_us", "loss", "rng", "saturated", "forced", "per_turn", "wanted",
+    "completed", "checks", "keep", "watchful", "status", "fingerprint", "handled", "decoded",
+    "garbled", "now", "rows", "row_limit", "sent", "sent_limit", "packets", "packet_limit", "trail",
     "trail_limit", "hurt",
     "offers", "dropped", "silent", "partial", "again",
     "broken", "broken_at", "broken_node",
