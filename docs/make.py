@@ -10,8 +10,8 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
-from innervate.protocol import skin_fields
-from innervate.trace.tables import TABLES
+from innervate.protocol import radio_fields, skin_fields
+from innervate.trace import radio_tables, tables
 
 FOLDER = Path(__file__).resolve().parent
 PICTURE = FOLDER / "images" / "recovery.svg"
@@ -26,10 +26,10 @@ def field_table(fields: Iterable[tuple[str, object, int, int, str, str]]) -> str
     return "\n".join(rows)
 
 
-def run_tables() -> str:
+def run_tables(given: Iterable[tables.Table]) -> str:
     """The tables of a run folder as Markdown."""
     parts = []
-    for table in TABLES:
+    for table in given:
         rows = [f"**`{table.name}.parquet`**: one row where {table.row}.", ""]
         rows += ["| column | type | unit | meaning |", "|---|---|---|---|"]
         rows += [f"| `{c.name}` | {c.kind} | {c.unit} | {c.meaning} |" for c in table.columns]
@@ -42,7 +42,12 @@ PARTS = (
     ("skin.md", "parameters", lambda: field_table(skin_fields.PARAMS)),
     ("skin.md", "frame", lambda: field_table(skin_fields.FRAME)),
     ("skin.md", "cell", lambda: field_table(skin_fields.CELL)),
-    ("reading-a-report.md", "tables", run_tables),
+    ("radio.md", "radio-parameters", lambda: field_table(radio_fields.PARAMS)),
+    ("radio.md", "radio-frame", lambda: field_table(radio_fields.FRAME)),
+    ("radio.md", "radio-station", lambda: field_table(radio_fields.STATION)),
+    ("radio.md", "radio-practical", lambda: field_table(radio_fields.PRACTICAL)),
+    ("reading-a-report.md", "tables", lambda: run_tables(tables.TABLES)),
+    ("reading-a-report.md", "radio-tables", lambda: run_tables(radio_tables.TABLES)),
 )
 
 

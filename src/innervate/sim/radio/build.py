@@ -42,6 +42,7 @@ def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> r.Wo
         params=tables.states(radio_fields.PARAMS, 1),
         radios=tables.records(r.RADIO, n + 1, wide=r.WIDE),
         due=tables.numbers(n * r.TIMERS, NEVER, np.int64),
+        told=tables.numbers(n + 2, 0, np.int64),
         air=tables.records(r.AIR, n * AIRS, wide=r.WIDE),
         frames=tables.states(radio_fields.FRAME, n * AIRS),
         degree=_given(tables, degree),

@@ -2,7 +2,8 @@
 
 A key holds time, rank, station and what for, so that the smallest is the next event and equal
 times keep the order of [radio M6]: signal ends (and frames received by them), signal starts,
-carrier notifications, radios that listen again, timers, commands, packets offered.
+radios that listen again, timers, commands, packets offered. Carrier notifications, between signal
+starts and radios, are kept apart by the loop: they would be half of all events.
 """
 
 STATION_BITS = 10
@@ -14,14 +15,14 @@ STATION_SHIFT = SENDER_BITS + AIR_BITS
 STATIONS_MAX = 1 << STATION_BITS
 AIRS = 1 << AIR_BITS
 TIME_MAX = 1 << (63 - TIME_SHIFT)
+LAST = (1 << 63) - 1  # no event is later
 
 ENDS = 0
 STARTS = 1
-CARRIER = 2
-READY = 3
-TIMER = 4
-COMMAND = 5
-OFFER = 6
+READY = 2
+TIMER = 3
+COMMAND = 4
+OFFER = 5
 
 
 def key_of(time, rank, station, what):

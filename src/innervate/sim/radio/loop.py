@@ -30,7 +30,6 @@ from innervate.sim.loop import (
 from innervate.sim.radio import heap as queue
 from innervate.sim.radio import medium, traffic
 from innervate.sim.radio.heap import (
-    CARRIER,
     ENDS,
     OFFER,
     RANK_SHIFT,
@@ -50,7 +49,9 @@ BROKEN_RANGE = 4
 WHAT_MASK = (1 << STATION_SHIFT) - 1
 
 COLD, LATE = 0, 1
+BATCH = 16  # events between two looks at the room left in the tables
 ROWS_PER_EVENT = 24
+MARGIN = BATCH * ROWS_PER_EVENT
 
 
 class Handlers(NamedTuple):
@@ -63,6 +64,7 @@ class Handlers(NamedTuple):
     tell_carrier: Callable[..., None]
     edge: Callable[..., None]
     obey: Callable[..., None]
+    tell_all: Callable[..., None]
     dispatch: Callable[..., None]
     advance: Callable[..., None]
 
@@ -72,15 +74,15 @@ def pressing(world):
     run = world.run[0]
     if run.broken:
         return BROKEN
-    if run.rows + ROWS_PER_EVENT > run.row_limit > 0:
+    if run.rows + MARGIN > run.row_limit > 0:
         return ROWS_FULL
-    if run.sent + ROWS_PER_EVENT > run.sent_limit > 0:
+    if run.sent + MARGIN > run.sent_limit > 0:
         return ROWS_FULL
-    if run.packets + ROWS_PER_EVENT > run.packet_limit > 0:
+    if run.packets + MARGIN > run.packet_limit > 0:
         return ROWS_FULL
-    if run.trail + ROWS_PER_EVENT > run.trail_limit > 0:
+    if run.trail + MARGIN > run.trail_limit > 0:
         return ROWS_FULL
-    if world.heap.size[0] + 4 * run.stations + 64 > len(world.heap.keys):
+    if world.heap.size[0] + 4 * run.stations + 8 * BATCH > len(world.heap.keys):
         return POOL_FULL
     return DONE
 
@@ -229,7 +231,7 @@ def build(stack):
             world.due[node * TIMERS + timer] = NEVER
         start(world, node, now & MASK30, cause)
         finish(world, node, time, now, ON_START, cause)
-        medium.note_carrier(world, node, time)
+        medium.note_carrier(world, node)
         queue.push(world.heap, queue.key_of(time, OFFER, node, 1))
 
     def tell_carrier(world, node, time):
@@ -260,7 +262,7 @@ def build(stack):
                 now = time + radio.offset
                 hear(world, node, now & MASK30, world.frames[what])
                 finish(world, node, time, now, ON_FRAME, world.frames[what].kind)
-        medium.note_carrier(world, node, time)
+        medium.note_carrier(world, node)
 
     def obey(world, index, time):
         """An event of the scenario."""
@@ -287,6 +289,17 @@ def build(stack):
         elif command.action == FADE:
             radio.fade = command.value
 
+    def tell_all(world, time):
+        """Carrier notifications of this moment."""
+        count = world.told[0]
+        world.told[0] = 0
+        for i in range(1, count + 1):
+            node = world.told[i]
+            radio = world.radios[node]
+            radio.noted &= 2
+            if radio.alive and not radio.deaf:
+                tell_carrier(world, node, time)
+
     def dispatch(world, key, time):
         """Hand the first event of the queue to what it is for."""
         rank = (key >> RANK_SHIFT) & 7
@@ -297,11 +310,7 @@ def build(stack):
             return
         queue.pop(world.heap)
         radio = world.radios[node]
-        if rank == CARRIER:
-            radio.noted &= 2
-            if radio.alive and not radio.deaf:
-                tell_carrier(world, node, time)
-        elif rank == READY:
+        if rank == READY:
             radio.deaf = 0
             if radio.alive:
                 tell_carrier(world, node, time)
@@ -323,18 +332,28 @@ def build(stack):
     def advance(world, until, budget):
         """Run up to, not including, time `until` (us), or `budget` events."""
         run, heap = world.run[0], world.heap
-        for _ in range(budget):
+        for _ in range(0, budget, BATCH):
             run.status = pressing(world)
             if run.status != DONE:
                 return
-            if heap.size[0] == 0 or (run.completed >= run.wanted > 0):
-                return
-            key = heap.keys[0]
-            time = key >> TIME_SHIFT
-            if time >= until:
-                return
-            run.now = time
-            dispatch(world, key, time)
+            for _ in range(BATCH):
+                if run.completed >= run.wanted > 0:
+                    return
+                key = heap.keys[0]
+                if heap.size[0] == 0:
+                    key = queue.LAST
+                if world.told[0] > 0 and key >= queue.key_of(run.now, READY, 0, 0):
+                    tell_all(world, run.now)
+                    continue
+                time = key >> TIME_SHIFT
+                if time >= until:
+                    return
+                run.now = time
+                dispatch(world, key, time)
+            if run.broken:
+                break
         run.status = BUDGET
 
-    return Handlers(drain, finish, offer, switch_on, tell_carrier, edge, obey, dispatch, advance)
+    return Handlers(
+        drain, finish, offer, switch_on, tell_carrier, edge, obey, tell_all, dispatch, advance
+    )

@@ -9,7 +9,6 @@ from innervate.protocol.rng import LOW15, step
 from innervate.sim.radio.heap import (
     AIR_BITS,
     AIRS,
-    CARRIER,
     ENDS,
     READY,
     STARTS,
@@ -112,15 +111,23 @@ def end_signal(world, node, what):
     return True
 
 
-def note_carrier(world, node, time):
-    """Let a station know, after all edges of this moment, if its carrier has changed."""
+def note_carrier(world, node):
+    """Let a station know, after all edges of this moment, if its carrier has changed.
+
+    `told` keeps these stations in order, after their number; nearly always they are very few.
+    """
     radio = world.radios[node]
-    if radio.deaf or radio.noted or not radio.alive:
+    if radio.deaf or radio.noted & 1 or not radio.alive:
         return
     cd, voc = radio.present > 0, radio.present == 1
     if cd != radio.cd or voc != radio.voc:
-        radio.noted = 1
-        push(world.heap, key_of(time, CARRIER, node, 0))
+        radio.noted |= 1
+        i = world.told[0]
+        world.told[0] = i + 1
+        while i > 0 and world.told[i] > node:
+            world.told[i + 1] = world.told[i]
+            i -= 1
+        world.told[i + 1] = node
 
 
 def silence(world, node, time):

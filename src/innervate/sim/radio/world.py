@@ -52,6 +52,7 @@ class World(NamedTuple):
     params: Any
     radios: Any
     due: Any  # per station and timer: when it fires, -1 never
+    told: Any  # how many stations to tell of their carrier at this moment, and which
     air: Any  # per station and place: a transmission under way
     frames: Any  # its frame
     degree: Any  # per station: how many hear it
