@@ -12,7 +12,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from benchmarks import beacons, c_heap, simpy_timeouts
+from benchmarks import beacons, c_heap, radio, simpy_timeouts
 
 NS3_BEST = {204: 0.64e6, 10_020: 0.13e6}  # beacons/s of ns-3 3.37, measured on another such machine
 COMMAND_RUNS = 5
@@ -36,6 +36,7 @@ def main():
     )
     print("Mevents/s = handler calls; C heap, SimPy = their events (M/s) with as many pending;")
     print("* beacons/s against ns-3's best build as measured elsewhere (no ns-3 here)")
+    figures["radio"] = [radio_row(stations) for stations in radio.STATIONS]
     if not options.quick:
         figures["million"] = json.loads(beacons.million_apart())
         print("1,000,000 cells at 10 Hz, one second, warm:",
@@ -73,6 +74,18 @@ def row(cells):
         "simpy": simpy,
         "ratios": ratios,
     }
+
+
+def radio_row(stations):
+    """Saturated radio stations, with and without checkers."""
+    off, on = radio.measure(stations), radio.measure(stations, checks=True)
+    print(
+        f"radio, {stations} saturated stations: {off['events_per_s'] / 1e6:.2f} Mevents/s, "
+        f"{off['s_per_s']:,.0f} s simulated in one; with checks and rows "
+        f"{on['events_per_s'] / 1e6:.2f}",
+        flush=True,
+    )
+    return {"off": off, "on": on}
 
 
 def million(baseline, width):

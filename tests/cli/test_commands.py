@@ -101,10 +101,13 @@ def test_demo_tells_the_story(sh, monkeypatch):
     for words in (
         "204 cells", "cable to interface 1 cut", "102 of 204 cells have lost their way",
         "every cell has a way again", "cable to interface 1 put back", "No forwarding loop",
-        str(Path("there/report.html")),
+        str(Path("there/skin/report.html")), "all ten packets have arrived",
+        "0 packets lost without their sender knowing", str(Path("there/radio/report.html")),
     ):  # fmt: skip
         assert words in sh.out
-    assert opened == [Path("there/report.html").resolve().as_uri()]
+    there = [Path(f"there/{part}/report.html").resolve().as_uri() for part in ("skin", "radio")]
+    assert opened == there
+    assert sh("demo", "--out", "there") == 0  # runs are replaced
 
 
 CLAIMS = """figure,claim,measurement,verdict,reason

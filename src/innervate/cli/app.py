@@ -50,16 +50,16 @@ def demo(
     out: Path | None = None,
     open_: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
-    """The main job: a robot skin of 204 cells, a cut cable, the recovery. Writes a report.
+    """The main jobs: a robot skin mends itself, a radio team puts itself in order. Writes reports.
 
     Parameters
     ----------
     seed
         Root seed in place of the scenario's; same seed, same run.
     out
-        Folder to write; runs/demo-SEED if left out.
+        Folder to write into, a run folder for each; runs/ if left out.
     open_
-        Open the report in a browser.
+        Open the reports in a browser.
     """
     from innervate.cli import demo as command
 
@@ -114,7 +114,7 @@ def papers(
     Parameters
     ----------
     paper
-        Which paper: skin.
+        Which paper: skin or radio.
     only
         A figure by its name, like fig8a; may be given again.
     quick
@@ -144,7 +144,7 @@ def new(kind: str, file: Path | None = None, /) -> int:
     Parameters
     ----------
     kind
-        What it describes: skin.
+        What it describes: skin or radio.
     file
         Where to write it; it is printed if left out.
     """

@@ -31,15 +31,20 @@ def demo(seed: int | None, out: Path | None, open_report: bool) -> int:
     print()
     print("Next:")
     for command, what in _NEXT:
-        print(f"  {command:<52}{what}")
+        print(f"  {command:<57}{what}")
     return 0
 
 
 _NEXT = (
     ("innervate run demo --set protocol.updates=periodic", "as published, slower to recover"),
+    ("innervate run radio-disaster --set protocol.mode=paper", "as published: order for four"),
     ("innervate new skin my-skin.toml", "a scenario of your own, with comments"),
     ("innervate scenarios", "what else is here"),
 )
+
+
+def _part(out: Path | None, chapter: str) -> Path | None:
+    return None if out is None else out / chapter
 
 
 def _skin(seed: int | None, out: Path | None) -> Told:
@@ -47,8 +52,8 @@ def _skin(seed: int | None, out: Path | None) -> Told:
     print("A robot's skin: cells wired to their neighbours, a few of them to the PC.")
     print("Every cell sends what it feels from cell to cell. Now a cable to the PC is cut.")
     print(flush=True)
-    run = simulate("demo", [], seed, out)
-    folder = run.write(out)
+    run = simulate("demo", [], seed, _part(out, "skin"))
+    folder = run.write(_part(out, "skin"))
     summary, plan = run.summary, run.plan
     graph = plan.graph
     print(
@@ -87,5 +92,28 @@ def _steps(recovery: dict[str, float | None], cells: int) -> list[tuple[str, str
     ]
 
 
-# The radio and the mesh follow as chapters of their own.
-CHAPTERS: tuple[Callable[[int | None, Path | None], Told], ...] = (_skin,)
+def _radio(seed: int | None, out: Path | None) -> Told:
+    """The radio: ten robots start at once, and put themselves in order."""
+    print()
+    print("A team of robots on one radio channel, without a central station. All ten of them start")
+    print("to send at the same moment. Whoever sends hears nothing: nobody received anything.")
+    print(flush=True)
+    run = simulate("radio-disaster", [], seed, _part(out, "radio"))
+    folder = run.write(_part(out, "radio"))
+    plan, packets = run.plan, run.result.packets
+    start_us = int(packets["offered"].min())
+    order = ", ".join(str(i) for i in run.summary["order"])
+    firsts = (int(packets["end"].min()), "the first packet has arrived, everybody knows the order")
+    for at_us, what in (firsts, (int(packets["end"].max()), "all ten packets have arrived")):
+        print(f"  {'+' + words.ms_words((at_us - start_us) / 1e3):>10}   {what}")
+    print()
+    print(f"  Order: {order}. {run.summary['lost_silently']} packets lost without their sender "
+          "knowing.")  # fmt: skip
+    times = (plan.params["packet_slots"] * plan.params["slot_us"] * plan.stations) / 1e3
+    print(f"  The packets alone take {words.ms_words(times)}.")
+    print(f"  Look at it in a browser: {folder / 'report.html'}")
+    return Told(folder / "report.html", run.interrupted)
+
+
+# The mesh follows as a chapter of its own.
+CHAPTERS: tuple[Callable[[int | None, Path | None], Told], ...] = (_skin, _radio)
