@@ -87,7 +87,7 @@ class MediumAccessTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only
     ] = None
     turns: Annotated[
         int, Meta(ge=1, le=65_535, description="a whole number of turns, 1 to 65535")
-    ] = 16
+    ] = 20
     per_turn: Annotated[int, Meta(ge=1, le=7, description="a whole number of packets, 1 to 7")] = 1
     wait_us: Micros = 0
     p: Annotated[float, Meta(gt=0, le=1, description="a probability > 0, at most 1")] = 0.1

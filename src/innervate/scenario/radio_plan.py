@@ -70,7 +70,7 @@ def parameters(
     delay_us: tuple[int, int] = (52, 104),
     *,
     bit_us: int = 26,
-    turns: int = 16,
+    turns: int = 20,
     per_turn: int = 1,
     wait_us: int = 0,
     tail_rule: bool = True,

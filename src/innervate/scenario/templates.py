@@ -99,7 +99,7 @@ mac = "csma-cd-r"             # csma-cd-d1 | csma-cd-d2 | csma-cd-d2p | slotted-
                               # nonpersistent | p-persistent | tree | tdma
 mode = "practical"            # practical | paper
 # per_turn = 4                # packets a station sends in one turn
-# turns = 16                  # turns between two windows for newcomers
+# turns = 20                  # turns between two windows for newcomers
 
 # [[event]]
 # at_s = 1.0                  # or a range to draw from: [0.9, 1.1]

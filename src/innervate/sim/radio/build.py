@@ -102,6 +102,19 @@ def _neighbours(plan: Any) -> tuple[Any, Any, Any]:
     return order, sorted_delays, degree
 
 
+def _is_orderly(plan: Any) -> bool:
+    """Practical CSMA/CD-R on a channel as it assumes it: then no two turns ever overlap."""
+    low, high = plan.params["dmin_us"], plan.params["dmax_us"]
+    n = plan.stations
+    pairs = (plan.delays_us[i][j] for i in range(n) for j in range(n) if i != j)
+    return (
+        plan.protocol == "csma-cd-r/practical"
+        and plan.loss_q15 == 0
+        and not plan.faults
+        and all(low <= delay <= high for delay in pairs)
+    )
+
+
 def _set_run(world: r.World, plan: Any, checks: bool, keep: bool, trail: bool) -> None:
     limit = len(world.rows) if keep else 0
     put(
@@ -117,6 +130,7 @@ def _set_run(world: r.World, plan: Any, checks: bool, keep: bool, trail: bool) -
         per_turn=plan.params["per_turn"],
         wanted=plan.wanted,
         checks=int(checks),
+        exclusive=int(checks and _is_orderly(plan)),
         watchful=int(checks or trail),
         row_limit=limit,
         sent_limit=limit,

@@ -7,6 +7,7 @@ from innervate.kernel.bits import mix
 from innervate.protocol.arith import MASK16, MASK30
 from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER
 from innervate.protocol.radio_words import (
+    DATA,
     FORCE,
     LEAVE,
     PACKET,
@@ -46,6 +47,7 @@ from innervate.sim.radio.world import TIMERS
 ON_CARRIER = 4
 BROKEN_OUTBOX = 3
 BROKEN_RANGE = 4
+BROKEN_TURNS = 5
 WHAT_MASK = (1 << STATION_SHIFT) - 1
 
 COLD, LATE = 0, 1
@@ -107,6 +109,10 @@ def keep_sent(world, node, frame, time):
     end = start + frame.slots * run.slot_us
     if frame.count > 0:
         traffic.note_sent(world, node, frame, end)
+    if run.exclusive and frame.kind == DATA:
+        if start < run.data_until and run.broken == 0:
+            run.broken, run.broken_node = BROKEN_TURNS, node
+        run.data_until = end
     if run.sent_limit > 0:
         row = world.sent[run.sent]
         run.sent += 1

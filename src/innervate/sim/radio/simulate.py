@@ -143,6 +143,7 @@ def _story(plan: Any, world: w.World) -> str:
         medium.BROKEN_DEAF: f"station {node} sent while its radio could not",
         medium.BROKEN_AIR: f"station {node} has too many transmissions under way",
         loop.BROKEN_OUTBOX: f"outbox of station {node} overflowed",
+        loop.BROKEN_TURNS: f"station {node} began a turn while another station had its own",
         loop.BROKEN_RANGE: f"a value of station {node} is out of its declared range",
     }[int(get(world.run, 0, "broken"))]
     return f"invariant broken at {at:.6f} s (seed {plan.seed}): {what}"

@@ -12,7 +12,7 @@ RUN = (
     "garbled", "now", "rows", "row_limit", "sent", "sent_limit", "packets", "packet_limit", "trail",
     "trail_limit", "hurt",
     "offers", "dropped", "silent", "partial", "again",
-    "broken", "broken_at", "broken_node",
+    "exclusive", "data_until", "broken", "broken_at", "broken_node",
 )  # fmt: skip
 # What the medium knows of a station.
 RADIO = (
