@@ -9,8 +9,9 @@ from innervate.protocol.radio_modes import (
     is_over,
     prove,
 )
+from innervate.protocol.radio_reporter import lead
 from innervate.protocol.radio_turn import enter_turn
-from innervate.protocol.radio_window import enter_window, lead
+from innervate.protocol.radio_window import enter_window
 from innervate.protocol.radio_words import (
     ALONE,
     HEARD_TAIL,

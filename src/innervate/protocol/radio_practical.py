@@ -3,7 +3,8 @@
 A reservation as in [radio 2.2] orders the turns, but three things differ from the paper:
 who heads it listens through all of it (the *reporter*), the order comes from minislots instead
 of transmission ends, and a packet counts as delivered only when somebody who received it says so.
-Windows stand in radio_window.py, turns in radio_turn.py, openings in radio_idle.py.
+Windows stand in radio_reporter.py and radio_window.py, turns in radio_turn.py and
+radio_follow.py, openings in radio_idle.py.
 """
 
 from innervate.protocol.arith import MASK30
@@ -28,18 +29,10 @@ from innervate.protocol.radio_modes import (
     WINDOW,
     arm,
 )
+from innervate.protocol.radio_reporter import burst, end_of_window, hear_slot, opened, sent_report
 from innervate.protocol.radio_station import enqueue, hand_up, leave, reset
 from innervate.protocol.radio_turn import enter_turn
-from innervate.protocol.radio_window import (
-    burst,
-    end_of_window,
-    hear_report,
-    hear_slot,
-    next_deadline,
-    opened,
-    sent_report,
-    use_slot,
-)
+from innervate.protocol.radio_window import hear_report, next_deadline, use_slot
 from innervate.protocol.radio_words import CRR, DATA, LEAVE, MAIN, OPEN, PACKET, REPORT
 
 

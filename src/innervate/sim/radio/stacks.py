@@ -17,6 +17,7 @@ from innervate.protocol import (
     radio_paper_turns,
     radio_paper_verify,
     radio_practical,
+    radio_reporter,
     radio_station,
     radio_turn,
     radio_window,
@@ -54,8 +55,8 @@ PROTOCOLS: dict[str, Protocol] = {
     "csma-cd-r/practical": Protocol(
         radio_practical,
         (
-            radio_station, radio_modes, radio_idle, radio_turn, radio_window, radio_follow,
-            radio_practical,
+            radio_station, radio_modes, radio_idle, radio_turn, radio_reporter, radio_window,
+            radio_follow, radio_practical,
         ),
         radio_fields.PRACTICAL,
     ),
