@@ -2,7 +2,7 @@
 
 A key holds time, rank, station and what for, so that the smallest is the next event and equal
 times keep the order of [radio M6]: signal ends (and frames received by them), signal starts,
-carrier notifications, radios that listen again, timers, commands, packets offered.
+carrier notifications, radios that listen again, timers, commands, packets offered, outcomes.
 """
 
 STATION_BITS = 10
@@ -22,6 +22,7 @@ READY = 3
 TIMER = 4
 COMMAND = 5
 OFFER = 6
+OUTCOME = 7
 
 
 def key_of(time, rank, station, what):

@@ -5,14 +5,16 @@ from typing import NamedTuple
 
 from innervate.kernel.bits import mix
 from innervate.protocol.arith import MASK16, MASK30
-from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER
+from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER, STOP
 from innervate.protocol.radio_words import (
+    CLOCK,
     FORCE,
     LEAVE,
     PACKET,
     QUEUE,
     REPORT_DELIVERED,
     REPORT_LEFT,
+    RESULT,
 )
 from innervate.scenario.radio_plan import BEGIN, FADE, GARBLE, JOIN, KILL
 from innervate.scenario.radio_plan import LEAVE as RETIRE
@@ -33,6 +35,7 @@ from innervate.sim.radio.heap import (
     CARRIER,
     ENDS,
     OFFER,
+    OUTCOME,
     RANK_SHIFT,
     READY,
     STARTS,
@@ -42,7 +45,7 @@ from innervate.sim.radio.heap import (
     TIMER,
 )
 from innervate.sim.radio.medium import NEVER
-from innervate.sim.radio.world import TIMERS
+from innervate.sim.radio.world import RING, TIMERS
 
 ON_CARRIER = 4
 BROKEN_OUTBOX = 3
@@ -59,6 +62,8 @@ class Handlers(NamedTuple):
     drain: Callable[..., None]
     finish: Callable[..., None]
     offer: Callable[..., None]
+    tell_clock: Callable[..., None]
+    tell_outcome: Callable[..., None]
     switch_on: Callable[..., None]
     tell_carrier: Callable[..., None]
     edge: Callable[..., None]
@@ -151,7 +156,9 @@ def build(stack):
             act = out.action[i]
             kind, a, b, c = act.kind, act.a, act.b, act.c
             mark = mix(mark, kind ^ (a << 3) ^ (b << 20) ^ (c << 50))
-            if kind == SEND:
+            if kind == SEND and c & STOP:
+                medium.break_off(world, node, time)
+            elif kind == SEND:
                 mark = mix(mark, digest(out.frame[i]))
                 keep_sent(world, node, out.frame[i], time)
                 medium.transmit(world, node, out.frame[i], time, copy_frame)
@@ -216,6 +223,26 @@ def build(stack):
             give(world, node, now & MASK30, kind)
             finish(world, node, time, now, ON_INPUT, kind)
 
+    def tell_clock(world, node, time):
+        """Where stations share a clock: tell one which slot this is."""
+        run, item = world.run[0], world.item[0]
+        if run.period > 0:
+            item.slots, item.handle = 0, time // run.period % run.stations
+            item.ago = time % run.period
+            now = time + world.radios[node].offset
+            give(world, node, now & MASK30, CLOCK)
+            finish(world, node, time, now, ON_INPUT, CLOCK)
+
+    def tell_outcome(world, node, time):
+        """Tell a sender how many received its packet; no radio could know."""
+        radio, item = world.radios[node], world.item[0]
+        if radio.told_at == time and radio.alive:
+            item.slots, item.ago = 0, 0
+            item.handle = world.got[node * RING + (radio.told & (RING - 1))]
+            now = time + radio.offset
+            give(world, node, now & MASK30, RESULT)
+            finish(world, node, time, now, ON_INPUT, RESULT)
+
     def switch_on(world, node, time, cause):
         """Start a station; it learns at once whether there is a carrier."""
         radio = world.radios[node]
@@ -224,11 +251,13 @@ def build(stack):
         world.run[0].hurt -= 1
         radio.candidate = NEVER
         radio.cd, radio.voc, radio.noted = 0, 0, 0
+        radio.told_at = NEVER
         now = time + radio.offset
         for timer in range(TIMERS):
             world.due[node * TIMERS + timer] = NEVER
         start(world, node, now & MASK30, cause)
         finish(world, node, time, now, ON_START, cause)
+        tell_clock(world, node, time)
         medium.note_carrier(world, node, time)
         queue.push(world.heap, queue.key_of(time, OFFER, node, 1))
 
@@ -299,11 +328,12 @@ def build(stack):
         radio = world.radios[node]
         if rank == CARRIER:
             radio.noted &= 2
-            if radio.alive and not radio.deaf:
+            if radio.alive and radio.deaf != medium.SENDING:
                 tell_carrier(world, node, time)
         elif rank == READY:
-            radio.deaf = 0
-            if radio.alive:
+            if radio.ready_at == time:
+                radio.deaf = 0
+            if radio.alive and not radio.deaf:
                 tell_carrier(world, node, time)
         elif rank == TIMER:
             if world.due[node * TIMERS + what] == time and radio.alive:
@@ -317,6 +347,8 @@ def build(stack):
                 radio.next_offer += 1
                 traffic.schedule(world, node)
             offer(world, node, time)
+        elif rank == OUTCOME:
+            tell_outcome(world, node, time)
         else:
             obey(world, (node << STATION_SHIFT) | what, time)
 
@@ -337,4 +369,7 @@ def build(stack):
             dispatch(world, key, time)
         run.status = BUDGET
 
-    return Handlers(drain, finish, offer, switch_on, tell_carrier, edge, obey, dispatch, advance)
+    return Handlers(
+        *(drain, finish, offer, tell_clock, tell_outcome, switch_on),
+        *(tell_carrier, edge, obey, dispatch, advance),
+    )
