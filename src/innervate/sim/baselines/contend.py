@@ -169,5 +169,3 @@ def told(station, params, now, received, out):
         station.due = now
     if not station.cd:
         pause(station, since, gap, out)
-
-
