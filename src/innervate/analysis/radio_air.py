@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from innervate.protocol.radio_words import CRR, DATA, OPEN, REPORT_LEFT
+from innervate.protocol.radio_words import CRR, DATA, OPEN, REPORT_LEFT, REPORT_STOPPED
 from innervate.scenario.radio_plan import FADE, GARBLE, JOIN, KILL
 
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
@@ -27,8 +27,8 @@ class Air(NamedTuple):
     Attributes:
         node: who sent.
         kind: which frame, see protocol/radio_words.py.
-        start, end: when it was on the air; `end` as it was, if its sender died in mid-frame.
-        deaf_from, deaf_to: when its sender's radio could not listen.
+        start, end: when it was on the air; `end` as it was, if its sender died or stopped then.
+        deaf_from, deaf_to: when its sender's radio could not listen; on a cable never.
         faded: a fault of the scenario hid it: nobody heard it.
         row: its place in `result.sent`.
     """
@@ -88,8 +88,23 @@ def air(result: Any) -> Air:
         if fault.action == KILL:
             stopped = (node == fault.node) & (decided <= fault.at_us) & (fault.at_us < end)
             end[stopped] = np.maximum(start[stopped], fault.at_us)
+    if result.plan.params.get("full_duplex"):
+        _stop(result.rows, node, start, end)
+        listens = decided
     faded = _faded(result.plan.faults, node, sent["kind"], decided)
     return Air(node, sent["kind"].astype(np.int64), start, end, decided, listens, faded, order)
+
+
+def _stop(rows: Any, node: Numbers, start: Numbers, end: Numbers) -> None:
+    """Cut the transmissions that their senders broke off."""
+    stops = rows[rows["code"] == REPORT_STOPPED]
+    if len(stops) == 0:
+        return
+    mine = np.lexsort((start, node))
+    key = (node[mine] << 44) | start[mine]
+    found = np.searchsorted(key, (stops["node"].astype(np.int64) << 44) | stops["time"], "right")
+    cut = mine[found - 1]
+    end[cut] = np.minimum(end[cut], stops["time"])
 
 
 def _faded(faults: Any, node: Numbers, kind: Numbers, decided: Numbers) -> Flags:

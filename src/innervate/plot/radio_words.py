@@ -24,6 +24,7 @@ from innervate.protocol.radio_words import (
     REPORT_LEFT,
     REPORT_ROLE,
     REPORT_SKIPPED,
+    REPORT_STOPPED,
     REPORT_TURN,
 )
 from innervate.scenario.radio_plan import FADE, GARBLE, JOIN, KILL, LEAVE
@@ -88,6 +89,7 @@ REPORTS = {
     REPORT_DROPPED: "packet refused, the queue is full",
     REPORT_LEFT: "left",
     REPORT_SKIPPED: "own place in the round passed over",
+    REPORT_STOPPED: "own transmission broken off",
 }
 _REASONS = {
     NO_PROOF: "nobody confirmed it",

@@ -13,6 +13,7 @@ REPORT = 4
 # Flags of SEND.
 URGENT = 1  # goes to the head of the port's queue, waits only for the frame on the wire
 FLUSH = 2  # the port is given up: drop what its queue holds
+STOP = 4  # no frame: the one on the air ends here (full duplex only)
 
 
 def put(out, kind, a, b, c):

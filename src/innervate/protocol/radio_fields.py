@@ -24,6 +24,7 @@ FRAME = (
 PACKET = (
     ("slots", 0, 1, 4095, "slots", "length on the air"),
     ("handle", 0, 0, 65535, "number", "its owner's name for it; counts up"),
+    ("ago", 0, 0, 268435455, "us", "clock: since that slot began"),
 )
 
 # What every station on the channel has, whatever its protocol.
@@ -133,4 +134,15 @@ PARAMS = (
     ),
     ("window_slots", 0, 0, 4095, "slots", "paper: window for CR-Rs; 0 = T - Tc0"),
     ("dilate", 0, 1, 8190, "factor", "paper: CR-Rs stretched over the window; 1 = not"),
+    ("mac", 0, 0, 15, "protocol", "baselines: which one; 0 = CSMA/CD-R"),
+    ("stations", 0, 1, 1023, "stations", "baselines: how many (TDMA)"),
+    ("oracle", 0, 0, 1, "flag", "baselines: a sender is told who received its packet"),
+    ("full_duplex", 0, 0, 1, "flag", "baselines: a sender hears others and may break off"),
+    ("period_us", 0, 0, 268435455, "us", "baselines: slots of a clock that all share; 0 = none"),
+    ("gap_us", 0, 0, 2000000, "us", "baselines: idle before sending; DIFS"),
+    ("answer_us", 0, 0, 2000000, "us", "baselines: kept free behind a packet: SIFS and ACK"),
+    ("backoff_us", 0, 1, 268435455, "us", "baselines: a slot of the backoff"),
+    ("cw_min", 0, 1, 32768, "slots", "baselines: DCF draws from so many at first"),
+    ("cw_max", 0, 1, 32768, "slots", "baselines: ... doubled at each collision up to this"),
+    ("p_q15", 0, 1, 32768, "1/32768", "baselines: probability to send in a slot"),
 )

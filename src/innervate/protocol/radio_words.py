@@ -10,6 +10,8 @@ REPORT = 4  # practical mode: which minislots were good, what follows
 PACKET = 1  # item: a packet to send (see radio_fields.PACKET)
 LEAVE = 2  # finish and send no more
 FORCE = 3  # paper mode: a packet to send at once, whatever the carrier says
+RESULT = 4  # baselines: item.handle stations received our last packet
+CLOCK = 5  # baselines: slot item.handle began item.ago us ago
 
 # Timers.
 MAIN = 0
@@ -34,6 +36,7 @@ REPORT_LEFT = 8  # sends no more and may be switched off
 REPORT_SKIPPED = 9  # own place in the round was passed over
 
 REPORT_COUNT = 10  # the window closes: a CR-Rs behind our own, b in all (paper)
+REPORT_STOPPED = 11  # own transmission is broken off here (full duplex)
 
 # Roles of REPORT_ROLE.
 NOBODY = 0  # in no resolution

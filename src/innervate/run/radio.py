@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis import radio as analysis
-from innervate.protocol.radio_words import LEAVE, MAIN
+from innervate.protocol.radio_words import CLOCK, LEAVE, MAIN, RESULT
 from innervate.run import radio_slotted
 from innervate.sim.loop import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.sim.radio import simulate as simulator
@@ -105,11 +105,12 @@ def trail(plan: Any, until_us: int) -> Iterator[Any]:
 def call_words(plan: Any, row: Any) -> str:
     """A row of the trail in words: "station 3: carrier came"."""
     handler, port = int(row["handler"]), int(row["port"])
+    given = {LEAVE: "is to leave", RESULT: "is told who received its packet", CLOCK: "is told time"}
     what = {
         ON_START: "switched on",
         ON_FRAME: f"received a frame of type {port}",
         ON_TIMER: "a wait is over" if port == MAIN else "its minislot",
-        ON_INPUT: "is to leave" if port == LEAVE else "was offered a packet",
+        ON_INPUT: given.get(port, "was offered a packet"),
         ON_CARRIER: ("hears nothing", "", "hears several", "hears one")[port & 3],
     }[handler]
     return f"station {int(row['node'])}: {what}"

@@ -42,6 +42,8 @@ def simulate(plan: Any, plain: bool) -> SlottedRun:
         options["turnaround_slots"] = plan.params["ta_us"] / slot_us
     if protocol.mac in ("slotted-aloha", "nonpersistent", "p-persistent"):
         options["p"] = protocol.p
+    if protocol.mac in ("csma-cd-d1", "csma-cd-d2", "csma-cd-d2p"):
+        options["backoff_slots"] = protocol.backoff_slots
     started = wall_s()
     try:
         found = slotted(

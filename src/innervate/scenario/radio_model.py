@@ -97,6 +97,9 @@ class MediumAccessTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only
     cw_max: Annotated[
         int, Meta(ge=1, le=32_768, description="a whole number of slots, 1 to 32768")
     ] = 1024
+    backoff_slots: Annotated[
+        int, Meta(ge=1, le=1000, description="a whole number of slots, 1 to 1000")
+    ] = 1
     reading: Annotated[Literal["A", "B"], Meta(description='"A" or "B"')] = "A"
 
 

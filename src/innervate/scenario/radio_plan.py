@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from innervate.scenario.radio_baselines import NONE
+
 BEGIN, JOIN, KILL, LEAVE, GARBLE, FADE = range(6)
 
 
@@ -80,6 +82,8 @@ def parameters(
 ) -> dict[str, int]:
     """Derived times of CSMA/CD-R; names and reasons in docs/radio.md [radio 4, radio-practical 2].
 
+    What baselines need besides comes from `radio_baselines.baseline`.
+
     Args:
         packet_slots: T, length of the longest packet, 3 .. 4095.
         turnaround_us: ta, from deciding to send to being on the air, and back.
@@ -117,4 +121,5 @@ def parameters(
         "overlap_rule": int(overlap_rule),
         "window_slots": window_slots,
         "dilate": dilate,
+        **NONE,
     }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from innervate.scenario.radio_baselines import baseline
 from innervate.scenario.radio_model import MACS, RadioEventTable, RadioScenario
 from innervate.scenario.radio_plan import (
     FADE,
@@ -49,15 +50,7 @@ def plan(scenario: Any) -> RadioPlan:
         duration_us=duration_us,
         protocol=protocol_name(model),
         stations=model.stations,
-        params=parameters(
-            pair(model.packet_slots)[1],
-            model.channel.turnaround_us,
-            model.protocol.tau_bounds_us or pair(model.channel.tau_us),
-            bit_us=bit_us,
-            turns=model.protocol.turns,
-            per_turn=model.protocol.per_turn,
-            wait_us=model.protocol.wait_us,
-        ),
+        params=_parameters(model, bit_us),
         delays_us=delays(model),
         loss_q15=round(model.channel.loss * LOSS_ONE),
         saturated=saturated,
@@ -66,6 +59,31 @@ def plan(scenario: Any) -> RadioPlan:
         sizes=sizes(model),
         absent=[int(first.get(i) == JOIN) for i in range(model.stations)],
         faults=faults,
+    )
+
+
+def _parameters(model: RadioScenario, bit_us: int) -> dict[str, int]:
+    """What the stations of a scenario are set to."""
+    protocol = model.protocol
+    params = parameters(
+        pair(model.packet_slots)[1],
+        model.channel.turnaround_us,
+        protocol.tau_bounds_us or pair(model.channel.tau_us),
+        bit_us=bit_us,
+        turns=protocol.turns,
+        per_turn=protocol.per_turn,
+        wait_us=protocol.wait_us,
+    )
+    if protocol.mac == "csma-cd-r":
+        return params
+    return baseline(
+        protocol.mac,
+        model.stations,
+        params,
+        p=protocol.p,
+        cw_min=protocol.cw_min,
+        cw_max=protocol.cw_max,
+        backoff_slots=protocol.backoff_slots,
     )
 
 

@@ -123,6 +123,9 @@ def _set_run(world: r.World, plan: Any, checks: bool, keep: bool, trail: bool) -
         stations=plan.stations,
         slot_us=plan.params["slot_us"],
         ta_us=plan.params["ta_us"],
+        oracle=plan.params["oracle"],
+        full_duplex=plan.params["full_duplex"],
+        period=plan.params["period_us"],
         loss=plan.loss_q15,
         rng=rng.seeded(int(uniform(plan.seed, "medium", 1, 1 << 30)[0])),
         saturated=int(plan.saturated),
@@ -150,7 +153,7 @@ def _set_stations(world: r.World, plan: Any) -> None:
     for i in range(n):
         put(world.stations, i, number=i, rng=int(seeds[i]), choice=rng.GENERATE)
         put(world.radios, i, offset=int(offsets[i]), first_offer=first, next_offer=first)
-        put(world.radios, i, candidate=NEVER, leaving=int(plan.absent[i]))
+        put(world.radios, i, candidate=NEVER, leaving=int(plan.absent[i]), told_at=NEVER)
         first += len(plan.arrivals[i])
     put(world.radios, n, first_offer=first)
 

@@ -2,8 +2,8 @@
 
 A key holds time, rank, station and what for, so that the smallest is the next event and equal
 times keep the order of [radio M6]: signal ends (and frames received by them), signal starts,
-radios that listen again, timers, commands, packets offered. Carrier notifications, between signal
-starts and radios, are kept apart by the loop: they would be half of all events.
+radios that listen again, timers, commands, packets offered, outcomes. Carrier notifications,
+between signal starts and radios, are kept apart by the loop: they would be half of all events.
 """
 
 STATION_BITS = 10
@@ -23,6 +23,7 @@ READY = 2
 TIMER = 3
 COMMAND = 4
 OFFER = 5
+OUTCOME = 6
 
 
 def key_of(time, rank, station, what):

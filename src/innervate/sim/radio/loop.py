@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 from innervate.kernel.bits import mix
 from innervate.protocol.arith import MASK16, MASK30
-from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER
+from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER, STOP
 from innervate.protocol.radio_words import (
+    CLOCK,
     DATA,
     FORCE,
     LEAVE,
@@ -14,6 +15,7 @@ from innervate.protocol.radio_words import (
     QUEUE,
     REPORT_DELIVERED,
     REPORT_LEFT,
+    RESULT,
 )
 from innervate.scenario.radio_plan import BEGIN, FADE, GARBLE, JOIN, KILL
 from innervate.scenario.radio_plan import LEAVE as RETIRE
@@ -33,6 +35,7 @@ from innervate.sim.radio import medium, traffic
 from innervate.sim.radio.heap import (
     ENDS,
     OFFER,
+    OUTCOME,
     RANK_SHIFT,
     READY,
     STARTS,
@@ -42,7 +45,7 @@ from innervate.sim.radio.heap import (
     TIMER,
 )
 from innervate.sim.radio.medium import NEVER
-from innervate.sim.radio.world import TIMERS
+from innervate.sim.radio.world import RING, TIMERS
 
 ON_CARRIER = 4
 BROKEN_OUTBOX = 3
@@ -62,6 +65,8 @@ class Handlers(NamedTuple):
     drain: Callable[..., None]
     finish: Callable[..., None]
     offer: Callable[..., None]
+    tell_clock: Callable[..., None]
+    tell_outcome: Callable[..., None]
     switch_on: Callable[..., None]
     tell_carrier: Callable[..., None]
     edge: Callable[..., None]
@@ -159,7 +164,9 @@ def build(stack):
             act = out.action[i]
             kind, a, b, c = act.kind, act.a, act.b, act.c
             mark = mix(mark, kind ^ (a << 3) ^ (b << 20) ^ (c << 50))
-            if kind == SEND:
+            if kind == SEND and c & STOP:
+                medium.break_off(world, node, time)
+            elif kind == SEND:
                 mark = mix(mark, digest(out.frame[i]))
                 keep_sent(world, node, out.frame[i], time)
                 medium.transmit(world, node, out.frame[i], time, copy_frame)
@@ -224,6 +231,26 @@ def build(stack):
             give(world, node, now & MASK30, kind)
             finish(world, node, time, now, ON_INPUT, kind)
 
+    def tell_clock(world, node, time):
+        """Where stations share a clock: tell one which slot this is."""
+        run, item = world.run[0], world.item[0]
+        if run.period > 0:
+            item.slots, item.handle = 0, time // run.period % run.stations
+            item.ago = time % run.period
+            now = time + world.radios[node].offset
+            give(world, node, now & MASK30, CLOCK)
+            finish(world, node, time, now, ON_INPUT, CLOCK)
+
+    def tell_outcome(world, node, time):
+        """Tell a sender how many received its packet; no radio could know."""
+        radio, item = world.radios[node], world.item[0]
+        if radio.told_at == time and radio.alive:
+            item.slots, item.ago = 0, 0
+            item.handle = world.got[node * RING + (radio.told & (RING - 1))]
+            now = time + radio.offset
+            give(world, node, now & MASK30, RESULT)
+            finish(world, node, time, now, ON_INPUT, RESULT)
+
     def switch_on(world, node, time, cause):
         """Start a station; it learns at once whether there is a carrier."""
         radio = world.radios[node]
@@ -232,11 +259,15 @@ def build(stack):
         world.run[0].hurt -= 1
         radio.candidate = NEVER
         radio.cd, radio.voc, radio.noted = 0, 0, 0
+        radio.deaf = 0  # it died in mid-frame, and its radio starts anew, too
+        radio.ready_at, radio.told_at = NEVER, NEVER
+        radio.told_at = NEVER
         now = time + radio.offset
         for timer in range(TIMERS):
             world.due[node * TIMERS + timer] = NEVER
         start(world, node, now & MASK30, cause)
         finish(world, node, time, now, ON_START, cause)
+        tell_clock(world, node, time)
         medium.note_carrier(world, node)
         queue.push(world.heap, queue.key_of(time, OFFER, node, 1))
 
@@ -303,7 +334,7 @@ def build(stack):
             node = world.told[i]
             radio = world.radios[node]
             radio.noted &= 2
-            if radio.alive and not radio.deaf:
+            if radio.alive and radio.deaf != medium.SENDING:
                 tell_carrier(world, node, time)
 
     def dispatch(world, key, time):
@@ -317,8 +348,9 @@ def build(stack):
         queue.pop(world.heap)
         radio = world.radios[node]
         if rank == READY:
-            radio.deaf = 0
-            if radio.alive:
+            if radio.ready_at == time:
+                radio.deaf = 0
+            if radio.alive and not radio.deaf:
                 tell_carrier(world, node, time)
         elif rank == TIMER:
             if world.due[node * TIMERS + what] == time and radio.alive:
@@ -332,6 +364,8 @@ def build(stack):
                 radio.next_offer += 1
                 traffic.schedule(world, node)
             offer(world, node, time)
+        elif rank == OUTCOME:
+            tell_outcome(world, node, time)
         else:
             obey(world, (node << STATION_SHIFT) | what, time)
 
@@ -361,5 +395,6 @@ def build(stack):
         run.status = BUDGET
 
     return Handlers(
-        drain, finish, offer, switch_on, tell_carrier, edge, obey, tell_all, dispatch, advance
+        *(drain, finish, offer, tell_clock, tell_outcome, switch_on),
+        *(tell_carrier, edge, obey, tell_all, dispatch, advance),
     )

@@ -3,6 +3,9 @@
 A transmission reaches every other station after that pair's delay and lasts as long there. A
 station counts the signals that are present; it receives a frame that was the only signal from its
 start to its end, while its radio listened.
+
+Two devices for baselines, which radios do not have: with `full_duplex` a sender hears carriers and
+may break off; with `oracle` it learns, when all could know, how many received its packet.
 """
 
 from innervate.protocol.rng import LOW15, step
@@ -10,6 +13,7 @@ from innervate.sim.radio.heap import (
     AIR_BITS,
     AIRS,
     ENDS,
+    OUTCOME,
     READY,
     STARTS,
     key_of,
@@ -24,6 +28,10 @@ BROKEN_DEAF = 1  # a station sent while its radio could not
 BROKEN_AIR = 2  # too many transmissions of one station under way
 
 CRR = 1
+
+# A radio's `deaf`.
+SENDING = 1
+HEARING = 2  # it sends and yet notes carriers (full duplex)
 
 
 def transmit(world, node, frame, time, copy_frame):
@@ -43,15 +51,22 @@ def transmit(world, node, frame, time, copy_frame):
     copy_frame(world.frames[place], frame)
     if frame.kind == CRR:
         impair(world, radio, air)
-    radio.deaf = 1
+    radio.deaf = HEARING if run.full_duplex else SENDING
     radio.candidate = NOBODY
+    radio.ready_at = off + run.ta_us
     what = (node << AIR_BITS) | radio.air
     radio.air = (radio.air + 1) & (AIRS - 1)
-    push(world.heap, key_of(off + run.ta_us, READY, node, 0))
+    push(world.heap, key_of(radio.ready_at, READY, node, 0))
     if world.degree[node] > 0 and air.spoilt < 2:
         first = node * run.stations
         push(world.heap, key_of(on + world.delay[first], STARTS, world.order[first], what))
         push(world.heap, key_of(off + world.delay[first], ENDS, world.order[first], what))
+    if run.oracle and frame.count > 0:
+        radio.told, radio.told_at = frame.handle, radio.ready_at
+        if last >= 0:
+            known = off + world.delay[node * run.stations + last]
+            radio.told_at = max(known, radio.ready_at)
+        push(world.heap, key_of(radio.told_at, OUTCOME, node, 0))
 
 
 def impair(world, radio, air):
@@ -117,7 +132,7 @@ def note_carrier(world, node):
     `told` keeps these stations in order, after their number; nearly always they are very few.
     """
     radio = world.radios[node]
-    if radio.deaf or radio.noted & 1 or not radio.alive:
+    if radio.deaf == SENDING or radio.noted & 1 or not radio.alive:
         return
     cd, voc = radio.present > 0, radio.present == 1
     if cd != radio.cd or voc != radio.voc:
@@ -130,8 +145,17 @@ def note_carrier(world, node):
         world.told[i + 1] = node
 
 
+def break_off(world, node, time):
+    """A station stops sending in mid-frame, and listens at once."""
+    radio = world.radios[node]
+    if radio.deaf:
+        silence(world, node, time)
+        radio.ready_at, radio.told_at = time, NEVER
+        push(world.heap, key_of(time, READY, node, 0))
+
+
 def silence(world, node, time):
-    """A station that dies in mid-frame: its signal stops now, and is no frame any more."""
+    """A station stops in mid-frame, or dies: its signal ends now, and is no frame any more."""
     stations = world.run[0].stations
     for i in range(AIRS):
         place = node * AIRS + i

@@ -53,12 +53,16 @@ COUNTS = ("handled", "decoded", "garbled", "offers", "dropped", "completed", "si
           "again")  # fmt: skip
 
 
-@functools.cache
 def compiled_loop(name: str) -> Callable[..., None]:
     """The compiled loop of a protocol by name."""
+    return _compiled(stacks.PROTOCOLS[name])
+
+
+@functools.cache
+def _compiled(protocol: stacks.Protocol) -> Callable[..., None]:
+    """Its loop; all names of one protocol share it."""
     from innervate.protocol import arith, outbox, rng
 
-    protocol = stacks.PROTOCOLS[name]
     door.register(traffic, hot=False)
     door.register(arith, outbox, rng, heap, medium)
     door.register(*protocol.modules, hot=False)
@@ -92,7 +96,9 @@ def simulate(
     world = builder.build(plan, plain, checks, keep, trail)
     advance(world, 0, 1)
     if not plain:
-        door.mark_compiled(plan.protocol.replace("/", "-"))
+        for name, protocol in stacks.PROTOCOLS.items():
+            if protocol == stacks.PROTOCOLS[plan.protocol]:
+                door.mark_compiled(name.replace("/", "-"))
     parts: dict[str, list[Any]] = {name: [] for name in NAMES}
     started = wall_s()
     with Stop() as stop:

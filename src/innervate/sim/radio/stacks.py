@@ -23,6 +23,9 @@ from innervate.protocol import (
     radio_window,
 )
 from innervate.protocol.radio_station import copy_frame
+from innervate.scenario.radio_baselines import NUMBERS
+from innervate.sim.baselines import common, contend, slots, station, tree
+from innervate.sim.baselines.fields import BASELINE
 
 
 class Stack(NamedTuple):
@@ -51,6 +54,9 @@ class Protocol(NamedTuple):
     fields: Any
 
 
+# One stack for all baselines; a parameter says which.
+BASELINES = Protocol(station, (radio_station, common, contend, slots, tree, station), BASELINE)
+
 PROTOCOLS: dict[str, Protocol] = {
     "csma-cd-r/practical": Protocol(
         radio_practical,
@@ -68,6 +74,7 @@ PROTOCOLS: dict[str, Protocol] = {
         ),
         radio_fields.PAPER,
     ),
+    **dict.fromkeys(NUMBERS, BASELINES),
 }  # fmt: skip
 
 

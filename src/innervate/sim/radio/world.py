@@ -12,12 +12,14 @@ RUN = (
     "garbled", "now", "rows", "row_limit", "sent", "sent_limit", "packets", "packet_limit", "trail",
     "trail_limit", "hurt",
     "offers", "dropped", "silent", "partial", "again",
-    "exclusive", "data_until", "broken", "broken_at", "broken_node",
+    "exclusive", "data_until", "oracle", "full_duplex", "period",
+    "broken", "broken_at", "broken_node",
 )  # fmt: skip
 # What the medium knows of a station.
 RADIO = (
     "alive", "deaf", "present", "candidate", "noted", "cd", "voc", "air", "offset",
     "first_offer", "next_offer", "backlog", "fresh", "data_end", "garble", "fade", "leaving",
+    "ready_at", "told_at", "told",
 )  # fmt: skip
 AIR = ("start", "end", "spoilt", "at_start", "at_end", "fade")
 COMMAND = ("action", "node", "value", "other", "index")
@@ -27,7 +29,8 @@ PACKET = ("offered", "end", "time", "node", "handle", "slots", "receivers", "lis
 TRAIL = ("time", "node", "handler", "port", "fingerprint")
 
 # All fields have 32 bits, these and all of RUN 64.
-WIDE = frozenset({"time", "start", "end", "offered", "data_end", "offset", "fingerprint", *RUN})
+WIDE = frozenset({"time", "start", "end", "offered", "data_end", "offset", "fingerprint",
+                  "ready_at", "told_at", *RUN})  # fmt: skip
 
 TIMERS = 2
 RING = 1024  # packets of a station whose fate is remembered

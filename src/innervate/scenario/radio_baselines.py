@@ -1,0 +1,76 @@
+"""Parameters of the baselines of a shared channel [radio 9], and the devices each is granted."""
+
+from __future__ import annotations
+
+# How stations know their protocol (params.mac); 0 is CSMA/CD-R.
+D1, D2, D2P, DCF, ALOHA, NONPERSISTENT, P_PERSISTENT, TDMA, TREE = range(1, 10)
+NUMBERS = {
+    "csma-cd-d1": D1,
+    "csma-cd-d2": D2,
+    "csma-cd-d2p": D2P,
+    "dcf": DCF,
+    "slotted-aloha": ALOHA,
+    "nonpersistent": NONPERSISTENT,
+    "p-persistent": P_PERSISTENT,
+    "tdma": TDMA,
+    "tree": TREE,
+}
+NONE = {
+    "mac": 0, "stations": 1, "oracle": 0, "full_duplex": 0, "period_us": 0, "gap_us": 0,
+    "answer_us": 0, "backoff_us": 208, "cw_min": 32, "cw_max": 1024, "p_q15": 3277,
+}  # fmt: skip
+ONE_Q15 = 32_768
+ANSWER_SLOTS = 2  # DCF: a one-byte answer and the idle slot before it
+
+
+def baseline(
+    mac: str,
+    stations: int,
+    params: dict[str, int],
+    *,
+    p: float = 0.1,
+    cw_min: int = 32,
+    cw_max: int = 1024,
+    backoff_slots: int = 1,
+) -> dict[str, int]:
+    """The parameters of a run with what a baseline needs besides.
+
+    A cable (D1) has no turnaround. All but D1 have an oracle: the sender learns who received its
+    packet as soon as all who hear it have heard its end. Everybody hears every packet to its end:
+    slots are long enough, and between two packets there is a slot where there is no common clock.
+
+    Args:
+        mac: its name in a scenario, a key of NUMBERS.
+        stations: how many.
+        params: of `radio_plan.parameters`.
+        p: probability to send in a slot (ALOHA after a collision; CSMA).
+        cw_min: DCF draws its backoff from so many values.
+        cw_max: ... doubled at each collision up to this.
+        backoff_slots: length of a slot of the backoff.
+    """
+    number = NUMBERS[mac]
+    slot, turn = params["slot_us"], 0 if number == D1 else params["ta_us"]
+    heard = turn + params["dmax_us"]  # from a decision until all hear a carrier
+    packet = params["packet_slots"] * slot
+    period = {
+        # The outcome is known to all, and the next sender hears all of the packet before.
+        ALOHA: turn + packet + max(heard - turn, turn) + params["bit_us"],
+        TREE: turn + packet + max(heard - turn, turn) + params["bit_us"],
+        TDMA: packet + max(slot, heard),
+        NONPERSISTENT: max(slot, heard),
+        P_PERSISTENT: max(slot, heard),
+    }
+    return params | {
+        "ta_us": turn,
+        "mac": number,
+        "stations": stations,
+        "oracle": int(number != D1),
+        "full_duplex": int(number == D1),
+        "period_us": period.get(number, 0),
+        "gap_us": max(slot - params["dmax_us"], params["bit_us"]),
+        "answer_us": ANSWER_SLOTS * slot if number == DCF else 0,
+        "backoff_us": backoff_slots * slot,
+        "cw_min": cw_min,
+        "cw_max": cw_max,
+        "p_q15": max(1, round(p * ONE_Q15)),
+    }
