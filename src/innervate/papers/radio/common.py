@@ -67,7 +67,7 @@ class Curve:
         return found
 
     def _run(self, n: int, seed: int) -> dict[str, float]:
-        packets = max(20, self.successes // n)
+        packets = max(20, self.successes // n // 10 * 10)  # so that the warm-up ends with a round
         run = slotted(
             self.mac, n, self.packet_slots, self.traffic, packets=packets, seed=seed,
             **dict(self.options),
