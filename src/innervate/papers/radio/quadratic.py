@@ -87,7 +87,7 @@ def draw(results: Results, quick: bool) -> Figure:
     right.set_xlim(0.75, 2.15)
     right.set_xlabel("exponent of $T_D$ over n = 2..100")
     right.set_title("b  fitted exponents")
-    right.legend(loc="upper right", bbox_to_anchor=(0.97, 0.86))
+    right.legend(loc="center", bbox_to_anchor=(0.68, 0.64))
     return figure
 
 
