@@ -46,7 +46,7 @@ def draw(ax: Axes, run: Any, names: Sequence[str], order: Sequence[int], waves: 
     for station, place in places.items():
         floor = place + 0.28
         for low, high in run["deaf"][station]:
-            ax.broken_barh([(low / 1e3, (high - low) / 1e3)], (place - 0.42, 0.7), color=style.PALE,
+            ax.broken_barh([(low / 1e3, (high - low) / 1e3)], (place - 0.36, 0.64), color=style.PALE,
                            lw=0)  # fmt: skip
         if waves:
             for row, (name, colour) in enumerate((("cd", style.INK), ("voc", style.GREEN))):
