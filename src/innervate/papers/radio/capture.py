@@ -77,8 +77,8 @@ def _strips(ax: Axes, found: dict[str, list[int]]) -> None:
     for place, mac in enumerate(STRIPS):
         for i, station in enumerate(found[mac]):
             # Each station has its own height as well as its own colour.
-            ax.plot([i, i + 1], [place + 0.34 - 0.17 * station] * 2, color=style.SERIES[station],
-                    lw=2.2, solid_capstyle="butt")  # fmt: skip
+            ax.plot([i, i + 1], [place + 0.26 - 0.13 * station] * 2, color=style.SERIES[station],
+                    lw=1.9, solid_capstyle="butt")  # fmt: skip
     ax.set_yticks(range(3), [LOOKS[mac].name for mac in STRIPS])
     ax.set_ylim(2.55, -0.55)
     ax.set_xlim(0, TURNS)
@@ -115,7 +115,7 @@ def judge(results: Results, quick: bool) -> list[Claim]:
         Claim(
             "beyond",
             "CSMA/CD-R serves everybody once a round; capture does not come back",
-            f"Jain's index over one round at n = 5: CSMA/CD-R 1.00, "
+            "Jain's index over one round at n = 5: CSMA/CD-R 1.00, "
             + joined(f"{name} {jain[mac]:.2f}" for name, mac in
                      zip(("D1", "D2", "D2'"), CONTENDING, strict=True)),
             verdict(
@@ -125,7 +125,7 @@ def judge(results: Results, quick: bool) -> list[Claim]:
                 ),
                 "Q3",
             ),
-            "D2' is measured over rounds of n successes like the others: what it draws is little",
+            "D2' draws one slot or none after a packet of its own: who got through still has the best chance",
         ),
     ]
 

@@ -143,8 +143,21 @@ def measured(result: RadioResult) -> dict[str, Any]:
         if not result.plan.saturated
         else result.plan.wanted - min(result.plan.wanted, result.counts["completed"]),
         "delay": radio.delay_slots(result),
+        "waits": waits(result) if result.plan.saturated else None,
         **{name: result.counts[name] for name in ("completed", "silent", "partial")},
     }
+
+
+def waits(result: Any) -> list[float]:
+    """Slots between two packets of a station that got through: 50, 95, 99 % and the longest."""
+    found = radio.settled(result)
+    slot = result.plan.params["slot_us"]
+    gaps = [
+        np.diff(found["end"][found["node"] == node]) / slot for node in range(result.plan.stations)
+    ]
+    together = np.concatenate(gaps)
+    percentiles: list[float] = np.percentile(together, (50, 95, 99, 100)).tolist()
+    return percentiles
 
 
 def aired(result: Any, kind: int) -> list[tuple[int, int, int]]:

@@ -58,8 +58,9 @@ def draw(results: Results, quick: bool) -> Figure:
     run = results["silent run"]
     lanes.draw(left, run, ("Robot1", "Robot2"), range(2), waves=True)
     left.set_xlim(-0.5, 12)
-    left.legend(handles=lanes.keys(waves=True, deaf=True), loc="lower left", ncols=3,
-                bbox_to_anchor=(0, 1), columnspacing=1.2)  # fmt: skip
+    left.set_title("a  two robots, 2 ms turnaround: nobody hears anybody")
+    left.legend(handles=lanes.keys(waves=True, deaf=True), loc="upper center", ncols=3,
+                bbox_to_anchor=(0.45, -0.22), columnspacing=1.2)  # fmt: skip
     _share(right, results, quick)
     return figure
 

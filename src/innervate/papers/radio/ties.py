@@ -98,8 +98,9 @@ def draw(results: Results, quick: bool) -> Figure:
     names = [f"robot {node + 1}" for node in range(5)]
     lanes.draw(right, run, names, order, waves=False)
     right.set_xlim(FROM_US / 1e3, UNTIL_US / 1e3)
-    right.legend(handles=lanes.keys(waves=False, deaf=True), loc="lower left", ncols=4,
-                 bbox_to_anchor=(0, 1), columnspacing=1.2)  # fmt: skip
+    right.set_title("b  five robots: what the third and later report overlaps")
+    right.legend(handles=lanes.keys(waves=False, deaf=True), loc="upper center", ncols=4,
+                 bbox_to_anchor=(0.45, -0.19), columnspacing=1.2)  # fmt: skip
     return figure
 
 
@@ -111,11 +112,12 @@ def _shares(ax: Axes, results: Results) -> None:
         ax.plot(x, shares, style.MARKERS[i], ls=style.DASHES[i % 4], color=style.SERIES[i],
                 lw=0.9, label=rules.name)  # fmt: skip
     ax.set_xticks(NS)
-    ax.set_ylim(-4, 104)
+    ax.set_ylim(-4, 150)
+    ax.set_yticks(range(0, 101, 20))
     ax.set_xlabel("stations n")
-    ax.set_ylabel("put in order at once (%)")
-    ax.set_title("a")
-    ax.legend(loc="center right", bbox_to_anchor=(1, 0.62))
+    ax.set_ylabel("put in order (%)")
+    ax.set_title("a  ordered by the first reservation")
+    ax.legend(loc="upper center", ncols=2)
 
 
 def judge(results: Results, quick: bool) -> list[Claim]:
