@@ -38,7 +38,7 @@ class Reading(NamedTuple):
 SIMULATED = Reading("simulation", "T = 25, no turnaround (Fig. 5)", 25, False)
 READINGS = (
     Reading("X1", "25 slots on air, 2 ms per hand-over", 25, True),
-    Reading("X2", "25 slots contain the switching", 25, False),
+    Reading("X2", "25 slots, switching contained", 25, False),
     Reading("X3", "5 slots on air, 2 ms per hand-over", 5, True),
 )
 
@@ -85,14 +85,14 @@ def draw(results: Results, quick: bool) -> Figure:
     for above, below, reading in zip(axes[:3], axes[3:], READINGS, strict=True):
         _panel(above, results, quick, reading, "saturated", "throughput")
         _panel(below, results, quick, reading, "disaster", "duration")
-        above.set_title(f"{reading.name}  {reading.words}")
+        above.set_title(f"{reading.name}  " + reading.words.replace(", ", ",\n"))
         below.set_xticks(NS)
         below.set_xlabel("robots n")
     axes[0].set_ylabel("throughput S (air time)")
     axes[0].set_ylim(0, 1.04)
     axes[3].set_ylabel("$T_D$ (slots)")
     axes[3].set_ylim(0)
-    axes[3].legend(loc="upper left")
+    axes[4].legend(loc="upper left")
     return figure
 
 

@@ -98,7 +98,7 @@ def draw(results: Results, quick: bool) -> Figure:
     names = [f"robot {node + 1}" for node in range(5)]
     lanes.draw(right, run, names, order, waves=False)
     right.set_xlim(FROM_US / 1e3, UNTIL_US / 1e3)
-    right.set_title("b  five robots: what the third and later report overlaps")
+    right.set_title("b  five robots: later CR-Rs overlap")
     right.legend(handles=lanes.keys(waves=False, deaf=True), loc="upper center", ncols=4,
                  bbox_to_anchor=(0.45, -0.19), columnspacing=1.2)  # fmt: skip
     return figure
