@@ -116,8 +116,10 @@ def judge(results: Results, quick: bool) -> list[Claim]:
             "beyond",
             "CSMA/CD-R serves everybody once a round; capture does not come back",
             "Jain's index over one round at n = 5: CSMA/CD-R 1.00, "
-            + joined(f"{name} {jain[mac]:.2f}" for name, mac in
-                     zip(("D1", "D2", "D2'"), CONTENDING, strict=True)),
+            + joined(
+                f"{name} {jain[mac]:.2f}"
+                for name, mac in zip(("D1", "D2", "D2'"), CONTENDING, strict=True)
+            ),
             verdict(
                 all(
                     bool((curve(RESERVED, size, quick).mean(results, "jain_round") == 1).all())

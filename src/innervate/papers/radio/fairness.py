@@ -153,7 +153,9 @@ def judge(results: Results, quick: bool) -> list[Claim]:
     practical = results[event("practical", 0, quick).key_of(seeds(quick))]
     paper = results[event("paper", 0, quick).key_of(seeds(quick))]
     contending = ("csma-cd-d1", "csma-cd-d2", "csma-cd-d2p")
-    longest_words = joined(f"{n} {d[m]['longest']:.2f}" for n, m in zip(("D1", "D2", "D2'"), contending, strict=True))
+    longest_words = joined(
+        f"{n} {d[m]['longest']:.2f}" for n, m in zip(("D1", "D2", "D2'"), contending, strict=True)
+    )
     jain_words = joined(f"{LOOKS[m].name} {d[m]['jain_round']:.2f}" for m in MACS)
     tails = {
         "CSMA/CD-R, slotted": d[RESERVED]["delay"],
@@ -200,7 +202,8 @@ def judge(results: Results, quick: bool) -> list[Claim]:
             "in saturation nobody waits long under CSMA/CD-R",
             f"slots, 50 / 95 / 99 % / longest, of {len(seeds(quick))} runs: "
             + joined(
-                (f"{name} {' / '.join(f'{x:,.0f}' for x in some)}" for name, some in tails.items()), "; "
+                (f"{name} {' / '.join(f'{x:,.0f}' for x in some)}" for name, some in tails.items()),
+                "; ",
             ),
             verdict(
                 max(tails["CSMA/CD-R, slotted"][3], tails["practical"][3])

@@ -89,11 +89,19 @@ def draw(results: Results, quick: bool) -> Figure:
         if node == R2:
             middle.text(end / 1e3 + 0.06, node + 0.12, name, fontsize=6)
             continue
-        middle.annotate("", (start / 1e3, node + 0.1), (6.864, node + 0.1),
-                        arrowprops={"arrowstyle": "<->", "lw": 0.6, "shrinkA": 0, "shrinkB": 0})
+        middle.annotate(
+            "",
+            (start / 1e3, node + 0.1),
+            (6.864, node + 0.1),
+            arrowprops={"arrowstyle": "<->", "lw": 0.6, "shrinkA": 0, "shrinkB": 0},
+        )
         middle.text((6.864 + start / 1e3) / 2, node, name, ha="center", fontsize=6)
-    middle.annotate("", (11.856, R4 - 0.22), (6.864, R4 - 0.22),
-                    arrowprops={"arrowstyle": "<->", "lw": 0.6, "shrinkA": 0, "shrinkB": 0})
+    middle.annotate(
+        "",
+        (11.856, R4 - 0.22),
+        (6.864, R4 - 0.22),
+        arrowprops={"arrowstyle": "<->", "lw": 0.6, "shrinkA": 0, "shrinkB": 0},
+    )
     middle.text(10, R4 - 0.08, "$T - T_{c0}$ from the end of the first CR-R", ha="center",
                 fontsize=6)  # fmt: skip
     return figure
@@ -104,9 +112,7 @@ def judge(results: Results, quick: bool) -> list[Claim]:
     run = results["fig1 run"]
     wanted = [list(one) for one in (*PACKETS, *REPORTS)]
     found = run["packets"] + run["reports"]
-    same = sum(
-        2 if one == other else 0 for one, other in zip(found, wanted, strict=False)
-    )
+    same = sum(2 if one == other else 0 for one, other in zip(found, wanted, strict=False))
     return [
         Claim(
             "1",

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from innervate.analysis import radio_formulas as forms
 from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
-from innervate.papers.radio import practice
+from innervate.papers.radio import practice, practice_figures
 from innervate.papers.radio.common import SIZES, joined
 from innervate.papers.radio.practice import Setting, ns
 from innervate.plot import style
@@ -25,8 +25,8 @@ def draw(results: Results, quick: bool) -> Figure:
     """Above S, below T_D."""
     figure, axes = style.panels(style.WIDE_IN, 5.0, 2, 2, height_ratios=(1.1, 1))
     for above, below, letter, size in zip(axes[:2], axes[2:], "ab", SIZES, strict=True):
-        practice.draw_saturated(above, results, SETTING, size, quick)
-        practice.draw_disaster(below, results, SETTING, size, quick)
+        practice_figures.saturated(above, results, SETTING, size, quick)
+        practice_figures.disaster(below, results, SETTING, size, quick)
         above.set_title(f"{letter}  T = {size}, saturation")
         below.set_title(f"{'cd'['ab'.index(letter)]}  T = {size}, disaster")
     axes[0].set_ylabel("throughput S")
@@ -53,7 +53,9 @@ def _passes_slotted(results: Results, quick: bool) -> Claim:
         ours = practice.throughput(results, SETTING, size, quick)
         paper = np.array([forms.reserved_throughput(n, size) for n in ns(quick)])
         gains.append(float((ours - paper).min()))
-        words.append(f"T = {size}: {ours.min():.3f} to {ours.max():.3f}, least lead {gains[-1]:.3f}")
+        words.append(
+            f"T = {size}: {ours.min():.3f} to {ours.max():.3f}, least lead {gains[-1]:.3f}"
+        )
     return Claim(
         "beyond",
         "its S is above the paper's slotted S at every n = 2..100",
