@@ -44,7 +44,8 @@ class Claim:
         figure: of the paper; "beyond" where the paper has none.
         claim: as the paper means it.
         measurement: with its unit and how many runs it is of.
-        verdict: "holds", "holds with reading E..", "does not hold"; readings of the radio are Q.., F...
+        verdict: "holds", "holds with reading E..", "does not hold". Readings are
+            those of the skin's errata (E) or of the radio's questions and findings (Q, F).
         reason: why; empty where it simply holds.
     """
 

@@ -127,7 +127,8 @@ def judge(results: Results, quick: bool) -> list[Claim]:
                 ),
                 "Q3",
             ),
-            "D2' draws one slot or none after a packet of its own: who got through still has the best chance",
+            "D2' draws one slot or none after its own packet: who got through still has the best "
+            "chance",
         ),
     ]
 

@@ -78,7 +78,7 @@ class Curve:
 
     def point(self) -> Point:
         """The point that measures it."""
-        cost = 2e-4 if self.traffic == "disaster" else 1e-6 * self.successes
+        cost = 5e-5 if self.traffic == "disaster" else 1e-6 * self.successes
         return Point.of(self.key, cost * len(self.ns) * self.seeds, self.measure)
 
     def all(self, results: Results, name: str) -> Any:
@@ -153,13 +153,14 @@ LOOKS = {
 MARKED = (2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100)
 
 
-def line(ax: Axes, look: Look, x: Sequence[float], y: Any, marks: Any = MARKED, **more: Any) -> Any:
+def line(ax: Axes, look: Look, x: Sequence[float], y: Any, marks: Iterable[float] = MARKED) -> None:
     """A curve with markers at some of its places."""
-    where = [i for i, n in enumerate(x) if n in marks]
-    return ax.plot(
+    chosen = set(marks)
+    where = [i for i, n in enumerate(x) if n in chosen]
+    ax.plot(
         x, y, color=look.colour, ls=look.dash, marker=look.marker or None, markevery=where,
-        **({"label": look.name, "ms": 3, "lw": 1.1} | more),
-    )[0]  # fmt: skip
+        label=look.name, ms=3, lw=1.1,
+    )  # fmt: skip
 
 
 def stations_axis(ax: Axes, ticks: Sequence[int] = (2, 5, 10, 20, 50, 100)) -> None:

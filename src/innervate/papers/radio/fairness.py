@@ -209,8 +209,8 @@ def judge(results: Results, quick: bool) -> list[Claim]:
                 max(tails["CSMA/CD-R, slotted"][3], tails["practical"][3])
                 < min(tails[name][3] for name in ("D1", "D2", "D2'"))
             ),
-            "most waits of CSMA/CD are short because one station waits for nothing while the others get "
-            "nothing (F3)",
+            "most waits of CSMA/CD are short because one station waits for nothing while the "
+            "others get nothing (F3)",
         ),
     ]
 
@@ -219,7 +219,7 @@ EXPERIMENT = Experiment(
     "fairness",
     "Fairness and delay",
     "a: time between two packets of a station, and the longest that any waited. b: Poisson "
-    "arrivals, from the offer to the end of the packet. Event level: mean of the runs' percentiles.",
+    "arrivals, from the offer to the end of the packet. Event level: means of the runs.",
     points,
     draw,
     judge,

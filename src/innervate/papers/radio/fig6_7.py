@@ -140,7 +140,8 @@ def crossing(results: Results, quick: bool, mac: str, size: int) -> int | None:
 
 def _crossing(results: Results, quick: bool, size: int) -> Claim:
     found = [crossing(results, quick, mac, size) for mac in CONTENDING]
-    words = joined(f"{name} from n = {n}" for name, n in zip(("D1", "D2", "D2'"), found))
+    pairs = zip(("D1", "D2", "D2'"), found, strict=True)
+    words = joined(f"{name} from n = {n}" for name, n in pairs)
     runs = curve("csma-cd-d1", size, quick).seeds
     return Claim(
         str(SIZES.index(size) + 6),

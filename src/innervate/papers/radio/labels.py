@@ -15,6 +15,7 @@ def end_labels(
     """Name curves at their ends; call it when the limits are set.
 
     Args:
+        ax: of the curves.
         ends: last value, text and colour of each curve.
         gap: least distance of two names, as a share of the axes' height.
         size: of the type, points.

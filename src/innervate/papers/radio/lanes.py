@@ -46,8 +46,8 @@ def draw(ax: Axes, run: Any, names: Sequence[str], order: Sequence[int], waves: 
     for station, place in places.items():
         floor = place + 0.28
         for low, high in run["deaf"][station]:
-            ax.broken_barh([(low / 1e3, (high - low) / 1e3)], (place - 0.36, 0.64), color=style.PALE,
-                           lw=0)  # fmt: skip
+            part = (low / 1e3, (high - low) / 1e3)
+            ax.broken_barh([part], (place - 0.36, 0.64), color=style.PALE, lw=0)
         if waves:
             for row, (name, colour) in enumerate((("cd", style.INK), ("voc", style.GREEN))):
                 _wave(ax, run[name][station], floor + 0.14 + 0.19 * row, colour)

@@ -68,7 +68,7 @@ def seeds(quick: bool, traffic: str) -> range:
     """Runs each."""
     if traffic == "saturated":
         return range(1, 2 if quick else 5)
-    return range(1, 13 if quick else 101)
+    return range(1, 9 if quick else 101)
 
 
 def rivals(setting: Setting, mac: str, size: int, traffic: str, quick: bool) -> list[list[Curve]]:

@@ -75,9 +75,9 @@ def draw(results: Results, quick: bool) -> Figure:
     end_labels(left, ends)
     left.set_ylabel("$T_D$ (slots)")
     left.set_title("a  T = 25")
-    for place, variant in enumerate((None, *VARIANTS)):
+    for place, one in enumerate((None, *VARIANTS)):
         for i, size in enumerate(SIZES):
-            value = exponent(results, quick, variant, size)
+            value = exponent(results, quick, one, size)
             right.plot(value, place, style.MARKERS[i], color=style.SERIES[i], ms=4,
                        label=f"T = {size}" if place == 0 else None)  # fmt: skip
     right.axvline(2, color=style.BLACK, lw=0.8, ls=":")
@@ -110,7 +110,8 @@ def judge(results: Results, quick: bool) -> list[Claim]:
             f"exponents (T = 5, 25) with the doubling windows of 802.3: {listed} ({runs} runs "
             f"each, n = {joined(NS)})",
             verdict(most > 1.85),
-            "Q15: doubling windows reach the size of n within log2 n collisions: T_D stays near n packets",
+            "Q15: doubling windows reach the size of n within log2 n collisions: T_D stays near n "
+            "packets",
         ),
         Claim(
             "6, 7",
