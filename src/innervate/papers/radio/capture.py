@@ -32,7 +32,7 @@ def curve(mac: str, size: int, quick: bool) -> Curve:
     """Fairness and S over n."""
     if mac == RESERVED:
         return Curve(mac, size, "saturated", NS, 1, 2000)
-    return Curve(mac, size, "saturated", NS, 5 if quick else 40, 4000 if quick else 10_000)
+    return Curve(mac, size, "saturated", NS, 5 if quick else 20, 4000 if quick else 10_000)
 
 
 def points(quick: bool) -> list[Point]:

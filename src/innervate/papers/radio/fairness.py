@@ -25,7 +25,7 @@ NAMES = {"paper": "CSMA/CD-R, event level", "practical": "practical mode, event 
 
 def seeds(quick: bool) -> range:
     """Runs each."""
-    return range(1, 4 if quick else 21)
+    return range(1, 4 if quick else 11)
 
 
 def packets(quick: bool) -> int:

@@ -39,9 +39,9 @@ def curve(mac: str, packet_slots: int, quick: bool) -> Curve:
     if mac in (RESERVED, "tdma"):
         return Curve(mac, packet_slots, "saturated", FEW if quick else WHOLE, 1, 2000)
     if mac in CONTENDING:
-        ns, seeds = (CROSSING, 5) if quick else (WHOLE, 40)
-        return Curve(mac, packet_slots, "saturated", ns, seeds, 4000 if quick else 10_000)
-    ns, seeds = (FEW, 2) if quick else (WHOLE, 6)
+        ns, seeds = (CROSSING, 5) if quick else (WHOLE, 12)
+        return Curve(mac, packet_slots, "saturated", ns, seeds, 4000 if quick else 8000)
+    ns, seeds = (FEW, 2) if quick else (WHOLE, 3)
     return Curve(mac, packet_slots, "saturated", ns, seeds, 4000 if quick else 10_000)
 
 

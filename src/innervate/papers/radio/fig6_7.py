@@ -36,9 +36,9 @@ def curve(mac: str, size: int, quick: bool) -> Curve:
     if mac == RESERVED:
         return Curve(mac, size, "disaster", WHOLE, 1)
     if mac in CONTENDING:
-        ns, seeds = (CROSSING, 400) if quick else (WHOLE, 1000)
+        ns, seeds = (CROSSING, 400) if quick else (WHOLE, 500)
         return Curve(mac, size, "disaster", ns, seeds)
-    return Curve(mac, size, "disaster", FEW if quick else WHOLE, 30 if quick else 100)
+    return Curve(mac, size, "disaster", FEW if quick else WHOLE, 30 if quick else 60)
 
 
 def points(quick: bool) -> list[Point]:

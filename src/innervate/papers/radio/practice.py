@@ -52,7 +52,7 @@ def ns(quick: bool) -> tuple[int, ...]:
 
 def saturated(setting: Setting, size: int, n: int, quick: bool) -> Channel:
     """The practical mode in saturation."""
-    packets = max(30, (600 if quick else 3000) // n)
+    packets = max(30, (600 if quick else 2000) // n)
     options = (("per_turn", setting.per_turn),) if setting.per_turn > 1 else ()
     return Channel(
         "practical", n, size, setting.ta_us, "saturated", packets=packets, options=options
@@ -67,15 +67,15 @@ def disaster(setting: Setting, size: int, n: int) -> Channel:
 def seeds(quick: bool, traffic: str) -> range:
     """Runs each."""
     if traffic == "saturated":
-        return range(1, 2 if quick else 5)
-    return range(1, 9 if quick else 101)
+        return range(1, 2 if quick else 4)
+    return range(1, 9 if quick else 61)
 
 
 def rivals(setting: Setting, mac: str, size: int, traffic: str, quick: bool) -> list[list[Curve]]:
     """CSMA/CD with this turnaround: for each reading of the way back, the backoffs."""
-    few = 2 if quick else 10
+    few = 2 if quick else 6
     runs = few if traffic == "saturated" else 15 * few
-    successes = 3000 if quick else 10_000
+    successes = 3000 if quick else 6000
     if not setting.ta_us:
         return [[Curve(mac, size, traffic, ns(quick), runs, successes)]]
     shared: tuple[tuple[str, Any], ...] = (("turnaround_slots", setting.slots),)

@@ -39,7 +39,7 @@ def curve(variant: Variant | None, size: int, quick: bool) -> Curve:
     if variant is None:
         return Curve(RESERVED, size, "disaster", NS, 1)
     options = (("backoff", variant.backoff),)
-    return Curve(variant.mac, size, "disaster", NS, 60 if quick else 1000, options=options)
+    return Curve(variant.mac, size, "disaster", NS, 60 if quick else 400, options=options)
 
 
 def points(quick: bool) -> list[Point]:
