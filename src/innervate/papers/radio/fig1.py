@@ -102,7 +102,7 @@ def draw(results: Results, quick: bool) -> Figure:
         (6.864, R4 - 0.22),
         arrowprops={"arrowstyle": "<->", "lw": 0.6, "shrinkA": 0, "shrinkB": 0},
     )
-    middle.text(10, R4 - 0.08, "$T - T_{c0}$ from the end of the first CR-R", ha="center",
+    middle.text(10, R4 + 0.02, "$T - T_{c0}$ from the end of the first CR-R", ha="center",
                 fontsize=6)  # fmt: skip
     return figure
 

@@ -73,7 +73,7 @@ def disaster(ax: Axes, results: Results, setting: Setting, size: int, quick: boo
     ax.plot(places, plain, color=look.colour, marker=look.marker, label="CSMA/CD-R slotted")
     ax.plot(places, ours, "X", color=style.BLACK, ms=4, label="practical mode")
     ax.plot(places, start + rise * places, color=style.BLACK, lw=0.8, ls="--",
-            label=f"{start:.0f} + {rise:.1f} n, $R^2$ = {fit:.4f}")  # fmt: skip
+            label=f"{start:.0f} + {rise:.1f} n\n$R^2$ = {fit:.4f}")  # fmt: skip
     ax.set_ylim(0, 1.75 * float(ours[-1]))
     ax.set_xlim(0, 105)
     ax.set_xlabel("stations n")
