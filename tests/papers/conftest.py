@@ -2,7 +2,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from innervate.papers import main, skin
+from innervate.papers import main, radio, skin
 from innervate.papers.book import RESULTS
 from innervate.papers.store import Store, stamp
 
@@ -10,10 +10,10 @@ from innervate.papers.store import Store, stamp
 CHEAP = ("fig5", "fig6", "fig8b", "eq9", "fig11", "loop")
 
 
-def read(folder, quick, names):
+def read(folder, quick, names, paper=skin):
     """What a run left: the results, and of each figure its experiment and claims."""
     values = Store(folder / RESULTS, stamp()).values
-    experiments = {name: skin.experiment(name) for name in names}
+    experiments = {name: paper.experiment(name) for name in names}
     claims = {name: e.judge(values, quick) for name, e in experiments.items()}
     return SimpleNamespace(
         folder=folder, quick=quick, values=values, experiments=experiments, claims=claims
@@ -34,3 +34,11 @@ def whole(tmp_path_factory):
     folder = tmp_path_factory.mktemp("papers-full")
     main("skin", folder)
     return read(folder, False, skin.FIGURES)
+
+
+@pytest.fixture(scope="session")
+def radio_made(tmp_path_factory):
+    """All figures of the radio in quick mode."""
+    folder = tmp_path_factory.mktemp("papers-radio")
+    main("radio", folder, quick=True)
+    return read(folder, True, radio.FIGURES, radio)

@@ -15,10 +15,9 @@ class Toy:
         self.ran = []
         module = ModuleType("innervate.papers.toy")
         module.TITLE, module.AUTHORS, module.FIGURES = "Toys & <b>", "A. Nobody", ("a", "b")
-        module.experiment = self.experiment
+        module.experiment, module.warm_up = self.experiment, lambda: None
         monkeypatch.setitem(sys.modules, "innervate.papers.toy", module)
         monkeypatch.setattr(book, "PAPERS", ("skin", "toy"))
-        monkeypatch.setattr(book, "warm_up", lambda: None)
 
     def experiment(self, name):
         keys = [f"{name}1", f"{name}2", "shared"]

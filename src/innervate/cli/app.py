@@ -116,7 +116,7 @@ def papers(
     paper
         Which paper: skin or radio.
     only
-        A figure by its name, like fig8a; may be given again.
+        A figure by its name, like fig8a of the skin or fig12 of the radio; may be given again.
     quick
         Few seeds and settings: in about a minute.
     redraw

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 __all__ = ["PAPERS", "PapersError", "Step", "main"]
 
-# Papers there are; each is a package with a list EXPERIMENTS.
-PAPERS = ("skin",)
+# Papers there are; each is a package with TITLE, AUTHORS, FIGURES, experiment() and warm_up().
+PAPERS = ("skin", "radio")
 _HOMES = {"main": "book", "Step": "book", "PapersError": "errors"}
 
 

@@ -55,7 +55,7 @@ def main(
     """Draw and tabulate the figures of a paper.
 
     Args:
-        system: which paper: "skin".
+        system: which paper: "skin" or "radio".
         out: folder for the figures, tables and kept results.
         quick: few seeds and settings, in under a minute.
         only: names of figures ("fig8a"); empty = all.
@@ -78,7 +78,7 @@ def main(
     _prepare(folder)
     mark = stamp()
     store = Store(folder / RESULTS, mark, any_stamp=redraw)
-    book = _Book(folder, store, quick, progress or (lambda step: None))
+    book = _Book(folder, store, quick, progress or (lambda step: None), paper.warm_up)
     started = time.perf_counter()
     with style.house():
         book.work(experiments)
@@ -108,11 +108,19 @@ def _prepare(folder: Path) -> None:
 class _Book:
     """Runs what is missing, and draws each experiment as soon as it has all its results."""
 
-    def __init__(self, folder: Path, store: Store, quick: bool, progress: Progress) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        store: Store,
+        quick: bool,
+        progress: Progress,
+        warm_up: Callable[[], None],
+    ) -> None:
         self.folder = folder
         self.store = store
         self.quick = quick
         self.progress = progress
+        self.warm_up = warm_up
         self.claims: dict[str, list[Claim]] = {}
         self._started = time.perf_counter()
         self._spent = self._whole = 0.0
@@ -131,7 +139,8 @@ class _Book:
         waiting = list(experiments)
         if missing:
             self._say("compiling the simulation, unless it is compiled")
-            warm_up()
+            # Compiled before threads want it at the same time.
+            self.warm_up()
             self._started = time.perf_counter()
         workers = _cores()
         with ThreadPoolExecutor(workers) as pool:
@@ -174,17 +183,6 @@ class _Book:
             took = time.perf_counter() - self._started
             left = took * (self._whole - self._spent) / self._spent
         self.progress(Step(self._done, self._total, what, left))
-
-
-def warm_up() -> None:
-    """Compile both loops before threads want them at the same time."""
-    from innervate import scenario
-    from innervate.sim.simulate import simulate
-
-    tiny = {"kind": "skin", "duration_s": 0.01, "patch": [{"columns": 2, "rows": 1}]}
-    for rule in ("feasible", "static"):
-        tables = tiny | {"interface": [{"row": 0, "column": 0}], "protocol": {"rule": rule}}
-        simulate(scenario.plan(scenario.from_dict(tables)))
 
 
 def _cores() -> int:

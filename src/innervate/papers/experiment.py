@@ -44,7 +44,8 @@ class Claim:
         figure: of the paper; "beyond" where the paper has none.
         claim: as the paper means it.
         measurement: with its unit and how many runs it is of.
-        verdict: "holds", "holds with reading E..", "does not hold".
+        verdict: "holds", "holds with reading E..", "does not hold". Readings are
+            those of the skin's errata (E) or of the radio's questions and findings (Q, F).
         reason: why; empty where it simply holds.
     """
 
@@ -71,7 +72,7 @@ class Experiment:
 
 
 def reading(*errata: str) -> str:
-    """The verdict of a claim that holds once those errata are read as the spec does."""
+    """The verdict of a claim that holds once those errata or questions are read as here."""
     return f"{HOLDS} with reading {', '.join(errata)}"
 
 

@@ -114,7 +114,7 @@ def summary(rows: Sequence[Claim]) -> str:
     fails = sum(row.verdict == FAILS for row in rows)
     read = len(rows) - plain - fails
     return (
-        f"{len(rows)} claims: {plain} hold, {read} hold with the readings of the errata, "
+        f"{len(rows)} claims: {plain} hold, {read} hold with a reading of ours, "
         f"{fails} do not hold."
     )
 

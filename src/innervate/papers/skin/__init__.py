@@ -17,3 +17,14 @@ def experiment(name: str) -> Experiment:
     found = import_module(f"innervate.papers.skin.{name}").EXPERIMENT
     assert isinstance(found, Experiment)
     return found
+
+
+def warm_up() -> None:
+    """Compile the loops that the figures need."""
+    from innervate import scenario
+    from innervate.sim.simulate import simulate
+
+    tiny = {"kind": "skin", "duration_s": 0.01, "patch": [{"columns": 2, "rows": 1}]}
+    for rule in ("feasible", "static"):
+        tables = tiny | {"interface": [{"row": 0, "column": 0}], "protocol": {"rule": rule}}
+        simulate(scenario.plan(scenario.from_dict(tables)))
