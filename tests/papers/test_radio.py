@@ -42,11 +42,11 @@ MUST_HOLD = (
 )
 MUST_FAIL = (
     ("limits", "have settled"),
-    ("quadratic", "square of n"),
+    ("quadratic", "proportional to a square of n"),
     ("fig12", "X2"),
     ("ties", "to the letter"),
     ("ties", "unlimited scalability"),
-    ("silent", "2 ms"),
+    ("silent", "modules that take 2 ms"),
     ("capture", "due to"),
     ("turnaround", "Figs. 4 and 5"),
 )

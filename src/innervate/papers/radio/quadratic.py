@@ -110,8 +110,8 @@ def judge(results: Results, quick: bool) -> list[Claim]:
             f"exponents (T = 5, 25) with the doubling windows of 802.3: {listed} ({runs} runs "
             f"each, n = {joined(NS)})",
             verdict(most > 1.85),
-            "Q15: doubling windows reach the size of n within log2 n collisions: T_D stays near n "
-            "packets",
+            "Q15: doubling windows reach the size of n within log2 n collisions: T_D stays a small "
+            "multiple of n packets",
         ),
         Claim(
             "6, 7",
