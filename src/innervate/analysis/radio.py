@@ -134,6 +134,7 @@ def throughput(result: Any) -> float | None:
         return None
     left_out = len(found) - len(steady)
     begun = int(found["end"][left_out - 1]) if left_out else first_offer_us(result)
+    steady = steady[steady["end"] > begun]  # packets of one frame end together
     elapsed = int(found["end"][-1]) - begun
     return float(_airtime_us(result, steady).sum() / elapsed) if elapsed > 0 else None
 

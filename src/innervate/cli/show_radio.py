@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from innervate.plot import words
+from innervate.plot.radio_words import slots_words
 
 if TYPE_CHECKING:
     from innervate.run import Run
-
-SLOT_DIGITS = 4
 
 
 def summary_lines(run: Run) -> list[str]:
@@ -22,7 +21,7 @@ def _first(run: Run) -> str:
     summary, plan = run.summary, run.plan
     return (
         f"{summary['name']}: {words.number_of(plan.stations, 'station')} on one channel, "
-        f"{plan.protocol}, packets of at most {plan.params['packet_slots']} slots; "
+        f"{summary['protocol']}, packets of at most {plan.params['packet_slots']} slots; "
         f"{run.result.ended_us / 1e6:.4g} s simulated in {summary['wall_s']:.2f} s, "
         f"seed {summary['seed']}"
     )
@@ -35,8 +34,9 @@ def result_lines(run: Run) -> list[str]:
     delay = summary["delay_slots"]
     if delay["p50"] is not None:
         lines.append(
-            f"Delay from offer to the end of the frame: half within {delay['p50']:.4g} slots, "
-            f"99 % within {delay['p99']:.4g}, all within {delay['max']:.4g}."
+            f"Delay from offer to the end of the frame: half within "
+            f"{slots_words(delay['p50'])}, 99 % within {slots_words(delay['p99'])}, "
+            f"all within {slots_words(delay['max'])}."
         )
     if summary["throughput"] is not None:
         share = words.share_words(summary["throughput"])
@@ -44,8 +44,10 @@ def result_lines(run: Run) -> list[str]:
         lines.append(f"Packets fill {share} of the channel's time{jain}.")
     lines.append(
         f"{words.number_of(summary['collisions'], 'collision')}; "
-        f"{summary['lost_silently']:,} packets lost without their sender knowing."
+        f"{words.number_of(summary['lost_silently'], 'packet')} lost without the sender knowing."
     )
+    if "interrupted_at_s" in summary:
+        lines.append(f"Interrupted at {summary['interrupted_at_s']:.3f} s of simulated time.")
     return lines
 
 
@@ -55,10 +57,16 @@ def _delivered(run: Run) -> str:
     after = ""
     if slots is not None:
         ms = slots * plan.params["slot_us"] / 1000
-        after = f", the last {slots:.4g} slots ({words.ms_words(ms)}) after the first offer"
+        after = f", the last {slots_words(slots)} ({words.ms_words(ms)}) after the first offer"
     open_ = counts["offers"] - counts["completed"]
     if open_ and not plan.saturated:
         return f"{counts['completed']:,} of {counts['offers']:,} packets were delivered{after}."
+    lost = run.summary["lost_silently"]
+    if lost:
+        return (
+            f"{words.number_of(counts['completed'], 'packet')} taken for delivered, {lost:,} of "
+            f"them received by nobody{after}."
+        )
     return f"{words.number_of(counts['completed'], 'packet')} delivered{after}."
 
 

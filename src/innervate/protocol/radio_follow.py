@@ -2,6 +2,7 @@
 
 from innervate.protocol.arith import MASK30, after
 from innervate.protocol.outbox import report
+from innervate.protocol.radio_idle import rest
 from innervate.protocol.radio_modes import (
     clear_round,
     disprove,
@@ -17,10 +18,13 @@ from innervate.protocol.radio_words import (
     HEARD_TAIL,
     NO_PROOF,
     NONE,
+    POSITIONS,
     REPORT_BOUNDS,
     REPORT_COLLISION,
     REPORT_SKIPPED,
 )
+
+TURNS_COUNTED = 65535
 
 
 def hear_open(station, params, now, frame, out):
@@ -42,13 +46,15 @@ def hear_data(station, params, now, frame, out):
     """A turn of somebody else: proof for the turn before it, and whose turn is next."""
     sender = frame.pos
     behind = frame.next
+    if sender >= POSITIONS or (behind >= POSITIONS and behind != ALONE):
+        return
     if station.pending:
         settle(station, params, now, frame, out)
     station.collided = 0
     station.tail = 0
     station.last_ok = 1
     station.slot = NONE
-    station.turns = station.turns + 1
+    station.turns = min(station.turns + 1, TURNS_COUNTED)
     station.live[sender] = frame.more
     lone = behind == ALONE
     opens = behind == sender
@@ -97,7 +103,10 @@ def sent_data(station, params, now, out):
     if station.cd:
         report(out, REPORT_COLLISION, 0, 0)
         disprove(station, HEARD_TAIL, out)
-        enter_turn(station, params, now, station.cur, out)
+        if station.next == ALONE:
+            rest(station, now, params.join_us)
+        else:
+            enter_turn(station, params, now, station.cur, out)
     elif opens:
         station.turns = 0
         station.opener = 0
@@ -106,7 +115,7 @@ def sent_data(station, params, now, out):
         station.split = 0
         lead(station, params, now, 1, ack, out)
     else:
-        station.turns = station.turns + 1
+        station.turns = min(station.turns + 1, TURNS_COUNTED)
         enter_turn(station, params, now, station.cur, out)
 
 

@@ -21,6 +21,10 @@ LONELY_MOST = 5  # doublings
 def boot(station, params, now, cause, out):
     """Begin outside any sequence. On switching on, listen as long as one can be silent."""
     wait = 0
+    station.lonely = 0
+    station.fails = 0
+    station.opener = 0
+    station.slot = NONE
     if cause:
         wait = params.join_us
     rest(station, now, wait)
@@ -41,8 +45,11 @@ def rest(station, now, wait_us):
 
 
 def schedule(station, now, out):
-    """Set the timer of an opening, if there is one to be made."""
-    if station.queued and not station.cd:
+    """Set the timer of an opening; it runs without packets, too.
+
+    `at` is a reading of a clock that wraps: it means something only while the timer runs.
+    """
+    if not station.cd:
         wait = 0
         if after(station.at, now):
             wait = (station.at - now) & MASK30
@@ -52,8 +59,7 @@ def schedule(station, now, out):
 def offered(station, params, now, out):
     """A packet came; in an idle channel it goes out at once."""
     if station.mode == IDLE and not station.armed:
-        if after(now, station.at):
-            station.at = now
+        station.at = now
         schedule(station, now, out)
 
 

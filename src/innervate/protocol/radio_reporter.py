@@ -34,6 +34,7 @@ FIRST_SPAN = 6  # after several answered the first, single minislot
 GROWTH = 4  # a window in which hardly anybody was alone
 PROBE_WINDOW = 6  # enough to see whether a span is far too small
 SPAN_MOST = 1023
+LONELY_NOTICE = 3
 REPORT_SLOTS = 5  # of a report without its two bits for each minislot
 
 
@@ -92,15 +93,20 @@ def minislot_of(station, params, rise):
 
 
 def check_bounds(station, params, rise, out):
-    """A CR-R that came earlier or later than the configured delays allow is worth a word."""
+    """1 if a CR-R came when the configured delays allow it; else it is worth a word.
+
+    What came at another time may have answered somebody else: it proves nothing.
+    """
     start = (station.ref + params.ta_us + 2 * params.dmin_us) & MASK30
     if not after(rise, start):
         delay = params.dmin_us - ((start - rise) & MASK30) // 2
         report(out, REPORT_BOUNDS, max(delay, 0), 0)
-        return
+        return False
     within = ((rise - start) & MASK30) % params.minislot_us
     if within > 2 * (params.dmax_us - params.dmin_us):
         report(out, REPORT_BOUNDS, params.dmin_us + within // 2, 1)
+        return False
+    return True
 
 
 def hear_slot(station, params, now, out):
@@ -109,9 +115,9 @@ def hear_slot(station, params, now, out):
         station.decoded = 0
         return
     rise = (now - params.slot_us) & MASK30
-    prove(station, out)
+    if check_bounds(station, params, rise, out):
+        prove(station, out)
     station.heard = 1
-    check_bounds(station, params, rise, out)
     place = minislot_of(station, params, rise) - station.ack
     if place >= 0:
         set_bit(station.good, place)
@@ -120,18 +126,29 @@ def hear_slot(station, params, now, out):
 def burst(station, params, now, length, noise, out):
     """The end of a carrier in our window; a report or turn waits for it."""
     if noise and length >= 2 * params.slot_us:
-        if length < 3 * params.slot_us:  # no frame: CR-Rs that came one after another
-            report(out, REPORT_BOUNDS, params.dmin_us + (length - params.slot_us) // 2, 4)
+        run_together(station, params, length, out)
         overrun(station, params, now, out)
         return
     if noise:
-        prove(station, out)
-        check_bounds(station, params, station.rise, out)
+        if check_bounds(station, params, station.rise, out):
+            prove(station, out)
         place = minislot_of(station, params, station.rise) - station.ack
         if place >= 0:
             set_bit(station.bad, place)
     if not station.armed:
         close(station, params, now, out)
+
+
+def run_together(station, params, length, out):
+    """Noise too short for a frame, too long for CR-Rs of one minislot: their delays differ more.
+
+    Other openers' probes can look alike, so an opener waits until it has failed several times.
+    """
+    if length < 3 * params.slot_us:
+        if station.opener:
+            station.lonely = min(station.lonely + 1, 31)
+        if not station.opener or station.lonely >= LONELY_NOTICE:
+            report(out, REPORT_BOUNDS, params.dmin_us + (length - params.slot_us) // 2, 4)
 
 
 def overrun(station, params, now, out):
@@ -170,6 +187,8 @@ def close(station, params, now, out):
 
 def send_report(station, params, now, good, bad, out):
     """REPORT: minislots that are turns now, and the window that follows."""
+    if station.pending:
+        disprove(station, NO_PROOF, out)
     frame = blank(out)
     frame.kind = REPORT
     frame.slots = REPORT_SLOTS + (station.window + 4) // 5

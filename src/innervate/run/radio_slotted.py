@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from innervate.kernel.wall import wall_s
+from innervate.scenario.radio_traffic import mean_interval_us
 from innervate.sim.slotted import SlottedResult, slotted
 
 
@@ -44,6 +45,9 @@ def simulate(plan: Any, plain: bool) -> SlottedRun:
         options["p"] = protocol.p
     if protocol.mac in ("csma-cd-d1", "csma-cd-d2", "csma-cd-d2p"):
         options["backoff_slots"] = protocol.backoff_slots
+    packets = traffic.packets
+    if traffic.kind == "poisson":
+        packets = max(1, plan.duration_us // mean_interval_us(model, slot_us))
     started = wall_s()
     try:
         found = slotted(
@@ -51,7 +55,7 @@ def simulate(plan: Any, plain: bool) -> SlottedRun:
             plan.stations,
             plan.params["packet_slots"],
             traffic.kind,
-            packets=traffic.packets,
+            packets=packets,
             seed=plan.seed,
             load=traffic.load if traffic.kind == "poisson" else None,
             plain=plain,
@@ -93,6 +97,7 @@ def summarize(result: SlottedRun) -> dict[str, Any]:
         "wall_s": round(result.wall_s, 6),
         "fingerprint": result.fingerprint,
         "level": "slotted",
+        "protocol": plan.scenario.model.protocol.mac,
         "stations": plan.stations,
         "throughput": found.throughput,
         "duration_slots": found.duration_slots,

@@ -25,7 +25,7 @@ Progress = Callable[[int, int], None]
 Source = str | os.PathLike[str] | Scenario | dict[str, Any]
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Run:
     """A scenario that was run.
 
@@ -43,6 +43,10 @@ class Run:
     summary: dict[str, Any]
     checks: bool = True
     written: Path | None = field(default=None)
+
+    def __repr__(self) -> str:
+        """Short: what ran, and its fingerprint."""
+        return f"Run({self.scenario.name!r}, seed={self.plan.seed}, {self.result.fingerprint})"
 
     @cached_property
     def tables(self) -> dict[str, polars.LazyFrame]:

@@ -109,11 +109,11 @@ def parameters(
         "dmax_us": most,
         "packet_slots": packet_slots,
         "minislot_us": minislot,
-        "probe_us": turnaround_us + 2 * slot_us,
+        # Two openings must overlap at every station, whatever their delays.
+        "probe_us": turnaround_us + max(2 * slot_us, 2 * most - least + slot_us),
         "retry_us": retry,
         "join_us": 2 * turnaround_us + max(retry + 2 * minislot, 33 * minislot) + 3 * slot_us,
         "dead_us": 2 * turnaround_us + 3 * most + minislot,
-        "guard_us": max(0, most - 2 * least),
         "turns": turns,
         "per_turn": per_turn,
         "wait_us": wait_us or 2 * packet_slots * slot_us,

@@ -88,6 +88,13 @@ def _protocol(source: Source, model: RadioScenario) -> None:
                 f"practical mode needs delays within a factor of two, not {least} to {most} us: "
                 "the next turn could overtake the last one",
             )
+        slot_us = 8 * round(1_000_000 / model.channel.bit_rate)
+        if 2 * (most - least) >= slot_us:
+            raise source.error(
+                ("protocol", "tau_bounds_us") if bounds else ("channel", "tau_us"),
+                f"practical mode needs delays that differ by less than half a slot "
+                f"({slot_us // 2} us), not {least} to {most} us; CR-Rs would run together",
+            )
         if model.stations > POSITIONS:
             raise source.error(
                 ("stations",),

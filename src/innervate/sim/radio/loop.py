@@ -205,7 +205,7 @@ def build(stack):
             radio.noted &= 1
             if (run.saturated or radio.backlog > 0) and radio.leaving == 0:
                 queue.push(world.heap, queue.key_of(time, OFFER, node, 1))
-        if radio.leaving == 2:
+        if radio.leaving == 2 and radio.alive and not radio.deaf:
             radio.alive = 0
             run.hurt += 1
 
