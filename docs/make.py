@@ -15,6 +15,7 @@ from innervate.trace import radio_tables, tables
 
 FOLDER = Path(__file__).resolve().parent
 PICTURE = FOLDER / "images" / "recovery.svg"
+RADIO_PICTURE = FOLDER / "images" / "radio.svg"
 
 
 def field_table(fields: Iterable[tuple[str, object, int, int, str, str]]) -> str:
@@ -104,6 +105,15 @@ def draw() -> None:
     picture.save(PICTURE, theme.drawing_style())
 
 
+def draw_radio() -> None:
+    """The radio page's picture: a disaster of four stations, from the collision to the end."""
+    import innervate
+    from innervate.plot import radio_timeline, theme
+
+    done = innervate.run("radio-disaster", overrides={"stations": 4, "packet_slots": 12})
+    radio_timeline.timeline(done.result).save(RADIO_PICTURE, theme.drawing_style())
+
+
 def main(arguments: list[str]) -> int:
     """Write everything, or with --check say what is out of date."""
     stale = [p for p, text in pages().items() if p.read_text(encoding="utf-8") != text]
@@ -114,6 +124,7 @@ def main(arguments: list[str]) -> int:
     for path, text in pages().items():
         path.write_text(text, encoding="utf-8")
     draw()
+    draw_radio()
     return 0
 
 

@@ -114,7 +114,7 @@ def notice_late_answer(station, params, out):
     """Nobody answered our opening in its window, but somebody does right behind it."""
     close = station.end + params.ta_us + 2 * params.dmin_us + 2 * params.minislot_us
     late = (station.rise - close) & MASK30
-    if station.lonely and late < 2 * params.minislot_us:
+    if station.lonely >= 2 and late < 2 * params.minislot_us:
         report(out, REPORT_BOUNDS, params.dmax_us + late // 2, 3)
 
 
