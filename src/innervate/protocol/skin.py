@@ -104,7 +104,8 @@ def on_start(cell, params, now, cause, out):
 def on_frame(cell, params, now, port, frame, out):
     """A frame with a good CRC came in on a port."""
     if frame.kind == BEACON:
-        hear(cell, params, now, port, frame, out)
+        if hear(cell, params, port, frame, out):
+            announce_soon(cell, params, now, out)
     elif frame.kind == DATA:
         forward(cell, params, frame, out)
 
@@ -145,8 +146,11 @@ def forward(cell, params, frame, out):
         onward.hops = frame.hops + 1
 
 
-def hear(cell, params, now, port, beacon, out):
-    """Store what a neighbour says; triggered modes act on it at once [skin II-B.1]."""
+def hear(cell, params, port, beacon, out):
+    """Store what a neighbour says; triggered modes act on it at once [skin II-B.1].
+
+    1 if our own neighbours should hear of it. Asks for no clock: most beacons are no news.
+    """
     dist = beacon.dist
     sq = beacon.sq
     load = beacon.load
@@ -160,8 +164,8 @@ def hear(cell, params, now, port, beacon, out):
     cell.child[port] = child
     cell.heard[port] = 1
     if params.updates != PERIODIC and react(cell, params, port, worse, out):
-        if is_news(cell, params):
-            announce_soon(cell, params, now, out)
+        return is_news(cell, params)
+    return False
 
 
 def tick(cell, params, now, out):

@@ -142,13 +142,13 @@ def build(stack):
             run.broken = BROKEN_OUTBOX
             run.broken_node = node
 
-    def finish(world, node, time, now, handler, port):
+    def finish(world, node, time, handler, port):
         """After a handler: account for it, carry out what it asked for, check."""
         run = world.run[0]
         run.handled += 1
         run.fingerprint = mix(run.fingerprint, (time << 26) ^ (node << 6) ^ (port << 40) ^ handler)
         if world.out.count[0] > 0:
-            drain(world, node, time, now, port)
+            drain(world, node, time, clocks.reading(world.clocks[node], time), port)
         if run.watchful:
             look(world, node, time, handler, port)
 
@@ -175,7 +175,7 @@ def build(stack):
         now = clocks.reading(clock, time)
         world.alive[node] = ALIVE
         start(world, node, now & MASK30, cause)
-        finish(world, node, time, now, ON_START, cause)
+        finish(world, node, time, ON_START, cause)
         if run.source_us > 0 and node < run.cells:
             slot = clocks.timer_slot(world, node, SOURCE)
             if world.wheel.events[slot].bucket == NIL:
@@ -195,13 +195,13 @@ def build(stack):
             world.counters[OFFERED] += 1
             touch.read_sensors(world, node, time)
             sample(world, node, now & MASK30)
-            finish(world, node, time, now, ON_INPUT, 0)
+            finish(world, node, time, ON_INPUT, 0)
             wait = clocks.true_delay(world, node, time, world.run[0].source_us)
             queue.insert(world.wheel, slot, time + wait)
         else:
             now = clocks.reading(world.clocks[node], time)
             fire(world, node, now & MASK30, timer)
-            finish(world, node, time, now, ON_TIMER, timer)
+            finish(world, node, time, ON_TIMER, timer)
 
     def on_arrival(world, event, slot, time):
         """A frame at the end of its cable."""
@@ -210,10 +210,9 @@ def build(stack):
         node = min(end >> 2, run.cells)
         if wires.lands(world, event, node):
             port = end - 4 * node
-            now = clocks.reading(world.clocks[node], time)
-            hear(world, node, now & MASK30, port, world.frames[slot - run.pool_slots])
+            hear(world, node, time, port, world.frames[slot - run.pool_slots])
             world.counters[wires.ARRIVED + event.kind] += 1
-            finish(world, node, time, now, ON_FRAME, port)
+            finish(world, node, time, ON_FRAME, port)
         queue.give(world.wheel, slot)
 
     def dispatch(world, slot, time):

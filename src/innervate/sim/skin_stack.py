@@ -1,9 +1,11 @@
 """Binds the skin's state machines to the simulator: which node is what, what its words mean."""
 
 from innervate.protocol import skin, skin_sink
+from innervate.protocol.arith import MASK30
 from innervate.protocol.skin import copy_frame
-from innervate.protocol.skin_words import DATA, NONE, REPORT_BALANCE, SAMPLE
+from innervate.protocol.skin_words import BEACON, DATA, NONE, REPORT_BALANCE, SAMPLE
 from innervate.sim.checks import check_cell, check_route
+from innervate.sim.clocks import reading
 from innervate.sim.observer import follow, on_report
 from innervate.sim.wires import DELIVERED
 
@@ -18,12 +20,23 @@ def start(world, node, now, cause):
         skin.on_start(world.cells[node], world.params[0], now, cause, world.out)
 
 
-def hear(world, node, now, port, frame):
-    """Hand a node a frame."""
+def hear(world, node, time, port, frame):
+    """Hand a node a frame. A beacon is taken in as `skin.on_frame` does, but the clock is read
+    only for news: reading it costs a twentieth of an arrival.
+    """
+    params, out = world.params[0], world.out
     if node == world.run[0].cells:
-        skin_sink.on_frame(world.pc, world.params[0], now, port, frame, world.out)
+        skin_sink.on_frame(world.pc, params, local(world, node, time), port, frame, out)
+    elif frame.kind == BEACON:
+        if skin.hear(world.cells[node], params, port, frame, out):
+            skin.announce_soon(world.cells[node], params, local(world, node, time), out)
     else:
-        skin.on_frame(world.cells[node], world.params[0], now, port, frame, world.out)
+        skin.on_frame(world.cells[node], params, local(world, node, time), port, frame, out)
+
+
+def local(world, node, time):
+    """A node's clock as its protocol sees it."""
+    return reading(world.clocks[node], time) & MASK30
 
 
 def fire(world, node, now, timer):

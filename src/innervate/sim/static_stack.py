@@ -7,6 +7,7 @@ from innervate.protocol.skin_words import SAMPLE
 from innervate.sim.skin_stack import check as check
 from innervate.sim.skin_stack import deliver as deliver
 from innervate.sim.skin_stack import digest as digest
+from innervate.sim.skin_stack import local
 from innervate.sim.skin_stack import report as report
 from innervate.sim.skin_stack import stopped as stopped
 
@@ -19,8 +20,9 @@ def start(world, node, now, cause):
         skin_static.on_start(world.cells[node], world.params[0], now, cause, world.out)
 
 
-def hear(world, node, now, port, frame):
+def hear(world, node, time, port, frame):
     """Hand a node a frame."""
+    now = local(world, node, time)
     if node == world.run[0].cells:
         skin_static.sink_frame(world.pc, world.params[0], now, port, frame, world.out)
     else:
