@@ -252,14 +252,15 @@ def is_news(cell, params):
 
 
 def announce_soon(cell, params, now, out):
-    """Set the send-soon timer, at least GAP after the last beacon."""
+    """Send at once, or, within GAP of the last beacon, set the send-soon timer."""
     if cell.soon:
         return
-    cell.soon = 1
     at = (cell.sent_at + params.gap_us) & MASK30
     if after(now, at):
-        at = now
-    set_timer(out, SOON, at)
+        announce(cell, now, out)
+    else:
+        cell.soon = 1
+        set_timer(out, SOON, at)
 
 
 def announce(cell, now, out):
