@@ -38,6 +38,14 @@ def test_ports_needed(monkeypatch, capsys):
     assert lost[0] > 50 > 10 > lost[-1]
 
 
+def test_which_medium_access(monkeypatch, capsys):
+    _head, *lines = run_script("which_medium_access.py", monkeypatch, capsys)
+    for line in lines:
+        reservation, fair, contention = (float(line.split()[i]) for i in (1, 3, 4))
+        assert reservation > contention
+        assert fair > 0.99
+
+
 def test_every_example_is_run():
     scripts = {path.name for path in FOLDER.glob("*.py")}
-    assert scripts == {"recovery_times.py", "ports_needed.py"}
+    assert scripts == {"recovery_times.py", "ports_needed.py", "which_medium_access.py"}
