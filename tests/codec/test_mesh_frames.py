@@ -102,7 +102,8 @@ def packets(draw, kinds=tuple(payloads.FIELDS)):
     writer = Writer(draw)
     writer.write(payloads.FIELDS[kind], 8 * room)
     body = writer.bytes()
-    route, failed = draw(st.tuples(*2 * [st.none() | st.binary(max_size=5)]))
+    route = draw(st.none() | st.binary(max_size=5))
+    failed = draw(st.none() | st.binary(min_size=1, max_size=5))
     if route is not None and len(body) + len(route) < room:
         body, flags = bytes([len(route)]) + route + body, flags | words.SOURCE_ROUTE
     if failed is not None and len(body) + len(failed) < room:
@@ -182,6 +183,15 @@ def test_route_and_failed_nodes_lie_around_the_payload():
     ]
 
 
+def test_detoured_may_be_a_mark_and_nothing_else():
+    for body, shown in ((b"abc", [("acked", 0x6162)]), (b"\1\2", [("acked", 0x0102)])):
+        frame = new(words.E2E_ACK, body=body[:2], flags=words.DETOURED)
+        assert wire.decode(wire.encode(frame), Frame()) == wire.OK
+        assert wire.fields(frame)[-1:] == shown
+    both = new(words.E2E_ACK, body=b"\1\2\x09\1", flags=words.DETOURED)
+    assert wire.fields(both)[-2:] == [("acked", 0x0102), ("failed", [9])]
+
+
 def test_whole_graph_by_hand():
     found = []  # three nodes; 0-1 and 1-2 are links
     assert read(payloads.WHOLE_GRAPH, b"\x03\x00\x01\x02\xa0", 0, 40, found) == 35
@@ -241,7 +251,7 @@ def test_every_truncation_and_extension_is_refused(frame):
         assert by_chance or reason in (wire.BAD_LENGTH, wire.BAD_CRC)
     # The CRC of a frame and a zero is right again: what has a length of its own sees it.
     reason = wire.decode(data + b"\0", Frame())
-    endless = frame.kind in (words.DATA, words.GRAPH) and not frame.flags & words.DETOURED
+    endless = frame.kind in (words.DATA, words.GRAPH)
     assert endless or reason != wire.OK
     assert wire.decode(data + b"\1", Frame()) in (wire.BAD_CRC, wire.BAD_LENGTH)
 
@@ -315,7 +325,7 @@ def test_any_bytes_in_a_good_crc(body):
         ("48 00 00 00 00 00 0000 00 00 01", wire.BAD_LENGTH),
         ("48 00 00 00 00 00 0000 00 00", wire.BAD_LENGTH),
         ("48 08 00 00 00 00 0000 00 00 00 01", wire.BAD_PAYLOAD),
-        ("48 10 00 00 00 00 0000 00 00 00 01", wire.BAD_PAYLOAD),
+        ("49 10 00 00 00 00 0000 00 00 00 aa bb cc 02", wire.BAD_PAYLOAD),
         ("42 00 00 00 00 00 0000 00 00 00 01 0002 12 08 b0 09", wire.BAD_PAYLOAD),
         ("50 03 04 09 0102 a1 00", wire.BAD_LENGTH),
     ],

@@ -89,20 +89,30 @@ def begin_of(flags: int, data: bytes | bytearray | memoryview, at: int, end: int
     return at + 1 + data[at] if flags & SOURCE_ROUTE and at < end else at
 
 
-def end_of(flags: int, data: bytes | bytearray | memoryview, at: int, end: int) -> int:
-    """Where it ends: in front of the failed nodes and their number [mesh 8]."""
-    return end - 1 - data[end - 1] if flags & DETOURED and at < end else end
+def end_of(kind: int, flags: int, data: bytes | bytearray | memoryview, at: int, end: int) -> int:
+    """Where it ends: in front of the failed nodes and their number, if there are any [mesh 8].
+
+    With tables DETOURED is a mark and nothing else. No frame says whether there are tables: where
+    both can be, we take the last bytes for failed nodes.
+    """
+    if flags & DETOURED and at < end and data[end - 1] > 0:
+        stop = end - 1 - data[end - 1]
+        if is_whole(kind, data, at, stop):
+            return stop
+    return end
+
+
+def is_whole(kind: int, data: bytes | bytearray | memoryview, at: int, end: int) -> bool:
+    """True if bytes `at` to `end` are exactly a payload of this kind."""
+    if kind in SIZES:
+        return end - at == SIZES[kind]
+    return at <= end and read(FIELDS[kind], data, 8 * at, 8 * end, []) == 8 * end
 
 
 def fits(kind: int, flags: int, data: bytes | bytearray | memoryview, at: int, end: int) -> bool:
-    """True if bytes `at` to `end` are exactly what a payload of this kind has."""
+    """True if bytes `at` to `end` are a payload of this kind and what forwarding puts around."""
     begin = begin_of(flags, data, at, end)
-    stop = end_of(flags, data, at, end)
-    if begin > stop:
-        return False
-    if kind in SIZES:
-        return stop - begin == SIZES[kind]
-    return read(FIELDS[kind], data, 8 * begin, 8 * stop, []) == 8 * stop
+    return is_whole(kind, data, begin, end_of(kind, flags, data, begin, end))
 
 
 def describe(kind: int, flags: int, data: bytes) -> list:  # type: ignore[type-arg]
@@ -111,11 +121,11 @@ def describe(kind: int, flags: int, data: bytes) -> list:  # type: ignore[type-a
     if kind not in FIELDS or not fits(kind, flags, data, 0, end):
         return [("payload", list(data))]
     begin = begin_of(flags, data, 0, end)
-    stop = end_of(flags, data, 0, end)
+    stop = end_of(kind, flags, data, begin, end)
     found = []
     if flags & SOURCE_ROUTE:
         found.append(("source_route", list(data[1:begin])))
     read(FIELDS[kind], data, 8 * begin, 8 * stop, found)
-    if flags & DETOURED:
+    if stop < end:
         found.append(("failed", list(data[stop : end - 1])))
     return found
