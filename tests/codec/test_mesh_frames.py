@@ -13,6 +13,7 @@ from innervate.wire import mesh as wire
 from innervate.wire import mesh_payloads as payloads
 from innervate.wire.bits import put
 from innervate.wire.layout import BROKEN, REST, read
+from innervate.wire.meanings import MEANINGS
 
 Frame = plain.make("Frame", FRAME)
 RANGES = {name: (length, low, high) for name, length, low, high, _unit, _meaning in FRAME}
@@ -220,6 +221,18 @@ def test_layouts_hold_exactly_the_declared_ranges():
             assert RANGES[name] == (0, low, high), name
     in_frames = {name for name, *_ in wire.HEAD + wire.COMMON + wire.HOP_ACK} - {"version"}
     assert in_frames | {"path", "length", "body"} == set(RANGES)
+
+
+def names_in(fields):
+    for name, _many, bits, _signed in fields:
+        yield name
+        if isinstance(bits, tuple):
+            yield from names_in(bits)
+
+
+def test_every_field_of_a_payload_has_a_meaning_and_no_other():
+    layouts = [*payloads.FIELDS.values(), payloads.WHOLE_GRAPH]
+    assert {name for fields in layouts for name in names_in(fields)} == set(MEANINGS)
 
 
 @given(frames)
