@@ -360,7 +360,7 @@ def test_the_mtu_holds_both_ways():
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("seq", 65536), ("ttl", -1), ("kind", 6), ("path_len", 25), ("path", [256] * 24),
+    [("seq", 65536), ("ttl", -1), ("kind", 6), ("path_len", 25), ("length", 115), ("length", -1), ("path", [256] * 24),
      ("body", [-1] * 114)],
 )  # fmt: skip
 def test_encoding_what_does_not_fit_is_the_callers_mistake(name, value):
