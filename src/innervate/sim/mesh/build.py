@@ -98,8 +98,8 @@ def _margin(nodes: int) -> int:
 
 
 def _given(tables: w.Tables, values: Any, kind: type = np.int64) -> Any:
-    made = np.ascontiguousarray(values, kind).ravel()
-    return made.tolist() if tables.plain else made
+    numbers = np.ascontiguousarray(values, kind).ravel()
+    return numbers.tolist() if tables.plain else numbers
 
 
 def _outbox(tables: w.Tables, limit: int, frame: Any) -> w.Out:
