@@ -1,7 +1,15 @@
 """Packets as records: copies, lengths, numbers in a payload."""
 
 from innervate.protocol.mesh_fields import QUEUE
-from innervate.protocol.mesh_words import ACK, ACK_BYTES, BODY, CRC_BYTES, HEADER_BYTES, PATH_MAX
+from innervate.protocol.mesh_words import (
+    ACK,
+    ACK_BYTES,
+    BODY,
+    CRC_BYTES,
+    HEADER_BYTES,
+    PATH_MAX,
+    SOURCE_ROUTE,
+)
 
 
 def copy_frame(to, frm):
@@ -44,6 +52,13 @@ def signed8(value):
 def signed16(value):
     """Two bytes as the signed number that they stand for."""
     return value - ((value & 32768) << 1)
+
+
+def inner(frame):
+    """Where the payload of its origin begins: behind a source route."""
+    if frame.flags & SOURCE_ROUTE and frame.length > 0:
+        return min(frame.length, 1 + frame.body[0])
+    return 0
 
 
 def in_path(frame, who):

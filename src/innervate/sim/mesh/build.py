@@ -98,7 +98,7 @@ def _margin(nodes: int) -> int:
 
 
 def _given(tables: w.Tables, values: Any, kind: type = np.int64) -> Any:
-    numbers = np.ascontiguousarray(values, kind).ravel()
+    numbers: Any = np.ascontiguousarray(values, kind).ravel()
     return numbers.tolist() if tables.plain else numbers
 
 
