@@ -17,7 +17,7 @@ from innervate.protocol.mesh_alarm import (
     watch,
 )
 from innervate.protocol.mesh_fields import WAITING
-from innervate.protocol.mesh_frames import clear_queue
+from innervate.protocol.mesh_frames import clear_queue, is_sound
 from innervate.protocol.mesh_gateway import collect, lead, on_response, reset, tick
 from innervate.protocol.mesh_jobs import on_ack, retry_jobs
 from innervate.protocol.mesh_messages import (
@@ -130,13 +130,15 @@ def on_frame(node, gate, params, now, port, frame, out):
     """A frame was received, perhaps for somebody else [mesh 4]."""
     if frame.link_src >= params.nodes or frame.link_src == node.number:
         return
+    if not is_sound(params, frame):
+        return
     k = hear(node, params, frame.link_src, frame.rssi)
     if frame.kind == ACK:
         if frame.link_dst == node.number:
             on_hop_ack(node, params, now, frame, out)
     elif frame.link_dst == ALL:
         on_broadcast(node, params, now, frame, k, out)
-    elif frame.link_dst == node.number and frame.origin < params.nodes:
+    elif frame.link_dst == node.number:
         on_unicast(node, gate, params, now, frame, out)
 
 
@@ -152,7 +154,7 @@ def on_broadcast(node, params, now, frame, k, out):
     """A frame for everyone in reach."""
     kind = frame.kind
     if kind == REQUEST:
-        if frame.length >= 7:
+        if frame.length >= 7 and frame.body[0] < params.nodes:
             on_request(node, params, now, frame, k, out)
     elif kind == ALARM:
         if frame.flags & FLOOD:
