@@ -123,7 +123,7 @@ def packets(n):
         ("window", n * WINDOW_WORDS, 0, 32767, "bits", "per origin: which behind it were"),
         ("heard_seq", n, 0, 65536, "number", "per origin: the seq that reset it; 65536 none"),
         ("idle", n, 0, 255, "ticks", "per origin: till the window is cleared; 0 = it is"),
-        ("met", words(n), 0, 32767, "bits", "recipients that had our first packet"),
+        ("met", words(n), 0, 32767, "bits", "recipients that acknowledged something"),
         ("done_origin", FORWARDED, 0, 255, "node", "forwarded: origin; 255 = free place"),
         ("done_seq", FORWARDED, 0, 65535, "number", "forwarded: seq"),
         ("done_kind", FORWARDED, 0, 255, "type", "forwarded: type, 64 x parity, flood instance"),

@@ -60,13 +60,9 @@ def payload_limit(params):
 
 
 def first_flag(node, dest):
-    """FIRST if nothing was sent to `dest` since we switched on: it begins its window anew."""
-    if dest >= ALL:
+    """FIRST until `dest` has acknowledged something since we switched on: a lost one is no use."""
+    if dest >= ALL or node.met[dest // BITS] >> (dest % BITS) & 1:
         return 0
-    bit = 1 << (dest % BITS)
-    if node.met[dest // BITS] & bit:
-        return 0
-    node.met[dest // BITS] = node.met[dest // BITS] | bit
     return FIRST
 
 
@@ -216,6 +212,8 @@ def on_end_ack(node, frame, now, out):
     at = inner(frame)
     if frame.length < at + 2:
         return
+    word = frame.origin // BITS
+    node.met[word] = node.met[word] | 1 << (frame.origin % BITS)
     for w in range(WAITING):
         if node.wait_kind[w] != FREE and node.wait_seq[w] == get16(frame, at):
             if node.wait_dest[w] == frame.origin or node.wait_kind[w] == ALARM:

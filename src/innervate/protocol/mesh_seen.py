@@ -27,35 +27,44 @@ def forget(node, params):
 def accept(node, params, origin, seq, first):
     """1 if this packet was not delivered before [mesh 1]; it counts as delivered from now on.
 
-    The window of an origin begins anew after silence, and at the first packet after its start.
+    The window of an origin begins anew after silence, and where a packet that says FIRST is too
+    old for it: its origin has started anew. One in the window does not throw it away, for what
+    its origin sent with FIRST it may send again. A packet too old for the window does not count
+    as a sign of life: else an origin that started anew would never be heard.
     """
     base = origin * WINDOW_WORDS
-    anew = node.idle[origin] == 0
-    if first and node.heard_seq[origin] != seq:
-        anew = 1
-        node.heard_seq[origin] = seq
-    node.idle[origin] = params.forget
-    if anew:
-        node.newest[origin] = seq
-        for k in range(WINDOW_WORDS):
-            node.window[base + k] = 0
-        return 1
     ahead = (seq - node.newest[origin]) & MASK16
+    behind = MASK16 - ahead
+    if node.idle[origin] == 0:
+        begin_window(node, params, origin, seq)
+        return 1
+    if ahead >= HALF16 and behind >= BITS * WINDOW_WORDS:
+        if not first or node.heard_seq[origin] == seq:
+            return 0
+        begin_window(node, params, origin, seq)
+        node.heard_seq[origin] = seq
+        return 1
+    node.idle[origin] = params.forget
     if ahead == 0:
         return 0
     if ahead < HALF16:
         slide(node, base, ahead)
         node.newest[origin] = seq
         return 1
-    behind = MASK16 + 1 - ahead - 1
-    if behind >= BITS * WINDOW_WORDS:
-        return 0
     word = base + behind // BITS
     bit = 1 << (behind % BITS)
     if node.window[word] & bit:
         return 0
     node.window[word] = node.window[word] | bit
     return 1
+
+
+def begin_window(node, params, origin, seq):
+    """Of this origin nothing but `seq` was delivered."""
+    node.idle[origin] = params.forget
+    node.newest[origin] = seq
+    for k in range(WINDOW_WORDS):
+        node.window[origin * WINDOW_WORDS + k] = 0
 
 
 def slide(node, base, ahead):
