@@ -10,10 +10,12 @@ from innervate.protocol.mesh_alarm import (
     NEVER,
     beacon,
     flood_again,
+    insist,
     on_flood,
     on_position,
     on_sample,
     take_alarm,
+    unheard,
     watch,
 )
 from innervate.protocol.mesh_fields import WAITING
@@ -73,6 +75,7 @@ from innervate.protocol.outbox import report, set_timer
 from innervate.protocol.rng import draw
 
 NONE = 255
+RETRIES = 4  # of kept messages in one go: the outbox has to hold them
 
 
 def on_start(node, gate, params, now, cause, out):
@@ -99,6 +102,7 @@ def on_start(node, gate, params, now, cause, out):
     node.ready = 0
     node.placed = 0
     node.outside = 0
+    node.heard_out = 0
     forget_all(node, params)
     forget(node, params)
     clear_queue(node)
@@ -256,6 +260,7 @@ def on_tick(node, gate, params, now, out):
     age(node, params)
     watch(node, params, now, out)
     if node.robot and node.placed:
+        insist(node, params, now, out)
         beacon(node, params, now, out)
     if node.rank >= 0:
         tick(node, gate, params, now, out)
@@ -264,10 +269,13 @@ def on_tick(node, gate, params, now, out):
 
 def on_retry(node, params, now, out):
     """An end-to-end ack is overdue: once more, for alarms as a flood besides."""
-    for _ in range(WAITING):
+    for _ in range(RETRIES):
         w = due_wait(node, now)
         if w >= 0:
             alarm = node.wait_kind[w] == ALARM
-            if try_again(node, params, now, w, out) and alarm:
+            if not try_again(node, params, now, w, out):
+                if alarm:
+                    unheard(node, w)
+            elif alarm:
                 flood_again(node, params, now, w, out)
     wait_on(node, now, out)

@@ -156,6 +156,7 @@ WATCH = (
     ("vy", 0, -127, 127, "2 cm/s", "robot: speed"),
     ("outside", 0, 0, 2, "state", "robot: 0 inside, 1 about to cross, 2 outside"),
     ("alarm", 0, 0, 255, "number", "of our newest alarm"),
+    ("heard_out", 0, 0, 1, "flag", "robot: the monitor acknowledged that it is outside"),
     ("placed", 0, 0, 1, "flag", "robot: its position is known"),
 )
 
@@ -267,7 +268,7 @@ PARAMS = (
     ("forget", 0, 1, 255, "ticks", "duplicate window of an origin that is silent"),
     ("monitor", 0, 0, 255, "node", "254: whoever is gateway"),
     ("watch", 0, 0, 1, "flag", "robots tell the monitor where they are, every tick"),
-    ("lost", 0, 1, 255, "ticks", "a robot not heard for so long is lost"),
+    ("lost", 0, 1, 253, "ticks", "a robot not heard for so long is lost"),
     ("flood", 0, 0, 2, "when", "alarms: 0 never, 1 CROSS at once and others late, 2 all at once"),
     ("instances", 0, 0, 3, "floods", "at most, of an alarm"),
     ("clear_margin", 0, 0, 32767, "unit", "inside by so much again: CLEAR"),

@@ -18,6 +18,7 @@ from innervate.protocol.mesh_words import (
     ALL,
     BODY,
     CRC_BYTES,
+    CROSS,
     DATA,
     DATA_MAX,
     DETOURED,
@@ -223,8 +224,18 @@ def on_end_ack(node, frame, now, out):
                         node.round_trip = took
                     else:
                         node.round_trip = (7 * node.round_trip + took) >> 3
+                if is_own_crossing(node, w):
+                    node.heard_out = 1
                 report(out, REPORT_ARRIVED, node.wait_handle[w], node.wait_seq[w])
                 node.wait_kind[w] = FREE
+
+
+def is_own_crossing(node, w):
+    """1 if the message kept in place w is our alarm that we are outside ourselves."""
+    body = w * DATA_MAX
+    if node.wait_kind[w] != ALARM or node.wait_body[body] != node.number:
+        return 0
+    return node.wait_body[body + 3] == CROSS
 
 
 def acknowledge_end(node, params, now, frame, out):
