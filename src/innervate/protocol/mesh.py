@@ -29,7 +29,7 @@ from innervate.protocol.mesh_messages import (
     try_again,
     wait_on,
 )
-from innervate.protocol.mesh_near import forget_all, hear, sweep
+from innervate.protocol.mesh_near import forget_all, hear, hear_again, sweep
 from innervate.protocol.mesh_queue import (
     CONTROL,
     acked,
@@ -136,10 +136,12 @@ def on_frame(node, gate, params, now, port, frame, out):
         return
     if not is_sound(params, frame):
         return
+    if frame.kind == ACK and frame.link_dst != node.number:
+        hear_again(node, params, frame.link_src)
+        return
     k = hear(node, params, frame.link_src, frame.rssi)
     if frame.kind == ACK:
-        if frame.link_dst == node.number:
-            on_hop_ack(node, params, now, frame, out)
+        on_hop_ack(node, params, now, frame, out)
     elif frame.link_dst == ALL:
         on_broadcast(node, params, now, frame, k, out)
     elif frame.link_dst == node.number:

@@ -73,7 +73,9 @@ def on_message(node, params, now, item, out):
     if item.length > payload_limit(params) or (dest != ALL and dest >= params.nodes):
         report(out, REPORT_FULL, item.handle, NO_ROUTE)
         return
-    flags = item.flags & (END_TO_END | PRIORITY)
+    flags = item.flags & PRIORITY
+    if params.reliable:
+        flags = item.flags & (END_TO_END | PRIORITY)
     if dest == node.number:
         hand_up_own(node, item, out)
         return
@@ -197,7 +199,9 @@ def try_again(node, params, now, w, out):
     node.wait_flags[w] = node.wait_flags[w] ^ PARITY
     node.wait_due[w] = (now + timeout(node, params)) & MASK30
     unskip(node, node.number, node.wait_seq[w])
-    rank = ALARMS if node.wait_kind[w] == ALARM else MESSAGES
+    rank = CONTROL if node.wait_flags[w] & PRIORITY else MESSAGES
+    if node.wait_kind[w] == ALARM:
+        rank = ALARMS
     i = compose(node, now, rank, node.wait_kind[w], node.wait_dest[w], node.wait_flags[w], out)
     if i >= 0:
         node.seq = (node.seq - 1) & 65_535  # it keeps its number

@@ -14,6 +14,7 @@ from innervate.protocol.mesh_queue import (
     place,
 )
 from innervate.protocol.mesh_send import send_up
+from innervate.protocol.mesh_table import activate
 from innervate.protocol.mesh_upward import is_uplink, is_weak
 from innervate.protocol.mesh_words import (
     ALL,
@@ -82,6 +83,7 @@ def on_request(node, params, now, frame, k, out):
     if is_newer(node, gateway, epoch, round):
         begin(node, params, gateway, epoch, round, out)
         node.active = get16(frame, 4)
+        activate(node, epoch, node.active, out)  # should the flood have passed us by
         node.jitter = frame.body[6]
     elif gateway != node.gateway or epoch != node.epoch or round != node.round:
         return

@@ -25,6 +25,7 @@ from innervate.protocol.outbox import report
 from innervate.protocol.rng import draw
 
 FAILURES_MAX = 6
+HOPS_MAX = 40  # failures of a routed packet at a node: every neighbour once, and some to spare
 
 
 def give_up(node, i, out):
@@ -119,7 +120,7 @@ def hop_failed(node, params, now, i, out):
     else:
         suspect(node, params, now, dead, planned(node, params, node.q_dest[i]) == dead, out)
         learn_failure(node, params, i, dead)
-        if not params.retry or not aim(node, params, i, out):
+        if not params.retry or node.q_fails[i] > HOPS_MAX or not aim(node, params, i, out):
             give_up(node, i, out)
 
 
