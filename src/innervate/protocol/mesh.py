@@ -264,6 +264,8 @@ def on_tick(node, gate, params, now, out):
     if node.robot and node.placed:
         insist(node, params, now, out)
         beacon(node, params, now, out)
+    if not node.leading:
+        node.quiet = min(node.quiet + 1, 65_535)
     if node.rank >= 0:
         tick(node, gate, params, now, out)
     kick(node, params, now, out)

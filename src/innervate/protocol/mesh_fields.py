@@ -72,7 +72,7 @@ OWN = (
     ("jitter", 0, 0, 255, "10 ms", "of the present round's requests"),
     ("tick_at", 0, 0, TIME, "us", "the newest tick"),
     ("parent", 0, 0, 255, "node", "who brought the round's first request; 255 nobody"),
-    ("quiet", 0, 0, 65535, "ticks", "since the newest request; standby"),
+    ("quiet", 0, 0, 65535, "ticks", "since the newest request"),
     ("leading", 0, 0, 1, "flag", "we are the gateway now"),
     ("round_trip", 0, 0, 16777215, "us", "smoothed, of end-to-end acks; 0 unknown"),
 )

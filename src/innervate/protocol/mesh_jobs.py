@@ -76,6 +76,14 @@ def give_jobs(node, gate, params, changed, out):
                 gate.open = 1
 
 
+def has_none(gate, s):
+    """Node s says that it has no table: should it have acknowledged one, it has lost it since."""
+    if gate.job[s] == CURRENT:
+        gate.mark_a[s] = 0
+        gate.mark_b[s] = 0
+        gate.job[s] = GIVEN_UP
+
+
 def give_job(gate, params, s):
     """Node s needs its table, unless it has acknowledged the same."""
     if params.mode == WHOLE_GRAPH:
@@ -124,7 +132,7 @@ def pump(node, gate, params, now, out):
     if params.mode == WHOLE_GRAPH:
         pump_graph(node, gate, params, now, out)
     else:
-        for _ in range(params.jobs):
+        for _ in range(params.nodes):
             s = next_job(node, gate, params)
             if s >= 0 and count_jobs(gate, params, UNDER_WAY) < params.jobs:
                 start_job(node, gate, params, now, s)
