@@ -7,16 +7,12 @@ the choice of a hop in mesh_route.py, messages in mesh_messages.py, the fence in
 
 from innervate.protocol.arith import MASK30
 from innervate.protocol.mesh_alarm import (
-    NEVER,
-    beacon,
     flood_again,
     insist,
     on_flood,
-    on_position,
     on_sample,
     take_alarm,
     unheard,
-    watch,
 )
 from innervate.protocol.mesh_fields import WAITING
 from innervate.protocol.mesh_frames import clear_queue, is_sound
@@ -45,6 +41,7 @@ from innervate.protocol.mesh_round import on_request, step
 from innervate.protocol.mesh_seen import age, forget, is_repeated
 from innervate.protocol.mesh_send import is_upward, send_up, unanswered
 from innervate.protocol.mesh_table import on_activate, on_graph, on_table
+from innervate.protocol.mesh_watch import NEVER, beacon, on_position, watch
 from innervate.protocol.mesh_words import (
     ACK,
     ACK_WAIT,

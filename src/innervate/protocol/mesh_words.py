@@ -69,6 +69,13 @@ TREE = 1
 EACH = 2
 LIST = 3
 
+# What a gateway knows of a node's table.
+CURRENT = 0
+TO_SEND = 1
+UNDER_WAY = 2
+GIVEN_UP = 3
+PARTS_MAX = 15  # of a table, or of the graph
+
 # Kinds of alarms.
 PREDICT = 0
 CROSS = 1
