@@ -127,6 +127,7 @@ def packets(n):
         ("done_origin", FORWARDED, 0, 255, "node", "forwarded: origin; 255 = free place"),
         ("done_seq", FORWARDED, 0, 65535, "number", "forwarded: seq"),
         ("done_kind", FORWARDED, 0, 255, "type", "forwarded: type, 64 x parity, flood instance"),
+        ("done_from", FORWARDED, 0, 255, "node", "forwarded: who gave it to us first"),
         ("done_hops", FORWARDED, 0, PATH_MAX, "hops", "forwarded: how long its path was"),
         ("done_at", 0, 0, 63, "place", "forwarded: the next to be overwritten"),
         ("skip_origin", SKIPS, 0, 255, "node", "failed neighbours per packet; 255 free"),

@@ -97,13 +97,14 @@ def forwarded_at(node, origin, seq, kind):
     return -1
 
 
-def note_forwarded(node, origin, seq, kind, hops):
+def note_forwarded(node, origin, seq, kind, giver, hops):
     """Remember a packet; kind has its type, and 64 x retry parity; hops = how long its path is."""
     k = node.done_at
     node.done_at = (k + 1) % FORWARDED
     node.done_origin[k] = origin
     node.done_seq[k] = seq
     node.done_kind[k] = kind
+    node.done_from[k] = giver
     node.done_hops[k] = hops
 
 
@@ -118,10 +119,11 @@ def is_repeated(node, frame):
         if node.done_kind[k] == kind:
             return 1
         node.done_kind[k] = kind
+        node.done_from[k] = frame.link_src
         node.done_hops[k] = frame.path_len
         unskip(node, frame.origin, frame.seq)
         return 0
-    note_forwarded(node, frame.origin, frame.seq, kind, frame.path_len)
+    note_forwarded(node, frame.origin, frame.seq, kind, frame.link_src, frame.path_len)
     return 0
 
 
@@ -133,7 +135,7 @@ def is_returned_again(node, frame):
     kind = frame.kind | ((frame.flags & PARITY) >> 1)
     k = forwarded_at(node, frame.origin, frame.seq, kind)
     if k < 0:
-        note_forwarded(node, frame.origin, frame.seq, kind, frame.path_len)
+        note_forwarded(node, frame.origin, frame.seq, kind, ALL, frame.path_len)
         return 0
     if node.done_kind[k] == kind and frame.path_len <= node.done_hops[k]:
         return 1
@@ -148,7 +150,7 @@ def is_flooded(node, origin, seq, kind, instance):
         if node.done_origin[k] == origin and node.done_seq[k] == seq:
             if node.done_kind[k] == (kind | (instance << 6)):
                 return 1
-    note_forwarded(node, origin, seq, kind | (instance << 6), 0)
+    note_forwarded(node, origin, seq, kind | (instance << 6), ALL, 0)
     return 0
 
 

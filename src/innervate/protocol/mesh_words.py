@@ -29,7 +29,7 @@ MONITOR = 0xFE  # the monitor; where none is configured, the gateway
 NOBODY = -1
 IDS = 254
 
-TTL = 24
+TTL = 48  # a search goes back over what it has gone; else the path bounds it
 PATH_MAX = 24
 HEADER_BYTES = 11
 CRC_BYTES = 2
