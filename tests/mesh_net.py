@@ -19,7 +19,7 @@ class Net(Bench):
     With `told = 1` frames leave one after the other and the node hears when they have left.
     """
 
-    def __init__(self, count, links, loss=0.0, seed=1, rssi=None, thorough=True, **settings):
+    def __init__(self, count, links, loss=0.0, seed=1, rssi=None, thorough=False, **settings):
         self.chance = random.Random(seed)
         self.loss = loss
         self.loudness = rssi or {}

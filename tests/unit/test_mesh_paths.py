@@ -2,7 +2,7 @@
 
 import networkx as nx
 import pytest
-from hypothesis import given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from innervate.protocol import mesh_fields, mesh_pack, mesh_paths, mesh_table, plain
@@ -35,7 +35,7 @@ def gateway_of(graph, mtu=127):
     return node, gate, params
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25, deadline=None, phases=(Phase.generate,))
 @given(graphs())
 def test_distances_and_next_hops(graph):
     _, gate, params = gateway_of(graph)
@@ -48,10 +48,10 @@ def test_distances_and_next_hops(graph):
             assert gate.next[d] == (min(best) if best and s != d else NONE)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25, deadline=None, phases=(Phase.generate,))
 @given(graphs())
 def test_alternates_are_loop_free_and_protect_the_node_where_one_can(graph):
-    """RFC 5286 inequalities 1 and 3; else the first hop of the shortest path around the main one."""
+    """RFC 5286 inequalities 1 and 3; else the first hop of a shortest path around the main one."""
     _, gate, params = gateway_of(graph)
     far = dict(nx.all_pairs_shortest_path_length(graph))
     for s in graph:
@@ -99,7 +99,7 @@ def parts_of(node, gate, params, s, room):
 
 
 @pytest.mark.parametrize("mtu", [64, 127])
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=5, deadline=None, phases=(Phase.generate,))
 @given(graph=graphs(64))
 def test_tables_go_through_parts_that_have_room(mtu, graph):
     node, gate, params = gateway_of(graph, mtu)
@@ -127,7 +127,7 @@ def test_tables_go_through_parts_that_have_room(mtu, graph):
 
 
 @pytest.mark.parametrize("mtu", [64, 127])
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6, deadline=None, phases=(Phase.generate,))
 @given(graph=graphs(64), order=st.randoms())
 def test_the_whole_graph_goes_through_its_parts_in_any_order(mtu, graph, order):
     node, gate, params = gateway_of(graph, mtu)

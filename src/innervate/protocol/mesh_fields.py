@@ -145,6 +145,7 @@ def packets(n):
         ("wait_due", WAITING, 0, TIME, "us", "... when it is sent again"),
         ("wait_at", WAITING, 0, TIME, "us", "... when it was sent last"),
         ("wait_handle", WAITING, 0, 65535, "number", "... its owner's name"),
+        ("wait_hop", WAITING, 0, 1, "flag", "... its owner was told that it has left"),
         ("wait_length", WAITING, 0, DATA_MAX, "bytes", "... payload"),
         ("wait_body", WAITING * DATA_MAX, 0, 255, "byte", "... payload"),
     )

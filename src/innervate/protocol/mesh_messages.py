@@ -151,6 +151,7 @@ def keep(node, params, now, w, i, handle, out):
     node.wait_dest[w] = node.q_dest[i]
     node.wait_flags[w] = node.q_flags[i]
     node.wait_tries[w] = 1
+    node.wait_hop[w] = 0
     node.wait_at[w] = now
     node.wait_due[w] = (now + timeout(node, params)) & MASK30
     node.wait_handle[w] = handle

@@ -236,7 +236,10 @@ def acked(node, frame):
 
 
 def tell_hop(node, i, out):
-    """The owner of a message hears that its first hop has it."""
+    """The owner of a message hears, once, that its first hop has it."""
     owner = node.q_owner[i]
-    if owner != NO_OWNER and node.wait_kind[owner] and node.wait_seq[owner] == node.q_seq[i]:
+    if owner == NO_OWNER or node.wait_hop[owner]:
+        return
+    if node.wait_kind[owner] and node.wait_seq[owner] == node.q_seq[i]:
+        node.wait_hop[owner] = 1
         report(out, REPORT_HOP, node.wait_handle[owner], 0)
