@@ -30,7 +30,8 @@ class Scenario:
     """A validated scenario.
 
     Attributes:
-        model: its tables (see model.py, radio_model.py, mesh_model.py), overrides and defaults filled in.
+        model: its tables (see model.py, radio_model.py, mesh_model.py), overrides and defaults
+            filled in.
         source: where it came from, for error messages.
     """
 

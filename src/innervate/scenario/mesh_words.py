@@ -86,8 +86,11 @@ def warnings(made: MeshPlan) -> list[str]:
 
 def _thin(made: MeshPlan, near: list[list[int]], gateway: int) -> list[str]:
     found = []
-    few = [made.names[node] for node, around in enumerate(near)
-           if len(around) < NEIGHBOURS_MIN and node != gateway and not made.robots[node]]  # fmt: skip
+    few = [
+        made.names[node]
+        for node, around in enumerate(near)
+        if len(around) < NEIGHBOURS_MIN and node != gateway and not made.robots[node]
+    ]
     if few:
         found.append(f"fewer than {NEIGHBOURS_MIN} neighbours: {listed(few)}")
     if len(near[gateway]) < GATEWAY_MIN:

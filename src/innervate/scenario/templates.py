@@ -107,8 +107,8 @@ mode = "practical"            # practical | paper
 """
 
 MESH = """\
-# Robots that pass each other's messages on, and a fence that none may leave unnoticed. Check it with
-# `innervate check FILE`, run it with `innervate run FILE`.
+# Robots that pass each other's messages on, and a fence that none may leave unnoticed.
+# Check it with `innervate check FILE`, run it with `innervate run FILE`.
 kind = "mesh"
 schema = 1
 name = "my-mesh"
