@@ -54,7 +54,7 @@ def test_the_same_on_any_machine() -> None:
     """Numbers that were computed with logarithms and rounded: they must not depend on a libm."""
     p = plan(load("mesh-field"))
     text = repr((p.positions_cm, p.radio, p.good, p.walks, p.offers, p.faults, p.starts_us))
-    assert hashlib.blake2b(text.encode(), digest_size=8).hexdigest() == "DIGEST"
+    assert hashlib.blake2b(text.encode(), digest_size=8).hexdigest() == "96c6abdeac594775"
 
 
 @pytest.mark.parametrize("seed", range(1, 9))
@@ -82,9 +82,8 @@ def test_reception() -> None:
 
 def test_shadowing_and_directions_are_as_wide_as_asked_for() -> None:
     text = "nodes = 254\n[placement]\nlayout = 'grid'\nspacing_m = 0.1\n[radio]\ntx_dbm = 0\n"
-    p = made(
-        text + "shadowing_db = 3\ndirection_db = 1"
-    )  # nearer than 1 m: no path loss but fading
+    text += "shadowing_db = 3\ndirection_db = 1"
+    p = made(text)  # within 1 m there is no path loss
     n = p.nodes
     at = [(p.radio.rssi_cdb[a * n + b], p.radio.rssi_cdb[b * n + a])
           for a in range(0, n, 16) for b in range(a + 1, min(a + 8, n))]  # fmt: skip
@@ -275,18 +274,17 @@ def test_messages() -> None:
 
 
 def test_random_events_spare_who_matters() -> None:
-    text = (
-        "nodes = 12\nmonitor = 1\n[[flow]]\nfrom = 2\nto = 3\n[[robot]]\nnode = 4\nrandom = true\n"
-    )
+    text = "nodes = 12\nmonitor = 1\n[[robot]]\nnode = 4\nrandom = true\n"
+    text += "[[flow]]\nfrom = 2\nto = 3\n"
     event = "[[event]]\nat_s = [3, 4]\naction = 'kill'\nrandom = 3\n"
+    later = "[[event]]\nat_s = 5\naction = 'revive'\nrandom = 2\n"
     for seed in range(20):
-        p = made(text + event + event + event.replace("kill", "revive"), seed=seed)
+        p = made(text + event + event + later, seed=seed)
         killed = [f.node for f in p.faults if f.action == KILL]
-        assert len(killed) == len(set(killed)) == 6 or any(
-            f.action == REVIVE and f.at_us < max(g.at_us for g in p.faults) for f in p.faults
-        )
+        assert len(killed) == len(set(killed)) == 6
         assert not {0, 1, 2, 3, 4} & set(killed)
-        assert all(3_000_000 <= f.at_us <= 4_000_000 for f in p.faults)
+        assert all(3_000_000 <= f.at_us <= 4_000_000 for f in p.faults[:6])
+        assert {f.node for f in p.faults if f.action == REVIVE} < set(killed)
         assert p.absent == [0] * 12
 
 
@@ -335,7 +333,7 @@ def test_warnings() -> None:
     long = warnings(made("nodes = 30\n[placement]\nlayout = 'line'"))
     assert "n25, n26, n27, n28 and 1 more: more than 24 hops, the longest path, to the" in long[2]
     slow = "[placement]\nlayout = 'grid'\n[radio]\nprofile = '38k4'"
-    assert "protocol.tables = false does without" in warnings(made(f"nodes = 81\n{slow}"))[0]
+    assert "protocol.tables = false does without" in warnings(made(f"nodes = 81\n{slow}"))[-1]
     star = "".join(f"[[link]]\na = 'hub'\nb = 'n{i}'\n" for i in range(9))
     assert warnings(made(star))[0].startswith("nearly a star: 9 of 10 nodes have a single link")
     cities = {name: warnings(made(f"[import]\nfile = 'freifunk/{name}'\nmin_tq = {least}"))

@@ -111,5 +111,5 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "binary").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(TopologyError, match="is not UTF-8"):
         measured.read(tmp_path / "binary")
-    with pytest.raises(TopologyError, match="no link has a quality of 0.9 or better"):
+    with pytest.raises(TopologyError, match=r"no link has a quality of 0\.9 or better"):
         measured.from_lines("A B 0.8").kept(0.9)
