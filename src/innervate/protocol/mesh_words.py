@@ -28,7 +28,6 @@ ALL = 0xFF
 MONITOR = 0xFE  # the monitor; where none is configured, the gateway
 NOBODY = -1
 IDS = 254
-CLASSES = (32, 64, 254)  # capacity classes: nodes a record has room for
 
 TTL = 24
 PATH_MAX = 24

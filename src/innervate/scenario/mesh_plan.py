@@ -7,6 +7,7 @@ from typing import Any
 
 KILL, REVIVE, CUT, RESTORE, JAM, QUIET, RESTART = range(7)
 
+CLASSES = (32, 64, 254)  # capacity classes: nodes that a record has room for
 UNHEARD = -32_768  # in `rssi_cdb`: no signal at all
 ONE = 32_768
 
