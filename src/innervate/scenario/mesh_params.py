@@ -8,7 +8,6 @@ from typing import Any
 from innervate.protocol.mesh_fields import NEIGHBOURS, PARAMS, POINTS, words
 from innervate.protocol.mesh_words import (
     ALTERNATE,
-    CLASSES,
     EACH,
     LIST,
     LOUDEST,
@@ -20,6 +19,7 @@ from innervate.protocol.mesh_words import (
     TREE,
     WHOLE_GRAPH,
 )
+from innervate.scenario.mesh_plan import CLASSES
 from innervate.scenario.mesh_profiles import REPORT_CDB, Profile
 
 DISCOVERY = {"list": LIST, "tree": TREE, "each": EACH}
