@@ -33,7 +33,7 @@ def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> m.Wo
 
     `keep` keeps all rows, `trail` one per handler call.
     """
-    tables = w.Tables(plain)
+    tables = w.Tables(plain, np.int64)
     n = plan.nodes
     gates = sum(rank >= 0 for rank in plan.ranks) + 1
     fields, gate_fields = mesh_fields.node(plan.capacity), mesh_fields.gate(plan.capacity)
@@ -54,7 +54,7 @@ def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> m.Wo
         macs=tables.states(csma_fields.STATION, n),
         mac_params=tables.states(csma_fields.PARAMS, 1),
         mac_item=tables.states(csma_fields.ITEM, 1),
-        radios=tables.records(m.RADIO, n, wide=m.WIDE),
+        radios=tables.records(m.RADIO, n, wide=m.RADIO),
         due=tables.numbers(n * m.TIMERS, NEVER, np.int64),
         **_medium(tables, plan),
         **_script(tables, plan),
@@ -107,7 +107,7 @@ def _outbox(tables: w.Tables, limit: int, frame: Any) -> w.Out:
         count=tables.numbers(1, 0, np.int64),
         limit=tables.numbers(1, limit, np.int64),
         overflow=tables.numbers(1, 0, np.int64),
-        action=tables.records(w.ACTION, limit),
+        action=tables.records(w.ACTION, limit, wide=w.ACTION),
         frame=tables.states(frame, limit),
     )
 
@@ -132,7 +132,7 @@ def _medium(tables: w.Tables, plan: Any) -> dict[str, Any]:
         "strengths": _given(tables, strengths),
         "losses": _given(tables, powers.loss_table(radio.exponent_c)),
         "chances": _given(tables, powers.chance_table()),
-        "air": tables.records(m.AIR, places, wide=m.WIDE),
+        "air": tables.records(m.AIR, places, wide=m.AIR),
         "frames": tables.states(mesh_fields.FRAME, places, FRAME_BYTES),
         "worst": tables.numbers(places * n, 0, np.int64),
         "on_air": tables.numbers(places),
@@ -159,7 +159,7 @@ def _script(tables: w.Tables, plan: Any) -> dict[str, Any]:
     names = {"commands": m.COMMAND, "offers": m.OFFER, "walks": m.WALK, "points": m.POINT}
     found = {}
     for name, rows in made.items():
-        table = tables.records(names[name], max(len(rows), 1), wide=m.WIDE)
+        table = tables.records(names[name], max(len(rows), 1), wide=names[name])
         for i, row in enumerate(rows):
             put(table, i, **dict(zip(names[name], row, strict=True)))
         found[name] = table

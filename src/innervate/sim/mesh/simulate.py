@@ -97,7 +97,7 @@ def _compiled(entry: ModuleType) -> Callable[..., None]:
     door.register_functions(*stack, hot=False)
     parts = loop.build(stack)
     door.register_functions(*parts[:-1], hot=False)
-    advance = door.compiled(parts[-1])
+    advance = door.compiled_as_one(parts[-1])
     return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
 
 
