@@ -192,6 +192,18 @@ def test_at_most_one_delivery_and_nothing_for_ever(seed, loss, reading, told):
     assert max(texts.values(), default=0) <= 1, texts
 
 
+def test_for_the_monitor_is_not_for_all_while_no_gateway_is_known():
+    net = Net(3, line(3))
+    net.run(READY)
+    for i in (0, 1):
+        net.kill(i)
+    net.revive(1)
+    net.send(1, 254)
+    net.run(READY + 1_000_000)
+    assert receipts(net, 1) == [REPORT_FULL]
+    assert not data(net, 2)
+
+
 @pytest.fixture(scope="module", params=[0, 1], ids=["search", "graph"])
 def nets(request):
     """Nets with tables: N = 30, mean degree 8, perfect links."""

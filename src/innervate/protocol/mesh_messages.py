@@ -70,7 +70,8 @@ def first_flag(node, dest):
 def on_message(node, params, now, item, out):
     """Send a message: never waits; what becomes of it is reported by its handle."""
     dest = resolve(node, params, item.dest)
-    if item.length > payload_limit(params) or (dest != ALL and dest >= params.nodes):
+    nobody = dest >= params.nodes and (dest != ALL or item.dest == MONITOR)
+    if item.length > payload_limit(params) or nobody:
         report(out, REPORT_FULL, item.handle, NO_ROUTE)
         return
     flags = item.flags & PRIORITY
