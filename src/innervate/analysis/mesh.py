@@ -94,6 +94,7 @@ def _counts(found: Messages) -> dict[str, int]:
         "lost": counts[LOST],
         "refused": counts[REFUSED],
         "sender_off": counts[-1],
+        "counted": len(counted(found).state),
         "broadcasts": int(np.count_nonzero(found.broadcast)),
     }
 

@@ -52,6 +52,7 @@ class Messages(NamedTuple):
         state: DELIVERED, IN_FLIGHT (nobody gave it up when the run ended), LOST, REFUSED (the
             node had no room or nobody to send it to), UNASKED (the node was switched off).
         broadcast: to all.
+        young: offered so late that it could still be on its way when the run ended.
     """
 
     offered_us: Numbers
@@ -65,6 +66,7 @@ class Messages(NamedTuple):
     detoured: Flags
     state: Numbers
     broadcast: Flags
+    young: Flags
 
     def only(self, which: Any) -> Messages:
         """Those of them that `which` chooses."""
@@ -102,6 +104,7 @@ def messages(result: Any) -> Messages:
         detoured=of_first("looped") == 1,
         state=state,
         broadcast=dest == ALL,
+        young=at + patience_us(result.plan) > result.ended_us,
     )
 
 
@@ -241,12 +244,18 @@ def ratio(part: int, whole: int) -> float | None:
 
 
 def counted(found: Messages) -> Messages:
-    """What a delivery ratio is made of: to one node, by a node that was on, and decided."""
-    return found.only(~found.broadcast & (found.state != UNASKED) & (found.state != IN_FLIGHT))
+    """What a delivery ratio is made of: to one node, by a node that was on, and decided.
+
+    If some are still on their way at the end, all that are as young are left out: only the fast
+    ones among them would count.
+    """
+    asked = found.only(~found.broadcast & (found.state != UNASKED))
+    undecided = bool((asked.state == IN_FLIGHT).any())
+    return asked.only(~asked.young) if undecided else asked
 
 
 def delivery_ratio(found: Messages) -> float | None:
-    """The share of messages that were delivered; those still on their way are left out."""
+    """The share of messages that were delivered, see counted()."""
     decided = counted(found)
     return ratio(int(np.count_nonzero(decided.state == DELIVERED)), len(decided.state))
 

@@ -21,7 +21,7 @@ class Node(NamedTuple):
         node: its number.
         on: it is switched on.
         neighbours: good links to nodes that are on.
-        depth: hops to the gateway as it advertised in the newest round; None before the first.
+        depth: hops to the gateway in the newest round, 0 the gateway; None before the first.
         gateway: whom it follows; None nobody.
         version: of its table, 0 none.
         control_bytes: of discovery and tables that it sent, acks included.
@@ -59,7 +59,7 @@ def nodes(result: Any) -> list[Node]:
             node=node,
             on=on[node],
             neighbours=len(near[node]),
-            depth=_known(get(world.nodes, node, "depth")),
+            depth=_hops(_known(get(world.nodes, node, "depth"))),
             gateway=_known(get(world.nodes, node, "gateway")),
             version=int(get(world.nodes, node, "version")),
             control_bytes=int(control[node]),
@@ -73,3 +73,8 @@ def nodes(result: Any) -> list[Node]:
 
 def _known(value: Any) -> int | None:
     return None if int(value) == UNKNOWN else int(value)
+
+
+def _hops(advertised: int | None) -> int | None:
+    """A gateway advertises 1: whoever hears it is one hop away."""
+    return None if advertised is None else advertised - 1

@@ -48,7 +48,8 @@ class Ground:
         return self._near[period]
 
     def _neighbours(self, time_us: int) -> list[list[int]]:
-        on, cut = self.on_at(time_us), set()
+        on = self.on_at(time_us)
+        cut: set[tuple[int, int]] = set()
         for fault in self._faults:
             if fault.at_us <= time_us and fault.action in (CUT, RESTORE):
                 pair = (min(fault.node, fault.other), max(fault.node, fault.other))

@@ -20,9 +20,7 @@ class Film(Drawing):
         low, high: the times that it shows, in any unit; all times given to it are of these.
     """
 
-    def __init__(
-        self, size: Step, label: str, window: tuple[float, float], cycle_s: float
-    ) -> None:
+    def __init__(self, size: Step, label: str, window: tuple[float, float], cycle_s: float) -> None:
         super().__init__(*size, label)
         self.low, self.high = window
         self.cycle_s = cycle_s
@@ -60,8 +58,8 @@ class Film(Drawing):
             f'keyTimes="{times}" dur="{number(self.cycle_s)}s" repeatCount="indefinite"/>'
         )
         x, y = path[-1][1]
-        self._element(tag, None, inner,
-                      {**attributes, "transform": f"translate({number(x)} {number(y)})"})  # fmt: skip
+        place = f"translate({number(x)} {number(y)})"
+        self._element(tag, None, inner, {**attributes, "transform": place})
 
     def _changes(self, name: str, steps: Sequence[Step], mode: str) -> str:
         kept: dict[str, float] = {}

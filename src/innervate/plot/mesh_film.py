@@ -19,7 +19,7 @@ from innervate.protocol.mesh_words import ACK, ALARM, ALL
 CYCLE_S = 14.0
 WINDOW_US = 1_500_000  # a film shows no more
 OTHERS_MAX = 700  # transmissions of other packets
-FOOT = 84.0  # the time axis below the field
+FOOT = 66.0  # the time axis below the field
 HEAD = 34.0
 WAVE_PX = 44.0
 FLASH = 0.012  # a transmission is seen for at least this share of the cycle
@@ -67,6 +67,9 @@ class _Crossing:
         field = svg.Drawing(self.sheet.width, self.sheet.height, "")
         names = Labels(self.sheet.width, self.sheet.height)
         on = Ground(self.plan).on_at(self.crossing.crossed_us)
+        for hop in self.sent:
+            if hop.to < self.plan.nodes:
+                names.block_line([places[hop.node], places[hop.to]])
         mesh_map.ground(field, self.plan, self.sheet, names, on)
         mesh_map.nodes(field, self.plan, self.sheet, names, on, places)
         self.drawing.place(field, (0.0, HEAD))
@@ -113,10 +116,11 @@ class _Crossing:
         self.drawing.seen("path", [start, (end[0], STAYS)], class_=kind, d=data)
 
     def _robot(self) -> None:
-        """Where the fence was crossed, and the robot's triangle, which is let blink from then."""
+        """Where the fence was crossed, from then on."""
         x, y = self.places[self.crossing.robot]
-        self.drawing.seen("path", [(self.crossing.crossed_us, 1.0)], class_="struck",
-                          d=svg.cross(x, y, 9.0))  # fmt: skip
+        at = (x, y - self.sheet.dot - 4)
+        self.drawing.seen("path", [(self.crossing.crossed_us, 1.0)], class_="warn",
+                          d=mesh_map.pin(at))  # fmt: skip
 
     def _told(self) -> None:
         """The monitor knows."""
@@ -153,7 +157,7 @@ class _Crossing:
             over = phases[i + 1][0] if i + 1 < len(phases) else None
             steps = [(float(at), 1.0), *([(float(over), 0.0)] if over is not None else [])]
             drawing.seen("text", steps, words, class_=kind, x=14.0, y=22.0)
-        left, right, base = 20.0, sheet.width - 20.0, HEAD + sheet.height + 40
+        left, right, base = 20.0, sheet.width - 20.0, HEAD + sheet.height + 26
         origin = self.crossing.crossed_us
 
         def across(time: float) -> float:

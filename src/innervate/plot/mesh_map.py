@@ -73,8 +73,8 @@ def field_map(
         to = hop.to if hop.to < plan.nodes else _next_of(way, hop, monitor_of(plan))
         names.block_line([places[hop.node], places[to]])
         arrow(drawing, places[hop.node], places[to], sheet.dot + 3, "way")
-    marks(drawing, plan, sheet, names, crossings)
     nodes(drawing, plan, sheet, names, on, places)
+    marks(drawing, plan, sheet, names, crossings)
     return drawing
 
 
@@ -150,11 +150,16 @@ def marks(
     walk_of = {walk.node: walk for walk in plan.walks}
     for i, crossing in enumerate(crossings[:CROSSINGS_MAX] if sheet.metres else ()):
         at = sheet.of_cm(position_cm(walk_of[crossing.robot], crossing.crossed_us))
-        drawing.path(svg.cross(*at, 5.0), "struck")
-        names.block(at, 6.0)
-        place = names.put(at, str(i + 1), 9.0)
+        drawing.path(pin(at), "warn")
+        names.block((at[0], at[1] - 8), 6.0)
+        place = names.put((at[0], at[1] - 8), str(i + 1), 8.0, strong=True)
         if place is not None:
             drawing.text(place[0], str(i + 1), "alarm strong", place[1])
+
+
+def pin(at: Point) -> str:
+    """Path data of a pin whose tip is at a place."""
+    return svg.polygon(at[0], at[1], [(0, 0), (-5, -13), (5, -13)])
 
 
 def nodes(
@@ -171,7 +176,8 @@ def nodes(
         if plan.nodes > NAMED_MAX and not role[node]:
             break
         words = plan.names[node] + (f" {role[node]}" if role[node] else "")
-        place = names.put(places[node], words, sheet.dot + (8 if role[node] else 4))
+        gap = sheet.dot + (8 if role[node] else 4)
+        place = names.put(places[node], words, gap, strong=bool(role[node]))
         if place is not None:
             drawing.text(place[0], words, "small strong" if role[node] else "small", place[1])
 
@@ -180,11 +186,8 @@ def _tip(plan: Any, node: int, role: dict[int, str]) -> str:
     return f"{plan.names[node]} (number {node}){', ' + role[node] if role[node] else ''}"
 
 
-def symbol(
-    drawing: Drawing, at: Point, dot: float, role: str, on: bool, tip: str = ""
-) -> None:
-    """A node: disc; gateway square, standby diamond, robot triangle, monitor ringed; off crossed.
-    """  # fmt: skip
+def symbol(drawing: Drawing, at: Point, dot: float, role: str, on: bool, tip: str = "") -> None:
+    """A node: disc; gateway square, standby diamond, robot triangle; monitor ringed; off crossed."""
     x, y = at
     if "gateway" in role or "standby" in role:
         size = dot + 1.5 if "gateway" in role else dot + 3
@@ -226,7 +229,9 @@ def arrow_path(start: Point, end: Point, gap: float) -> str:
     return shaft + svg.polyline([left, tip, right])
 
 
-def legend(result: Any, crossings: Sequence[Crossing], way: Sequence[Hop]) -> list[tuple[Drawing, str]]:
+def legend(
+    result: Any, crossings: Sequence[Crossing], way: Sequence[Hop]
+) -> list[tuple[Drawing, str]]:
     """What the shapes of a map stand for, of those that it shows."""
     plan, role = result.plan, set(" ".join(roles(result.plan).values()).split())
     entries: list[tuple[Drawing, str]] = []
@@ -242,7 +247,7 @@ def legend(result: Any, crossings: Sequence[Crossing], way: Sequence[Hop]) -> li
     for name in ("gateway", "standby", "monitor", "robot"):
         if name in role:
             entry(name, shape(name))
-    entry("good link", lambda icon: icon.line((1, 9), (25, 9), "mesh"))
+    entry("good link between nodes that stay", lambda icon: icon.line((1, 9), (25, 9), "mesh"))
     if not all(Ground(plan).on_at(result.ended_us)):
         entry("switched off", shape("", False))
     if plan.params["points"]:
@@ -250,7 +255,7 @@ def legend(result: Any, crossings: Sequence[Crossing], way: Sequence[Hop]) -> li
     if plan.walks:
         entry("way of a robot", lambda icon: icon.line((1, 9), (25, 9), "walk"))
     if crossings:
-        entry("crossing", lambda icon: icon.path(svg.cross(13, 9, 5), "struck"))
+        entry("crossing", lambda icon: icon.path(pin((13, 16)), "warn"))
     if way:
         entry("how the alarm came", lambda icon: arrow(icon, (0, 9), (26, 9), 1, "way"))
         if any(hop.flooded for hop in way) or crossings:

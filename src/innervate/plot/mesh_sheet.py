@@ -12,9 +12,9 @@ from innervate.analysis.fence import edges_of
 from innervate.analysis.mesh_paths import UNREACHABLE, distances
 from innervate.plot.svg import Point
 
-WIDTH, HEIGHT_MAX, MARGIN = 640.0, 620.0, 46.0
+WIDTH, HEIGHT_MAX, MARGIN = 760.0, 660.0, 34.0
 DOT_PX = 5.0
-NAME_PX, LINE_PX = 6.6, 12.0  # a letter's width and height at 11 px, on the safe side
+NAME_PX, STRONG_PX, LINE_PX = 6.6, 7.6, 12.0  # letters at 11 px, on the safe side
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 Box = tuple[float, float, float, float]
@@ -26,13 +26,14 @@ class Sheet:
     Attributes:
         width, height: of the drawing.
         points: (nodes, 2), where they are at the start.
-        metres: True if places are true ones; False if they only show who hears whom.
+        metres: True if places are true ones; False if they only show who hears whom, because
+            nobody knows them or they lie on top of each other.
         scale: px per cm.
         dot: radius of a node, px.
     """
 
     def __init__(self, plan: Any, width: float = WIDTH, height_max: float = HEIGHT_MAX) -> None:
-        self.metres = len(plan.positions_cm) == plan.nodes
+        self.metres = is_to_scale(plan, width)
         places = np.array(plan.positions_cm if self.metres else laid_out(plan), np.float64)
         around = [places]
         if self.metres:
@@ -63,6 +64,19 @@ class Sheet:
     def between(self, a: int, b: int) -> tuple[Point, Point]:
         """The ends of a line from a node to another, outside their dots."""
         return shortened(self.node(a), self.node(b), self.dot + 2)
+
+
+def is_to_scale(plan: Any, width: float) -> bool:
+    """True if nodes can be drawn where they are: most of them apart, or among robots and fences."""
+    if len(plan.positions_cm) != plan.nodes:
+        return False
+    if plan.walks or plan.params["points"] or plan.nodes < 2:
+        return True
+    places = np.array(plan.positions_cm, np.float64)
+    extent = max(float((places.max(axis=0) - places.min(axis=0)).max()), 1.0)
+    apart = np.hypot(*(places[:, None, :] - places[None, :, :]).transpose(2, 0, 1))
+    np.fill_diagonal(apart, np.inf)
+    return float(np.median(apart.min(axis=1))) * width / extent > 1.5 * DOT_PX
 
 
 def shortened(start: Point, end: Point, gap: float) -> tuple[Point, Point]:
@@ -135,10 +149,12 @@ class Labels:
                 share = i / count
                 self.block((ax + share * (bx - ax), ay + share * (by - ay)), 2.0)
 
-    def put(self, centre: Point, words: str, gap: float) -> tuple[Point, str] | None:
+    def put(
+        self, centre: Point, words: str, gap: float, strong: bool = False
+    ) -> tuple[Point, str] | None:
         """(place, anchor) of a name beside a point; None if there is no room for it."""
         x, y = centre
-        long = NAME_PX * len(words)
+        long = (STRONG_PX if strong else NAME_PX) * len(words)
         slant = 0.75 * gap
         places = (
             ((x + gap, y + 4), "start"),
@@ -162,8 +178,7 @@ class Labels:
         if box[0] < low_x or box[1] < low_y or box[2] > high_x or box[3] > high_y:
             return False
         return not any(
-            box[0] < t[2] and t[0] < box[2] and box[1] < t[3] and t[1] < box[3]
-            for t in self._taken
+            box[0] < t[2] and t[0] < box[2] and box[1] < t[3] and t[1] < box[3] for t in self._taken
         )
 
 

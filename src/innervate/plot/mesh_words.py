@@ -92,30 +92,32 @@ def _alarms(alarms: Mapping[str, Any]) -> list[str]:
     crossings = number_of(sent, "crossing")
     if not came:
         return [f"{crossings} of the fence, and the monitor learned of none."]
-    many = "of it" if sent == 1 else "of all" if came == sent else f"of {came:,}"
-    latency, overrun = alarms["latency_ms"], alarms["overrun_m"]
+    latency, overrun = ms_words(alarms["latency_ms"]["max"]), alarms["overrun_m"]["max"]
     slowest = "the alarm took" if came == 1 else "the slowest alarm took"
+    if came < sent:
+        return [
+            f"{crossings} of the fence, and the monitor learned of {came:,}; {slowest} {latency}, "
+            f"a robot got {overrun:.2g} m out."
+        ]
+    many = "of it" if sent == 1 else "of all"
     return [
-        f"{crossings} of the fence, and the monitor learned {many}: {slowest} "
-        f"{ms_words(latency['max'])}, no robot got farther out than {overrun['max']:.2g} m "
-        "by then." if came == sent else
-        f"{crossings} of the fence, and the monitor learned {many}; the slowest alarm took "
-        f"{ms_words(latency['max'])}, a robot got {overrun['max']:.2g} m out."
-    ]  # fmt: skip
+        f"{crossings} of the fence, and the monitor learned {many}: {slowest} {latency}, "
+        f"no robot got farther out than {overrun:.2g} m by then."
+    ]
 
 
 def _messages(summary: Mapping[str, Any]) -> list[str]:
-    counts, latency = summary["messages"], summary["latency_ms"]
+    decided, latency = summary["messages"]["counted"], summary["latency_ms"]
     ratio = summary["delivery_ratio"]
     if ratio is None:
         return []
-    decided = counts["delivered"] + counts["lost"] + counts["refused"]
-    missing = decided - counts["delivered"]
+    came = round(ratio * decided)
+    missing = decided - came
     begin = f"{number_of(decided, 'message')}: "
     if not missing:
         begin += "every one was delivered"
     else:
-        begin += f"{counts['delivered']:,} delivered ({share_words(ratio)})"
+        begin += f"{came:,} delivered ({share_words(ratio)})"
     if latency["p50"] is not None:
         begin += f", half within {ms_words(latency['p50'])}, 99 % within {ms_words(latency['p99'])}"
     found = [begin + "."]
@@ -156,6 +158,5 @@ def _gateways(plan: Any, summary: Mapping[str, Any]) -> list[str]:
 def _trouble(summary: Mapping[str, Any]) -> str:
     doubled, looped = summary["duplicates"], summary["looped"]
     first = f"{number_of(doubled, 'message')} came twice" if doubled else "No message came twice"
-    second = "none" if not looped else f"{looped:,}"
-    verb = "met" if looped != 1 else "met"
-    return f"{first}; {second} of them {verb} a node twice on the way."
+    second = f"{looped:,}" if looped else "none"
+    return f"{first}; {second} met a node twice on the way."

@@ -81,7 +81,7 @@ text{font:12px system-ui,-apple-system,"Segoe UI",Roboto,sans-serif;fill:var(--i
 .struck{fill:none;stroke:var(--alarm);stroke-width:1.6}
 .warn{fill:var(--alarm)}
 .done{fill:none;stroke:var(--good);stroke-width:2.2;stroke-linecap:round;stroke-linejoin:round}
-.mesh{fill:none;stroke:var(--faint);stroke-width:1.3}
+.mesh{fill:none;stroke:var(--soft);stroke-opacity:.36;stroke-width:1.1}
 .gone{stroke-dasharray:2 4}
 .zone{fill:var(--panel);fill-rule:evenodd}
 .fence{fill:none;stroke:var(--ink);stroke-width:1.8;stroke-linejoin:round}
