@@ -104,7 +104,8 @@ class _Crossing:
         if hop.to == ALL or hop.to >= self.plan.nodes:
             until = hop.start_us + WAVE * (self.high - self.low)
             radius = [(hop.start_us, self.sheet.dot + 2), (until, WAVE_PX)]
-            fading = [(hop.start_us - 1, 0.0), (hop.start_us, 1.0), (until, 0.0)]
+            before = hop.start_us - 0.001 * (self.high - self.low)
+            fading = [(self.low, 0.0), (before, 0.0), (hop.start_us, 1.0), (until, 0.0)]
             self.drawing.grown(radius, fading, class_="wave", cx=at[0], cy=at[1])
             ring = self.sheet.dot + mesh_map.RING_PX + 2
             self.drawing.seen("circle", [(hop.start_us, 1.0)], class_="flooder",

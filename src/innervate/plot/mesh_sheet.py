@@ -101,7 +101,8 @@ def laid_out(plan: Any) -> Floats:
         squares - squares.mean(axis=0) - squares.mean(axis=1)[:, None] + squares.mean()
     )
     values, vectors = np.linalg.eigh(centred)
-    places = vectors[:, -2:] * np.sqrt(np.maximum(values[-2:], 0.0))
+    # The longest extent lies across.
+    places = vectors[:, :-3:-1] * np.sqrt(np.maximum(values[:-3:-1], 0.0))
     if plan.nodes < 3:
         return np.array([[100.0 * i, 0.0] for i in range(plan.nodes)])
     # Signs of eigenvectors are arbitrary: the first node lies up left.
