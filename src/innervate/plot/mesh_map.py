@@ -187,7 +187,7 @@ def _tip(plan: Any, node: int, role: dict[int, str]) -> str:
 
 
 def symbol(drawing: Drawing, at: Point, dot: float, role: str, on: bool, tip: str = "") -> None:
-    """A node: disc, gateway square, standby diamond, robot triangle; monitor ringed, off crossed."""
+    """A node by its role: square, diamond, triangle, disc; the monitor ringed, off crossed."""
     x, y = at
     if "gateway" in role or "standby" in role:
         size = dot + 1.5 if "gateway" in role else dot + 3
