@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from innervate.analysis import mesh_alarms, mesh_messages, mesh_network, mesh_way
+from innervate.analysis import mesh, mesh_alarms, mesh_messages, mesh_network, mesh_way
 from innervate.analysis.mesh_paths import UNREACHABLE, Ground, distances
 from innervate.protocol.mesh_words import (
     ACK,
@@ -15,6 +15,7 @@ from innervate.protocol.mesh_words import (
     FLOOD,
     NO_ACK,
     NO_ROOM,
+    PARITY,
     PREDICT,
     REPORT_ACCEPTED,
     REPORT_ALARM,
@@ -199,6 +200,18 @@ def test_the_way_of_an_alarm_is_put_together_backwards():
     assert len(mesh_way.copies(result, crossing)) == 4
     hops = mesh_way.way(result, crossing)
     assert [(hop.node, hop.to) for hop in hops] == [(2, 3), (3, 4)]
+
+
+def test_packets_that_come_back_to_a_node_are_counted():
+    def data(at, node, length, seq=7, flags=0):
+        return (at, at + 900, node, DATA, flags, 3, 1, 4, seq, length, 30, 1)
+
+    once = [data(S, 1, 1), data(S + 5000, 1, 1), data(S + 9000, 2, 2)]
+    assert mesh.looped(made(sent=once)) == 0  # a second try of a hop is no return
+    assert mesh.looped(made(sent=[*once, data(S + 15_000, 1, 3)])) == 1
+    retried = [data(S, 2, 2), data(S + 260_000, 2, 3, flags=PARITY), data(S + 600_000, 2, 4)]
+    assert mesh.looped(made(sent=retried)) == 0
+    assert mesh.looped(made(delivered=[given(S, 4, 1, 7, looped=1)])) == 1
 
 
 def test_paths_follow_deaths_and_cuts():

@@ -28,7 +28,7 @@ from innervate.analysis.mesh_messages import (
     ratio,
 )
 from innervate.analysis.mesh_paths import UNREACHABLE, Ground
-from innervate.protocol.mesh_words import MONITOR
+from innervate.protocol.mesh_words import ALARM, ALL, DATA, FLOOD, MONITOR, PARITY
 from innervate.sim.build import get
 
 __all__ = ["alternates", "connected", "flows", "looped", "stretch", "summarize"]
@@ -160,9 +160,29 @@ def flows(found: Messages, plan: Any) -> list[dict[str, Any]]:
 
 
 def looped(result: Any) -> int:
-    """Packets that visited a node twice on their way, as those that were delivered tell."""
-    rows = result.delivered[result.delivered["looped"] == 1]
-    return len({(int(row["origin"]), int(row["kind"]), int(row["seq"])) for row in rows})
+    """Packets that visited a node twice on their way, whether they came or not.
+
+    A node has a packet again if it passes it on with another length of its path. A retry of its
+    origin comes by later, or with the other parity.
+    """
+    sent = result.sent
+    routed = np.isin(sent["kind"], (DATA, ALARM)) & (sent["flags"] & FLOOD == 0)
+    sent = sent[routed & (sent["link_dst"] != ALL)]
+    parity = sent["flags"] & PARITY
+    fields = [sent[name] for name in ("origin", "seq", "kind", "node")] + [parity]
+    order = np.lexsort((sent["time"], *fields))
+    again = np.ones(max(len(sent) - 1, 0), np.bool_)
+    for column in fields:
+        again &= column[order][1:] == column[order][:-1]
+    again &= np.diff(sent["path_len"][order].astype(np.int64)) != 0
+    again &= np.diff(sent["time"][order]) < result.plan.params["e2e_us"]
+    met = sent[order][1:][again] if len(sent) else sent
+    told = result.delivered[result.delivered["looped"] == 1]
+    return len({
+        (int(row["origin"]), int(row["kind"]), int(row["seq"]))
+        for rows in (met, told)
+        for row in rows
+    })  # fmt: skip
 
 
 def stretch(found: Messages, ground: Ground) -> dict[str, float | None]:

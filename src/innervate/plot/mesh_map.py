@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 from innervate.analysis.fence import edges_of, position_cm
@@ -17,6 +17,7 @@ from innervate.protocol.mesh_words import MONITOR
 
 NAMED_MAX = 120  # of more nodes only those with a part to play are named
 CROSSINGS_MAX = 24  # marks of more crossings would hide the field
+CORNERS_MAX = 40  # of a walk that keep names away
 RING_PX = 4.0
 ARROW_PX = 7.0
 
@@ -66,14 +67,15 @@ def field_map(
     names = Labels(sheet.width, sheet.height)
     on = Ground(plan).on_at(result.ended_us if at_us is None else at_us)
     ground(drawing, plan, sheet, names, on)
-    walks(drawing, plan, sheet)
-    for node in sorted({hop.node for hop in sent if hop.flooded}):
+    walks(drawing, plan, sheet, names)
+    ringed = {hop.node for hop in sent if hop.flooded}
+    for node in sorted(ringed):
         drawing.circle(places[node], sheet.dot + RING_PX + 2, "flooder")
     for hop in way:
         to = hop.to if hop.to < plan.nodes else _next_of(way, hop, monitor_of(plan))
         names.block_line([places[hop.node], places[to]])
         arrow(drawing, places[hop.node], places[to], sheet.dot + 3, "way")
-    nodes(drawing, plan, sheet, names, on, places)
+    nodes(drawing, plan, sheet, names, on, places, ringed)
     marks(drawing, plan, sheet, names, crossings)
     return drawing
 
@@ -126,7 +128,7 @@ def _rings(plan: Any, sheet: Sheet) -> list[list[Point]]:
 
 def _measure(drawing: Drawing, sheet: Sheet) -> None:
     """A bar that says how long so many metres are."""
-    metres = ticks(0.0, 130.0 / (100 * sheet.scale), 1)[-1]
+    metres = ticks(0.0, 130.0 / (100 * sheet.scale), 2)[-1]
     long = 100 * metres * sheet.scale
     if long < 1:
         return
@@ -135,12 +137,13 @@ def _measure(drawing: Drawing, sheet: Sheet) -> None:
     drawing.text((x + long / 2, y - 6), f"{metres:g} m", "small", "middle")
 
 
-def walks(drawing: Drawing, plan: Any, sheet: Sheet) -> None:
+def walks(drawing: Drawing, plan: Any, sheet: Sheet, names: Labels) -> None:
     """The ways of robots."""
     for walk in plan.walks if sheet.metres else ():
         points = [sheet.of_cm((x, y)) for _, x, y in walk.points]
         if len(points) > 1:
             drawing.path(svg.polyline(points), "walk")
+            names.block_line(points[:CORNERS_MAX])
 
 
 def marks(
@@ -164,19 +167,19 @@ def pin(at: Point) -> str:
 
 def nodes(
     drawing: Drawing, plan: Any, sheet: Sheet, names: Labels, on: Sequence[bool],
-    places: dict[int, Point],
+    places: dict[int, Point], ringed: Collection[int] = (),
 ) -> None:  # fmt: skip
-    """Nodes by their shapes, and as many names as there is room for."""
+    """Nodes by their shapes, and as many names as there is room for; `ringed`: with a ring."""
     role = roles(plan)
     for node in range(plan.nodes):
         symbol(drawing, places[node], sheet.dot, role[node], on[node], _tip(plan, node, role))
-        names.block(places[node], sheet.dot + 2)
+        names.block(places[node], sheet.dot + (RING_PX if node in ringed else 2))
     # Those with a part to play are named first: the others find what room is left.
     for node in sorted(range(plan.nodes), key=lambda i: (not role[i], i)):
         if plan.nodes > NAMED_MAX and not role[node]:
             break
         words = plan.names[node] + (f" {role[node]}" if role[node] else "")
-        gap = sheet.dot + (8 if role[node] else 4)
+        gap = sheet.dot + (9 if role[node] or node in ringed else 4)
         place = names.put(places[node], words, gap, strong=bool(role[node]))
         if place is not None:
             drawing.text(place[0], words, "small strong" if role[node] else "small", place[1])

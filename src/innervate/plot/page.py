@@ -58,7 +58,8 @@ footer{margin-top:3em;color:var(--soft);font-size:.85rem}
 .four{grid-template-columns:repeat(4,1fr)}.three{grid-template-columns:repeat(3,1fr)}
 .two{grid-template-columns:repeat(2,1fr)}
 .wide svg{max-width:100%}
-.controls{display:none}pre{white-space:pre-wrap}details::details-content{content-visibility:visible;block-size:auto}}
+.controls{display:none}
+pre{white-space:pre-wrap}details::details-content{content-visibility:visible;block-size:auto}}
 """
 
 
