@@ -26,4 +26,3 @@ KINDS = {
     "radio": Kind(RadioScenario, radio_rules.check),
     "mesh": Kind(MeshScenario, mesh_rules.check),
 }
-KINDS_TO_COME: tuple[str, ...] = ()

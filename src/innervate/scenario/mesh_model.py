@@ -177,7 +177,7 @@ class FenceTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     predict_s: Annotated[float, Meta(ge=0, le=10, description="a number of seconds, 0 to 10")] = 0.5
     clear_m: Annotated[float, Meta(ge=0, le=100, description="a number of metres, 0 to 100")] = 0.2
     lost_beacons: Annotated[
-        int, Meta(ge=1, le=255, description="a whole number of beacons, 1 to 255")
+        int, Meta(ge=1, le=253, description="a whole number of beacons, 1 to 253")
     ] = 3
     watch: Annotated[bool, Meta(description="true or false")] = True
     flood: Annotated[

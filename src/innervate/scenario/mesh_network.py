@@ -10,7 +10,7 @@ from innervate.scenario.errors import ScenarioError
 from innervate.scenario.mesh_model import MeshScenario
 from innervate.scenario.mesh_nodes import Nodes, listed
 from innervate.scenario.mesh_plan import ONE, UNHEARD, MeshRadio
-from innervate.scenario.mesh_profiles import GOOD_CDB, Profile
+from innervate.scenario.mesh_profiles import GOOD_CDB, REPORT_CDB, Profile
 from innervate.topology import placement
 from innervate.topology.placement import Point
 from innervate.trace.streams import stream
@@ -32,7 +32,8 @@ class Network:
         points: per node (x, y) in cm; empty where none are known.
         radio: who hears whom.
         good: links (a < b) that are good both ways.
-        weakest_cdb: rssi of the weakest good link if the qualities were given, else None.
+        weakest_cdb: if qualities were given, rssi of the weakest good link, at most what is
+            reported anyway; else None.
     """
 
     nodes: Nodes
@@ -66,7 +67,7 @@ def linked(model: MeshScenario, nodes: Nodes, profile: Profile) -> Network:
     """
     count = len(nodes.names)
     radio = _radio(model, profile, count)
-    good, weakest = [], 0
+    good, weakest = [], REPORT_CDB
     for (a, b), (there, back) in nodes.links.items():
         for i, j, quality in ((a, b, there), (b, a, back)):
             radio.prob_q15[i * count + j] = round(quality * ONE)

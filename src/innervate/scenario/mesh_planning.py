@@ -10,8 +10,9 @@ from innervate.scenario.mesh_access import access
 from innervate.scenario.mesh_model import MeshScenario
 from innervate.scenario.mesh_network import Network, linked, placed
 from innervate.scenario.mesh_nodes import Nodes, nodes_of
+from innervate.scenario.mesh_params import parameters
 from innervate.scenario.mesh_plan import MeshPlan
-from innervate.scenario.mesh_profiles import Profile, parameters, profile_of
+from innervate.scenario.mesh_profiles import Profile, profile_of
 from innervate.topology.placement import neighbours
 from innervate.trace.streams import stream
 

@@ -1,34 +1,13 @@
-"""What radios and their timers are like, by profile [mesh 5, 6]; and the protocol's parameters."""
+"""What radios and their timers are like, by profile [mesh 5, 6]."""
 
 from __future__ import annotations
 
-from math import ceil
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from innervate.protocol.mesh_fields import NEIGHBOURS, PARAMS, POINTS, words
-from innervate.protocol.mesh_words import (
-    ACK_BYTES,
-    ALTERNATE,
-    CLASSES,
-    EACH,
-    LIST,
-    LOUDEST,
-    MONITOR,
-    RANDOM,
-    SEARCH,
-    TABLE_FREE,
-    TABLES,
-    TREE,
-    WHOLE_GRAPH,
-)
+from innervate.protocol.mesh_words import ACK_BYTES
 
-DISCOVERY = {"list": LIST, "tree": TREE, "each": EACH}
-FAILOVER = {"random": RANDOM, "rssi": LOUDEST, "alternate": ALTERNATE, "search": SEARCH,
-            "graph": SEARCH}  # fmt: skip
 GOOD_CDB = 300  # a good link is so much above the 50 % point, both ways
-REPORT_CDB = 200
-STANDBY_PERIODS = 2.5
-FORGET_S = 30.0
+REPORT_CDB = 200  # one that is reported to the gateway, so much
 SMALL = 15  # up to so many nodes a slow radio can afford twice the rounds
 LARGE = 20  # above so many, it can only afford half the beacons
 
@@ -114,114 +93,3 @@ def profile_of(name: str, nodes: int) -> Profile:
     if name == "38k4" and nodes > LARGE:
         found = found._replace(beacon=2)
     return found
-
-
-def parameters(
-    profile: Profile,
-    settings: Any,
-    nodes: int,
-    *,
-    standbys: int = 0,
-    monitor: int = MONITOR,
-    min_rssi_dbm: int | None = None,
-) -> dict[str, Any]:
-    """The protocol's parameters (`mesh_fields.PARAMS`) without a fence.
-
-    Args:
-        profile: the radio's.
-        settings: a MeshProtocolTable; what it leaves out comes from the profile.
-        nodes: 1 .. 254.
-        standbys: how many are configured.
-        monitor: its number, 254 = whoever is gateway.
-        min_rssi_dbm: weakest link that is reported; None = 2 dB above the 50 % point.
-
-    Raises:
-        ValueError: a parameter leaves its range; the message names the key and the range.
-    """
-    width: int = next(size for size in CLASSES if nodes <= size)
-
-    def chosen(key: str, default: Any) -> Any:
-        value = getattr(settings, key)
-        return default if value is None else value
-
-    def micros(key: str, default_s: float) -> int:
-        return round(float(chosen(key, default_s)) * 1_000_000)
-
-    tick_us = micros("beacon_s", profile.beacon)
-    period_s = chosen("period_s", profile.period)
-
-    def ticks(key: str, default_s: float) -> int:
-        return max(1, ceil(micros(key, default_s) / tick_us))
-
-    graph = settings.failover == "graph"
-    reported = round((profile.rssi50_cdb + REPORT_CDB) / 100)
-    listen_us = micros("listen_s", profile.listen)
-    spread_us = micros("spread_s", profile.spread)
-    rest_s = profile.collect - profile.listen - profile.spread
-    params: dict[str, Any] = {
-        "nodes": nodes,
-        "row": words(width),
-        "places": min(width, NEIGHBOURS),
-        "width": width,
-        "mtu": chosen("mtu", profile.mtu),
-        "mode": WHOLE_GRAPH if graph else TABLES if settings.tables else TABLE_FREE,
-        "discovery": DISCOVERY[settings.discovery],
-        "failover": FAILOVER[settings.failover],
-        "avoid_origin": int(settings.avoid == "origin"),
-        "retry": int(settings.retry),
-        "reliable": int(settings.reliable),
-        "activation": int(settings.activation),
-        "told": int(profile.collisions),
-        "transmissions": chosen("transmissions", profile.transmissions),
-        "ack_us": chosen("ack_us", profile.ack_us),
-        "suspect_us": micros("suspect_s", profile.suspect),
-        "min_rssi": chosen("min_rssi_dbm", reported if min_rssi_dbm is None else min_rssi_dbm),
-        "jitter_us": micros("jitter_s", profile.jitter),
-        "copies": chosen("copies", profile.copies),
-        "listen_us": listen_us,
-        "spread_us": spread_us,
-        "collect_us": micros("collect_s", (listen_us + spread_us) / 1e6 + rest_s),
-        "tick_us": tick_us,
-        "period": ticks("period_s", period_s),
-        "period_max": ticks("period_max_s", max(profile.period_max, period_s)),
-        "dead": ticks("dead_s", STANDBY_PERIODS * period_s),
-        "dead_step": ticks("dead_step_s", profile.dead_step),
-        "standby": int(standbys > 0),
-        "jobs": chosen("table_window", profile.jobs),
-        "job_us": micros("table_retry_s", profile.job),
-        "job_tries": chosen("table_tries", 3),
-        "e2e_us": micros("e2e_s", profile.e2e),
-        "e2e_adapt": int(chosen("e2e_adapt", profile.e2e_adapt)),
-        "e2e_tries": chosen("e2e_tries", 5),
-        "forget": min(255, ticks("forget_s", FORGET_S)),
-        "monitor": monitor,
-        **NO_FENCE,
-    }
-    _check(params)
-    return params
-
-
-NO_FENCE: dict[str, Any] = {
-    "watch": 0, "lost": 3, "flood": 1, "instances": 3, "clear_margin": 0, "predict_ms": 0,
-    "unit_cm": 1, "points": 0, "px": [0] * POINTS, "py": [0] * POINTS, "after": [0] * POINTS,
-    "fence": 0,
-}  # fmt: skip
-# Keys of [protocol] whose parameter is called something else.
-_KEYS = {"tick": "beacon_s", "jobs": "table_window", "job": "table_retry_s",
-         "job_tries": "table_tries", "min_rssi": "min_rssi_dbm"}  # fmt: skip
-_IN_TICKS = ("period", "period_max", "dead", "dead_step", "forget")
-
-
-def _check(params: dict[str, Any]) -> None:
-    for name, length, low, high, unit, _ in PARAMS:
-        if length == 0 and not low <= params[name] <= high:
-            stem = name.removesuffix("_us")
-            key = _KEYS.get(stem, f"{stem}_s" if stem != name or name in _IN_TICKS else name)
-            most = f"{low} to {high} {unit}"
-            if name in _IN_TICKS:
-                most = f"at most {high * params['tick_us'] / 1e6:g} s at this protocol.beacon_s"
-            raise ValueError(f"{key}:protocol.{key} is out of range; it can be {most}")
-    if params["period_max"] < params["period"]:
-        raise ValueError(
-            "period_max_s:protocol.period_max_s is below period_s; make it as long or longer"
-        )

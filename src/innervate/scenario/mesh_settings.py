@@ -1,6 +1,6 @@
 """The settings of the mesh protocol in a scenario: [protocol] [mesh 5].
 
-What is left out comes from the radio's profile (see mesh_profiles.py).
+What is left out comes from the radio's profile (see mesh_profiles.py, mesh_params.py).
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ from innervate.scenario.mesh_plan import Offer
 from innervate.scenario.radio_traffic import exponential
 from innervate.trace.streams import Stream, stream
 
-OFFERS_MAX = 2_000_000
+OFFERS_MAX = 500_000
 DATA_MAX = {64: 27, 127: 90}
 
 Pair = tuple[int, int]

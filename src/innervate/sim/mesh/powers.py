@@ -1,8 +1,8 @@
 """Decibels to whole numbers: tables that are made before a run.
 
 Power is linear, in units of 10^-15 mW (-150 dBm): of weaker signals nothing is left, stronger ones
-than 1 mW (0 dBm) count as that. 254 such signals and a jammer add up to 3e17, and one times 1024,
-for the ratio of capture, is 1e18: below 2^63.
+than 1 mW (0 dBm) count as that. 254 such signals and a jammer add up to 3e17, and one times 4096,
+for the ratio of capture, is 4e18: below 2^63.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import math
 FLOOR_CDB = -15_000  # power 1
 CEILING_CDB = 0
 STEP_CDB = 10
-CAPTURE_ONE = 1024
+CAPTURE_ONE = 4096
 
 SPREAD_CDB = 1200  # beyond this, a frame is always or never received
 ONE_Q15 = 32_768
@@ -46,8 +46,8 @@ def loss_table(exponent_c: int) -> list[int]:
 
 
 def capture_ratio(capture_cdb: int) -> int:
-    """Signal to interference for capture, in 1/1024."""
-    return max(1, round(CAPTURE_ONE * 10 ** (capture_cdb / 1000)))
+    """Signal to interference for capture in 1/4096, rounded down: just so much survives."""
+    return max(1, int(CAPTURE_ONE * 10 ** (capture_cdb / 1000)))
 
 
 def strength(table, cdb):
