@@ -55,7 +55,7 @@ def _key(key: str) -> str:
 
 
 def inline(value: Any) -> str:
-    """A value as TOML in one line: 2.5, true, \"text\", [1, 2], { a = 1 }."""
+    """A value as TOML in one line: 2.5, true, "text", [1, 2], { a = 1 }."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

@@ -1,4 +1,4 @@
-"""Conducts a sweep: hands out batches of what is missing, keeps what comes back, decides `until`."""
+"""Conducts a sweep: hands out what is missing, keeps what comes back, decides `until`."""
 
 from __future__ import annotations
 
@@ -172,6 +172,7 @@ class Conductor:
 
     def _collect(self) -> None:
         """Wait for something, and keep it."""
+        lost: tuple[type[BaseException], ...] = (CancelledError, *self._engine.lost)
         ended, _ = wait(self._running, return_when=FIRST_COMPLETED)
         for future in ended:
             jobs = self._running.pop(future)
@@ -179,7 +180,7 @@ class Conductor:
                 self._keep(future.result())
             except self._engine.died:
                 self._mourn(jobs)
-            except (CancelledError, *self._engine.lost) as error:
+            except lost as error:
                 raise SweepError(
                     f"the cluster is gone ({type(error).__name__}); what is done is kept, the "
                     "same command goes on"

@@ -12,6 +12,7 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from typing import Any
 
 from innervate.sweep.errors import SweepError
@@ -97,26 +98,28 @@ class Cluster(Engine):
     """A Dask cluster that is running already."""
 
     def __init__(self, address: str) -> None:
-        from distributed import Client, KilledWorker
-        from distributed.comm.core import CommClosedError
+        distributed: Any = import_module("distributed")
+        closed: Any = import_module("distributed.comm.core").CommClosedError
 
         try:
-            self._client = Client(address, timeout=_CONNECT_S, set_as_default=False)
+            self._client: Any = distributed.Client(
+                address, timeout=_CONNECT_S, set_as_default=False
+            )
         except (OSError, ValueError, ImportError) as error:
             why = str(error).splitlines()[0] if str(error) else type(error).__name__
             raise SweepError(
                 f"--dask {address}: no scheduler answers there ({why}); start one with: "
                 "dask scheduler"
             ) from None
-        self.died = (KilledWorker,)
-        self.lost = (CommClosedError, OSError)
+        self.died = (distributed.KilledWorker,)
+        self.lost = (closed, OSError)
         self._pool = self._client.get_executor(pure=False)
 
     @property
     def workers(self) -> int:  # type: ignore[override]
         """Threads of all workers at present; they may come and go."""
-        threads = self._client.nthreads().values()
-        return max(1, sum(threads))
+        threads: int = sum(self._client.nthreads().values())
+        return max(1, threads)
 
     @property
     def ahead(self) -> int:  # type: ignore[override]

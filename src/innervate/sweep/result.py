@@ -112,7 +112,8 @@ class Sweep:
 
         Args:
             key: in which the two differ.
-            one, other: its two values.
+            one: its value in one variant.
+            other: its value in the other.
             measure: what is compared.
             level: of the interval.
 

@@ -1,4 +1,4 @@
-"""The tables of a sweep: results, timings, figures of every point; the same bytes for the same runs.
+"""The tables of a sweep: results, timings, figures of every point; same runs, same bytes.
 
 `results` has nothing in it of machines, clocks and order of work; all that is in `timings`.
 """
