@@ -82,7 +82,9 @@ def test_any_order_gives_the_same_bytes(four, seed, monkeypatch):
         made.settle()
         return {future for future in futures if future.done()}, set()
 
-    monkeypatch.setattr(import_module("innervate.sweep.sweep"), "engine", lambda *_: nullcontext(made))
+    monkeypatch.setattr(
+        import_module("innervate.sweep.sweep"), "engine", lambda *_: nullcontext(made)
+    )
     monkeypatch.setattr(conduct, "wait", settle)
     innervate.sweep(four, vary=VARY, out="other", **rules)
     assert table("one") == table("other")

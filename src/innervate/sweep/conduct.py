@@ -98,9 +98,16 @@ class Conductor:
             self._begin(state)
         self._progress(self)
         self._began = time.perf_counter()
-        self._first_alone()
-        while self._hand_out():
-            self._collect()
+        lost: tuple[type[BaseException], ...] = (CancelledError, *self._engine.lost)
+        try:
+            self._first_alone()
+            while self._hand_out():
+                self._collect()
+        except lost as error:
+            raise SweepError(
+                f"the cluster is gone ({type(error).__name__}); what is done is kept, the same "
+                "command goes on"
+            ) from error
 
     def _begin(self, state: State) -> None:
         """Take what the job table has of a point, block by block, until something is missing."""
@@ -172,7 +179,6 @@ class Conductor:
 
     def _collect(self) -> None:
         """Wait for something, and keep it."""
-        lost: tuple[type[BaseException], ...] = (CancelledError, *self._engine.lost)
         ended, _ = wait(self._running, return_when=FIRST_COMPLETED)
         for future in ended:
             jobs = self._running.pop(future)
@@ -180,11 +186,6 @@ class Conductor:
                 self._keep(future.result())
             except self._engine.died:
                 self._mourn(jobs)
-            except lost as error:
-                raise SweepError(
-                    f"the cluster is gone ({type(error).__name__}); what is done is kept, the "
-                    "same command goes on"
-                ) from error
         self._progress(self)
 
     def _keep(self, done: Done) -> None:

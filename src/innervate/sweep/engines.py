@@ -5,10 +5,13 @@ All are executors of the standard library's kind, behind one function, `engine()
 
 from __future__ import annotations
 
+import logging
+import math
 import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
 from contextlib import contextmanager, suppress
@@ -18,7 +21,8 @@ from typing import Any
 from innervate.sweep.errors import SweepError
 
 KINDS = ("processes", "threads", "here")
-_CONNECT_S = 20
+_CONNECT_S = 10
+_ASK_EVERY_S = 2.0
 
 
 class Engine:
@@ -112,14 +116,21 @@ class Cluster(Engine):
                 "dask scheduler"
             ) from None
         self.died = (distributed.KilledWorker,)
-        self.lost = (closed, OSError)
+        self.lost = (closed, TimeoutError)
+        self._asked_s, self._threads = -math.inf, 1
+        # Its clients log with tracebacks what is told here in one line.
+        for name in ("distributed", "distributed.client", "distributed.core"):
+            logging.getLogger(name).setLevel(logging.CRITICAL)
         self._pool = self._client.get_executor(pure=False)
 
     @property
     def workers(self) -> int:  # type: ignore[override]
         """Threads of all workers at present; they may come and go."""
-        threads: int = sum(self._client.nthreads().values())
-        return max(1, threads)
+        now = time.monotonic()
+        if now - self._asked_s > _ASK_EVERY_S:
+            self._asked_s = now
+            self._threads = max(1, sum(self._client.nthreads().values()))
+        return self._threads
 
     @property
     def ahead(self) -> int:  # type: ignore[override]
