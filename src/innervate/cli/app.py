@@ -169,6 +169,68 @@ def sweep(
 
 
 @app.command
+def size(
+    robot: str,
+    /,
+    *,
+    links: str,
+    rate: Annotated[list[float] | None, Parameter(negative="")] = None,
+    ports: str = "1..8",
+    pitch: float | None = None,
+    reach: float | None = None,
+    loss: float = 1.0,
+    recovery: float = 50.0,
+    repeat: int = 20,
+    seed: Seed = None,
+    out: Path | None = None,
+    workers: int | None = None,
+    dask: str = "",
+) -> int:
+    """Say how many interface ports a robot's skin needs, and where, by simulation.
+
+    Parameters
+    ----------
+    robot
+        A URDF file, or package:NAME/ROBOT like package:icub-models/iCubGenova02.
+    links
+        Pattern for the links that carry skin: frames of cells, or links with a shape.
+    rate
+        Samples per second and cell, 250 if left out; may be given again.
+    ports
+        Numbers of ports to try, like 1..8 or 1,2,4.
+    pitch
+        Distance of cells on links that have a shape, mm; 25 if left out.
+    reach
+        Longest cable between two cells, mm; as long as it takes if left out.
+    loss
+        Samples that may be lost on the way, %.
+    recovery
+        Time in which all cells must have a way again after a cut, ms.
+    repeat
+        Runs of every combination.
+    seed
+        Root seed.
+    out
+        Folder to write or to go on in; sweeps/size-ROBOT if left out.
+    workers
+        How many runs at the same time; one for every core if left out.
+    dask
+        Address of a Dask scheduler to run on.
+    """
+    from innervate.cli import sizing as command
+
+    return command.size(
+        {
+            "urdf": robot, "links": links, "rates_hz": tuple(rate or [250.0]), "ports": ports,
+            "pitch_mm": pitch, "reach_mm": reach, "loss_max": loss / 100,
+            "recovery_ms_max": recovery,
+        },
+        {"repeat": repeat, "seed": 1 if seed is None else seed, "out": out, "workers": workers,
+         "dask": dask},
+    )  # fmt: skip
+
+
+@app.command
 def papers(
     paper: str = "skin",
     /,
