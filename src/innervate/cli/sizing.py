@@ -41,7 +41,7 @@ def draw(answer: Answer, folder: Path) -> Path:
     from innervate.plot.words import number_of
 
     asked = answer.question
-    ports = max((n or max(asked.ports) for n in answer.needed.values()))
+    ports = max(n or max(asked.ports) for n in answer.needed.values())
     base = answer.sweep.plan.base
     graph = scenarios.plan(base.scenario([("body.interfaces", ports)])).graph
     columns = answer.table.to_dict(as_series=False)

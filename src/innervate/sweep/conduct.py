@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from dataclasses import dataclass, field
 from typing import Any
@@ -180,13 +180,24 @@ class Conductor:
     def _collect(self) -> None:
         """Wait for something, and keep it."""
         ended, _ = wait(self._running, return_when=FIRST_COMPLETED)
+        suspects = self._take(ended)
+        if suspects and self._engine.falls_together:
+            others, _ = wait(self._running)
+            suspects += self._take(others)
+        if suspects:
+            self._mourn(suspects)
+        self._progress(self)
+
+    def _take(self, ended: Iterable[Future[Done]]) -> list[list[Job]]:
+        """Keep what these brought; the batches whose worker died come back."""
+        suspects = []
         for future in ended:
             jobs = self._running.pop(future)
             try:
                 self._keep(future.result())
             except self._engine.died:
-                self._mourn(jobs)
-        self._progress(self)
+                suspects.append(jobs)
+        return suspects
 
     def _keep(self, done: Done) -> None:
         if done.sources != stamp("run"):
@@ -207,13 +218,10 @@ class Conductor:
                 self._decide(state)
                 self._begin(state)  # the next block, if there is one
 
-    def _mourn(self, jobs: list[Job]) -> None:
-        """A worker died with these: each runs alone from now on, and three times at most."""
-        for future in [f for f in self._running if f.done() and isinstance(
-            f.exception(), self._engine.died)]:  # fmt: skip
-            jobs = jobs + self._running.pop(future)
-        alone = len(jobs) == 1
-        for job in jobs:
+    def _mourn(self, batches: list[list[Job]]) -> None:
+        """Workers died with these: each run goes alone from now on, and three times at most."""
+        alone = len(batches) == 1 and len(batches[0]) == 1
+        for job in (job for jobs in batches for job in jobs):
             key = (job.point, job.repeat)
             self._deaths[key] = self._deaths.get(key, 0) + alone
             if self._deaths[key] < DEATHS_MAX:

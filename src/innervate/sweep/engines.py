@@ -33,12 +33,14 @@ class Engine:
         ahead: batches to hand out at most, so that nobody waits for the next one.
         died: errors of a batch whose worker died.
         lost: errors of a batch when the whole engine is gone.
+        falls_together: when a worker dies, all batches under way are lost with it.
     """
 
     workers = 1
     ahead = 1
     died: tuple[type[BaseException], ...] = ()
     lost: tuple[type[BaseException], ...] = ()
+    falls_together = False
 
     def submit(self, work: Callable[..., Any], *args: Any) -> Future[Any]:
         """Run `work(*args)` some time."""
@@ -68,6 +70,7 @@ class Pool(Engine):
     """Threads or processes of this machine."""
 
     died = (BrokenExecutor,)
+    falls_together = True
 
     def __init__(self, make: Callable[[], Executor], workers: int) -> None:
         self.workers = workers

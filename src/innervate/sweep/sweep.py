@@ -141,7 +141,8 @@ def make_plan(
         repeat = repeat if repeat is not None else file.repeat
         batch = batch if batch is not None else file.batch
         seed = seed if seed is not None else file.seed
-    counts = {"repeat": repeat or (REPEAT_UNTIL if rules else 1), "batch": batch or BATCH}
+    repeat = repeat if repeat is not None else REPEAT_UNTIL if rules else 1
+    counts = {"repeat": repeat, "batch": BATCH if batch is None else batch}
     for name, count in counts.items():
         if not 1 <= count <= REPEAT_MAX:
             raise SweepError(f"{name} must be a whole number from 1 to {REPEAT_MAX}, not {count}")
