@@ -128,7 +128,7 @@ def test_folders_that_cannot_be_used(four):
     with pytest.raises(SweepError, match="not empty"):
         innervate.sweep(four, out="full", workers=1)
     assert [path.name for path in Path("full").iterdir()] == ["notes.txt"]
-    with pytest.raises(SweepError, match="four.toml/x cannot be used"):
+    with pytest.raises(SweepError, match=r"four\.toml/x cannot be used"):
         innervate.sweep(four, out="four.toml/x", workers=1)
     Path("odd").mkdir()
     Path("odd/jobs.sqlite").write_bytes(b"no database" * 100)
@@ -144,6 +144,7 @@ def test_a_read_only_folder_is_one_line(four):
     code = (  # root may write everywhere, so it becomes nobody once everything is loaded
         "import os, sys, innervate.sweep.work, innervate.sweep.sweep\n"
         "from innervate.cli import app, main, sweeping\n"
+        "main(['sweep', 'four.toml', '--out', 'other', '--workers', '1'])\n"
         "if os.geteuid() == 0: os.setgid(65534); os.setuid(65534)\n"
         "sys.exit(main(sys.argv[1:]))"
     )

@@ -80,13 +80,7 @@ def _map(ax: Axes, graph: Any) -> None:
     ax.plot(*flat.T, ls="", marker="o", ms=2.2, color=style.SOFT, zorder=2)
     for port, cell in enumerate(graph.neighbours(graph.sink)):
         ax.plot(*flat[cell], marker="s", ms=7, color=style.VERMILION, zorder=3)
-        look: dict[str, Any] = {
-            "ha": "center",
-            "va": "center",
-            "color": "#ffffff",
-            "fontsize": 5.5,
-            "zorder": 4,
-        }
+        look: dict[str, Any] = {"ha": "center", "va": "center", "color": "#ffffff", "zorder": 4}
         ax.annotate(str(port), flat[cell], fontsize=5.5, **look)
     ax.set_aspect("equal", adjustable="datalim")
     ax.grid(visible=False)
