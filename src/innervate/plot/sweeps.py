@@ -66,7 +66,7 @@ def _bands(ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:
         there = [place for place in places if groups.get(place)]
         found = [mean_interval(groups[place]) for place in there]
         across = [numbers[place] for place in there]
-        look = _look(number, "" if value is None else f"{label(by)} {_text(value)}")
+        look = _look(number, "" if value is None else _text(value))
         ax.plot(across, [one.value for one in found], **look)
         low, high = [one.low for one in found], [one.high for one in found]
         ax.fill_between(across, low, high, color=look["color"], alpha=0.18, lw=0)
@@ -84,7 +84,7 @@ def _dots(ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:
     for number, value in enumerate(_values(columns, by)[:LINES_MAX]):
         rows = zip(columns[x], columns[y], side, strict=True)
         kept = [(a, b) for a, b, c in rows if c == value and a is not None and b is not None]
-        look = _look(number, "" if value is None else f"{label(by)} {_text(value)}")
+        look = _look(number, "" if value is None else _text(value))
         ax.plot([a for a, _ in kept], [b for _, b in kept], **(look | {"ls": "", "alpha": 0.6}))
     ax.set_xlabel(label(x))
     ax.set_ylabel(label(y))
@@ -169,7 +169,7 @@ def _name_places(ax: Axes, places: list[Any], numbers: dict[Any, float]) -> None
 
 def _legend(ax: Axes, by: str) -> None:
     if by:
-        ax.legend(loc="best")
+        ax.legend(loc="best", title=label(by), title_fontsize=6.8, alignment="left")
 
 
 def _text(value: Any) -> str:

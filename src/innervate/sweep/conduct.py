@@ -85,7 +85,8 @@ class Conductor:
         self._suspects: deque[Job] = deque()
         self._deaths: dict[tuple[str, int], int] = {}
         self._mean_s = 0.0
-        self._began = time.perf_counter()
+        # When the first results came, and how many: all before was starting and compiling.
+        self._pace: tuple[float, int] | None = None
 
     def run(self) -> None:
         """Run what is missing.
@@ -97,7 +98,6 @@ class Conductor:
         for state in self.states:
             self._begin(state)
         self._progress(self)
-        self._began = time.perf_counter()
         lost: tuple[type[BaseException], ...] = (CancelledError, *self._engine.lost)
         try:
             self._first_alone()
@@ -186,6 +186,8 @@ class Conductor:
             suspects += self._take(others)
         if suspects:
             self._mourn(suspects)
+        if self._pace is None and self.ran > 0:
+            self._pace = (time.perf_counter(), self.ran)
         self._progress(self)
 
     def _take(self, ended: Iterable[Future[Done]]) -> list[list[Job]]:
@@ -259,6 +261,7 @@ class Conductor:
     @property
     def left_s(self) -> float | None:
         """About how long it will still take, s; None if nobody knows yet."""
-        if self.ran == 0:
+        if self._pace is None or self.ran == self._pace[1]:
             return None
-        return (time.perf_counter() - self._began) / self.ran * (self.total - self.done)
+        took, count = time.perf_counter() - self._pace[0], self.ran - self._pace[1]
+        return took / count * (self.total - self.done)
