@@ -96,13 +96,17 @@ def sweep(
         if retry:
             jobs.forget_failed()
         with engine(kind, workers, dask) as made:
-            conductor = Conductor(plan, jobs, made, tuple(follow), progress)
-            try:
-                conductor.run()
-            finally:
-                done = _result(plan, jobs, conductor)
-                if folder is not None:
-                    _write(done, folder)
+            return _conduct(Conductor(plan, jobs, made, tuple(follow), progress), jobs, folder)
+
+
+def _conduct(conductor: Conductor, jobs: Jobs, folder: Path | None) -> Sweep:
+    """Run it; the tables are written in any case, with what there is."""
+    try:
+        conductor.run()
+    finally:
+        done = _result(conductor.plan, jobs, conductor)
+        if folder is not None:
+            _write(done, folder)
     return done
 
 
