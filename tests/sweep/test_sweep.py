@@ -15,7 +15,7 @@ import pytest
 import innervate
 from innervate.cli import main
 from innervate.scenario import ScenarioError
-from innervate.sweep import SweepError
+from innervate.sweep import SweepError, engines
 from innervate.sweep.flat import flat
 from innervate.sweep.jobs import Jobs
 from tests.sweep.conftest import TIMEOUT_S, environment, start, until
@@ -255,3 +255,23 @@ def deadly_for(key, value):
         conductor._engine.submit = armed
 
     return arm
+
+
+def test_a_script_without_a_guard_and_from_a_pipe(four):
+    code = (
+        "import innervate\n"
+        "done = innervate.sweep('four.toml', repeat=4, workers=2)\n"
+        "print(done.results['status'].to_list(), len(set(done.timings['pid'])) <= 2)\n"
+    )
+    Path("script.py").write_text(code)
+    for command, given in (([sys.executable, "script.py"], ""), ([sys.executable, "-"], code)):
+        done = subprocess.run(command, input=given, text=True, cwd=four.parent, env=environment(),
+                              capture_output=True, timeout=TIMEOUT_S, check=False)  # fmt: skip
+        assert done.stdout == "['done', 'done', 'done', 'done'] True\n", done.stderr
+
+
+def test_workers_that_cannot_start_are_one_line(four, monkeypatch):
+    monkeypatch.setattr(engines, "_settle", os.abort)
+    with pytest.raises(SweepError, match="no worker can be started here"):
+        innervate.sweep(four, workers=2, out="out")
+    assert innervate.sweep(four, workers=1, out="out").ran == 1

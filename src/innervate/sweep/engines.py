@@ -10,12 +10,14 @@ import math
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
 from contextlib import contextmanager, suppress
 from importlib import import_module
+from types import ModuleType
 from typing import Any
 
 from innervate.sweep.errors import SweepError
@@ -76,12 +78,28 @@ class Pool(Engine):
         self.workers = workers
         self.ahead = 2 * workers
         self._make = make
-        self._pool = make()
+        self._pool = self._start()
+
+    def _start(self) -> Executor:
+        """A pool that works; found out now, lest every run be taken for one that kills workers.
+
+        Raises:
+            SweepError: its workers die before they have done anything.
+        """
+        pool = self._make()
+        try:
+            with _main_hidden():
+                pool.submit(os.getpid).result()
+        except (BrokenExecutor, OSError) as error:
+            message = "no worker can be started here; use --workers 1, or --engine threads"
+            raise SweepError(message) from error
+        return pool
 
     def submit(self, work: Callable[..., Any], *args: Any) -> Future[Any]:
         """Run `work(*args)` on a worker."""
         try:
-            return self._pool.submit(work, *args)
+            with _main_hidden():
+                return self._pool.submit(work, *args)
         except BrokenExecutor as error:
             future: Future[Any] = Future()
             future.set_exception(error)
@@ -90,7 +108,7 @@ class Pool(Engine):
     def renew(self) -> None:
         """New workers in place of those that died and of those beside them."""
         self.close()
-        self._pool = self._make()
+        self._pool = self._start()
 
     def close(self) -> None:
         """End the workers, whatever they are at."""
@@ -206,6 +224,20 @@ def _processes(count: int) -> Executor:
     if "forkserver" in known:
         context.set_forkserver_preload(["innervate.sweep.work"])
     return ProcessPoolExecutor(count, mp_context=context, initializer=_settle)
+
+
+@contextmanager
+def _main_hidden() -> Iterator[None]:
+    """While a worker may be started: it would import the caller's script, and needs it for nothing.
+
+    So a script that sweeps needs no `if __name__ == "__main__":`, and may come from a pipe.
+    """
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = main
 
 
 def _settle() -> None:

@@ -114,8 +114,9 @@ def points(
         level: of the confidence interval, as a share.
     """
     rows = []
+    parts = table.partition_by("point", as_dict=True)
     for point in plan_points:
-        mine = table.filter(table["point"] == point.index)
+        mine = parts.get((point.index,), table.clear())
         for name in wanted:
             values = mine[name].drop_nulls().to_list() if name in mine.columns else []
             head = {"point": point.index, **point.columns, "measure": name, "runs": len(values)}
