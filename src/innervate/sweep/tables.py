@@ -116,9 +116,9 @@ def points(
     rows = []
     parts = table.partition_by("point", as_dict=True)
     for point in plan_points:
-        mine = parts.get((point.index,), table.clear())
+        mine = parts.get((point.index,), table.clear()).to_dict(as_series=False)
         for name in wanted:
-            values = mine[name].drop_nulls().to_list() if name in mine.columns else []
+            values = [value for value in mine[name] if value is not None]
             head = {"point": point.index, **point.columns, "measure": name, "runs": len(values)}
             rows.append(head | _figures(values, level))
     keys = plan_points[0].columns if plan_points else ()
