@@ -100,6 +100,13 @@ def test_until_ends_a_point_where_its_interval_is_narrow(four):
     assert all((widest["high"] - widest["low"]) / 2 <= 0.06 * widest["mean"])
 
 
+def test_a_rule_about_a_figure_that_runs_do_not_have(four):
+    with pytest.raises(SweepError, match=r'did you mean "recoveries\.routed_ms"'):
+        innervate.sweep(four, until="recoveries.routed.ci=5%", workers=1)
+    with pytest.raises(SweepError, match='no figure "zzz"; it knows balance_factor'):
+        innervate.sweep(four, until="zzz.ci=5%", workers=1)
+
+
 def test_no_valid_point_is_the_scenarios_error(four):
     with pytest.raises(ScenarioError, match='did you mean "k"'):
         innervate.sweep(four, vary={"protocol.kk": [2, 3]}, out="out")

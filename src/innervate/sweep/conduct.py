@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from innervate.kernel import door
+from innervate.scenario.explain import nearest
 from innervate.sweep.engines import Engine
 from innervate.sweep.errors import SweepError
 from innervate.sweep.jobs import Jobs
@@ -85,6 +86,7 @@ class Conductor:
         self._suspects: deque[Job] = deque()
         self._deaths: dict[tuple[str, int], int] = {}
         self._mean_s = 0.0
+        self._known = False
         # When the first results came, and how many: all before was starting and compiling.
         self._pace: tuple[float, int] | None = None
 
@@ -138,10 +140,21 @@ class Conductor:
     def _count(self, state: State, repeat: int, figures: dict[str, Any] | None) -> None:
         state.done += 1
         state.failed += figures is None
+        if figures is not None and not self._known:
+            self._known = True
+            self._check_rules(figures)
         for measure in self._measures:
             value = (figures or {}).get(measure)
             if isinstance(value, int | float):
                 state.values.setdefault(measure, {})[repeat] = value
+
+    def _check_rules(self, figures: dict[str, Any]) -> None:
+        """That `until` speaks of figures that runs have; the first one shows which they are."""
+        for rule in self.plan.until:
+            if rule.measure not in figures:
+                close = nearest(rule.measure, list(figures))
+                hint = close if "did you" in close else nearest("", sorted(figures)[:8])
+                raise SweepError(f'--until {rule}: runs have no figure "{rule.measure}"{hint}')
 
     def _first_alone(self) -> None:
         """On a machine that has compiled nothing yet, one run goes first, and compiles for all."""
