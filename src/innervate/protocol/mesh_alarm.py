@@ -170,7 +170,7 @@ def on_flood(node, params, now, frame, out):
     if i >= 0:
         node.q_link_dst[i] = ALL
         node.q_copies[i] = 2
-        node.q_due[i] = (now + draw(node, (params.jitter_us >> 2) + 1)) & MASK30
+        node.q_due[i] = (now + draw(node, params.flood_us + 1)) & MASK30
         if not add_hop(node, i):
             node.q_state[i] = 0
     kick(node, params, now, out)

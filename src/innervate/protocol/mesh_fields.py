@@ -252,6 +252,7 @@ PARAMS = (
     ("min_rssi", 0, -128, 127, "dBm", "weaker links are not reported"),
     ("jitter_us", 0, 0, 16777215, "us", "requests are passed on within"),
     ("copies", 0, 1, 15, "copies", "of a request"),
+    ("flood_us", 0, 0, 16777215, "us", "floods are passed on within"),
     ("listen_us", 0, 1, 268435455, "us", "after the first request, before responding"),
     ("spread_us", 0, 1, 268435455, "us", "responses are spread over"),
     ("collect_us", 0, 1, 268435455, "us", "gateway: from its request to its graph"),

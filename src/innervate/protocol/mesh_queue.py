@@ -167,7 +167,7 @@ def settle(node, params, now, sent, out):
         if node.q_copies[i] > 0:
             span = params.jitter_us
             if node.q_kind[i] == ALARM:
-                span = span >> 2
+                span = params.flood_us
             node.q_state[i] = WAITS
             node.q_due[i] = (now + draw(node, span + 1)) & MASK30
         else:

@@ -49,6 +49,9 @@ class MeshProtocolTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only
     jitter_s: (
         Annotated[float, Meta(ge=0, le=2.55, description="a number of seconds, 0 to 2.55")] | None
     ) = None
+    flood_s: (
+        Annotated[float, Meta(ge=0, le=2.55, description="a number of seconds, 0 to 2.55")] | None
+    ) = None
     copies: (
         Annotated[int, Meta(ge=1, le=15, description="a whole number of copies, 1 to 15")] | None
     ) = None
