@@ -23,6 +23,7 @@ from innervate.protocol.mesh_words import (
     FLOOD,
     MONITOR,
     PRIORITY,
+    PUT_OUT,
     REPORT_ALARM,
     REPORT_EXPIRED,
     REPORT_MARGIN,
@@ -32,7 +33,6 @@ from innervate.protocol.rng import draw
 
 ALARM_BYTES = 16
 RAISED_OUT = 2
-NO_PUT_OUT = 3
 
 
 def on_sample(node, params, now, item, out):
@@ -127,7 +127,7 @@ def wait_for_alarm(node, out):
     for k in range(WAITING):
         if node.wait_kind[k] != ALARM:
             w = k
-    report(out, REPORT_EXPIRED, node.wait_handle[w], NO_PUT_OUT)
+    report(out, REPORT_EXPIRED, node.wait_handle[w], PUT_OUT)
     return w
 
 

@@ -260,7 +260,7 @@ PARAMS = (
     ("period", 0, 1, 65535, "ticks", "between discovery rounds"),
     ("period_max", 0, 1, 65535, "ticks", "... at most, while nothing changes"),
     ("dead", 0, 1, 65535, "ticks", "standby: without a request"),
-    ("dead_step", 0, 0, 65535, "ticks", "... more for every rank"),
+    ("dead_step", 0, 0, 65535, "ticks", "... more for every rank behind the first"),
     ("standby", 0, 0, 1, "flag", "there is one: the period is not stretched"),
     ("jobs", 0, 1, 15, "nodes", "tables under way at the same time"),
     ("job_us", 0, 1, 67108863, "us", "wait for a table's ack, first try, near"),

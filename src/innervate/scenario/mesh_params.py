@@ -125,7 +125,7 @@ def _rounds(profile: Profile, chosen: _Chosen) -> dict[str, int]:
     rest_s = profile.collect - profile.listen - profile.spread
     return {
         "jitter_us": chosen.micros("jitter_s", profile.jitter),
-        "flood_us": chosen.micros("flood_s", profile.jitter / 4),
+        "flood_us": chosen.micros("flood_s", profile.jitter / 8),
         "copies": chosen.value("copies", profile.copies),
         "listen_us": listen_us,
         "spread_us": spread_us,

@@ -23,7 +23,7 @@ class Profile(NamedTuple):
         rssi50_cdb: 0.01 dBm at which half the frames are received.
         loss_1m_cdb: path loss at 1 m in free space, 0.01 dB.
         ack_us: wait for a hop's ack.
-        dead_step: more for every rank of standby.
+        dead_step: more for every standby behind the first.
         settled: messages start then if nothing is said: the first tables are there.
     """
 
