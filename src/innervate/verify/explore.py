@@ -87,7 +87,9 @@ def compiled_engine() -> s.Engine:
 
 
 @functools.cache
-def _compiled_refill() -> Callable[..., None]:
+def compiled_refill() -> Callable[..., None]:
+    """The function that enters all rows into a new table."""
+    compiled_engine()
     return door.compiled(s.refill)
 
 
@@ -161,7 +163,7 @@ class _Driver:
             self.refill: Any = s.refill
         else:
             engine = compiled_engine()
-            insert, self.refill = engine.insert, _compiled_refill()
+            insert, self.refill = engine.insert, compiled_refill()
             self.expand = engine.expand
         first = skin_system.first_row(model, system)
         for i, value in enumerate(first):

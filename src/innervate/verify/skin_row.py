@@ -5,6 +5,7 @@ and how great a load is (balancing is off; only load 0, which marks a cell witho
 counts), and whether a port was heard since the last tick (an event decides that).
 """
 
+from innervate.protocol.arith import MASK30
 from innervate.protocol.skin_words import BEACON, INFINITY, NONE, ONE, PORTS
 from innervate.verify.skin_world import (
     BUDGET_AT,
@@ -70,7 +71,8 @@ def load_cell(world, c, i):
     cell.parent = NONE
     cell.sent_parent = NONE
     cell.own_load = 1
-    cell.sent_at = 0
+    # The gap has passed since never; after a first beacon no time passes.
+    cell.sent_at = (0 - world.params[0].gap_us) & MASK30 if sent == NOTHING_SENT else 0
     cell.tick_at = 0
     for p in range(PORTS):
         load_port(row, cell, p, world.port_at[PORTS * c + p], flags & HAS_TICKED)
