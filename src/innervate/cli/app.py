@@ -130,6 +130,70 @@ def papers(
 
 
 @app.command
+def verify(
+    system: str = "skin",
+    /,
+    *,
+    rule: str = "feasible",
+    updates: str = "all",
+    graph: str = "all",
+    cells: int = 2,
+    budget: str = "",
+    prompt: Annotated[bool, Parameter(negative="")] = False,
+    liveness: bool = True,
+    starts: int = 0,
+    states: int = 0,
+    memory: str = "2G",
+    plain: Annotated[bool, Parameter(negative="")] = False,
+    json: Annotated[bool, Parameter(negative="")] = False,
+    out: Path | None = None,
+) -> int:
+    """Explore every interleaving of the protocol on small networks; 1 if something is broken.
+
+    Parameters
+    ----------
+    system
+        Which protocol: skin.
+    rule
+        feasible, strict, paper or all.
+    updates
+        periodic, triggered or all.
+    graph
+        Cables like "pc-1 1-2 2-3", a name (line, star, triangle, ring, pair, complete), or all
+        graphs of up to --cells cells.
+    cells
+        How many cells the graphs may have, 1 to 4.
+    budget
+        How often what may happen, like "ticks=3,counts=2,loss=1,cut=1,heal=1,false=1,restart=1,
+        faults=2"; these are the defaults, and faults counts all five kinds together.
+    prompt
+        Every frame arrives or is lost before anything else happens.
+    liveness
+        Also see from every state whether routes become shortest once faults have ended.
+    starts
+        Play that from so many states instead of all.
+    states
+        End each exploration after so many states.
+    memory
+        What the states of an exploration may take, like 800M or 4G.
+    plain
+        Without the compiler: slower by a hundred times, needs no preparation.
+    json
+        Print the results as JSON and nothing else.
+    out
+        Folder for counterexamples: scenario, story, picture.
+    """
+    from innervate.cli import verifying as command
+
+    options = {
+        "rule": rule, "updates": updates, "graph": graph, "cells": cells, "budget": budget,
+        "prompt": prompt, "liveness": liveness, "starts": starts, "states": states,
+        "memory": memory, "plain": plain,
+    }  # fmt: skip
+    return command.verify(system, options, json, out)
+
+
+@app.command
 def scenarios() -> int:
     """List the bundled scenarios."""
     from innervate.cli import files as command

@@ -22,6 +22,7 @@ _EXTRAS = {
 _KNOWN = (
     ("innervate.scenario.errors", "ScenarioError", USERS),
     ("innervate.run.errors", "RunError", USERS),
+    ("innervate.verify.errors", "VerifyError", USERS),
     ("cyclopts", "CycloptsError", USERS),
     ("innervate.sim.simulate", "InvariantBroken", OURS),
     ("innervate.analysis.frames", "FramesLost", OURS),

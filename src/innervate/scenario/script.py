@@ -40,7 +40,8 @@ class Step:
         action: TICK, SOON, DELIVER, STEP_LOSE, DETECT, DRAW, STEP_CUT, STEP_RESTORE or
             STEP_RESTART.
         node: who acts or receives; -1 for a draw.
-        end: where the frame was sent from (deliver, lose), one of the cable's ends (cut, restore) or which is broken (detect); else -1.
+        end: where the frame was sent from (deliver, lose), one end of the cable (cut, restore) or
+            which is broken (detect); else -1.
         value: what the draw returns, 0 .. 2^30-1.
     """
 
@@ -86,7 +87,9 @@ def _step(source: Source, graph: Graph, text: str, key: Key) -> Step:
     node, port = node_and_port(source, graph, rest, key)
     if action in (TICK, SOON, STEP_RESTART):
         if port >= 0:
-            raise source.error(key, f"{dotted(key)}: {verb} takes a node, not a port; leave the port out")
+            raise source.error(
+                key, f"{dotted(key)}: {verb} takes a node, not a port; leave the port out"
+            )
         return Step(action, node)
     if port < 0 or node == graph.cells:
         raise source.error(key, f"{dotted(key)}: detect takes a cell's port, like detect n1.2")

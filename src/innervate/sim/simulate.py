@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import functools
-import signal
-import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import ModuleType
@@ -13,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from innervate.kernel import door, tables
+from innervate.kernel.stop import Stop
 from innervate.kernel.wall import wall_s
 from innervate.sim import build as builder
 from innervate.sim import loop, script, skin_stack, static_stack
@@ -164,27 +163,6 @@ def _result(
         arrived=int(world.counters[ARRIVED] + world.counters[ARRIVED + URGENT_BLOCK]),
         interrupted=interrupted,
     )
-
-
-class Stop:
-    """Turns Ctrl-C into a request to stop after the present slice, where a signal can be caught."""
-
-    def __init__(self) -> None:
-        self.asked = False
-        self._catches = threading.current_thread() is threading.main_thread()
-        self._before: Any = None
-
-    def __enter__(self) -> Stop:
-        if self._catches:
-            self._before = signal.signal(signal.SIGINT, self._ask)
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._catches:
-            signal.signal(signal.SIGINT, self._before)
-
-    def _ask(self, _number: int, _frame: object) -> None:
-        self.asked = True
 
 
 class _Keep:

@@ -106,10 +106,13 @@ def explore(
     """All states that `model` can reach, breadth first, until something is broken.
 
     Args:
-        plain: uncompiled; `system` gives a copy of the protocol (see skin_system.system_of).
+        model: what is explored.
+        plain: uncompiled.
+        system: a copy of the protocol to run plain (see skin_system.system_of); None the real one.
         memory: bytes the states may take; reaching it ends the search.
         states: end after so many states; 0 = no such limit.
         progress: called now and then; the search ends if it returns True.
+        every_s: least seconds between two such calls.
 
     Raises:
         VerifyError: the model does not fit its rows, or the memory.
@@ -177,6 +180,7 @@ class _Driver:
 
     def _tables(self, words: int, limit: int) -> s.Search:
         if self.plain:
+
             def longs(count: int) -> Any:
                 return memoryview(bytearray(8 * count)).cast("q")
 

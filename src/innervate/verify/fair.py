@@ -35,6 +35,7 @@ class Fair:
         bound: rounds that routes may take.
         starts: states it was tried from.
         of: states there were.
+        calm: different states when faults have ended and nothing is in flight.
         rounds: until everything was settled; the bound if it was not.
         left: states not settled after each round.
         played: rounds played in all.
@@ -45,6 +46,7 @@ class Fair:
     bound: int
     starts: int = 0
     of: int = 0
+    calm: int = 0
     rounds: int = 0
     left: list[int] = field(default_factory=list)
     played: int = 0
@@ -53,33 +55,53 @@ class Fair:
     ended: str = "interrupted"
 
 
-def build(system: Any) -> Callable[..., None]:
-    """A function that plays a round from rows begin .. end - 1 of `source`."""
+def build(system: Any) -> tuple[Callable[..., Any], ...]:
+    """Functions; the last plays a round from rows begin .. end - 1 of `source`."""
     settle, turn, is_settled = system.settle, system.turn, system.is_settled
 
+    def calm(world, source, target, index):
+        """No more faults, and what is in flight arrives, before the first round."""
+        for choice in range(CHOICES):
+            s.fetch_row(world, source, index)
+            forget_budgets(world)
+            world.found[1] = 0
+            if not settle(world, choice):
+                target.run[s.BROKEN] = 1
+            s.insert(world, target, index, choice)
+            if world.found[1] == 0:
+                break
+
+    def round_of(world, source, target, index, orders, order, nodes):
+        """One round in one order, with every choice; what is not settled afterwards is kept."""
+        run = target.run
+        for choice in range(CHOICES):
+            s.fetch_row(world, source, index)
+            world.found[1] = 0
+            for k in range(nodes):
+                if not turn(world, orders[order + k], choice):
+                    run[s.BROKEN] = 1
+            run[s.GENERATED] += 1
+            if not is_settled(world):
+                s.insert(world, target, index, order * CHOICES + choice)
+            if world.found[1] == 0:  # nothing was drawn: the other choice is the same
+                break
+
     def play(world, source, target, orders, nodes, begin, end):
-        """Every order and choice; what is not settled afterwards goes into `target`."""
+        """A round from each state; only what comes before the first one if `nodes` is 0."""
         run = target.run
         for index in range(begin, end):
-            for order in range(0, len(orders), nodes):
-                for choice in range(CHOICES):
-                    s.fetch_row(world, source, index)
-                    forget_budgets(world)
-                    ended = settle(world, choice)
-                    for k in range(nodes):
-                        ended = turn(world, orders[order + k], choice) and ended
-                    run[s.GENERATED] += 1
-                    if not ended:
-                        run[s.BROKEN] = 1
-                    if not is_settled(world):
-                        s.insert(world, target, index, order * CHOICES + choice)
+            if nodes == 0:
+                calm(world, source, target, index)
+            else:
+                for order in range(0, len(orders), nodes):
+                    round_of(world, source, target, index, orders, order, nodes)
             run[s.STATUS] = s.room_left(run)
             if run[s.STATUS] == s.GROW or run[s.STATUS] == s.FULL:
                 run[s.NEXT] = -1 - index  # how far it came, out of the way of `room_left`
                 return
         run[s.NEXT] = -end
 
-    return play
+    return calm, round_of, play
 
 
 def forget_budgets(world):  # type: ignore[no-untyped-def]
@@ -96,8 +118,9 @@ def forget_budgets(world):  # type: ignore[no-untyped-def]
 def _compiled() -> Callable[..., None]:
     engine = ex.compiled_engine()
     system = skin_system.compiled_parts()
-    door.register_functions(forget_budgets, *engine.parts, hot=False)
-    return door.compiled(build(system))
+    parts = build(system)
+    door.register_functions(forget_budgets, *engine.parts, *parts[:-1], hot=False)
+    return door.compiled(parts[-1])
 
 
 def bound_of(model: Any) -> int:
@@ -119,7 +142,7 @@ def check(
     begun = wall_s()
     rows, words = _starts(result, starts)
     fair = Fair(bound_of(model), starts=len(rows) // words, of=result.tally.states)
-    play = build(system or skin_system.system_of()) if plain else _compiled()
+    play = build(system or skin_system.system_of())[-1] if plain else _compiled()
     world = skin_system.world_of(model.changed(keep=True), plain)
     _put(world.at, w.FAIR, 1)
     nodes = model.graph.nodes
@@ -128,14 +151,20 @@ def check(
     given = [world, orders] if plain else [tables.borrowed(world), tables.borrowed(orders)]
     source = _Rows(model, plain, rows, words, memory)
     chain = []
-    for _ in range(fair.bound):
+    for turn in range(fair.bound + 1):
         target = _Rows(model, plain, rows[:0], words, memory)
-        if not _round(play, given, source, target, nodes, fair, progress, begun):
+        in_round = nodes if turn else 0
+        if not _round(play, given, source, target, in_round, fair, progress, begun):
             return fair
         chain.append(source)
-        fair.rounds += 1
-        fair.left.append(target.count)
+        if turn:
+            fair.rounds += 1
+            fair.left.append(target.count)
+        else:
+            fair.calm = target.count
         source = target
+        if int(target.search.run[s.BROKEN]):
+            break
         if target.count == 0:
             fair.ended = "complete"
             return fair

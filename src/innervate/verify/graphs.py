@@ -1,4 +1,4 @@
-"""Small skins: all connected graphs of a PC and a few cells, up to isomorphism; their symmetries."""
+"""Small skins: all connected graphs of a PC and a few cells, one of each shape; symmetries."""
 
 from __future__ import annotations
 

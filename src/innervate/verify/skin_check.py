@@ -1,4 +1,4 @@
-"""What must hold of a skin's state: no closed ring, feasible distances in order; how deep cells are.
+"""What must hold of a skin's state: no closed ring, feasible distances in order.
 
 A state is the row of bytes `world.work` (see skin_world.py).
 """

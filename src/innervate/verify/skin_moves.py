@@ -197,6 +197,8 @@ def finish_cell(world, c, known, sq, dist, has_ticked):
     """After a handler of a cell: check it, put it back, send what it sends; draws it asked for."""
     cell = world.cells[0]
     asked = max(cell.asked, 1)
+    if asked > 1:
+        world.found[1] = 1
     cell.asked = 0
     cell.choice = 0
     check_range(world)

@@ -167,7 +167,7 @@ def world_of(model: SkinModel, plain: bool) -> w.SkinWorld:
         pc=w.Sink(forms.states(skin_fields.SINK, 1), forms.numbers([0] * model.graph.interfaces)),
         out=forms.outbox(),
         frame=forms.states(skin_fields.FRAME, 1),
-        found=forms.numbers([0]),
+        found=forms.numbers([0, 0]),
         work=work,
         work_words=work_words,
         trial=trial,

@@ -85,7 +85,7 @@ class SkinWorld(NamedTuple):
     pc: Sink
     out: Out
     frame: Any
-    found: Any  # [0] what a step broke
+    found: Any  # [0] what a step broke, [1] whether anything was drawn
     work: Any
     work_words: Any
     trial: Any

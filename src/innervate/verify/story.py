@@ -187,7 +187,7 @@ class _Teller:
             text, actor = self._outside(kind, arg)
         if actor != NONE and actor < self.graph.cells and kind != w.LOSE:
             text += self._turned(actor, before[actor])
-        self.story.sentences.append(text[0].upper() + text[1:] + ".")
+        self.story.sentences.append(("The" + text[3:] if text.startswith("the ") else text) + ".")
         self.story.steps.append(self.steps)
         self.steps = []
         self.story.scenes.append(Scene(tuple(self._parents()), frozenset(self._cut()), actor))
@@ -212,7 +212,11 @@ class _Teller:
                 queued = found.world.work[found.lay.queue_at[way]] if found.model.merges else 0
                 count, can = queued + 1, 0
             chosen, variant = variant % count, variant // count
-            real_can = skin_moves.may_break(self.real.world, node, self.graph.port_of(end)) if is_cell else 0
+            real_can = (
+                skin_moves.may_break(self.real.world, node, self.graph.port_of(end))
+                if is_cell
+                else 0
+            )
             if can and chosen == count - 1:
                 heard.append(self._broken(end, way))
                 breaks += factor
@@ -225,8 +229,8 @@ class _Teller:
             self._step(w.PC_TICK, 0, 0, 0, 1)
         self.steps.append(f"tick {self.graph.label(node)}")
         if is_cell:
-            words = f"{self.name(node)} " + "".join(f"{part}, " for part in heard)
-            return f"{words}{'and ' if heard else ''}ticks and says {self._says(node)}"
+            words = ", ".join([*heard, "ticks"])
+            return f"{self.name(node)} {words} and says {self._says(node)}"
         own = self.real.world.work[self.real.lay.pc_at + w.PC_SQ]
         return f"the PC sends its beacon with number {own}"
 
@@ -259,7 +263,7 @@ class _Teller:
         self._step(kind, way, 0, event.choice, event.asked)
         if kind == w.LOSE:
             self.steps.append(f"lose {self._way(way)}")
-            return f"the beacon to {self.name(node)} is lost from {words}", NONE
+            return f"lost on its way to {self.name(node)}: the beacon of {words}", NONE
         self.steps.append(f"deliver {self._way(way)}")
         return f"{self.name(node)} hears from {words}", node
 
