@@ -31,6 +31,7 @@ class Tally:
         states: different states found.
         expanded: states whose successors are all known.
         generated: successors generated and looked up.
+        left_out: successors not followed because more was in flight than there is room for.
         depth: events from the start to the latest state; all states less deep are expanded.
         wall_s: seconds of searching, compiling and loading not included.
         ended: "complete", "broken", "memory" (the bound was reached), "limit" (of states) or
@@ -40,6 +41,7 @@ class Tally:
     states: int = 0
     expanded: int = 0
     generated: int = 0
+    left_out: int = 0
     depth: int = 0
     wall_s: float = 0.0
     ended: str = "interrupted"
@@ -222,6 +224,7 @@ class _Driver:
         run = self.search.run
         tally.states, tally.expanded = int(run[s.COUNT]), int(run[s.NEXT])
         tally.generated, tally.wall_s = int(run[s.GENERATED]), took_s
+        tally.left_out = int(run[s.LEFT_OUT])
         tally.depth = len(self.levels) - 2
 
     def row(self, index: int) -> bytes:

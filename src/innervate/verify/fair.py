@@ -39,6 +39,7 @@ class Fair:
         rounds: until everything was settled; the bound if it was not.
         left: states not settled after each round.
         played: rounds played in all.
+        left_out: of these, with more in flight than there is room for; they prove nothing.
         path: rows from the state in question to the one that is not settled at the bound.
         ended: "complete", "broken", "memory" or "interrupted".
     """
@@ -50,6 +51,7 @@ class Fair:
     rounds: int = 0
     left: list[int] = field(default_factory=list)
     played: int = 0
+    left_out: int = 0
     wall_s: float = 0.0
     path: list[bytes] = field(default_factory=list)
     ended: str = "interrupted"
@@ -65,8 +67,11 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
             s.fetch_row(world, source, index)
             forget_budgets(world)
             world.found[1] = 0
+            world.found[0] = 0
             if not settle(world, choice):
                 target.run[s.BROKEN] = 1
+            if world.found[0] == s.TOO_MANY:
+                target.run[s.LEFT_OUT] += 1
             s.insert(world, target, index, choice)
             if world.found[1] == 0:
                 break
@@ -76,11 +81,13 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
         run = target.run
         for choice in range(CHOICES):
             s.fetch_row(world, source, index)
-            world.found[1] = 0
+            world.found[0], world.found[1] = 0, 0
             for k in range(nodes):
                 if not turn(world, orders[order + k], choice):
                     run[s.BROKEN] = 1
             run[s.GENERATED] += 1
+            if world.found[0] == s.TOO_MANY:
+                run[s.LEFT_OUT] += 1
             if not is_settled(world):
                 s.insert(world, target, index, order * CHOICES + choice)
             if world.found[1] == 0:  # nothing was drawn: the other choice is the same
@@ -199,6 +206,7 @@ def _round(
         if progress is not None and progress(fair):
             return False
     fair.played += int(target.search.run[s.GENERATED])
+    fair.left_out += int(target.search.run[s.LEFT_OUT])
     return True
 
 

@@ -13,11 +13,14 @@ from innervate.kernel.bits import mix
 
 # Places in `Search.run`.
 COUNT, NEXT, LIMIT, SLOTS, GENERATED, STATUS, MOVES, WORDS, IMAGES, WIDTH = range(10)
-BROKEN, BROKEN_AT, BROKEN_MOVE, REPEATED = range(10, 14)
+BROKEN, BROKEN_AT, BROKEN_MOVE, LEFT_OUT = range(10, 14)
 NUMBERS = 16
 
 # Why `expand` stopped.
 GOING, DONE, GROW, FULL, FOUND = range(5)
+
+# What a step says of a state that is not to be followed: more in flight than there is room for.
+TOO_MANY = -1
 
 # Most successors of one state; more would be a mistake in the system.
 MARGIN = 1 << 14
@@ -170,7 +173,9 @@ def build(system):
         while choice < asked:
             fetch_row(world, search, index)
             asked = step(world, move, variant, choice)
-            if asked > 0:
+            if asked > 0 and world.found[0] == TOO_MANY:
+                run[LEFT_OUT] += 1
+            elif asked > 0:
                 run[GENERATED] += 1
                 word = (move * VARIANT + variant) * CHOICE + choice
                 is_new = insert(world, search, index, word)

@@ -40,6 +40,7 @@ from innervate.verify.skin_world import (
     TICKS,
     TOTAL,
     WAIT,
+    WHOLE,
 )
 
 NOTHING_SENT = 254
@@ -186,14 +187,14 @@ def spend(world, which):
 
 
 def push(world, way, frame):
-    """A beacon goes out; with MERGE not if nobody could tell the difference."""
+    """A beacon goes out, unless nobody could tell the difference."""
     row = world.work
     at = world.queue_at[way]
     count = row[at]
     dist = frame.dist
     sq = frame.sq & 255
     says = min(frame.load, 1) | (frame.parent << 1)
-    if world.at[MERGE] and is_idle(world, way, count, dist, sq, says):
+    if world.at[WHOLE] == 0 and is_idle(world, way, count, dist, sq, says):
         return
     if count >= world.at[CAPACITY]:
         world.found[0] = NO_ROOM
@@ -206,8 +207,8 @@ def push(world, way, frame):
 
 
 def is_idle(world, way, count, dist, sq, says):
-    """1 if a beacon changes nothing whenever it arrives: it repeats the one before it, its
-    receiver never looks again, or it is for the PC and tells no newer number. Periodic mode only.
+    """1 if a beacon changes nothing whenever it arrives: it is for the PC and tells no newer
+    number; or, with MERGE, it repeats the one before it, or its receiver never looks again.
     """
     row = world.work
     end = world.way_end[way]
@@ -220,6 +221,8 @@ def is_idle(world, way, count, dist, sq, says):
         known = row[pc + PC_FLAGS] and row[pc + PC_SQ] >= sq
         may_forget = has_budget(world, RESTART) or world.at[FAIR]
         return (says & LOADED) == 0 or (known and not may_forget)
+    if world.at[MERGE] == 0:
+        return False
     c = end // PORTS
     if row[world.cell_at[c] + TICKS] == 0 and world.at[KEEP] == 0:
         return True

@@ -20,7 +20,9 @@ RULES = ("feasible", "strict", "paper")
 UPDATES = ("periodic", "triggered")
 FAULTS = ("loss", "cut", "heal", "false", "restart")
 SETTLED_M = 3  # the fair schedule counts the PC's number every so many rounds
-FRAMES_MAX = 7
+# A frame takes 0.06 to 0.2 ms, and news keeps 0.5 ms from the last beacon: a tick's beacon and one
+# more can be in flight.
+ROOM = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +61,9 @@ class SkinModel:
         merge: use that periodic beacons are only looked at in a tick (see skin_moves.py).
         keep: keep what only a later fair schedule would see.
         symmetric: take states that differ by a symmetry of the graph as one.
-        capacity: room for frames in flight per direction; 0 = what the budget needs.
+        capacity: most frames in flight per direction; states with more are left out, and counted.
+            0 = what periodic cells can send within their budget, and ROOM of triggered ones.
+        whole: leave no beacon out, though it changes nothing.
     """
 
     graph: Graph
@@ -72,6 +76,7 @@ class SkinModel:
     keep: bool = False
     symmetric: bool = True
     capacity: int = 0
+    whole: bool = False
 
     @property
     def merges(self) -> bool:
@@ -264,7 +269,7 @@ class _Layout:
         if self.model.prompt:
             return 2
         most = max(budget.ticks, budget.counts)
-        return most if self.model.updates == "periodic" else min(most + 2, FRAMES_MAX)
+        return most if self.model.updates == "periodic" else ROOM
 
     def settings(self) -> list[int]:
         """The numbers of `SkinWorld.at`."""
@@ -274,6 +279,7 @@ class _Layout:
         at[w.DIRECTIONS], at[w.PC_AT], at[w.LINK_AT] = self.ways, self.pc_at, self.link_at
         at[w.BUDGET_AT], at[w.MERGE], at[w.PROMPT] = self.budget_at, model.merges, model.prompt
         at[w.FEASIBLE], at[w.KEEP] = model.rule == "feasible", model.keep
+        at[w.WHOLE] = model.whole
         at[w.IMAGES], at[w.WIDTH] = len(self.images()) // self.width, self.width
         return [int(value) for value in at]
 

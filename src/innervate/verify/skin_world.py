@@ -16,7 +16,7 @@ from innervate.protocol import plain, skin_fields
 
 # Places in `SkinWorld.at`.
 CELLS, LINKS, CAPACITY, DIRECTIONS, PC_AT, LINK_AT, BUDGET_AT = range(7)
-MERGE, PROMPT, FAIR, FEASIBLE, MAY_LOOP, KEEP, LIVELY, IMAGES, WIDTH = range(7, 16)
+MERGE, PROMPT, FAIR, FEASIBLE, MAY_LOOP, KEEP, WHOLE, IMAGES, WIDTH = range(7, 16)
 SETTINGS = 16
 
 # A cell's head; then PORT_BYTES for each cabled port.
@@ -36,7 +36,8 @@ BUDGETS = 6
 FRAME_BYTES = 3
 
 # What can be broken (SkinWorld.found[0]).
-FINE, BROKEN_LOOP, BROKEN_ORDER, BROKEN_WORSE, BROKEN_RANGE, BROKEN_OUTBOX, NO_ROOM = range(7)
+FINE, BROKEN_LOOP, BROKEN_ORDER, BROKEN_WORSE, BROKEN_RANGE, BROKEN_OUTBOX = range(6)
+NO_ROOM = -1
 
 # Kinds of moves.
 TICK, PC_TICK, SOON, DELIVER, LOSE, CUT_LINK, HEAL_LINK, RESTART_PC = range(8)

@@ -124,7 +124,7 @@ def tell(result: Result, system: Any = None) -> Story:
     system = system or skin_system.system_of()
     found = _Twin(result.model, system)
     real = _Twin(
-        result.model.changed(merge=False, symmetric=False, keep=True, capacity=ROOM), system
+        result.model.changed(merge=False, symmetric=False, keep=True, whole=True, capacity=ROOM), system
     )
     story = Story(result.model.graph, "")
     teller = _Teller(real, story)
@@ -370,7 +370,6 @@ def _title(twin: _Twin, broken: int, ring: list[int]) -> str:
         w.BROKEN_WORSE: "a feasible distance got worse without being forgotten",
         w.BROKEN_RANGE: "a value is out of its declared range",
         w.BROKEN_OUTBOX: "an outbox overflowed",
-        w.NO_ROOM: "more frames in flight than there is room for",
     }[broken]
 
 
