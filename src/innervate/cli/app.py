@@ -134,16 +134,21 @@ def verify(
     system: str = "skin",
     /,
     *,
-    rule: str = "feasible",
+    rule: str = "",
     updates: str = "all",
     graph: str = "all",
-    cells: int = 2,
+    cells: int = 0,
     budget: str = "",
     prompt: Annotated[bool, Parameter(negative="")] = False,
     liveness: bool = True,
     starts: int = 0,
     states: int = 0,
+    walks: int = 0,
     memory: str = "2G",
+    random: Annotated[bool, Parameter(negative="")] = False,
+    mutants: Annotated[bool, Parameter(negative="")] = False,
+    seed: Seed = None,
+    count: int = 0,
     plain: Annotated[bool, Parameter(negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,
     out: Path | None = None,
@@ -153,16 +158,16 @@ def verify(
     Parameters
     ----------
     system
-        Which protocol: skin.
+        Which protocol: skin or radio.
     rule
-        feasible, strict, paper or all.
+        Skin: feasible (if left out), strict, paper or all. Radio: practical (if left out) or paper.
     updates
         periodic, triggered or all.
     graph
         Cables like "pc-1 1-2 2-3", a name (line, star, triangle, ring, pair, complete), or all
         graphs of up to --cells cells.
     cells
-        How many cells the graphs may have, 1 to 4.
+        How many cells the graphs may have, 1 to 4 (2 if left out); stations of a radio, 2 to 4.
     budget
         How often what may happen, like "ticks=3,counts=2,loss=1,cut=1,heal=1,false=1,restart=1,
         faults=2"; these are the defaults, and faults counts all five kinds together.
@@ -174,8 +179,18 @@ def verify(
         Play that from so many states instead of all.
     states
         End each exploration after so many states.
+    walks
+        Instead of all states so many random walks, for larger budgets.
     memory
         What the states of an exploration may take, like 800M or 4G.
+    random
+        Simulate whole networks, all settings and faults drawn, until interrupted.
+    mutants
+        Try the explorer on copies of the protocol with a small mistake in each.
+    seed
+        With --random the first network's number, with --walks the walks'.
+    count
+        With --random end after so many networks.
     plain
         Without the compiler: slower by a hundred times, needs no preparation.
     json
@@ -188,7 +203,8 @@ def verify(
     options = {
         "rule": rule, "updates": updates, "graph": graph, "cells": cells, "budget": budget,
         "prompt": prompt, "liveness": liveness, "starts": starts, "states": states,
-        "memory": memory, "plain": plain,
+        "memory": memory, "plain": plain, "walks": walks, "random": random, "mutants": mutants,
+        "seed": seed, "count": count,
     }  # fmt: skip
     return command.verify(system, options, json, out)
 

@@ -72,7 +72,10 @@ def _extent(case: Case) -> str:
         "memory": f"first {tally.expanded:,} states, to {tally.depth} events: memory is full",
         "limit": f"first {tally.expanded:,} states, to {tally.depth} events, as asked",
         "interrupted": f"first {tally.expanded:,} states, to {tally.depth} events: interrupted",
+        "walked": f"{tally.states:,} random walks, a sample",
     }[tally.ended]
+    if tally.left_out:
+        words += f" but {tally.left_out:,} successors with too many frames in flight"
     if case.fair is None:
         return words
     part = "" if case.fair.starts == case.fair.of else f" from {case.fair.starts:,} of them"
@@ -107,23 +110,56 @@ def _write(case: Case, out: Path, number: int, quiet: bool) -> None:
 
 def verify(system: str, options: dict[str, Any], as_json: bool, out: Path | None) -> int:
     """Explore a protocol with the options of the command line."""
-    if system != "skin":
-        raise errors.UserError(f'verify explores skin, not "{system[:40]}"')
+    if system not in ("skin", "radio"):
+        raise errors.UserError(f'verify explores skin or radio, not "{system[:40]}"')
+    if options["random"]:
+        from innervate.cli import verifying_random
+
+        return verifying_random.search(options["seed"], options["count"], as_json, out)
+    if system == "radio":
+        from innervate.cli import verifying_radio
+
+        return verifying_radio.search(options, as_json)
+    if options["mutants"]:
+        return _mutants(as_json)
     from innervate.verify import cases
 
     wanted = cases.Wanted(
-        rules=_choices("rule", options["rule"], cases.RULES),
+        rules=_choices("rule", options["rule"] or "feasible", cases.RULES),
         updates=_choices("updates", options["updates"], cases.UPDATES),
-        graphs=cases.graphs_of(options["graph"], options["cells"]),
+        graphs=cases.graphs_of(options["graph"], options["cells"] or 2),
         budget=cases.budget_of(options["budget"]),
         prompt=options["prompt"],
         live=options["liveness"],
         starts=options["starts"],
+        walks=options["walks"],
+        seed=options["seed"] or 1,
         states=options["states"],
         memory=_bytes(options["memory"]),
         plain=options["plain"],
     )
     return skin(wanted, as_json, out)
+
+
+def _mutants(as_json: bool) -> int:
+    """Try the explorer on copies of the protocol with a mistake in each; 1 if one is missed."""
+    from innervate.kernel.stop import Stop
+    from innervate.verify import mutants
+
+    caught = []
+    with Stop() as stop, Display(as_json) as display:
+        for number, mutant in enumerate(mutants.MUTANTS):
+            display.show(mutant.name, number, len(mutants.MUTANTS), None)
+            caught.append(mutants.hunt(mutant))
+            if not as_json:
+                by = f"{caught[-1].by} ({caught[-1].where})" if caught[-1].by else "NOT CAUGHT"
+                print(f"{mutant.name}: {by}", flush=True)
+            if stop.asked:
+                return errors.INTERRUPTED
+    if as_json:
+        rows = [{"mutant": c.mutant.name, "by": c.by, "where": c.where} for c in caught]
+        print(json.dumps(rows, indent=2))
+    return 0 if all(catch.by for catch in caught) else 1
 
 
 def _choices(name: str, text: str, known: tuple[str, ...]) -> tuple[str, ...]:

@@ -30,6 +30,8 @@ HORIZON_S = 2.0
 ALONE = 127
 EVENTS = 1 << 20
 DEADLOCK, OVERLAP, ORDER, SILENT, INVARIANT = range(1, 6)
+FRAMES = {1: "a CR-R", 2: "its packet", 3: "an opening", 4: "a report"}
+STORY_FRAMES = 30
 WORDS = {
     DEADLOCK: "a packet is never delivered",
     OVERLAP: "two turns overlap: their order is open",
@@ -223,6 +225,23 @@ def _after_reservation(sent: Any, data: Any) -> Any:
     if not len(others):
         return np.zeros(len(data), bool)
     return data["time"] > others["time"].min()
+
+
+def story(grid: Grid, point: Point) -> list[str]:
+    """What happens at a point, in sentences; times from the first offer."""
+    shared = base_plan(grid)
+    plan = plan_of(shared, grid, point)
+    broken, sent = run_point(plan, point, seeds_of(grid))
+    begin = plan.arrivals[0][0]
+    pairs = itertools.combinations(range(grid.stations), 2)
+    far = ", ".join(f"{i}-{j} {d} us" for (i, j), d in zip(pairs, point.delays_us, strict=True))
+    told = [f"The stations are this far apart: {far}."]
+    told += [f"Station {i} is offered a packet at {at} us." for i, at in enumerate(point.offers_us)]
+    for row in sent[:STORY_FRAMES]:
+        what = FRAMES.get(int(row["kind"]), "a frame")
+        span = f"{int(row['time']) - begin} to {int(row['end']) - begin} us"
+        told.append(f"Station {int(row['node'])} sends {what}, {span}.")
+    return [*told, f"So: {WORDS[broken]}."] if broken else told
 
 
 def search(

@@ -83,6 +83,8 @@ class Wanted:
     prompt: bool = False
     live: bool = True
     starts: int = 0
+    walks: int = 0
+    seed: int = 1
     states: int = 0
     memory: int = explore.MEMORY
     plain: bool = False
@@ -133,6 +135,13 @@ def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> Case:
     """Explore one model; then, under the recommended rule, play the fair schedule."""
     cables = graphs.cables(model.graph)
     name = f"{cables}, {model.rule}, {model.updates}"
+    if wanted.walks:
+        found = explore.wander(
+            model, wanted.walks, seed=wanted.seed, plain=wanted.plain,
+            progress=lambda tally: tell(name, tally),
+        )  # fmt: skip
+        told = story.tell(found) if found.broken else None
+        return Case(model, cables, found.tally, story=told)
     found = explore.explore(
         model,
         plain=wanted.plain,

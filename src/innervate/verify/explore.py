@@ -34,8 +34,8 @@ class Tally:
         left_out: successors not followed because more was in flight than there is room for.
         depth: events from the start to the latest state; all states less deep are expanded.
         wall_s: seconds of searching, compiling and loading not included.
-        ended: "complete", "broken", "memory" (the bound was reached), "limit" (of states) or
-            "interrupted".
+        ended: "complete", "broken", "memory" (the bound was reached), "limit" (of states),
+            "walked" (random walks; `states` counts these then) or "interrupted".
     """
 
     states: int = 0
@@ -81,11 +81,13 @@ def compiled_engine() -> s.Engine:
     """The search of skins, compiled: `expand` and `insert` take a world and a search."""
     system = skin_system.compiled_parts()
     helpers = (s.fetch_row, s.compare, s.choose_image, s.hash_of, s.look_up, s.insert, s.refill)
-    door.register_functions(*helpers, s.room_left, hot=True)
+    walking = (s.keep_words, s.fetch_words, s.append, s.room_left)
+    door.register_functions(*helpers, *walking, hot=True)
     engine = s.build(system)
     door.register_functions(*engine.parts, system.variants, hot=False)
     expand = door.compiled(engine.expand)
-    return s.Engine(engine.parts, door.compiled(s.insert), expand)
+    wander = door.compiled(engine.wander)
+    return s.Engine(engine.parts, door.compiled(s.insert), expand, wander)
 
 
 @functools.cache
@@ -139,6 +141,35 @@ def explore(
             told = now
             if progress(tally):
                 break
+    return driver.result(tally)
+
+
+def wander(
+    model: Any,
+    walks: int,
+    *,
+    seed: int = 1,
+    length: int = 400,
+    plain: bool = False,
+    system: Any = None,
+    progress: Progress | None = None,
+) -> Result:
+    """So many random walks of at most `length` events, for budgets too large to exhaust."""
+    system = system or skin_system.system_of()
+    driver = _Driver(model, system, plain, 64 << 20, length + 2)
+    walk = s.build(system).wander if plain else compiled_engine().wander
+    run = driver.search.run
+    run[s.RANDOM], run[s.NEXT] = seed * 2_654_435_761 + 97, 0
+    walk(driver.seen_world, driver.seen_search, 0, length)  # compiles
+    tally, started = Tally(depth=length), wall_s()
+    while int(run[s.NEXT]) < walks and not int(run[s.BROKEN]):
+        batch = min(20 if plain else 2000, walks - int(run[s.NEXT]))
+        walk(driver.seen_world, driver.seen_search, batch, length)
+        tally.states = tally.expanded = int(run[s.NEXT])
+        tally.generated, tally.wall_s = int(run[s.GENERATED]), wall_s() - started
+        if progress is not None and progress(tally):
+            return driver.result(tally)
+    tally.ended = "broken" if int(run[s.BROKEN]) else "walked"
     return driver.result(tally)
 
 

@@ -13,7 +13,7 @@ from innervate.kernel.bits import mix
 
 # Places in `Search.run`.
 COUNT, NEXT, LIMIT, SLOTS, GENERATED, STATUS, MOVES, WORDS, IMAGES, WIDTH = range(10)
-BROKEN, BROKEN_AT, BROKEN_MOVE, LEFT_OUT = range(10, 14)
+BROKEN, BROKEN_AT, BROKEN_MOVE, LEFT_OUT, RANDOM = range(10, 15)
 NUMBERS = 16
 
 # Why `expand` stopped.
@@ -46,6 +46,7 @@ class Engine(NamedTuple):
     parts: tuple[Callable[..., Any], ...]
     insert: Callable[..., int]
     expand: Callable[..., None]
+    wander: Callable[..., None]
 
 
 def fetch_row(world, search, index):
@@ -139,6 +140,31 @@ def refill(search):
         search.table[slot] = (mark & ~LOW32) | (index + 1)
 
 
+def keep_words(world, search):
+    """Remember the row in the last place of the rows, to come back to."""
+    words = search.run[WORDS]
+    last = (search.run[LIMIT] - 1) * words
+    for i in range(words):
+        search.rows[last + i] = world.work_words[i]
+
+
+def fetch_words(world, search):
+    """Come back to it."""
+    fetch_row(world, search, search.run[LIMIT] - 1)
+
+
+def append(world, search):
+    """Keep the image of the present state behind the others."""
+    choose_image(world, search)
+    run = search.run
+    words = run[WORDS]
+    index = run[COUNT]
+    for i in range(words):
+        search.rows[index * words + i] = world.best_words[i]
+    search.before[index] = index - 1
+    run[COUNT] = index + 1
+
+
 def room_left(run):
     """GOING, or why the search cannot go on as it is."""
     if run[NEXT] >= run[COUNT]:
@@ -199,4 +225,49 @@ def build(system):
                 run[STATUS] = FOUND
                 return
 
-    return Engine((note, follow), insert, expand)
+    def choose(world, number):
+        """A move and variant that can be made, by a number; (-1, 0) if there is none."""
+        total = 0
+        for move in range(len(world.move_kind)):
+            total += variants(world, move)
+        if total == 0:
+            return -1, 0
+        wanted = number % total
+        for move in range(len(world.move_kind)):
+            count = variants(world, move)
+            if wanted < count:
+                return move, wanted
+            wanted -= count
+        return -1, 0
+
+    def wander(world, search, walks, length):
+        """So many random walks from the state in row 0; the rows of the last one are kept."""
+        run = search.run
+        for _ in range(walks):
+            fetch_row(world, search, 0)
+            run[COUNT] = 1
+            while run[COUNT] < length:
+                run[RANDOM] = mix(run[RANDOM], run[COUNT])
+                move, variant = choose(world, (run[RANDOM] >> 20) & LOW32)
+                if move < 0:
+                    break
+                keep_words(world, search)
+                asked = step(world, move, variant, (run[RANDOM] >> 8) & 1)
+                if asked < 0 or world.found[0] == TOO_MANY:
+                    fetch_words(world, search)  # not that way; the next number is another
+                    run[GENERATED] += 1
+                    run[RANDOM] = mix(run[RANDOM], 7)
+                    if run[RANDOM] & 63 == 0:
+                        break
+                    continue
+                run[GENERATED] += 1
+                broken = world.found[0]
+                if broken == 0:
+                    broken = check(world)
+                if broken != 0:
+                    run[BROKEN], run[BROKEN_AT] = broken, run[COUNT] - 1
+                    return
+                append(world, search)
+            run[NEXT] += 1
+
+    return Engine((note, follow, choose), insert, expand, wander)
