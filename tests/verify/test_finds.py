@@ -48,7 +48,7 @@ def test_the_other_rules_do_not(name, rule):
 
 
 def test_a_loss_is_needed_where_the_story_has_one():
-    graph, budget, _ = KNOWN["three nodes, a beacon lost"]
+    graph = KNOWN["three nodes, a beacon lost"][0]
     calm = Budget(ticks=2, counts=1, loss=0, cut=2, heal=0, false=0, restart=0, faults=2)
     made = SkinModel(graphs.parse(graph), "paper", "periodic", calm, prompt=True)
     assert explore.explore(made).broken == 0

@@ -70,7 +70,9 @@ class Grid:
         """How many combinations there are."""
         pairs = self.stations * (self.stations - 1) // 2
         choices = self.parts ** (self.draws * self.stations)
-        return int(len(self.offers_us) ** (self.stations - 1) * len(self.delays_us) ** pairs * choices)
+        return int(
+            len(self.offers_us) ** (self.stations - 1) * len(self.delays_us) ** pairs * choices
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,6 +57,7 @@ def drawn(seed: int) -> Tables:
 def _skin(draw: random.Random, seed: int) -> Tables:
     columns, rows = draw.randint(1, 8), draw.randint(1, 8)
     duration_s = draw.choice((0.5, 1.0, 2.0))
+    wiring = draw.choice("ZS") if columns > 1 else "Z"  # S does not join a single column
     sides = [(row, column) for row in range(rows) for column in (0, columns - 1)]
     interfaces = draw.sample(sorted(set(sides)), min(draw.randint(1, 3), len(set(sides))))
     tables: Tables = {
@@ -64,7 +65,7 @@ def _skin(draw: random.Random, seed: int) -> Tables:
         "name": f"random-{seed}",
         "seed": seed,
         "duration_s": duration_s,
-        "patch": [{"columns": columns, "rows": rows, "wiring": draw.choice("ZS")}],
+        "patch": [{"columns": columns, "rows": rows, "wiring": wiring}],
         "interface": [{"row": row, "column": column} for row, column in interfaces],
         "protocol": {
             "rule": draw.choice(("feasible", "feasible", "strict")),

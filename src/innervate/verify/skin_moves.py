@@ -48,7 +48,6 @@ from innervate.verify.skin_world import (
     PC_TICK,
     PROMPT,
     RESTART,
-    RESTART_PC,
     SAYS,
     SOON,
     TICK,
