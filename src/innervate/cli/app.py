@@ -12,6 +12,8 @@ from cyclopts import App, Parameter
 
 import innervate
 from innervate.cli import errors
+from innervate.cli.seeds import Seed
+from innervate.cli.verify_options import VERIFY_DEFAULTS, VerifyOptions
 
 HELP = """Describe and simulate the networks inside and between robots.
 
@@ -20,17 +22,6 @@ Start with: innervate demo. The first run on a machine compiles for about half a
 _SET = Parameter(name=["--set"], negative="", allow_leading_hyphen=True)
 Sets = Annotated[list[str] | None, _SET]
 
-
-def _whole_seed(_type: Any, tokens: Sequence[Any]) -> int:
-    """What --seed takes: a library's guess at a number could run another seed than was meant."""
-    text = tokens[0].value
-    if not (text.isascii() and text.isdigit() and int(text) < 2**63):
-        message = f'--seed must be a whole number from 0, below 2^63, not "{text[:40]}"'
-        raise errors.UserError(message)
-    return int(text)
-
-
-Seed = Annotated[int | None, Parameter(converter=_whole_seed)]
 
 app = App(
     name="innervate",
@@ -134,22 +125,7 @@ def verify(
     system: str = "skin",
     /,
     *,
-    rule: str = "",
-    updates: str = "all",
-    graph: str = "all",
-    cells: int = 0,
-    budget: str = "",
-    prompt: Annotated[bool, Parameter(negative="")] = False,
-    liveness: bool = True,
-    starts: int = 0,
-    states: int = 0,
-    walks: int = 0,
-    memory: str = "2G",
-    random: Annotated[bool, Parameter(negative="")] = False,
-    mutants: Annotated[bool, Parameter(negative="")] = False,
-    seed: Seed = None,
-    count: int = 0,
-    plain: Annotated[bool, Parameter(negative="")] = False,
+    options: Annotated[VerifyOptions, Parameter(name="*")] = VERIFY_DEFAULTS,
     json: Annotated[bool, Parameter(negative="")] = False,
     out: Path | None = None,
 ) -> int:
@@ -159,40 +135,6 @@ def verify(
     ----------
     system
         Which protocol: skin or radio.
-    rule
-        Skin: feasible (if left out), strict, paper or all. Radio: practical (if left out) or paper.
-    updates
-        periodic, triggered or all.
-    graph
-        Cables like "pc-1 1-2 2-3", a name (line, star, triangle, ring, pair, complete), or all
-        graphs of up to --cells cells.
-    cells
-        How many cells the graphs may have, 1 to 4 (2 if left out); stations of a radio, 2 to 4.
-    budget
-        How often what may happen, like "ticks=3,counts=2,loss=1,cut=1,heal=1,false=1,restart=1,
-        faults=2"; these are the defaults, and faults counts all five kinds together.
-    prompt
-        Every frame arrives or is lost before anything else happens.
-    liveness
-        Also see from every state whether routes become shortest once faults have ended.
-    starts
-        Play that from so many states instead of all.
-    states
-        End each exploration after so many states.
-    walks
-        Instead of all states so many random walks, for larger budgets.
-    memory
-        What the states of an exploration may take, like 800M or 4G.
-    random
-        Simulate whole networks, all settings and faults drawn, until interrupted.
-    mutants
-        Try the explorer on copies of the protocol with a small mistake in each.
-    seed
-        With --random the first network's number, with --walks the walks'.
-    count
-        With --random end after so many networks.
-    plain
-        Without the compiler: slower by a hundred times, needs no preparation.
     json
         Print the results as JSON and nothing else.
     out
@@ -200,12 +142,6 @@ def verify(
     """
     from innervate.cli import verifying as command
 
-    options = {
-        "rule": rule, "updates": updates, "graph": graph, "cells": cells, "budget": budget,
-        "prompt": prompt, "liveness": liveness, "starts": starts, "states": states,
-        "memory": memory, "plain": plain, "walks": walks, "random": random, "mutants": mutants,
-        "seed": seed, "count": count,
-    }  # fmt: skip
     return command.verify(system, options, json, out)
 
 

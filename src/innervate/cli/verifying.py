@@ -10,6 +10,7 @@ from innervate.cli import errors
 from innervate.cli.progress import Display
 
 if TYPE_CHECKING:
+    from innervate.cli.verify_options import VerifyOptions
     from innervate.verify.cases import Case, Wanted
 
 COMPILING = "compiling the explorer, once on this machine: about half a minute"
@@ -108,35 +109,38 @@ def _write(case: Case, out: Path, number: int, quiet: bool) -> None:
         print(f"    Written: {stem}.toml (innervate run plays it), .txt, .svg")
 
 
-def verify(system: str, options: dict[str, Any], as_json: bool, out: Path | None) -> int:
+def verify(system: str, options: VerifyOptions, as_json: bool, out: Path | None) -> int:
     """Explore a protocol with the options of the command line."""
     if system not in ("skin", "radio"):
         raise errors.UserError(f'verify explores skin or radio, not "{system[:40]}"')
-    if options["random"]:
+    for name in ("cells", "starts", "states", "walks", "count"):
+        if getattr(options, name) < 0:
+            raise errors.UserError(f"--{name} must be 0 or more, not {getattr(options, name)}")
+    if options.random:
         from innervate.cli import verifying_random
 
-        return verifying_random.search(options["seed"], options["count"], as_json, out)
+        return verifying_random.search(options.seed, options.count, as_json, out)
     if system == "radio":
         from innervate.cli import verifying_radio
 
         return verifying_radio.search(options, as_json)
-    if options["mutants"]:
+    if options.mutants:
         return _mutants(as_json)
     from innervate.verify import cases
 
     wanted = cases.Wanted(
-        rules=_choices("rule", options["rule"] or "feasible", cases.RULES),
-        updates=_choices("updates", options["updates"], cases.UPDATES),
-        graphs=cases.graphs_of(options["graph"], options["cells"] or 2),
-        budget=cases.budget_of(options["budget"]),
-        prompt=options["prompt"],
-        live=options["liveness"],
-        starts=options["starts"],
-        walks=options["walks"],
-        seed=options["seed"] or 1,
-        states=options["states"],
-        memory=_bytes(options["memory"]),
-        plain=options["plain"],
+        rules=_choices("rule", options.rule or "feasible", cases.RULES),
+        updates=_choices("updates", options.updates, cases.UPDATES),
+        graphs=cases.graphs_of(options.graph, options.cells or 2),
+        budget=cases.budget_of(options.budget),
+        prompt=options.prompt,
+        live=options.liveness,
+        starts=options.starts,
+        walks=options.walks,
+        seed=options.seed or 1,
+        states=options.states,
+        memory=_bytes(options.memory),
+        plain=options.plain,
     )
     return skin(wanted, as_json, out)
 

@@ -9,26 +9,27 @@ from innervate.cli import errors
 from innervate.cli.progress import Display
 
 if TYPE_CHECKING:
+    from innervate.cli.verify_options import VerifyOptions
     from innervate.run.radio_grid import Found, Grid
 
 
-def search(options: dict[str, Any], as_json: bool) -> int:
+def search(options: VerifyOptions, as_json: bool) -> int:
     """Run the grids of 2 stations up to as many as asked for; 1 if something is broken."""
     from innervate.kernel.stop import Stop
     from innervate.run import radio_grid
 
-    mode = options["rule"] or "practical"
+    wanted = _grids(options.cells or 3, options.rule or "practical")
     done: list[Found] = []
     with Stop() as stop, Display(as_json) as display:
         display.begin("radio on a grid; the first time compiles for about half a minute", line=True)
-        for grid in _grids(options["cells"] or 3, mode):
+        for grid in wanted:
 
             def tell(found: Found) -> bool:
                 what = f"{found.grid.stations} stations: {found.done} of {found.grid.points} points"
                 display.show(what, found.done, found.grid.points, None)
                 return stop.asked
 
-            done.append(radio_grid.search(grid, tell, options["states"]))
+            done.append(radio_grid.search(grid, tell, options.states))
             if not as_json:
                 for line in _lines(done[-1]):
                     print(line, flush=True)

@@ -93,15 +93,21 @@ def _panel(story: Story, index: int, places: list[Point]) -> Drawing:
     """The network after one event."""
     scene, graph = story.scenes[index], story.graph
     panel = Drawing(PANEL[0], PANEL[1], f"after event {index + 1}")
+    whole: list[tuple[Point, Point]] = []
+    cut: list[tuple[Point, Point]] = []
     for a, b in graph.links():
         ends = graph.node_of(a), graph.node_of(b)
         is_cut = ends in scene.cut or ends[::-1] in scene.cut
-        panel.line(places[ends[0]], places[ends[1]], "cut" if is_cut else "cable")
+        (cut if is_cut else whole).append((places[ends[0]], places[ends[1]]))
+    for start, end in whole:
+        panel.line(start, end, "cable")
     is_last = index == len(story.scenes) - 1
     for cell, parent in enumerate(scene.parents):
         if parent != NONE:
             closed = is_last and cell in story.ring
             _arrow(panel, places[cell], places[parent], "ring" if closed else "way")
+    for start, end in cut:  # over the arrow of a cell that has not noticed yet
+        panel.line(start, end, "cut")
     for node, place in enumerate(places):
         _node(panel, place, graph.label(node), node == graph.sink, node == scene.actor)
     panel.text((12, 18), f"after {index + 1}", "small")

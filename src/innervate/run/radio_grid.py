@@ -254,6 +254,7 @@ def search(
     """Run all points of a grid, or the first `limit`."""
     plan, seeds = base_plan(grid), seeds_of(grid)
     found = Found(grid, 0, 0.0, {}, {}, "interrupted")
+    run_point(plan_of(plan, grid, next(points(grid))), next(points(grid)), seeds)  # compiles
     started = wall_s()
     for point in points(grid):
         broken, _ = run_point(plan_of(plan, grid, point), point, seeds)

@@ -163,7 +163,7 @@ class Teller:
 
     def _frame_words(self, way: int, frame: bytes) -> str:
         sender = self.name(self.graph.node_of(self.real.lay.way_end[way ^ 1]))
-        child = ", my parent are you" if frame[w.SAYS] & skin_row.IS_CHILD else ""
+        child = ", you are my parent" if frame[w.SAYS] & skin_row.IS_CHILD else ""
         return f'{sender} "{_route(frame[w.DIST], frame[w.SQ])}{child}"'
 
     def _says(self, cell: int) -> str:
