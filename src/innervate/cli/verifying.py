@@ -56,7 +56,8 @@ def case_lines(case: Case) -> list[str]:
     """What came of one exploration."""
     tally = case.tally
     name = f"{case.cables:32} {case.model.rule:9} {case.model.updates:10}"
-    much = f"{tally.states:>11,} states {tally.generated:>12,} successors {tally.wall_s:7.1f} s"
+    unit = "walks " if tally.ended == "walked" else "states"
+    much = f"{tally.states:>11,} {unit} {tally.generated:>12,} successors {tally.wall_s:7.1f} s"
     if case.story is not None:
         head = f"{name}{much}  BROKEN after {len(case.story.sentences)} events"
         return [head, *(f"    {line}" for line in case.story.lines())]
@@ -73,7 +74,7 @@ def _extent(case: Case) -> str:
         "memory": f"first {tally.expanded:,} states, to {tally.depth} events: memory is full",
         "limit": f"first {tally.expanded:,} states, to {tally.depth} events, as asked",
         "interrupted": f"first {tally.expanded:,} states, to {tally.depth} events: interrupted",
-        "walked": f"{tally.states:,} random walks, a sample",
+        "walked": "a sample of random walks",
     }[tally.ended]
     if tally.left_out:
         words += f" but {tally.left_out:,} successors with too many frames in flight"
