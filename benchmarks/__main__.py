@@ -12,7 +12,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from benchmarks import beacons, c_heap, explorer, radio, simpy_timeouts
+from benchmarks import beacons, c_heap, explorer, radio, simpy_timeouts, sweeps
 
 NS3_BEST = {204: 0.64e6, 10_020: 0.13e6}  # beacons/s of ns-3 3.37, measured on another such machine
 COMMAND_RUNS = 5
@@ -45,6 +45,7 @@ def main():
         print("1,000,000 cells at 10 Hz, one second, warm:",
               ", ".join(f"{k} {v:.2f}" if isinstance(v, float) else f"{k} {v:,}"
                         for k, v in figures["million"].items()))  # fmt: skip
+    figures["sweeps"] = sweep_row()
     figures["commands"] = commands()
     if options.json:
         options.json.write_text(json.dumps(figures, indent=2) + "\n")
@@ -89,6 +90,15 @@ def radio_row(stations):
         flush=True,
     )
     return {"off": off, "on": on}
+
+
+def sweep_row():
+    """What a sweep costs beyond its runs, and how it scales."""
+    overhead, scaling = sweeps.overhead(), sweeps.scaling()
+    shown = ", ".join(f"{name} {1e3 * s:.2f} ms" for name, s in overhead.items())
+    speed = f"{scaling['per_core']:.2f} per core on {scaling['cores']} cores"
+    print(f"sweep, overhead of a small run: {shown}; {speed}", flush=True)
+    return {"overhead_s": overhead, **scaling}
 
 
 def million(baseline, width):

@@ -17,7 +17,17 @@ def test_version(sh):
 @pytest.mark.parametrize("tokens", [(), ("--help",), ("-h",)])
 def test_help_names_every_command(sh, tokens):
     assert sh(*tokens) == 0
-    for command in ("demo", "run", "papers", "scenarios", "new", "check", "compare"):
+    for command in (
+        "demo",
+        "run",
+        "sweep",
+        "size",
+        "papers",
+        "scenarios",
+        "new",
+        "check",
+        "compare",
+    ):
         assert f" {command} " in sh.out
     assert sh.err == ""
 

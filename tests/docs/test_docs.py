@@ -12,6 +12,7 @@ import pytest
 from innervate import scenario
 from innervate.cli.app import app
 from innervate.scenario import model
+from innervate.sweep import make_plan, planfile
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -85,9 +86,13 @@ def test_every_event_action_is_documented():
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_scenarios_in_pages_can_be_run(page):
+def test_scenarios_in_pages_can_be_run(page, tmp_path):
     for block in blocks(page, "toml"):
-        scenario.plan(scenario.loads(block))
+        if planfile.is_plan(block):
+            (tmp_path / "plan.toml").write_text(block)
+            assert make_plan(tmp_path / "plan.toml").points
+        else:
+            scenario.plan(scenario.loads(block))
 
 
 def test_commands_in_pages_exist():

@@ -4,18 +4,67 @@ import runpy
 import sys
 from pathlib import Path
 
+import polars
 import pytest
 
 import innervate
+from innervate.cli import main
+from innervate.sweep.planfile import is_plan
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples"
 
 
-@pytest.mark.parametrize("path", sorted(FOLDER.glob("*.toml")), ids=lambda path: path.stem)
+TOML = sorted(FOLDER.glob("*.toml"))
+PLANS = [path for path in TOML if is_plan(path.read_text(encoding="utf-8"))]
+SCENARIOS = [path for path in TOML if path not in PLANS]
+
+
+@pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
 def test_scenarios(path):
     done = innervate.run(path)
     assert done.summary["loops"]["episodes"] == 0
     assert len(done.summary["recoveries"]) == len(done.plan.faults)
+
+
+SMALL = {
+    "beacon-rate": ("protocol.beacon_hz=50,250", "protocol.k=3"),
+    "ports-needed": ("data.rate_hz=100,250",),
+    "team-size": ("stations=2,5", "protocol.mac=csma-cd-r,dcf"),
+}
+
+
+@pytest.mark.parametrize("path", PLANS, ids=lambda path: path.stem)
+def test_design_questions(path, tmp_path):
+    """Each plan in a small size: what it asks is answered, and drawn."""
+    vary = [word for text in SMALL[path.stem] for word in ("--vary", text)]
+    small = ("--repeat", "2", "--workers", "1", "--out", str(tmp_path))
+    assert main(["sweep", str(path), *vary, *small]) == 0
+    done = innervate.sweep.load(tmp_path)
+    assert done.failed.height == 0
+    assert {p.stem for p in tmp_path.glob("*.png")} == {plot.name for plot in done.plan.plots}
+    ANSWERS[path.stem](done)
+
+
+def faster_with_waves(done):
+    better = done.compare("protocol.updates", "periodic", "wave", "recoveries.routed_ms")
+    assert all(ms < 0 for ms in better["difference"])
+
+
+def less_loss_with_ports(done):
+    fast = done.points("data.loss_ratio").filter(polars.col("data.rate_hz") == 250)
+    assert fast["mean"].to_list() == sorted(fast["mean"], reverse=True)
+
+
+def reservation_fills_the_channel(done):
+    better = done.compare("protocol.mac", "dcf", "csma-cd-r", "throughput")
+    assert all(share > 0.2 for share in better["difference"])
+
+
+ANSWERS = {
+    "beacon-rate": faster_with_waves,
+    "ports-needed": less_loss_with_ports,
+    "team-size": reservation_fills_the_channel,
+}
 
 
 def run_script(name, monkeypatch, capsys, *arguments):

@@ -113,6 +113,8 @@ def is_compiled(plan: Any) -> bool:
 
     if plan.kind == "radio":
         return door.is_compiled(plan.protocol.replace("/", "-"))
+    if plan.kind == "mesh":
+        return door.is_compiled(f"mesh-{plan.capacity}")
     from innervate.sim.simulate import loop_name
 
     return bool(plan.script) or door.is_compiled(loop_name(plan))
