@@ -12,6 +12,8 @@ from cyclopts import App, Parameter
 
 import innervate
 from innervate.cli import errors
+from innervate.cli.seeds import Seed
+from innervate.cli.verify_options import VERIFY_DEFAULTS, VerifyOptions
 
 HELP = """Describe and simulate the networks inside and between robots.
 
@@ -20,17 +22,6 @@ Start with: innervate demo. The first run on a machine compiles for about half a
 _SET = Parameter(name=["--set"], negative="", allow_leading_hyphen=True)
 Sets = Annotated[list[str] | None, _SET]
 
-
-def _whole_seed(_type: Any, tokens: Sequence[Any]) -> int:
-    """What --seed takes: a library's guess at a number could run another seed than was meant."""
-    text = tokens[0].value
-    if not (text.isascii() and text.isdigit() and int(text) < 2**63):
-        message = f'--seed must be a whole number from 0, below 2^63, not "{text[:40]}"'
-        raise errors.UserError(message)
-    return int(text)
-
-
-Seed = Annotated[int | None, Parameter(converter=_whole_seed)]
 
 app = App(
     name="innervate",
@@ -258,6 +249,31 @@ def papers(
     from innervate.cli import papers as command
 
     return command.papers(paper, only or [], quick, redraw, out)
+
+
+@app.command
+def verify(
+    system: str = "skin",
+    /,
+    *,
+    options: Annotated[VerifyOptions, Parameter(name="*")] = VERIFY_DEFAULTS,
+    json: Annotated[bool, Parameter(negative="")] = False,
+    out: Path | None = None,
+) -> int:
+    """Explore every interleaving of the protocol on small networks; 1 if something is broken.
+
+    Parameters
+    ----------
+    system
+        Which protocol: skin or radio.
+    json
+        Print the results as JSON and nothing else.
+    out
+        Folder for counterexamples: scenario, story, picture.
+    """
+    from innervate.cli import verifying as command
+
+    return command.verify(system, options, json, out)
 
 
 @app.command

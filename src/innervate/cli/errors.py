@@ -23,6 +23,7 @@ _EXTRAS = {
 _KNOWN = (
     ("innervate.scenario.errors", "ScenarioError", USERS),
     ("innervate.run.errors", "RunError", USERS),
+    ("innervate.verify.errors", "VerifyError", USERS),
     ("innervate.sweep.errors", "SweepError", USERS),
     ("cyclopts", "CycloptsError", USERS),
     ("innervate.sim.simulate", "InvariantBroken", OURS),

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from innervate.kernel import door, tables
+from innervate.kernel.stop import Stop
 from innervate.kernel.wall import wall_s
 from innervate.protocol import mesh_fields
 from innervate.sim import loop as skin_loop
@@ -20,7 +21,7 @@ from innervate.sim.mesh import build as builder
 from innervate.sim.mesh import world as w
 from innervate.sim.radio import heap
 from innervate.sim.radio.build import grow_heap
-from innervate.sim.simulate import InvariantBroken, Stop
+from innervate.sim.simulate import InvariantBroken
 from innervate.sim.world import row_dtype
 
 SLICE_EVENTS = 200_000

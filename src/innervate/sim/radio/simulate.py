@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from innervate.kernel import door, tables
+from innervate.kernel.stop import Stop
 from innervate.kernel.wall import wall_s
 from innervate.sim import loop as skin_loop
 from innervate.sim.build import get, put
 from innervate.sim.radio import build as builder
 from innervate.sim.radio import heap, loop, medium, stacks, traffic
 from innervate.sim.radio import world as w
-from innervate.sim.simulate import InvariantBroken, Stop
+from innervate.sim.simulate import InvariantBroken
 from innervate.sim.world import row_dtype
 
 SLICE_EVENTS = 1_000_000
