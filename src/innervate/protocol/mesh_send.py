@@ -11,7 +11,7 @@ from innervate.protocol.mesh_route import (
     planned,
     room_of,
 )
-from innervate.protocol.mesh_seen import skip, unskip
+from innervate.protocol.mesh_seen import note_no_way, skip, unskip
 from innervate.protocol.mesh_upward import uplink
 from innervate.protocol.mesh_words import (
     ACK_WANTED,
@@ -34,6 +34,13 @@ def give_up(node, i, out):
     """Nobody can take the packet in place i."""
     report(out, REPORT_DROPPED, node.q_origin[i], node.q_seq[i])
     drop(node, i)
+
+
+def no_way(node, i, out):
+    """Everybody was asked who could take the packet in place i."""
+    if node.q_origin[i] == node.number:
+        note_no_way(node, node.q_dest[i])
+    give_up(node, i, out)
 
 
 def pass_on(node, params, i, who):
@@ -80,7 +87,7 @@ def send_on(node, params, now, i, out):
     if not goes_back(node, params, i) and not enter(node, params, i, out):
         return 0
     if not aim(node, params, i, out):
-        give_up(node, i, out)
+        no_way(node, i, out)
         return 0
     return 1
 
@@ -135,8 +142,10 @@ def hop_failed(node, params, now, i, out):
     else:
         suspect(node, params, now, dead, planned(node, params, node.q_dest[i]) == dead, out)
         learn_failure(node, params, i, dead)
-        if not params.retry or node.q_fails[i] > HOPS_MAX or not aim(node, params, i, out):
+        if not params.retry or node.q_fails[i] > HOPS_MAX:
             give_up(node, i, out)
+        elif not aim(node, params, i, out):
+            no_way(node, i, out)
 
 
 def unanswered(node, params, now, out):
