@@ -55,8 +55,8 @@ def keep(node, params, now, w, i, handle, out):
 def timeout(node, params, w):
     """How long to wait for the end-to-end ack of the message in place w, us.
 
-    Twice as long after every further retry: a recipient that is not there is searched everywhere each time.
-    Alarms do not wait longer.
+    Twice as long after every further retry, but for alarms: who is not there is searched
+    everywhere each time.
     """
     wait = params.e2e_us
     if params.e2e_adapt:
@@ -118,8 +118,7 @@ def try_again(node, params, now, w, out):
     if node.wait_tries[w] > params.e2e_tries:
         report(out, REPORT_EXPIRED, node.wait_handle[w], NO_ACK)
         if node.wait_kind[w] == DATA:
-            note_no_way(node, node.wait_dest[w])
-            note_no_way(node, node.wait_dest[w])
+            note_no_way(node, node.wait_dest[w], node.wait_tries[w] > 2)
         node.wait_kind[w] = FREE
         return 0
     node.wait_tries[w] = node.wait_tries[w] + 1

@@ -196,15 +196,15 @@ def is_bad(node, who, dest):
     return 0
 
 
-def note_no_way(node, dest):
+def note_no_way(node, dest, sure):
     """A packet of ours found no way to `dest`, whoever we asked."""
-    if is_bad(node, node.number, dest):
+    if sure or is_bad(node, node.number, dest):
         mark_bad(node, NO_WAY, dest)
     mark_bad(node, node.number, dest)
 
 
 def is_hopeless(node, dest):
-    """1 if twice no way was found to `dest`, and nothing has changed since.
+    """1 if again and again no way was found to `dest`, and nothing has changed since.
 
     A search asks the whole network. All who have messages for somebody who died would search
     without end, and leave no room for the round that mends the tables.

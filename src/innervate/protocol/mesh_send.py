@@ -1,6 +1,7 @@
 """A packet goes on: its next hop is chosen, and another when that does not answer."""
 
 from innervate.protocol.arith import MASK30
+from innervate.protocol.mesh_fields import WAITING
 from innervate.protocol.mesh_frames import add_hop, was_at
 from innervate.protocol.mesh_near import suspect, trust
 from innervate.protocol.mesh_queue import UNACKED, WAITS, drop, kick
@@ -27,6 +28,7 @@ from innervate.protocol.outbox import report
 from innervate.protocol.rng import draw
 
 FAILURES_MAX = 6
+SURE_AFTER = 2  # sent so often in vain, the next failure of a kept message counts
 HOPS_MAX = 40  # failures of a routed packet at a node: every neighbour once, and some to spare
 
 
@@ -36,10 +38,20 @@ def give_up(node, i, out):
     drop(node, i)
 
 
+def tries_of(node, seq):
+    """How often a message of ours that is kept was sent, 0 if this one is not kept."""
+    for w in range(WAITING):
+        if node.wait_kind[w] and node.wait_seq[w] == seq:
+            return node.wait_tries[w]
+    return 0
+
+
 def no_way(node, i, out):
     """Everybody was asked who could take the packet in place i."""
     if node.q_origin[i] == node.number:
-        note_no_way(node, node.q_dest[i])
+        tries = tries_of(node, node.q_seq[i])
+        if tries == 0 or tries > SURE_AFTER:
+            note_no_way(node, node.q_dest[i], tries)
     give_up(node, i, out)
 
 
