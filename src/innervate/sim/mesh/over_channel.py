@@ -11,6 +11,7 @@ from typing import NamedTuple
 from innervate.kernel.bits import mix
 from innervate.protocol.mesh_words import ACK
 from innervate.protocol.radio_words import QUEUE
+from innervate.scenario.mesh_plan import HEADER_SLOTS
 from innervate.sim.mesh import books, medium, queue
 from innervate.sim.mesh.medium import NONE
 from innervate.sim.mesh.world import ALIVE, HELD, VOID
@@ -19,7 +20,6 @@ from innervate.sim.radio import loop as radio_loop
 from innervate.sim.radio import medium as channel
 
 KEPT = 32  # frames of a node that are kept; more than its medium access can hold
-HEADER_SLOTS = 2  # place, next, more, ok in front of the mesh's frame (docs/radio.md)
 
 
 class Layer(NamedTuple):
