@@ -247,6 +247,7 @@ PARAMS = (
     ("activation", 0, 0, 1, "flag", "tables wait until all have theirs"),
     ("told", 0, 0, 1, "flag", "the layer below says SENT"),
     ("transmissions", 0, 1, 15, "tries", "per hop"),
+    ("hop_acks", 0, 0, 1, "flag", "hops acknowledge; 0 = SENT says that the frame was received"),
     ("ack_us", 0, 1, 16777215, "us", "wait for a hop's ack, from SENT"),
     ("suspect_us", 0, 1, 268435455, "us", "a neighbour that does not answer is avoided"),
     ("min_rssi", 0, -128, 127, "dBm", "weaker links are not reported"),

@@ -58,7 +58,8 @@ def no_way(node, i, out):
 def pass_on(node, params, i, who):
     """The packet in place i goes to `who` next."""
     node.q_link_dst[i] = who
-    node.q_flags[i] = node.q_flags[i] | ACK_WANTED
+    if params.hop_acks:
+        node.q_flags[i] = node.q_flags[i] | ACK_WANTED
     node.q_tries[i] = 0
 
 

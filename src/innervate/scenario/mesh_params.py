@@ -99,6 +99,7 @@ def parameters(
         "activation": int(settings.activation),
         "told": int(profile.collisions),
         "transmissions": chosen.value("transmissions", profile.transmissions),
+        "hop_acks": int(chosen.value("hop_acks", profile.hop_acks)),
         "ack_us": chosen.value("ack_us", profile.ack_us),
         "suspect_us": chosen.micros("suspect_s", profile.suspect),
         "min_rssi": chosen.value("min_rssi_dbm", min_rssi_dbm),
