@@ -54,7 +54,7 @@ def test_the_same_on_any_machine() -> None:
     """Numbers that were computed with logarithms and rounded: they must not depend on a libm."""
     p = plan(load("mesh-field"))
     text = repr((p.positions_cm, p.radio, p.good, p.walks, p.offers, p.faults, p.starts_us))
-    assert hashlib.blake2b(text.encode(), digest_size=8).hexdigest() == "96c6abdeac594775"
+    assert hashlib.blake2b(text.encode(), digest_size=8).hexdigest() == "2923e367c70dd59f"
 
 
 @pytest.mark.parametrize("seed", range(1, 9))
