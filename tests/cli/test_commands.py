@@ -118,7 +118,9 @@ def test_demo_tells_the_story(sh, monkeypatch):
         str(Path("there/mesh/report.html")),
     ):  # fmt: skip
         assert words in sh.out
-    there = [Path(f"there/{part}/report.html").resolve().as_uri() for part in ("skin", "radio", "mesh")]
+    there = [
+        Path(f"there/{part}/report.html").resolve().as_uri() for part in ("skin", "radio", "mesh")
+    ]
     assert opened == there
     assert sh("demo", "--out", "there") == 0  # runs are replaced
 

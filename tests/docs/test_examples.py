@@ -111,7 +111,8 @@ def test_standby_or_posts(monkeypatch, capsys, tmp_path):
         assert letter < 80 <= search
         assert graph > letter
     without, with_one = (
-        [line for line in lines if f"{which} standby" in line] for which in ("without a", "with one")
+        [line for line in lines if f"{which} standby" in line]
+        for which in ("without a", "with one")
     )
     assert all(line.endswith(": 0 %, -") for line in without)
     assert all(": 100 %" in line for line in with_one)
