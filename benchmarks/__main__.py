@@ -96,9 +96,9 @@ def mesh_row(nodes):
     off, on, whole = mesh.measure(nodes), mesh.measure(nodes, checks=True), mesh.whole_s(nodes)
     bar = f" (at most {mesh.BAR_S:g})" if nodes == mesh.NODES[0] else ""
     print(
-        f"mesh, {nodes} nodes for {mesh.DURATION_S:g} s: {off['events_per_s'] / 1e6:.2f} Mevents/s, "
-        f"{off['s_per_s']:,.0f} s simulated in one; with checks and rows "
-        f"{on['events_per_s'] / 1e6:.2f}; innervate.run {whole:.2f} s{bar}",
+        f"mesh, {nodes} nodes for {mesh.DURATION_S:g} s: {off['events_per_s'] / 1e6:.2f} "
+        f"Mevents/s, {off['s_per_s']:,.0f} s simulated in one; "
+        f"with checks and rows {on['events_per_s'] / 1e6:.2f}; innervate.run {whole:.2f} s{bar}",
         flush=True,
     )
     return {"off": off, "on": on, "whole_s": whole}

@@ -1,8 +1,8 @@
 """The compiled mesh: networks of three capacity classes with messages, for a minute of their time.
 
-An event is a handler call or a frame that arrives somewhere. Radio 250k, mean degree 8, ten pairs of
-nodes with a message every 2 s, and a robot that crosses its fence. The best of a few runs counts,
-because other work on the machine only ever slows one down.
+An event is a handler call or a frame that arrives somewhere. Radio 250k, mean degree 8, ten pairs
+of nodes with a message every 2 s, and a robot that crosses its fence. The best of a few runs
+counts, because other work on the machine only ever slows one down.
 """
 
 import time

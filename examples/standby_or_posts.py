@@ -1,8 +1,8 @@
 """Does my field need a standby or more posts? Alarms against dead nodes, for four ways to forward.
 
 Four robots leave a fenced field of 100 m one after another while some of its posts are dead, which
-nobody knows. Printed is the share of the crossings that the monitor learned of within 0.1 s, and how
-long 90 % of the alarms took. In the last lines the gateway has died, which is the monitor as well.
+nobody knows. Printed is the share of the crossings that the monitor learned of within 0.1 s, and
+how long 90 % of the alarms took. In the last lines the gateway has died, which is the monitor too.
 Run it with: python examples/standby_or_posts.py [seeds]
 """
 
