@@ -12,7 +12,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from benchmarks import beacons, c_heap, explorer, radio, simpy_timeouts, sweeps
+from benchmarks import beacons, c_heap, explorer, mesh, radio, simpy_timeouts, sweeps
 
 NS3_BEST = {204: 0.64e6, 10_020: 0.13e6}  # beacons/s of ns-3 3.37, measured on another such machine
 COMMAND_RUNS = 5
@@ -40,6 +40,8 @@ def main():
     print(f"explorer, PC and triangle: {figures['explorer']['successors_per_s'] / 1e6:.2f} M "
           f"successors/s, {figures['explorer']['states']:,} states")  # fmt: skip
     figures["radio"] = [radio_row(stations) for stations in radio.STATIONS]
+    sizes = mesh.NODES[:1] if options.quick else mesh.NODES
+    figures["mesh"] = [mesh_row(nodes) for nodes in sizes]
     if not options.quick:
         figures["million"] = json.loads(beacons.million_apart())
         print("1,000,000 cells at 10 Hz, one second, warm:",
@@ -90,6 +92,19 @@ def radio_row(stations):
         flush=True,
     )
     return {"off": off, "on": on}
+
+
+def mesh_row(nodes):
+    """A mesh for a minute, with and without checkers; the whole run beside the bar."""
+    off, on, whole = mesh.measure(nodes), mesh.measure(nodes, checks=True), mesh.whole_s(nodes)
+    bar = f" (at most {mesh.BAR_S:g})" if nodes == mesh.NODES[0] else ""
+    print(
+        f"mesh, {nodes} nodes for {mesh.DURATION_S:g} s: {off['events_per_s'] / 1e6:.2f} "
+        f"Mevents/s, {off['s_per_s']:,.0f} s simulated in one; "
+        f"with checks and rows {on['events_per_s'] / 1e6:.2f}; innervate.run {whole:.2f} s{bar}",
+        flush=True,
+    )
+    return {"off": off, "on": on, "whole_s": whole}
 
 
 def sweep_row():

@@ -20,6 +20,7 @@ FOLDER = Path(__file__).resolve().parent
 PICTURE = FOLDER / "images" / "recovery.svg"
 RADIO_PICTURE = FOLDER / "images" / "radio.svg"
 MESH_PICTURE = FOLDER / "images" / "mesh.svg"
+MESH_CLASS = 32  # nodes: the smallest capacity class
 
 
 def field_table(fields: Iterable[tuple[str, object, int, int, str, str]]) -> str:
@@ -100,6 +101,10 @@ PARTS = (
     ("radio.md", "radio-frame", lambda: field_table(radio_fields.FRAME)),
     ("radio.md", "radio-station", lambda: field_table(radio_fields.STATION)),
     ("radio.md", "radio-practical", lambda: field_table(radio_fields.PRACTICAL)),
+    ("mesh.md", "mesh-frame", lambda: field_table(mesh_fields.FRAME)),
+    ("mesh.md", "mesh-parameters", lambda: field_table(mesh_fields.PARAMS)),
+    ("mesh.md", "mesh-node", lambda: field_table(mesh_fields.node(MESH_CLASS))),
+    ("mesh.md", "mesh-gate", lambda: field_table(mesh_fields.gate(MESH_CLASS))),
     ("wire.md", "wire-skin", lambda: layout_tables(skin.LAYOUTS, meanings(skin_fields.FRAME))),
     ("wire.md", "wire-mesh", mesh_frames),
     ("wire.md", "wire-mesh-payloads", lambda: layout_tables(mesh_payloads.LAYOUTS, MEANINGS)),

@@ -22,6 +22,11 @@ SCENARIOS = [path for path in TOML if path not in PLANS]
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
 def test_scenarios(path):
     done = innervate.run(path)
+    if done.summary["kind"] == "mesh":
+        assert done.summary["discovery"]["with_tables"] == done.plan.nodes
+        assert done.summary["connected"]["delivery_ratio"] > 0.99
+        assert done.summary["duplicates"] == 0
+        return
     assert done.summary["loops"]["episodes"] == 0
     assert len(done.summary["recoveries"]) == len(done.plan.faults)
 
@@ -95,6 +100,38 @@ def test_which_medium_access(monkeypatch, capsys):
         assert fair > 0.99
 
 
+def test_standby_or_posts(monkeypatch, capsys, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    lines = run_script("standby_or_posts.py", monkeypatch, capsys, "2")
+    rows = [line.split("dead", 1)[1] for line in lines if line[:3].strip().isdigit()
+            and "posts" not in line]  # fmt: skip
+    shares = [[float(cell.split()[-1]) for cell in row.split("%")[:-1]] for row in rows]
+    assert len(shares) == 6
+    for letter, _routed, search, graph in shares:
+        assert letter < 80 <= search
+        assert graph > letter
+    without, with_one = (
+        [line for line in lines if f"{which} standby" in line]
+        for which in ("without a", "with one")
+    )
+    assert all(line.endswith(": 0 %, -") for line in without)
+    assert all(": 100 %" in line for line in with_one)
+    assert (tmp_path / "standby_or_posts.png").stat().st_size > 10_000
+
+
+def test_the_measured_network_is_imported():
+    """Own lines: all links but the one that is too faint in one direction."""
+    done = innervate.run(FOLDER / "own-links.toml")
+    assert done.plan.nodes == 10
+    assert done.summary["links"] == 15
+    assert "mast" not in done.plan.names
+
+
 def test_every_example_is_run():
     scripts = {path.name for path in FOLDER.glob("*.py")}
-    assert scripts == {"recovery_times.py", "ports_needed.py", "which_medium_access.py"}
+    assert scripts == {
+        "recovery_times.py",
+        "ports_needed.py",
+        "which_medium_access.py",
+        "standby_or_posts.py",
+    }

@@ -46,6 +46,19 @@ def test_the_summary_agrees_with_the_tables(field):
     assert control < field.summary["control_bytes"] < 2 * control  # and their acks of 9 bytes
 
 
+def test_what_never_happened_is_null_in_the_tables():
+    """Nobody leads any more: an alarm is raised, and never comes."""
+    tables = mesh_tables(standby=[], monitor="gateway", flow=[], duration_s=20.0)
+    tables["event"] = [{"at_s": 5, "action": "kill", "node": "gateway"}]
+    done = run(tables)
+    crossings = done.tables["crossings"].collect()
+    assert len(crossings) == done.summary["alarms"]["sent"] > 0
+    assert done.summary["alarms"]["delivered"] == 0
+    for column in ("accepted_us", "hops", "warned_us"):
+        assert crossings[column].null_count() == len(crossings)
+    assert crossings["crossed_us"].null_count() == 0
+
+
 def test_the_folder_has_every_table(field):
     names = {path.name for path in field.written.iterdir()}
     assert {f"{table.name}.parquet" for table in declared.TABLES} < names

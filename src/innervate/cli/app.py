@@ -41,7 +41,7 @@ def demo(
     out: Path | None = None,
     open_: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
-    """The main jobs: a robot skin mends itself, a radio team puts itself in order. Writes reports.
+    """The main jobs: a skin mends itself, radios get in order, an alarm gets through. With reports.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis.mesh import summarize
-from innervate.analysis.mesh_alarms import Crossing, all_crossings
+from innervate.analysis.mesh_alarms import all_crossings
 from innervate.analysis.mesh_messages import NEVER, messages
 from innervate.plot.mesh_words import HANDED, PACKETS, TIMERS
 from innervate.sim.loop import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
@@ -69,9 +69,11 @@ def _crossings(result: Any) -> Columns:
     def column(name: str) -> list[Any]:
         return [getattr(crossing, name) for crossing in found]
 
-    shown = [column.name for column in mesh_tables.CROSSINGS.columns]
-    whole = {name for name in shown if Crossing.__annotations__[name] == "int"}
-    return {name: _or_null(column(name)) if name in whole else column(name) for name in shown}
+    return {
+        shown.name: _or_null(column(shown.name)) if shown.kind.startswith("Int")
+        else column(shown.name)
+        for shown in mesh_tables.CROSSINGS.columns
+    }  # fmt: skip
 
 
 def _deliveries(result: Any) -> Columns:

@@ -153,3 +153,9 @@ def _check(params: dict[str, Any]) -> None:
         raise ValueError(
             "period_max_s:protocol.period_max_s is below period_s; make it as long or longer"
         )
+    if params["collect_us"] <= params["listen_us"] and params["discovery"] != EACH:
+        listen_s = params["listen_us"] / 1e6
+        raise ValueError(
+            f"collect_s:protocol.collect_s must be more than listen_s, {listen_s:g} s: before that "
+            "nobody responds"
+        )
