@@ -7,9 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from innervate.analysis.fence import position_cm
-from innervate.analysis.mesh import duplicates
 from innervate.analysis.mesh_alarms import all_crossings
-from innervate.analysis.mesh_messages import NEVER
+from innervate.analysis.mesh_messages import NEVER, duplicates
 from innervate.analysis.mesh_paths import UNREACHABLE, distances
 from innervate.papers.experiment import Point, Results
 from innervate.papers.mesh.bed import GATEWAY, Bed, Options, dying, kill
@@ -134,7 +133,7 @@ def _joined(plan: Any, gone: list[int], at_us: int) -> bool:
         if a not in gone and b not in gone:
             near[a].append(b)
             near[b].append(a)
-    return distances(near, GATEWAY)[way.node] != UNREACHABLE
+    return bool(distances(near, GATEWAY)[way.node] != UNREACHABLE)
 
 
 def key(scheme: Scheme, dead: int, seeds: range) -> str:

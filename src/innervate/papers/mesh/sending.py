@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from innervate.analysis.mesh import connected, duplicates, looped, stretch
-from innervate.analysis.mesh_messages import latencies_us, messages
+from innervate.analysis.mesh import connected, looped, stretch
+from innervate.analysis.mesh_messages import duplicates, latencies_us, messages
 from innervate.analysis.mesh_paths import Ground
 from innervate.papers.experiment import Results
 from innervate.papers.mesh.bed import LITERAL, Bed, Options, dying, kill, send_rounds
