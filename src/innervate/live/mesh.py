@@ -1,0 +1,95 @@
+"""The mesh on live links: a node's records bound to the router's functions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from innervate.protocol import mesh, plain
+from innervate.protocol import mesh_fields as fields
+from innervate.protocol.mesh_queue import MESSAGES, has_room
+from innervate.protocol.mesh_words import ACK, TIMERS
+from innervate.protocol.rng import seeded
+from innervate.wire import mesh as wire
+
+CLASSES = (32, 64, 254)
+OUTBOX = 32
+RSSI = -50  # of every frame that comes over a cable, dBm
+
+Frame = plain.make("Frame", fields.FRAME)
+Item = plain.make("Item", fields.ITEM)
+Params = plain.make("Params", fields.PARAMS)
+
+
+class MeshStack:
+    """One node of a mesh.
+
+    Args:
+        number: its id, 0 .. nodes - 1.
+        rank: 0 gateway, 1.. standby, -1 neither.
+        params: the protocol's parameters by name (`mesh_fields.PARAMS`).
+        seed: any whole number; nodes must have different ones.
+    """
+
+    timers = TIMERS
+    reasons = wire.REASONS
+
+    def __init__(self, number: int, rank: int, params: dict[str, Any], seed: int) -> None:
+        self.params = Params()
+        for name, value in params.items():
+            setattr(self.params, name, value)
+        width = self.params.width
+        self.node = plain.make("Node", fields.node(width))()
+        self.gate = plain.make("Gate", fields.gate(width))() if rank >= 0 else None
+        self.node.number, self.node.rank = number, rank
+        self.node.rng, self.node.choice = seeded(seed), -1
+        self.out = plain.Outbox(Frame, OUTBOX)
+        self.inbox = Frame()
+        self.places: dict[int, list[int]] = {}  # neighbour: ports, the newest first
+
+    def start(self, now: int, cause: int) -> None:
+        """Switch on."""
+        mesh.on_start(self.node, self.gate, self.params, now, cause, self.out)
+
+    def frame(self, now: int, port: int) -> None:
+        """The frame in the inbox was received."""
+        self._place(self.inbox.link_src, port)
+        if self.inbox.kind != ACK:  # acks tell how loud the frame was that they are for
+            self.inbox.rssi = RSSI
+        mesh.on_frame(self.node, self.gate, self.params, now, 0, self.inbox, self.out)
+
+    def _place(self, who: int, port: int) -> None:
+        known = self.places.setdefault(who, [port])
+        if known[0] != port:
+            if port in known:
+                known.remove(port)
+            known.insert(0, port)
+
+    def timer(self, now: int, timer: int) -> None:
+        """A timer fires."""
+        mesh.on_timer(self.node, self.gate, self.params, now, timer, self.out)
+
+    def input(self, now: int, kind: int, item: Any) -> None:
+        """A message to send, or where a robot is."""
+        mesh.on_input(self.node, self.gate, self.params, now, kind, item, self.out)
+
+    def encode(self, frame: Any) -> bytes:
+        """The bytes of a frame."""
+        return wire.encode(frame)
+
+    def decode(self, data: bytes) -> int:
+        """Read bytes into the inbox; 0, or why not."""
+        return wire.decode(data, self.inbox)
+
+    def may_send(self) -> bool:
+        """True if the router has room for a message of ours, besides what others send through."""
+        return bool(has_room(self.node, MESSAGES)) and 0 in self.node.wait_kind
+
+    def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
+        """Where a frame leaves: on the path its receiver was heard on last; None = on all.
+
+        Tried again, it leaves wherever its receiver was ever heard.
+        """
+        known = self.places.get(frame.link_dst)
+        if known is None:
+            return None
+        return known if attempt else known[:1]

@@ -1,0 +1,226 @@
+"""send_message and receive_messages [mesh 1]: what becomes of a message is told by its receipt."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import AsyncIterator, Callable
+from typing import Any
+
+from innervate.live.links import Link
+from innervate.live.mesh import Item, MeshStack
+from innervate.live.node import LiveNode
+from innervate.protocol.mesh_messages import payload_limit
+from innervate.protocol.mesh_words import (
+    ALL,
+    DATA,
+    END_TO_END,
+    IDS,
+    MESSAGE,
+    MONITOR,
+    PRIORITY,
+    REPORT_ACCEPTED,
+    REPORT_ARRIVED,
+    REPORT_EXPIRED,
+    REPORT_FULL,
+    REPORT_HOP,
+)
+
+ACCEPTED = "accepted"
+HOP_ACKED = "next hop acked"
+DELIVERED = "delivered"
+EXPIRED = "expired"
+REFUSED = "refused"
+FINAL = (DELIVERED, EXPIRED, REFUSED)
+
+BACKLOG = 4096  # messages that wait for a place in the router
+HANDLES = 65_536
+
+# Takes the sender's number and the payload.
+Callback = Callable[[int, bytes], None]
+
+
+class Receipt:
+    """What becomes of a message.
+
+    Attributes:
+        state: "accepted", "next hop acked", then "delivered" or "expired"; "refused" at once.
+        reason: why it was refused or has expired, "" else.
+        seq: the packet's number once the router has it, -1 before.
+    """
+
+    __slots__ = ("_waiters", "reason", "seq", "state")
+
+    def __init__(self) -> None:
+        self.state = ACCEPTED
+        self.reason = ""
+        self.seq = -1
+        self._waiters: list[asyncio.Future[str]] = []
+
+    async def wait(self) -> str:
+        """Wait until nothing changes any more; the state then.
+
+        Messages to all, or without end-to-end acknowledgement, stay "accepted": do not wait.
+        """
+        if self.state in FINAL:
+            return self.state
+        future = asyncio.get_running_loop().create_future()
+        self._waiters.append(future)
+        return await future
+
+    def move(self, state: str, reason: str = "") -> None:
+        """The state changes."""
+        self.state, self.reason = state, reason
+        if state in FINAL:
+            for future in self._waiters:
+                if not future.done():
+                    future.set_result(state)
+            self._waiters.clear()
+
+    def __repr__(self) -> str:
+        return f"<Receipt {self.state}{': ' if self.reason else ''}{self.reason}>"
+
+
+class MeshNode(LiveNode):
+    """A node of a mesh: sends and receives messages.
+
+    Args:
+        name: as shown to people.
+        stack: the router.
+        links: what carries its frames.
+    """
+
+    stack: MeshStack
+
+    def __init__(self, name: str, stack: MeshStack, links: list[Link]) -> None:
+        super().__init__(name, stack, links)
+        self._backlog: deque[tuple[int, Any]] = deque()
+        self._receipts: dict[int, Receipt] = {}
+        self._handle = 0
+        self._inbox: list[tuple[int, bytes]] = []
+        self._callbacks: list[Callback] = []
+        self._feeding = False
+
+    def send_message(
+        self, recipient: int, payload: bytes, *, reliable: bool = True, priority: bool = False
+    ) -> Receipt:
+        """Send a message; never waits.
+
+        Args:
+            recipient: a node's number; 255 = all, 254 = the monitor (else the gateway).
+            payload: at most 90 bytes at an MTU of 127, 27 at 64.
+            reliable: kept here until its recipient acknowledges it, or 5 retries fail.
+            priority: before other messages.
+
+        Raises:
+            ValueError: no node can have that number, or the payload is too long.
+        """
+        most = payload_limit(self.stack.params)
+        nodes = self.stack.params.nodes
+        if not (0 <= recipient < nodes or recipient in (ALL, MONITOR)):
+            raise ValueError(f"recipient must be 0 to {nodes - 1}, 254 or 255, not {recipient}")
+        if len(payload) > most:
+            raise ValueError(f"payload of {len(payload)} bytes; at most {most} fit into a frame")
+        receipt = Receipt()
+        if len(self._backlog) >= BACKLOG or self.engine is None:
+            receipt.move(REFUSED, "queue full" if self.engine else "node not started")
+            return receipt
+        item = Item()
+        item.handle = self._take_handle(receipt)
+        item.dest = recipient
+        item.flags = (END_TO_END if reliable else 0) | (PRIORITY if priority else 0)
+        item.length = len(payload)
+        item.body[: len(payload)] = payload
+        self._backlog.append((item.handle, item))
+        self._feed()
+        return receipt
+
+    def receive_messages(self, callback: Callback | None = None) -> AsyncIterator[tuple[int, bytes]]:
+        """Messages for this node, each at most once: to a callback, and as an async iterator.
+
+        Args:
+            callback: called with sender and payload for each from now on.
+
+        Returns:
+            An iterator over (sender, payload) of messages that come from now on.
+        """
+        if callback is not None:
+            self._callbacks.append(callback)
+            return _iterate(asyncio.Queue())
+        queue: asyncio.Queue[tuple[int, bytes]] = asyncio.Queue()
+        self._callbacks.append(lambda sender, payload: queue.put_nowait((sender, payload)))
+        return _iterate(queue)
+
+    async def drain(self, limit_s: float) -> bool:
+        """Wait until no message is under way, at most `limit_s` seconds: True if none is."""
+        waiting = [receipt.wait() for receipt in self._receipts.values()]
+        if not waiting:
+            return True
+        _done, pending = await asyncio.wait(map(asyncio.ensure_future, waiting), timeout=limit_s)
+        for task in pending:
+            task.cancel()
+        return not pending
+
+    def _take_handle(self, receipt: Receipt) -> int:
+        while self._handle in self._receipts:
+            self._handle = (self._handle + 1) % HANDLES
+        handle = self._handle
+        self._handle = (self._handle + 1) % HANDLES
+        self._receipts[handle] = receipt
+        return handle
+
+    def _deliver(self, kind: int, frame: Any) -> None:
+        if kind == DATA:
+            self._inbox.append((frame.origin, bytes(frame.body[: frame.length])))
+
+    def _reported(self, code: int, a: int, b: int) -> None:
+        if not REPORT_ACCEPTED <= code <= REPORT_FULL:
+            return
+        receipt = self._receipts.get(a)
+        if receipt is None:
+            return
+        if code == REPORT_ACCEPTED:
+            receipt.seq = b
+        elif code == REPORT_HOP:
+            receipt.move(HOP_ACKED)
+        elif code == REPORT_ARRIVED:
+            receipt.move(DELIVERED)
+        elif code == REPORT_EXPIRED:
+            receipt.move(EXPIRED, REASONS.get(b, ""))
+        else:
+            receipt.move(REFUSED, REASONS.get(b, ""))
+        if receipt.state in FINAL:
+            del self._receipts[a]
+
+    def _settled(self) -> None:
+        inbox = self._inbox
+        if inbox:
+            self._inbox = []
+            for sender, payload in inbox:
+                for callback in self._callbacks:
+                    callback(sender, payload)
+        if self._backlog:
+            self._feed()
+
+    def _feed(self) -> None:
+        """Hand messages to the router while it has room; it calls us again when it has more."""
+        if self._feeding:
+            return
+        assert self.engine is not None
+        self._feeding = True
+        while self._backlog and self.stack.may_send():
+            handle, item = self._backlog.popleft()
+            self.engine.input(MESSAGE, item)
+            if not item.flags & END_TO_END or item.dest == ALL:
+                self._receipts.pop(handle, None)  # nobody will tell us more
+        self._feeding = False
+
+
+REASONS = {1: "no route", 2: "no acknowledgement", 3: "path full", 4: "no room"}
+
+
+async def _iterate(
+    queue: asyncio.Queue[tuple[int, bytes]],
+) -> AsyncIterator[tuple[int, bytes]]:
+    while True:
+        yield await queue.get()

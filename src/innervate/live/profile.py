@@ -1,0 +1,28 @@
+"""Parameters of the protocols on live links: the profile "ip" [mesh 5]; whole numbers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from innervate.live.mesh import CLASSES
+from innervate.protocol.mesh_fields import NEIGHBOURS, POINTS, words
+from innervate.protocol.mesh_words import LIST, MONITOR, SEARCH, TABLES
+
+IP: dict[str, int] = {
+    "mtu": 127, "mode": TABLES, "discovery": LIST, "failover": SEARCH, "avoid_origin": 0,
+    "retry": 1, "reliable": 1, "activation": 0, "told": 0, "transmissions": 2, "ack_us": 5000,
+    "suspect_us": 2_000_000, "min_rssi": -93, "jitter_us": 5000, "copies": 2,
+    "listen_us": 50_000, "spread_us": 50_000, "collect_us": 200_000, "tick_us": 250_000,
+    "period": 8, "period_max": 8, "dead": 20, "dead_step": 4, "standby": 0, "jobs": 4,
+    "job_us": 100_000, "job_tries": 3, "e2e_us": 30_000, "e2e_adapt": 1, "e2e_tries": 5,
+    "forget": 120, "monitor": MONITOR, "watch": 0, "lost": 3, "flood": 1, "instances": 3,
+    "clear_margin": 20, "predict_ms": 500, "unit_cm": 1, "points": 0, "fence": 0,
+}  # fmt: skip
+
+
+def mesh_parameters(nodes: int, changes: dict[str, int]) -> dict[str, Any]:
+    """The router's parameters for a network of so many nodes, with what is to be different."""
+    width = next(size for size in CLASSES if nodes <= size)
+    corners = {name: [0] * POINTS for name in ("px", "py", "after")}
+    own = {"nodes": nodes, "width": width, "row": words(width), "places": min(width, NEIGHBOURS)}
+    return {**IP, **corners, **own, **changes}
