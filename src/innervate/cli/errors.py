@@ -17,11 +17,13 @@ _EXTRAS = {
     "numba": "sim", "llvmlite": "sim", "numpy": "sim", "polars": "sim",
     "matplotlib": "plot",
     "icub_models": "body",
+    "cryptography": "live",
 }  # fmt: skip
 # Errors whose text is one line for the user: module and class, and whose mistake they are.
 _KNOWN = (
     ("innervate.scenario.errors", "ScenarioError", USERS),
     ("innervate.run.errors", "RunError", USERS),
+    ("innervate.live.errors", "LiveError", USERS),
     ("cyclopts", "CycloptsError", USERS),
     ("innervate.sim.simulate", "InvariantBroken", OURS),
     ("innervate.analysis.frames", "FramesLost", OURS),

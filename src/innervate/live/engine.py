@@ -50,6 +50,9 @@ class Stack(Protocol):
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """The paths on which a frame leaves; None = all of them."""
 
+    def status(self, now: int) -> dict[str, Any]:
+        """What the protocol knows, for people; `now` is the whole clock, us."""
+
 
 def clock_us() -> int:
     """The driver's clock, us, 64 bits; monotonic."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any
 
 from innervate.protocol import mesh, plain
 from innervate.protocol import mesh_fields as fields
+from innervate.protocol.mesh_near import FREE
 from innervate.protocol.mesh_queue import MESSAGES, has_room
-from innervate.protocol.mesh_words import ACK, TIMERS
+from innervate.protocol.mesh_words import ACK, ACK_WANTED, TIMERS
 from innervate.protocol.rng import seeded
 from innervate.wire import mesh as wire
 
@@ -45,6 +47,8 @@ class MeshStack:
         self.out = plain.Outbox(Frame, OUTBOX)
         self.inbox = Frame()
         self.places: dict[int, list[int]] = {}  # neighbour: ports, the newest first
+        self.asked: Counter[int] = Counter()  # neighbour: frames that it should acknowledge
+        self.acked: Counter[int] = Counter()
 
     def start(self, now: int, cause: int) -> None:
         """Switch on."""
@@ -55,6 +59,8 @@ class MeshStack:
         self._place(self.inbox.link_src, port)
         if self.inbox.kind != ACK:  # acks tell how loud the frame was that they are for
             self.inbox.rssi = RSSI
+        elif self.inbox.link_dst == self.node.number:
+            self.acked[self.inbox.link_src] += 1
         mesh.on_frame(self.node, self.gate, self.params, now, 0, self.inbox, self.out)
 
     def _place(self, who: int, port: int) -> None:
@@ -89,7 +95,43 @@ class MeshStack:
 
         Tried again, it leaves wherever its receiver was ever heard.
         """
+        if frame.flags & ACK_WANTED:
+            self.asked[frame.link_dst] += 1
         known = self.places.get(frame.link_dst)
         if known is None:
             return None
         return known if attempt else known[:1]
+
+    def status(self, now: int) -> dict[str, Any]:
+        """Neighbours with the share of frames they acknowledged, routes, whom we follow."""
+        node, params = self.node, self.params
+        neighbours = []
+        for k in range(params.places):
+            who = node.near[k]
+            if who != FREE:
+                asked = self.asked[who]
+                neighbours.append({
+                    "node": who,
+                    "quality": round(min(1.0, self.acked[who] / asked), 4) if asked else None,
+                    "suspect": bool(node.suspect[k]),
+                    "ports": self.places.get(who, []),
+                })
+        base = node.bank * params.width
+        routes = {
+            str(dest): [node.next[base + dest], node.alt[base + dest]]
+            for dest in range(params.nodes)
+            if node.next[base + dest] != FREE and dest != node.number
+        }
+        return {
+            "kind": "mesh",
+            "number": node.number,
+            "role": "gateway" if node.leading else "standby" if node.rank >= 0 else "node",
+            "gateway": node.gateway if node.known else None,
+            "epoch": node.epoch,
+            "round": node.round,
+            "table": node.version,
+            "neighbours": neighbours,
+            "routes": routes,
+            "queue": sum(state != 0 for state in node.q_state),
+            "round_trip_ms": round(node.round_trip / 1000, 3),
+        }

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-from collections import deque
-from collections.abc import AsyncIterator, Callable
+from collections import Counter, deque
+from collections.abc import AsyncGenerator, Callable
 from typing import Any
 
+from innervate.live.keys import Sealer
 from innervate.live.links import Link
 from innervate.live.mesh import Item, MeshStack
 from innervate.live.node import LiveNode
@@ -49,13 +50,14 @@ class Receipt:
         seq: the packet's number once the router has it, -1 before.
     """
 
-    __slots__ = ("_waiters", "reason", "seq", "state")
+    __slots__ = ("_changes", "_waiters", "reason", "seq", "state")
 
     def __init__(self) -> None:
         self.state = ACCEPTED
         self.reason = ""
         self.seq = -1
         self._waiters: list[asyncio.Future[str]] = []
+        self._changes: list[asyncio.Future[str]] = []
 
     async def wait(self) -> str:
         """Wait until nothing changes any more; the state then.
@@ -68,14 +70,25 @@ class Receipt:
         self._waiters.append(future)
         return await future
 
+    async def change(self) -> str:
+        """Wait for the next change; the state then."""
+        if self.state in FINAL:
+            return self.state
+        future = asyncio.get_running_loop().create_future()
+        self._changes.append(future)
+        return await future
+
     def move(self, state: str, reason: str = "") -> None:
         """The state changes."""
         self.state, self.reason = state, reason
+        told = self._changes
+        self._changes = []
         if state in FINAL:
-            for future in self._waiters:
-                if not future.done():
-                    future.set_result(state)
-            self._waiters.clear()
+            told += self._waiters
+            self._waiters = []
+        for future in told:
+            if not future.done():
+                future.set_result(state)
 
     def __repr__(self) -> str:
         return f"<Receipt {self.state}{': ' if self.reason else ''}{self.reason}>"
@@ -88,12 +101,16 @@ class MeshNode(LiveNode):
         name: as shown to people.
         stack: the router.
         links: what carries its frames.
+        sealer: seals and opens frames.
     """
 
     stack: MeshStack
 
-    def __init__(self, name: str, stack: MeshStack, links: list[Link]) -> None:
-        super().__init__(name, stack, links)
+    def __init__(
+        self, name: str, stack: MeshStack, links: list[Link], sealer: Sealer | None = None
+    ) -> None:
+        super().__init__(name, stack, links, sealer)
+        self.outcomes: Counter[str] = Counter()
         self._backlog: deque[tuple[int, Any]] = deque()
         self._receipts: dict[int, Receipt] = {}
         self._handle = 0
@@ -122,6 +139,7 @@ class MeshNode(LiveNode):
         if len(payload) > most:
             raise ValueError(f"payload of {len(payload)} bytes; at most {most} fit into a frame")
         receipt = Receipt()
+        self.outcomes["messages accepted"] += 1
         if len(self._backlog) >= BACKLOG or self.engine is None:
             receipt.move(REFUSED, "queue full" if self.engine else "node not started")
             return receipt
@@ -135,7 +153,9 @@ class MeshNode(LiveNode):
         self._feed()
         return receipt
 
-    def receive_messages(self, callback: Callback | None = None) -> AsyncIterator[tuple[int, bytes]]:
+    def receive_messages(
+        self, callback: Callback | None = None
+    ) -> AsyncGenerator[tuple[int, bytes], None]:
         """Messages for this node, each at most once: to a callback, and as an async iterator.
 
         Args:
@@ -144,12 +164,20 @@ class MeshNode(LiveNode):
         Returns:
             An iterator over (sender, payload) of messages that come from now on.
         """
-        if callback is not None:
-            self._callbacks.append(callback)
-            return _iterate(asyncio.Queue())
         queue: asyncio.Queue[tuple[int, bytes]] = asyncio.Queue()
-        self._callbacks.append(lambda sender, payload: queue.put_nowait((sender, payload)))
-        return _iterate(queue)
+        if callback is None:
+            callback = _putter(queue)
+        self._callbacks.append(callback)
+        return self._iterate(queue, callback)
+
+    async def _iterate(
+        self, queue: asyncio.Queue[tuple[int, bytes]], callback: Callback
+    ) -> AsyncGenerator[tuple[int, bytes], None]:
+        try:
+            while True:
+                yield await queue.get()
+        finally:
+            self._callbacks.remove(callback)
 
     async def drain(self, limit_s: float) -> bool:
         """Wait until no message is under way, at most `limit_s` seconds: True if none is."""
@@ -161,6 +189,10 @@ class MeshNode(LiveNode):
             task.cancel()
         return not pending
 
+    def counters(self) -> Counter[str]:
+        """Handler calls, frames dropped by reason, messages by what became of them."""
+        return super().counters() + self.outcomes
+
     def _take_handle(self, receipt: Receipt) -> int:
         while self._handle in self._receipts:
             self._handle = (self._handle + 1) % HANDLES
@@ -171,6 +203,7 @@ class MeshNode(LiveNode):
 
     def _deliver(self, kind: int, frame: Any) -> None:
         if kind == DATA:
+            self.outcomes["messages received"] += 1
             self._inbox.append((frame.origin, bytes(frame.body[: frame.length])))
 
     def _reported(self, code: int, a: int, b: int) -> None:
@@ -191,6 +224,7 @@ class MeshNode(LiveNode):
             receipt.move(REFUSED, REASONS.get(b, ""))
         if receipt.state in FINAL:
             del self._receipts[a]
+            self.outcomes[f"messages {receipt.state}"] += 1
 
     def _settled(self) -> None:
         inbox = self._inbox
@@ -219,8 +253,5 @@ class MeshNode(LiveNode):
 REASONS = {1: "no route", 2: "no acknowledgement", 3: "path full", 4: "no room"}
 
 
-async def _iterate(
-    queue: asyncio.Queue[tuple[int, bytes]],
-) -> AsyncIterator[tuple[int, bytes]]:
-    while True:
-        yield await queue.get()
+def _putter(queue: asyncio.Queue[tuple[int, bytes]]) -> Callback:
+    return lambda sender, payload: queue.put_nowait((sender, payload))

@@ -8,7 +8,10 @@ from collections.abc import Callable
 from typing import Any
 
 from innervate.live.engine import Engine, Stack, clock_us
+from innervate.live.keys import Sealer
 from innervate.live.links import Link, Path
+
+SILENT_US = 8_000_000  # a path that was not heard for so long is broken
 
 
 class LiveNode:
@@ -18,16 +21,20 @@ class LiveNode:
         name: as shown to people.
         stack: its protocol.
         links: what carries its frames; their paths are numbered through from 0.
+        sealer: seals and opens frames; None = they go in the clear.
 
     Attributes:
         paths: all paths, by port.
         reports: how often the protocol reported what, by code.
     """
 
-    def __init__(self, name: str, stack: Stack, links: list[Link]) -> None:
+    def __init__(
+        self, name: str, stack: Stack, links: list[Link], sealer: Sealer | None = None
+    ) -> None:
         self.name = name
         self.stack = stack
         self.links = links
+        self.sealer = sealer
         self.paths: list[Path] = [path for link in links for path in link.paths]
         self.reports: Counter[int] = Counter()
         self.engine: Engine | None = None
@@ -52,6 +59,8 @@ class LiveNode:
             self.engine.stop()
         for link in self.links:
             link.close()
+        if self.sealer is not None:
+            self.sealer.save()
 
     async def __aenter__(self) -> LiveNode:
         await self.start()
@@ -63,15 +72,50 @@ class LiveNode:
     def _receive(self, path: Path, data: bytes) -> None:
         path.counters["received"] += 1
         path.counters["received bytes"] += len(data)
+        if self.sealer is not None:
+            opened = self.sealer.open(data)
+            if opened is None:
+                return
+            data = opened
         assert self.engine is not None
         if self.engine.receive(path.port, data) == 0:
             path.heard_at = clock_us()
 
     def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
         data = self.stack.encode(frame)
+        if self.sealer is not None:
+            data = self.sealer.close(data)
         ports = self.stack.ports_of(port, frame, attempt)
         for path in self.paths if ports is None else [self.paths[i] for i in ports]:
             path.send(data)
+
+    async def drain(self, limit_s: float) -> bool:
+        """Wait until nothing of ours is under way, at most `limit_s` seconds: True if so."""
+        return True
+
+    def counters(self) -> Counter[str]:
+        """What happened how often: handler calls, frames dropped by reason."""
+        total: Counter[str] = Counter() if self.engine is None else Counter(self.engine.counters)
+        if self.sealer is not None:
+            total.update({f"dropped: {why}": n for why, n in self.sealer.dropped.items()})
+        strangers = sum(getattr(link, "strangers", 0) for link in self.links)
+        if strangers:
+            total["dropped: from a stranger"] = strangers
+        return total
+
+    def status(self) -> dict[str, Any]:
+        """What is known here: paths, counters, and what the protocol says of itself."""
+        now = clock_us()
+        paths = [_path_status(path, now) for path in self.paths]
+        return {
+            "name": self.name,
+            "up_s": round(time.time() - self.started_at, 1),
+            "sealed": self.sealer is not None,
+            "paths": paths,
+            "broken": [path["name"] for path in paths if path["broken"]],
+            "counters": dict(sorted(self.counters().items())),
+            **self.stack.status(clock_us()),
+        }
 
     def _note_report(self, code: int, a: int, b: int) -> None:
         self.reports[code] += 1
@@ -85,3 +129,15 @@ class LiveNode:
 
     def _settled(self) -> None:
         """The outbox is empty: the user may be called."""
+
+
+def _path_status(path: Path, now: int) -> dict[str, Any]:
+    silent_us = now - path.heard_at if path.heard_at else None
+    return {
+        "name": path.name,
+        "port": path.port,
+        "up": path.up,
+        "heard_s": None if silent_us is None else round(silent_us / 1e6, 3),
+        "broken": not path.up or silent_us is None or silent_us > SILENT_US,
+        "counters": dict(sorted(path.counters.items())),
+    }

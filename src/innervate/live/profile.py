@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from innervate.live.errors import LiveError
 from innervate.live.mesh import CLASSES
-from innervate.protocol.mesh_fields import NEIGHBOURS, POINTS, words
+from innervate.protocol.mesh_fields import NEIGHBOURS, PARAMS, POINTS, words
 from innervate.protocol.mesh_words import LIST, MONITOR, SEARCH, TABLES
 
 IP: dict[str, int] = {
@@ -20,8 +21,23 @@ IP: dict[str, int] = {
 }  # fmt: skip
 
 
-def mesh_parameters(nodes: int, changes: dict[str, int]) -> dict[str, Any]:
-    """The router's parameters for a network of so many nodes, with what is to be different."""
+RANGES = {name: (low, high, unit) for name, _, low, high, unit, _ in PARAMS}
+OURS = ("nodes", "width", "row", "told")  # follow from the node's file
+
+
+def mesh_parameters(nodes: int, changes: dict[str, int], where: str = "") -> dict[str, Any]:
+    """The router's parameters for a network of so many nodes, with what is to be different.
+
+    Raises:
+        LiveError: no such parameter, or out of its range; the message begins with `where`.
+    """
+    for name, value in changes.items():
+        if name not in RANGES or name in OURS:
+            known = ", ".join(name for name in IP if name not in OURS)
+            raise LiveError(f"{where}: protocol.{name} is unknown; it knows {known}")
+        low, high, unit = RANGES[name]
+        if not low <= value <= high:
+            raise LiveError(f"{where}: protocol.{name} = {value} must be {low} to {high} {unit}")
     width = next(size for size in CLASSES if nodes <= size)
     corners = {name: [0] * POINTS for name in ("px", "py", "after")}
     own = {"nodes": nodes, "width": width, "row": words(width), "places": min(width, NEIGHBOURS)}

@@ -1,0 +1,3 @@
+"""`innervate live`: what the commands do."""
+
+from __future__ import annotations

@@ -1,0 +1,98 @@
+"""From a node file to a node."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Callable
+from typing import Any
+
+from innervate.live.errors import LiveError
+from innervate.live.keys import Sealer, read_key
+from innervate.live.links import Link
+from innervate.live.node import LiveNode
+from innervate.live.nodefile import (
+    KeysTable,
+    Loaded,
+    MulticastTable,
+    SerialTable,
+    UdpTable,
+    address,
+)
+
+
+def build(loaded: Loaded) -> LiveNode:
+    """The node of a node file, not yet started.
+
+    Raises:
+        LiveError: it cannot be as written.
+    """
+    return BUILDERS[loaded.table.kind](loaded)
+
+
+def links_of(loaded: Loaded) -> list[Link]:
+    """The links, their paths numbered through."""
+    links: list[Link] = []
+    count = 0
+    for table in loaded.table.link:
+        link = _link(table, f"{loaded.path}", count)
+        count += len(link.paths)
+        links.append(link)
+    return links
+
+
+def _link(table: Any, where: str, port: int) -> Link:
+    if isinstance(table, UdpTable):
+        from innervate.live.udp import UdpLink
+
+        peers = [address(peer, where) for peer in table.peers]
+        return UdpLink(address(table.bind, where), peers, port)
+    if isinstance(table, MulticastTable):
+        from innervate.live.udp import MulticastLink
+
+        return MulticastLink(address(table.group, where), table.interface, port)
+    if isinstance(table, SerialTable):
+        from innervate.live.serial import SerialLink
+
+        return SerialLink(table.device, table.baud, port)
+    raise LiveError(f"{where}: this kind of node has no such link")
+
+
+def sealer_of(loaded: Loaded) -> Sealer | None:
+    """What seals this node's frames; None if the file names no keys."""
+    table = loaded.table
+    if table.keys is None:
+        return None
+    state = loaded.path.parent / (table.state or f"{loaded.name}.state")
+    keys = keys_of(table.keys, loaded)
+    return Sealer(table.kind, table.number, keys, table.keys.use, state)
+
+
+def keys_of(table: KeysTable, loaded: Loaded) -> dict[int, bytes]:
+    """Keys by number.
+
+    Raises:
+        LiveError: a number is not 0 to 15, or a key is none.
+    """
+    keys = {}
+    for number, text in table.secret.items():
+        if not (number.isascii() and number.isdigit() and int(number) <= 15):
+            raise LiveError(f"{loaded.path}: keys.secret.{number}: numbers of keys are 0 to 15")
+        keys[int(number)] = read_key(text, loaded.path.parent)
+    return keys
+
+
+def _mesh(loaded: Loaded) -> LiveNode:
+    from innervate.live.mesh import MeshStack
+    from innervate.live.messages import MeshNode
+    from innervate.live.profile import mesh_parameters
+
+    table = loaded.table
+    assert table.nodes is not None
+    ranks = {"gateway": 0, "standby": table.rank}
+    rank = ranks.get(table.role or "node", -1)
+    params = mesh_parameters(table.nodes, dict(table.protocol), f"{loaded.path}")
+    stack = MeshStack(table.number, rank, params, secrets.randbits(60))
+    return MeshNode(loaded.name, stack, links_of(loaded), sealer_of(loaded))
+
+
+BUILDERS: dict[str, Callable[[Loaded], LiveNode]] = {"mesh": _mesh}
