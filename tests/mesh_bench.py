@@ -6,7 +6,7 @@ from innervate.protocol import mesh, plain
 from innervate.protocol import mesh_fields as fields
 from innervate.protocol.arith import MASK30
 from innervate.protocol.mesh_frames import copy_frame
-from innervate.protocol.mesh_words import ALL, DATA, MESSAGE, REPORT_TABLE, TIMERS
+from innervate.protocol.mesh_words import MESSAGE
 from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.protocol.rng import seeded
 

@@ -18,6 +18,7 @@ from innervate.live.nodefile import (
     UdpTable,
     address,
 )
+from innervate.live.state import State
 
 
 def build(loaded: Loaded) -> LiveNode:
@@ -57,12 +58,16 @@ def _link(table: Any, where: str, port: int) -> Link:
     raise LiveError(f"{where}: this kind of node has no such link")
 
 
-def sealer_of(loaded: Loaded) -> Sealer | None:
+def state_of(loaded: Loaded) -> State:
+    """What this node keeps over a restart, in a file beside its own."""
+    return State(loaded.path.parent / (loaded.table.state or f"{loaded.name}.state"))
+
+
+def sealer_of(loaded: Loaded, state: State) -> Sealer | None:
     """What seals this node's frames; None if the file names no keys."""
     table = loaded.table
     if table.keys is None:
         return None
-    state = loaded.path.parent / (table.state or f"{loaded.name}.state")
     keys = keys_of(table.keys, loaded)
     return Sealer(table.kind, table.number, keys, table.keys.use, state)
 
@@ -92,7 +97,8 @@ def _mesh(loaded: Loaded) -> LiveNode:
     rank = ranks.get(table.role or "node", -1)
     params = mesh_parameters(table.nodes, dict(table.protocol), f"{loaded.path}")
     stack = MeshStack(table.number, rank, params, secrets.randbits(60))
-    return MeshNode(loaded.name, stack, links_of(loaded), sealer_of(loaded))
+    state = state_of(loaded)
+    return MeshNode(loaded.name, stack, links_of(loaded), sealer_of(loaded, state), state)
 
 
 BUILDERS: dict[str, Callable[[Loaded], LiveNode]] = {"mesh": _mesh}

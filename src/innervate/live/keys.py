@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import os
 import time
 from collections import Counter
 from pathlib import Path
-from typing import Any
 
 from innervate.live.errors import LiveError
+from innervate.live.state import State
 from innervate.wire import seal
 
 KEY_BYTES = 32
@@ -48,21 +46,24 @@ class Sealer:
         sender: own number, 0 .. 65535.
         keys: keys by number, 0 .. 15; what comes in may be sealed with any of them.
         use: which one seals what leaves.
-        state: file that keeps the counters over a restart; None = nothing is kept.
+        state: keeps the counters over a restart.
 
     Attributes:
         dropped: frames that were not taken, by reason.
     """
 
     def __init__(
-        self, kind: str, sender: int, keys: dict[int, bytes], use: int, state: Path | None
+        self, kind: str, sender: int, keys: dict[int, bytes], use: int, state: State
     ) -> None:
         self.kind = KINDS[kind]
         self.sender = sender
         self.state = state
         self.dropped: Counter[str] = Counter()
         self.windows: dict[int, seal.Window] = {}
-        self._load_state()
+        # A lost file does no harm while the clock is right: counters never fall behind it.
+        self.counter = max(state.counter, int(time.time() * 1000) * PER_MS)
+        for number, highest in state.seen.items():
+            self.windows[number] = seal.Window(highest)
         self.load_keys(keys, use)
 
     def load_keys(self, keys: dict[int, bytes], use: int) -> None:
@@ -74,7 +75,7 @@ class Sealer:
 
     def close(self, data: bytes) -> bytes:
         """Seal a frame: 25 bytes longer."""
-        if self.counter >= self.reserved:
+        if self.counter >= self.state.counter:
             self._reserve()
         counter = self.counter
         self.counter = counter + 1
@@ -112,46 +113,19 @@ class Sealer:
         window.take(counter)
         return frame
 
-    def save(self) -> None:
-        """Write the counters as they are; after a clean stop nothing is skipped."""
-        self.reserved = self.counter
-        self._write()
+    def note(self, clean: bool) -> None:
+        """Put into the state what is to be kept: at a clean end no counter is skipped.
 
-    def note_seen(self) -> None:
-        """Write what was seen; to be called now and then: later frames could be replayed once."""
-        self._write()
+        What was seen since can be replayed once if the node is then killed: write now and then.
+        """
+        if clean:
+            self.state.counter = self.counter
+        self.state.seen = {sender: window.highest for sender, window in self.windows.items()}
 
     def _drop(self, reason: str) -> None:
         self.dropped[reason] += 1
 
     def _reserve(self) -> None:
-        self.reserved = self.counter + AHEAD
-        self._write()
-
-    def _load_state(self) -> None:
-        # A lost file does no harm while the clock is right: counters never fall behind it.
-        self.counter = int(time.time() * 1000) * PER_MS
-        self.reserved = 0
-        if self.state is None or not self.state.exists():
-            return
-        try:
-            kept: dict[str, Any] = json.loads(self.state.read_text())
-            self.counter = max(self.counter, int(kept["next"]))
-            for sender, highest in kept["seen"].items():
-                self.windows[int(sender)] = seal.Window(int(highest))
-        except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-            raise LiveError(
-                f"{self.state}: not a node's state ({error}); remove it if no key was lost"
-            ) from None
-
-    def _write(self) -> None:
-        if self.state is None:
-            return
-        seen = {str(sender): window.highest for sender, window in self.windows.items()}
-        text = json.dumps({"next": self.reserved, "seen": seen})
-        fresh = self.state.with_name(self.state.name + ".new")
-        with fresh.open("w") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(fresh, self.state)
+        self.state.counter = self.counter + AHEAD
+        self.note(False)
+        self.state.write()

@@ -59,7 +59,7 @@ class Process:
             while not self.ending.is_set():
                 await self._sleep(SAVE_S)
                 if self.node.sealer is not None:
-                    self.node.sealer.note_seen()
+                    self.node.save(False)
             if not await self.node.drain(DRAIN_S):
                 self._say("stopped; messages were still under way")
         finally:

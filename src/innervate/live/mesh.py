@@ -46,13 +46,19 @@ class MeshStack:
         self.node.rng, self.node.choice = seeded(seed), -1
         self.out = plain.Outbox(Frame, OUTBOX)
         self.inbox = Frame()
+        self.epoch = 0  # newest one that was followed before a restart
         self.places: dict[int, list[int]] = {}  # neighbour: ports, the newest first
         self.asked: Counter[int] = Counter()  # neighbour: frames that it should acknowledge
         self.acked: Counter[int] = Counter()
 
     def start(self, now: int, cause: int) -> None:
-        """Switch on."""
+        """Switch on; after a restart with the epoch that was followed before.
+
+        A gateway's requests are heeded only if their epoch, or their round, is newer than before.
+        """
         mesh.on_start(self.node, self.gate, self.params, now, cause, self.out)
+        if cause != 0 and self.epoch:
+            self.node.known, self.node.epoch = 1, self.epoch
 
     def frame(self, now: int, port: int) -> None:
         """The frame in the inbox was received."""
@@ -110,12 +116,14 @@ class MeshStack:
             who = node.near[k]
             if who != FREE:
                 asked = self.asked[who]
-                neighbours.append({
-                    "node": who,
-                    "quality": round(min(1.0, self.acked[who] / asked), 4) if asked else None,
-                    "suspect": bool(node.suspect[k]),
-                    "ports": self.places.get(who, []),
-                })
+                neighbours.append(
+                    {
+                        "node": who,
+                        "quality": round(min(1.0, self.acked[who] / asked), 4) if asked else None,
+                        "suspect": bool(node.suspect[k]),
+                        "ports": self.places.get(who, []),
+                    }
+                )
         base = node.bank * params.width
         routes = {
             str(dest): [node.next[base + dest], node.alt[base + dest]]

@@ -11,12 +11,12 @@ from innervate.live.keys import Sealer
 from innervate.live.links import Link
 from innervate.live.mesh import Item, MeshStack
 from innervate.live.node import LiveNode
+from innervate.live.state import State
 from innervate.protocol.mesh_messages import payload_limit
 from innervate.protocol.mesh_words import (
     ALL,
     DATA,
     END_TO_END,
-    IDS,
     MESSAGE,
     MONITOR,
     PRIORITY,
@@ -24,6 +24,7 @@ from innervate.protocol.mesh_words import (
     REPORT_ARRIVED,
     REPORT_EXPIRED,
     REPORT_FULL,
+    REPORT_GATEWAY,
     REPORT_HOP,
 )
 
@@ -102,14 +103,21 @@ class MeshNode(LiveNode):
         stack: the router.
         links: what carries its frames.
         sealer: seals and opens frames.
+        state: what is kept over a restart: a gateway's epoch.
     """
 
     stack: MeshStack
 
     def __init__(
-        self, name: str, stack: MeshStack, links: list[Link], sealer: Sealer | None = None
+        self,
+        name: str,
+        stack: MeshStack,
+        links: list[Link],
+        sealer: Sealer | None = None,
+        state: State | None = None,
     ) -> None:
-        super().__init__(name, stack, links, sealer)
+        super().__init__(name, stack, links, sealer, state)
+        stack.epoch = self.state.epoch
         self.outcomes: Counter[str] = Counter()
         self._backlog: deque[tuple[int, Any]] = deque()
         self._receipts: dict[int, Receipt] = {}
@@ -207,6 +215,9 @@ class MeshNode(LiveNode):
             self._inbox.append((frame.origin, bytes(frame.body[: frame.length])))
 
     def _reported(self, code: int, a: int, b: int) -> None:
+        if code == REPORT_GATEWAY and b != self.state.epoch:
+            self.state.epoch = b
+            self.save(False)
         if not REPORT_ACCEPTED <= code <= REPORT_FULL:
             return
         receipt = self._receipts.get(a)

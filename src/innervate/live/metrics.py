@@ -48,12 +48,15 @@ class MetricsPage:
             async with asyncio.timeout(ASK_S):
                 head = await reader.readuntil(b"\r\n\r\n")
                 found = head.startswith(b"GET /metrics ")
-                body = "".join(f"{line}\n" for line in lines(self.node)) if found else "see /metrics\n"
+                body = (
+                    "".join(f"{line}\n" for line in lines(self.node)) if found else "see /metrics\n"
+                )
                 code = "200 OK" if found else "404 Not Found"
                 data = body.encode()
                 writer.write(
                     f"HTTP/1.1 {code}\r\nContent-Type: text/plain; version=0.0.4\r\n"
-                    f"Content-Length: {len(data)}\r\nConnection: close\r\n\r\n".encode() + data
+                    f"Content-Length: {len(data)}\r\nConnection: close\r\n\r\n".encode()
+                    + data
                 )
                 await writer.drain()
         except (TimeoutError, ConnectionError, asyncio.IncompleteReadError,

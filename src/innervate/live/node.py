@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable
 from typing import Any
 
 from innervate.live.engine import Engine, Stack, clock_us
 from innervate.live.keys import Sealer
 from innervate.live.links import Link, Path
+from innervate.live.state import State
 
 SILENT_US = 8_000_000  # a path that was not heard for so long is broken
 
@@ -22,6 +22,7 @@ class LiveNode:
         stack: its protocol.
         links: what carries its frames; their paths are numbered through from 0.
         sealer: seals and opens frames; None = they go in the clear.
+        state: what is kept over a restart.
 
     Attributes:
         paths: all paths, by port.
@@ -29,18 +30,24 @@ class LiveNode:
     """
 
     def __init__(
-        self, name: str, stack: Stack, links: list[Link], sealer: Sealer | None = None
+        self,
+        name: str,
+        stack: Stack,
+        links: list[Link],
+        sealer: Sealer | None = None,
+        state: State | None = None,
     ) -> None:
         self.name = name
         self.stack = stack
         self.links = links
         self.sealer = sealer
+        self.state = state or State(None)
         self.paths: list[Path] = [path for link in links for path in link.paths]
         self.reports: Counter[int] = Counter()
         self.engine: Engine | None = None
         self.started_at = time.time()
 
-    async def start(self, cause: int = 0) -> None:
+    async def start(self) -> None:
         """Open the links and switch the protocol on.
 
         Raises:
@@ -51,7 +58,8 @@ class LiveNode:
         )
         for link in self.links:
             await link.open(self._receive)
-        self.engine.start(cause)
+        self.save(False)
+        self.engine.start(0 if self.state.fresh else 1)
 
     async def stop(self) -> None:
         """Stop at once, as if switched off; `drain` first to get rid of what is under way."""
@@ -59,8 +67,13 @@ class LiveNode:
             self.engine.stop()
         for link in self.links:
             link.close()
+        self.save(True)
+
+    def save(self, clean: bool) -> None:
+        """Write what is kept over a restart; `clean` = nothing is sent any more."""
         if self.sealer is not None:
-            self.sealer.save()
+            self.sealer.note(clean)
+        self.state.write()
 
     async def __aenter__(self) -> LiveNode:
         await self.start()

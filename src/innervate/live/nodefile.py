@@ -61,7 +61,9 @@ class NodeFile(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     kind: Literal["mesh", "skin", "radio"]
     number: Annotated[int, Meta(ge=0, le=65_535)]
-    name: Annotated[str, Meta(min_length=1, max_length=40, pattern="^[A-Za-z0-9_.-]+$")] | None = None
+    name: Annotated[str, Meta(min_length=1, max_length=40, pattern="^[A-Za-z0-9_.-]+$")] | None = (
+        None
+    )
     nodes: Annotated[int, Meta(ge=1, le=65_535)] | None = None
     role: Literal["node", "gateway", "standby", "cell", "sink", "station"] | None = None
     rank: Annotated[int, Meta(ge=1, le=253)] = 1

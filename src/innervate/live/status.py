@@ -70,9 +70,7 @@ class Server:
                 if answers(self.path):
                     raise LiveError(f"{self.path}: a node with this name runs already; stop it")
                 self.path.unlink()
-            self._server = await asyncio.start_unix_server(
-                self._serve, self.path, limit=LINE_MAX
-            )
+            self._server = await asyncio.start_unix_server(self._serve, self.path, limit=LINE_MAX)
             self.path.chmod(0o600)
         except OSError as error:
             raise LiveError(f"{self.path}: no socket here: {error.strerror or error}") from None
