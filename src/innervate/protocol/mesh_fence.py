@@ -110,7 +110,7 @@ def distance(params, i, x, y):
     if corner >= 0:
         return min(FAR, length(params.px[corner] - x, params.py[corner] - y))
     across = abs(area(params, a, b, x - params.px[a], y - params.py[a]))
-    return over_root(across, size(params, a, b))
+    return max(1, over_root(across, size(params, a, b))) if across else 0
 
 
 def closing(params, i, x, y, vx, vy):

@@ -50,7 +50,7 @@ ITEM = (
 def node(n):
     """Fields of a node in a network of up to n nodes."""
     k = min(n, NEIGHBOURS)
-    return (*OWN, *neighbours(k), *tables(n), *packets(n), *WATCH, *watched(n), *QUEUED)
+    return OWN + neighbours(k) + tables(n) + packets(n) + WATCH + watched(n) + QUEUED
 
 
 OWN = (

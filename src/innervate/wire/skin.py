@@ -4,14 +4,14 @@ LAYOUTS is the one description: encoder, decoder and whatever else speaks of the
 """
 
 from innervate.protocol.skin_words import BEACON, DATA, RESTART
-from innervate.wire.bits import get, put, signed
-from innervate.wire.crc import crc16
+from innervate.wire.bits import get, put
+from innervate.wire.crc import is_sealed, seal
+from innervate.wire.layout import SPARE, pack, unpack, width
 
-SPARE = ""  # the name of bits that are sent as 0 and not looked at
 KIND_BITS = 4
 CRC_BYTES = 2
 
-# A field: name, count (0 = a single number, n = an array of n), bits of each, 1 if signed.
+# Fields as layout.py has them.
 ROUTE = (
     ("dist", 0, 8, 0),
     ("sq", 0, 16, 0),
@@ -47,10 +47,7 @@ REASONS = ("ok", "length", "crc", "kind")
 
 def size_of(fields: tuple[tuple[str, int, int, int], ...]) -> int:
     """Bytes of a whole frame with these fields: type, fields, zeros up to a byte, CRC."""
-    bits = KIND_BITS
-    for _name, count, width, _signed in fields:
-        bits += width * max(1, count)
-    return (bits + 7) // 8 + CRC_BYTES
+    return (KIND_BITS + width(fields) + 7) // 8 + CRC_BYTES
 
 
 FIELDS = {kind: fields for kind, _name, fields in LAYOUTS}
@@ -68,24 +65,10 @@ def encode(frame: object) -> bytes:
     kind: int = frame.kind  # type: ignore[attr-defined]
     if kind not in FIELDS:
         raise ValueError("no frame of the skin has this kind")
-    size = SIZES[kind]
-    buffer = bytearray(size)
+    buffer = bytearray(SIZES[kind])
     put(buffer, 0, KIND_BITS, kind)
-    at = KIND_BITS
-    for name, count, bits, is_signed in FIELDS[kind]:
-        if name == SPARE:
-            at += bits
-            continue
-        value = getattr(frame, name)
-        for item in value if count else (value,):
-            low = -(1 << (bits - 1)) if is_signed else 0
-            if not low <= item < low + (1 << bits):
-                raise ValueError(name + " does not fit into its bits")
-            put(buffer, at, bits, item)
-            at += bits
-    body = size - CRC_BYTES
-    put(buffer, 8 * body, 16, crc16(buffer, body))
-    return bytes(buffer)
+    pack(FIELDS[kind], buffer, KIND_BITS, frame)
+    return seal(buffer)
 
 
 def decode(data: bytes | bytearray | memoryview, frame: object) -> int:
@@ -96,8 +79,7 @@ def decode(data: bytes | bytearray | memoryview, frame: object) -> int:
     size = len(data)
     if not SIZE_MIN <= size <= SIZE_MAX:
         return BAD_LENGTH
-    body = size - CRC_BYTES
-    if crc16(data, body) != get(data, 8 * body, 16):
+    if not is_sealed(data):
         return BAD_CRC
     kind = get(data, 0, KIND_BITS)
     if kind not in FIELDS:
@@ -105,15 +87,5 @@ def decode(data: bytes | bytearray | memoryview, frame: object) -> int:
     if size != SIZES[kind]:
         return BAD_LENGTH
     frame.kind = kind  # type: ignore[attr-defined]
-    at = KIND_BITS
-    for name, count, bits, is_signed in FIELDS[kind]:
-        for i in range(max(1, count)):
-            item = get(data, at, bits)
-            at += bits
-            if is_signed:
-                item = signed(item, bits)
-            if count:
-                getattr(frame, name)[i] = item
-            elif name != SPARE:
-                setattr(frame, name, item)
+    unpack(FIELDS[kind], data, KIND_BITS, frame)
     return OK
