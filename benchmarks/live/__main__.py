@@ -23,6 +23,7 @@ PERIOD_MS = 5.0
 BEFORE_S = 1.0
 AFTER_S = 2.5
 IDLE_S = 8.0
+PATH_WAIT_S = 30.0
 
 
 def measure_idle(side):
@@ -41,12 +42,20 @@ def measure_idle(side):
     }
 
 
+def wait_for_path(side):
+    """The nodes that packets pass, once there is such a way."""
+    for _ in range(int(PATH_WAIT_S)):
+        path = side.path()
+        if path[-1] == side.shape.sink:
+            return path
+        time.sleep(1)
+    raise SystemExit(f"{side.name}, {side.shape.name}: no path after {PATH_WAIT_S} s: {path}")
+
+
 def one_run(side, fault):
     """Probes with a fault in the middle; what came of them."""
     shape = side.shape
-    path = side.path()
-    if path[-1] != shape.sink:
-        raise SystemExit(f"{side.name}, {shape.name}: no path yet: {path}")
+    path = wait_for_path(side)
     middle = len(path) // 2
     side.ask(shape.sink, "take")
     before = sum(side.lab.ip_bytes(k) for k in range(len(shape.links)))
@@ -153,13 +162,13 @@ def main():
     parser.add_argument("--sides", default="innervate,babeld")
     parser.add_argument("--faults", default="cut,kill")
     parser.add_argument("--runs", type=int, default=5)
-    parser.add_argument("--nice", type=int, default=0, help="priority of all nodes, both sides")
+    parser.add_argument("--realtime", action="store_true", help="all nodes before other work")
     parser.add_argument("--set", action="append", default=[], help="a parameter: ack_us=5000")
     parser.add_argument("--out", type=Path, help="write all figures as JSON")
     args = parser.parse_args()
     if os.geteuid() != 0:
         sys.exit("benchmarks.live: network namespaces need root; run it as root")
-    urgency = ["nice", "-n", str(args.nice)] if args.nice else []
+    urgency = ["chrt", "--fifo", "20"] if args.realtime else []
     settings = dict(text.split("=") for text in args.set)
     kinds = {"innervate": Innervate, "babeld": Babeld}
     results = {}

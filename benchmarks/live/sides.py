@@ -124,6 +124,8 @@ class Innervate(Side):
             hop = told["routes"].get(str(self.shape.sink), [255])[0]
             at = self.shape.sink if self.shape.sink in near else hop
             found.append(at)
+            if at >= self.shape.count:
+                break
         return found
 
 

@@ -2,7 +2,7 @@
 
 from innervate.protocol.arith import MASK16, MASK30
 from innervate.protocol.mesh_frames import add8, add16, add_hop, get16
-from innervate.protocol.mesh_jobs import give_jobs, install_own, pump
+from innervate.protocol.mesh_jobs import give_jobs, install_own, miss_table, pump
 from innervate.protocol.mesh_near import FREE, UNHEARD
 from innervate.protocol.mesh_paths import (
     build_graph,
@@ -91,6 +91,8 @@ def on_response(node, gate, params, frame, out):
     if round != node.round:
         return
     note_path(gate, params, frame, node.number, round)
+    if frame.table_ver == 0 and frame.origin < params.nodes:
+        miss_table(gate, frame.origin)
     if trusts_lists(params):
         note_list(gate, params, frame, 4, frame.body[3] & 15)
 

@@ -76,6 +76,14 @@ def give_jobs(node, gate, params, changed, out):
                 gate.open = 1
 
 
+def miss_table(gate, s):
+    """Node s says that it has no table, perhaps any more: it was switched off."""
+    if gate.job[s] == CURRENT:
+        gate.mark_a[s] = 0
+        gate.mark_b[s] = 0
+        gate.job[s] = GIVEN_UP
+
+
 def give_job(gate, params, s):
     """Node s needs its table, unless it has acknowledged the same."""
     if params.mode == WHOLE_GRAPH:

@@ -43,6 +43,7 @@ from innervate.protocol.mesh_words import (
 from innervate.protocol.outbox import deliver, report, set_timer
 
 FREE = 0
+LONGEST_US = 1 << 22
 
 
 def resolve(node, params, dest):
@@ -168,6 +169,16 @@ def timeout(node, params):
     return params.e2e_us
 
 
+def later_timeout(node, params, tries):
+    """The same after so many sendings: where it adapts it doubles, so that retries of many
+    messages at once do not keep a loaded network loaded."""
+    wait = timeout(node, params)
+    if params.e2e_adapt:
+        for _ in range(1, tries):
+            wait = min(2 * wait, LONGEST_US)
+    return wait
+
+
 def wait_on(node, now, out):
     """Set the RETRY timer to the first end-to-end timeout."""
     soonest = -1
@@ -198,7 +209,7 @@ def try_again(node, params, now, w, out):
         return 0
     node.wait_tries[w] = node.wait_tries[w] + 1
     node.wait_flags[w] = node.wait_flags[w] ^ PARITY
-    node.wait_due[w] = (now + timeout(node, params)) & MASK30
+    node.wait_due[w] = (now + later_timeout(node, params, node.wait_tries[w])) & MASK30
     unskip(node, node.number, node.wait_seq[w])
     rank = ALARMS if node.wait_kind[w] == ALARM else MESSAGES
     i = compose(node, now, rank, node.wait_kind[w], node.wait_dest[w], node.wait_flags[w], out)
@@ -211,7 +222,7 @@ def try_again(node, params, now, w, out):
     return 1
 
 
-def on_end_ack(node, frame, now, out):
+def on_end_ack(node, params, frame, now, out):
     """The recipient has our message."""
     at = inner(frame)
     if frame.length < at + 2:
@@ -220,7 +231,9 @@ def on_end_ack(node, frame, now, out):
         if node.wait_kind[w] != FREE and node.wait_seq[w] == get16(frame, at):
             if node.wait_dest[w] == frame.origin or node.wait_kind[w] == ALARM:
                 took = (now - node.wait_at[w]) & MASK30
-                if node.wait_tries[w] == 1 and took < 16_777_216:
+                # Of a retried message this is too much rather than too little: the ack may be
+                # for any of its sendings, and times out of reach of the first would never count.
+                if took < 16_777_216 and (node.wait_tries[w] == 1 or params.e2e_adapt):
                     if node.round_trip == 0:
                         node.round_trip = took
                     else:
@@ -260,7 +273,7 @@ def take(node, params, now, frame, out):
     first = frame.flags & FIRST
     if frame.kind == E2E_ACK:
         if accept(node, params, frame.origin, frame.seq, first):
-            on_end_ack(node, frame, now, out)
+            on_end_ack(node, params, frame, now, out)
         return
     if accept(node, params, frame.origin, frame.seq, first):
         hand_up(params, frame, out)
