@@ -46,7 +46,7 @@ def wait_for_path(side):
     """The nodes that packets pass, once there is such a way."""
     for _ in range(int(PATH_WAIT_S)):
         path = side.path()
-        if path[-1] == side.shape.sink:
+        if path and path[-1] == side.shape.sink:
             return path
         time.sleep(1)
     raise SystemExit(f"{side.name}, {side.shape.name}: no path after {PATH_WAIT_S} s: {path}")

@@ -119,6 +119,7 @@ class MeshNode(LiveNode):
         super().__init__(name, stack, links, sealer, state)
         stack.epoch = self.state.epoch
         self.outcomes: Counter[str] = Counter()
+        self.arrived_by: dict[int, list[int]] = {}  # the way of each sender's newest message
         self._backlog: deque[tuple[int, Any]] = deque()
         self._receipts: dict[int, Receipt] = {}
         self._handle = 0
@@ -201,6 +202,15 @@ class MeshNode(LiveNode):
         """Handler calls, frames dropped by reason, messages by what became of them."""
         return super().counters() + self.outcomes
 
+    def status(self) -> dict[str, Any]:
+        """What is known here, besides how many messages wait and which way they came."""
+        return {
+            **super().status(),
+            "backlog": len(self._backlog),
+            "under_way": len(self._receipts) - len(self._backlog),
+            "arrived_by": {str(sender): path for sender, path in self.arrived_by.items()},
+        }
+
     def _take_handle(self, receipt: Receipt) -> int:
         while self._handle in self._receipts:
             self._handle = (self._handle + 1) % HANDLES
@@ -211,6 +221,7 @@ class MeshNode(LiveNode):
 
     def _deliver(self, kind: int, frame: Any) -> None:
         if kind == DATA:
+            self.arrived_by[frame.origin] = [*frame.path[: frame.path_len], frame.dest]
             self.outcomes["messages received"] += 1
             self._inbox.append((frame.origin, bytes(frame.body[: frame.length])))
 

@@ -3,6 +3,11 @@
 Half a byte at a time: the table of 16 entries is kind to boards with 16 KiB of memory.
 """
 
+try:
+    from binascii import crc_hqx
+except ImportError:  # boards
+    crc_hqx = None  # type: ignore[assignment]
+
 START = 0xFFFF
 
 # The remainders of 0x0000, 0x1000 ... 0xF000.
@@ -14,6 +19,13 @@ TABLE = (
 
 def crc16(data: bytes | bytearray | memoryview, count: int) -> int:
     """CRC of the first `count` bytes of `data`, 0..65535."""
+    if crc_hqx is not None:
+        return crc_hqx(data if count == len(data) else data[:count], START)
+    return by_table(data, count)
+
+
+def by_table(data: bytes | bytearray | memoryview, count: int) -> int:
+    """The same without help of the system."""
     crc = START
     for i in range(count):
         byte = data[i]
