@@ -19,7 +19,7 @@ WRONG = {
     "wrong key": (("run", "four.toml", "--set", "protocol.kk=3"), 'did you mean "k"?'),
     "no value to set": (("run", "four.toml", "--set", "protocol.k"), "write it as key=value"),
     "no such cell": (("check", "four.toml", "--set", "interface.0.row=9"), "there is no row 9"),
-    "later kind": (("new", "mesh"), 'kind "mesh" is not in this version'),
+    "no such kind": (("new", "mash"), 'there is no kind "mash"; did you mean "mesh"?'),
     "not a run": (("compare", ".", "."), "is not a run folder"),
     "out is a file": (("run", "four.toml", "--out", "four.toml"), "choose another folder"),
     "out is somebody's": (("run", "four.toml", "--out", "."), "not a run folder and not empty"),

@@ -49,7 +49,7 @@ def survives(make: Callable[[], Scenario]) -> Plan | None:
     """Load and plan; anything but a ScenarioError of one printable line fails the test."""
     try:
         scenario = make()
-        if scenario.kind == "radio":
+        if scenario.kind != "skin":
             return plan(scenario) if scenario.duration_s < 1000 else None
         cells = sum(patch.columns * patch.rows * patch.count for patch in scenario.model.patch)
         return plan(scenario) if cells < 20_000 else None

@@ -144,7 +144,7 @@ def new(kind: str, file: Path | None = None, /) -> int:
     Parameters
     ----------
     kind
-        What it describes: skin or radio.
+        What it describes: skin, radio or mesh.
     file
         Where to write it; it is printed if left out.
     """

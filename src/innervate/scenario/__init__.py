@@ -2,12 +2,13 @@
 
 from typing import Any
 
-from innervate.scenario import radio_planning
+from innervate.scenario import mesh_planning, radio_planning
 from innervate.scenario.bundled import bundled
 from innervate.scenario.check import check, describe
 from innervate.scenario.emit import dump
 from innervate.scenario.errors import ScenarioError
 from innervate.scenario.load import Scenario, from_dict, load, loads
+from innervate.scenario.mesh_plan import MeshFault, MeshPlan
 from innervate.scenario.plan import (
     CUT,
     KILL,
@@ -33,6 +34,8 @@ __all__ = [
     "RESTORE",
     "REVIVE",
     "Fault",
+    "MeshFault",
+    "MeshPlan",
     "Plan",
     "RadioFault",
     "RadioPlan",
@@ -53,13 +56,15 @@ __all__ = [
 
 
 def plan(scenario: Scenario) -> Any:
-    """The plan of a run, a Plan or a RadioPlan: same scenario and seed, same plan.
+    """The plan of a run, a Plan, RadioPlan or MeshPlan: same scenario and seed, same plan.
 
     Raises:
         ScenarioError: it cannot be run as written.
     """
     if scenario.kind == "radio":
         return radio_planning.plan(scenario)
+    if scenario.kind == "mesh":
+        return mesh_planning.plan(scenario)
     return skin_planning(scenario)
 
 

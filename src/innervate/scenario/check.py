@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 
-from innervate.scenario import radio_planning, radio_words
+from innervate.scenario import mesh_planning, mesh_words, radio_planning, radio_words
 from innervate.scenario.load import load
 from innervate.scenario.overrides import Override
 from innervate.scenario.plan import ACTIONS, LOSS_ONE, RULES, UPDATES, Fault, Plan, plan
@@ -25,6 +25,8 @@ def check(
     loaded = load(path, overrides, seed)
     if loaded.kind == "radio":
         return radio_words.describe(radio_planning.plan(loaded))
+    if loaded.kind == "mesh":
+        return mesh_words.describe(mesh_planning.plan(loaded))
     return describe(plan(loaded))
 
 

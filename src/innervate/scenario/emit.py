@@ -9,7 +9,9 @@ from typing import Any
 
 import msgspec
 
+from innervate.scenario.bundled import FOLDER
 from innervate.scenario.load import Scenario
+from innervate.scenario.mesh_nodes import import_path
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
@@ -17,12 +19,17 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 def dump(scenario: Scenario) -> str:
     """TOML that loads to the same scenario.
 
-    A relative `urdf` becomes the full path, since the text may be kept elsewhere.
+    A relative `urdf` or `import.file` becomes the full path, since the text may be kept elsewhere.
     """
     tables = msgspec.to_builtins(scenario.model)
     body = tables.get("body")
     if body is not None and not body["urdf"].startswith("package:"):
         body["urdf"] = str((Path(scenario.source.folder) / body["urdf"]).absolute())
+    imported = tables.get("import")
+    if imported is not None and imported["file"] is not None:
+        path = import_path(imported["file"], scenario.source)
+        if FOLDER not in path.parents:
+            imported["file"] = str(path.absolute())
     return to_toml(tables)
 
 

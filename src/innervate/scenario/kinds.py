@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from innervate.scenario import radio_rules, rules
+from innervate.scenario import mesh_rules, radio_rules, rules
+from innervate.scenario.mesh_model import MeshScenario
 from innervate.scenario.model import SkinScenario
 from innervate.scenario.radio_model import RadioScenario
 from innervate.scenario.source import Source
 
-Model = SkinScenario | RadioScenario
+Model = SkinScenario | RadioScenario | MeshScenario
 
 
 class Kind(NamedTuple):
@@ -23,5 +24,5 @@ class Kind(NamedTuple):
 KINDS = {
     "skin": Kind(SkinScenario, rules.check),
     "radio": Kind(RadioScenario, radio_rules.check),
+    "mesh": Kind(MeshScenario, mesh_rules.check),
 }
-KINDS_TO_COME = ("mesh",)

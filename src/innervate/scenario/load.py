@@ -13,7 +13,7 @@ from typing import Any
 from innervate.scenario.bundled import bundled
 from innervate.scenario.errors import ScenarioError
 from innervate.scenario.explain import convert, nearest
-from innervate.scenario.kinds import KINDS, KINDS_TO_COME
+from innervate.scenario.kinds import KINDS
 from innervate.scenario.lines import key_lines
 from innervate.scenario.model import SCHEMA
 from innervate.scenario.overrides import Override, apply
@@ -30,7 +30,8 @@ class Scenario:
     """A validated scenario.
 
     Attributes:
-        model: its tables (see model.py, radio_model.py), overrides and defaults filled in.
+        model: its tables (see model.py, radio_model.py, mesh_model.py), overrides and defaults
+            filled in.
         source: where it came from, for error messages.
     """
 
@@ -39,7 +40,7 @@ class Scenario:
 
     @property
     def kind(self) -> str:
-        """What it describes: "skin" or "radio" in this version."""
+        """What it describes: "skin", "radio" or "mesh"."""
         return str(self.model.kind)
 
     @property
@@ -142,7 +143,7 @@ def _build(
     if isinstance(schema, int) and schema > SCHEMA:
         message = f"schema = {schema} is newer than this version knows ({SCHEMA}); update innervate"
         raise source.error(("schema",), message)
-    kind = check_kind(source, raw.get("kind"), list(KINDS), KINDS_TO_COME)
+    kind = check_kind(source, raw.get("kind"), list(KINDS))
     if not raw.get("name", "x"):
         del raw["name"]
     raw.setdefault("name", Path(source.path).stem or kind)

@@ -177,20 +177,18 @@ def _amount(source: Source, key: Key, name: str, event: EventTable) -> None:
         raise source.error((*key, "frames"), message)
 
 
-def check_kind(source: Source, kind: object, known: list[str], to_come: tuple[str, ...]) -> str:
+def check_kind(source: Source, kind: object, known: list[str]) -> str:
     """The kind, if this version runs it.
 
     Raises:
-        ScenarioError: missing, unknown, or known only to later versions.
+        ScenarioError: missing or unknown.
     """
     if kind is None:
         raise source.error((), f'the scenario has no kind; add kind = "{known[0]}"')
     if isinstance(kind, str) and kind in known:
         return kind
-    if isinstance(kind, str) and kind in to_come:
-        both = " and ".join(f'"{name}"' for name in known)
-        raise source.error(("kind",), f'kind = "{kind}" is not in this version, which runs {both}')
-    one = " or ".join(f'"{name}"' for name in known)
+    *most, last = (f'"{name}"' for name in known)
+    one = f"{', '.join(most)} or {last}"
     shown = f'"{kind}"' if isinstance(kind, str) else str(kind)[:40]
     error: ScenarioError = source.error(("kind",), f"kind must be {one}, not {shown}")
     raise error

@@ -1,0 +1,115 @@
+"""Networks that were measured: the forms they come in, and what is wrong with some."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from innervate.scenario.bundled import FOLDER
+from innervate.topology import measured
+from innervate.topology.errors import TopologyError
+from innervate.topology.placement import components, neighbours
+
+CITIES = FOLDER / "freifunk"
+
+
+@pytest.mark.parametrize(
+    ("city", "least", "nodes", "links", "busiest"),
+    [("leipzig", 0.3, 86, 186, 13), ("bielefeld", 0.3, 203, 204, 109), ("ulm", 0, 172, 174, 77)],
+)
+def test_cities(city: str, least: float, nodes: int, links: int, busiest: int) -> None:
+    found = measured.read(CITIES / f"{city}.json", ["wifi"]).kept(least).largest()
+    assert len(found.names) == len(found.points) == nodes
+    assert len(found.links) == links
+    near = neighbours(nodes, list(found.links))
+    assert max(map(len, near)) == busiest
+    assert len(components(near)) == 1
+    assert all(least <= share <= 1 for both in found.links.values() for share in both)
+
+
+def test_types_of_links() -> None:
+    every, wifi = (measured.read(CITIES / "leipzig.json", types) for types in ([], ["wifi"]))
+    assert len(every.links) == 413
+    assert len(wifi.links) < 413
+    assert len(measured.read(CITIES / "leipzig.json", ["wifi", "vpn", "other"]).links) == 413
+
+
+def test_the_target_sees_what_the_source_sends() -> None:
+    found = measured.from_json(
+        '{"nodes": [{"id": "a"}, {"id": 7}],'
+        '"links": [{"source": 7, "target": "a", "source_tq": 0.2, "target_tq": 0.9}]}'
+    )
+    assert found.names == ["a", "7"]
+    assert found.links == {(0, 1): (0.2, 0.9)}  # a to 7 as 7, the source of the link, sees it
+    assert found.points == []
+
+
+def test_degrees_become_metres() -> None:
+    nodes = [{"id": 0, "x": 51.0, "y": 12.0}, {"id": 1, "x": 51.01, "y": 12.0},
+             {"id": 2, "x": 51.005, "y": 12.01}, {"id": 3}]  # fmt: skip
+    links = [{"source": 0, "target": 3}, {"source": 1, "target": 3}, {"source": 2, "target": 0}]
+    points = measured.from_json(json.dumps({"nodes": nodes, "links": links})).points
+    assert points[1][1] - points[0][1] == pytest.approx(111_194, abs=2)
+    assert points[2][0] - points[0][0] == pytest.approx(111_194 * 0.6294, rel=1e-3)
+    assert points[3] == ((points[0][0] + points[1][0]) // 2, (points[0][1] + points[1][1]) // 2)
+
+
+def test_plain_lines() -> None:
+    found = measured.from_lines("# mine\nA B 0.9 0.7\nC A 0.5\n\nB C  # perfect\n")
+    assert found.names == ["A", "B", "C"]
+    assert found.links == {(0, 1): (0.9, 0.7), (0, 2): (0.5, 0.5), (1, 2): (1.0, 1.0)}
+    assert measured.from_lines("C A 0.5 0.1\nA C 0.3 0.2").links == {(0, 1): (0.5, 0.3)}
+
+
+def test_topohub() -> None:
+    pytest.importorskip("topohub")
+    found = measured.from_topohub("sndlib/germany50")
+    assert len(found.names) == len(set(found.names)) == len(found.points) == 50
+    assert len(found.links) == 88
+    assert set(found.links.values()) == {(1.0, 1.0)}
+    berlin, munich = (found.points[found.names.index(n)] for n in ("Berlin", "Muenchen"))
+    assert 4.5e7 < berlin[1] - munich[1] < 5.5e7  # Berlin lies 500 km to the north
+    with pytest.raises(TopologyError, match='has no network "sndlib/none"'):
+        measured.from_topohub("sndlib/none")
+
+
+WRONG = (
+    ("", "holds no links"),
+    ("A B C", "line 1 is no link; write"),
+    ("A B 2", "line 1 is no link"),
+    ("A B\nA A", "line 2 joins a node with itself"),
+    ("{", "not valid JSON"),
+    ("{}", 'lacks the lists "nodes" and "links"'),
+    ('{"nodes": [{}], "links": []}', 'node 0 has no "id"'),
+    ('{"nodes": [{"id": 1}, {"id": 1}], "links": []}', "the id 1 is there twice"),
+    ('{"nodes": [{"id": 1, "x": "a", "y": 2}], "links": []}', "x or y of node 0 is no number of"),
+    ('{"nodes": [], "links": [1]}', "link 0 is no table"),
+    ('{"nodes": [{"id": 1}], "links": [{"source": 1, "target": 2}]}', "link 0 leads to 2, which"),
+    (
+        '{"nodes": [{"id": 1}, {"id": 2}], "links": [{"source": 1, "target": 2, "source_tq": 3}]}',
+        "source_tq of link 0 must be 0 to 1, not 3",
+    ),
+    ('{"nodes": [{"id": 1}], "links": [{"source": 1, "target": 1}]}', "link 0 joins a node with"),
+)
+
+
+@pytest.mark.parametrize(("text", "message"), WRONG)
+def test_files_that_are_no_network(text: str, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "net"
+    path.write_text(text)
+    with pytest.raises(TopologyError) as found:
+        measured.read(path)
+    assert message in str(found.value)
+    assert str(path) in str(found.value)
+
+
+def test_files_that_cannot_be_read(tmp_path: Path) -> None:
+    with pytest.raises(TopologyError, match="No such file"):
+        measured.read(tmp_path / "none")
+    (tmp_path / "binary").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(TopologyError, match="is not UTF-8"):
+        measured.read(tmp_path / "binary")
+    with pytest.raises(TopologyError, match=r"no link has a quality of 0\.9 or better"):
+        measured.from_lines("A B 0.8").kept(0.9)
