@@ -101,4 +101,24 @@ def _mesh(loaded: Loaded) -> LiveNode:
     return MeshNode(loaded.name, stack, links_of(loaded), sealer_of(loaded, state), state)
 
 
-BUILDERS: dict[str, Callable[[Loaded], LiveNode]] = {"mesh": _mesh}
+def _skin(loaded: Loaded) -> LiveNode:
+    from innervate.live.profile import skin_parameters
+    from innervate.live.skin import CellNode, CellStack, SinkNode, SinkStack
+
+    table, links, state = loaded.table, links_of(loaded), state_of(loaded)
+    params = skin_parameters(dict(table.protocol), f"{loaded.path}")
+    paths = sum(len(link.paths) for link in links)
+    sealer = sealer_of(loaded, state)
+    if table.role == "sink":
+        return SinkNode(loaded.name, SinkStack(params, paths), links, sealer, state)
+    ports = table.ports or list(range(paths))
+    if len(ports) != paths or len(set(ports)) != paths:
+        raise LiveError(
+            f"{loaded.path}: ports must name the cell's port of each of its {paths} paths, "
+            "each once: W, E, up, down = 0 to 3"
+        )
+    stack = CellStack(table.number, params, secrets.randbits(60), ports)
+    return CellNode(loaded.name, stack, links, sealer, state, table.rate_hz)
+
+
+BUILDERS: dict[str, Callable[[Loaded], LiveNode]] = {"mesh": _mesh, "skin": _skin}

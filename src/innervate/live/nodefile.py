@@ -67,7 +67,7 @@ class NodeFile(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     nodes: Annotated[int, Meta(ge=1, le=65_535)] | None = None
     role: Literal["node", "gateway", "standby", "cell", "sink", "station"] | None = None
     rank: Annotated[int, Meta(ge=1, le=253)] = 1
-    names: list[str] = []
+    ports: Annotated[list[Annotated[int, Meta(ge=0, le=3)]], Meta(max_length=4)] = []
     socket: str | None = None
     state: str | None = None
     metrics: str | None = None

@@ -6,8 +6,10 @@ from typing import Any
 
 from innervate.live.errors import LiveError
 from innervate.live.mesh import CLASSES
+from innervate.protocol import skin_fields
 from innervate.protocol.mesh_fields import NEIGHBOURS, PARAMS, POINTS, words
 from innervate.protocol.mesh_words import LIST, MONITOR, SEARCH, TABLES
+from innervate.protocol.skin_words import RULE_FEASIBLE, WAVE
 
 IP: dict[str, int] = {
     "mtu": 127, "mode": TABLES, "discovery": LIST, "failover": SEARCH, "avoid_origin": 0,
@@ -21,7 +23,14 @@ IP: dict[str, int] = {
 }  # fmt: skip
 
 
+# A skin at 50 Hz; a port is broken after five silent periods [skin 5].
+SKIN: dict[str, int] = {
+    "rule": RULE_FEASIBLE, "updates": WAVE, "beacon_us": 20_000, "r_f": 168, "r_r": 168, "k": 5,
+    "max_depth": 64, "seq_every": 5, "balance_periods": 64, "hold_periods": 133, "gap_us": 500,
+    "skip_us": 12_000, "restart_us": 0, "forward_min_us": 0, "forward_max_us": 0,
+}  # fmt: skip
 RANGES = {name: (low, high, unit) for name, _, low, high, unit, _ in PARAMS}
+SKIN_RANGES = {name: (low, high, unit) for name, _, low, high, unit, _ in skin_fields.PARAMS}
 OURS = ("nodes", "width", "row", "told")  # follow from the node's file
 
 
@@ -31,14 +40,29 @@ def mesh_parameters(nodes: int, changes: dict[str, int], where: str = "") -> dic
     Raises:
         LiveError: no such parameter, or out of its range; the message begins with `where`.
     """
-    for name, value in changes.items():
-        if name not in RANGES or name in OURS:
-            known = ", ".join(name for name in IP if name not in OURS)
-            raise LiveError(f"{where}: protocol.{name} is unknown; it knows {known}")
-        low, high, unit = RANGES[name]
-        if not low <= value <= high:
-            raise LiveError(f"{where}: protocol.{name} = {value} must be {low} to {high} {unit}")
+    _check(changes, {name: RANGES[name] for name in RANGES if name not in OURS}, where)
     width = next(size for size in CLASSES if nodes <= size)
     corners = {name: [0] * POINTS for name in ("px", "py", "after")}
     own = {"nodes": nodes, "width": width, "row": words(width), "places": min(width, NEIGHBOURS)}
     return {**IP, **corners, **own, **changes}
+
+
+def skin_parameters(changes: dict[str, int], where: str = "") -> dict[str, int]:
+    """The skin's parameters, with what is to be different.
+
+    Raises:
+        LiveError: see mesh_parameters().
+    """
+    _check(changes, SKIN_RANGES, where)
+    return {**SKIN, **changes}
+
+
+def _check(
+    changes: dict[str, int], ranges: dict[str, tuple[int, int, str]], where: str
+) -> None:
+    for name, value in changes.items():
+        if name not in ranges:
+            raise LiveError(f"{where}: protocol.{name} is unknown; it knows {', '.join(ranges)}")
+        low, high, unit = ranges[name]
+        if not low <= value <= high:
+            raise LiveError(f"{where}: protocol.{name} = {value} must be {low} to {high} {unit}")
