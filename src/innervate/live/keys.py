@@ -122,8 +122,9 @@ class Sealer:
             self.state.counter = self.counter
         self.state.seen = {sender: window.highest for sender, window in self.windows.items()}
 
-    def _drop(self, reason: str) -> None:
+    def _drop(self, reason: str) -> bytes | None:
         self.dropped[reason] += 1
+        return None
 
     def _reserve(self) -> None:
         self.state.counter = self.counter + AHEAD

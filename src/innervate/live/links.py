@@ -17,6 +17,7 @@ class Path:
         name: as shown to people: "udp 127.0.0.1:4701".
         port: its place in the node's file, from 0; protocols with ports know it by that.
         up: False while its device is away.
+        cut: True = it carries nothing, as if its plug had come out; for tests and experiments.
         heard_at: when a good frame came in last, us of the driver's clock; 0 never.
         counters: frames and bytes out and in, and why frames were not sent.
     """
@@ -25,6 +26,7 @@ class Path:
         self.name = name
         self.port = port
         self.up = True
+        self.cut = False
         self.heard_at = 0
         self.counters: Counter[str] = Counter()
 

@@ -35,7 +35,6 @@ class LocalPath(Path):
         super().__init__(f"local {name}", port)
         self.other: LocalPath | None = None
         self.receive: Receiver | None = None
-        self.cut = False
 
     def send(self, data: bytes) -> None:
         """The other end has it in the loop's next turn."""

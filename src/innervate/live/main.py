@@ -107,11 +107,15 @@ class Process:
             await self._send(request, writer)
         elif what == "listen":
             await self._listen(writer)
+        elif what in ("cut", "restore"):
+            path = self.node.path_at(int(request["port"]))
+            path.cut = what == "cut"
+            await writer.line({"path": path.name, "cut": path.cut})
         elif what == "stop":
             self.ending.set()
             await writer.line({"ok": True})
         else:
-            raise ValueError('a request has "do": status, send, listen or stop')
+            raise ValueError('a request has "do": status, send, listen, cut, restore or stop')
 
     async def _send(self, request: dict[str, Any], writer: status.Writer) -> None:
         node = self._mesh()

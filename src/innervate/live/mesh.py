@@ -33,7 +33,7 @@ class MeshStack:
     """
 
     timers = TIMERS
-    reasons = wire.REASONS
+    reasons: tuple[str, ...] = wire.REASONS
 
     def __init__(self, number: int, rank: int, params: dict[str, Any], seed: int) -> None:
         self.params = Params()

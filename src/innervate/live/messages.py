@@ -69,7 +69,7 @@ class Receipt:
             return self.state
         future = asyncio.get_running_loop().create_future()
         self._waiters.append(future)
-        return await future
+        return str(await future)
 
     async def change(self) -> str:
         """Wait for the next change; the state then."""
@@ -77,7 +77,7 @@ class Receipt:
             return self.state
         future = asyncio.get_running_loop().create_future()
         self._changes.append(future)
-        return await future
+        return str(await future)
 
     def move(self, state: str, reason: str = "") -> None:
         """The state changes."""

@@ -82,7 +82,19 @@ class LiveNode:
     async def __aexit__(self, *_: object) -> None:
         await self.stop()
 
+    def path_at(self, port: int) -> Path:
+        """A path by its number.
+
+        Raises:
+            ValueError: there is none.
+        """
+        if not 0 <= port < len(self.paths):
+            raise ValueError(f"no port {port}; this node has 0 to {len(self.paths) - 1}")
+        return self.paths[port]
+
     def _receive(self, path: Path, data: bytes) -> None:
+        if path.cut:
+            return
         path.counters["received"] += 1
         path.counters["received bytes"] += len(data)
         if self.sealer is not None:
@@ -100,7 +112,8 @@ class LiveNode:
             data = self.sealer.close(data)
         ports = self.stack.ports_of(port, frame, attempt)
         for path in self.paths if ports is None else [self.paths[i] for i in ports]:
-            path.send(data)
+            if not path.cut:
+                path.send(data)
 
     async def drain(self, limit_s: float) -> bool:
         """Wait until nothing of ours is under way, at most `limit_s` seconds: True if so."""
@@ -149,7 +162,7 @@ def _path_status(path: Path, now: int) -> dict[str, Any]:
     return {
         "name": path.name,
         "port": path.port,
-        "up": path.up,
+        "up": path.up and not path.cut,
         "heard_s": None if silent_us is None else round(silent_us / 1e6, 3),
         "broken": not path.up or silent_us is None or silent_us > SILENT_US,
         "counters": dict(sorted(path.counters.items())),

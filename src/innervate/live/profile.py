@@ -13,7 +13,7 @@ from innervate.protocol.skin_words import RULE_FEASIBLE, WAVE
 
 IP: dict[str, int] = {
     "mtu": 127, "mode": TABLES, "discovery": LIST, "failover": SEARCH, "avoid_origin": 0,
-    "retry": 1, "reliable": 1, "activation": 0, "told": 0, "transmissions": 2, "ack_us": 5000,
+    "retry": 1, "reliable": 1, "activation": 0, "told": 0, "transmissions": 3, "ack_us": 5000,
     "suspect_us": 2_000_000, "min_rssi": -93, "jitter_us": 5000, "copies": 2,
     "listen_us": 50_000, "spread_us": 50_000, "collect_us": 200_000, "tick_us": 250_000,
     "period": 8, "period_max": 8, "dead": 20, "dead_step": 4, "standby": 0, "jobs": 4,
@@ -57,9 +57,7 @@ def skin_parameters(changes: dict[str, int], where: str = "") -> dict[str, int]:
     return {**SKIN, **changes}
 
 
-def _check(
-    changes: dict[str, int], ranges: dict[str, tuple[int, int, str]], where: str
-) -> None:
+def _check(changes: dict[str, int], ranges: dict[str, tuple[int, int, str]], where: str) -> None:
     for name, value in changes.items():
         if name not in ranges:
             raise LiveError(f"{where}: protocol.{name} is unknown; it knows {', '.join(ranges)}")

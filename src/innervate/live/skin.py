@@ -56,7 +56,7 @@ class SkinStack:
     """
 
     timers = TIMERS
-    reasons = wire.REASONS
+    reasons: tuple[str, ...] = wire.REASONS
 
     def __init__(self, params: dict[str, int], room: int) -> None:
         self.params = Params()

@@ -53,7 +53,9 @@ class UdpLink(Link):
     def __init__(self, bind: Address, peers: list[Address], first_port: int = 0) -> None:
         self.bind = bind
         self.socket: socket.socket | None = None
-        self.paths = [UdpPath(self, peer, first_port + i) for i, peer in enumerate(peers)]
+        self.paths: list[UdpPath] = [
+            UdpPath(self, peer, first_port + i) for i, peer in enumerate(peers)
+        ]
         self.strangers = 0
         self._by_address = {path.address: path for path in self.paths}
         self._receive: Receiver = _nobody
@@ -152,7 +154,7 @@ class MulticastLink(UdpLink):
         super().__init__((interface, 0), [group], port)
         self.group = group
         self.interface = interface
-        self._own: Address = ("", 0)
+        self._group: UdpPath = self.paths[0]
 
     def _make(self) -> socket.socket:
         sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -173,7 +175,7 @@ class MulticastLink(UdpLink):
 
     def _origin(self, address: Address) -> UdpPath | None:
         """Whoever sends to the group is in it; our own frames come back, too: protocols know."""
-        return self.paths[0]
+        return self._group
 
 
 def _nobody(path: Path, data: bytes) -> None:

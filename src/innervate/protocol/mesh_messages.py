@@ -171,7 +171,8 @@ def timeout(node, params):
 
 def later_timeout(node, params, tries):
     """The same after so many sendings: where it adapts it doubles, so that retries of many
-    messages at once do not keep a loaded network loaded."""
+    messages at once do not keep a loaded network loaded.
+    """
     wait = timeout(node, params)
     if params.e2e_adapt:
         for _ in range(1, tries):

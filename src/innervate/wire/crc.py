@@ -3,12 +3,10 @@
 Half a byte at a time: the table of 16 entries is kind to boards with 16 KiB of memory.
 """
 
-try:
-    from binascii import crc_hqx
-except ImportError:  # boards
-    crc_hqx = None  # type: ignore[assignment]
+import binascii
 
 START = 0xFFFF
+HAS_HQX = hasattr(binascii, "crc_hqx")  # boards have no such thing
 
 # The remainders of 0x0000, 0x1000 ... 0xF000.
 TABLE = (
@@ -19,8 +17,8 @@ TABLE = (
 
 def crc16(data: bytes | bytearray | memoryview, count: int) -> int:
     """CRC of the first `count` bytes of `data`, 0..65535."""
-    if crc_hqx is not None:
-        return crc_hqx(data if count == len(data) else data[:count], START)
+    if HAS_HQX:
+        return binascii.crc_hqx(data if count == len(data) else data[:count], START)
     return by_table(data, count)
 
 
