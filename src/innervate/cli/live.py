@@ -27,9 +27,8 @@ def show(names: list[str], as_json: bool) -> int:
     """What nodes say of themselves."""
     sockets = [status.find(name) for name in names] if names else status.sockets()
     if not sockets:
-        raise errors.UserError(
-            f"no node runs here (folder {status.folder()}); start one with: innervate live node FILE"
-        )
+        where = f"no node runs here (folder {status.folder()})"
+        raise errors.UserError(f"{where}; start one with: innervate live node FILE")
     told = [status.ask_one(path, {"do": "status"}) for path in sockets]
     if as_json:
         print(json.dumps(told if len(told) != 1 or not names else told[0]))

@@ -22,12 +22,14 @@ class Stack(Protocol):
         inbox: the frame record that received bytes are read into.
         timers: how many timers it has.
         reasons: words for what `decode` returns; 0 is "read".
+        silent_us: a path on which nothing was heard for so long is broken.
     """
 
     out: Any
     inbox: Any
     timers: int
     reasons: tuple[str, ...]
+    silent_us: int
 
     def start(self, now: int, cause: int) -> None:
         """Switch on."""

@@ -40,6 +40,8 @@ class MeshStack:
         for name, value in params.items():
             setattr(self.params, name, value)
         width = self.params.width
+        # Every node sends in every round: three without a word are no accident.
+        self.silent_us = 3 * self.params.period_max * self.params.tick_us + self.params.tick_us
         self.node = plain.make("Node", fields.node(width))()
         self.gate = plain.make("Gate", fields.gate(width))() if rank >= 0 else None
         self.node.number, self.node.rank = number, rank

@@ -11,8 +11,6 @@ from innervate.live.keys import Sealer
 from innervate.live.links import Link, Path
 from innervate.live.state import State
 
-SILENT_US = 8_000_000  # a path that was not heard for so long is broken
-
 
 class LiveNode:
     """One running node. Subclasses know what its user says and hears.
@@ -132,7 +130,7 @@ class LiveNode:
     def status(self) -> dict[str, Any]:
         """What is known here: paths, counters, and what the protocol says of itself."""
         now = clock_us()
-        paths = [_path_status(path, now) for path in self.paths]
+        paths = [_path_status(path, now, self.stack.silent_us) for path in self.paths]
         return {
             "name": self.name,
             "up_s": round(time.time() - self.started_at, 1),
@@ -157,13 +155,13 @@ class LiveNode:
         """The outbox is empty: the user may be called."""
 
 
-def _path_status(path: Path, now: int) -> dict[str, Any]:
+def _path_status(path: Path, now: int, most_us: int) -> dict[str, Any]:
     silent_us = now - path.heard_at if path.heard_at else None
     return {
         "name": path.name,
         "port": path.port,
         "up": path.up and not path.cut,
         "heard_s": None if silent_us is None else round(silent_us / 1e6, 3),
-        "broken": not path.up or silent_us is None or silent_us > SILENT_US,
+        "broken": not path.up or silent_us is None or silent_us > most_us,
         "counters": dict(sorted(path.counters.items())),
     }

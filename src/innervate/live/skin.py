@@ -62,6 +62,7 @@ class SkinStack:
         self.params = Params()
         for name, value in params.items():
             setattr(self.params, name, value)
+        self.silent_us = self.params.k * self.params.beacon_us
         self.out = plain.Outbox(Frame, room)
         self.inbox = Frame()
         self.port = 0  # on which the frame in the inbox came
