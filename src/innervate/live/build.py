@@ -13,6 +13,7 @@ from innervate.live.node import LiveNode
 from innervate.live.nodefile import (
     KeysTable,
     Loaded,
+    MediumTable,
     MulticastTable,
     SerialTable,
     UdpTable,
@@ -121,4 +122,23 @@ def _skin(loaded: Loaded) -> LiveNode:
     return CellNode(loaded.name, stack, links, sealer, state, table.rate_hz)
 
 
-BUILDERS: dict[str, Callable[[Loaded], LiveNode]] = {"mesh": _mesh, "skin": _skin}
+def _radio(loaded: Loaded) -> LiveNode:
+    from innervate.live.medium import MediumRadio
+    from innervate.live.profile import radio_parameters
+    from innervate.live.radio import RadioNode, StationStack, check_parameters
+
+    table, where = loaded.table, f"{loaded.path}"
+    if len(table.link) != 1 or not isinstance(table.link[0], MediumTable):
+        raise LiveError(f'{where}: a station has one [[link]], of kind = "medium"')
+    if table.keys is not None:
+        raise LiveError(f"{where}: frames on a shared channel are not sealed; remove [keys]")
+    params = radio_parameters(dict(table.protocol), where)
+    check_parameters(params)
+    stack = StationStack(table.number, params, secrets.randbits(60))
+    radio = MediumRadio(table.number, address(table.link[0].address, where))
+    return RadioNode(loaded.name, stack, radio)
+
+
+BUILDERS: dict[str, Callable[[Loaded], LiveNode]] = {
+    "mesh": _mesh, "skin": _skin, "radio": _radio,
+}  # fmt: skip

@@ -74,6 +74,7 @@ class Engine:
 
     Attributes:
         counters: what happened how often: handler calls, and frames dropped by reason.
+        now: when what is drained now was decided, us.
     """
 
     def __init__(
@@ -97,6 +98,7 @@ class Engine:
         self._wake_at = 0
         self._loop = asyncio.get_running_loop()
         self._stopped = False
+        self.now = 0
 
     def start(self, cause: int = 0) -> None:
         """Switch the node on: 0 first, 1 again with its memory lost."""
@@ -111,19 +113,28 @@ class Engine:
             self._wake.cancel()
             self._wake = None
 
-    def receive(self, port: int, data: bytes) -> int:
-        """Bytes came in on a port; the reason if they are no frame (counted), else 0."""
+    def receive(self, port: int, data: bytes, at: int | None = None) -> int:
+        """Bytes came in on a port; the reason if they are no frame (counted), else 0.
+
+        `at` is when, if that is known better than by looking at the clock now.
+        """
         if self._stopped:
             return 0
         reason = self.stack.decode(data)
         if reason:
             self.counters["dropped: " + self.stack.reasons[reason]] += 1
             return reason
-        now = self._clock()
+        now = self._clock() if at is None else at
         self.counters["frames"] += 1
         self.stack.frame(now & MASK30, port)
         self._drain(now)
         return 0
+
+    def call(self, handler: Callable[[int], None], at: int) -> None:
+        """Call a handler with the protocol's clock of a moment, and drain what it puts out."""
+        if not self._stopped:
+            handler(at & MASK30)
+            self._drain(at)
 
     def input(self, kind: int, item: Any) -> None:
         """Hand something down for the node's own user."""
@@ -134,6 +145,7 @@ class Engine:
     def _drain(self, now: int) -> None:
         out = self.stack.out
         assert not out.overflow[0], "a handler put out more than its outbox holds"
+        self.now = now
         count = out.count[0]
         out.count[0] = 0
         armed = False

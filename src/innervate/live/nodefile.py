@@ -43,7 +43,6 @@ class MediumTable(Struct, frozen=True, forbid_unknown_fields=True, tag="medium",
     """[[link]] kind = "medium": the shared channel of `innervate live medium`."""
 
     address: str
-    bind: str = "127.0.0.1:0"
 
 
 LinkTable = UdpTable | MulticastTable | SerialTable | MediumTable

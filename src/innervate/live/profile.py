@@ -6,7 +6,7 @@ from typing import Any
 
 from innervate.live.errors import LiveError
 from innervate.live.mesh import CLASSES
-from innervate.protocol import skin_fields
+from innervate.protocol import radio_fields, skin_fields
 from innervate.protocol.mesh_fields import NEIGHBOURS, PARAMS, POINTS, words
 from innervate.protocol.mesh_words import LIST, MONITOR, SEARCH, TABLES
 from innervate.protocol.skin_words import RULE_FEASIBLE, WAVE
@@ -23,6 +23,16 @@ IP: dict[str, int] = {
 }  # fmt: skip
 
 
+# A channel of processes: slots of 10 ms, a turnaround of 5 ms, and stations that act up to 3 ms
+# late; the rest follows as docs/radio.md says.
+RADIO: dict[str, int] = {
+    "slot_us": 10_000, "bit_us": 1250, "ta_us": 5000, "dmin_us": 1, "dmax_us": 3000,
+    "packet_slots": 20, "minislot_us": 17_248, "probe_us": 25_000, "retry_us": 58_000,
+    "join_us": 609_184, "dead_us": 36_248, "turns": 20, "per_turn": 1, "wait_us": 400_000,
+    "tail_rule": 1, "overlap_rule": 1, "window_slots": 0, "dilate": 1, "mac": 0, "stations": 1,
+    "oracle": 0, "full_duplex": 0, "period_us": 0, "gap_us": 0, "answer_us": 0, "backoff_us": 208,
+    "cw_min": 32, "cw_max": 1024, "p_q15": 3277,
+}  # fmt: skip
 # A skin at 50 Hz; a port is broken after five silent periods [skin 5].
 SKIN: dict[str, int] = {
     "rule": RULE_FEASIBLE, "updates": WAVE, "beacon_us": 20_000, "r_f": 168, "r_r": 168, "k": 5,
@@ -30,6 +40,7 @@ SKIN: dict[str, int] = {
     "skip_us": 12_000, "restart_us": 0, "forward_min_us": 0, "forward_max_us": 0,
 }  # fmt: skip
 RANGES = {name: (low, high, unit) for name, _, low, high, unit, _ in PARAMS}
+RADIO_RANGES = {name: (low, high, unit) for name, _, low, high, unit, _ in radio_fields.PARAMS}
 SKIN_RANGES = {name: (low, high, unit) for name, _, low, high, unit, _ in skin_fields.PARAMS}
 OURS = ("nodes", "width", "row", "told")  # follow from the node's file
 
@@ -55,6 +66,16 @@ def skin_parameters(changes: dict[str, int], where: str = "") -> dict[str, int]:
     """
     _check(changes, SKIN_RANGES, where)
     return {**SKIN, **changes}
+
+
+def radio_parameters(changes: dict[str, int], where: str = "") -> dict[str, int]:
+    """A station's parameters, with what is to be different.
+
+    Raises:
+        LiveError: see mesh_parameters().
+    """
+    _check(changes, RADIO_RANGES, where)
+    return {**RADIO, **changes}
 
 
 def _check(changes: dict[str, int], ranges: dict[str, tuple[int, int, str]], where: str) -> None:
