@@ -9,9 +9,12 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
-from innervate.protocol import radio_fields, skin_fields
+from innervate.protocol import mesh_fields, radio_fields, skin_fields
 from innervate.trace import radio_tables, tables
+from innervate.wire import layout, mesh, mesh_payloads, radio, skin
+from innervate.wire.meanings import MEANINGS
 
 FOLDER = Path(__file__).resolve().parent
 PICTURE = FOLDER / "images" / "recovery.svg"
@@ -38,6 +41,55 @@ def run_tables(given: Iterable[tables.Table]) -> str:
     return "\n\n".join(parts)
 
 
+def layout_rows(fields: Iterable[tuple[str, Any, Any, int]], says: dict[str, str]) -> list[str]:
+    """Rows of a layout; those of a group are marked with what they are in."""
+    rows = []
+    for name, many, bits, signed in fields:
+        how_many = {0: "", layout.REST: " each, to the end", layout.PAIRS: " per pair"}.get(
+            many, f" x {many}" if isinstance(many, int) else f" each, `{many}` of them"
+        )
+        group = isinstance(bits, tuple)
+        size = "group" if group else f"{bits}{', signed' if signed else ''}"
+        shown = ("-", "spare") if name == layout.SPARE else (f"`{name}`", says[name])
+        rows.append(f"| {shown[0]} | {size}{how_many} | {shown[1]} |")
+        if group:
+            inner = layout_rows(bits, says)
+            rows += [row.replace("| `", f"| `{name}`: `", 1) for row in inner]
+    return rows
+
+
+def layout_table(fields: Iterable[tuple[str, Any, Any, int]], says: dict[str, str]) -> str:
+    """A layout as a Markdown table."""
+    return "\n".join(["| field | bits | meaning |", "|---|---|---|", *layout_rows(fields, says)])
+
+
+def layout_tables(layouts: Iterable[tuple[int, str, Any]], says: dict[str, str]) -> str:
+    """Several layouts, each under its name and type."""
+    return "\n\n".join(
+        f"**{name}**, type {kind}\n\n{layout_table(fields, says)}" for kind, name, fields in layouts
+    )
+
+
+def meanings(fields: Iterable[tuple[str, object, int, int, str, str]]) -> dict[str, str]:
+    """What declared fields mean, by name."""
+    return {name: meaning for name, _length, _low, _high, _unit, meaning in fields}
+
+
+def mesh_frames() -> str:
+    """The two forms of the mesh's frames."""
+    says = meanings(mesh_fields.FRAME) | {
+        "version": "1",
+        "flags": "see above",
+        "payload": "see below",
+        "crc": "CRC-16 of all before it",
+    }
+    ack = says | {"rssi": "of the frame that this acknowledges, dBm", "seq": "of that frame"}
+    return (
+        f"**packet**\n\n{layout_table(mesh.PACKET, says)}\n\n"
+        f"**ack of a hop**, type {mesh.ACK}\n\n{layout_table(mesh.WHOLE_ACK, ack)}"
+    )
+
+
 # (page, name of the part, how it is made)
 PARTS = (
     ("skin.md", "parameters", lambda: field_table(skin_fields.PARAMS)),
@@ -47,6 +99,11 @@ PARTS = (
     ("radio.md", "radio-frame", lambda: field_table(radio_fields.FRAME)),
     ("radio.md", "radio-station", lambda: field_table(radio_fields.STATION)),
     ("radio.md", "radio-practical", lambda: field_table(radio_fields.PRACTICAL)),
+    ("wire.md", "wire-skin", lambda: layout_tables(skin.LAYOUTS, meanings(skin_fields.FRAME))),
+    ("wire.md", "wire-mesh", mesh_frames),
+    ("wire.md", "wire-mesh-payloads", lambda: layout_tables(mesh_payloads.LAYOUTS, MEANINGS)),
+    ("wire.md", "wire-mesh-graph", lambda: layout_table(mesh_payloads.WHOLE_GRAPH, MEANINGS)),
+    ("wire.md", "wire-radio", lambda: layout_tables(radio.LAYOUTS, meanings(radio_fields.FRAME))),
     ("reading-a-report.md", "tables", lambda: run_tables(tables.TABLES)),
     ("reading-a-report.md", "radio-tables", lambda: run_tables(radio_tables.TABLES)),
 )

@@ -6,7 +6,7 @@ from innervate.protocol import mesh, plain
 from innervate.protocol import mesh_fields as fields
 from innervate.protocol.arith import MASK30
 from innervate.protocol.mesh_frames import copy_frame
-from innervate.protocol.mesh_words import MESSAGE
+from innervate.protocol.mesh_words import ACK, MESSAGE, SENT
 from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.protocol.rng import seeded
 
@@ -87,7 +87,9 @@ class Bench:
                 took = ACK_US if act.c & URGENT else FRAME_US
                 for to in sorted(self.near[i]):
                     if not self.lost(frame, to):
-                        self.push(self.now + took, ("frame", to, frame))
+                        self.push(self.now + took, ("frame", to, self.heard(i, to, frame)))
+                if self.params.told and not act.c & URGENT:
+                    self.push(self.now + took, ("sent", i, 0))
             elif act.kind == SET_TIMER:
                 at = self.now + ((act.b - self.now) & MASK30)
                 self.due[i, act.a] = at
@@ -99,6 +101,17 @@ class Bench:
                 copy_frame(frame, out.frame[k])
                 self.delivered.append((self.now, i, frame))
         out.count[0] = 0
+
+    def heard(self, i, to, frame):
+        """The frame as it is received; an ack tells how loud the frame was that it is for."""
+        copy = Frame()
+        copy_frame(copy, frame)
+        if frame.kind != ACK:
+            copy.rssi = self.rssi_of(i, to)
+        return copy
+
+    def rssi_of(self, i, to):
+        return -60
 
     def check(self, i):
         """Every field in its range."""
@@ -117,8 +130,11 @@ class Bench:
                 continue
             node, gate, now = self.nodes[i], self.gates[i], self.now & MASK30
             if kind == "frame":
-                what.rssi = -60 if what.kind != 16 else what.rssi
                 mesh.on_frame(node, gate, self.params, now, 0, what, self.out)
+            elif kind == "sent":
+                item = Item()
+                item.ok = 1
+                mesh.on_input(node, gate, self.params, now, SENT, item, self.out)
             elif self.due.get((i, what)) == at:
                 del self.due[i, what]
                 mesh.on_timer(node, gate, self.params, now, what, self.out)

@@ -13,6 +13,7 @@ from innervate.wire import mesh as wire
 from innervate.wire import mesh_payloads as payloads
 from innervate.wire.bits import put
 from innervate.wire.layout import BROKEN, REST, read
+from innervate.wire.meanings import MEANINGS
 
 Frame = plain.make("Frame", FRAME)
 RANGES = {name: (length, low, high) for name, length, low, high, _unit, _meaning in FRAME}
@@ -222,6 +223,18 @@ def test_layouts_hold_exactly_the_declared_ranges():
     assert in_frames | {"path", "length", "body"} == set(RANGES)
 
 
+def names_in(fields):
+    for name, _many, bits, _signed in fields:
+        yield name
+        if isinstance(bits, tuple):
+            yield from names_in(bits)
+
+
+def test_every_field_of_a_payload_has_a_meaning_and_no_other():
+    layouts = [*payloads.FIELDS.values(), payloads.WHOLE_GRAPH]
+    assert {name for fields in layouts for name in names_in(fields)} == set(MEANINGS)
+
+
 @given(frames)
 def test_round_trip(frame):
     back = new(words.DATA, path=[9], body=b"old", flags=3, rssi=-7)
@@ -251,7 +264,7 @@ def test_every_truncation_and_extension_is_refused(frame):
         assert by_chance or reason in (wire.BAD_LENGTH, wire.BAD_CRC)
     # The CRC of a frame and a zero is right again: what has a length of its own sees it.
     reason = wire.decode(data + b"\0", Frame())
-    endless = frame.kind in (words.DATA, words.GRAPH)
+    endless = frame.kind in (words.DATA, words.GRAPH) or frame.flags & words.DETOURED
     assert endless or reason != wire.OK
     assert wire.decode(data + b"\1", Frame()) in (wire.BAD_CRC, wire.BAD_LENGTH)
 
@@ -347,8 +360,8 @@ def test_the_mtu_holds_both_ways():
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("seq", 65536), ("ttl", -1), ("kind", 6), ("path_len", 25), ("path", [256] * 24),
-     ("body", [-1] * 114)],
+    [("seq", 65536), ("ttl", -1), ("kind", 6), ("path_len", 25), ("length", 115),
+     ("length", -1), ("path", [256] * 24), ("body", [-1] * 114)],
 )  # fmt: skip
 def test_encoding_what_does_not_fit_is_the_callers_mistake(name, value):
     frame = new(words.DATA, path=[1], body=b"x")

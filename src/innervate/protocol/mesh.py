@@ -7,17 +7,15 @@ the choice of a hop in mesh_route.py, messages in mesh_messages.py, the fence in
 
 from innervate.protocol.arith import MASK30
 from innervate.protocol.mesh_alarm import (
-    NEVER,
-    beacon,
     flood_again,
+    insist,
     on_flood,
-    on_position,
     on_sample,
     take_alarm,
-    watch,
+    unheard,
 )
 from innervate.protocol.mesh_fields import WAITING
-from innervate.protocol.mesh_frames import clear_queue
+from innervate.protocol.mesh_frames import clear_queue, is_sound
 from innervate.protocol.mesh_gateway import collect, lead, on_response, reset, tick
 from innervate.protocol.mesh_jobs import on_ack, retry_jobs
 from innervate.protocol.mesh_messages import (
@@ -27,7 +25,7 @@ from innervate.protocol.mesh_messages import (
     try_again,
     wait_on,
 )
-from innervate.protocol.mesh_near import forget_all, hear, sweep
+from innervate.protocol.mesh_near import forget_all, hear, hear_again, sweep
 from innervate.protocol.mesh_queue import (
     CONTROL,
     acked,
@@ -43,6 +41,7 @@ from innervate.protocol.mesh_round import on_request, step
 from innervate.protocol.mesh_seen import age, forget, is_repeated
 from innervate.protocol.mesh_send import is_upward, send_up, unanswered
 from innervate.protocol.mesh_table import on_activate, on_graph, on_table
+from innervate.protocol.mesh_watch import NEVER, beacon, on_position, watch
 from innervate.protocol.mesh_words import (
     ACK,
     ACK_WAIT,
@@ -73,6 +72,7 @@ from innervate.protocol.outbox import report, set_timer
 from innervate.protocol.rng import draw
 
 NONE = 255
+RETRIES = 4  # of kept messages in one go: the outbox has to hold them
 
 
 def on_start(node, gate, params, now, cause, out):
@@ -99,6 +99,7 @@ def on_start(node, gate, params, now, cause, out):
     node.ready = 0
     node.placed = 0
     node.outside = 0
+    node.heard_out = 0
     forget_all(node, params)
     forget(node, params)
     clear_queue(node)
@@ -130,13 +131,17 @@ def on_frame(node, gate, params, now, port, frame, out):
     """A frame was received, perhaps for somebody else [mesh 4]."""
     if frame.link_src >= params.nodes or frame.link_src == node.number:
         return
+    if not is_sound(params, frame):
+        return
+    if frame.kind == ACK and frame.link_dst != node.number:
+        hear_again(node, params, frame.link_src)
+        return
     k = hear(node, params, frame.link_src, frame.rssi)
     if frame.kind == ACK:
-        if frame.link_dst == node.number:
-            on_hop_ack(node, params, now, frame, out)
+        on_hop_ack(node, params, now, frame, out)
     elif frame.link_dst == ALL:
         on_broadcast(node, params, now, frame, k, out)
-    elif frame.link_dst == node.number and frame.origin < params.nodes:
+    elif frame.link_dst == node.number:
         on_unicast(node, gate, params, now, frame, out)
 
 
@@ -152,7 +157,7 @@ def on_broadcast(node, params, now, frame, k, out):
     """A frame for everyone in reach."""
     kind = frame.kind
     if kind == REQUEST:
-        if frame.length >= 7:
+        if frame.length >= 7 and frame.body[0] < params.nodes:
             on_request(node, params, now, frame, k, out)
     elif kind == ALARM:
         if frame.flags & FLOOD:
@@ -254,7 +259,10 @@ def on_tick(node, gate, params, now, out):
     age(node, params)
     watch(node, params, now, out)
     if node.robot and node.placed:
+        insist(node, params, now, out)
         beacon(node, params, now, out)
+    if not node.leading:
+        node.quiet = min(node.quiet + 1, 65_535)
     if node.rank >= 0:
         tick(node, gate, params, now, out)
     kick(node, params, now, out)
@@ -262,10 +270,13 @@ def on_tick(node, gate, params, now, out):
 
 def on_retry(node, params, now, out):
     """An end-to-end ack is overdue: once more, for alarms as a flood besides."""
-    for _ in range(WAITING):
+    for _ in range(RETRIES):
         w = due_wait(node, now)
         if w >= 0:
             alarm = node.wait_kind[w] == ALARM
-            if try_again(node, params, now, w, out) and alarm:
+            if not try_again(node, params, now, w, out):
+                if alarm:
+                    unheard(node, w)
+            elif alarm:
                 flood_again(node, params, now, w, out)
     wait_on(node, now, out)

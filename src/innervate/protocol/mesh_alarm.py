@@ -1,9 +1,9 @@
 """The virtual fence: robots, monitor and witnesses raise alarms that get through [mesh 4 ALARM]."""
 
 from innervate.protocol.arith import MASK30
-from innervate.protocol.mesh_fence import judge, margin
+from innervate.protocol.mesh_fence import OUTSIDE, judge, margin
 from innervate.protocol.mesh_fields import WAITING
-from innervate.protocol.mesh_frames import add8, add16, add_hop, get16, inner, signed8, signed16
+from innervate.protocol.mesh_frames import add8, add16, add_hop
 from innervate.protocol.mesh_messages import (
     first_flag,
     free_wait,
@@ -11,20 +11,17 @@ from innervate.protocol.mesh_messages import (
     resolve,
     take,
 )
-from innervate.protocol.mesh_queue import ALARMS, MESSAGES, compose, kick, take_over
+from innervate.protocol.mesh_queue import ALARMS, compose, kick, take_over
 from innervate.protocol.mesh_seen import FLOODED, is_flooded
 from innervate.protocol.mesh_send import send_on
 from innervate.protocol.mesh_words import (
     ALARM,
     ALL,
-    CLEAR,
     CROSS,
     DATA_MAX,
     END_TO_END,
     FLOOD,
-    LOST,
     MONITOR,
-    POSITION,
     PRIORITY,
     REPORT_ALARM,
     REPORT_EXPIRED,
@@ -34,14 +31,8 @@ from innervate.protocol.outbox import deliver, report
 from innervate.protocol.rng import draw
 
 ALARM_BYTES = 16
-POSITION_BYTES = 8
-NEVER = 255
-RAISED_LOST = 1
 RAISED_OUT = 2
-SAID_OUT = 1  # flags of a position: its robot has raised the alarm
-SAID_HEARD = 2  # ... and the monitor has acknowledged it
 NO_PUT_OUT = 3
-INSIDE = 0
 
 
 def on_sample(node, params, now, item, out):
@@ -54,26 +45,44 @@ def on_sample(node, params, now, item, out):
     if params.points == 0:
         return
     kind = judge(node, params)
+    if kind == CROSS:
+        node.heard_out = 0
     if kind >= 0:
-        sound(node, params, now, kind, node.number, node.x, node.y, node.vx, node.vy, out)
+        sound_own(node, params, now, kind, out)
+
+
+def sound_own(node, params, now, kind, out):
+    """A robot raises an alarm for itself."""
+    sound(node, params, now, kind, node.number, node.x, node.y, node.vx, node.vy, out)
+
+
+def insist(node, params, now, out):
+    """Every tick of a robot: outside, and nobody knows nor is being told? Once more, then.
+
+    So it is while no gateway is known, when all tries failed, and after a change of the monitor.
+    """
+    if node.outside == OUTSIDE and not node.heard_out and not is_telling(node):
+        sound_own(node, params, now, CROSS, out)
 
 
 def sound(node, params, now, kind, robot, x, y, vx, vy, out):
-    """Raise an alarm for a robot: on its way to the monitor, flooded besides if it must be."""
+    """Raise an alarm for a robot: on its way to the monitor, flooded besides if it must be.
+
+    0 if it cannot be: nobody to tell, or no place.
+    """
     gap = margin(params, x, y)
-    node.alarm = (node.alarm + 1) & 255
-    report(out, REPORT_ALARM, kind, robot)
-    report(out, REPORT_MARGIN, gap, node.alarm)
     monitor = resolve(node, params, MONITOR)
     if monitor == node.number:
+        note_alarm(node, kind, robot, gap, out)
         tell_monitor(node, params, now, kind, robot, x, y, vx, vy, gap, out)
-        return
+        return 1
     if monitor == ALL:
-        return
+        return 0
     flags = END_TO_END | PRIORITY | first_flag(node, monitor)
     i = compose(node, now, ALARMS, ALARM, monitor, flags, out)
     if i < 0:
-        return
+        return 0
+    note_alarm(node, kind, robot, gap, out)
     write_alarm(node, params, now, i, kind, robot, x, y, vx, vy, gap)
     w = wait_for_alarm(node, out)
     keep(node, params, now, w, i, robot, out)
@@ -82,6 +91,14 @@ def sound(node, params, now, kind, robot, x, y, vx, vy, out):
         flood(node, params, now, w, 1, out)
     send_on(node, params, now, i, out)
     kick(node, params, now, out)
+    return 1
+
+
+def note_alarm(node, kind, robot, gap, out):
+    """An alarm gets its number, and is reported."""
+    node.alarm = (node.alarm + 1) & 255
+    report(out, REPORT_ALARM, kind, robot)
+    report(out, REPORT_MARGIN, gap, node.alarm)
 
 
 def write_alarm(node, params, now, i, kind, robot, x, y, vx, vy, gap):
@@ -167,6 +184,8 @@ def take_alarm(node, params, now, frame, out):
 
 def tell_monitor(node, params, now, kind, robot, x, y, vx, vy, gap, out):
     """We are the monitor, and saw it ourselves."""
+    if robot == node.number and kind == CROSS:
+        node.heard_out = 1
     frame = out.frame[deliver(out, ALARM)]
     frame.kind = ALARM
     frame.flags = 0
@@ -196,95 +215,15 @@ def tell_monitor(node, params, now, kind, robot, x, y, vx, vy, gap, out):
     frame.body[15] = gap & 255
 
 
-def knows_unheard(node):
-    """1 if an alarm of ours still waits for the monitor."""
+def is_telling(node):
+    """1 if an alarm of ours, about ourselves, still waits for the monitor."""
     for w in range(WAITING):
-        if node.wait_kind[w] == ALARM:
+        if node.wait_kind[w] == ALARM and node.wait_body[w * DATA_MAX] == node.number:
             return 1
     return 0
 
 
-def write_position(node, i):
-    """The 8 bytes of a position [mesh 2 POS_BEACON]."""
-    said = 0
-    if node.outside == 2:
-        said = SAID_OUT
-        if not knows_unheard(node):
-            said = SAID_OUT | SAID_HEARD
-    add8(node, i, node.number)
-    add16(node, i, node.x)
-    add16(node, i, node.y)
-    add8(node, i, node.vx)
-    add8(node, i, node.vy)
-    add8(node, i, said)
-
-
-def beacon(node, params, now, out):
-    """Every tick of a robot: its position to whoever hears it, and to the monitor."""
-    i = compose(node, now, MESSAGES, POSITION, ALL, 0, out)
-    if i >= 0:
-        add_hop(node, i)
-        write_position(node, i)
-    monitor = resolve(node, params, MONITOR)
-    if params.watch and monitor < ALL and monitor != node.number:
-        i = compose(node, now, MESSAGES, POSITION, monitor, first_flag(node, monitor), out)
-        if i >= 0:
-            write_position(node, i)
-            send_on(node, params, now, i, out)
-
-
-def on_position(node, params, now, frame, out):
-    """A robot says where it is: the monitor notes it, a witness raises the alarm for it.
-
-    What the robot has reported itself, and the monitor acknowledged, needs no witness; nor does
-    an alarm that was raised but a moment ago.
-    """
-    at = inner(frame)
-    if frame.length < at + POSITION_BYTES:
-        return
-    robot = frame.body[at]
-    if robot >= params.nodes or robot == node.number:
-        return
-    monitor = resolve(node, params, MONITOR) == node.number
-    if monitor:
-        found(node, params, now, robot, frame, at, out)
-    if params.points == 0:
-        return
-    x = signed16(get16(frame, at + 1))
-    y = signed16(get16(frame, at + 3))
-    gap = margin(params, x, y)
-    said = frame.body[at + 7]
-    if gap >= 0:
-        if gap > params.clear_margin:
-            node.raised[robot] = node.raised[robot] & ~(RAISED_OUT | 4)
-        return
-    if said == SAID_OUT and node.raised[robot] & 4 == 0:
-        node.raised[robot] = node.raised[robot] | 4  # give its own alarm a beacon's time
-        return
-    if said & SAID_HEARD == 0 and node.raised[robot] & RAISED_OUT == 0:
-        node.raised[robot] = node.raised[robot] | RAISED_OUT
-        vx = signed8(frame.body[at + 5])
-        vy = signed8(frame.body[at + 6])
-        sound(node, params, now, CROSS, robot, x, y, vx, vy, out)
-
-
-def found(node, params, now, robot, frame, at, out):
-    """The monitor hears of a robot: it is not lost, or not any more."""
-    node.missed[robot] = 0
-    if node.raised[robot] & RAISED_LOST:
-        node.raised[robot] = node.raised[robot] & ~RAISED_LOST
-        x = signed16(get16(frame, at + 1))
-        y = signed16(get16(frame, at + 3))
-        sound(node, params, now, CLEAR, robot, x, y, 0, 0, out)
-
-
-def watch(node, params, now, out):
-    """Every tick of the monitor: whose beacons stayed away?"""
-    if resolve(node, params, MONITOR) != node.number:
-        return
-    for robot in range(params.nodes):
-        if node.missed[robot] != NEVER and node.raised[robot] & RAISED_LOST == 0:
-            node.missed[robot] = node.missed[robot] + 1
-            if node.missed[robot] > params.lost:
-                node.raised[robot] = node.raised[robot] | RAISED_LOST
-                sound(node, params, now, LOST, robot, 0, 0, 0, 0, out)
+def unheard(node, w):
+    """The alarm that was kept in place w was given up: a witness raises it anew if it must."""
+    robot = node.wait_body[w * DATA_MAX]
+    node.raised[robot] = node.raised[robot] & ~RAISED_OUT

@@ -72,7 +72,7 @@ OWN = (
     ("jitter", 0, 0, 255, "10 ms", "of the present round's requests"),
     ("tick_at", 0, 0, TIME, "us", "the newest tick"),
     ("parent", 0, 0, 255, "node", "who brought the round's first request; 255 nobody"),
-    ("quiet", 0, 0, 65535, "ticks", "since the newest request; standby"),
+    ("quiet", 0, 0, 65535, "ticks", "since the newest request"),
     ("leading", 0, 0, 1, "flag", "we are the gateway now"),
     ("round_trip", 0, 0, 16777215, "us", "smoothed, of end-to-end acks; 0 unknown"),
 )
@@ -123,11 +123,12 @@ def packets(n):
         ("window", n * WINDOW_WORDS, 0, 32767, "bits", "per origin: which behind it were"),
         ("heard_seq", n, 0, 65536, "number", "per origin: the seq that reset it; 65536 none"),
         ("idle", n, 0, 255, "ticks", "per origin: till the window is cleared; 0 = it is"),
-        ("met", words(n), 0, 32767, "bits", "recipients that had our first packet"),
+        ("met", words(n), 0, 32767, "bits", "recipients that acknowledged something"),
         ("done_origin", FORWARDED, 0, 255, "node", "forwarded: origin; 255 = free place"),
         ("done_seq", FORWARDED, 0, 65535, "number", "forwarded: seq"),
         ("done_kind", FORWARDED, 0, 255, "type", "forwarded: type, 64 x parity, flood instance"),
         ("done_from", FORWARDED, 0, 255, "node", "forwarded: who gave it to us first"),
+        ("done_hops", FORWARDED, 0, PATH_MAX, "hops", "forwarded: how long its path was"),
         ("done_at", 0, 0, 63, "place", "forwarded: the next to be overwritten"),
         ("skip_origin", SKIPS, 0, 255, "node", "failed neighbours per packet; 255 free"),
         ("skip_seq", SKIPS, 0, 65535, "number", "... seq of the packet"),
@@ -144,6 +145,7 @@ def packets(n):
         ("wait_due", WAITING, 0, TIME, "us", "... when it is sent again"),
         ("wait_at", WAITING, 0, TIME, "us", "... when it was sent last"),
         ("wait_handle", WAITING, 0, 65535, "number", "... its owner's name"),
+        ("wait_hop", WAITING, 0, 1, "flag", "... its owner was told that it has left"),
         ("wait_length", WAITING, 0, DATA_MAX, "bytes", "... payload"),
         ("wait_body", WAITING * DATA_MAX, 0, 255, "byte", "... payload"),
     )
@@ -156,6 +158,7 @@ WATCH = (
     ("vy", 0, -127, 127, "2 cm/s", "robot: speed"),
     ("outside", 0, 0, 2, "state", "robot: 0 inside, 1 about to cross, 2 outside"),
     ("alarm", 0, 0, 255, "number", "of our newest alarm"),
+    ("heard_out", 0, 0, 1, "flag", "robot: the monitor acknowledged that it is outside"),
     ("placed", 0, 0, 1, "flag", "robot: its position is known"),
 )
 
@@ -267,7 +270,7 @@ PARAMS = (
     ("forget", 0, 1, 255, "ticks", "duplicate window of an origin that is silent"),
     ("monitor", 0, 0, 255, "node", "254: whoever is gateway"),
     ("watch", 0, 0, 1, "flag", "robots tell the monitor where they are, every tick"),
-    ("lost", 0, 1, 255, "ticks", "a robot not heard for so long is lost"),
+    ("lost", 0, 1, 253, "ticks", "a robot not heard for so long is lost"),
     ("flood", 0, 0, 2, "when", "alarms: 0 never, 1 CROSS at once and others late, 2 all at once"),
     ("instances", 0, 0, 3, "floods", "at most, of an alarm"),
     ("clear_margin", 0, 0, 32767, "unit", "inside by so much again: CLEAR"),

@@ -4,6 +4,7 @@ from innervate.protocol.mesh_fields import QUEUE
 from innervate.protocol.mesh_words import (
     ACK,
     ACK_BYTES,
+    ALL,
     BODY,
     CRC_BYTES,
     HEADER_BYTES,
@@ -59,6 +60,35 @@ def inner(frame):
     if frame.flags & SOURCE_ROUTE and frame.length > 0:
         return min(frame.length, 1 + frame.body[0])
     return 0
+
+
+def is_sound(params, frame):
+    """1 if the numbers in a received frame go together; what is not is dropped silently [mesh 2].
+
+    Nodes exist, the whole fits the MTU, a source route is as long as it says.
+    """
+    if frame.kind == ACK:
+        return 1
+    if frame.origin >= params.nodes or (frame.dest >= params.nodes and frame.dest != ALL):
+        return 0
+    if frame.dest == ALL and frame.link_dst != ALL:
+        return 0
+    if frame.path_len == 0 or frame_bytes(frame) > params.mtu:
+        return 0
+    for k in range(frame.path_len):
+        if frame.path[k] >= params.nodes:
+            return 0
+    return not frame.flags & SOURCE_ROUTE or is_route(params, frame)
+
+
+def is_route(params, frame):
+    """1 if the payload begins with a source route over nodes that exist."""
+    if frame.length == 0 or frame.body[0] >= frame.length:
+        return 0
+    for k in range(frame.body[0]):
+        if frame.body[1 + k] >= params.nodes:
+            return 0
+    return 1
 
 
 def in_path(frame, who):

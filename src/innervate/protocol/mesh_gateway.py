@@ -2,7 +2,7 @@
 
 from innervate.protocol.arith import MASK16, MASK30
 from innervate.protocol.mesh_frames import add8, add16, add_hop, get16
-from innervate.protocol.mesh_jobs import give_jobs, install_own, miss_table, pump
+from innervate.protocol.mesh_jobs import give_jobs, has_none, install_own, pump
 from innervate.protocol.mesh_near import FREE, UNHEARD
 from innervate.protocol.mesh_paths import (
     build_graph,
@@ -23,6 +23,7 @@ from innervate.protocol.mesh_words import (
     TABLE_FREE,
 )
 from innervate.protocol.outbox import report, set_timer
+from innervate.protocol.rng import draw
 
 IDLE = 0
 COLLECTING = 1
@@ -48,15 +49,20 @@ def reset(gate, params):
 
 
 def lead(node, gate, params, now, out):
-    """Be the gateway from now on, with an epoch that nobody has had."""
+    """Be the gateway from now on, with an epoch that nobody has had.
+
+    Who knows of none draws it, and the version of its tables: it may have been gateway before, and
+    a table of the same epoch and version would be taken for the one that is there.
+    """
     reset(gate, params)
-    node.epoch = (node.epoch + 1) & 255 if node.known else 1
+    node.epoch = (node.epoch + 1) & 255 if node.known else draw(node, 256)
     node.known = 1
     node.leading = 1
     node.gateway = node.number
     node.depth = 1
     node.parent = ALL
-    gate.version = node.version
+    gate.version = node.version if node.version else draw(node, 65_536)
+    node.quiet = 0
     report(out, REPORT_GATEWAY, node.number, node.epoch)
     start_round(node, gate, params, now, out)
 
@@ -90,9 +96,9 @@ def on_response(node, gate, params, frame, out):
     round = get16(frame, 1)
     if round != node.round:
         return
+    if frame.table_ver == 0:
+        has_none(gate, frame.origin)
     note_path(gate, params, frame, node.number, round)
-    if frame.table_ver == 0 and frame.origin < params.nodes:
-        miss_table(gate, frame.origin)
     if trusts_lists(params):
         note_list(gate, params, frame, 4, frame.body[3] & 15)
 
@@ -113,20 +119,27 @@ def collect(node, gate, params, now, out):
     stretch(gate, params, changed)
     if changed:
         measure_all(gate, params)
-        gate.version = max(1, (gate.version + 1) & MASK16)
+        gate.version = next_version(gate.version)
         install_own(node, gate, params, out)
     if params.mode != TABLE_FREE:
         give_jobs(node, gate, params, changed, out)
         pump(node, gate, params, now, out)
 
 
+def next_version(version):
+    """The version after this one: its low byte is not 0, which says in a header: no table."""
+    version = (version + 1) & MASK16
+    return version if version & 255 else version + 1
+
+
 def stretch(gate, params, changed):
     """The period doubles while nothing changes, but not where a standby waits for requests."""
+    gone = gate.period - gate.wait  # ticks since the round began
     if changed or params.standby:
         gate.period = params.period
     else:
         gate.period = min(2 * gate.period, params.period_max)
-    gate.wait = gate.period
+    gate.wait = max(1, gate.period - gone)
 
 
 def tick(node, gate, params, now, out):
@@ -137,6 +150,5 @@ def tick(node, gate, params, now, out):
         if gate.wait == 0:
             start_round(node, gate, params, now, out)
         return
-    node.quiet = min(node.quiet + 1, 65_535)
     if node.quiet >= params.dead + node.rank * params.dead_step:
         lead(node, gate, params, now, out)

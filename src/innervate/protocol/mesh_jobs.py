@@ -1,9 +1,10 @@
 """The gateway hands out what it computed: tables to each node, or the graph to all [mesh 4]."""
 
 from innervate.protocol.arith import MASK30, after
-from innervate.protocol.mesh_fields import NEIGHBOURS
 from innervate.protocol.mesh_frames import add8, add16, add_hop, get16
+from innervate.protocol.mesh_graph_jobs import pump_graph
 from innervate.protocol.mesh_near import is_suspect
+from innervate.protocol.mesh_pack import depth_of, pack, room_at
 from innervate.protocol.mesh_paths import (
     FAR,
     NONE,
@@ -18,33 +19,26 @@ from innervate.protocol.mesh_search import set_edge
 from innervate.protocol.mesh_send import pass_on
 from innervate.protocol.mesh_table import (
     GROUP_BYTES,
-    PART_HEAD,
     all_parts,
-    graph_bytes,
     in_force,
-    part_bytes,
 )
 from innervate.protocol.mesh_words import (
     ACTIVATE,
     ALL,
-    BODY,
-    CRC_BYTES,
-    GRAPH,
-    HEADER_BYTES,
+    CURRENT,
+    GIVEN_UP,
     JOBS,
+    PARTS_MAX,
     PATH_MAX,
     REPORT_TABLES,
     TABLE,
     TABLES,
+    TO_SEND,
+    UNDER_WAY,
     WHOLE_GRAPH,
 )
 from innervate.protocol.outbox import report, set_timer
 
-CURRENT = 0
-TO_SEND = 1
-UNDER_WAY = 2
-GIVEN_UP = 3
-PARTS_MAX = 15
 PLACES_KEPT = 3  # of the queue, for what others send through us
 
 
@@ -76,8 +70,8 @@ def give_jobs(node, gate, params, changed, out):
                 gate.open = 1
 
 
-def miss_table(gate, s):
-    """Node s says that it has no table, perhaps any more: it was switched off."""
+def has_none(gate, s):
+    """Node s says that it has no table: should it have acknowledged one, it has lost it since."""
     if gate.job[s] == CURRENT:
         gate.mark_a[s] = 0
         gate.mark_b[s] = 0
@@ -101,11 +95,6 @@ def give_job(gate, params, s):
     gate.job[s] = TO_SEND
     gate.job_tries[s] = 0
     gate.job_parts[s] = 0
-
-
-def depth_of(node, gate, params, s):
-    """Hops to s."""
-    return hops(gate, params, node.number, s)
 
 
 def next_job(node, gate, params):
@@ -132,7 +121,7 @@ def pump(node, gate, params, now, out):
     if params.mode == WHOLE_GRAPH:
         pump_graph(node, gate, params, now, out)
     else:
-        for _ in range(params.jobs):
+        for _ in range(params.nodes):
             s = next_job(node, gate, params)
             if s >= 0 and count_jobs(gate, params, UNDER_WAY) < params.jobs:
                 start_job(node, gate, params, now, s)
@@ -144,12 +133,6 @@ def pump(node, gate, params, now, out):
         if not count_jobs(gate, params, TO_SEND):
             finish(node, gate, params, now, out)
     wait_for_acks(gate, params, now, out)
-
-
-def room_at(node, gate, params, s):
-    """Bytes of groups that a part for node s can hold: path and route have to fit, too."""
-    far = depth_of(node, gate, params, s)
-    return params.mtu - HEADER_BYTES - CRC_BYTES - far - (far + 2) - PART_HEAD
 
 
 def start_job(node, gate, params, now, s):
@@ -224,47 +207,6 @@ def route_step(node, gate, params, at, s, hop):
     return who
 
 
-def pack(node, gate, params, s, room, wanted, i):
-    """Divide the table in gate.next and gate.alt into parts of `room` bytes: how many.
-
-    Part `wanted` is appended to the payload in place i.
-    """
-    part = 0
-    used = 0
-    for k in range(gate.degree[s]):
-        main = gate.list[s * NEIGHBOURS + k]
-        for side in range(gate.degree[s] + 1):
-            alt = NONE
-            if side < gate.degree[s]:
-                alt = gate.list[s * NEIGHBOURS + side]
-            count = 0  # of the group that is being written
-            start = 0
-            for d in range(params.nodes):
-                if gate.next[d] == main and gate.alt[d] == alt:
-                    if count == 0 or used + 1 > room or count == 255:
-                        if used + GROUP_BYTES + 1 > room:
-                            part = part + 1
-                            used = 0
-                        count = 0
-                        used = used + GROUP_BYTES
-                        if part == wanted:
-                            add8(node, i, main)
-                            add8(node, i, alt)
-                            start = node.q_length[i]
-                            add8(node, i, 0)
-                    count = count + 1
-                    used = used + 1
-                    if part == wanted:
-                        add8(node, i, d)
-                        set_count(node, i, start, count)
-    return part + 1
-
-
-def set_count(node, i, at, count):
-    """The group that begins its recipients behind byte `at` has so many."""
-    node.q_body[i * BODY + at] = count
-
-
 def on_ack(node, gate, params, now, frame, out):
     """A node says which parts it has."""
     s = frame.origin
@@ -323,86 +265,3 @@ def finish(node, gate, params, now, out):
             add16(node, i, gate.version)
             node.q_copies[i] = params.copies
         kick(node, params, now, out)
-
-
-def pump_graph(node, gate, params, now, out):
-    """Flood the parts of the graph, and once more those that some node misses."""
-    count = (graph_bytes(params) + part_bytes(params) - 1) // part_bytes(params)
-    fresh = 0
-    for s in range(params.nodes):
-        if gate.job[s] == TO_SEND:
-            gate.job[s] = UNDER_WAY if count <= PARTS_MAX else GIVEN_UP
-            gate.job_count[s] = min(count, PARTS_MAX)
-            gate.job_next[s] = 0
-            gate.job_due[s] = graph_due(params, now, count, 0)
-            fresh = 1
-    if fresh:
-        gate.part = 0
-    again = 0
-    for s in range(params.nodes):
-        if gate.job[s] == UNDER_WAY and gate.job_next[s] == 0:
-            again = 1
-    if again:
-        flood_graph(node, gate, params, now, count, out)
-
-
-def graph_due(params, now, count, tries):
-    """When a flood of the graph is over at the latest, and its acks are in."""
-    wait = params.job_us * (1 + tries) + params.jitter_us * (count + 4) + params.spread_us
-    return (now + wait) & MASK30
-
-
-def flood_graph(node, gate, params, now, count, out):
-    """Queue all parts that somebody misses; those who wait for them are asked no sooner."""
-    due = now
-    for index in range(min(count, PARTS_MAX)):
-        missing = 0
-        for s in range(params.nodes):
-            if gate.job[s] == UNDER_WAY and gate.job_parts[s] >> index & 1 == 0:
-                missing = 1
-        if missing:
-            i = compose(node, now, CONTROL, GRAPH, ALL, 0, out)
-            if i < 0:
-                return
-            fill_graph(node, gate, params, i, index, count)
-            node.q_due[i] = due & MASK30
-            due = due + (params.jitter_us >> 1)
-    for s in range(params.nodes):
-        if gate.job[s] == UNDER_WAY and gate.job_next[s] == 0:
-            gate.job_next[s] = 1
-            gate.job_due[s] = graph_due(params, now, count, gate.job_tries[s])
-
-
-def fill_graph(node, gate, params, i, index, count):
-    """Part `index` of the graph into place i."""
-    add_hop(node, i)
-    add8(node, i, node.epoch)
-    add16(node, i, gate.version)
-    add8(node, i, index << 4 | count)
-    first = index * part_bytes(params)
-    last = min(graph_bytes(params), first + part_bytes(params))
-    pairs = params.nodes * (params.nodes - 1) // 2
-    for at in range(first, last):
-        byte = 0
-        if at == 0:
-            byte = params.nodes
-        elif at <= params.nodes:
-            byte = at - 1
-        else:
-            for bit in range(8):
-                pair = (at - 1 - params.nodes) * 8 + bit
-                if pair < pairs and is_pair(gate, params, pair):
-                    byte = byte | 128 >> bit
-        add8(node, i, byte)
-
-
-def is_pair(gate, params, pair):
-    """1 if the graph has the link that is the pair-th of (0, 1), (0, 2) .. (n - 2, n - 1)."""
-    a = 0
-    for _ in range(params.nodes):
-        row = params.nodes - 1 - a
-        if pair < row:
-            return is_known(gate, params, a, a + 1 + pair)
-        pair = pair - row
-        a = a + 1
-    return 0

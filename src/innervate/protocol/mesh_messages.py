@@ -18,6 +18,7 @@ from innervate.protocol.mesh_words import (
     ALL,
     BODY,
     CRC_BYTES,
+    CROSS,
     DATA,
     DATA_MAX,
     DETOURED,
@@ -61,13 +62,9 @@ def payload_limit(params):
 
 
 def first_flag(node, dest):
-    """FIRST if nothing was sent to `dest` since we switched on: it begins its window anew."""
-    if dest >= ALL:
+    """FIRST until `dest` has acknowledged something since we switched on: a lost one is no use."""
+    if dest >= ALL or node.met[dest // BITS] >> (dest % BITS) & 1:
         return 0
-    bit = 1 << (dest % BITS)
-    if node.met[dest // BITS] & bit:
-        return 0
-    node.met[dest // BITS] = node.met[dest // BITS] | bit
     return FIRST
 
 
@@ -77,7 +74,9 @@ def on_message(node, params, now, item, out):
     if item.length > payload_limit(params) or (dest != ALL and dest >= params.nodes):
         report(out, REPORT_FULL, item.handle, NO_ROUTE)
         return
-    flags = item.flags & (END_TO_END | PRIORITY)
+    flags = item.flags & PRIORITY
+    if params.reliable:
+        flags = item.flags & (END_TO_END | PRIORITY)
     if dest == node.number:
         hand_up_own(node, item, out)
         return
@@ -153,6 +152,7 @@ def keep(node, params, now, w, i, handle, out):
     node.wait_dest[w] = node.q_dest[i]
     node.wait_flags[w] = node.q_flags[i]
     node.wait_tries[w] = 1
+    node.wait_hop[w] = 0
     node.wait_at[w] = now
     node.wait_due[w] = (now + timeout(node, params)) & MASK30
     node.wait_handle[w] = handle
@@ -212,7 +212,9 @@ def try_again(node, params, now, w, out):
     node.wait_flags[w] = node.wait_flags[w] ^ PARITY
     node.wait_due[w] = (now + later_timeout(node, params, node.wait_tries[w])) & MASK30
     unskip(node, node.number, node.wait_seq[w])
-    rank = ALARMS if node.wait_kind[w] == ALARM else MESSAGES
+    rank = CONTROL if node.wait_flags[w] & PRIORITY else MESSAGES
+    if node.wait_kind[w] == ALARM:
+        rank = ALARMS
     i = compose(node, now, rank, node.wait_kind[w], node.wait_dest[w], node.wait_flags[w], out)
     if i >= 0:
         node.seq = (node.seq - 1) & 65_535  # it keeps its number
@@ -228,6 +230,8 @@ def on_end_ack(node, params, frame, now, out):
     at = inner(frame)
     if frame.length < at + 2:
         return
+    word = frame.origin // BITS
+    node.met[word] = node.met[word] | 1 << (frame.origin % BITS)
     for w in range(WAITING):
         if node.wait_kind[w] != FREE and node.wait_seq[w] == get16(frame, at):
             if node.wait_dest[w] == frame.origin or node.wait_kind[w] == ALARM:
@@ -239,8 +243,18 @@ def on_end_ack(node, params, frame, now, out):
                         node.round_trip = took
                     else:
                         node.round_trip = (7 * node.round_trip + took) >> 3
+                if is_own_crossing(node, w):
+                    node.heard_out = 1
                 report(out, REPORT_ARRIVED, node.wait_handle[w], node.wait_seq[w])
                 node.wait_kind[w] = FREE
+
+
+def is_own_crossing(node, w):
+    """1 if the message kept in place w is our alarm that we are outside ourselves."""
+    body = w * DATA_MAX
+    if node.wait_kind[w] != ALARM or node.wait_body[body] != node.number:
+        return 0
+    return node.wait_body[body + 3] == CROSS
 
 
 def acknowledge_end(node, params, now, frame, out):

@@ -53,6 +53,14 @@ def hear(node, params, who, rssi):
     return k
 
 
+def hear_again(node, params, who):
+    """An ack for somebody else, whose rssi is not ours: `who` lives, no more than that."""
+    k = place_of(node, params, who)
+    if k >= 0:
+        node.heard[k] = node.ticks
+        node.suspect[k] = 0
+
+
 def suspect(node, params, now, who, planned, out):
     """`who` did not acknowledge: avoid it for a while, or until it is heard."""
     k = place_of(node, params, who)

@@ -44,6 +44,9 @@ def build_graph(gate, params, round):
     mark = 1
     for a in range(params.nodes):
         gate.degree[a] = 0
+        for b in range(params.nodes):
+            if not is_reported(gate, params, a, b, round):
+                gate.reported[a * params.width + b] = 0
         for word in range(params.row):
             gate.known[a * params.row + word] = 0
     for a in range(params.nodes):

@@ -41,8 +41,17 @@ def free_places(node):
 
 
 def has_room(node, rank):
-    """1 if a frame of this rank may still be taken over: the last places are for better ones."""
-    return rank == ALARMS or free_places(node) > rank
+    """1 if a frame of this rank may still be taken over: the last places are for better ones.
+
+    An alarm may take the place of a frame that is less urgent and not under way.
+    """
+    if free_places(node) > rank:
+        return 1
+    if rank == ALARMS:
+        for i in range(QUEUE):
+            if node.q_state[i] == WAITS and node.q_rank[i] > ALARMS:
+                return 1
+    return 0
 
 
 def take_place(node, rank, out):
@@ -114,16 +123,26 @@ def drop(node, i):
         node.busy = -1
 
 
+def is_before(node, i, j):
+    """1 if the frame in place i goes before that in place j.
+
+    Of alarms the flooded ones go first: they take one transmission, whoever is dead, and need not
+    wait until a hop has failed three times and the next three times more.
+    """
+    if node.q_rank[i] != node.q_rank[j]:
+        return node.q_rank[i] < node.q_rank[j]
+    if node.q_rank[i] == ALARMS and (node.q_link_dst[i] == ALL) != (node.q_link_dst[j] == ALL):
+        return node.q_link_dst[i] == ALL
+    return (node.q_order[j] - node.q_order[i]) & MASK30 < (MASK30 >> 1)
+
+
 def first_due(node, now):
     """Which frame goes next, or -1."""
     best = -1
     for i in range(QUEUE):
         if node.q_state[i] == WAITS and after(now, node.q_due[i]):
-            if best < 0 or node.q_rank[i] < node.q_rank[best]:
+            if best < 0 or is_before(node, i, best):
                 best = i
-            elif node.q_rank[i] == node.q_rank[best]:
-                if (node.q_order[best] - node.q_order[i]) & MASK30 < (MASK30 >> 1):
-                    best = i
     return best
 
 
@@ -217,7 +236,10 @@ def acked(node, frame):
 
 
 def tell_hop(node, i, out):
-    """The owner of a message hears that its first hop has it."""
+    """The owner of a message hears, once, that its first hop has it."""
     owner = node.q_owner[i]
-    if owner != NO_OWNER and node.wait_kind[owner] and node.wait_seq[owner] == node.q_seq[i]:
+    if owner == NO_OWNER or node.wait_hop[owner]:
+        return
+    if node.wait_kind[owner] and node.wait_seq[owner] == node.q_seq[i]:
+        node.wait_hop[owner] = 1
         report(out, REPORT_HOP, node.wait_handle[owner], 0)

@@ -4,7 +4,7 @@ from innervate.protocol.arith import MASK30
 from innervate.protocol.mesh_frames import in_path
 from innervate.protocol.mesh_messages import hand_up
 from innervate.protocol.mesh_queue import ALARMS, CONTROL, MESSAGES, kick, take_over
-from innervate.protocol.mesh_seen import is_flooded, is_repeated, mark_bad
+from innervate.protocol.mesh_seen import is_flooded, is_repeated, is_returned_again, mark_bad
 from innervate.protocol.mesh_send import send_on
 from innervate.protocol.mesh_words import ALARM, ALL, DATA, E2E_ACK
 from innervate.protocol.rng import draw
@@ -23,6 +23,8 @@ def relay(node, params, now, frame, out):
     """A routed packet for somebody else."""
     returned = in_path(frame, node.number)
     if not returned and is_repeated(node, frame):
+        return
+    if returned and is_returned_again(node, frame):
         return
     if returned:
         mark_bad(node, frame.link_src, frame.dest)

@@ -14,6 +14,7 @@ from innervate.protocol.mesh_queue import (
     place,
 )
 from innervate.protocol.mesh_send import send_up
+from innervate.protocol.mesh_table import activate
 from innervate.protocol.mesh_upward import is_uplink, is_weak
 from innervate.protocol.mesh_words import (
     ALL,
@@ -36,6 +37,7 @@ NOTHING = 0
 LOOK_AGAIN = 1
 RESPOND = 2
 LISTED_MAX = 15
+SLACK = 2  # ticks: nodes count them from different moments
 UPLINKS_TOLD = 3  # table-free: a node tells the gateway no more than that
 
 
@@ -45,11 +47,17 @@ def newer_epoch(a, b):
     return ahead != 0 and ahead < 128
 
 
-def is_newer(node, gateway, epoch, round):
-    """1 if a round comes after the one we know: higher epoch, then lower id, then round."""
+def is_newer(node, params, gateway, epoch, round):
+    """1 if a round comes after the one we know: higher epoch, then lower id, then round.
+
+    Who has heard nothing for about as long as a gateway waits that switches on again takes any: it
+    has forgotten which epochs and rounds there were. Nothing old is in the air by then.
+    """
     if not node.known:
         return 1
-    if epoch != node.epoch:
+    if node.quiet > 0 and node.quiet + SLACK >= params.dead:
+        return 1
+    if epoch != node.epoch and (epoch - node.epoch) & 255 != 128:
         return newer_epoch(epoch, node.epoch)
     if gateway != node.gateway:
         return gateway < node.gateway
@@ -79,9 +87,10 @@ def on_request(node, params, now, frame, k, out):
     gateway = frame.body[0]
     epoch = frame.body[1]
     round = get16(frame, 2)
-    if is_newer(node, gateway, epoch, round):
+    if is_newer(node, params, gateway, epoch, round):
         begin(node, params, gateway, epoch, round, out)
         node.active = get16(frame, 4)
+        activate(node, epoch, node.active, out)  # should the flood have passed us by
         node.jitter = frame.body[6]
     elif gateway != node.gateway or epoch != node.epoch or round != node.round:
         return

@@ -11,7 +11,7 @@ from innervate.protocol.mesh_near import (
     random_neighbour,
 )
 from innervate.protocol.mesh_search import add_failed, distances, is_edge, towards
-from innervate.protocol.mesh_seen import is_bad, is_skipped, skip
+from innervate.protocol.mesh_seen import forwarded_at, is_bad, is_skipped, skip
 from innervate.protocol.mesh_upward import uplink
 from innervate.protocol.mesh_words import (
     ALTERNATE,
@@ -21,6 +21,7 @@ from innervate.protocol.mesh_words import (
     HEADER_BYTES,
     LOUDEST,
     NOBODY,
+    PARITY,
     PATH_MAX,
     RANDOM,
     SEARCH,
@@ -88,7 +89,16 @@ def search(node, params, i, bad):
 
 
 def giver(node, i):
-    """Who had the packet in place i before it came here first, or NOBODY at its origin."""
+    """Who had the packet in place i before it came here first, or NOBODY at its origin.
+
+    Its path says so where we have forgotten it, unless that had come back to somebody before.
+    """
+    if node.q_origin[i] == node.number:
+        return NOBODY
+    kind = node.q_kind[i] | ((node.q_flags[i] & PARITY) >> 1)
+    at = forwarded_at(node, node.q_origin[i], node.q_seq[i], kind)
+    if at >= 0 and node.done_kind[at] == kind and node.done_from[at] != NONE:
+        return node.done_from[at]
     for k in range(node.q_path_len[i]):
         if node.q_path[i * PATH_MAX + k] == node.number:
             if k == 0:

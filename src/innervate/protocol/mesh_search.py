@@ -87,12 +87,17 @@ def distances(node, params, i, dest, here):
 
 
 def nearest(node, params, i, dest):
-    """The neighbour with the shortest way to `dest` for the packet in place i, or 255."""
+    """The neighbour with the shortest way to `dest` for the packet in place i, or 255.
+
+    Where the recipient itself did not answer us, somebody else may reach it.
+    """
     me = node.number
     distances(node, params, i, dest, me)
     best = 255
     for c in range(params.nodes):
         if node.far[c] != FAR and c != me and is_edge(node, params, me, c):
+            if c == dest and (has_failed(node, i, c) or is_suspect(node, params, c)):
+                continue
             if best == 255 or node.far[c] < node.far[best]:
                 best = c
     return best

@@ -27,35 +27,44 @@ def forget(node, params):
 def accept(node, params, origin, seq, first):
     """1 if this packet was not delivered before [mesh 1]; it counts as delivered from now on.
 
-    The window of an origin begins anew after silence, and at the first packet after its start.
+    The window of an origin begins anew after silence, and where a packet that says FIRST is too
+    old for it: its origin has started anew. One in the window does not throw it away, for what
+    its origin sent with FIRST it may send again. A packet too old for the window does not count
+    as a sign of life: else an origin that started anew would never be heard.
     """
     base = origin * WINDOW_WORDS
-    anew = node.idle[origin] == 0
-    if first and node.heard_seq[origin] != seq:
-        anew = 1
-        node.heard_seq[origin] = seq
-    node.idle[origin] = params.forget
-    if anew:
-        node.newest[origin] = seq
-        for k in range(WINDOW_WORDS):
-            node.window[base + k] = 0
-        return 1
     ahead = (seq - node.newest[origin]) & MASK16
+    behind = MASK16 - ahead
+    if node.idle[origin] == 0:
+        begin_window(node, params, origin, seq)
+        return 1
+    if ahead >= HALF16 and behind >= BITS * WINDOW_WORDS:
+        if not first or node.heard_seq[origin] == seq:
+            return 0
+        begin_window(node, params, origin, seq)
+        node.heard_seq[origin] = seq
+        return 1
+    node.idle[origin] = params.forget
     if ahead == 0:
         return 0
     if ahead < HALF16:
         slide(node, base, ahead)
         node.newest[origin] = seq
         return 1
-    behind = MASK16 + 1 - ahead - 1
-    if behind >= BITS * WINDOW_WORDS:
-        return 0
     word = base + behind // BITS
     bit = 1 << (behind % BITS)
     if node.window[word] & bit:
         return 0
     node.window[word] = node.window[word] | bit
     return 1
+
+
+def begin_window(node, params, origin, seq):
+    """Of this origin nothing but `seq` was delivered."""
+    node.idle[origin] = params.forget
+    node.newest[origin] = seq
+    for k in range(WINDOW_WORDS):
+        node.window[origin * WINDOW_WORDS + k] = 0
 
 
 def slide(node, base, ahead):
@@ -88,14 +97,15 @@ def forwarded_at(node, origin, seq, kind):
     return -1
 
 
-def note_forwarded(node, origin, seq, kind, giver):
-    """Remember a packet; kind has its type, and 64 x retry parity."""
+def note_forwarded(node, origin, seq, kind, giver, hops):
+    """Remember a packet; kind has its type, and 64 x retry parity; hops = how long its path is."""
     k = node.done_at
     node.done_at = (k + 1) % FORWARDED
     node.done_origin[k] = origin
     node.done_seq[k] = seq
     node.done_kind[k] = kind
     node.done_from[k] = giver
+    node.done_hops[k] = hops
 
 
 def is_repeated(node, frame):
@@ -110,9 +120,27 @@ def is_repeated(node, frame):
             return 1
         node.done_kind[k] = kind
         node.done_from[k] = frame.link_src
+        node.done_hops[k] = frame.path_len
         unskip(node, frame.origin, frame.seq)
         return 0
-    note_forwarded(node, frame.origin, frame.seq, kind, frame.link_src)
+    note_forwarded(node, frame.origin, frame.seq, kind, frame.link_src, frame.path_len)
+    return 0
+
+
+def is_returned_again(node, frame):
+    """1 if a packet that came back did so before, by its path; it is remembered.
+
+    Else whoever gives it back and misses our ack would make two of it.
+    """
+    kind = frame.kind | ((frame.flags & PARITY) >> 1)
+    k = forwarded_at(node, frame.origin, frame.seq, kind)
+    if k < 0:
+        note_forwarded(node, frame.origin, frame.seq, kind, ALL, frame.path_len)
+        return 0
+    if node.done_kind[k] == kind and frame.path_len <= node.done_hops[k]:
+        return 1
+    node.done_kind[k] = kind
+    node.done_hops[k] = frame.path_len
     return 0
 
 
@@ -122,7 +150,7 @@ def is_flooded(node, origin, seq, kind, instance):
         if node.done_origin[k] == origin and node.done_seq[k] == seq:
             if node.done_kind[k] == (kind | (instance << 6)):
                 return 1
-    note_forwarded(node, origin, seq, kind | (instance << 6), ALL)
+    note_forwarded(node, origin, seq, kind | (instance << 6), ALL, 0)
     return 0
 
 

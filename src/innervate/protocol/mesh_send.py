@@ -1,7 +1,7 @@
 """A packet goes on: its next hop is chosen, and another when that does not answer."""
 
 from innervate.protocol.arith import MASK30
-from innervate.protocol.mesh_frames import add_hop
+from innervate.protocol.mesh_frames import add_hop, was_at
 from innervate.protocol.mesh_near import suspect, trust
 from innervate.protocol.mesh_queue import UNACKED, WAITS, drop, kick
 from innervate.protocol.mesh_route import (
@@ -18,13 +18,16 @@ from innervate.protocol.mesh_words import (
     NOBODY,
     REPORT_DROPPED,
     RESPONSE,
+    SEARCH,
     TABLE,
     TABLE_ACK,
+    TABLES,
 )
 from innervate.protocol.outbox import report
 from innervate.protocol.rng import draw
 
 FAILURES_MAX = 6
+HOPS_MAX = 40  # failures of a routed packet at a node: every neighbour once, and some to spare
 
 
 def give_up(node, i, out):
@@ -59,9 +62,22 @@ def aim(node, params, i, out):
     return 1
 
 
+def goes_back(node, params, i):
+    """1 if we search on for a packet that came back: its path has us already, and room for others.
+
+    24 nodes can be searched so, not 24 hops; dead ends cost no room.
+    """
+    if params.mode != TABLES or params.failover != SEARCH or node.q_ttl[i] == 0:
+        return 0
+    if not was_at(node, i, node.number):
+        return 0
+    node.q_ttl[i] = node.q_ttl[i] - 1
+    return 1
+
+
 def send_on(node, params, now, i, out):
     """The packet in place i, ours or taken over, goes to its recipient; 0 if it cannot."""
-    if not enter(node, params, i, out):
+    if not goes_back(node, params, i) and not enter(node, params, i, out):
         return 0
     if not aim(node, params, i, out):
         give_up(node, i, out)
@@ -119,7 +135,7 @@ def hop_failed(node, params, now, i, out):
     else:
         suspect(node, params, now, dead, planned(node, params, node.q_dest[i]) == dead, out)
         learn_failure(node, params, i, dead)
-        if not params.retry or not aim(node, params, i, out):
+        if not params.retry or node.q_fails[i] > HOPS_MAX or not aim(node, params, i, out):
             give_up(node, i, out)
 
 

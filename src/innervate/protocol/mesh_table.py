@@ -1,7 +1,7 @@
 """Tables and graphs at a node: parts come in, the whole is put into force [mesh 4 TABLE]."""
 
 from innervate.protocol.arith import MASK30
-from innervate.protocol.mesh_frames import add8, add16, get16
+from innervate.protocol.mesh_frames import add8, add16, get16, is_route
 from innervate.protocol.mesh_queue import CONTROL, compose, kick, take_over
 from innervate.protocol.mesh_search import set_edge
 from innervate.protocol.mesh_seen import is_flooded, unbad
@@ -70,7 +70,7 @@ def in_force(node, epoch, version, out):
 def on_table(node, params, now, frame, out):
     """A part of a routing table: ours, or somebody's further along the route."""
     count = frame.body[0]
-    if count + 1 + PART_HEAD > frame.length:
+    if count + 1 + PART_HEAD > frame.length or not is_route(params, frame):
         return
     at = -1
     for k in range(count):

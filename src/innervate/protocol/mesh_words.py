@@ -29,7 +29,7 @@ MONITOR = 0xFE  # the monitor; where none is configured, the gateway
 NOBODY = -1
 IDS = 254
 
-TTL = 24
+TTL = 48  # a search goes back over what it has gone; else the path bounds it
 PATH_MAX = 24
 HEADER_BYTES = 11
 CRC_BYTES = 2
@@ -68,6 +68,13 @@ SEARCH = 3
 TREE = 1
 EACH = 2
 LIST = 3
+
+# What a gateway knows of a node's table.
+CURRENT = 0
+TO_SEND = 1
+UNDER_WAY = 2
+GIVEN_UP = 3
+PARTS_MAX = 15  # of a table, or of the graph
 
 # Kinds of alarms.
 PREDICT = 0

@@ -135,6 +135,13 @@ class _Words:
         value = getattr(self._target, name)
         return int(value if i < 0 else value[i])
 
+    def __setitem__(self, index: int, word: int) -> None:
+        name, i = self._where[index]
+        if i < 0:
+            setattr(self._target, name, word)
+        else:
+            getattr(self._target, name)[i] = word
+
 
 class Tables:
     """Makes tables of one form: compiled (arrays) or plain (lists)."""

@@ -28,7 +28,12 @@ def is_fixed(fields: tuple) -> bool:  # type: ignore[type-arg]
     return not any(isinstance(many, str) or many < 0 for _name, many, _bits, _signed in fields)
 
 
-def pack(fields: tuple, buffer: bytearray, at: int, record: object) -> int:  # type: ignore[type-arg]
+def pack(
+    fields: tuple,  # type: ignore[type-arg]
+    buffer: bytearray,
+    at: int,
+    record: object,
+) -> int:
     """Write a record's fields from bit `at` on; returns the bit behind them.
 
     Raises:

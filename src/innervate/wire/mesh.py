@@ -69,8 +69,9 @@ def encode(frame: object, mtu: int = MTU_MAX) -> bytes:
     kind = frame.kind  # type: ignore[attr-defined]
     if kind != ACK and kind not in FIELDS:
         raise ValueError("no packet of the mesh has this kind")
-    if kind != ACK and not 0 <= frame.path_len <= PATH_MAX:  # type: ignore[attr-defined]
-        raise ValueError("path_len is not 0 to 24")
+    for name, most in (("path_len", PATH_MAX), ("length", BODY)):
+        if kind != ACK and not 0 <= getattr(frame, name) <= most:
+            raise ValueError(name + " is more than a packet holds, or negative")
     size = size_of(frame)
     if size > mtu:
         raise ValueError("the frame is longer than the MTU")
@@ -80,9 +81,9 @@ def encode(frame: object, mtu: int = MTU_MAX) -> bytes:
         pack(HOP_ACK, buffer, AT, frame)
     else:
         at = pack(COMMON, buffer, AT, frame)
-        for name, count in (("path", frame.path_len), ("body", frame.length)):  # type: ignore[attr-defined]
+        for name, count in (("path", "path_len"), ("body", "length")):
             items = getattr(frame, name)
-            for i in range(count):
+            for i in range(getattr(frame, count)):
                 put_number(buffer, at, 8, 0, items[i], name)
                 at += 8
     return seal(buffer)

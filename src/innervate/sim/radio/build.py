@@ -74,8 +74,8 @@ def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> r.Wo
     return world
 
 
-def grow_heap(world: r.World) -> r.World:
-    """The same world with twice the room for events."""
+def grow_heap(world: Any) -> Any:
+    """The same world, of the radio or of a mesh, with twice the room for events."""
     keys = world.heap.keys
     if isinstance(keys, list):
         keys.extend([0] * len(keys))

@@ -1,0 +1,34 @@
+"""What the mesh's events are, and their order at equal times; the heap itself is the radio's.
+
+Signals end before others start, both before anything that could look at the channel.
+"""
+
+from innervate.sim.radio.heap import (
+    AIR_BITS,
+    LAST,
+    RANK_SHIFT,
+    SENDER_BITS,
+    STATION_SHIFT,
+    STATIONS_MAX,
+    TIME_MAX,
+    TIME_SHIFT,
+    key_of,
+    pop,
+    push,
+)
+
+ENDS = 0  # what: the frame's place
+STARTS = 1  # what: the frame's place
+TELL = 2  # the medium access has given a frame up
+TIMER = 3  # what: which
+COMMAND = 4  # the next in the table
+SAMPLE = 5  # what: which walk
+OFFER = 6  # the next in the table
+
+WHAT_MASK = (1 << STATION_SHIFT) - 1
+PLACES_MAX = 1 << (SENDER_BITS + AIR_BITS)
+
+__all__ = [
+    "LAST", "RANK_SHIFT", "STATIONS_MAX", "STATION_SHIFT", "TIME_MAX", "TIME_SHIFT", "key_of",
+    "pop", "push",
+]  # fmt: skip

@@ -1,0 +1,198 @@
+"""Runs a mesh plan: builds the world, drives the loop in slices, collects its tables."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from innervate.kernel import door, tables
+from innervate.kernel.wall import wall_s
+from innervate.protocol import mesh_fields
+from innervate.sim import loop as skin_loop
+from innervate.sim.build import get, put
+from innervate.sim.mesh import books, loop, medium, motion, powers, stacks
+from innervate.sim.mesh import build as builder
+from innervate.sim.mesh import world as w
+from innervate.sim.radio import heap
+from innervate.sim.radio.build import grow_heap
+from innervate.sim.simulate import InvariantBroken, Stop
+from innervate.sim.world import row_dtype
+
+SLICE_EVENTS = 200_000
+PLAIN_SLICE_EVENTS = 2_000
+
+Progress = Callable[[int, int], None]
+
+NAMES = {
+    "rows": w.ROW,
+    "sent": w.SENT,
+    "delivered": w.DELIVERED,
+    "rounds": w.ROUND,
+    "trail": w.TRAIL,
+}
+
+
+@dataclass(slots=True)
+class MeshResult:
+    """What a mesh simulation leaves.
+
+    Structured arrays with the fields of `world.ROW`, `SENT`, `DELIVERED`, `ROUND` and `TRAIL`;
+    times in us.
+
+    Attributes:
+        rows: what nodes reported.
+        sent: what was on the air, by its end; frames that their sender's death cut short have no
+            receivers.
+        delivered: what nodes gave to their users.
+        rounds: what a gateway knew after each of its rounds.
+        trail: all handler calls, if asked for; those of the medium access are numbered from
+            `loop.MAC`.
+        counts: the numbers of the run by name, see COUNTS.
+        ended_us: up to where it ran.
+    """
+
+    plan: Any
+    world: w.World
+    rows: Any
+    sent: Any
+    delivered: Any
+    rounds: Any
+    trail: Any
+    counts: dict[str, int]
+    ended_us: int
+    wall_s: float
+    fingerprint: str
+    interrupted: bool
+
+
+COUNTS = (
+    "handled",  # handler calls
+    "arrived",  # frames received
+    "transmissions",  # frames that went on the air
+    "gave_up",  # frames that the medium access returned
+    "blocked",  # frames that came down while the radio was sending another
+    "unasked",  # messages for a node that was off
+)
+
+
+def compiled_loop(entry: ModuleType) -> Callable[..., None]:
+    """The compiled loop of a router over CSMA."""
+    return _compiled(entry)
+
+
+@functools.cache
+def _compiled(entry: ModuleType) -> Callable[..., None]:
+    from innervate.protocol import arith, csma, outbox, rng
+
+    door.register(arith, outbox, rng, heap)
+    door.register(*stacks.modules_of(entry), csma, medium, motion, books, hot=False)
+    door.register_functions(powers.strength, powers.chance, powers.loss)
+    door.register_functions(loop.pressing, loop.set_timer, loop.give_up, loop.wipe, hot=False)
+    stack = stacks.bind(entry)
+    door.register_functions(*stack, hot=False)
+    parts = loop.build(stack)
+    door.register_functions(*parts[:-1], hot=False)
+    advance = door.compiled(parts[-1])
+    return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
+
+
+def simulate(
+    plan: Any,
+    *,
+    plain: bool = False,
+    checks: bool = True,
+    keep: bool = True,
+    trail: bool = False,
+    progress: Progress | None = None,
+    entry: ModuleType | None = None,
+    through: Callable[[Any], Any] | None = None,
+) -> MeshResult:
+    """Run a mesh plan to its end; an interrupt (Ctrl-C) ends it early and keeps what was done.
+
+    Args:
+        plan: what `scenario` made of a file.
+        plain: the same loop uncompiled, on lists and objects.
+        checks: stop when an invariant is broken.
+        keep: keep all rows; otherwise only the counts.
+        trail: a row per handler call.
+        progress: called with the time reached and the whole duration, us, now and then.
+        entry: the router's module; the mesh's own if none is given.
+        through: plain runs only: every frame passes through it on its way to the air.
+
+    Raises:
+        InvariantBroken: a checker found something that must not happen.
+    """
+    if through is not None and not plain:
+        raise ValueError("frames pass through a function in plain runs only")
+    if plan.mac not in builder.MACS:
+        raise ValueError(f"mac must be one of {', '.join(builder.MACS)}, not {plan.mac!r}")
+    router = entry or stacks.mesh()
+    if plain:
+        fields = mesh_fields.node(plan.capacity)
+        advance = loop.build(stacks.plain_stack(router, fields, through))[-1]
+    else:
+        advance = compiled_loop(router)
+    world = builder.build(plan, plain, checks, keep, trail)
+    advance(world, 0, 1)  # nothing is due before time 0: only compiles, or loads what was compiled
+    if not plain:
+        door.mark_compiled(f"mesh-{plan.capacity}")
+    parts: dict[str, list[Any]] = {name: [] for name in NAMES}
+    started = wall_s()
+    with Stop() as stop:
+        status = skin_loop.BUDGET
+        while status != skin_loop.DONE and not stop.asked:
+            advance(world, plan.duration_us, PLAIN_SLICE_EVENTS if plain else SLICE_EVENTS)
+            status = int(get(world.run, 0, "status"))
+            if status == skin_loop.BROKEN:
+                raise InvariantBroken(_story(plan, world))
+            if status == skin_loop.POOL_FULL:
+                world = grow_heap(world)
+            if status == loop.SEEN_FULL:
+                world = builder.grow_seen(world)
+            _collect(world, parts)
+            if progress is not None:
+                progress(int(get(world.run, 0, "now")), plan.duration_us)
+    done = status == skin_loop.DONE
+    return MeshResult(
+        plan=plan,
+        world=world,
+        counts={name: int(get(world.run, 0, name)) for name in COUNTS},
+        ended_us=plan.duration_us if done else int(get(world.run, 0, "now")),
+        wall_s=wall_s() - started,
+        fingerprint=f"{int(get(world.run, 0, 'fingerprint')) & (1 << 64) - 1:016x}",
+        interrupted=not done,
+        **{name: np.concatenate(kept) for name, kept in parts.items()},
+    )
+
+
+def _collect(world: w.World, parts: dict[str, list[Any]]) -> None:
+    """Move filled rows out of the loop's tables, so that these can stay small."""
+    for name, kept in parts.items():
+        count = int(get(world.run, 0, name))
+        table, fields = getattr(world, name), NAMES[name]
+        if isinstance(table, list):
+            rows = [tuple(getattr(row, f) for f in fields) for row in table[:count]]
+            kept.append(np.array(rows, row_dtype(fields, w.WIDE)))
+        else:
+            kept.append(table[:count].copy())
+        put(world.run, 0, **{name: 0})
+
+
+def _story(plan: Any, world: w.World) -> str:
+    """A broken invariant in one line."""
+    at = int(get(world.run, 0, "now")) / 1e6
+    name = plan.names[int(get(world.run, 0, "broken_node"))]
+    what = {
+        medium.BROKEN_AIR: f"node {name} has too many frames under way",
+        books.BROKEN_OUTBOX: f"outbox of node {name} overflowed",
+        books.BROKEN_RANGE: f"a value of node {name} is out of its declared range",
+        books.BROKEN_TWICE: f"node {name} delivered a packet twice",
+        books.BROKEN_HELD: f"node {name} handed down a frame while another was under way",
+        books.BROKEN_FRAME: f"a receiver changed the frame that node {name} had sent",
+    }[int(get(world.run, 0, "broken"))]
+    return f"invariant broken at {at:.6f} s (seed {plan.seed}): {what}"
