@@ -6,6 +6,7 @@ Outage = longest gap between first arrivals, less 5 ms. Control = all IP bytes w
 """
 
 import argparse
+import itertools
 import json
 import os
 import shutil
@@ -46,7 +47,9 @@ def wait_for_path(side):
     """The nodes that packets pass, once there is such a way."""
     for _ in range(int(PATH_WAIT_S)):
         path = side.path()
-        if path and path[-1] == side.shape.sink:
+        hops = [tuple(sorted(pair)) for pair in itertools.pairwise(path)]
+        # A packet that had to turn back on its way has nodes in its path that are no neighbours.
+        if path and path[-1] == side.shape.sink and set(hops) <= set(side.shape.links):
             return path
         time.sleep(1)
     raise SystemExit(f"{side.name}, {side.shape.name}: no path after {PATH_WAIT_S} s: {path}")
@@ -89,7 +92,7 @@ def judge(told, got):
         else:
             first[number] = at
     times = sorted(first.values())
-    gaps = [(b - a) / 1e6 for a, b in zip(times, times[1:], strict=False)]
+    gaps = [(b - a) / 1e6 for a, b in itertools.pairwise(times)]
     in_order = sorted(first, key=first.__getitem__)
     newest = -1
     reordered = 0

@@ -6,6 +6,7 @@ ends.py mesh NODE_FILE, or ends.py udp OWN_ADDRESS. Commands, one a line; each a
 """
 
 import asyncio
+import contextlib
 import json
 import socket
 import sys
@@ -68,10 +69,8 @@ class Udp:
         self.got.append((int.from_bytes(payload[:4], "big"), time.monotonic_ns()))
 
     def send(self, to, payload):
-        try:
+        with contextlib.suppress(OSError):  # no route: this probe is lost
             self.sock.sendto(payload, (to, PORT))
-        except OSError:  # no route: this probe is lost
-            pass
 
     async def states(self):
         await asyncio.sleep(0.5)
