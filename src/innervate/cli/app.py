@@ -312,6 +312,30 @@ def live_listen(node: str, /, *, count: int = 0, json: Json = False) -> int:
     return command.listen(node, count, json)
 
 
+@live_app.command(name="medium")
+def live_medium(
+    address: str = "127.0.0.1:4600",
+    /,
+    *,
+    slot_us: int = 10_000,
+    turnaround_us: int = 5_000,
+) -> int:
+    """Run a radio channel: stations whose files name its address hear each other on it.
+
+    Parameters
+    ----------
+    address
+        Where stations find it.
+    slot_us
+        Time of a slot on the air.
+    turnaround_us
+        From deciding to send to being on the air, and back.
+    """
+    from innervate.cli import live as command
+
+    return command.medium(address, slot_us, turnaround_us)
+
+
 @live_app.command(name="cut")
 def live_cut(node: str, port: int, /, *, restore: Json = False) -> int:
     """Cut a cable in silence at one end, as if its plug had come out; or put it back.

@@ -63,7 +63,9 @@ def listen(name: str, count: int, as_json: bool) -> int:
         if as_json:
             print(json.dumps(answer), flush=True)
         else:
-            text = bytes.fromhex(answer["payload"]).decode("utf-8", "backslashreplace")
+            text = str(answer.get("touch", ""))
+            if "payload" in answer:
+                text = bytes.fromhex(answer["payload"]).decode("utf-8", "backslashreplace")
             print(f"{answer['from']}: {text}", flush=True)
         heard += 1
         if heard == count:
@@ -77,8 +79,18 @@ def change(name: str, port: int, what: str) -> int:
     return 0
 
 
+def medium(where: str, slot_us: int, turnaround_us: int) -> int:
+    """Run a shared channel."""
+    from innervate.live import medium as room
+
+    asyncio.run(room.run(where, slot_us, turnaround_us))
+    return 0
+
+
 def _lines(told: dict[str, Any]) -> list[str]:
     key = "sealed" if told["sealed"] else "no key"
+    if told["kind"] == "radio":
+        told["paths"] = []
     lines = [f"{told['name']}: {told['kind']} {told['role']}, up {told['up_s']:g} s, {key}"]
     if told["kind"] == "mesh":
         lines += _mesh_lines(told)

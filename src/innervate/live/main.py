@@ -15,6 +15,7 @@ from innervate.live.messages import MeshNode
 from innervate.live.metrics import MetricsPage
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import Loaded, address, load
+from innervate.live.skin import SinkNode
 
 DRAIN_S = 2.0
 SAVE_S = 10.0
@@ -118,13 +119,19 @@ class Process:
             raise ValueError('a request has "do": status, send, listen, cut, restore or stop')
 
     async def _send(self, request: dict[str, Any], writer: status.Writer) -> None:
-        node = self._mesh()
-        receipt = node.send_message(
-            int(request["to"]),
-            bytes.fromhex(request["payload"]),
-            reliable=bool(request.get("reliable", True)),
-            priority=bool(request.get("priority", False)),
-        )
+        node, payload = self.node, bytes.fromhex(request["payload"])
+        if isinstance(node, MeshNode):
+            receipt = node.send_message(
+                int(request["to"]),
+                payload,
+                reliable=bool(request.get("reliable", True)),
+                priority=bool(request.get("priority", False)),
+            )
+        else:
+            send_packet = getattr(node, "send_packet", None)
+            if send_packet is None:
+                raise ValueError("a skin has no messages")
+            receipt = send_packet(payload)
         await writer.line({"state": receipt.state, "reason": receipt.reason})
         told = receipt.state
         while told not in ("delivered", "expired", "refused") and request.get("wait", True):
@@ -132,15 +139,22 @@ class Process:
             await writer.line({"state": receipt.state, "reason": receipt.reason})
 
     async def _listen(self, writer: status.Writer) -> None:
-        messages = self._mesh().receive_messages()
-        try:
-            await writer.line({"listening": self.loaded.name})
-            async for sender, payload in messages:
-                await writer.line({"from": sender, "payload": payload.hex()})
-        finally:
-            await messages.aclose()
-
-    def _mesh(self) -> MeshNode:
-        if not isinstance(self.node, MeshNode):
-            raise ValueError(f"a {self.loaded.table.kind} node has no messages")
-        return self.node
+        node = self.node
+        if isinstance(node, MeshNode):
+            messages = node.receive_messages()
+            try:
+                await writer.line({"listening": self.loaded.name})
+                async for sender, payload in messages:
+                    await writer.line({"from": sender, "payload": payload.hex()})
+            finally:
+                await messages.aclose()
+        elif isinstance(node, SinkNode):
+            touches = node.receive_touch()
+            try:
+                await writer.line({"listening": self.loaded.name})
+                async for touch in touches:
+                    await writer.line({"from": touch.cell, "touch": touch._asdict()})
+            finally:
+                await touches.aclose()
+        else:
+            raise ValueError("only mesh nodes and the PC of a skin can be listened to")

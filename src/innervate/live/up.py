@@ -51,7 +51,9 @@ class Network:
             self.names = [*(f"c{i}" for i in range(plan.graph.cells)), "pc"]
             self.links, self._ends = _cables(plan.graph)
         else:
-            raise LiveError("a radio team is brought up with: innervate live radio FILE")
+            raise LiveError(
+                "a radio team is brought up by hand: innervate live medium, then live node for each station"
+            )
         if cables == "pty" and plan.kind != "skin":
             raise LiveError("--pty joins the cells of a skin; mesh nodes take --netns or UDP")
 
