@@ -18,10 +18,8 @@ KEY, OTHER = bytes(range(32)), bytes(32)
 FRAME = b"\x48frame"
 
 
-def sealer(number, key=KEY, state=None, **more):
-    return Sealer(
-        "mesh", number, more.get("keys", {1: key}), more.get("use", 1), state or State(None)
-    )
+def sealer(number, key=KEY, state=None):
+    return Sealer("mesh", number, {1: key}, 1, state or State(None))
 
 
 def test_what_one_seals_the_other_opens():

@@ -123,10 +123,12 @@ def test_a_skin_of_twenty_processes_heals(tmp_path, cables):
 
 
 def node_file(folder, **more):
-    lines = ['kind = "mesh"', "number = 0", "nodes = 2", 'role = "gateway"',
-             f'socket = "{folder / "n0.sock"}"',
-             *(f"{key} = {json.dumps(value)}" for key, value in more.items()),
-             "[[link]]", 'kind = "udp"', 'bind = "127.0.0.1:0"', 'peers = ["127.0.0.1:9"]']  # fmt: skip
+    lines = [
+        'kind = "mesh"', "number = 0", "nodes = 2", 'role = "gateway"',
+        f'socket = "{folder / "n0.sock"}"',
+        *(f"{key} = {json.dumps(value)}" for key, value in more.items()),
+        "[[link]]", 'kind = "udp"', 'bind = "127.0.0.1:0"', 'peers = ["127.0.0.1:9"]',
+    ]  # fmt: skip
     path = folder / "n0.toml"
     path.write_text("\n".join(lines) + "\n")
     return path
@@ -164,9 +166,8 @@ def test_memory_metrics_and_one_node_to_a_socket(tmp_path):
             for line in Path(f"/proc/{process.pid}/status").read_text().splitlines()
             if line.startswith("VmRSS")
         )
-        page = (
-            urllib.request.urlopen(f"http://127.0.0.1:{port}/metrics", timeout=10).read().decode()
-        )
+        url = f"http://127.0.0.1:{port}/metrics"
+        page = urllib.request.urlopen(url, timeout=10).read().decode()
         second = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
         process.send_signal(signal.SIGTERM)
         assert process.wait(timeout=30) == 0

@@ -1,4 +1,7 @@
 import asyncio
+from itertools import pairwise
+
+import pytest
 
 from innervate.live.medium import SLOT_US, Medium, MediumRadio
 from innervate.live.messages import DELIVERED
@@ -50,19 +53,14 @@ def test_five_stations_that_collide_send_in_the_order_that_they_reserved():
     first = turns[:STATIONS]
     assert [pos for *_, pos in first] == list(range(STATIONS))
     assert sorted(station for _, _, station, _ in first) == list(range(STATIONS))
-    for (_, end, *_), (start, *_) in zip(first, first[1:], strict=False):
+    for (_, end, *_), (start, *_) in pairwise(first):
         assert end < start
     got = {(i, source) for i, source, payload in heard if payload == b"from %d" % source}
     assert got == {(i, k) for i in range(STATIONS) for k in range(STATIONS) if i != k}
 
 
 def test_a_packet_that_is_too_long_is_refused():
-    node = RadioNode(
-        "s", StationStack(0, radio_parameters({}), 5), MediumRadio(0, ("127.0.0.1", 9))
-    )
-    try:
+    stack = StationStack(0, radio_parameters({}), 5)
+    node = RadioNode("s", stack, MediumRadio(0, ("127.0.0.1", 9)))
+    with pytest.raises(ValueError, match="a packet holds 18"):
         node.send_packet(bytes(19))
-    except ValueError as error:
-        assert "a packet holds 18" in str(error)
-    else:
-        raise AssertionError("19 bytes do not fit into 20 slots")

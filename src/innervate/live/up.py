@@ -51,9 +51,8 @@ class Network:
             self.names = [*(f"c{i}" for i in range(plan.graph.cells)), "pc"]
             self.links, self._ends = _cables(plan.graph)
         else:
-            raise LiveError(
-                "a radio team is brought up by hand: innervate live medium, then live node for each station"
-            )
+            how = "innervate live medium, then innervate live node for each station"
+            raise LiveError(f"a radio team is brought up by hand: {how}")
         if cables == "pty" and plan.kind != "skin":
             raise LiveError("--pty joins the cells of a skin; mesh nodes take --netns or UDP")
 
