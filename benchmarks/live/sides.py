@@ -52,16 +52,12 @@ class Side:
 
     def kill(self, node):
         """A node dies without a word: nothing arrives there any more, nothing leaves."""
-        for k, ends in enumerate(self.shape.links):
-            if node in ends:
-                self.lab.cut(k)
+        self.lab.isolate(node)
         self.nodes[node].send_signal(signal.SIGKILL)
         self.nodes[node].wait()
 
     def revive(self, node):
-        for k, ends in enumerate(self.shape.links):
-            if node in ends:
-                self.lab.restore(k)
+        self.lab.rejoin(node)
         self.nodes[node] = self.start_node(node)
 
     def stop(self):

@@ -11,6 +11,7 @@ import pytest
 
 from innervate import scenario
 from innervate.cli.app import app
+from innervate.live import nodefile
 from innervate.scenario import model
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -87,7 +88,11 @@ def test_every_event_action_is_documented():
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_scenarios_in_pages_can_be_run(page):
     for block in blocks(page, "toml"):
-        scenario.plan(scenario.loads(block))
+        tables = tomllib.loads(block)
+        if "number" in tables:  # a live node
+            nodefile.parse(tables)
+        else:
+            scenario.plan(scenario.loads(block))
 
 
 def test_commands_in_pages_exist():

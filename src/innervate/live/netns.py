@@ -116,10 +116,21 @@ class Lab:
         """Undo `cut`."""
         self._set("delete", link)
 
+    def isolate(self, node: int) -> None:
+        """Drop whatever arrives at a node, on all its cables in the same moment."""
+        self._change("add", node, self.interfaces(node))
+
+    def rejoin(self, node: int) -> None:
+        """Undo `isolate`."""
+        self._change("delete", node, self.interfaces(node))
+
     def _set(self, what: str, link: int) -> None:
         for node in self.links[link]:
-            element = ["element", "inet", "innervate", "cut", "{", f"c{link}", "}"]
-            self.run(node, ["nft", what, *element])
+            self._change(what, node, [f"c{link}"])
+
+    def _change(self, what: str, node: int, names: list[str]) -> None:
+        element = ["element", "inet", "innervate", "cut", "{", ", ".join(names), "}"]
+        self.run(node, ["nft", what, *element])
 
     def ip_bytes(self, link: int) -> int:
         """IP bytes sent on a cable so far, both ways, headers of IP included."""
