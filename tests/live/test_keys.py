@@ -1,4 +1,5 @@
 import asyncio
+import binascii
 import os
 
 import pytest
@@ -132,6 +133,11 @@ def fuzz_node(sealed):
 
 FRAMES = st.one_of(
     st.binary(max_size=200),
+    st.binary(min_size=7, max_size=125)
+    .map(  # with a good CRC, and anything in it
+        lambda body: bytes([0x40 | body[0] & 31]) + body[1:]
+    )
+    .map(lambda body: body + binascii.crc_hqx(body, 0xFFFF).to_bytes(2, "big")),
     st.binary(min_size=26, max_size=160).map(lambda rest: bytes([0xC1]) + rest),
 )
 

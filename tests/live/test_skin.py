@@ -1,12 +1,18 @@
 import asyncio
+import binascii
 import time
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from innervate.live.profile import SKIN
 from tests.live_net import Skin, until
 
 # Detection takes k periods, then the news runs; a busy machine may double that.
+FRAMES = st.binary(min_size=7, max_size=18).map(
+    lambda body: body + binascii.crc_hqx(body, 0xFFFF).to_bytes(2, "big")
+)  # with a good CRC, and anything in it
 BEACON_S = SKIN["beacon_us"] / 1e6
 
 
@@ -82,3 +88,20 @@ def test_status_names_the_broken_port():
             return time.monotonic() - began
 
     assert asyncio.run(main()) >= 3 * BEACON_S  # not before beacons were missed
+
+
+@settings(max_examples=1000, deadline=None, database=None)
+@given(st.lists(st.one_of(st.binary(max_size=24), FRAMES), max_size=20), st.booleans())
+def test_whatever_comes_in_is_taken_or_counted_and_never_raises(frames, pc):
+    async def main():
+        skin = Skin(2, 1, [(0, 0)], rate_hz=0.0)
+        node = skin.pc if pc else skin.cells[0]
+        await node.start()
+        for data in frames:
+            node._receive(node.paths[0], data)
+        counters = node.counters()
+        await node.stop()
+        dropped = sum(n for what, n in counters.items() if what.startswith("dropped"))
+        assert dropped + counters["frames"] == len(frames)
+
+    asyncio.run(main())
