@@ -188,7 +188,11 @@ def compare(first: Path, second: Path, /) -> int:
 
 
 Json = Annotated[bool, Parameter(negative="")]
-live_app = App(name="live", help="Nodes between real processes: UDP, serial ports.")
+live_app = App(
+    name="live",
+    help="Nodes between real processes: UDP, serial ports.",
+    help_format="plaintext",
+)
 app.command(live_app)
 
 
