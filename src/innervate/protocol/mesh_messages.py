@@ -151,7 +151,7 @@ def take(node, params, now, frame, out):
     is_there(node, frame.origin)
     if frame.kind == E2E_ACK:
         if accept(node, params, frame.origin, frame.seq, first):
-            on_end_ack(node, frame, now, out)
+            on_end_ack(node, params, frame, now, out)
         return
     if accept(node, params, frame.origin, frame.seq, first):
         hand_up(params, frame, out)

@@ -1,7 +1,7 @@
 """A packet goes on: its next hop is chosen, and another when that does not answer."""
 
 from innervate.protocol.arith import MASK30
-from innervate.protocol.mesh_fields import WAITING
+from innervate.protocol.mesh_fields import QUEUE, WAITING
 from innervate.protocol.mesh_frames import add_hop, was_at
 from innervate.protocol.mesh_near import suspect, trust
 from innervate.protocol.mesh_queue import UNACKED, WAITS, drop, kick
@@ -16,12 +16,14 @@ from innervate.protocol.mesh_seen import note_no_way, skip, unskip
 from innervate.protocol.mesh_upward import uplink
 from innervate.protocol.mesh_words import (
     ACK_WANTED,
+    ALTERNATE,
     NOBODY,
     REPORT_DROPPED,
     RESPONSE,
     SEARCH,
     TABLE,
     TABLE_ACK,
+    TABLE_FREE,
     TABLES,
 )
 from innervate.protocol.outbox import report
@@ -161,6 +163,24 @@ def hop_failed(node, params, now, i, out):
             no_way(node, i, out)
 
 
+def turn_away(node, params, dead, out):
+    """What else waits to go to a neighbour that does not answer goes another way, if there is one.
+
+    Else every packet in the queue would have to find out for itself, one after the other.
+    """
+    if not params.retry or params.failover < ALTERNATE or params.mode == TABLE_FREE:
+        return
+    for i in range(QUEUE):
+        waits = node.q_state[i] == WAITS and node.q_flags[i] & ACK_WANTED
+        if waits and node.q_link_dst[i] == dead and node.q_kind[i] != TABLE:
+            if is_upward(node.q_kind[i]):
+                who = uplink(node, params, i)
+                if who != NOBODY:
+                    pass_on(node, params, i, who)
+            else:
+                aim(node, params, i, out)
+
+
 def unanswered(node, params, now, out):
     """The hop's ack did not come in time."""
     i = node.busy
@@ -171,5 +191,7 @@ def unanswered(node, params, now, out):
         node.q_state[i] = WAITS
         node.q_due[i] = now
     else:
+        dead = node.q_link_dst[i]
         hop_failed(node, params, now, i, out)
+        turn_away(node, params, dead, out)
     kick(node, params, now, out)
