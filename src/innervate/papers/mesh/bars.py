@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from innervate.analysis.mesh import summarize
 from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
-from innervate.papers.mesh import crossing, gateway, sending
+from innervate.papers.mesh import alarms, crossing, gateway, sending
 from innervate.papers.mesh.bed import Bed
 from innervate.papers.mesh.words import seeds_of
 from innervate.plot import style
@@ -47,8 +47,8 @@ def measure_round(bed: Bed, seed: int) -> dict[str, Any]:
 
 
 def crossings(quick: bool) -> range:
-    """At least 300 are asked for where a 99th percentile is."""
-    return range(1, 21 if quick else 401)
+    """Those of the figure."""
+    return alarms.seeds_of(quick)
 
 
 def sent(quick: bool) -> range:
