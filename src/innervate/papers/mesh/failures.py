@@ -154,9 +154,12 @@ def _rssi(results: Results, quick: bool) -> Claim:
     return Claim(
         "2.2",
         '"in the future it could be based on last heard time and RSSI": better than random',
-        f"{WORST} dead: first {_pair(results, quick, RULES[2], 'first')}, later "
-        f"{_pair(results, quick, RULES[2], 'later')}; random "
-        f"{_pair(results, quick, RULES[1], 'first')} and {_pair(results, quick, RULES[1], 'later')}",
+        f"{WORST} dead: "
+        + joined(
+            f"{rule.name}: first {_pair(results, quick, rule, 'first')}, later "
+            f"{_pair(results, quick, rule, 'later')}"
+            for rule in (RULES[2], RULES[1])
+        ),
         verdict(loud < random),
         "A6: the loudest neighbour is the nearest one, which has the same way to go; it is always "
         "the same, so two nodes that chose each other keep each other",

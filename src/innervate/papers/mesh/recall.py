@@ -58,7 +58,7 @@ def told(results: Results, of: Bed, quick: bool, name: str) -> list[Any]:
 
 def draw(results: Results, quick: bool) -> Figure:
     """Recall over the jitter, over the size; airtime of a round."""
-    figure, axes = style.panels(style.WIDE_IN, 2.6, 1, 3)
+    figure, axes = style.panels(style.WIDE_IN, 2.8, 1, 3)
     jitters = SOME_MS if quick else JITTERS_MS
     _lines(axes[0], results, quick, jitters, [[bed(r, ms) for ms in jitters] for r in READINGS])
     axes[0].set_xscale("log")
@@ -70,7 +70,6 @@ def draw(results: Results, quick: bool) -> Figure:
     _lines(axes[1], results, quick, ns, sizes)
     axes[1].set_xlabel("nodes N")
     axes[1].set_title(f"b  {USUAL_MS} ms")
-    axes[1].legend(loc="center right", bbox_to_anchor=(1, 0.62))
     for ax in axes[:2]:
         ax.set_ylim(0, 1.04)
         ax.set_ylabel("links found (recall)")
@@ -81,6 +80,8 @@ def draw(results: Results, quick: bool) -> Figure:
     axes[2].set_xlabel("nodes N")
     axes[2].set_ylabel("airtime of all together (s)")
     axes[2].set_title("c  what a round costs")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower left", ncols=3)
     return figure
 
 
@@ -133,7 +134,7 @@ def _at_once(results: Results, quick: bool) -> Claim:
         joined(f"{ms} ms: recall {mean:.3f}" for ms, mean in zip(soon, means, strict=True))
         + f"; {USUAL_MS} ms: {usual:.3f} (list)",
         verdict(min(means) >= 0.98),
-        "neighbours that heard the same request repeat it at the same time, and nobody hears either",
+        "neighbours that heard the same request repeat it at the same time: nobody hears either",
     )
 
 
