@@ -11,7 +11,7 @@ from innervate.analysis.mesh_alarms import all_crossings
 from innervate.analysis.mesh_messages import NEVER, duplicates
 from innervate.analysis.mesh_paths import UNREACHABLE, distances
 from innervate.papers.experiment import Point, Results
-from innervate.papers.mesh.bed import GATEWAY, Bed, Options, dying, kill
+from innervate.papers.mesh.bed import GATEWAY, LITERAL, Bed, Options, dying, kill
 from innervate.protocol.mesh_words import ALARM, FLOOD
 from innervate.scenario.mesh_profiles import GOOD_CDB
 from innervate.sim.loop import ON_FRAME
@@ -36,17 +36,12 @@ class Scheme(NamedTuple):
     protocol: Options = ()
 
 
+GRAPH: Options = (("failover", "graph"),)
 BOTH = Scheme("routed and flooded", "crossings")
 ROUTED = Scheme("routed alone", "never")
-DOCUMENT = Scheme(
-    "routed by the document's rule", "never",
-    (("failover", "random"), ("retry", False), ("reliable", False), ("transmissions", 1)),
-)  # fmt: skip
-GRAPH = (("failover", "graph"),)
-SCHEMES = (
-    BOTH, ROUTED, Scheme("graph, routed and flooded", "crossings", GRAPH),
-    Scheme("graph, routed alone", "never", GRAPH), DOCUMENT,
-)  # fmt: skip
+GRAPH_BOTH = Scheme("graph, routed and flooded", "crossings", GRAPH)
+GRAPH_ROUTED = Scheme("graph, routed alone", "never", GRAPH)
+DOCUMENT = Scheme("the document's rule", "never", LITERAL)
 
 
 def walk(seed: int) -> tuple[list[list[float]], float]:
