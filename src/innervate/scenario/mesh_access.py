@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil
+from math import ceil, hypot
 from typing import Any
 
 from innervate.scenario.mesh_model import MeshScenario
@@ -129,7 +129,7 @@ def _farthest_cm(a: tuple[int, int, int, int], b: tuple[int, int, int, int]) -> 
     """Greatest distance of two points, one in each rectangle."""
     dx = max(a[2] - b[0], b[2] - a[0])
     dy = max(a[3] - b[1], b[3] - a[1])
-    return round((dx * dx + dy * dy) ** 0.5)
+    return round(hypot(dx, dy))
 
 
 def _check_events(model: MeshScenario, network: Network, mac: str) -> None:

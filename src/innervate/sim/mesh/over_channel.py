@@ -18,6 +18,7 @@ from innervate.sim.mesh.world import ALIVE, HELD, VOID
 from innervate.sim.radio import heap, traffic
 from innervate.sim.radio import loop as radio_loop
 from innervate.sim.radio import medium as channel
+from innervate.sim.radio.world import RING
 
 KEPT = 32  # frames of a node that are kept; more than its medium access can hold
 
@@ -152,7 +153,7 @@ def layer(handlers):
             air.node, air.state, air.receivers, air.digest = node, HELD, 0, digest(kept)
             if not urgent:
                 radio.held = place
-            at = node * traffic.RING + (handle & (traffic.RING - 1))
+            at = node * RING + (handle & (RING - 1))
             below.sizes[at] = slots_of(world, frame_bytes(kept))
             heap.push(below.heap, heap.key_of(time, heap.OFFER, node, 1))
             return air.digest
