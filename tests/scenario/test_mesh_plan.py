@@ -11,7 +11,7 @@ import pytest
 
 from innervate.protocol.mesh_fields import PARAMS
 from innervate.protocol.mesh_words import END_TO_END, MONITOR, PRIORITY
-from innervate.scenario import bundled, check, dump, load, loads, plan, template
+from innervate.scenario import ScenarioError, bundled, check, dump, load, loads, plan, template
 from innervate.scenario.mesh_network import quality_cdb, reception_q15
 from innervate.scenario.mesh_plan import CUT, JAM, KILL, ONE, REVIVE, UNHEARD, MeshPlan
 from innervate.scenario.mesh_words import warnings
@@ -308,10 +308,57 @@ def test_cuts_jams_and_late_nodes() -> None:
 def test_other_medium_access_where_all_hear_each_other() -> None:
     p = made("nodes = 6\n[radio]\nmean_degree = 5\nmac = 'csma-cd-r'")
     assert p.mac == "csma-cd-r/practical"
-    assert p.mac_params["packet_slots"] == 127 + 6
+    assert p.mac_params["packet_slots"] == 127 + 6 + 2  # the two bytes that say whose turn it is
     assert p.mac_params["slot_us"] == 32
     assert made("nodes = 6").mac_params == {"backoff_us": 320}
     assert made("nodes = 6\nradio.profile = '38k4'").mac_params == {"backoff_us": 2000}
+
+
+TEAM = (
+    "nodes = 6\n[radio]\nprofile = '38k4'\nmac = 'csma-cd-r'\nreach_m = 60\nshadowing_db = 0\n"
+    "direction_db = 0\n[placement]\nside_m = 20\n"
+)
+
+
+def test_timers_over_the_medium_access_of_radio_teams() -> None:
+    team, alone = made(TEAM), made(TEAM.replace("csma-cd-r", "csma"))
+    round_us = 6 * ((7 + 2 + 64) * 208.333 + 2000)  # a turn of everybody
+    assert (team.params["hop_acks"], alone.params["hop_acks"]) == (0, 1)
+    assert team.params["copies"] == 1
+    assert team.params["jitter_us"] == pytest.approx(round_us, abs=2)
+    assert team.params["listen_us"] == pytest.approx(4 * round_us, abs=8)
+    assert team.params["collect_us"] == pytest.approx(10 * round_us, abs=20)
+    assert team.params["e2e_us"] == alone.params["e2e_us"] == 1_500_000
+    assert made(TEAM, "protocol.hop_acks=true").params["ack_us"] == round(2 * round_us)
+    assert made(TEAM, "protocol.listen_s=2").params["listen_us"] == 2_000_000
+    assert made(TEAM, "nodes=100").params["e2e_us"] == pytest.approx(4 * round_us * 100 / 6, abs=99)
+
+
+def robot(*waypoints: tuple[float, float]) -> str:
+    way = [list(point) for point in waypoints]
+    return f"[[robot]]\nnode = 5\nwaypoints = {way}\n"
+
+
+def test_robots_that_stay_in_reach_may_take_turns() -> None:
+    assert made(TEAM + robot((5, 5), (5, 50))).robots == [0, 0, 0, 0, 0, 1]
+
+
+def test_robots_that_leave_the_reach_may_not() -> None:
+    with pytest.raises(ScenarioError, match=r"n5 can come .* m away from n\d, out of its reach"):
+        made(TEAM + robot((5, 5), (5, 90)))
+    # It is in reach of everybody all the time, but not of where another robot may be then.
+    two = robot((5, 5), (50, 5)) + "[[robot]]\nnode = 4\nwaypoints = [[5, 5], [-30, 5]]\n"
+    with pytest.raises(ScenarioError, match="n5 can come 80 m away from n4") as told:
+        made(TEAM + two)
+    assert "its turns rest on what everybody hears; raise radio.reach_m" in str(told.value)
+
+
+@pytest.mark.parametrize("action", ["cut", "jam"])
+def test_events_that_make_nodes_deaf_need_csma(action: str) -> None:
+    event = f"[[event]]\nat_s = 3\naction = '{action}'\nrandom = 1\n"
+    assert made(TEAM.replace("csma-cd-r", "csma") + event).faults
+    with pytest.raises(ScenarioError, match=rf'event\.0\.action = "{action}" changes who hears'):
+        made(TEAM + event)
 
 
 def test_what_check_says() -> None:
