@@ -12,7 +12,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from benchmarks import beacons, c_heap, mesh, radio, simpy_timeouts, sweeps
+from benchmarks import beacons, c_heap, explorer, mesh, radio, simpy_timeouts, sweeps
 
 NS3_BEST = {204: 0.64e6, 10_020: 0.13e6}  # beacons/s of ns-3 3.37, measured on another such machine
 COMMAND_RUNS = 5
@@ -36,6 +36,9 @@ def main():
     )
     print("Mevents/s = handler calls; C heap, SimPy = their events (M/s) with as many pending;")
     print("* beacons/s against ns-3's best build as measured elsewhere (no ns-3 here)")
+    figures["explorer"] = explorer.measure()
+    print(f"explorer, PC and triangle: {figures['explorer']['successors_per_s'] / 1e6:.2f} M "
+          f"successors/s, {figures['explorer']['states']:,} states")  # fmt: skip
     figures["radio"] = [radio_row(stations) for stations in radio.STATIONS]
     sizes = mesh.NODES[:1] if options.quick else mesh.NODES
     figures["mesh"] = [mesh_row(nodes) for nodes in sizes]

@@ -11,6 +11,7 @@ import pytest
 
 from innervate import scenario
 from innervate.cli.app import app
+from innervate.live import nodefile
 from innervate.scenario import model
 from innervate.sweep import make_plan, planfile
 
@@ -91,6 +92,10 @@ def test_scenarios_in_pages_can_be_run(page, tmp_path):
         if planfile.is_plan(block):
             (tmp_path / "plan.toml").write_text(block)
             assert make_plan(tmp_path / "plan.toml").points
+            continue
+        tables = tomllib.loads(block)
+        if "number" in tables:  # a live node
+            nodefile.parse(tables)
         else:
             scenario.plan(scenario.loads(block))
 

@@ -48,18 +48,18 @@ def test_receipts_come_in_order(told):
     assert frame.path[: frame.path_len] == [3, 2, 1]
 
 
-def test_a_message_to_a_dead_node_expires_after_five_retries_of_alternate_parity():
+def test_a_message_to_a_dead_node_expires_after_retries_of_alternate_parity():
     net = Net(3, line(3))
     net.run(READY)
     net.kill(2)
     net.send(0, 2)
-    net.run(READY + 3_000_000)
+    net.run(READY + 9_000_000)
     assert receipts(net, 0) == [REPORT_ACCEPTED, REPORT_HOP, REPORT_EXPIRED]
     tries = []
     for frame in sent_by(net, 0):
         if frame.dest == 2 and frame.flags & PARITY not in tries[-1:]:
             tries.append(frame.flags & PARITY)
-    assert tries == [0, PARITY] * 3
+    assert tries == [0, PARITY, 0]  # then it is hopeless, until the next round
     assert not net.queued()
 
 
@@ -113,7 +113,7 @@ def test_the_ninth_message_that_waits_is_refused_and_none_blocks_the_others():
     for k in range(9):
         net.send(1, 0, handle=k)
     assert receipts(net, 1).count(REPORT_FULL) >= 1
-    net.run(READY + 5_000_000)
+    net.run(READY + 9_000_000)
     assert receipts(net, 1).count(REPORT_EXPIRED) == receipts(net, 1).count(REPORT_ACCEPTED)
     assert not net.queued()
 

@@ -16,7 +16,7 @@ from innervate.protocol.mesh_words import (
     NO_ACK,
     NO_ROOM,
     NO_ROUTE,
-    PATH_FULL,
+    PUT_OUT,
     REPORT_ACCEPTED,
     REPORT_EXPIRED,
     REPORT_FULL,
@@ -30,7 +30,7 @@ NEVER = -1
 SETTLE_US = 1_000_000  # an unreliable message takes no longer
 SAME_US = 60_000_000  # the same number this much later is another packet
 HANDLES = 1 << 16
-REASONS = {NO_ROUTE: "no_route", NO_ACK: "no_ack", PATH_FULL: "put_out", NO_ROOM: "no_room"}
+REASONS = {NO_ROUTE: "no_route", NO_ACK: "no_ack", PUT_OUT: "put_out", NO_ROOM: "no_room"}
 
 # States of a message.
 DELIVERED, IN_FLIGHT, LOST, REFUSED, UNASKED = range(5)

@@ -9,6 +9,7 @@ import numpy as np
 from innervate.analysis.mesh_alarms import Crossing
 from innervate.analysis.mesh_messages import NEVER
 from innervate.protocol.mesh_words import ALARM, ALL, FLOOD
+from innervate.scenario.mesh_plan import ONE
 
 
 class Hop(NamedTuple):
@@ -66,7 +67,7 @@ def way(result: Any, crossing: Crossing, sent: list[Hop] | None = None) -> list[
     """The hops of the copy that the monitor accepted first, from its origin on.
 
     A routed copy names its next hop. Of a flooded one it is not recorded who heard whom first; the
-    copy before is taken to be the earliest one that can have been heard.
+    copy before is taken to be the earliest one that was likely to be heard.
     """
     if crossing.row == NEVER:
         return []
@@ -82,21 +83,22 @@ def way(result: Any, crossing: Crossing, sent: list[Hop] | None = None) -> list[
             and hop.flooded == crossing.flooded
             and hop.end_us <= before
             and hop.node != here
-            and (hop.to == here if hop.to != ALL else _hears(result, hop.node, here))
+            and (hop.to == here if hop.to != ALL else _chance(result, hop.node, here) > 0)
         ]
         if not fitting:
             break
         # The last hop ends as the monitor accepts it; before, what was heard first was passed on.
         exact = [hop for hop in fitting if hop.end_us == crossing.accepted_us]
-        hop = exact[0] if exact and not found else fitting[0]
+        likely = [hop for hop in fitting if _chance(result, hop.node, here) >= ONE // 2]
+        hop = (exact if exact and not found else likely or fitting)[0]
         found.append(hop)
         here, before = hop.node, hop.start_us
     return found[::-1]
 
 
-def _hears(result: Any, node: int, other: int) -> bool:
-    """True if a node's frames can be received by another one; robots: from where they started."""
+def _chance(result: Any, node: int, other: int) -> int:
+    """Chance in 1/32768 that a node's frames are received by another; robots: all of them."""
     plan = result.plan
     if plan.robots[node] or plan.robots[other]:
-        return True
-    return bool(plan.radio.prob_q15[node * plan.nodes + other] > 0)
+        return ONE
+    return int(plan.radio.prob_q15[node * plan.nodes + other])

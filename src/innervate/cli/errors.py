@@ -18,12 +18,15 @@ _EXTRAS = {
     "matplotlib": "plot",
     "icub_models": "body", "trimesh": "body",
     "distributed": "sweep",
+    "cryptography": "live",
 }  # fmt: skip
 # Errors whose text is one line for the user: module and class, and whose mistake they are.
 _KNOWN = (
     ("innervate.scenario.errors", "ScenarioError", USERS),
     ("innervate.run.errors", "RunError", USERS),
+    ("innervate.verify.errors", "VerifyError", USERS),
     ("innervate.sweep.errors", "SweepError", USERS),
+    ("innervate.live.errors", "LiveError", USERS),
     ("cyclopts", "CycloptsError", USERS),
     ("innervate.sim.simulate", "InvariantBroken", OURS),
     ("innervate.analysis.frames", "FramesLost", OURS),

@@ -53,3 +53,27 @@ def bounds(declaration: Declaration) -> tuple[np.ndarray[Any, Any], np.ndarray[A
         low += [lowest] * words
         high += [highest] * words
     return np.array(low, np.int32), np.array(high, np.int32)
+
+
+class Words:
+    """A plain object's fields as one row of numbers, in order of declaration."""
+
+    def __init__(self, target: Any, declaration: Declaration) -> None:
+        self._target = target
+        self._where = [
+            (name, i) if int(length) else (name, -1)
+            for name, length, *_ in declaration
+            for i in range(max(int(length), 1))
+        ]
+
+    def __getitem__(self, index: int) -> int:
+        name, i = self._where[index]
+        value = getattr(self._target, name)
+        return int(value if i < 0 else value[i])
+
+    def __setitem__(self, index: int, word: int) -> None:
+        name, i = self._where[index]
+        if i < 0:
+            setattr(self._target, name, word)
+        else:
+            getattr(self._target, name)[i] = word

@@ -13,6 +13,7 @@ from innervate.protocol.mesh_queue import (
     kick,
     place,
 )
+from innervate.protocol.mesh_seen import hope_again
 from innervate.protocol.mesh_send import send_up
 from innervate.protocol.mesh_table import activate
 from innervate.protocol.mesh_upward import is_uplink, is_weak
@@ -76,6 +77,7 @@ def begin(node, params, gateway, epoch, round, out):
     node.parent = ALL
     node.quiet = 0
     node.due = NOTHING
+    hope_again(node)
     if gateway != node.number:
         node.leading = 0
     for k in range(params.places):

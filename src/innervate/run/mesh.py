@@ -14,7 +14,7 @@ from innervate.analysis.mesh_messages import NEVER, messages
 from innervate.plot.mesh_words import HANDED, PACKETS, TIMERS
 from innervate.sim.loop import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.sim.mesh import simulate as simulator
-from innervate.sim.mesh.loop import MAC
+from innervate.sim.mesh.books import MAC
 from innervate.trace import mesh_tables
 from innervate.trace.tables import Table
 

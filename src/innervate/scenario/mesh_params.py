@@ -99,6 +99,7 @@ def parameters(
         "activation": int(settings.activation),
         "told": int(profile.collisions),
         "transmissions": chosen.value("transmissions", profile.transmissions),
+        "hop_acks": int(chosen.value("hop_acks", profile.hop_acks)),
         "ack_us": chosen.value("ack_us", profile.ack_us),
         "suspect_us": chosen.micros("suspect_s", profile.suspect),
         "min_rssi": chosen.value("min_rssi_dbm", min_rssi_dbm),
@@ -125,6 +126,7 @@ def _rounds(profile: Profile, chosen: _Chosen) -> dict[str, int]:
     rest_s = profile.collect - profile.listen - profile.spread
     return {
         "jitter_us": chosen.micros("jitter_s", profile.jitter),
+        "flood_us": chosen.micros("flood_s", profile.jitter / 8),
         "copies": chosen.value("copies", profile.copies),
         "listen_us": listen_us,
         "spread_us": spread_us,

@@ -23,8 +23,9 @@ class Profile(NamedTuple):
         rssi50_cdb: 0.01 dBm at which half the frames are received.
         loss_1m_cdb: path loss at 1 m in free space, 0.01 dB.
         ack_us: wait for a hop's ack.
-        dead_step: more for every rank of standby.
+        dead_step: more for every standby behind the first.
         settled: messages start then if nothing is said: the first tables are there.
+        hop_acks: hops acknowledge; False where the medium access says what was received.
     """
 
     byte_ns: int
@@ -52,6 +53,7 @@ class Profile(NamedTuple):
     beacon: float
     dead_step: float
     settled: float
+    hop_acks: bool = True
 
 
 def _ack_us(turnaround_us: int, phy_bytes: int, byte_ns: int, backoff_us: int) -> int:
@@ -78,8 +80,8 @@ IDEAL = FAST._replace(
 # Ethernet at 100 Mbit/s with UDP's headers; the turnaround stands for the operating system.
 IP = Profile(
     byte_ns=80, phy_bytes=66, turnaround_us=200, backoff_us=0, rssi50_cdb=-9500, loss_1m_cdb=4000,
-    mtu=127, collisions=False, period=2, period_max=12, jitter=0.005, copies=2, listen=0.05,
-    spread=0.05, collect=0.2, transmissions=2, ack_us=5000, suspect=2, e2e=0.03, e2e_adapt=True,
+    mtu=127, collisions=False, period=2, period_max=2, jitter=0.005, copies=2, listen=0.05,
+    spread=0.05, collect=0.2, transmissions=3, ack_us=5000, suspect=2, e2e=0.03, e2e_adapt=True,
     jobs=4, job=0.1, beacon=0.25, dead_step=1, settled=1,
 )  # fmt: skip
 PROFILES = {"250k": FAST, "38k4": SLOW, "ideal": IDEAL, "ip": IP}

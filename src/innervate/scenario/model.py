@@ -219,6 +219,7 @@ class ScriptTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True)
     steps: Annotated[
         list[str], Meta(max_length=100_000, description='a list of steps like "tick n1"')
     ]
+    keepalive: Annotated[bool, Meta(description="true or false")] = False
 
 
 class SkinScenario(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -119,30 +119,6 @@ class World(NamedTuple):
     place: Any
 
 
-class _Words:
-    """A plain object's fields as one row of numbers, in order of declaration."""
-
-    def __init__(self, target: Any, declaration: records.Declaration) -> None:
-        self._target = target
-        self._where = [
-            (name, i) if int(length) else (name, -1)
-            for name, length, *_ in declaration
-            for i in range(max(int(length), 1))
-        ]
-
-    def __getitem__(self, index: int) -> int:
-        name, i = self._where[index]
-        value = getattr(self._target, name)
-        return int(value if i < 0 else value[i])
-
-    def __setitem__(self, index: int, word: int) -> None:
-        name, i = self._where[index]
-        if i < 0:
-            setattr(self._target, name, word)
-        else:
-            getattr(self._target, name)[i] = word
-
-
 class Tables:
     """Makes tables of one form: compiled (arrays) or plain (lists)."""
 
@@ -189,7 +165,7 @@ class Tables:
     def words(self, states: Any, declaration: Any) -> Any:
         """The states as rows of words."""
         if self.plain:
-            return [_Words(state, declaration) for state in states]
+            return [records.Words(state, declaration) for state in states]
         return states.view(self.word).reshape(len(states), -1)
 
 

@@ -3,7 +3,10 @@
 Half a byte at a time: the table of 16 entries is kind to boards with 16 KiB of memory.
 """
 
+import binascii
+
 START = 0xFFFF
+HAS_HQX = hasattr(binascii, "crc_hqx")  # boards have no such thing
 
 # The remainders of 0x0000, 0x1000 ... 0xF000.
 TABLE = (
@@ -14,6 +17,13 @@ TABLE = (
 
 def crc16(data: bytes | bytearray | memoryview, count: int) -> int:
     """CRC of the first `count` bytes of `data`, 0..65535."""
+    if HAS_HQX:
+        return binascii.crc_hqx(data if count == len(data) else data[:count], START)
+    return by_table(data, count)
+
+
+def by_table(data: bytes | bytearray | memoryview, count: int) -> int:
+    """The same without help of the system."""
     crc = START
     for i in range(count):
         byte = data[i]

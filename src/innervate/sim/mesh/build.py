@@ -10,10 +10,11 @@ from innervate.kernel import records
 from innervate.protocol import csma_fields, mesh_fields, rng
 from innervate.sim import world as w
 from innervate.sim.build import get, put, uniform
-from innervate.sim.mesh import books, powers, queue
+from innervate.sim.mesh import books, channel, powers, queue
 from innervate.sim.mesh import world as m
 from innervate.sim.mesh.loop import BOOT, NEVER
 from innervate.sim.mesh.medium import NONE
+from innervate.sim.mesh.over_channel import KEPT
 from innervate.sim.radio.world import Heap
 
 ROWS = 1 << 16
@@ -41,9 +42,11 @@ def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> m.Wo
     low, high = records.bounds(fields)
     rows = PLAIN_ROWS if plain else ROWS
     kept = rows + _margin(n) if keep else 1
+    heap = Heap(tables.numbers(128 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64))
     world = m.World(
         run=tables.records(m.RUN, 1, wide=m.WIDE),
-        heap=Heap(tables.numbers(128 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64)),
+        heap=heap,
+        below=() if plan.mac in MACS else channel.world_of(plan, plain, checks, heap),
         nodes=nodes,
         words=tables.words(nodes, fields),
         low=_given(tables, low, np.int32),
@@ -116,6 +119,8 @@ def _medium(tables: w.Tables, plan: Any) -> dict[str, Any]:
     """Tables of the medium."""
     n, radio = plan.nodes, plan.radio
     places = min(PLACES_PER_NODE * n + 64, queue.PLACES_MAX)
+    if plan.mac not in MACS:
+        places = n * KEPT
     strengths = powers.strength_table()
     power = [powers.strength(strengths, cdb) for cdb in radio.rssi_cdb]
     power[:: n + 1] = [0] * n  # nobody hears himself
@@ -190,8 +195,8 @@ def _set_run(world: m.World, plan: Any, gate_words: int) -> None:
         world.run,
         0,
         nodes=n,
-        mac=MACS[plan.mac],
-        collisions=int(radio.collisions),
+        mac=MACS.get(plan.mac, 0),
+        collisions=int(radio.collisions and plan.mac in MACS),
         turnaround=radio.turnaround_us,
         byte_ns=radio.byte_ns,
         phy_bytes=radio.phy_bytes,
@@ -221,7 +226,8 @@ def _set_run(world: m.World, plan: Any, gate_words: int) -> None:
                 field[i] = value
         else:
             put(world.params, 0, **{name: plan.params[name]})
-    put(world.mac_params, 0, **{name: plan.mac_params.get(name, CSMA[name]) for name in CSMA})
+    if plan.mac in MACS:
+        put(world.mac_params, 0, **{name: plan.mac_params.get(name, CSMA[name]) for name in CSMA})
 
 
 def _set_nodes(world: m.World, plan: Any, spare: int) -> None:

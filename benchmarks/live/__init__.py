@@ -1,0 +1,1 @@
+"""How fast live networks heal: innervate beside a routing daemon, in network namespaces."""

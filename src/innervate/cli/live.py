@@ -1,0 +1,118 @@
+"""`innervate live`: nodes between real processes."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from innervate.cli import errors
+from innervate.live import status
+
+
+def up(
+    file: str, sets: list[str], cables: str, folder: Path | None, for_s: float, as_json: bool
+) -> int:
+    """Bring a scenario up as processes."""
+    from innervate import scenario as scenarios
+    from innervate.live import up as room
+
+    plan = scenarios.plan(scenarios.load(file, sets))
+    return asyncio.run(room.run(plan, folder, cables, for_s, as_json))
+
+
+def show(names: list[str], as_json: bool) -> int:
+    """What nodes say of themselves."""
+    sockets = [status.find(name) for name in names] if names else status.sockets()
+    if not sockets:
+        where = f"no node runs here (folder {status.folder()})"
+        raise errors.UserError(f"{where}; start one with: innervate live node FILE")
+    told = [status.ask_one(path, {"do": "status"}) for path in sockets]
+    if as_json:
+        print(json.dumps(told if len(told) != 1 or not names else told[0]))
+        return 0
+    for one in told:
+        for line in _lines(one):
+            print(line)
+    return 0
+
+
+def send(name: str, to: int, text: str, priority: bool, reliable: bool, as_json: bool) -> int:
+    """Send a message; 0 if it was delivered, or only accepted where no receipt is asked for."""
+    payload = sys.stdin.buffer.read() if text == "-" else text.encode()
+    request = {"do": "send", "to": to, "payload": payload.hex(), "priority": priority,
+               "reliable": reliable, "wait": reliable and to != 255}  # fmt: skip
+    state = "refused"
+    for answer in status.ask(status.find(name), request):
+        state = answer["state"]
+        reason = f": {answer['reason']}" if answer["reason"] else ""
+        print(json.dumps(answer) if as_json else f"{state}{reason}", flush=True)
+        if state in ("delivered", "expired", "refused") or not request["wait"]:
+            break
+    return 0 if state in ("delivered", "accepted") else 1
+
+
+def listen(name: str, count: int, as_json: bool) -> int:
+    """Print messages that come in at a node."""
+    heard = 0
+    for answer in status.ask(status.find(name), {"do": "listen"}):
+        if "from" not in answer:
+            continue
+        if as_json:
+            print(json.dumps(answer), flush=True)
+        else:
+            text = str(answer.get("touch", ""))
+            if "payload" in answer:
+                text = bytes.fromhex(answer["payload"]).decode("utf-8", "backslashreplace")
+            print(f"{answer['from']}: {text}", flush=True)
+        heard += 1
+        if heard == count:
+            break
+    return 0
+
+
+def change(name: str, port: int, what: str) -> int:
+    """Cut or restore a cable at one node."""
+    status.ask_one(status.find(name), {"do": what, "port": port})
+    return 0
+
+
+def medium(where: str, slot_us: int, turnaround_us: int) -> int:
+    """Run a shared channel."""
+    from innervate.live import medium as room
+
+    asyncio.run(room.run(where, slot_us, turnaround_us))
+    return 0
+
+
+def _lines(told: dict[str, Any]) -> list[str]:
+    key = "sealed" if told["sealed"] else "no key"
+    if told["kind"] == "radio":
+        told["paths"] = []
+    lines = [f"{told['name']}: {told['kind']} {told['role']}, up {told['up_s']:g} s, {key}"]
+    if told["kind"] == "mesh":
+        lines += _mesh_lines(told)
+    elif told["role"] == "cell":
+        way = "no route" if told["parent"] is None else f"port {told['parent']}"
+        lines.append(f"  to the PC: {way}, {told['dist']} hops, load {told['load']}")
+    elif told["role"] == "sink":
+        lines.append(f"  cells per interface port: {told['cells']}")
+    for path in told["paths"]:
+        heard = "never" if path["heard_s"] is None else f"{path['heard_s']:.1f} s ago"
+        broken = "  BROKEN" if path["broken"] else ""
+        lines.append(f"  port {path['port']}: {path['name']}, heard {heard}{broken}")
+    counts = ", ".join(f"{what} {count}" for what, count in told["counters"].items())
+    return [*lines, f"  {counts}"]
+
+
+def _mesh_lines(told: dict[str, Any]) -> list[str]:
+    gateway = "none yet" if told["gateway"] is None else told["gateway"]
+    lines = [f"  gateway {gateway}, epoch {told['epoch']}, table {told['table']}"]
+    for near in told["neighbours"]:
+        quality = "-" if near["quality"] is None else f"{100 * near['quality']:.1f} %"
+        suspect = ", does not answer" if near["suspect"] else ""
+        lines.append(f"  neighbour {near['node']}: acknowledged {quality}{suspect}")
+    ways = [f"{dest} by {hop[0]}" for dest, hop in told["routes"].items()]
+    return [*lines, f"  routes: {', '.join(ways) or 'none'}"]

@@ -1,0 +1,192 @@
+"""A protocol on an asyncio loop: its timers, its outbox. Knows no protocol by name."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections import Counter
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from innervate.protocol.arith import HALF30, MASK30
+from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER
+
+OUTBOX = 32
+
+
+class Stack(Protocol):
+    """What an engine has to know of a protocol: its five functions bound to a node's state.
+
+    Attributes:
+        out: the outbox that all of them fill.
+        inbox: the frame record that received bytes are read into.
+        timers: how many timers it has.
+        reasons: words for what `decode` returns; 0 is "read".
+        silent_us: a path on which nothing was heard for so long is broken.
+    """
+
+    out: Any
+    inbox: Any
+    timers: int
+    reasons: tuple[str, ...]
+    silent_us: int
+
+    def start(self, now: int, cause: int) -> None:
+        """Switch on."""
+
+    def frame(self, now: int, port: int) -> None:
+        """The frame in `inbox` was received."""
+
+    def timer(self, now: int, timer: int) -> None:
+        """A timer fires."""
+
+    def input(self, now: int, kind: int, item: Any) -> None:
+        """The node's own user hands something down."""
+
+    def encode(self, frame: Any) -> bytes:
+        """The bytes of a frame."""
+
+    def decode(self, data: bytes) -> int:
+        """Read bytes into `inbox`; 0, or why not."""
+
+    def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
+        """The paths on which a frame leaves; None = all of them."""
+
+    def status(self, now: int) -> dict[str, Any]:
+        """What the protocol knows, for people; `now` is the whole clock, us."""
+
+
+def clock_us() -> int:
+    """The driver's clock, us, 64 bits; monotonic."""
+    return time.monotonic_ns() // 1000
+
+
+class Engine:
+    """Runs one stack: calls its functions, drains what they put out.
+
+    Args:
+        stack: the protocol and its state.
+        transmit: is given the port, the frame record and the action's b and c of every SEND.
+        deliver: is given the kind and the frame record of every DELIVER; copies what it keeps.
+        report: is given code, a and b of every REPORT.
+        settled: is called when an outbox was drained; only it may hand something down again.
+        clock: microseconds; the protocol sees them modulo 2^30.
+
+    Attributes:
+        counters: what happened how often: handler calls, and frames dropped by reason.
+        now: when what is drained now was decided, us.
+    """
+
+    def __init__(
+        self,
+        stack: Stack,
+        transmit: Callable[[int, Any, int, int], None],
+        deliver: Callable[[int, Any], None],
+        report: Callable[[int, int, int], None],
+        settled: Callable[[], None],
+        clock: Callable[[], int] = clock_us,
+    ) -> None:
+        self.stack = stack
+        self.counters: Counter[str] = Counter()
+        self._transmit = transmit
+        self._deliver = deliver
+        self._report = report
+        self._settled = settled
+        self._clock = clock
+        self._due: list[int | None] = [None] * stack.timers
+        self._wake: asyncio.TimerHandle | None = None
+        self._wake_at = 0
+        self._loop = asyncio.get_running_loop()
+        self._stopped = False
+        self.now = 0
+
+    def start(self, cause: int = 0) -> None:
+        """Switch the node on: 0 first, 1 again with its memory lost."""
+        now = self._clock()
+        self.stack.start(now & MASK30, cause)
+        self._drain(now)
+
+    def stop(self) -> None:
+        """No timer fires any more, nothing is received."""
+        self._stopped = True
+        if self._wake is not None:
+            self._wake.cancel()
+            self._wake = None
+
+    def receive(self, port: int, data: bytes, at: int | None = None) -> int:
+        """Bytes came in on a port; the reason if they are no frame (counted), else 0.
+
+        `at` is when, if that is known better than by looking at the clock now.
+        """
+        if self._stopped:
+            return 0
+        reason = self.stack.decode(data)
+        if reason:
+            self.counters["dropped: " + self.stack.reasons[reason]] += 1
+            return reason
+        now = self._clock() if at is None else at
+        self.counters["frames"] += 1
+        self.stack.frame(now & MASK30, port)
+        self._drain(now)
+        return 0
+
+    def call(self, handler: Callable[[int], None], at: int) -> None:
+        """Call a handler with the protocol's clock of a moment, and drain what it puts out."""
+        if not self._stopped:
+            handler(at & MASK30)
+            self._drain(at)
+
+    def input(self, kind: int, item: Any) -> None:
+        """Hand something down for the node's own user."""
+        now = self._clock()
+        self.stack.input(now & MASK30, kind, item)
+        self._drain(now)
+
+    def _drain(self, now: int) -> None:
+        out = self.stack.out
+        assert not out.overflow[0], "a handler put out more than its outbox holds"
+        self.now = now
+        count = out.count[0]
+        out.count[0] = 0
+        armed = False
+        for i in range(count):
+            act = out.action[i]
+            kind = act.kind
+            if kind == SEND:
+                self._transmit(act.a, out.frame[i], act.b, act.c)
+            elif kind == SET_TIMER:
+                wait = (act.b - now) & MASK30
+                self._due[act.a] = now + (wait if wait < HALF30 else 0)
+                armed = True
+            elif kind == REPORT:
+                self._report(act.a, act.b, act.c)
+            elif kind == DELIVER:
+                self._deliver(act.a, out.frame[i])
+        if armed and not self._stopped:
+            self._arm(now)
+        self._settled()
+
+    def _arm(self, now: int) -> None:
+        """One timer of the loop serves all: it is moved only if something is due before it."""
+        soonest = min((at for at in self._due if at is not None), default=None)
+        if soonest is None:
+            return
+        if self._wake is not None:
+            if self._wake_at <= soonest:
+                return
+            self._wake.cancel()
+        self._wake_at = soonest
+        wait = max(0, soonest - now) / 1e6
+        self._wake = self._loop.call_at(self._loop.time() + wait, self._fire)
+
+    def _fire(self) -> None:
+        self._wake = None
+        now = self._clock()
+        for timer, at in enumerate(self._due):
+            if at is not None and at <= now:
+                self._due[timer] = None
+                self.counters["timers"] += 1
+                self.stack.timer(now & MASK30, timer)
+                self._drain(now)
+        if not self._stopped:
+            self._arm(now)

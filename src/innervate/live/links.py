@@ -1,0 +1,58 @@
+"""What carries frames: a link has one or more paths, each to one neighbour or to a group."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from typing import Any
+
+# Takes the path a frame came in on, and its bytes.
+Receiver = Callable[["Path", bytes], None]
+
+
+class Path:
+    """A way on which frames leave and come in: a cable, a neighbour's address, a group.
+
+    Attributes:
+        name: as shown to people: "udp 127.0.0.1:4701".
+        port: its place in the node's file, from 0; protocols with ports know it by that.
+        up: False while its device is away.
+        cut: True = it carries nothing, as if its plug had come out; for tests and experiments.
+        heard_at: when a good frame came in last, us of the driver's clock; 0 never.
+        counters: frames and bytes out and in, and why frames were not sent.
+    """
+
+    def __init__(self, name: str, port: int) -> None:
+        self.name = name
+        self.port = port
+        self.up = True
+        self.cut = False
+        self.heard_at = 0
+        self.counters: Counter[str] = Counter()
+
+    def send(self, data: bytes) -> None:
+        """Send bytes; never waits and never raises: what cannot go is counted."""
+        raise NotImplementedError
+
+    def sent(self, data: bytes) -> None:
+        """Note that bytes have left."""
+        self.counters["sent"] += 1
+        self.counters["sent bytes"] += len(data)
+
+
+class Link:
+    """A socket, a device or a group of them; opened, and opened again when it comes back."""
+
+    paths: list[Any]
+
+    async def open(self, receive: Receiver) -> None:
+        """Start to receive.
+
+        Raises:
+            LiveError: it cannot be opened as written.
+        """
+        raise NotImplementedError
+
+    def close(self) -> None:
+        """Stop; nothing is received any more."""
+        raise NotImplementedError

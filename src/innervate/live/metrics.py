@@ -1,0 +1,93 @@
+"""A page for Prometheus: the status as text, for whoever asks by HTTP."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+from collections.abc import Iterator
+
+from innervate.live.errors import LiveError
+from innervate.live.node import LiveNode
+
+REQUEST_MAX = 8192
+ASK_S = 5.0
+
+
+class MetricsPage:
+    """Answers GET /metrics.
+
+    Args:
+        where: address and port to listen on.
+        node: whose status it shows.
+    """
+
+    def __init__(self, where: tuple[str, int], node: LiveNode) -> None:
+        self.where = where
+        self.node = node
+        self._server: asyncio.Server | None = None
+
+    async def start(self) -> None:
+        """Listen.
+
+        Raises:
+            LiveError: the address cannot be used.
+        """
+        try:
+            self._server = await asyncio.start_server(self._serve, *self.where, limit=REQUEST_MAX)
+        except OSError as error:
+            host, port = self.where
+            raise LiveError(f"metrics: cannot use {host}:{port}: {error.strerror}") from None
+
+    async def stop(self) -> None:
+        """Close."""
+        if self._server is not None:
+            self._server.close()
+
+    async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        try:
+            async with asyncio.timeout(ASK_S):
+                head = await reader.readuntil(b"\r\n\r\n")
+                found = head.startswith(b"GET /metrics ")
+                body = (
+                    "".join(f"{line}\n" for line in lines(self.node)) if found else "see /metrics\n"
+                )
+                code = "200 OK" if found else "404 Not Found"
+                data = body.encode()
+                writer.write(
+                    f"HTTP/1.1 {code}\r\nContent-Type: text/plain; version=0.0.4\r\n"
+                    f"Content-Length: {len(data)}\r\nConnection: close\r\n\r\n".encode()
+                    + data
+                )
+                await writer.drain()
+        except (TimeoutError, ConnectionError, asyncio.IncompleteReadError,
+                asyncio.LimitOverrunError):  # fmt: skip
+            pass
+        finally:
+            writer.close()
+
+
+def lines(node: LiveNode) -> Iterator[str]:
+    """The page, line by line."""
+    status = node.status()
+    label = f'node="{node.name}"'
+    yield "# TYPE innervate_up_seconds gauge"
+    yield f"innervate_up_seconds{{{label}}} {status['up_s']}"
+    yield "# TYPE innervate_events_total counter"
+    for what, count in status["counters"].items():
+        yield f'innervate_events_total{{{label},what="{_text(what)}"}} {count}'
+    yield "# TYPE innervate_path_broken gauge"
+    for path in status["paths"]:
+        yield f'innervate_path_broken{{{label},path="{_text(path["name"])}"}} {int(path["broken"])}'
+    yield "# TYPE innervate_path_total counter"
+    for path in status["paths"]:
+        for what, count in path["counters"].items():
+            where = f'{label},path="{_text(path["name"])}",what="{_text(what)}"'
+            yield f"innervate_path_total{{{where}}} {count}"
+    yield "# TYPE innervate_link_quality gauge"
+    for near in status.get("neighbours", ()):
+        if near["quality"] is not None:
+            yield f'innervate_link_quality{{{label},neighbour="{near["node"]}"}} {near["quality"]}'
+
+
+def _text(text: str) -> str:
+    return re.sub(r'[\\"\n]', "_", text)

@@ -1,0 +1,167 @@
+"""A live node: a protocol on an engine, the paths its frames take, and what is known of them."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from typing import Any
+
+from innervate.live.engine import Engine, Stack, clock_us
+from innervate.live.keys import Sealer
+from innervate.live.links import Link, Path
+from innervate.live.state import State
+
+
+class LiveNode:
+    """One running node. Subclasses know what its user says and hears.
+
+    Args:
+        name: as shown to people.
+        stack: its protocol.
+        links: what carries its frames; their paths are numbered through from 0.
+        sealer: seals and opens frames; None = they go in the clear.
+        state: what is kept over a restart.
+
+    Attributes:
+        paths: all paths, by port.
+        reports: how often the protocol reported what, by code.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        stack: Stack,
+        links: list[Link],
+        sealer: Sealer | None = None,
+        state: State | None = None,
+    ) -> None:
+        self.name = name
+        self.stack = stack
+        self.links = links
+        self.sealer = sealer
+        self.state = state or State(None)
+        self.paths: list[Path] = [path for link in links for path in link.paths]
+        self.reports: Counter[int] = Counter()
+        self.engine: Engine | None = None
+        self.started_at = time.time()
+
+    async def start(self) -> None:
+        """Open the links and switch the protocol on.
+
+        Raises:
+            LiveError: a link cannot be opened as written.
+        """
+        self.engine = Engine(
+            self.stack, self._transmit, self._deliver, self._note_report, self._settled
+        )
+        for link in self.links:
+            await link.open(self._receive)
+        self.save(False)
+        self.engine.start(0 if self.state.fresh else 1)
+
+    async def stop(self) -> None:
+        """Stop at once, as if switched off; `drain` first to get rid of what is under way."""
+        if self.engine is not None:
+            self.engine.stop()
+        for link in self.links:
+            link.close()
+        self.save(True)
+
+    def save(self, clean: bool) -> None:
+        """Write what is kept over a restart; `clean` = nothing is sent any more."""
+        if self.sealer is not None:
+            self.sealer.note(clean)
+        self.state.write()
+
+    async def __aenter__(self) -> LiveNode:
+        await self.start()
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.stop()
+
+    def path_at(self, port: int) -> Path:
+        """A path by its number.
+
+        Raises:
+            ValueError: there is none.
+        """
+        if not 0 <= port < len(self.paths):
+            raise ValueError(f"no port {port}; this node has 0 to {len(self.paths) - 1}")
+        return self.paths[port]
+
+    def _receive(self, path: Path, data: bytes) -> None:
+        if path.cut:
+            return
+        path.counters["received"] += 1
+        path.counters["received bytes"] += len(data)
+        if self.sealer is not None:
+            opened = self.sealer.open(data)
+            if opened is None:
+                return
+            data = opened
+        assert self.engine is not None
+        if self.engine.receive(path.port, data) == 0:
+            path.heard_at = clock_us()
+
+    def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
+        data = self.stack.encode(frame)
+        if self.sealer is not None:
+            data = self.sealer.close(data)
+        ports = self.stack.ports_of(port, frame, attempt)
+        for path in self.paths if ports is None else [self.paths[i] for i in ports]:
+            if not path.cut:
+                path.send(data)
+
+    async def drain(self, limit_s: float) -> bool:
+        """Wait until nothing of ours is under way, at most `limit_s` seconds: True if so."""
+        return True
+
+    def counters(self) -> Counter[str]:
+        """What happened how often: handler calls, frames dropped by reason."""
+        total: Counter[str] = Counter() if self.engine is None else Counter(self.engine.counters)
+        if self.sealer is not None:
+            total.update({f"dropped: {why}": n for why, n in self.sealer.dropped.items()})
+        strangers = sum(getattr(link, "strangers", 0) for link in self.links)
+        if strangers:
+            total["dropped: from a stranger"] = strangers
+        return total
+
+    def status(self) -> dict[str, Any]:
+        """What is known here: paths, counters, and what the protocol says of itself."""
+        now = clock_us()
+        paths = [_path_status(path, now, self.stack.silent_us) for path in self.paths]
+        return {
+            "name": self.name,
+            "up_s": round(time.time() - self.started_at, 1),
+            "sealed": self.sealer is not None,
+            "paths": paths,
+            "broken": [path["name"] for path in paths if path["broken"]],
+            "counters": dict(sorted(self.counters().items())),
+            **self.stack.status(clock_us()),
+        }
+
+    def _note_report(self, code: int, a: int, b: int) -> None:
+        self.reports[code] += 1
+        self._reported(code, a, b)
+
+    def _deliver(self, kind: int, frame: Any) -> None:
+        """The protocol has something for its user; the record is used again."""
+
+    def _reported(self, code: int, a: int, b: int) -> None:
+        """The protocol says what happened."""
+
+    def _settled(self) -> None:
+        """The outbox is empty: the user may be called."""
+
+
+def _path_status(path: Path, now: int, most_us: int) -> dict[str, Any]:
+    silent_us = now - path.heard_at if path.heard_at else None
+    return {
+        "name": path.name,
+        "port": path.port,
+        "up": path.up and not path.cut,
+        "heard_s": None if silent_us is None else round(silent_us / 1e6, 3),
+        "broken": not path.up or silent_us is None or silent_us > most_us,
+        "counters": dict(sorted(path.counters.items())),
+    }

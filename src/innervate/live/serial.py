@@ -1,0 +1,176 @@
+"""Serial ports: frames between zeros (COBS), raw 8N1; a pty is a serial port, too."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import termios
+from contextlib import suppress
+
+from innervate.live.errors import LiveError
+from innervate.live.links import Link, Path, Receiver
+from innervate.wire import cobs
+
+READ_BYTES = 4096
+FRAME_MAX = 512  # bytes of a frame, sealed
+WAITING_MAX = 16_384  # bytes that the line could not take yet; then frames are dropped
+REOPEN_S = 0.25
+
+
+class SerialLink(Link):
+    """One serial port with a node at its other end; its path comes back when it is plugged in.
+
+    Args:
+        device: like /dev/ttyUSB0.
+        baud: bits per second, one the system knows: 115200 to 4000000.
+        port: port number of the path.
+    """
+
+    def __init__(self, device: str, baud: int, port: int = 0) -> None:
+        self.device = device
+        self.baud = baud
+        self.path = SerialPath(self, f"serial {device}", port)
+        self.paths = [self.path]
+        self.path.up = False
+        self._fd = -1
+        self._receive: Receiver | None = None
+        self._decoder = cobs.Decoder(FRAME_MAX)
+        self._waiting = bytearray()
+        self._again: asyncio.TimerHandle | None = None
+        self._closed = False
+
+    async def open(self, receive: Receiver) -> None:
+        """Open the port, or wait until it is plugged in; a wrong speed is the user's mistake."""
+        if getattr(termios, f"B{self.baud}", None) is None:
+            raise LiveError(f"{self.device}: this system has no {self.baud} baud; try 115200")
+        self._receive = receive
+        self._closed = False
+        self._try_open()
+
+    def close(self) -> None:
+        """Close the port."""
+        self._closed = True
+        if self._again is not None:
+            self._again.cancel()
+        self._drop()
+
+    def write(self, data: bytes) -> bool:
+        """Put bytes on the line, or behind those that wait; False if there is no room."""
+        if self._waiting:
+            if len(self._waiting) > WAITING_MAX:
+                return False
+            self._waiting += data
+            return True
+        try:
+            count = os.write(self._fd, data)
+        except BlockingIOError:
+            count = 0
+        except OSError:
+            self._lost()
+            return False
+        if count < len(data):
+            self._waiting += data[count:]
+            asyncio.get_running_loop().add_writer(self._fd, self._writable)
+        return True
+
+    def _try_open(self) -> None:
+        try:
+            fd = os.open(self.device, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+        except OSError:
+            self._later()
+            return
+        try:
+            _set_raw(fd, self.baud)
+        except (OSError, termios.error):
+            os.close(fd)
+            self._later()
+            return
+        self._fd = fd
+        self._decoder = cobs.Decoder(FRAME_MAX)
+        self.path.up = True
+        asyncio.get_running_loop().add_reader(fd, self._readable)
+
+    def _later(self) -> None:
+        if not self._closed:
+            loop = asyncio.get_running_loop()
+            self._again = loop.call_later(REOPEN_S, self._try_open)
+
+    def _lost(self) -> None:
+        """Unplugged: try until it is back."""
+        self.path.counters["unplugged"] += 1
+        self._drop()
+        self._later()
+
+    def _drop(self) -> None:
+        if self._fd < 0:
+            return
+        with suppress(RuntimeError):  # the loop may be closed already
+            loop = asyncio.get_running_loop()
+            loop.remove_reader(self._fd)
+            loop.remove_writer(self._fd)
+        with suppress(OSError):
+            os.close(self._fd)
+        self._fd = -1
+        self._waiting.clear()
+        self.path.up = False
+
+    def _readable(self) -> None:
+        try:
+            data = os.read(self._fd, READ_BYTES)
+        except BlockingIOError:
+            return
+        except OSError:
+            self._lost()
+            return
+        if not data:
+            self._lost()
+            return
+        before = self._decoder.dropped
+        frames = self._decoder.feed(data)
+        self.path.counters["dropped: framing"] += self._decoder.dropped - before
+        assert self._receive is not None
+        for frame in frames:
+            self._receive(self.path, frame)
+
+    def _writable(self) -> None:
+        try:
+            count = os.write(self._fd, self._waiting)
+        except BlockingIOError:
+            return
+        except OSError:
+            self._lost()
+            return
+        del self._waiting[:count]
+        if not self._waiting:
+            asyncio.get_running_loop().remove_writer(self._fd)
+
+
+class SerialPath(Path):
+    """The one path of a serial port."""
+
+    def __init__(self, link: SerialLink, name: str, port: int) -> None:
+        super().__init__(name, port)
+        self.link = link
+
+    def send(self, data: bytes) -> None:
+        """Put a frame on the line."""
+        if not self.up:
+            self.counters["unsent: unplugged"] += 1
+        elif self.link.write(cobs.encode(data)):
+            self.sent(data)
+        else:
+            self.counters["unsent: full"] += 1
+
+
+def _set_raw(fd: int, baud: int) -> None:
+    """8 bits, no parity, no flow control, nothing translated."""
+    speed = getattr(termios, f"B{baud}")
+    mode = termios.tcgetattr(fd)
+    mode[0] = 0
+    mode[1] = 0
+    mode[2] = termios.CS8 | termios.CREAD | termios.CLOCAL
+    mode[3] = 0
+    mode[4] = mode[5] = speed
+    mode[6][termios.VMIN] = 0
+    mode[6][termios.VTIME] = 0
+    termios.tcsetattr(fd, termios.TCSANOW, mode)

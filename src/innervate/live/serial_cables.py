@@ -1,0 +1,62 @@
+"""Serial cables between processes of one machine: two ptys each, joined by this process."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import tty
+from contextlib import suppress
+
+READ_BYTES = 4096
+
+
+class Cables:
+    """A number of cables; each end is a serial port that a node can open.
+
+    Args:
+        count: cables.
+
+    Attributes:
+        devices: the serial ports: cable k has 2k and 2k + 1.
+        cut: cables that carry nothing now.
+        carried: bytes carried so far, per cable.
+    """
+
+    def __init__(self, count: int) -> None:
+        self.cut: set[int] = set()
+        self.carried = [0] * count
+        self._masters: list[int] = []
+        self._slaves: list[int] = []
+        self.devices: list[str] = []
+        for _ in range(2 * count):
+            master, slave = os.openpty()
+            tty.setraw(slave)
+            os.set_blocking(master, False)
+            self._masters.append(master)
+            self._slaves.append(slave)  # held open: a node may close and open its end
+            self.devices.append(os.ttyname(slave))
+
+    def start(self) -> None:
+        """Carry bytes from now on."""
+        loop = asyncio.get_running_loop()
+        for end, master in enumerate(self._masters):
+            loop.add_reader(master, self._carry, end)
+
+    def stop(self) -> None:
+        """Close all."""
+        loop = asyncio.get_running_loop()
+        for fd in self._masters:
+            loop.remove_reader(fd)
+        for fd in (*self._masters, *self._slaves):
+            os.close(fd)
+
+    def _carry(self, end: int) -> None:
+        try:
+            data = os.read(self._masters[end], READ_BYTES)
+        except OSError:
+            return
+        cable = end // 2
+        if cable not in self.cut:
+            self.carried[cable] += len(data)
+            with suppress(OSError):  # the other side does not read: as a full line, bytes are lost
+                os.write(self._masters[end ^ 1], data)

@@ -1,0 +1,171 @@
+"""A node's Unix socket: a line of JSON asks, lines of JSON answer."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import socket
+import tempfile
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from innervate.live.errors import LiveError
+
+LINE_MAX = 65_536
+ANSWER_S = 5.0
+
+# Answers a request; gets the means to write more lines.
+Handler = Callable[[dict[str, Any], "Writer"], Awaitable[None]]
+
+
+def folder() -> Path:
+    """Where sockets of running nodes are: INNERVATE_RUN, or a folder of the user's own."""
+    named = os.environ.get("INNERVATE_RUN")
+    if named:
+        return Path(named)
+    runtime = os.environ.get("XDG_RUNTIME_DIR")
+    if runtime:
+        return Path(runtime) / "innervate"
+    return Path(tempfile.gettempdir()) / f"innervate-{os.getuid()}"
+
+
+class Writer:
+    """Writes answers of one connection."""
+
+    def __init__(self, stream: asyncio.StreamWriter) -> None:
+        self._stream = stream
+
+    async def line(self, answer: dict[str, Any]) -> None:
+        """Write one answer."""
+        self._stream.write(json.dumps(answer).encode() + b"\n")
+        await self._stream.drain()
+
+
+class Server:
+    """Listens on a Unix socket.
+
+    Args:
+        path: the socket; its folder is made, an old socket is replaced.
+        handle: answers requests.
+    """
+
+    def __init__(self, path: Path, handle: Handler) -> None:
+        self.path = path
+        self._handle = handle
+        self._server: asyncio.Server | None = None
+        self._open: set[asyncio.StreamWriter] = set()
+
+    async def start(self) -> None:
+        """Listen.
+
+        Raises:
+            LiveError: the socket cannot be made, or a running node has it.
+        """
+        try:
+            self.path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            if self.path.exists():
+                if answers(self.path):
+                    raise LiveError(f"{self.path}: a node with this name runs already; stop it")
+                self.path.unlink()
+            self._server = await asyncio.start_unix_server(self._serve, self.path, limit=LINE_MAX)
+            self.path.chmod(0o600)
+        except OSError as error:
+            raise LiveError(f"{self.path}: no socket here: {error.strerror or error}") from None
+
+    async def stop(self) -> None:
+        """Close the socket and every connection."""
+        if self._server is not None:
+            self._server.close()
+            for stream in list(self._open):
+                stream.close()
+            with suppress(OSError):
+                self.path.unlink()
+
+    async def _serve(self, reader: asyncio.StreamReader, stream: asyncio.StreamWriter) -> None:
+        self._open.add(stream)
+        writer = Writer(stream)
+        try:
+            while line := await reader.readline():
+                try:
+                    request = json.loads(line)
+                    if not isinstance(request, dict):
+                        raise ValueError("a request is a JSON object")
+                    await self._handle(request, writer)
+                except (ValueError, KeyError, TypeError) as error:
+                    await writer.line({"error": str(error)})
+        except (ConnectionError, ValueError):  # gone, or a line longer than any request
+            pass
+        finally:
+            self._open.discard(stream)
+            stream.close()
+
+
+def answers(path: Path) -> bool:
+    """True if somebody listens on this socket."""
+    with socket.socket(socket.AF_UNIX) as sock:
+        sock.settimeout(ANSWER_S)
+        try:
+            sock.connect(str(path))
+        except OSError:
+            return False
+        return True
+
+
+def ask(path: Path, request: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """The answers of a running node to a request, as they come.
+
+    Raises:
+        LiveError: no node answers there, or it refuses.
+    """
+    with socket.socket(socket.AF_UNIX) as sock:
+        sock.settimeout(ANSWER_S)
+        try:
+            sock.connect(str(path))
+            sock.sendall(json.dumps(request).encode() + b"\n")
+            sock.settimeout(None)
+            with sock.makefile("rb") as lines:
+                for line in lines:
+                    answer: dict[str, Any] = json.loads(line)
+                    if "error" in answer:
+                        raise LiveError(f"{path.stem}: {answer['error']}")
+                    yield answer
+        except OSError as error:
+            raise LiveError(f"{path}: no node answers here: {error.strerror or error}") from None
+
+
+def ask_one(path: Path, request: dict[str, Any]) -> dict[str, Any]:
+    """The first answer.
+
+    Raises:
+        LiveError: see ask().
+    """
+    for answer in ask(path, request):
+        return answer
+    raise LiveError(f"{path}: the node went away; is it still running?")
+
+
+def find(name: str) -> Path:
+    """The socket of a node by name or path.
+
+    Raises:
+        LiveError: there is none.
+    """
+    path = Path(name)
+    if path.is_socket():
+        return path
+    for found in sockets():
+        if found.stem == name:
+            return found
+    names = ", ".join(found.stem for found in sockets()) or "none"
+    raise LiveError(f'no node "{name}" runs here; running: {names} (folder {folder()})')
+
+
+def sockets() -> list[Path]:
+    """Sockets of this user's running nodes, by name."""
+    here = folder()
+    if not here.is_dir():
+        return []
+    return sorted(path for path in here.glob("*.sock") if path.is_socket())

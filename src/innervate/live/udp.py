@@ -1,0 +1,182 @@
+"""UDP: to neighbours by address, and to a multicast group."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import struct
+from contextlib import suppress
+
+from innervate.live.errors import LiveError
+from innervate.live.links import Link, Path, Receiver
+
+Address = tuple[str, int]
+
+DATAGRAM_MAX = 2048
+BATCH = 64  # datagrams read at once, before timers have their turn
+REOPEN_S = 0.5
+
+
+class UdpPath(Path):
+    """A neighbour's address, or a group's."""
+
+    def __init__(self, link: UdpLink, address: Address, port: int) -> None:
+        super().__init__(f"udp {address[0]}:{address[1]}", port)
+        self.link = link
+        self.address = address
+
+    def send(self, data: bytes) -> None:
+        """Send a datagram."""
+        sock = self.link.socket
+        if sock is None:
+            self.counters["unsent: closed"] += 1
+            return
+        try:
+            sock.sendto(data, self.address)
+        except BlockingIOError:
+            self.counters["unsent: full"] += 1
+        except OSError as error:
+            self.counters[f"unsent: {error.strerror or 'error'}"] += 1
+        else:
+            self.sent(data)
+
+
+class UdpLink(Link):
+    """One socket for any number of neighbours.
+
+    Args:
+        bind: own address; ("0.0.0.0", port) takes frames on every interface.
+        peers: the neighbours' addresses; others are not listened to.
+        first_port: port number of the first peer.
+    """
+
+    def __init__(self, bind: Address, peers: list[Address], first_port: int = 0) -> None:
+        self.bind = bind
+        self.socket: socket.socket | None = None
+        self.paths: list[UdpPath] = [
+            UdpPath(self, peer, first_port + i) for i, peer in enumerate(peers)
+        ]
+        self.strangers = 0
+        self._by_address = {path.address: path for path in self.paths}
+        self._receive: Receiver = _nobody
+        self._closed = False
+        self._again: asyncio.TimerHandle | None = None
+
+    async def open(self, receive: Receiver) -> None:
+        """Bind the socket; a wrong address is the user's mistake."""
+        self._receive = receive
+        self._closed = False
+        try:
+            self._open()
+        except OSError as error:
+            where = f"{self.bind[0]}:{self.bind[1]}"
+            raise LiveError(f"cannot use UDP address {where}: {error.strerror or error}") from None
+
+    def _open(self) -> None:
+        sock = self._make()
+        self.socket = sock
+        asyncio.get_running_loop().add_reader(sock.fileno(), self._readable)
+        for path in self.paths:
+            path.up = True
+
+    def _make(self) -> socket.socket:
+        sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        try:
+            sock.setblocking(False)
+            sock.bind(self.bind)
+        except BaseException:
+            sock.close()
+            raise
+        return sock
+
+    def close(self) -> None:
+        """Close the socket."""
+        self._closed = True
+        if self._again is not None:
+            self._again.cancel()
+        self._drop()
+
+    def _drop(self) -> None:
+        if self.socket is not None:
+            with suppress(RuntimeError):  # the loop may be closed already
+                asyncio.get_running_loop().remove_reader(self.socket.fileno())
+            self.socket.close()
+            self.socket = None
+
+    def _readable(self) -> None:
+        sock = self.socket
+        for _ in range(BATCH):
+            if sock is None:
+                return
+            try:
+                data, address = sock.recvfrom(DATAGRAM_MAX)
+            except (BlockingIOError, ConnectionError):  # refused: a neighbour is not there yet
+                return
+            except OSError:
+                self._lost()
+                return
+            path = self._origin(address)
+            if path is None:
+                self.strangers += 1
+            else:
+                self._receive(path, data)
+                sock = self.socket  # whoever received may have closed us
+
+    def _origin(self, address: Address) -> UdpPath | None:
+        return self._by_address.get(address)
+
+    def _lost(self) -> None:
+        """The interface went away: try until it is back."""
+        self._drop()
+        for path in self.paths:
+            path.up = False
+        self._again = asyncio.get_running_loop().call_later(REOPEN_S, self._reopen)
+
+    def _reopen(self) -> None:
+        if self._closed:
+            return
+        try:
+            self._open()
+        except OSError:
+            self._lost()
+
+
+class MulticastLink(UdpLink):
+    """A group on one interface: everybody in it hears everything, as on a radio channel.
+
+    Args:
+        group: address and port of the group.
+        interface: own address on the interface.
+        port: port number of the path.
+    """
+
+    def __init__(self, group: Address, interface: str, port: int = 0) -> None:
+        super().__init__((interface, 0), [group], port)
+        self.group = group
+        self.interface = interface
+        self._group: UdpPath = self.paths[0]
+
+    def _make(self) -> socket.socket:
+        sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        try:
+            sock.setblocking(False)
+            sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            sock.bind(self.group)
+            member = socket.inet_aton(self.group[0]) + socket.inet_aton(self.interface)
+            sock.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
+            own = socket.inet_aton(self.interface)
+            sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, own)
+            sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, struct.pack("B", 1))
+            sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_LOOP, 1)
+        except BaseException:
+            sock.close()
+            raise
+        return sock
+
+    def _origin(self, address: Address) -> UdpPath | None:
+        """Whoever sends to the group is in it; our own frames come back, too: protocols know."""
+        return self._group
+
+
+def _nobody(path: Path, data: bytes) -> None:
+    """Receives until somebody does."""

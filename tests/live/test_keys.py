@@ -1,0 +1,215 @@
+import asyncio
+import binascii
+import os
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from innervate.live.errors import LiveError
+from innervate.live.keys import Sealer, read_key
+from innervate.live.mesh import MeshStack
+from innervate.live.messages import DELIVERED, MeshNode
+from innervate.live.profile import mesh_parameters
+from innervate.live.state import State
+from innervate.live.udp import UdpLink
+from innervate.wire import seal
+
+KEY, OTHER = bytes(range(32)), bytes(32)
+FRAME = b"\x48frame"
+
+
+def sealer(number, key=KEY, state=None):
+    return Sealer("mesh", number, {1: key}, 1, state or State(None))
+
+
+def test_what_one_seals_the_other_opens():
+    sealed = sealer(1).close(FRAME)
+    assert len(sealed) == len(FRAME) + 25
+    assert FRAME not in sealed
+    assert sealer(2).open(sealed) == FRAME
+
+
+def test_a_frame_is_taken_once():
+    a, b = sealer(1), sealer(2)
+    frames = [a.close(bytes([k])) for k in range(40)]
+    assert [b.open(data) for data in reversed(frames)] == [bytes([k]) for k in reversed(range(40))]
+    assert [b.open(data) for data in frames] == [None] * 40
+    assert b.dropped == {"sealed: replayed": 40}
+
+
+def test_a_frame_far_behind_the_newest_is_not_taken():
+    a, b = sealer(1), sealer(2)
+    old = a.close(FRAME)
+    a.counter += seal.WINDOW
+    assert b.open(a.close(FRAME)) == FRAME
+    assert b.open(old) is None
+
+
+def test_a_wrong_key_opens_nothing():
+    b = sealer(2, OTHER)
+    assert b.open(sealer(1).close(FRAME)) is None
+    assert b.dropped == {"sealed: wrong key or damaged": 1}
+
+
+def test_a_frame_for_another_kind_of_network_is_not_taken():
+    other = Sealer("skin", 1, {1: KEY}, 1, State(None))
+    assert sealer(2).open(other.close(FRAME)) is None
+
+
+@pytest.mark.parametrize("at", range(0, 31))
+def test_no_byte_can_be_changed(at):
+    sealed = bytearray(sealer(1).close(FRAME))
+    sealed[at] ^= 1
+    b = sealer(2)
+    assert b.open(bytes(sealed)) is None
+    assert sum(b.dropped.values()) == 1
+
+
+def test_a_frame_in_the_clear_is_not_taken_by_a_node_with_a_key():
+    b = sealer(2)
+    assert b.open(FRAME) is None
+    assert b.dropped == {"not sealed": 1}
+
+
+def test_counters_survive_a_restart_and_a_crash(tmp_path):
+    path = tmp_path / "n1.state"
+    first = sealer(1, state=State(path))
+    last = seal.fields(first.close(FRAME))[2]
+    second = sealer(1, state=State(path))  # the first was killed: it wrote nothing at its end
+    assert seal.fields(second.close(FRAME))[2] > last
+    second.note(True)
+    second.state.write()
+    third = sealer(1, state=State(path))
+    assert seal.fields(third.close(FRAME))[2] > seal.fields(second.close(FRAME))[2] - 2
+
+
+def test_a_restarted_node_takes_nothing_that_it_had_seen(tmp_path):
+    path = tmp_path / "n2.state"
+    a, b = sealer(1), sealer(2, state=State(path))
+    data = a.close(FRAME)
+    assert b.open(data) == FRAME
+    b.note(False)
+    b.state.write()
+    b = sealer(2, state=State(path))
+    assert b.open(data) is None
+    assert b.open(a.close(FRAME)) == FRAME
+
+
+def test_keys_can_be_changed_while_frames_come():
+    a, b = sealer(1), sealer(2)
+    b.load_keys({1: KEY, 2: OTHER}, 1)
+    assert b.open(a.close(FRAME)) == FRAME
+    a.load_keys({1: KEY, 2: OTHER}, 2)
+    assert b.open(a.close(FRAME)) == FRAME
+    b.load_keys({2: OTHER}, 2)
+    a.load_keys({1: KEY}, 1)
+    assert b.open(a.close(FRAME)) is None
+    assert b.dropped == {"sealed: unknown key": 1}
+
+
+def test_a_state_that_is_none_is_refused(tmp_path):
+    path = tmp_path / "n.state"
+    path.write_text("{}")
+    with pytest.raises(LiveError, match="not a node's state"):
+        State(path)
+
+
+def test_keys_are_read_from_files(tmp_path):
+    (tmp_path / "net.key").write_text(KEY.hex() + "\n")
+    assert read_key("file:net.key", tmp_path) == KEY
+    with pytest.raises(LiveError, match="64 hexadecimal"):
+        read_key("abc", tmp_path)
+    with pytest.raises(LiveError, match="cannot be read"):
+        read_key("file:none.key", tmp_path)
+
+
+def fuzz_node(sealed):
+    params = mesh_parameters(4, {})
+    sealer_ = Sealer("mesh", 0, {1: KEY}, 1, State(None)) if sealed else None
+    link = UdpLink(("127.0.0.1", 0), [("127.0.0.1", 9)])
+    return MeshNode("n0", MeshStack(0, 0, params, 5), [link], sealer_)
+
+
+FRAMES = st.one_of(
+    st.binary(max_size=200),
+    st.binary(min_size=7, max_size=125)
+    .map(  # with a good CRC, and anything in it
+        lambda body: bytes([0x40 | body[0] & 31]) + body[1:]
+    )
+    .map(lambda body: body + binascii.crc_hqx(body, 0xFFFF).to_bytes(2, "big")),
+    st.binary(min_size=26, max_size=160).map(lambda rest: bytes([0xC1]) + rest),
+)
+
+
+def check_fuzzed(examples, sealed):
+    async def main():
+        node = fuzz_node(sealed)
+        await node.start()
+        count = 0
+
+        @settings(max_examples=examples, deadline=None, database=None)
+        @given(FRAMES)
+        def feed(data):
+            nonlocal count
+            count += 1
+            node._receive(node.paths[0], data)
+
+        feed()
+        dropped = sum(n for what, n in node.counters().items() if what.startswith("dropped"))
+        taken = node.counters()["frames"]
+        sent = node.paths[0].counters["sent"]
+        await node.stop()
+        return count, dropped, taken, sent
+
+    count, dropped, taken, sent = asyncio.run(main())
+    assert dropped + taken == count
+    assert count >= examples
+    return taken, sent
+
+
+def test_random_frames_are_dropped_and_counted_and_never_raise():
+    check_fuzzed(2000, sealed=False)
+
+
+def test_random_frames_are_dropped_by_a_node_with_a_key():
+    taken, _ = check_fuzzed(2000, sealed=True)
+    assert taken == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sealed", [False, True])
+def test_a_hundred_thousand_random_frames(sealed):
+    check_fuzzed(100_000, sealed)
+
+
+def test_sealed_nodes_talk_and_a_stranger_with_another_key_is_not_heard():
+    async def main():
+        params = mesh_parameters(3, {"ack_us": 30_000})
+        ports = [free_port() for _ in range(3)]
+        nodes = []
+        for i, key in enumerate((KEY, KEY, OTHER)):
+            peers = [("127.0.0.1", port) for k, port in enumerate(ports) if k != i]
+            stack = MeshStack(i, 0 if i == 0 else -1, params, int.from_bytes(os.urandom(4), "big"))
+            own = Sealer("mesh", i, {1: key}, 1, State(None))
+            nodes.append(MeshNode(f"n{i}", stack, [UdpLink(("127.0.0.1", ports[i]), peers)], own))
+        for node in nodes:
+            await node.start()
+        state = await nodes[0].send_message(1, b"secret").wait()
+        near = [row["node"] for row in nodes[0].status()["neighbours"]]
+        dropped = nodes[2].counters()["dropped: sealed: wrong key or damaged"]
+        for node in nodes:
+            await node.stop()
+        return state, near, dropped
+
+    state, near, dropped = asyncio.run(main())
+    assert (state, near) == (DELIVERED, [1])
+    assert dropped > 0
+
+
+def free_port():
+    import socket
+
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        sock.bind(("127.0.0.1", 0))
+        return sock.getsockname()[1]

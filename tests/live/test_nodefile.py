@@ -1,0 +1,76 @@
+import pytest
+
+from innervate.live.build import build
+from innervate.live.errors import LiveError
+from innervate.live.nodefile import load
+from innervate.live.profile import IP, mesh_parameters
+from innervate.protocol.mesh_fields import PARAMS
+from innervate.scenario.mesh_profiles import IP as SCENARIOS_IP
+
+GOOD = """
+kind = "mesh"
+number = 3
+nodes = 9
+[[link]]
+kind = "udp"
+bind = "127.0.0.1:0"
+peers = ["127.0.0.1:4701", "127.0.0.1:4702"]
+[[link]]
+kind = "serial"
+device = "/dev/null"
+"""
+
+
+def write(tmp_path, text):
+    path = tmp_path / "node.toml"
+    path.write_text(text)
+    return path
+
+
+def test_a_node_of_a_file(tmp_path):
+    node = build(load(write(tmp_path, GOOD)))
+    assert node.name == "n3"
+    assert [path.port for path in node.paths] == [0, 1, 2]
+    assert node.stack.node.number == 3
+    assert node.sealer is None
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("number = 3", "numbr = 3", 'unknown key "numbr"; do you mean "number"'),
+        ("number = 3", "number = 9", "numbers are 0 to nodes - 1"),
+        ("nodes = 9", "", '"nodes" is missing'),
+        ("nodes = 9", "nodes = 9\nrole = 'sink'", "can be node, gateway, standby"),
+        ("nodes = 9", "nodes = 9\nprotocol = {ack_ms = 1}", "protocol.ack_ms is unknown"),
+        ("nodes = 9", "nodes = 9\nprotocol = {ack_us = 0}", "must be 1 to 16777215 us"),
+        ('"127.0.0.1:4701"', '"127.0.0.1"', "is no address"),
+        ('kind = "udp"', 'kind = "upd"', "upd"),
+        ("nodes = 9", 'nodes = 9\n[keys]\nuse = 2\nsecret = {1 = "aa"}', "no such secret"),
+        ("nodes = 9", 'nodes = 9\n[keys]\nuse = 1\nsecret = {1 = "aa"}', "64 hexadecimal digits"),
+        ('kind = "mesh"', "kind = mesh", "not valid TOML"),
+    ],
+)
+def test_what_is_wrong_is_said_in_one_line(tmp_path, old, new, says):
+    path = write(tmp_path, GOOD.replace(old, new))
+    with pytest.raises(LiveError) as caught:
+        build(load(path))
+    assert says in str(caught.value)
+    assert "\n" not in str(caught.value)
+    assert str(path) in str(caught.value) or "key is 64" in str(caught.value)
+
+
+def test_the_profile_has_every_parameter_and_agrees_with_that_of_scenarios():
+    params = mesh_parameters(20, {})
+    assert set(params) == {name for name, *_ in PARAMS}
+    ours = (IP["ack_us"], IP["transmissions"], IP["suspect_us"], IP["jitter_us"], IP["e2e_us"])
+    theirs = SCENARIOS_IP
+    assert ours == (
+        theirs.ack_us,
+        theirs.transmissions,
+        round(theirs.suspect * 1e6),
+        round(theirs.jitter * 1e6),
+        round(theirs.e2e * 1e6),
+    )
+    ticks = (IP["period"], IP["period_max"])
+    assert ticks == (theirs.period / theirs.beacon, theirs.period_max / theirs.beacon)
