@@ -12,7 +12,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from benchmarks import beacons, c_heap, radio, simpy_timeouts
+from benchmarks import beacons, c_heap, explorer, mesh, radio, simpy_timeouts, sweeps
 
 NS3_BEST = {204: 0.64e6, 10_020: 0.13e6}  # beacons/s of ns-3 3.37, measured on another such machine
 COMMAND_RUNS = 5
@@ -36,12 +36,18 @@ def main():
     )
     print("Mevents/s = handler calls; C heap, SimPy = their events (M/s) with as many pending;")
     print("* beacons/s against ns-3's best build as measured elsewhere (no ns-3 here)")
+    figures["explorer"] = explorer.measure()
+    print(f"explorer, PC and triangle: {figures['explorer']['successors_per_s'] / 1e6:.2f} M "
+          f"successors/s, {figures['explorer']['states']:,} states")  # fmt: skip
     figures["radio"] = [radio_row(stations) for stations in radio.STATIONS]
+    sizes = mesh.NODES[:1] if options.quick else mesh.NODES
+    figures["mesh"] = [mesh_row(nodes) for nodes in sizes]
     if not options.quick:
         figures["million"] = json.loads(beacons.million_apart())
         print("1,000,000 cells at 10 Hz, one second, warm:",
               ", ".join(f"{k} {v:.2f}" if isinstance(v, float) else f"{k} {v:,}"
                         for k, v in figures["million"].items()))  # fmt: skip
+    figures["sweeps"] = sweep_row()
     figures["commands"] = commands()
     if options.json:
         options.json.write_text(json.dumps(figures, indent=2) + "\n")
@@ -86,6 +92,28 @@ def radio_row(stations):
         flush=True,
     )
     return {"off": off, "on": on}
+
+
+def mesh_row(nodes):
+    """A mesh for a minute, with and without checkers; the whole run beside the bar."""
+    off, on, whole = mesh.measure(nodes), mesh.measure(nodes, checks=True), mesh.whole_s(nodes)
+    bar = f" (at most {mesh.BAR_S:g})" if nodes == mesh.NODES[0] else ""
+    print(
+        f"mesh, {nodes} nodes for {mesh.DURATION_S:g} s: {off['events_per_s'] / 1e6:.2f} "
+        f"Mevents/s, {off['s_per_s']:,.0f} s simulated in one; "
+        f"with checks and rows {on['events_per_s'] / 1e6:.2f}; innervate.run {whole:.2f} s{bar}",
+        flush=True,
+    )
+    return {"off": off, "on": on, "whole_s": whole}
+
+
+def sweep_row():
+    """What a sweep costs beyond its runs, and how it scales."""
+    overhead, scaling = sweeps.overhead(), sweeps.scaling()
+    shown = ", ".join(f"{name} {1e3 * s:.2f} ms" for name, s in overhead.items())
+    speed = f"{scaling['per_core']:.2f} per core on {scaling['cores']} cores"
+    print(f"sweep, overhead of a small run: {shown}; {speed}", flush=True)
+    return {"overhead_s": overhead, **scaling}
 
 
 def million(baseline, width):

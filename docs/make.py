@@ -12,13 +12,15 @@ from pathlib import Path
 from typing import Any
 
 from innervate.protocol import mesh_fields, radio_fields, skin_fields
-from innervate.trace import radio_tables, tables
+from innervate.trace import mesh_tables, radio_tables, tables
 from innervate.wire import layout, mesh, mesh_payloads, radio, skin
 from innervate.wire.meanings import MEANINGS
 
 FOLDER = Path(__file__).resolve().parent
 PICTURE = FOLDER / "images" / "recovery.svg"
 RADIO_PICTURE = FOLDER / "images" / "radio.svg"
+MESH_PICTURE = FOLDER / "images" / "mesh.svg"
+MESH_CLASS = 32  # nodes: the smallest capacity class
 
 
 def field_table(fields: Iterable[tuple[str, object, int, int, str, str]]) -> str:
@@ -99,6 +101,10 @@ PARTS = (
     ("radio.md", "radio-frame", lambda: field_table(radio_fields.FRAME)),
     ("radio.md", "radio-station", lambda: field_table(radio_fields.STATION)),
     ("radio.md", "radio-practical", lambda: field_table(radio_fields.PRACTICAL)),
+    ("mesh.md", "mesh-frame", lambda: field_table(mesh_fields.FRAME)),
+    ("mesh.md", "mesh-parameters", lambda: field_table(mesh_fields.PARAMS)),
+    ("mesh.md", "mesh-node", lambda: field_table(mesh_fields.node(MESH_CLASS))),
+    ("mesh.md", "mesh-gate", lambda: field_table(mesh_fields.gate(MESH_CLASS))),
     ("wire.md", "wire-skin", lambda: layout_tables(skin.LAYOUTS, meanings(skin_fields.FRAME))),
     ("wire.md", "wire-mesh", mesh_frames),
     ("wire.md", "wire-mesh-payloads", lambda: layout_tables(mesh_payloads.LAYOUTS, MEANINGS)),
@@ -106,6 +112,7 @@ PARTS = (
     ("wire.md", "wire-radio", lambda: layout_tables(radio.LAYOUTS, meanings(radio_fields.FRAME))),
     ("reading-a-report.md", "tables", lambda: run_tables(tables.TABLES)),
     ("reading-a-report.md", "radio-tables", lambda: run_tables(radio_tables.TABLES)),
+    ("reading-a-report.md", "mesh-tables", lambda: run_tables(mesh_tables.TABLES)),
 )
 
 
@@ -171,6 +178,45 @@ def draw_radio() -> None:
     radio_timeline.timeline(done.result).save(RADIO_PICTURE, theme.drawing_style())
 
 
+def draw_mesh() -> None:
+    """The mesh page's picture: an alarm on its way round dead nodes."""
+    import innervate
+    from innervate.analysis.mesh_alarms import all_crossings
+    from innervate.analysis.mesh_way import copies, way
+    from innervate.plot import mesh_map, theme
+    from innervate.plot.mesh_report import shown_crossing
+    from innervate.plot.mesh_sheet import Sheet
+
+    result = innervate.run(MESH_SCENARIO).result
+    crossings = all_crossings(result)
+    shown = shown_crossing(crossings)
+    assert shown is not None
+    sent, sheet = copies(result, shown), Sheet(result.plan, 680.0)
+    title = "An alarm on its way round dead nodes"
+    picture = mesh_map.field_map(
+        result, sheet, title, crossings, sent, way(result, shown, sent), shown.crossed_us
+    )
+    picture.save(MESH_PICTURE, theme.drawing_style())
+
+
+# A robot leaves a fenced field while six of its relays are dead and nobody knows it yet.
+MESH_SCENARIO = {
+    "kind": "mesh",
+    "name": "picture",
+    "duration_s": 22.0,
+    "seed": 3,
+    "nodes": 32,
+    "standby": [7],
+    "monitor": 5,
+    "fence": {
+        "polygon": [[0, 0], [100, 0], [100, 100], [50, 85], [0, 100]],
+        "holes": [[[40, 40], [60, 40], [60, 60], [40, 60]]],
+    },
+    "robot": [{"node": 29, "waypoints": [[80, 50], [105, 50]], "speed_mps": 2, "start_s": 10}],
+    "event": [{"at_s": 19.9, "action": "kill", "random": 6}],
+}
+
+
 def main(arguments: list[str]) -> int:
     """Write everything, or with --check say what is out of date."""
     stale = [p for p, text in pages().items() if p.read_text(encoding="utf-8") != text]
@@ -182,6 +228,7 @@ def main(arguments: list[str]) -> int:
         path.write_text(text, encoding="utf-8")
     draw()
     draw_radio()
+    draw_mesh()
     return 0
 
 

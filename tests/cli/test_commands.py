@@ -17,7 +17,17 @@ def test_version(sh):
 @pytest.mark.parametrize("tokens", [(), ("--help",), ("-h",)])
 def test_help_names_every_command(sh, tokens):
     assert sh(*tokens) == 0
-    for command in ("demo", "run", "papers", "scenarios", "new", "check", "compare"):
+    for command in (
+        "demo",
+        "run",
+        "sweep",
+        "size",
+        "papers",
+        "scenarios",
+        "new",
+        "check",
+        "compare",
+    ):
         assert f" {command} " in sh.out
     assert sh.err == ""
 
@@ -103,9 +113,14 @@ def test_demo_tells_the_story(sh, monkeypatch):
         "every cell has a way again", "cable to interface 1 put back", "No forwarding loop",
         str(Path("there/skin/report.html")), "all ten packets have arrived",
         "0 packets lost without their sender knowing", str(Path("there/radio/report.html")),
+        "30 nodes", "8 nodes switched off; nobody is told", "the robot is outside the fence",
+        "the monitor has it, over 3 hops", "every one was delivered",
+        str(Path("there/mesh/report.html")),
     ):  # fmt: skip
         assert words in sh.out
-    there = [Path(f"there/{part}/report.html").resolve().as_uri() for part in ("skin", "radio")]
+    there = [
+        Path(f"there/{part}/report.html").resolve().as_uri() for part in ("skin", "radio", "mesh")
+    ]
     assert opened == there
     assert sh("demo", "--out", "there") == 0  # runs are replaced
 

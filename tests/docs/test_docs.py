@@ -13,6 +13,7 @@ from innervate import scenario
 from innervate.cli.app import app
 from innervate.live import nodefile
 from innervate.scenario import model
+from innervate.sweep import make_plan, planfile
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -86,8 +87,12 @@ def test_every_event_action_is_documented():
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_scenarios_in_pages_can_be_run(page):
+def test_scenarios_in_pages_can_be_run(page, tmp_path):
     for block in blocks(page, "toml"):
+        if planfile.is_plan(block):
+            (tmp_path / "plan.toml").write_text(block)
+            assert make_plan(tmp_path / "plan.toml").points
+            continue
         tables = tomllib.loads(block)
         if "number" in tables:  # a live node
             nodefile.parse(tables)

@@ -4,18 +4,72 @@ import runpy
 import sys
 from pathlib import Path
 
+import polars
 import pytest
 
 import innervate
+from innervate.cli import main
+from innervate.sweep.planfile import is_plan
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples"
 
 
-@pytest.mark.parametrize("path", sorted(FOLDER.glob("*.toml")), ids=lambda path: path.stem)
+TOML = sorted(FOLDER.glob("*.toml"))
+PLANS = [path for path in TOML if is_plan(path.read_text(encoding="utf-8"))]
+SCENARIOS = [path for path in TOML if path not in PLANS]
+
+
+@pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
 def test_scenarios(path):
     done = innervate.run(path)
+    if done.summary["kind"] == "mesh":
+        assert done.summary["discovery"]["with_tables"] == done.plan.nodes
+        assert done.summary["connected"]["delivery_ratio"] > 0.99
+        assert done.summary["duplicates"] == 0
+        return
     assert done.summary["loops"]["episodes"] == 0
     assert len(done.summary["recoveries"]) == len(done.plan.faults)
+
+
+SMALL = {
+    "beacon-rate": ("protocol.beacon_hz=50,250", "protocol.k=3"),
+    "ports-needed": ("data.rate_hz=100,250",),
+    "team-size": ("stations=2,5", "protocol.mac=csma-cd-r,dcf"),
+}
+
+
+@pytest.mark.parametrize("path", PLANS, ids=lambda path: path.stem)
+def test_design_questions(path, tmp_path):
+    """Each plan in a small size: what it asks is answered, and drawn."""
+    vary = [word for text in SMALL[path.stem] for word in ("--vary", text)]
+    small = ("--repeat", "2", "--workers", "1", "--out", str(tmp_path))
+    assert main(["sweep", str(path), *vary, *small]) == 0
+    done = innervate.sweep.load(tmp_path)
+    assert done.failed.height == 0
+    assert {p.stem for p in tmp_path.glob("*.png")} == {plot.name for plot in done.plan.plots}
+    ANSWERS[path.stem](done)
+
+
+def faster_with_waves(done):
+    better = done.compare("protocol.updates", "periodic", "wave", "recoveries.routed_ms")
+    assert all(ms < 0 for ms in better["difference"])
+
+
+def less_loss_with_ports(done):
+    fast = done.points("data.loss_ratio").filter(polars.col("data.rate_hz") == 250)
+    assert fast["mean"].to_list() == sorted(fast["mean"], reverse=True)
+
+
+def reservation_fills_the_channel(done):
+    better = done.compare("protocol.mac", "dcf", "csma-cd-r", "throughput")
+    assert all(share > 0.2 for share in better["difference"])
+
+
+ANSWERS = {
+    "beacon-rate": faster_with_waves,
+    "ports-needed": less_loss_with_ports,
+    "team-size": reservation_fills_the_channel,
+}
 
 
 def run_script(name, monkeypatch, capsys, *arguments):
@@ -46,6 +100,38 @@ def test_which_medium_access(monkeypatch, capsys):
         assert fair > 0.99
 
 
+def test_standby_or_posts(monkeypatch, capsys, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    lines = run_script("standby_or_posts.py", monkeypatch, capsys, "2")
+    rows = [line.split("dead", 1)[1] for line in lines if line[:3].strip().isdigit()
+            and "posts" not in line]  # fmt: skip
+    shares = [[float(cell.split()[-1]) for cell in row.split("%")[:-1]] for row in rows]
+    assert len(shares) == 6
+    for letter, _routed, search, graph in shares:
+        assert letter < 80 <= search
+        assert graph > letter
+    without, with_one = (
+        [line for line in lines if f"{which} standby" in line]
+        for which in ("without a", "with one")
+    )
+    assert all(line.endswith(": 0 %, -") for line in without)
+    assert all(": 100 %" in line for line in with_one)
+    assert (tmp_path / "standby_or_posts.png").stat().st_size > 10_000
+
+
+def test_the_measured_network_is_imported():
+    """Own lines: all links but the one that is too faint in one direction."""
+    done = innervate.run(FOLDER / "own-links.toml")
+    assert done.plan.nodes == 10
+    assert done.summary["links"] == 15
+    assert "mast" not in done.plan.names
+
+
 def test_every_example_is_run():
     scripts = {path.name for path in FOLDER.glob("*.py")}
-    assert scripts == {"recovery_times.py", "ports_needed.py", "which_medium_access.py"}
+    assert scripts == {
+        "recovery_times.py",
+        "ports_needed.py",
+        "which_medium_access.py",
+        "standby_or_posts.py",
+    }

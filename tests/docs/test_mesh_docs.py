@@ -6,6 +6,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from innervate.protocol import mesh_fields
 from innervate.scenario import mesh_model, mesh_settings
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "scenarios.md"
@@ -57,3 +58,12 @@ def test_defaults_that_are_named(name):
                 assert float(left_out) == default, key
             elif isinstance(default, str):
                 assert left_out == default, key
+
+
+def test_the_size_of_a_nodes_state():
+    """Declared widths in whole bits, without the queue: at 50 nodes less than 4 KiB."""
+    state = mesh_fields.node(50)[: -len(mesh_fields.QUEUED)]
+    bits = sum(max(length, 1) * (high - low).bit_length() for _, length, low, high, _, _ in state)
+    page = (PAGE.parent / "mesh.md").read_text(encoding="utf-8")
+    assert f"is {bits // 8:,} bytes at 50 nodes" in page
+    assert bits < 8 * 4096

@@ -94,7 +94,7 @@ SETS = [
      "the points in order of time"),
     ("data.rate_hz=0.001", "data.rate_hz must be 0 (off) or at least 0.01"),
     ("script.steps=['tickle n']", 'script.steps.0: "tickle n" is no step; they are tick n, soon n, '
-     "deliver a->b, lose a->b, detect n.port, draw v"),
+     "deliver a->b, lose a->b, detect n.port, draw v, cut a->b, restore a->b, restart n"),
     ("body.urdf=x", '[body] lacks "links"; give it a pattern for link names, like '
      '"r_forearm_skin_*"'),
     ("link.0.a=x", '[[link]] 0 lacks "b"; give it an end like "n1.2", "n1" or "pc.0"'),

@@ -1,12 +1,13 @@
 """Mesh scenarios: what is refused, and with which sentence."""
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.scenario import ScenarioError, from_dict, json_schema, loads, plan
+from innervate.scenario import ScenarioError, from_dict, json_schema, load, loads, plan
 
 SMALL = """\
 kind = "mesh"
@@ -151,6 +152,26 @@ def test_mistakes_in_links(old: str, new: str, message: str) -> None:
     assert "\n" not in text
 
 
+def test_a_cut_where_no_link_is() -> None:
+    text = "[[link]]\na = 'a'\nb = 'b'\n[[link]]\na = 'b'\nb = 'c'\n[[event]]\nat_s = 1\n"
+    cut = "action = 'cut'\nlink = ['a', 'c']\n"
+    with pytest.raises(
+        ScenarioError, match=r"x.toml:\d+: event.0: there is no link a - c; name one"
+    ):
+        plan(loads(f"kind = 'mesh'\n{text}{cut}", path="x.toml"))
+
+
+def test_imports_that_leave_nothing_together(tmp_path: Path) -> None:
+    (tmp_path / "parts.txt").write_text("a b 0.9 0.9\nc d 0.9 0.9\n")
+    parts = 'kind = "mesh"\n[import]\nfile = "parts.txt"\nlargest_component = false\n'
+    (tmp_path / "x.toml").write_text(parts)
+    with pytest.raises(ScenarioError, match=r"2 parts: .* set import.largest_component = true"):
+        plan(load(tmp_path / "x.toml"))
+    wrong = 'kind = "mesh"\n[import]\nfile = "freifunk/leipzig"\ntypes = ["wofi"]\n'
+    with pytest.raises(ScenarioError, match=r"no link is of type wofi; there is .*wifi"):
+        plan(loads(wrong))
+
+
 def test_a_node_without_a_place() -> None:
     with pytest.raises(ScenarioError, match=r"node\.1 has half a place"):
         from_dict({"kind": "mesh", "node": [{"x_m": 1, "y_m": 1}, {"x_m": 1}]})
@@ -181,6 +202,10 @@ def test_protocol_keys_know_their_range(key: str) -> None:
 def test_periods_that_cannot_be_counted() -> None:
     with pytest.raises(ScenarioError, match=r"protocol\.period_s is out of range; it can be at mo"):
         plan(loads(SMALL, ["protocol.period_s=60000", "protocol.beacon_s=0.1"]))
+    with pytest.raises(
+        ScenarioError, match=r"protocol\.collect_s must be more than listen_s, 0\.3"
+    ):
+        plan(loads(SMALL, ["protocol.collect_s=0.2"]))
     with pytest.raises(ScenarioError, match=r"protocol\.period_max_s is below period_s"):
         plan(loads(SMALL, ["protocol.period_s=60", "protocol.period_max_s=30"]))
 

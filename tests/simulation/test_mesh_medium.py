@@ -4,7 +4,7 @@ import pytest
 
 from innervate.scenario.mesh_plan import CUT, JAM, KILL, ONE, QUIET, RESTART, RESTORE, REVIVE
 from innervate.scenario.mesh_plan import MeshFault as Fault
-from innervate.sim.mesh.loop import MAC
+from innervate.sim.mesh.books import MAC
 from tests.mesh_pinger import REPORT_HEARD, REPORT_SENT, REPORT_TICK
 from tests.mesh_runs import LOUD, TURN_US, both_ways, mesh_plan, radio, run
 

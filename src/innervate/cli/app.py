@@ -12,6 +12,8 @@ from cyclopts import App, Parameter
 
 import innervate
 from innervate.cli import errors
+from innervate.cli.seeds import Seed
+from innervate.cli.verify_options import VERIFY_DEFAULTS, VerifyOptions
 
 HELP = """Describe and simulate the networks inside and between robots.
 
@@ -20,17 +22,6 @@ Start with: innervate demo. The first run on a machine compiles for about half a
 _SET = Parameter(name=["--set"], negative="", allow_leading_hyphen=True)
 Sets = Annotated[list[str] | None, _SET]
 
-
-def _whole_seed(_type: Any, tokens: Sequence[Any]) -> int:
-    """What --seed takes: a library's guess at a number could run another seed than was meant."""
-    text = tokens[0].value
-    if not (text.isascii() and text.isdigit() and int(text) < 2**63):
-        message = f'--seed must be a whole number from 0, below 2^63, not "{text[:40]}"'
-        raise errors.UserError(message)
-    return int(text)
-
-
-Seed = Annotated[int | None, Parameter(converter=_whole_seed)]
 
 app = App(
     name="innervate",
@@ -50,7 +41,7 @@ def demo(
     out: Path | None = None,
     open_: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
-    """The main jobs: a robot skin mends itself, a radio team puts itself in order. Writes reports.
+    """The main jobs: a skin mends itself, radios get in order, an alarm gets through. With reports.
 
     Parameters
     ----------
@@ -100,6 +91,137 @@ def run(
 
 
 @app.command
+def sweep(
+    file: str,
+    /,
+    *,
+    vary: Annotated[list[str] | None, Parameter(negative="")] = None,
+    set_: Sets = None,
+    repeat: int | None = None,
+    seed: Seed = None,
+    until: Annotated[list[str] | None, Parameter(negative="")] = None,
+    batch: int | None = None,
+    paired: Annotated[list[str] | None, Parameter(negative="")] = None,
+    out: Path | None = None,
+    workers: int | None = None,
+    engine: str = "processes",
+    dask: str = "",
+    show: Annotated[list[str] | None, Parameter(negative="")] = None,
+    retry: Annotated[bool, Parameter(negative="")] = False,
+) -> int:
+    """Run a scenario for every combination of some settings, many times each.
+
+    Give the same command again after an interrupt, a crash or with more values: what is done is
+    not done twice.
+
+    Parameters
+    ----------
+    file
+        A scenario file, the name of a bundled one, or a plan file (see docs/sweeps.md).
+    vary
+        A key and its values, like protocol.k=2..8, name=a,b or k,m=3:3,5:4; may be given again.
+    set_
+        Change a key for all runs, as for run.
+    repeat
+        Runs of every point, each with its own seed; with --until at most.
+    seed
+        Root seed in place of the scenario's.
+    until
+        A point ends when the 95 % interval of a mean is that narrow, like
+        recoveries.routed_ms.ci=5%; may be given again.
+    batch
+        Repeats between two decisions of --until; 10 if left out.
+    paired
+        A key whose variants run on the same seeds, for comparisons; or all.
+    out
+        Folder to write or to go on in; sweeps/NAME if left out.
+    workers
+        How many runs at the same time; one for every core if left out.
+    engine
+        On this machine: processes, threads or here.
+    dask
+        Address of a Dask scheduler to run on, like tcp://scheduler:8786.
+    show
+        A figure to show while it runs and at the end; may be given again.
+    retry
+        Run again what failed.
+    """
+    from innervate.cli import sweeping as command
+
+    return command.sweep(
+        file,
+        {
+            "vary": vary or [], "overrides": set_ or [], "repeat": repeat, "seed": seed,
+            "until": until or [], "batch": batch, "paired": paired or [],
+        },
+        {"out": out, "workers": workers, "kind": engine, "dask": dask, "retry": retry},
+        show or [],
+    )  # fmt: skip
+
+
+@app.command
+def size(
+    robot: str,
+    /,
+    *,
+    links: str,
+    rate: Annotated[list[float] | None, Parameter(negative="")] = None,
+    ports: str = "1..8",
+    pitch: float | None = None,
+    reach: float | None = None,
+    loss: float = 1.0,
+    recovery: float = 50.0,
+    repeat: int = 20,
+    seed: Seed = None,
+    out: Path | None = None,
+    workers: int | None = None,
+    dask: str = "",
+) -> int:
+    """Say how many interface ports a robot's skin needs, and where, by simulation.
+
+    Parameters
+    ----------
+    robot
+        A URDF file, or package:NAME/ROBOT like package:icub-models/iCubGenova02.
+    links
+        Pattern for the links that carry skin: frames of cells, or links with a shape.
+    rate
+        Samples per second and cell, 250 if left out; may be given again.
+    ports
+        Numbers of ports to try, like 1..8 or 1,2,4.
+    pitch
+        Distance of cells on links that have a shape, mm; 25 if left out.
+    reach
+        Longest cable between two cells, mm; as long as it takes if left out.
+    loss
+        Samples that may be lost on the way, %.
+    recovery
+        Time in which all cells must have a way again after a cut, ms.
+    repeat
+        Runs of every combination.
+    seed
+        Root seed.
+    out
+        Folder to write or to go on in; sweeps/size-ROBOT if left out.
+    workers
+        How many runs at the same time; one for every core if left out.
+    dask
+        Address of a Dask scheduler to run on.
+    """
+    from innervate.cli import sizing as command
+
+    return command.size(
+        {
+            "urdf": robot, "links": links, "rates_hz": tuple(rate or [250.0]), "ports": ports,
+            "pitch_mm": pitch, "reach_mm": reach, "loss_max": loss / 100,
+            "recovery_ms_max": recovery,
+        },
+        {"repeat": repeat, "seed": 1 if seed is None else seed, "out": out, "workers": workers,
+         "dask": dask},
+    )  # fmt: skip
+
+
+@app.command
 def papers(
     paper: str = "skin",
     /,
@@ -127,6 +249,31 @@ def papers(
     from innervate.cli import papers as command
 
     return command.papers(paper, only or [], quick, redraw, out)
+
+
+@app.command
+def verify(
+    system: str = "skin",
+    /,
+    *,
+    options: Annotated[VerifyOptions, Parameter(name="*")] = VERIFY_DEFAULTS,
+    json: Annotated[bool, Parameter(negative="")] = False,
+    out: Path | None = None,
+) -> int:
+    """Explore every interleaving of the protocol on small networks; 1 if something is broken.
+
+    Parameters
+    ----------
+    system
+        Which protocol: skin or radio.
+    json
+        Print the results as JSON and nothing else.
+    out
+        Folder for counterexamples: scenario, story, picture.
+    """
+    from innervate.cli import verifying as command
+
+    return command.verify(system, options, json, out)
 
 
 @app.command

@@ -5,11 +5,17 @@ from __future__ import annotations
 import webbrowser
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from innervate.cli import errors, show
 from innervate.cli.running import simulate
-from innervate.plot import words
+from innervate.plot import mesh_words, words
+
+if TYPE_CHECKING:
+    from innervate.analysis.mesh_alarms import Crossing
+    from innervate.run import Run
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +44,8 @@ def demo(seed: int | None, out: Path | None, open_report: bool) -> int:
 _NEXT = (
     ("innervate run demo --set protocol.updates=periodic", "as published, slower to recover"),
     ("innervate run radio-disaster --set protocol.mode=paper", "as published: order for four"),
-    ("innervate new skin my-skin.toml", "a scenario of your own, with comments"),
+    ("innervate run mesh-document", "a mesh read to the letter: many messages get lost"),
+    ("innervate new skin my-skin.toml", "a scenario of your own, with comments; also: radio, mesh"),
     ("innervate scenarios", "what else is here"),
 )
 
@@ -115,5 +122,60 @@ def _radio(seed: int | None, out: Path | None) -> Told:
     return Told(folder / "report.html", run.interrupted)
 
 
-# The mesh follows as a chapter of its own.
-CHAPTERS: tuple[Callable[[int | None, Path | None], Told], ...] = (_skin, _radio)
+def _mesh(seed: int | None, out: Path | None) -> Told:
+    """The mesh: nodes die unnoticed, a robot leaves its fence, the alarm finds a way."""
+    print()
+    print("A fenced field, nodes that pass on each other's messages, and a robot. One node, the")
+    print("gateway, finds out who hears whom and tells everybody the way to everybody. Then some")
+    print("nodes die, which nobody knows, and the robot walks out.")
+    print(flush=True)
+    run = simulate("mesh-field", [], seed, _part(out, "mesh"))
+    folder = run.write(_part(out, "mesh"))
+    summary, plan = run.summary, run.plan
+    reach = 2 * summary["links"] / plan.nodes
+    print(f"  {plan.nodes} nodes, each with about {reach:.0f} others in good reach")
+    print()
+    for when, then in _mesh_steps(run):
+        print(f"  {when:>10}   {then}")
+    print()
+    told = mesh_words.sentences(run.result, summary)
+    for line in told[1:] if summary["alarms"]["sent"] else told:  # the steps have the alarms
+        print(f"  {line}")
+    print()
+    print(f"  {summary['duration_s']:g} s were simulated in {summary['wall_s']:.2f} s.")
+    print(f"  Look at it in a browser, with the alarm in slow motion: {folder / 'report.html'}")
+    return Told(folder / "report.html", run.interrupted)
+
+
+def _mesh_steps(run: Run) -> list[tuple[str, str]]:
+    """What happened in the field, in order of time; after a crossing counted from it."""
+    from innervate.analysis.mesh_alarms import all_crossings
+    from innervate.analysis.mesh_messages import NEVER
+
+    summary, plan = run.summary, run.plan
+    steps: list[tuple[float, str, str]] = []
+    if summary["discovery"]["tables_s"] is not None:
+        at = summary["gateways"][0]["at_s"] + summary["discovery"]["tables_s"]
+        steps.append((at, f"{at:.3f} s", "every node knows the way to every other"))
+    for at_us, faults in groupby(plan.faults, key=lambda fault: fault.at_us):
+        count = len(list(faults))
+        what = f"{words.number_of(count, 'node')} switched off; nobody is told"
+        steps.append((at_us / 1e6, f"{at_us / 1e6:.3f} s", what))
+    for crossing in all_crossings(run.result):
+        out_us = crossing.crossed_us
+        steps.append((out_us / 1e6, f"{out_us / 1e6:.3f} s", "the robot is outside the fence"))
+        for at, what in (
+            (crossing.raised_us, "it notices, and raises the alarm"),
+            (crossing.accepted_us, _knows(crossing)),
+        ):
+            if at != NEVER:
+                steps.append((at / 1e6, f"+{words.ms_words((at - out_us) / 1e3)}", what))
+    return [(when, what) for _at, when, what in sorted(steps, key=lambda step: step[0])]
+
+
+def _knows(crossing: Crossing) -> str:
+    hops = words.number_of(crossing.hops, "hop")
+    return f"the monitor has it, over {hops}; the robot got {crossing.overrun_m * 100:.1f} cm out"
+
+
+CHAPTERS: tuple[Callable[[int | None, Path | None], Told], ...] = (_skin, _radio, _mesh)

@@ -16,13 +16,16 @@ PIPE_CLOSED = 141
 _EXTRAS = {
     "numba": "sim", "llvmlite": "sim", "numpy": "sim", "polars": "sim",
     "matplotlib": "plot",
-    "icub_models": "body",
+    "icub_models": "body", "trimesh": "body",
+    "distributed": "sweep",
     "cryptography": "live",
 }  # fmt: skip
 # Errors whose text is one line for the user: module and class, and whose mistake they are.
 _KNOWN = (
     ("innervate.scenario.errors", "ScenarioError", USERS),
     ("innervate.run.errors", "RunError", USERS),
+    ("innervate.verify.errors", "VerifyError", USERS),
+    ("innervate.sweep.errors", "SweepError", USERS),
     ("innervate.live.errors", "LiveError", USERS),
     ("cyclopts", "CycloptsError", USERS),
     ("innervate.sim.simulate", "InvariantBroken", OURS),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from innervate.cli import show_radio
+from innervate.cli import show_mesh, show_radio
 from innervate.plot import words
 
 if TYPE_CHECKING:
@@ -19,6 +19,8 @@ def summary_lines(run: Run) -> list[str]:
     summary = run.summary
     if summary["kind"] == "radio":
         return show_radio.summary_lines(run)
+    if summary["kind"] == "mesh":
+        return show_mesh.summary_lines(run)
     return [_first(run), *event_lines(run), *_broken(summary), *state_lines(summary)]
 
 

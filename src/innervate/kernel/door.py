@@ -21,6 +21,8 @@ from typing import Any
 import numba
 from numba.extending import register_jitable
 
+from innervate.kernel.whole import as_one
+
 SOURCE_ROOMS = ("protocol", "kernel", "sim", "verify")
 FOLDERS_KEPT = 4
 
@@ -109,3 +111,14 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     open_cache()
     numba.config.SLP_VECTORIZE = 1  # a tenth faster: frames are copied in whole words
     return numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+
+
+def compiled_as_one(function: Callable[..., Any]) -> Callable[..., Any]:
+    """As `compiled`, for loops that call hundreds of functions (see whole.py)."""
+    jitted = compiled(function)
+
+    def call(*args: Any) -> Any:
+        with as_one(function.__qualname__):
+            return jitted(*args)
+
+    return call

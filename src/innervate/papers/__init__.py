@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["PAPERS", "PapersError", "Step", "main"]
 
 # Papers there are; each is a package with TITLE, AUTHORS, FIGURES, experiment() and warm_up().
-PAPERS = ("skin", "radio")
+PAPERS = ("skin", "radio", "mesh")
 _HOMES = {"main": "book", "Step": "book", "PapersError": "errors"}
 
 

@@ -2,25 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import threading
 from pathlib import Path
 from typing import Any
 
-# Rooms whose sources decide what a simulation gives.
-ROOMS = ("protocol", "kernel", "sim", "topology", "trace", "scenario", "analysis")
+from innervate.trace.sources import stamp
 
-
-def stamp() -> str:
-    """Hash of all sources that results depend on: stored results of others are not used."""
-    root = Path(__file__).resolve().parent.parent
-    digest = hashlib.blake2b(digest_size=8)
-    files = [path for room in ROOMS for path in (root / room).rglob("*")]
-    for path in sorted(path for path in files if path.suffix in (".py", ".toml")):
-        digest.update(path.relative_to(root).as_posix().encode())
-        digest.update(path.read_bytes())
-    return digest.hexdigest()
+__all__ = ["Store", "stamp"]
 
 
 class Store:

@@ -36,6 +36,9 @@ figure{margin:0;min-width:0;break-inside:avoid}
 figure svg{display:block;max-width:100%;height:auto;margin:.3em 0}
 .wide{overflow-x:auto;margin:1em 0}
 .wide svg{max-width:none}
+.film input{width:min(60%,360px);vertical-align:middle}
+.film button{font:inherit;font-size:.9rem;padding:.2em .9em;margin-right:.8em;border-radius:6px;
+border:1px solid var(--soft);background:var(--panel);color:var(--ink);cursor:pointer}
 .keys{display:flex;flex-wrap:wrap;gap:6px 18px;margin:.8em 0;font-size:.9rem;padding:0}
 .keys li{display:flex;align-items:center;gap:6px;list-style:none}
 .scroll{overflow-x:auto}
@@ -55,6 +58,7 @@ footer{margin-top:3em;color:var(--soft);font-size:.85rem}
 .four{grid-template-columns:repeat(4,1fr)}.three{grid-template-columns:repeat(3,1fr)}
 .two{grid-template-columns:repeat(2,1fr)}
 .wide svg{max-width:100%}
+.controls{display:none}
 pre{white-space:pre-wrap}details::details-content{content-visibility:visible;block-size:auto}}
 """
 
@@ -116,3 +120,26 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]], kind: str = "") ->
 def details(head: str, inside: str) -> str:
     """Something to unfold; `inside` is HTML."""
     return f"<details><summary>{clean(head)}</summary>\n{inside}</details>\n"
+
+
+def film_controls(cycle_s: float) -> str:
+    """A pause button and a slider for the film in the same `.film`; it plays without them, too."""
+    return (
+        '<div class="controls"><button type="button">Pause</button>'
+        '<input type="range" min="0" max="1000" value="0" aria-label="Time"></div>\n'
+        f"<script>(cycle=>{{{_FILM}}})({cycle_s:g})</script>\n"
+    )
+
+
+# Who asked for less motion gets the film's end, at rest.
+_FILM = """
+const box=document.currentScript.parentElement,film=box.querySelector('svg');
+const button=box.querySelector('button'),slider=box.querySelector('input');let on=true;
+const set=v=>{on=v;v?film.unpauseAnimations():film.pauseAnimations();
+button.textContent=v?'Pause':'Play'};
+const go=t=>{film.setCurrentTime(t);slider.value=1000*(t%cycle)/cycle};
+button.onclick=()=>set(!on);
+slider.oninput=()=>{set(false);film.setCurrentTime(cycle*Math.min(slider.value/1000,.9999))};
+setInterval(()=>{if(on)slider.value=1000*(film.getCurrentTime()%cycle)/cycle},100);
+if(matchMedia('(prefers-reduced-motion: reduce)').matches){set(false);go(.9999*cycle)}
+"""

@@ -7,7 +7,7 @@ from html import escape
 from typing import Any, Protocol
 
 from innervate import scenario as scenarios
-from innervate.plot import radio_report, skin_report
+from innervate.plot import mesh_report, radio_report, skin_report
 from innervate.plot.page import details, element, page, section, table
 
 
@@ -35,6 +35,7 @@ class Reportable(Protocol):
 _BODIES: dict[str, Callable[[Any, Mapping[str, Any]], str]] = {
     "skin": skin_report.body,
     "radio": radio_report.body,
+    "mesh": mesh_report.body,
 }
 
 

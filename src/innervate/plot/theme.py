@@ -81,6 +81,21 @@ text{font:12px system-ui,-apple-system,"Segoe UI",Roboto,sans-serif;fill:var(--i
 .struck{fill:none;stroke:var(--alarm);stroke-width:1.6}
 .warn{fill:var(--alarm)}
 .done{fill:none;stroke:var(--good);stroke-width:2.2;stroke-linecap:round;stroke-linejoin:round}
+.mesh{fill:none;stroke:var(--soft);stroke-opacity:.36;stroke-width:1.1}
+.gone{stroke-dasharray:2 4}
+.zone{fill:var(--panel);fill-rule:evenodd}
+.fence{fill:none;stroke:var(--ink);stroke-width:1.8;stroke-linejoin:round}
+.walk{fill:none;stroke:var(--accent);stroke-width:1.8;stroke-dasharray:.1 4.5;stroke-linecap:round}
+.way{fill:none;stroke:var(--accent);stroke-width:3;stroke-linecap:round;stroke-linejoin:round}
+.flooder{fill:none;stroke:var(--alarm);stroke-width:1.4;stroke-dasharray:3 2}
+.relay{fill:var(--d5);stroke:var(--ground);stroke-width:1}
+.leader,.robot{fill:var(--ink);stroke:var(--ground);stroke-width:1}
+.ringed{fill:none;stroke:var(--ink);stroke-width:1.8}
+.other{fill:none;stroke:var(--soft);stroke-width:1.4}
+.wave{fill:none;stroke:var(--alarm);stroke-width:2}
+.failed{stroke-dasharray:3 6}
+.cursor{fill:none;stroke:var(--accent);stroke-width:2}
+.heavy{font-size:13px;font-weight:600}
 """
 
 

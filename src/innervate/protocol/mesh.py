@@ -18,13 +18,8 @@ from innervate.protocol.mesh_fields import WAITING
 from innervate.protocol.mesh_frames import clear_queue, is_sound
 from innervate.protocol.mesh_gateway import collect, lead, on_response, reset, tick
 from innervate.protocol.mesh_jobs import on_ack, retry_jobs
-from innervate.protocol.mesh_messages import (
-    due_wait,
-    on_message,
-    take,
-    try_again,
-    wait_on,
-)
+from innervate.protocol.mesh_kept import due_wait, try_again, wait_on
+from innervate.protocol.mesh_messages import on_message, take
 from innervate.protocol.mesh_near import forget_all, hear, hear_again, sweep
 from innervate.protocol.mesh_queue import (
     CONTROL,

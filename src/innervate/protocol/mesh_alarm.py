@@ -4,13 +4,8 @@ from innervate.protocol.arith import MASK30
 from innervate.protocol.mesh_fence import OUTSIDE, judge, margin
 from innervate.protocol.mesh_fields import WAITING
 from innervate.protocol.mesh_frames import add8, add16, add_hop
-from innervate.protocol.mesh_messages import (
-    first_flag,
-    free_wait,
-    keep,
-    resolve,
-    take,
-)
+from innervate.protocol.mesh_kept import free_wait, keep
+from innervate.protocol.mesh_messages import first_flag, resolve, take
 from innervate.protocol.mesh_queue import ALARMS, compose, kick, take_over
 from innervate.protocol.mesh_seen import FLOODED, is_flooded
 from innervate.protocol.mesh_send import send_on
@@ -23,6 +18,7 @@ from innervate.protocol.mesh_words import (
     FLOOD,
     MONITOR,
     PRIORITY,
+    PUT_OUT,
     REPORT_ALARM,
     REPORT_EXPIRED,
     REPORT_MARGIN,
@@ -32,7 +28,6 @@ from innervate.protocol.rng import draw
 
 ALARM_BYTES = 16
 RAISED_OUT = 2
-NO_PUT_OUT = 3
 
 
 def on_sample(node, params, now, item, out):
@@ -127,7 +122,7 @@ def wait_for_alarm(node, out):
     for k in range(WAITING):
         if node.wait_kind[k] != ALARM:
             w = k
-    report(out, REPORT_EXPIRED, node.wait_handle[w], NO_PUT_OUT)
+    report(out, REPORT_EXPIRED, node.wait_handle[w], PUT_OUT)
     return w
 
 
@@ -170,7 +165,7 @@ def on_flood(node, params, now, frame, out):
     if i >= 0:
         node.q_link_dst[i] = ALL
         node.q_copies[i] = 2
-        node.q_due[i] = (now + draw(node, (params.jitter_us >> 2) + 1)) & MASK30
+        node.q_due[i] = (now + draw(node, params.flood_us + 1)) & MASK30
         if not add_hop(node, i):
             node.q_state[i] = 0
     kick(node, params, now, out)

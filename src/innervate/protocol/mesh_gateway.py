@@ -150,5 +150,5 @@ def tick(node, gate, params, now, out):
         if gate.wait == 0:
             start_round(node, gate, params, now, out)
         return
-    if node.quiet >= params.dead + node.rank * params.dead_step:
+    if node.quiet >= params.dead + max(0, node.rank - 1) * params.dead_step:
         lead(node, gate, params, now, out)

@@ -167,12 +167,12 @@ def settle(node, params, now, sent, out):
         if node.q_copies[i] > 0:
             span = params.jitter_us
             if node.q_kind[i] == ALARM:
-                span = span >> 2
+                span = params.flood_us
             node.q_state[i] = WAITS
             node.q_due[i] = (now + draw(node, span + 1)) & MASK30
         else:
             node.q_state[i] = FREE
-    elif node.q_flags[i] & ACK_WANTED:
+    elif node.q_flags[i] & ACK_WANTED or not sent:
         node.q_state[i] = UNACKED
         node.q_tries[i] = node.q_tries[i] + 1
         wait = params.ack_us if sent else 0
@@ -180,6 +180,7 @@ def settle(node, params, now, sent, out):
     else:
         node.q_state[i] = FREE
         node.busy = -1
+        tell_hop(node, i, out)
 
 
 def kick(node, params, now, out):

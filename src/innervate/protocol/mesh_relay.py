@@ -44,5 +44,5 @@ def flood_data(node, params, now, frame, out):
     if i >= 0:
         node.q_link_dst[i] = ALL
         node.q_copies[i] = params.copies
-        node.q_due[i] = (now + draw(node, (params.jitter_us >> 2) + 1)) & MASK30
+        node.q_due[i] = (now + draw(node, params.flood_us + 1)) & MASK30
     kick(node, params, now, out)

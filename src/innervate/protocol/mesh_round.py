@@ -13,6 +13,7 @@ from innervate.protocol.mesh_queue import (
     kick,
     place,
 )
+from innervate.protocol.mesh_seen import hope_again
 from innervate.protocol.mesh_send import send_up
 from innervate.protocol.mesh_table import activate
 from innervate.protocol.mesh_upward import is_uplink, is_weak
@@ -76,6 +77,7 @@ def begin(node, params, gateway, epoch, round, out):
     node.parent = ALL
     node.quiet = 0
     node.due = NOTHING
+    hope_again(node)
     if gateway != node.number:
         node.leading = 0
     for k in range(params.places):
@@ -94,10 +96,10 @@ def on_request(node, params, now, frame, k, out):
         node.jitter = frame.body[6]
     elif gateway != node.gateway or epoch != node.epoch or round != node.round:
         return
-    if node.leading:
-        note(node, frame, k)
-        return
+    fresh = k < 0 or node.round_depth[k] == UNHEARD
     note(node, frame, k)
+    if node.leading:
+        return
     if node.depth == UNHEARD:
         if frame.rssi < params.min_rssi + 1 and params.discovery == LIST:
             hesitate(node, params, now, frame, out)
@@ -105,7 +107,7 @@ def on_request(node, params, now, frame, k, out):
             node.parent = frame.link_src
             hold(node, params, now, frame, 0, out)
             join(node, params, now, frame.path_len + 1, out)
-    if params.discovery == EACH:
+    if params.discovery == EACH and fresh:  # not to every copy
         respond_to(node, params, now, frame.link_src, out)
     kick(node, params, now, out)
 

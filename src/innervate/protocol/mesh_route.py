@@ -107,6 +107,30 @@ def giver(node, i):
     return NOBODY
 
 
+def is_untried(node, i, who):
+    """1 if the packet in place i was not at `who`, nor failed there, whatever we suspect."""
+    if who == NONE or was_at(node, i, who):
+        return 0
+    return not is_skipped(node, node.q_origin[i], node.q_seq[i], who)
+
+
+def last_resort(node, params, i):
+    """At the origin, before the packet is dropped: a neighbour that did not answer some other one.
+
+    Three lost frames would keep who has but one neighbour silent until the suspicion ends.
+    """
+    best = -1
+    for k in range(params.places):
+        if node.near[k] != FREE and is_untried(node, i, node.near[k]):
+            if node.near[k] == planned(node, params, node.q_dest[i]):
+                return node.near[k]
+            if best < 0 or node.rssi[k] > node.rssi[best]:
+                best = k
+    if best < 0:
+        return NOBODY
+    return node.near[best]
+
+
 def by_search(node, params, i):
     """The next hop by table, alternates and path-trace search; back where it came from if none."""
     who = search(node, params, i, 0)
@@ -118,6 +142,8 @@ def by_search(node, params, i):
             who = node.q_from[i]
             if who == NONE or is_skipped(node, node.q_origin[i], node.q_seq[i], who):
                 who = NOBODY
+    if who == NOBODY and params.failover == SEARCH and node.q_origin[i] == node.number:
+        who = last_resort(node, params, i)
     if who != NOBODY and who != planned(node, params, node.q_dest[i]):
         node.q_flags[i] = node.q_flags[i] | DETOURED
     return who

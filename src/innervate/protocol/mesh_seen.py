@@ -7,6 +7,7 @@ from innervate.protocol.mesh_words import ALL, PARITY
 NONE16 = 65536
 FLOODED = 20  # in done_kind: a flooded alarm, whose instances count apart
 BITS = 15
+NO_WAY = 254  # in bad_near: nobody leads there
 
 
 def forget(node, params):
@@ -193,6 +194,37 @@ def is_bad(node, who, dest):
         if node.bad_near[k] == who and node.bad_dest[k] == dest:
             return 1
     return 0
+
+
+def note_no_way(node, dest, sure):
+    """A packet of ours found no way to `dest`, whoever we asked."""
+    if sure or is_bad(node, node.number, dest):
+        mark_bad(node, NO_WAY, dest)
+    mark_bad(node, node.number, dest)
+
+
+def is_hopeless(node, dest):
+    """1 if again and again no way was found to `dest`, and nothing has changed since.
+
+    A search asks the whole network. All who have messages for somebody who died would search
+    without end, and leave no room for the round that mends the tables.
+    """
+    return is_bad(node, NO_WAY, dest)
+
+
+def is_there(node, dest):
+    """`dest` is heard of: forget that no way was found."""
+    for k in range(SKIPS):
+        if node.bad_dest[k] == dest:
+            if node.bad_near[k] == NO_WAY or node.bad_near[k] == node.number:
+                node.bad_near[k] = ALL
+
+
+def hope_again(node):
+    """A new round: whoever could not be reached may be there."""
+    for k in range(SKIPS):
+        if node.bad_near[k] == NO_WAY or node.bad_near[k] == node.number:
+            node.bad_near[k] = ALL
 
 
 def unbad(node):

@@ -1,7 +1,7 @@
 """A packet goes on: its next hop is chosen, and another when that does not answer."""
 
 from innervate.protocol.arith import MASK30
-from innervate.protocol.mesh_fields import QUEUE
+from innervate.protocol.mesh_fields import QUEUE, WAITING
 from innervate.protocol.mesh_frames import add_hop, was_at
 from innervate.protocol.mesh_near import suspect, trust
 from innervate.protocol.mesh_queue import UNACKED, WAITS, drop, kick
@@ -12,7 +12,7 @@ from innervate.protocol.mesh_route import (
     planned,
     room_of,
 )
-from innervate.protocol.mesh_seen import skip, unskip
+from innervate.protocol.mesh_seen import note_no_way, skip, unskip
 from innervate.protocol.mesh_upward import uplink
 from innervate.protocol.mesh_words import (
     ACK_WANTED,
@@ -30,6 +30,7 @@ from innervate.protocol.outbox import report
 from innervate.protocol.rng import draw
 
 FAILURES_MAX = 6
+SURE_AFTER = 2  # sent so often in vain, the next failure of a kept message counts
 HOPS_MAX = 40  # failures of a routed packet at a node: every neighbour once, and some to spare
 
 
@@ -39,10 +40,28 @@ def give_up(node, i, out):
     drop(node, i)
 
 
+def tries_of(node, seq):
+    """How often a message of ours that is kept was sent, 0 if this one is not kept."""
+    for w in range(WAITING):
+        if node.wait_kind[w] and node.wait_seq[w] == seq:
+            return node.wait_tries[w]
+    return 0
+
+
+def no_way(node, i, out):
+    """Everybody was asked who could take the packet in place i."""
+    if node.q_origin[i] == node.number:
+        tries = tries_of(node, node.q_seq[i])
+        if tries == 0 or tries > SURE_AFTER:
+            note_no_way(node, node.q_dest[i], tries)
+    give_up(node, i, out)
+
+
 def pass_on(node, params, i, who):
     """The packet in place i goes to `who` next."""
     node.q_link_dst[i] = who
-    node.q_flags[i] = node.q_flags[i] | ACK_WANTED
+    if params.hop_acks:
+        node.q_flags[i] = node.q_flags[i] | ACK_WANTED
     node.q_tries[i] = 0
 
 
@@ -83,7 +102,7 @@ def send_on(node, params, now, i, out):
     if not goes_back(node, params, i) and not enter(node, params, i, out):
         return 0
     if not aim(node, params, i, out):
-        give_up(node, i, out)
+        no_way(node, i, out)
         return 0
     return 1
 
@@ -138,8 +157,10 @@ def hop_failed(node, params, now, i, out):
     else:
         suspect(node, params, now, dead, planned(node, params, node.q_dest[i]) == dead, out)
         learn_failure(node, params, i, dead)
-        if not params.retry or node.q_fails[i] > HOPS_MAX or not aim(node, params, i, out):
+        if not params.retry or node.q_fails[i] > HOPS_MAX:
             give_up(node, i, out)
+        elif not aim(node, params, i, out):
+            no_way(node, i, out)
 
 
 def turn_away(node, params, dead, out):

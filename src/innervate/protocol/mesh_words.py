@@ -87,7 +87,7 @@ REPORT_ACCEPTED = 1  # message handle a goes out as packet seq b
 REPORT_HOP = 2  # message handle a was acknowledged by its first hop
 REPORT_ARRIVED = 3  # message handle a was acknowledged end to end
 REPORT_EXPIRED = 4  # message handle a: given up for reason b
-REPORT_FULL = 5  # message handle a was refused for reason b: 1 queue full, 2 nobody to send to
+REPORT_FULL = 5  # message handle a was refused for reason b: NO_ROUTE or NO_ROOM
 REPORT_DROPPED = 6  # packet (origin a, seq b) is given up here
 REPORT_SUSPECT = 7  # neighbour a does not answer; 1 = it was next in the table
 REPORT_ROUND = 8  # gateway: round a of epoch b begins
@@ -100,8 +100,8 @@ REPORT_MARGIN = 14  # alarm raised: margin a cm
 REPORT_UNKEYED = 15  # a message of unknown type a was dropped
 REPORT_SILENCED = 16  # a flood instance b of alarm seq a goes out
 
-# Reasons of REPORT_EXPIRED and, as c, of nothing else.
-NO_ROUTE = 1
+# Reasons of REPORT_EXPIRED and REPORT_FULL.
+NO_ROUTE = 1  # nobody to send it to, or too long
 NO_ACK = 2
-PATH_FULL = 3
-NO_ROOM = 4
+PUT_OUT = 3  # an alarm needed its place
+NO_ROOM = 4  # too many wait already

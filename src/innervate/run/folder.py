@@ -14,14 +14,14 @@ from pathlib import Path
 from typing import Any
 
 from innervate.run.errors import RunError
-from innervate.trace import radio_tables, tables
+from innervate.trace import mesh_tables, radio_tables, tables
 
 SCENARIO = "scenario.toml"
 SUMMARY = "summary.json"
 PROVENANCE = "provenance.json"
 REPORT = "report.html"
 REQUIRED = (SCENARIO, SUMMARY, PROVENANCE)
-TABLES = (*tables.TABLES, *radio_tables.TABLES)
+TABLES = (*tables.TABLES, *radio_tables.TABLES, *mesh_tables.TABLES)
 TABLE_FILES = tuple(f"{table.name}.parquet" for table in TABLES)
 KNOWN = frozenset({*REQUIRED, REPORT, *TABLE_FILES})
 

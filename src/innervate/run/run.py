@@ -31,8 +31,8 @@ class Run:
 
     Attributes:
         scenario: as resolved.
-        plan: its whole numbers; of a skin a Plan, of a radio team a RadioPlan.
-        result: the simulation's rows and its world at the end: a Result or RadioResult.
+        plan: its whole numbers; a Plan, RadioPlan or MeshPlan.
+        result: the simulation's rows and its world at the end: a Result, RadioResult or MeshResult.
         summary: what a person wants to know, by the names of docs/summary.
         checks: the invariant checkers were on.
     """
@@ -51,7 +51,8 @@ class Run:
     @cached_property
     def tables(self) -> dict[str, polars.LazyFrame]:
         """The run's tables by name: of a skin routes, links, outages, loops, received; of a
-        radio team packets, transmissions, reports.
+        radio team packets, transmissions, reports; of a mesh messages, crossings, deliveries,
+        transmissions, rounds, reports.
         """
         room = room_of(self.plan.kind)
         return {

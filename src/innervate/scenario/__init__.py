@@ -5,9 +5,9 @@ from typing import Any
 from innervate.scenario import mesh_planning, radio_planning
 from innervate.scenario.bundled import bundled
 from innervate.scenario.check import check, describe
-from innervate.scenario.emit import dump
+from innervate.scenario.emit import dump, inline
 from innervate.scenario.errors import ScenarioError
-from innervate.scenario.load import Scenario, from_dict, load, loads
+from innervate.scenario.load import Scenario, from_dict, load, loads, read
 from innervate.scenario.mesh_plan import MeshFault, MeshPlan
 from innervate.scenario.plan import (
     CUT,
@@ -47,10 +47,12 @@ __all__ = [
     "describe",
     "dump",
     "from_dict",
+    "inline",
     "json_schema",
     "load",
     "loads",
     "plan",
+    "read",
     "template",
 ]
 

@@ -137,7 +137,7 @@ def _connect(source: Source, graph: Graph, a: int, b: int, key: Key) -> None:
 
 def _body(source: Source, body: BodyTable) -> Graph:
     try:
-        names, places = cells_from_urdf(body.urdf, body.links, Path(source.folder))
+        names, places = cells_from_urdf(body.urdf, body.links, Path(source.folder), body.pitch_mm)
         wanted = body.interfaces
         return body_graph(names, places, body.reach_mm, wanted)
     except TopologyError as error:

@@ -46,10 +46,10 @@ def to_toml(tables: dict[str, Any]) -> str:
         elif isinstance(value, list | tuple) and value and isinstance(value[0], dict):
             later.extend((f"[[{_key(key)}]]", item) for item in value)
         elif _present(value):
-            lines.append(f"{_key(key)} = {_value(value)}")
+            lines.append(f"{_key(key)} = {inline(value)}")
     for head, table in later:
         lines += ["", head]
-        lines += [f"{_key(k)} = {_value(v)}" for k, v in table.items() if _present(v)]
+        lines += [f"{_key(k)} = {inline(v)}" for k, v in table.items() if _present(v)]
     return "\n".join(lines).strip("\n") + "\n"
 
 
@@ -58,17 +58,18 @@ def _present(value: Any) -> bool:
 
 
 def _key(key: str) -> str:
-    return key if _BARE.fullmatch(key) else _value(key)
+    return key if _BARE.fullmatch(key) else inline(key)
 
 
-def _value(value: Any) -> str:
+def inline(value: Any) -> str:
+    """A value as TOML in one line: 2.5, true, "text", [1, 2], { a = 1 }."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, dict):
-        inside = ", ".join(f"{_key(k)} = {_value(v)}" for k, v in value.items() if _present(v))
+        inside = ", ".join(f"{_key(k)} = {inline(v)}" for k, v in value.items() if _present(v))
         return f"{{ {inside} }}"
     if isinstance(value, list | tuple):
-        return f"[{', '.join(_value(item) for item in value)}]"
+        return f"[{', '.join(inline(item) for item in value)}]"
     return repr(value)

@@ -79,8 +79,18 @@ def load(
     Raises:
         ScenarioError: no such file, unreadable, or not a valid scenario; one line.
     """
+    text, label, folder = read(path_or_name)
+    return loads(text, overrides, seed, label, folder)
+
+
+def read(path_or_name: str | os.PathLike[str]) -> tuple[str, str, str]:
+    """(text, what to call it, its folder) of a scenario file or a bundled scenario.
+
+    Raises:
+        ScenarioError: no such file, or unreadable.
+    """
     path, label = _find(os.fspath(path_or_name))
-    return loads(_read(path, label), overrides, seed, label, str(path.parent))
+    return _read(path, label), label, str(path.parent)
 
 
 def loads(

@@ -161,6 +161,11 @@ def _hits(
         if a == b:
             message = f"event.{index}.link names {nodes.names[a]} twice; name two nodes"
             raise nodes.source.error(("event", index, "link"), message)
+        if nodes.links and (min(a, b), max(a, b)) not in nodes.links:
+            message = f"event.{index}: there is no link {nodes.names[a]} - {nodes.names[b]}"
+            raise nodes.source.error(
+                ("event", index, "link"), f"{message}; name one of those given"
+            )
         return [(min(a, b), max(a, b))]
     assert event.node is not None
     return [_node(nodes, index, event.node, roles)]

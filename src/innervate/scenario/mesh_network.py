@@ -76,7 +76,11 @@ def linked(model: MeshScenario, nodes: Nodes, profile: Profile) -> Network:
             good.append((a, b))
             weakest = min(weakest, quality_cdb(min(there, back)))
     good.sort()
-    _check_connected(nodes, good, set(), "add the [[link]] that is missing")
+    imported = model.import_ is not None
+    remedy = (
+        "set import.largest_component = true" if imported else "add the [[link]] that is missing"
+    )
+    _check_connected(nodes, good, set(), remedy)
     return Network(nodes, nodes.points, radio, good, radio.rssi50_cdb + weakest)
 
 

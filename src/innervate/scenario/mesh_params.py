@@ -99,6 +99,7 @@ def parameters(
         "activation": int(settings.activation),
         "told": int(profile.collisions),
         "transmissions": chosen.value("transmissions", profile.transmissions),
+        "hop_acks": int(chosen.value("hop_acks", profile.hop_acks)),
         "ack_us": chosen.value("ack_us", profile.ack_us),
         "suspect_us": chosen.micros("suspect_s", profile.suspect),
         "min_rssi": chosen.value("min_rssi_dbm", min_rssi_dbm),
@@ -125,6 +126,7 @@ def _rounds(profile: Profile, chosen: _Chosen) -> dict[str, int]:
     rest_s = profile.collect - profile.listen - profile.spread
     return {
         "jitter_us": chosen.micros("jitter_s", profile.jitter),
+        "flood_us": chosen.micros("flood_s", profile.jitter / 8),
         "copies": chosen.value("copies", profile.copies),
         "listen_us": listen_us,
         "spread_us": spread_us,
@@ -150,4 +152,10 @@ def _check(params: dict[str, Any]) -> None:
     if params["period_max"] < params["period"]:
         raise ValueError(
             "period_max_s:protocol.period_max_s is below period_s; make it as long or longer"
+        )
+    if params["collect_us"] <= params["listen_us"] and params["discovery"] != EACH:
+        listen_s = params["listen_us"] / 1e6
+        raise ValueError(
+            f"collect_s:protocol.collect_s must be more than listen_s, {listen_s:g} s: before that "
+            "nobody responds"
         )

@@ -6,7 +6,7 @@ from typing import Any
 
 from innervate.protocol.mesh_words import ALL, MONITOR, WHOLE_GRAPH
 from innervate.scenario import mesh_events, mesh_fence, mesh_robots, mesh_traffic
-from innervate.scenario.mesh_access import access
+from innervate.scenario.mesh_access import access, suited
 from innervate.scenario.mesh_model import MeshScenario
 from innervate.scenario.mesh_network import Network, linked, placed
 from innervate.scenario.mesh_nodes import Nodes, nodes_of
@@ -31,6 +31,7 @@ def plan(scenario: Any) -> MeshPlan:
     duration_us = max(1, round(model.duration_s * 1e6))
     nodes = nodes_of(model, source)
     profile = profile_of(model.radio.profile, len(nodes.names))
+    profile = suited(model, profile, len(nodes.names))
     network = _network(model, nodes, profile)
     ranks = _ranks(model, network)
     gateway = ranks.index(0)
@@ -47,7 +48,7 @@ def plan(scenario: Any) -> MeshPlan:
     for flow, ends in zip(model.flow, flows, strict=True):
         spared.update(a for a, _ in ends if flow.from_ != "all")
         spared.update(b for _, b in ends if b not in (MONITOR, ALL))
-    mac, mac_params = access(model, network, profile, params["mtu"])
+    mac, mac_params = access(model, network, profile, params["mtu"], walks)
     return MeshPlan(
         scenario=scenario,
         kind="mesh",

@@ -23,8 +23,9 @@ class Profile(NamedTuple):
         rssi50_cdb: 0.01 dBm at which half the frames are received.
         loss_1m_cdb: path loss at 1 m in free space, 0.01 dB.
         ack_us: wait for a hop's ack.
-        dead_step: more for every rank of standby.
+        dead_step: more for every standby behind the first.
         settled: messages start then if nothing is said: the first tables are there.
+        hop_acks: hops acknowledge; False where the medium access says what was received.
     """
 
     byte_ns: int
@@ -52,6 +53,7 @@ class Profile(NamedTuple):
     beacon: float
     dead_step: float
     settled: float
+    hop_acks: bool = True
 
 
 def _ack_us(turnaround_us: int, phy_bytes: int, byte_ns: int, backoff_us: int) -> int:

@@ -35,6 +35,7 @@ class MeshProtocolTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only
     transmissions: (
         Annotated[int, Meta(ge=1, le=15, description="a whole number of tries, 1 to 15")] | None
     ) = None
+    hop_acks: Flag | None = None
     ack_us: (
         Annotated[
             int, Meta(ge=1, le=16_777_215, description="a whole number of microseconds from 1")
@@ -47,6 +48,9 @@ class MeshProtocolTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only
         | None
     ) = None
     jitter_s: (
+        Annotated[float, Meta(ge=0, le=2.55, description="a number of seconds, 0 to 2.55")] | None
+    ) = None
+    flood_s: (
         Annotated[float, Meta(ge=0, le=2.55, description="a number of seconds, 0 to 2.55")] | None
     ) = None
     copies: (

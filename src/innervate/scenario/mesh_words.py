@@ -81,6 +81,12 @@ def warnings(made: MeshPlan) -> list[str]:
         )
     if model.fence is not None and not made.walks:
         found.append("a fence but no [[robot]]: nobody can cross it")
+    offered = {offer.flow for offer in made.offers}
+    found += [
+        f"flow.{index} sends nothing: it begins after the end; set start_s or a later duration_s"
+        for index in range(len(model.flow))
+        if index not in offered
+    ]
     return found
 
 

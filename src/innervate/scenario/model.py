@@ -83,6 +83,9 @@ class BodyTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     urdf: Annotated[str, Meta(description='a file, or "package:icub-models/iCubGenova02"')]
     links: Annotated[str, Meta(description='a pattern for link names, like "r_forearm_skin_*"')]
+    pitch_mm: (
+        Annotated[float, Meta(ge=0.5, le=100_000, description="a number of mm, 0.5 or more")] | None
+    ) = None
     reach_mm: Annotated[float, Meta(gt=0, le=100_000, description="a number of mm > 0")] = 40.0
     interfaces: Annotated[
         Annotated[int, Meta(ge=1, le=4096)] | list[str],
@@ -216,6 +219,7 @@ class ScriptTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True)
     steps: Annotated[
         list[str], Meta(max_length=100_000, description='a list of steps like "tick n1"')
     ]
+    keepalive: Annotated[bool, Meta(description="true or false")] = False
 
 
 class SkinScenario(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -1,6 +1,6 @@
 """Invariants asserted while a skin runs: ranges and fd; loops are the observer's."""
 
-from innervate.protocol.arith import later
+from innervate.kernel.invariants import is_worse
 from innervate.protocol.skin_words import NONE, RULE_FEASIBLE
 from innervate.sim.observer import BROKEN_FEASIBLE, BROKEN_RANGE, next_hop
 
@@ -28,16 +28,3 @@ def check_route(world, cell):
         run.broken = BROKEN_FEASIBLE
         run.broken_node = cell
         run.broken_other = hop
-
-
-def is_worse(cell, parent):
-    """True if the feasible distance of `cell` is strictly worse than that of `parent`.
-
-    A parent that forgot its own (a restart, FD_HOLD) may stand until it has a route again: it
-    takes none before its children have given it up.
-    """
-    if parent.fd_known == 0:
-        return parent.parent == NONE
-    if cell.fd_known == 0 or later(parent.fd_sq, cell.fd_sq):
-        return True
-    return cell.fd_sq == parent.fd_sq and cell.fd_dist > parent.fd_dist

@@ -8,16 +8,21 @@ from __future__ import annotations
 
 from typing import Any
 
-from innervate.protocol import skin_words
+from innervate.protocol import plain, skin_words
 from innervate.scenario import ScenarioError
 from innervate.scenario import script as steps
-from innervate.sim import loop, wheel
+from innervate.sim import commands, loop, wheel
 from innervate.sim.build import build, get
 from innervate.sim.wheel import NIL
-from innervate.sim.wires import LOST_NOISE
-from innervate.sim.world import World
+from innervate.sim.wires import DOWN, LOST_CUT, LOST_NOISE
+from innervate.sim.world import COMMAND, World
 
 STEP_US = 1000
+FROM_OUTSIDE = {
+    steps.STEP_CUT: commands.CUT,
+    steps.STEP_RESTORE: commands.RESTORE,
+    steps.STEP_RESTART: commands.RESTART,
+}
 
 
 def play(plan: Any, stack: Any, checks: bool, trail: bool) -> tuple[World, int]:
@@ -34,9 +39,10 @@ def play(plan: Any, stack: Any, checks: bool, trail: bool) -> tuple[World, int]:
         wheel.remove(world.wheel, node)
         handle.switch_on(world, node, 0, loop.COLD)
     time = 0
+    missed: set[int] = set()
     for number, step in enumerate(plan.script):
         time += STEP_US
-        _take(plan, world, handle, step, time, number)
+        _take(plan, world, handle, stack, step, time, number, missed)
         if get(world.run, 0, "broken"):
             world.run[0].status = loop.BROKEN
             world.run[0].broken_at = time
@@ -45,7 +51,11 @@ def play(plan: Any, stack: Any, checks: bool, trail: bool) -> tuple[World, int]:
     return world, time
 
 
-def _take(plan: Any, world: World, handle: Any, step: Any, time: int, number: int) -> None:
+def _take(
+    plan: Any, world: World, handle: Any, stack: Any, step: Any, time: int, number: int,
+    missed: set[int],
+) -> None:  # fmt: skip
+    """One step; `missed` holds the ends that the next ticks find broken."""
     label = plan.graph.label
     if step.action == steps.DRAW:
         for cell in world.cells:
@@ -53,16 +63,20 @@ def _take(plan: Any, world: World, handle: Any, step: Any, time: int, number: in
         return
     if step.action == steps.DETECT:
         cell, port = world.cells[step.node], step.end - 4 * step.node
-        cell.pf[port] = 2 * skin_words.ONE
         cell.heard[port] = 0
-        handle.report(world, time, step.node, skin_words.REPORT_BROKEN, port, 1)
+        cell.pf[port] = max(cell.pf[port], skin_words.ONE - 1)
+        missed.add(step.end)
     elif step.action in (steps.TICK, steps.SOON):
         timer = skin_words.TICK if step.action == steps.TICK else skin_words.SOON
+        if timer == skin_words.TICK and plan.scenario.model.script.keepalive:
+            _keep_alive(world, step.node, missed)
         slot = timer * get(world.run, 0, "nodes") + step.node
         if world.wheel.events[slot].bucket == NIL:
             raise _refused(plan, number, f"{label(step.node)} has nothing to send soon")
         wheel.remove(world.wheel, slot)
         handle.on_timer_slot(world, slot, time)
+    elif step.action in FROM_OUTSIDE:
+        _obey(world, handle, stack, step, time)
     else:
         slot = _oldest(world, step.end)
         if slot == NIL:
@@ -76,6 +90,35 @@ def _take(plan: Any, world: World, handle: Any, step: Any, time: int, number: in
             wheel.give(world.wheel, slot)
     for cell in world.cells:
         cell.choice = -1
+
+
+def _keep_alive(world: World, node: int, missed: set[int]) -> None:
+    """Before a cell's tick: every port that is not to be found broken has heard something."""
+    if node == get(world.run, 0, "cells"):
+        return
+    cell = world.cells[node]
+    for port in range(skin_words.PORTS):
+        end = 4 * node + port
+        if world.ends[end].peer < 0:
+            continue
+        works = not world.ends[end].impaired & DOWN or cell.pf[port] < skin_words.ONE
+        cell.heard[port] = int(works and end not in missed)
+        missed.discard(end)
+
+
+def _obey(world: World, handle: Any, stack: Any, step: Any, time: int) -> None:
+    """A cable is cut, with what is on it, or works again; a node loses its memory."""
+    command = plain.make("Command", tuple((n, 0, -1, -1, "", "") for n in COMMAND))()
+    command.at, command.action = time, FROM_OUTSIDE[step.action]
+    command.node = step.node if step.action == steps.STEP_RESTART else -1
+    command.end = step.end
+    commands.obey(world, command, handle.switch_on, stack.stopped)
+    if step.action == steps.STEP_CUT:
+        for end in (step.end, world.ends[step.end].peer):
+            while (slot := _oldest(world, end)) != NIL:
+                wheel.remove(world.wheel, slot)
+                world.counters[LOST_CUT + world.wheel.events[slot].kind] += 1
+                wheel.give(world.wheel, slot)
 
 
 def _refused(plan: Any, number: int, why: str) -> ScenarioError:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import functools
-import signal
-import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import ModuleType
@@ -13,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from innervate.kernel import door, tables
+from innervate.kernel.stop import Stop
 from innervate.kernel.wall import wall_s
 from innervate.sim import build as builder
 from innervate.sim import loop, script, skin_stack, static_stack
@@ -56,13 +55,14 @@ class Result:
 
 
 def _modules() -> list[ModuleType]:
+    from innervate.kernel import invariants
     from innervate.protocol import arith, outbox, skin, skin_route, skin_sink, skin_static
     from innervate.protocol import rng as generator
     from innervate.sim import checks, clocks, wheel, wires
 
     return [
         arith, outbox, generator, skin_route, skin, skin_sink, skin_static,
-        wheel, clocks, wires, checks, skin_stack, static_stack,
+        wheel, clocks, wires, invariants, checks, skin_stack, static_stack,
     ]  # fmt: skip
 
 
@@ -163,27 +163,6 @@ def _result(
         arrived=int(world.counters[ARRIVED] + world.counters[ARRIVED + URGENT_BLOCK]),
         interrupted=interrupted,
     )
-
-
-class Stop:
-    """Turns Ctrl-C into a request to stop after the present slice, where a signal can be caught."""
-
-    def __init__(self) -> None:
-        self.asked = False
-        self._catches = threading.current_thread() is threading.main_thread()
-        self._before: Any = None
-
-    def __enter__(self) -> Stop:
-        if self._catches:
-            self._before = signal.signal(signal.SIGINT, self._ask)
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._catches:
-            signal.signal(signal.SIGINT, self._before)
-
-    def _ask(self, _number: int, _frame: object) -> None:
-        self.asked = True
 
 
 class _Keep:

@@ -119,35 +119,17 @@ class World(NamedTuple):
     place: Any
 
 
-class _Words:
-    """A plain object's fields as one row of numbers, in order of declaration."""
-
-    def __init__(self, target: Any, declaration: records.Declaration) -> None:
-        self._target = target
-        self._where = [
-            (name, i) if int(length) else (name, -1)
-            for name, length, *_ in declaration
-            for i in range(max(int(length), 1))
-        ]
-
-    def __getitem__(self, index: int) -> int:
-        name, i = self._where[index]
-        value = getattr(self._target, name)
-        return int(value if i < 0 else value[i])
-
-    def __setitem__(self, index: int, word: int) -> None:
-        name, i = self._where[index]
-        if i < 0:
-            setattr(self._target, name, word)
-        else:
-            getattr(self._target, name)[i] = word
-
-
 class Tables:
     """Makes tables of one form: compiled (arrays) or plain (lists)."""
 
-    def __init__(self, plain_form: bool) -> None:
+    def __init__(self, plain_form: bool, word: Any = np.int32) -> None:
+        """`word` is what protocols' records consist of.
+
+        32 bits save memory. 64 bits save compiling: functions that are not inlined are compiled
+        for every mix of widths that they are called with.
+        """
         self.plain = plain_form
+        self.word = word
 
     def numbers(self, count: int, value: int = 0, kind: type = np.int32) -> Any:
         """`count` integers."""
@@ -178,13 +160,13 @@ class Tables:
         if self.plain:
             make = plain.make("State", declaration)
             return [make() for _ in range(count)]
-        return records.zeros(declaration, count, itemsize)
+        return records.zeros(declaration, count, itemsize, self.word)
 
     def words(self, states: Any, declaration: Any) -> Any:
         """The states as rows of words."""
         if self.plain:
-            return [_Words(state, declaration) for state in states]
-        return states.view(np.int32).reshape(len(states), -1)
+            return [records.Words(state, declaration) for state in states]
+        return states.view(self.word).reshape(len(states), -1)
 
 
 def row_dtype(names: tuple[str, ...], wide: Collection[str] = frozenset(WIDE)) -> np.dtype[Any]:

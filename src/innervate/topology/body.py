@@ -10,6 +10,8 @@ from __future__ import annotations
 import math
 from array import array
 from collections.abc import Sequence
+from dataclasses import replace
+from functools import cache, lru_cache
 from pathlib import Path
 
 from innervate.topology.errors import TopologyError
@@ -22,19 +24,35 @@ Pair = tuple[float, int, int]
 
 
 def cells_from_urdf(
-    urdf: str, pattern: str, folder: Path | None = None
+    urdf: str, pattern: str, folder: Path | None = None, pitch_mm: float | None = None
 ) -> tuple[list[str], list[Vector]]:
-    """(names, positions in mm) of the links of a robot description that are cells.
+    """(names, positions in mm) of the cells of a robot description: its links, or on their meshes.
 
     Args:
         urdf: a path, relative to `folder`, or "package:<distribution>/<robot>".
         pattern: glob or regular expression for the names of the links.
         folder: where relative paths start; the working folder if left out.
+        pitch_mm: put cells on the surfaces of those links, this far apart; None = they are cells.
 
     Raises:
-        TopologyError: nothing to read, or nothing matches (see urdf.py).
+        TopologyError: nothing to read, or nothing matches (see urdf.py, cover.py).
     """
-    return read_positions(find_urdf(urdf, folder or Path()), pattern)
+    path = find_urdf(urdf, folder or Path())
+    if pitch_mm is None:
+        return read_positions(path, pattern)
+    names, positions = _covered(path, path.stat().st_mtime_ns, pattern, pitch_mm)
+    return list(names), list(positions)
+
+
+@cache
+def _covered(
+    path: Path, _changed: int, pattern: str, pitch_mm: float
+) -> tuple[tuple[str, ...], tuple[Vector, ...]]:
+    """Cells on surfaces; worked out once, since a sweep asks for them in every run."""
+    from innervate.topology.cover import cells_on_surfaces
+
+    names, positions = cells_on_surfaces(path, pattern, pitch_mm)
+    return tuple(names), tuple(positions)
 
 
 def body_graph(
@@ -54,6 +72,19 @@ def body_graph(
     Raises:
         TopologyError: cells out of reach of the others, or no free port for an interface.
     """
+    wanted = interfaces if isinstance(interfaces, int) else tuple(interfaces)
+    made = _body_graph(tuple(names), tuple(positions), reach_mm, wanted)
+    return replace(made, peer=made.peer[:])  # the kept one stays as it is
+
+
+@lru_cache(maxsize=64)
+def _body_graph(
+    names: tuple[str, ...],
+    positions: tuple[Vector, ...],
+    reach_mm: float,
+    interfaces: int | tuple[str, ...],
+) -> Graph:
+    """body_graph(), worked out once, since a sweep asks for it in every run."""
     if len(names) > CELLS_MAX:
         raise TopologyError(f"{len(names)} links match; at most {CELLS_MAX} can be cells", "links")
     wanted = interfaces if isinstance(interfaces, int) else len(interfaces)
@@ -179,3 +210,18 @@ def _hops(graph: Graph, start: int) -> list[int]:
                 hops[other] = hops[cell] + 1
                 queue.append(other)
     return hops
+
+
+def joining_reach(positions: Sequence[Vector]) -> float:
+    """The longest cable that is needed to hold all cells together, mm [Prim's tree]."""
+    if not positions:
+        return 0.0
+    away = {i: math.inf for i in range(1, len(positions))}
+    here, longest = positions[0], 0.0
+    while away:
+        for i in away:
+            away[i] = min(away[i], math.dist(here, positions[i]))
+        nearest = min(away, key=lambda i: (away[i], i))
+        longest = max(longest, away.pop(nearest))
+        here = positions[nearest]
+    return longest

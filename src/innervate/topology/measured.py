@@ -109,7 +109,7 @@ def from_json(text: str, types: Iterable[str] = ()) -> Measured:
     nodes, links = tables.get("nodes"), tables.get("links")
     if not isinstance(nodes, list) or not isinstance(links, list):
         raise TopologyError('lacks the lists "nodes" and "links"', "file")
-    wanted = set(types)
+    wanted = list(types)
     number: dict[Any, int] = {}
     degrees: list[tuple[float, float] | None] = []
     for i, node in enumerate(nodes):
@@ -121,14 +121,19 @@ def from_json(text: str, types: Iterable[str] = ()) -> Measured:
         number[name] = i
         degrees.append(_degrees(node, i))
     found: dict[tuple[int, int], Quality] = {}
+    others: dict[str, None] = {}
     for i, link in enumerate(links):
         if not isinstance(link, dict):
             raise TopologyError(f"link {i} is no table", "file")
         if wanted and link.get("type", None) not in (*wanted, None):
+            others[str(link["type"])[:40]] = None
             continue
         a, b = (_known(number, link, i, side) for side in ("source", "target"))
         # What arrives at the target is the quality from source to target, and the other way round.
         _join(found, a, b, _share(link, i, "target_tq"), _share(link, i, "source_tq"), f"link {i}")
+    if others and not found:
+        there = ", ".join(list(others)[:4])
+        raise TopologyError(f"no link is of type {' or '.join(wanted)}; there is {there}", "types")
     return Measured([str(name) for name in number], found, _metres(degrees, found))
 
 

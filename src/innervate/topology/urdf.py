@@ -11,6 +11,7 @@ import math
 import re
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+from typing import NamedTuple
 
 from innervate.topology.errors import TopologyError
 
@@ -59,6 +60,26 @@ def read_positions(path: Path, pattern: str) -> tuple[list[str], list[Vector]]:
     Raises:
         TopologyError: the file cannot be read or is no URDF, or nothing matches.
     """
+    placed = read_links(path, pattern)
+    metres = [link.place for link in placed]
+    return [link.name for link in placed], [(1e3 * x, 1e3 * y, 1e3 * z) for x, y, z in metres]
+
+
+class Link(NamedTuple):
+    """A link of a robot description: its element, and how and where (m) its frame lies."""
+
+    name: str
+    element: ElementTree.Element
+    turn: Matrix
+    place: Vector
+
+
+def read_links(path: Path, pattern: str) -> list[Link]:
+    """The links that match, in the file's order, placed in the root's frame; see read_positions.
+
+    Raises:
+        TopologyError: see read_positions().
+    """
     root = _parse(path)
     links = [link.get("name", "") for link in root.findall("link")]
     names = _matching(links, pattern)
@@ -72,8 +93,8 @@ def read_positions(path: Path, pattern: str) -> tuple[list[str], list[Vector]]:
         if parent is not None and child is not None:
             joints[child.get("link", "")] = (parent.get("link", ""), joint.find("origin"))
     poses: dict[str, tuple[Matrix, Vector]] = {}
-    metres = [_pose(name, joints, poses)[1] for name in names]
-    return names, [(1e3 * x, 1e3 * y, 1e3 * z) for x, y, z in metres]
+    elements = {link.get("name", ""): link for link in root.findall("link")}
+    return [Link(name, elements[name], *_pose(name, joints, poses)) for name in names]
 
 
 def _parse(path: Path) -> ElementTree.Element:
@@ -116,13 +137,22 @@ def _pose(
         above = joints[above][0]
     turn, place = poses.setdefault(above, _HERE)
     for link in reversed(chain):
-        origin = joints[link][1]
-        xyz, rpy = _numbers(origin, "xyz", link), _numbers(origin, "rpy", link)
-        moved = _apply(turn, xyz)
-        place = (place[0] + moved[0], place[1] + moved[1], place[2] + moved[2])
-        turn = _product(turn, _rotation(rpy))
+        turn, place = moved(turn, place, joints[link][1], link)
         poses[link] = (turn, place)
     return turn, place
+
+
+def moved(
+    turn: Matrix, place: Vector, origin: ElementTree.Element | None, link: str
+) -> tuple[Matrix, Vector]:
+    """A frame moved by an <origin> element of a link; None moves nothing.
+
+    Raises:
+        TopologyError: the element does not have three numbers.
+    """
+    xyz, rpy = _numbers(origin, "xyz", link), _numbers(origin, "rpy", link)
+    x, y, z = _apply(turn, xyz)
+    return _product(turn, _rotation(rpy)), (place[0] + x, place[1] + y, place[2] + z)
 
 
 def _numbers(origin: ElementTree.Element | None, key: str, link: str) -> Vector:

@@ -8,6 +8,9 @@ BROKEN_RANGE = 3
 BROKEN_TWICE = 4  # a packet was delivered twice
 BROKEN_HELD = 5  # a frame was handed down while another was under way
 BROKEN_FRAME = 6  # a receiver changed the frame that it was handed
+BROKEN_BELOW = 7  # the channel below says what
+
+MAC = 8  # in trails: a handler of the medium access
 
 WORD_BITS = 15
 SEEN_HASH = 0x5EE
@@ -34,9 +37,15 @@ def keep_row(world, time, node, code, a, b):
 
 
 def keep_sent(world, place, time, length, receivers):
+    """A row of what was on the air until now, if it was."""
+    if world.air[place].state == ON_AIR:
+        keep_transmission(world, place, time, length, receivers)
+
+
+def keep_transmission(world, place, time, length, receivers):
     """A row of what was on the air until now."""
     run, air, frame = world.run[0], world.air[place], world.frames[place]
-    if run.sent_limit > 0 and air.state == ON_AIR:
+    if run.sent_limit > 0:
         row = world.sent[run.sent]
         run.sent += 1
         row.time = air.start

@@ -10,10 +10,11 @@ from innervate.kernel import records
 from innervate.protocol import csma_fields, mesh_fields, rng
 from innervate.sim import world as w
 from innervate.sim.build import get, put, uniform
-from innervate.sim.mesh import books, powers, queue
+from innervate.sim.mesh import books, channel, powers, queue
 from innervate.sim.mesh import world as m
 from innervate.sim.mesh.loop import BOOT, NEVER
 from innervate.sim.mesh.medium import NONE
+from innervate.sim.mesh.over_channel import KEPT
 from innervate.sim.radio.world import Heap
 
 ROWS = 1 << 16
@@ -33,7 +34,7 @@ def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> m.Wo
 
     `keep` keeps all rows, `trail` one per handler call.
     """
-    tables = w.Tables(plain)
+    tables = w.Tables(plain, np.int64)
     n = plan.nodes
     gates = sum(rank >= 0 for rank in plan.ranks) + 1
     fields, gate_fields = mesh_fields.node(plan.capacity), mesh_fields.gate(plan.capacity)
@@ -41,9 +42,11 @@ def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> m.Wo
     low, high = records.bounds(fields)
     rows = PLAIN_ROWS if plain else ROWS
     kept = rows + _margin(n) if keep else 1
+    heap = Heap(tables.numbers(128 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64))
     world = m.World(
         run=tables.records(m.RUN, 1, wide=m.WIDE),
-        heap=Heap(tables.numbers(128 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64)),
+        heap=heap,
+        below=() if plan.mac in MACS else channel.world_of(plan, plain, checks, heap),
         nodes=nodes,
         words=tables.words(nodes, fields),
         low=_given(tables, low, np.int32),
@@ -54,7 +57,7 @@ def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> m.Wo
         macs=tables.states(csma_fields.STATION, n),
         mac_params=tables.states(csma_fields.PARAMS, 1),
         mac_item=tables.states(csma_fields.ITEM, 1),
-        radios=tables.records(m.RADIO, n, wide=m.WIDE),
+        radios=tables.records(m.RADIO, n, wide=m.RADIO),
         due=tables.numbers(n * m.TIMERS, NEVER, np.int64),
         **_medium(tables, plan),
         **_script(tables, plan),
@@ -107,7 +110,7 @@ def _outbox(tables: w.Tables, limit: int, frame: Any) -> w.Out:
         count=tables.numbers(1, 0, np.int64),
         limit=tables.numbers(1, limit, np.int64),
         overflow=tables.numbers(1, 0, np.int64),
-        action=tables.records(w.ACTION, limit),
+        action=tables.records(w.ACTION, limit, wide=w.ACTION),
         frame=tables.states(frame, limit),
     )
 
@@ -116,6 +119,8 @@ def _medium(tables: w.Tables, plan: Any) -> dict[str, Any]:
     """Tables of the medium."""
     n, radio = plan.nodes, plan.radio
     places = min(PLACES_PER_NODE * n + 64, queue.PLACES_MAX)
+    if plan.mac not in MACS:
+        places = n * KEPT
     strengths = powers.strength_table()
     power = [powers.strength(strengths, cdb) for cdb in radio.rssi_cdb]
     power[:: n + 1] = [0] * n  # nobody hears himself
@@ -132,7 +137,7 @@ def _medium(tables: w.Tables, plan: Any) -> dict[str, Any]:
         "strengths": _given(tables, strengths),
         "losses": _given(tables, powers.loss_table(radio.exponent_c)),
         "chances": _given(tables, powers.chance_table()),
-        "air": tables.records(m.AIR, places, wide=m.WIDE),
+        "air": tables.records(m.AIR, places, wide=m.AIR),
         "frames": tables.states(mesh_fields.FRAME, places, FRAME_BYTES),
         "worst": tables.numbers(places * n, 0, np.int64),
         "on_air": tables.numbers(places),
@@ -159,7 +164,7 @@ def _script(tables: w.Tables, plan: Any) -> dict[str, Any]:
     names = {"commands": m.COMMAND, "offers": m.OFFER, "walks": m.WALK, "points": m.POINT}
     found = {}
     for name, rows in made.items():
-        table = tables.records(names[name], max(len(rows), 1), wide=m.WIDE)
+        table = tables.records(names[name], max(len(rows), 1), wide=names[name])
         for i, row in enumerate(rows):
             put(table, i, **dict(zip(names[name], row, strict=True)))
         found[name] = table
@@ -190,8 +195,8 @@ def _set_run(world: m.World, plan: Any, gate_words: int) -> None:
         world.run,
         0,
         nodes=n,
-        mac=MACS[plan.mac],
-        collisions=int(radio.collisions),
+        mac=MACS.get(plan.mac, 0),
+        collisions=int(radio.collisions and plan.mac in MACS),
         turnaround=radio.turnaround_us,
         byte_ns=radio.byte_ns,
         phy_bytes=radio.phy_bytes,
@@ -221,7 +226,8 @@ def _set_run(world: m.World, plan: Any, gate_words: int) -> None:
                 field[i] = value
         else:
             put(world.params, 0, **{name: plan.params[name]})
-    put(world.mac_params, 0, **{name: plan.mac_params.get(name, CSMA[name]) for name in CSMA})
+    if plan.mac in MACS:
+        put(world.mac_params, 0, **{name: plan.mac_params.get(name, CSMA[name]) for name in CSMA})
 
 
 def _set_nodes(world: m.World, plan: Any, spare: int) -> None:

@@ -17,6 +17,8 @@ from innervate.sim.mesh.world import ALIVE, COMMITTED, DEAD, FREE, HELD, ON_AIR,
 NONE = -1
 DEAF = (1 << 62) - 1  # interference that nothing survives
 
+RSSI_LOW, RSSI_HIGH = -128, 127
+
 BROKEN_AIR = 1  # too many frames under way at once
 
 
@@ -140,6 +142,12 @@ def receivers(world, place):
             count += 1
     run.received += count
     return count
+
+
+def rssi_dbm(world, sender, node):
+    """What a node measures of a frame, whole dBm, as it stands on the wire."""
+    rssi = (world.rssi[sender * world.run[0].nodes + node] + 50) // 100
+    return min(max(rssi, RSSI_LOW), RSSI_HIGH)
 
 
 def senses(world, node):

@@ -11,16 +11,30 @@ from typing import Any
 import numpy as np
 
 from innervate.kernel import door, tables
+from innervate.kernel.stop import Stop
 from innervate.kernel.wall import wall_s
 from innervate.protocol import mesh_fields
 from innervate.sim import loop as skin_loop
 from innervate.sim.build import get, put
-from innervate.sim.mesh import books, loop, medium, motion, powers, stacks
+from innervate.sim.mesh import (
+    books,
+    channel,
+    loop,
+    medium,
+    motion,
+    over_channel,
+    over_medium,
+    powers,
+    queue,
+    stacks,
+)
 from innervate.sim.mesh import build as builder
 from innervate.sim.mesh import world as w
 from innervate.sim.radio import heap
-from innervate.sim.radio.build import grow_heap
-from innervate.sim.simulate import InvariantBroken, Stop
+from innervate.sim.radio import loop as radio_loop
+from innervate.sim.radio import simulate as radio_simulate
+from innervate.sim.radio import stacks as radio_stacks
+from innervate.sim.simulate import InvariantBroken
 from innervate.sim.world import row_dtype
 
 SLICE_EVENTS = 200_000
@@ -51,7 +65,7 @@ class MeshResult:
         delivered: what nodes gave to their users.
         rounds: what a gateway knew after each of its rounds.
         trail: all handler calls, if asked for; those of the medium access are numbered from
-            `loop.MAC`.
+            `books.MAC`.
         counts: the numbers of the run by name, see COUNTS.
         ended_us: up to where it ran.
     """
@@ -80,24 +94,35 @@ COUNTS = (
 )
 
 
-def compiled_loop(entry: ModuleType) -> Callable[..., None]:
-    """The compiled loop of a router over CSMA."""
-    return _compiled(entry)
+def compiled_loop(entry: ModuleType, mac: str) -> Callable[..., None]:
+    """The compiled loop of a router over a medium access protocol by name."""
+    return _compiled(entry, radio_stacks.PROTOCOLS.get(mac))
 
 
 @functools.cache
-def _compiled(entry: ModuleType) -> Callable[..., None]:
+def _compiled(entry: ModuleType, access: radio_stacks.Protocol | None) -> Callable[..., None]:
+    """The same; CSMA is what there is without a protocol for a channel that all share."""
     from innervate.protocol import arith, csma, outbox, rng
 
     door.register(arith, outbox, rng, heap)
     door.register(*stacks.modules_of(entry), csma, medium, motion, books, hot=False)
     door.register_functions(powers.strength, powers.chance, powers.loss)
-    door.register_functions(loop.pressing, loop.set_timer, loop.give_up, loop.wipe, hot=False)
+    door.register_functions(loop.pressing, loop.wipe, queue.set_timer, hot=False)
+    layer: Any = over_medium
+    if access is None:
+        below = (over_medium.give_up, over_medium.short, over_medium.due, over_medium.step)
+        door.register_functions(*below, hot=False)
+    else:
+        handlers = radio_simulate.registered(access, over_channel)
+        door.register_functions(*handlers[:-1], hot=False)
+        door.register(over_channel, hot=False)
+        layer = over_channel.layer(handlers)
+        door.register_functions(layer.step, hot=False)
     stack = stacks.bind(entry)
     door.register_functions(*stack, hot=False)
-    parts = loop.build(stack)
+    parts = loop.build(stack, layer)
     door.register_functions(*parts[:-1], hot=False)
-    advance = door.compiled(parts[-1])
+    advance = door.compiled_as_one(parts[-1])
     return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
 
 
@@ -129,18 +154,20 @@ def simulate(
     """
     if through is not None and not plain:
         raise ValueError("frames pass through a function in plain runs only")
-    if plan.mac not in builder.MACS:
-        raise ValueError(f"mac must be one of {', '.join(builder.MACS)}, not {plan.mac!r}")
+    known = (*builder.MACS, *radio_stacks.PROTOCOLS)
+    if plan.mac not in known:
+        raise ValueError(f"mac must be one of {', '.join(known)}, not {plan.mac!r}")
     router = entry or stacks.mesh()
     if plain:
         fields = mesh_fields.node(plan.capacity)
-        advance = loop.build(stacks.plain_stack(router, fields, through))[-1]
+        stack = stacks.plain_stack(router, fields, through)
+        advance = loop.build(stack, _plain_layer(plan.mac))[-1]
     else:
-        advance = compiled_loop(router)
+        advance = compiled_loop(router, plan.mac)
     world = builder.build(plan, plain, checks, keep, trail)
     advance(world, 0, 1)  # nothing is due before time 0: only compiles, or loads what was compiled
     if not plain:
-        door.mark_compiled(f"mesh-{plan.capacity}")
+        door.mark_compiled(loop_name(plan))
     parts: dict[str, list[Any]] = {name: [] for name in NAMES}
     started = wall_s()
     with Stop() as stop:
@@ -151,7 +178,7 @@ def simulate(
             if status == skin_loop.BROKEN:
                 raise InvariantBroken(_story(plan, world))
             if status == skin_loop.POOL_FULL:
-                world = grow_heap(world)
+                world = channel.grown(world)
             if status == loop.SEEN_FULL:
                 world = builder.grow_seen(world)
             _collect(world, parts)
@@ -170,6 +197,21 @@ def simulate(
     )
 
 
+def loop_name(plan: Any) -> str:
+    """Which loop a plan runs on, for `kernel.door.is_compiled`."""
+    access = radio_stacks.PROTOCOLS.get(plan.mac)
+    below = f"-{access.entry.__name__.rpartition('.')[2]}" if access else ""
+    return f"mesh-{plan.capacity}{below}"
+
+
+def _plain_layer(mac: str) -> Any:
+    """What is below the router in a plain run."""
+    if mac in builder.MACS:
+        return over_medium
+    stack = radio_stacks.bind(radio_stacks.PROTOCOLS[mac].entry)
+    return over_channel.layer(radio_loop.build(stack, over_channel))
+
+
 def _collect(world: w.World, parts: dict[str, list[Any]]) -> None:
     """Move filled rows out of the loop's tables, so that these can stay small."""
     for name, kept in parts.items():
@@ -185,6 +227,8 @@ def _collect(world: w.World, parts: dict[str, list[Any]]) -> None:
 
 def _story(plan: Any, world: w.World) -> str:
     """A broken invariant in one line."""
+    if int(get(world.run, 0, "broken")) == books.BROKEN_BELOW:
+        return radio_simulate.story(plan, world.below)
     at = int(get(world.run, 0, "now")) / 1e6
     name = plan.names[int(get(world.run, 0, "broken_node"))]
     what = {

@@ -21,7 +21,7 @@ RUN = (
 # What the medium knows of a node.
 RADIO = ("state", "deaf", "on_air", "held", "hot", "told", "tell_at", "boots", "gate", "offset",
          "noise", "x", "y")  # fmt: skip
-AIR = ("node", "state", "start", "end", "digest")
+AIR = ("node", "state", "start", "end", "digest", "receivers")
 WALK = ("node", "point", "last", "phase", "placed")
 POINT = ("time", "x", "y")
 COMMAND = ("time", "action", "node", "other", "value")
@@ -71,6 +71,7 @@ class World(NamedTuple):
     mac_params: Any
     mac_item: Any
     radios: Any
+    below: Any  # a channel that all share: a radio.world.World; () where there is none
     due: Any  # per node and timer: when it fires, -1 never
     rssi: Any  # per sender and receiver: 0.01 dBm
     base: Any  # ... at 1 m, where somebody moves

@@ -35,6 +35,7 @@ def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> r.Wo
     world = r.World(
         run=tables.records(r.RUN, 1, wide=r.WIDE),
         heap=r.Heap(tables.numbers(64 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64)),
+        above=(),
         stations=stations,
         words=tables.words(stations, fields),
         low=low.tolist() if plain else low,

@@ -81,9 +81,7 @@ def pressing(world):
     run = world.run[0]
     if run.broken:
         return BROKEN
-    if run.rows + MARGIN > run.row_limit > 0:
-        return ROWS_FULL
-    if run.sent + MARGIN > run.sent_limit > 0:
+    if run.rows + MARGIN > run.row_limit > 0 or run.sent + MARGIN > run.sent_limit > 0:
         return ROWS_FULL
     if run.packets + MARGIN > run.packet_limit > 0:
         return ROWS_FULL
@@ -112,8 +110,6 @@ def keep_sent(world, node, frame, time):
     run = world.run[0]
     start = time + run.ta_us
     end = start + frame.slots * run.slot_us
-    if frame.count > 0:
-        traffic.note_sent(world, node, frame, end)
     if run.exclusive and frame.kind == DATA:
         if start < run.data_until and run.broken == 0:
             run.broken, run.broken_node = BROKEN_TURNS, node
@@ -151,10 +147,15 @@ def watch(world, node, time, handler, port):
         row.fingerprint = run.fingerprint
 
 
-def build(stack):
-    """The loop for a stack: an object with start, hear, fire, give, carrier, digest, copy_frame."""
+def build(stack, packets=traffic):
+    """The loop for a stack: an object with start, hear, fire, give, carrier, digest, copy_frame.
+
+    `packets` follows what becomes of packets: `traffic`, or a protocol above whose frames they are.
+    """
     start, hear, fire, give = stack.start, stack.hear, stack.fire, stack.give
     carrier, digest, copy_frame = stack.carrier, stack.digest, stack.copy_frame
+    note_sent, note_delivered = packets.note_sent, packets.note_delivered
+    note_received = packets.note_received
 
     def drain(world, node, time, now):
         """Carry out what a handler put into the outbox; fold it into the fingerprint."""
@@ -169,6 +170,8 @@ def build(stack):
             elif kind == SEND:
                 mark = mix(mark, digest(out.frame[i]))
                 keep_sent(world, node, out.frame[i], time)
+                if out.frame[i].count > 0:
+                    note_sent(world, node, out.frame[i], time)
                 medium.transmit(world, node, out.frame[i], time, copy_frame)
             elif kind == SET_TIMER:
                 at = time + max(0, ((b - now + (1 << 29)) & MASK30) - (1 << 29))
@@ -179,12 +182,12 @@ def build(stack):
                 keep_row(world, time, node, a, b, c)
                 if a == REPORT_DELIVERED:
                     for k in range(c):
-                        traffic.note_delivered(world, node, (b + k) & MASK16, time)
+                        note_delivered(world, node, (b + k) & MASK16, time)
                     world.radios[node].noted |= 2
                 elif a == REPORT_LEFT:
                     world.radios[node].leaving = 2
             elif kind == DELIVER:
-                traffic.note_received(world, node, out.frame[i])
+                note_received(world, node, out.frame[i], time)
         out.count[0] = 0
         run.fingerprint = mark
         if out.overflow[0] and run.broken == 0:
@@ -213,9 +216,7 @@ def build(stack):
         """Hand packets down: of those that wait, and in saturation always new ones."""
         run, radio = world.run[0], world.radios[node]
         station = world.stations[node]
-        most = QUEUE
-        if run.saturated:
-            most = min(QUEUE, 2 * run.per_turn + 1)
+        most = min(QUEUE, 2 * run.per_turn + 1) if run.saturated else QUEUE
         for _ in range(QUEUE):
             if station.queued >= most or radio.leaving or not radio.alive:
                 break
@@ -261,7 +262,6 @@ def build(stack):
         radio.cd, radio.voc, radio.noted = 0, 0, 0
         radio.deaf = 0  # it died in mid-frame, and its radio starts anew, too
         radio.ready_at, radio.told_at = NEVER, NEVER
-        radio.told_at = NEVER
         now = time + radio.offset
         for timer in range(TIMERS):
             world.due[node * TIMERS + timer] = NEVER

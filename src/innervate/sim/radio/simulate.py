@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from innervate.kernel import door, tables
+from innervate.kernel.stop import Stop
 from innervate.kernel.wall import wall_s
 from innervate.sim import loop as skin_loop
 from innervate.sim.build import get, put
 from innervate.sim.radio import build as builder
 from innervate.sim.radio import heap, loop, medium, stacks, traffic
 from innervate.sim.radio import world as w
-from innervate.sim.simulate import InvariantBroken, Stop
+from innervate.sim.simulate import InvariantBroken
 from innervate.sim.world import row_dtype
 
 SLICE_EVENTS = 1_000_000
@@ -61,6 +62,14 @@ def compiled_loop(name: str) -> Callable[..., None]:
 @functools.cache
 def _compiled(protocol: stacks.Protocol) -> Callable[..., None]:
     """Its loop; all names of one protocol share it."""
+    parts = registered(protocol, traffic)
+    door.register_functions(*parts[:-1], hot=False)
+    advance = door.compiled(parts[-1])
+    return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
+
+
+def registered(protocol: stacks.Protocol, packets: Any) -> loop.Handlers:
+    """A protocol's loop, plain; what its parts call may be compiled."""
     from innervate.protocol import arith, outbox, rng
 
     door.register(traffic, hot=False)
@@ -69,10 +78,7 @@ def _compiled(protocol: stacks.Protocol) -> Callable[..., None]:
     door.register_functions(loop.pressing, loop.keep_row, loop.keep_sent, loop.watch, hot=False)
     stack = stacks.bind(protocol.entry)
     door.register_functions(*stack)
-    parts = loop.build(stack)
-    door.register_functions(*parts[:-1], hot=False)
-    advance = door.compiled(parts[-1])
-    return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
+    return loop.build(stack, packets)
 
 
 def simulate(
@@ -107,7 +113,7 @@ def simulate(
             advance(world, plan.duration_us, SLICE_EVENTS)
             status = int(get(world.run, 0, "status"))
             if status == skin_loop.BROKEN:
-                raise InvariantBroken(_story(plan, world))
+                raise InvariantBroken(story(plan, world))
             if status == skin_loop.POOL_FULL:
                 world = builder.grow_heap(world)
             _collect(world, parts)
@@ -141,7 +147,7 @@ def _collect(world: w.World, parts: dict[str, list[Any]]) -> None:
         put(world.run, 0, **{name: 0})
 
 
-def _story(plan: Any, world: w.World) -> str:
+def story(plan: Any, world: w.World) -> str:
     """A broken invariant in one line."""
     node = int(get(world.run, 0, "broken_node"))
     at = max(int(get(world.run, 0, "broken_at")), 0) / 1e6

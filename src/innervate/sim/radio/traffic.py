@@ -38,14 +38,15 @@ def fill_item(world, node, handle):
     item.slots = world.sizes[node * RING + (handle & (RING - 1))]
 
 
-def note_sent(world, node, frame, end):
-    """A frame with packets goes on the air."""
-    world.radios[node].data_end = end
+def note_sent(world, node, frame, time):
+    """A station decides to send a frame with packets: it goes on the air after the turnaround."""
+    run = world.run[0]
+    world.radios[node].data_end = time + run.ta_us + frame.slots * run.slot_us
     for i in range(frame.count):
         world.tries[node * RING + ((frame.handle + i) & (RING - 1))] += 1
 
 
-def note_received(world, node, frame):
+def note_received(world, node, frame, _time):
     """A frame with packets was received."""
     run = world.run[0]
     source = frame.source

@@ -48,6 +48,7 @@ class World(NamedTuple):
 
     run: Any
     heap: Heap
+    above: Any  # event queue of the protocol whose frames the packets are; () = none
     stations: Any
     words: Any  # their records as rows of words
     low: Any

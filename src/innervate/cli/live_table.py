@@ -1,0 +1,118 @@
+"""The table that a sweep shows while it runs: on a terminal live, elsewhere a line now and then."""
+
+from __future__ import annotations
+
+import sys
+import time
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+from innervate.analysis.intervals import mean_interval
+
+if TYPE_CHECKING:
+    from innervate.sweep.conduct import Conductor, State
+
+LINE_EVERY_S = 10.0
+DRAW_EVERY_S = 0.2
+ROWS_MAX = 20
+MEASURES_MAX = 2
+
+
+class LiveTable:
+    """Shows how far a sweep is; a context manager, called with the Conductor; on stderr.
+
+    Args:
+        name: of the sweep.
+        measures: whose means to show, as many as there is room for.
+    """
+
+    def __init__(self, name: str, measures: tuple[str, ...]) -> None:
+        self.words = "nothing is done yet"
+        self._name = name
+        self._measures = measures
+        self._terminal = sys.stderr.isatty()
+        self._live: Any = None
+        self._last = time.monotonic()
+
+    def __enter__(self) -> Self:
+        if self._terminal:
+            from rich.console import Console
+            from rich.live import Live
+
+            self._live = Live(console=Console(stderr=True), auto_refresh=False, transient=True)
+            self._live.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Take the table away again."""
+        if self._live is not None:
+            self._live.stop()
+            self._live = None
+
+    def __call__(self, conductor: Conductor) -> None:
+        """The sweep has come so far."""
+        self.words = f"{conductor.done} of {_about(conductor)} runs done"
+        if conductor.failed:
+            self.words += f", {conductor.failed} failed"
+        now, ended = time.monotonic(), conductor.done == conductor.total
+        if self._live is not None and (now - self._last >= DRAW_EVERY_S or ended):
+            self._last = now
+            self._live.update(self._table(conductor), refresh=True)
+        elif not self._terminal and now - self._last >= LINE_EVERY_S:
+            self._last = now
+            print(f"{self._name}: {self.words}{_left(conductor)}", file=sys.stderr, flush=True)
+
+    def _table(self, conductor: Conductor) -> Any:
+        from rich.table import Table
+
+        there = [m for m in self._measures if any(m in s.values for s in conductor.states)]
+        shown = there[:MEASURES_MAX]
+        title = f"{self._name}: {self.words}{_left(conductor)}"
+        table = Table(title=title, title_justify="left", box=None, pad_edge=False)
+        table.add_column("point", no_wrap=True, overflow="ellipsis")
+        for head in ("runs", *shown):
+            table.add_column(head, justify="right", no_wrap=True)
+        for state in _interesting(conductor.states):
+            count = f"{state.done}/{state.goal}" + (" done" if state.finished else "")
+            label = state.point.label or "all runs"
+            table.add_row(label, count, *(_mean(state.series(name)) for name in shown))
+        return table
+
+
+def _interesting(states: list[State]) -> list[State]:
+    """As many points as fit: those at work, and those finished last, in the plan's order."""
+    if len(states) <= ROWS_MAX:
+        return states
+    active = [s for s in states if s.done and not s.finished][:ROWS_MAX]
+    ended = [s for s in states if s.finished][-max(1, ROWS_MAX - len(active)) :]
+    return sorted([*active, *ended][:ROWS_MAX], key=lambda state: state.point.index)
+
+
+def _mean(values: list[float]) -> str:
+    if not values:
+        return "-"
+    found = mean_interval(values)
+    return f"{found.value:.4g} +- {(found.high - found.low) / 2:.2g}"
+
+
+def _about(conductor: Conductor) -> str:
+    until = conductor.plan.until and conductor.done < conductor.total
+    return f"{'about ' if until else ''}{conductor.total}"
+
+
+def _left(conductor: Conductor) -> str:
+    left = conductor.left_s
+    if left is None or left < 1:
+        return ""
+    if left < 100:
+        return f", about {left:.0f} s left"
+    minutes = round(left / 60)
+    return f", about {minutes} min left" if minutes < 100 else f", about {minutes / 60:.0f} h left"

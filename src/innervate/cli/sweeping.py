@@ -1,0 +1,108 @@
+"""`innervate sweep`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from innervate.cli import errors
+from innervate.cli.live_table import LiveTable
+
+if TYPE_CHECKING:
+    from innervate.sweep import Sweep, SweepPlan
+
+# What is shown if nobody says: of these, those that the runs have.
+SHOWN = (
+    "recoveries.routed_ms", "data.loss_ratio",
+    "throughput", "delay_slots.p50",
+    "delivery_ratio", "latency_ms.p50",
+)  # fmt: skip
+SHOWN_MAX = 3
+POINTS_MAX = 40
+REASONS_MAX = 5
+
+
+def sweep(file: str, what: dict[str, Any], how: dict[str, Any], show: list[str]) -> int:
+    """Run a sweep behind a live table; say what came of it."""
+    from innervate import sweep as room
+
+    plan: SweepPlan = room.make_plan(file, **what)
+    folder = how["out"] or Path("sweeps") / (plan.name or "sweep")
+    wanted = tuple(dict.fromkeys([*show, *(rule.measure for rule in plan.until)]))
+    with LiveTable(plan.name, wanted or SHOWN) as table:
+        try:
+            done = room.sweep(
+                plan, **{**how, "out": folder}, follow=wanted or SHOWN, progress=table
+            )
+        except KeyboardInterrupt:
+            table.close()
+            errors.say(f"interrupted; {table.words}; they are kept in {folder}, and the same "
+                       "command goes on from there")  # fmt: skip
+            return errors.INTERRUPTED
+    for line in result_lines(done, wanted):
+        print(line)
+    for path in draw_plots(done, folder):
+        print(f"Drawn: {path}")
+    print(f"Written: {folder / 'results.parquet'}")
+    return 0
+
+
+def draw_plots(done: Sweep, folder: Path) -> list[Path]:
+    """Draw the figures that the plan asks for, into its folder; the PNGs' paths."""
+    if not done.plan.plots:
+        return []
+    from innervate.plot import style
+
+    paths = []
+    for number, plot in enumerate(done.plan.plots):
+        name = plot.name or f"plot-{number}"
+        with style.house():
+            drawn = done.plot(plot.x, plot.y, plot.by, plot.kind, plot.title)
+            paths.append(style.save(drawn, folder, name)[0])
+    return paths
+
+
+def result_lines(done: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
+    """The means of every point in columns, and what failed."""
+    there = done.measures
+    shown = [m for m in wanted or SHOWN if m in there][:SHOWN_MAX] or there[:SHOWN_MAX]
+    heads = [*done.plan.keys, "runs", *shown]
+    rows = [heads]
+    table = done.points(shown) if shown else done.points(there[:1])
+    figures = {(row["point"], row["measure"]): row for row in table.iter_rows(named=True)}
+    counts = dict(done.results.group_by("point").len().iter_rows())
+    for point in done.plan.points[:POINTS_MAX]:
+        cells = [_cell(value) for value in point.columns.values()]
+        cells.append(str(counts.get(point.index, 0)))
+        rows.append(cells + [mean_words(figures[point.index, name]) for name in shown])
+    widths = [max(len(row[i]) for row in rows) for i in range(len(heads))]
+    lines = ["  ".join(f"{c:>{w}}" for c, w in zip(row, widths, strict=True)) for row in rows]
+    more = len(done.plan.points) - POINTS_MAX
+    if more > 0:
+        lines.append(f"... and {more} more points")
+    return lines + failed_lines(done)
+
+
+def failed_lines(done: Sweep) -> list[str]:
+    """How many runs failed, and why."""
+    reasons = done.failed["reason"].to_list()
+    if not reasons:
+        return []
+    counts = sorted({r: reasons.count(r) for r in reasons}.items(), key=lambda pair: -pair[1])
+    lines = [f"{len(reasons)} of {done.results.height} runs failed:"]
+    lines += [f"  {count} x {reason}" for reason, count in counts[:REASONS_MAX]]
+    if len(counts) > REASONS_MAX:
+        lines.append(f"  ... and {len(counts) - REASONS_MAX} other reasons, see results.parquet")
+    return lines
+
+
+def mean_words(row: dict[str, Any]) -> str:
+    """Mean and half the interval's width: "17.2 +- 0.6"."""
+    if not row["runs"]:
+        return "-"
+    half = (row["high"] - row["low"]) / 2
+    return f"{row['mean']:.4g}" + (f" +- {half:.2g}" if row["runs"] > 1 else "")
+
+
+def _cell(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,75 @@
+"""The options of `innervate verify`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from innervate.cli.seeds import Seed
+
+Flag = Annotated[bool, Parameter(negative="")]
+
+
+@dataclass(frozen=True)
+class VerifyOptions:
+    """What to explore, and how much of it.
+
+    Parameters
+    ----------
+    rule
+        Skin: feasible (if left out), strict, paper or all. Radio: practical (if left out) or paper.
+    updates
+        periodic, triggered or all.
+    graph
+        Cables like "pc-1 1-2 2-3", a name (line, star, triangle, ring, pair, complete), or all
+        graphs of up to --cells cells.
+    cells
+        How many cells the graphs may have, 1 to 4 (2 if left out); stations of a radio, 2 to 4.
+    budget
+        How often what may happen, like "ticks=3,counts=2,loss=1,cut=1,heal=1,false=1,restart=1,
+        faults=2"; these are the defaults, and faults counts all five kinds together.
+    prompt
+        Every frame arrives or is lost before anything else happens.
+    liveness
+        Also see from every state whether routes become shortest once faults have ended.
+    starts
+        Play that from so many states instead of all.
+    states
+        End each exploration after so many states.
+    walks
+        Instead of all states so many random walks, for larger budgets.
+    memory
+        What the states of an exploration may take, like 800M or 4G.
+    random
+        Simulate whole networks, all settings and faults drawn, until interrupted.
+    mutants
+        Try the explorer on copies of the protocol with a small mistake in each.
+    seed
+        With --random the first network's number, with --walks the walks'.
+    count
+        With --random end after so many networks.
+    plain
+        Without the compiler: slower by a hundred times, needs no preparation.
+    """
+
+    rule: str = ""
+    updates: str = "all"
+    graph: str = "all"
+    cells: int = 0
+    budget: str = ""
+    prompt: Flag = False
+    liveness: bool = True
+    starts: int = 0
+    states: int = 0
+    walks: int = 0
+    memory: str = "2G"
+    random: Flag = False
+    mutants: Flag = False
+    seed: Seed = None
+    count: int = 0
+    plain: Flag = False
+
+
+VERIFY_DEFAULTS = VerifyOptions()

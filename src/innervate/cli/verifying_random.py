@@ -1,0 +1,40 @@
+"""`innervate verify --random`: whole networks, until something breaks or somebody says stop."""
+
+from __future__ import annotations
+
+import json
+from itertools import count as numbers
+from pathlib import Path
+
+from innervate.cli import errors
+from innervate.cli.progress import Display
+
+
+def search(seed: int | None, count: int, as_json: bool, out: Path | None) -> int:
+    """Run networks `seed`, `seed` + 1, ...; 1 with the first that breaks something."""
+    from innervate.kernel.stop import Stop
+    from innervate.run import wild
+
+    first, done, broken = seed or 1, 0, None
+    with Stop() as stop, Display(as_json) as display:
+        for number in numbers(first):
+            display.show(f"network {number}: {done} fine so far", done, count or 1 << 40, None)
+            broken = wild.attempt(number)
+            done += 1
+            if broken is not None or stop.asked or done == count:
+                break
+    result = {"first": first, "networks": done, "broken": None}
+    if broken is None:
+        if as_json:
+            print(json.dumps(result))
+        else:
+            print(f"Nothing broken in {done} networks, {first} to {first + done - 1}.")
+        return errors.INTERRUPTED if stop.asked and done != count else 0
+    path = broken.save(out or Path("runs"))
+    if as_json:
+        print(json.dumps(result | {"broken": broken.why, "seed": broken.seed, "file": str(path)}))
+    else:
+        print(f"Network {broken.seed} breaks: {broken.why}")
+        print(f"Made smaller in {broken.tries} tries. Play it: innervate run {path}")
+        print(f"As drawn: innervate verify --random --seed {broken.seed} --count 1")
+    return 1

@@ -1,0 +1,176 @@
+"""Figures of a sweep: means over a setting with bands, runs as dots, heat maps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
+
+from innervate.analysis.intervals import mean_interval
+from innervate.plot import style
+
+KINDS = ("band", "heat")
+LINES_MAX = 8
+WRITTEN_MAX = 60  # squares of a heat map that have their number written in them
+Columns = Mapping[str, Sequence[Any]]
+# What a measure's ending means, for axes.
+UNITS = {"_ms": "ms", "_s": "s", "_us": "us", "_hz": "Hz", "_m": "m", "_slots": "slots"}
+
+
+def draw(
+    columns: Columns, x: str, y: str, by: str, kind: str, title: str, over_settings: bool
+) -> Figure:
+    """A figure of runs.
+
+    Args:
+        columns: of the results, one value a run.
+        x: what goes to the right: a setting, or (not over_settings) a measure.
+        y: what goes up, or the shade of a heat map.
+        by: what tells lines apart, or what goes up in a heat map; "" = one line.
+        kind: "band" or "heat".
+        title: above it.
+        over_settings: `x` has few values with many runs each, so means and intervals are drawn.
+    """
+    with style.house():
+        made, (ax,) = style.panels(style.COLUMN_IN, 2.5)
+        if kind == "heat":
+            _heat(made, ax, columns, x, y, by)
+        elif over_settings:
+            _bands(ax, columns, x, y, by)
+        else:
+            _dots(ax, columns, x, y, by)
+        ax.set_title(title)
+        return made
+
+
+def label(name: str) -> str:
+    """A column in words: "recoveries.routed_ms" is "recoveries routed (ms)"."""
+    parts = name.split(".")
+    last = parts[-1]
+    for ending, unit in UNITS.items():
+        if last.endswith(ending):
+            parts[-1] = last.removesuffix(ending)
+            return f"{' '.join(parts).replace('_', ' ')} ({unit})"
+    return " ".join(parts).replace("_", " ")
+
+
+def _bands(ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:
+    """Means, and the 95 % interval of each as a band."""
+    places, numbers = _scale(columns[x])
+    for number, value in enumerate(_values(columns, by)[:LINES_MAX]):
+        groups = _groups(columns, (x, by), y, value)
+        there = [place for place in places if groups.get(place)]
+        found = [mean_interval(groups[place]) for place in there]
+        across = [numbers[place] for place in there]
+        look = _look(number, "" if value is None else _text(value))
+        ax.plot(across, [one.value for one in found], **look)
+        low, high = [one.low for one in found], [one.high for one in found]
+        ax.fill_between(across, low, high, color=look["color"], alpha=0.18, lw=0)
+        if len(across) == 1:  # a band of one place cannot be seen
+            ax.vlines(across, low, high, color=look["color"], lw=1.2)
+    _name_places(ax, places, numbers)
+    ax.set_xlabel(label(x))
+    ax.set_ylabel(f"{label(y)}\nmean, 95 % interval")
+    _legend(ax, by)
+
+
+def _dots(ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:
+    """A dot for every run."""
+    side = columns[by] if by else [None] * len(columns[x])
+    for number, value in enumerate(_values(columns, by)[:LINES_MAX]):
+        rows = zip(columns[x], columns[y], side, strict=True)
+        kept = [(a, b) for a, b, c in rows if c == value and a is not None and b is not None]
+        look = _look(number, "" if value is None else _text(value))
+        ax.plot([a for a, _ in kept], [b for _, b in kept], **(look | {"ls": "", "alpha": 0.6}))
+    ax.set_xlabel(label(x))
+    ax.set_ylabel(label(y))
+    _legend(ax, by)
+
+
+def _heat(made: Figure, ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:
+    """Means as shades over two settings; hatched where there is none."""
+    rights, ups = _values(columns, x), _values(columns, by)
+    means = np.full((len(ups), len(rights)), np.nan)
+    for row, up in enumerate(ups):
+        groups = _groups(columns, (x, by), y, up)
+        for i, right in enumerate(rights):
+            if groups.get(right):
+                means[row, i] = sum(groups[right]) / len(groups[right])
+    shades = LinearSegmentedColormap.from_list("house", ["#f3f6fa", "#7fb2d9", "#0a3d66"])
+    ax.set_facecolor(style.FAINT)
+    image = ax.imshow(means, cmap=shades, origin="lower", aspect="auto")
+    middle = (np.nanmin(means) + np.nanmax(means)) / 2 if np.isfinite(means).any() else 0.0
+    if means.size <= WRITTEN_MAX:
+        for (row, i), value in np.ndenumerate(means):
+            dark = np.isfinite(value) and value > middle
+            words = f"{value:.3g}" if np.isfinite(value) else "none"
+            ink = "#ffffff" if dark else style.INK
+            ax.text(i, row, words, ha="center", va="center", fontsize=6.5, color=ink)
+    ax.set_xticks(range(len(rights)), [_text(value) for value in rights])
+    ax.set_yticks(range(len(ups)), [_text(value) for value in ups])
+    ax.grid(visible=False)
+    ax.set_xlabel(label(x))
+    ax.set_ylabel(label(by))
+    bar = made.colorbar(image, ax=ax)
+    bar.set_label(f"{label(y)}, mean")
+    bar.outline.set_visible(False)
+
+
+def _values(columns: Columns, name: str) -> list[Any]:
+    """The values of a column, smallest first; texts in the order in which they come."""
+    if not name:
+        return [None]
+    found = list(dict.fromkeys(value for value in columns[name] if value is not None))
+    return sorted(found) if all(isinstance(v, int | float) for v in found) else found
+
+
+def _scale(values: Sequence[Any]) -> tuple[list[Any], dict[Any, float]]:
+    """(values in order, where each stands): numbers at themselves, texts one after another."""
+    found = _values({"": values, "x": values}, "x")
+    if all(isinstance(v, int | float) and not isinstance(v, bool) for v in found):
+        return found, {value: float(value) for value in found}
+    return found, {value: float(i) for i, value in enumerate(found)}
+
+
+def _groups(columns: Columns, keys: tuple[str, str], y: str, value: Any) -> dict[Any, list[float]]:
+    """The measure's values of the runs with `value` in the second key, by the first."""
+    x, by = keys
+    side = columns[by] if by else [None] * len(columns[x])
+    groups: dict[Any, list[float]] = {}
+    for place, number, other in zip(columns[x], columns[y], side, strict=True):
+        if other == value and number is not None:
+            groups.setdefault(place, []).append(number)
+    return groups
+
+
+def _look(number: int, name: str) -> dict[str, Any]:
+    i = number % len(style.SERIES)
+    return {
+        "color": style.SERIES[i],
+        "marker": style.MARKERS[i],
+        "ls": style.DASHES[number % len(style.DASHES)],
+        "label": name or None,
+    }
+
+
+def _name_places(ax: Axes, places: list[Any], numbers: dict[Any, float]) -> None:
+    """Ticks at the values there are; a wide range of positive numbers on a logarithmic axis."""
+    plain = all(numbers[place] == place for place in places)
+    if plain and places and min(places) > 0 and max(places) / min(places) >= 20:
+        ax.set_xscale("log")
+        ax.minorticks_off()
+    if not plain or len(places) <= 10:
+        ax.set_xticks([numbers[place] for place in places], [_text(place) for place in places])
+
+
+def _legend(ax: Axes, by: str) -> None:
+    if by:
+        ax.legend(loc="best", title=label(by), title_fontsize=6.8, alignment="left")
+
+
+def _text(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,181 @@
+"""Messages that are kept until their recipient acknowledges them [mesh RELIABLE]."""
+
+from innervate.protocol.arith import MASK30, after, later
+from innervate.protocol.mesh_fields import WAITING
+from innervate.protocol.mesh_frames import add8, get16, inner
+from innervate.protocol.mesh_queue import ALARMS, CONTROL, MESSAGES, compose, drop, kick
+from innervate.protocol.mesh_search import BITS
+from innervate.protocol.mesh_seen import is_hopeless, note_no_way, unskip
+from innervate.protocol.mesh_send import send_on
+from innervate.protocol.mesh_words import (
+    ALARM,
+    BODY,
+    CROSS,
+    DATA,
+    DATA_MAX,
+    NO_ACK,
+    NO_ROUTE,
+    PARITY,
+    PRIORITY,
+    REPORT_ARRIVED,
+    REPORT_EXPIRED,
+    RETRY,
+)
+from innervate.protocol.outbox import report, set_timer
+
+FREE = 0
+LONGEST_US = 1 << 27
+
+
+def free_wait(node):
+    """A place for a message that is kept, or -1."""
+    for w in range(WAITING):
+        if node.wait_kind[w] == FREE:
+            return w
+    return -1
+
+
+def keep(node, params, now, w, i, handle, out):
+    """Keep the packet in place i of the queue until its recipient acknowledges it."""
+    node.wait_kind[w] = node.q_kind[i]
+    node.wait_seq[w] = node.q_seq[i]
+    node.wait_dest[w] = node.q_dest[i]
+    node.wait_flags[w] = node.q_flags[i]
+    node.wait_tries[w] = 1
+    node.wait_hop[w] = 0
+    node.wait_at[w] = now
+    node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
+    node.wait_handle[w] = handle
+    node.wait_length[w] = node.q_length[i]
+    for k in range(node.q_length[i]):
+        node.wait_body[w * DATA_MAX + k] = node.q_body[i * BODY + k]
+    wait_on(node, now, out)
+
+
+def timeout(node, params, w):
+    """How long to wait for the end-to-end ack of the message in place w, us.
+
+    Twice as long after every further retry, but for alarms: who is not there is searched
+    everywhere each time.
+    """
+    wait = params.e2e_us
+    double = max(0, node.wait_tries[w] - 2)
+    if params.e2e_adapt:
+        wait = max(params.e2e_us, 4 * node.round_trip)
+        double = node.wait_tries[w] - 1
+    if node.wait_kind[w] != ALARM:
+        wait = wait << min(double, 4)
+    return min(wait, LONGEST_US)
+
+
+def wait_on(node, now, out):
+    """Set the RETRY timer to the first end-to-end timeout."""
+    soonest = -1
+    for w in range(WAITING):
+        if node.wait_kind[w] != FREE:
+            wait = (node.wait_due[w] - now) & MASK30
+            if wait > MASK30 >> 1:
+                wait = 0
+            if soonest < 0 or wait < soonest:
+                soonest = wait
+    if soonest >= 0:
+        set_timer(out, RETRY, (now + soonest) & MASK30)
+
+
+def due_wait(node, now):
+    """A kept message whose time is over, or -1."""
+    for w in range(WAITING):
+        if node.wait_kind[w] != FREE and after(now, node.wait_due[w]):
+            return w
+    return -1
+
+
+def is_in_vain(node, i, owner):
+    """1 if no way is known to the recipient, or an older message to it is looking for one."""
+    dest = node.q_dest[i]
+    if is_hopeless(node, dest):
+        return 1
+    for w in range(WAITING):
+        if w != owner and node.wait_kind[w] == DATA and node.wait_dest[w] == dest:
+            if node.wait_tries[w] > 1 and later(node.q_seq[i], node.wait_seq[w]):
+                return 1
+    return 0
+
+
+def launch(node, params, now, i, owner, handle, out):
+    """A packet of ours goes out; without a way, only one that is kept may come to one later."""
+    node.q_owner[i] = owner
+    sent = 0
+    if node.q_kind[i] != ALARM and is_in_vain(node, i, owner):
+        drop(node, i)
+    else:
+        sent = send_on(node, params, now, i, out)
+    if not sent and owner < 0:
+        report(out, REPORT_EXPIRED, handle, NO_ROUTE)
+    kick(node, params, now, out)
+
+
+def try_again(node, params, now, w, out):
+    """Send a kept message once more, or give it up: 1 if it was sent."""
+    if node.wait_tries[w] > params.e2e_tries:
+        report(out, REPORT_EXPIRED, node.wait_handle[w], NO_ACK)
+        if node.wait_kind[w] == DATA:
+            note_no_way(node, node.wait_dest[w], node.wait_tries[w] > 2)
+        node.wait_kind[w] = FREE
+        return 0
+    node.wait_tries[w] = node.wait_tries[w] + 1
+    node.wait_flags[w] = node.wait_flags[w] ^ PARITY
+    node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
+    unskip(node, node.number, node.wait_seq[w])
+    rank = CONTROL if node.wait_flags[w] & PRIORITY else MESSAGES
+    if node.wait_kind[w] == ALARM:
+        rank = ALARMS
+    i = compose(node, now, rank, node.wait_kind[w], node.wait_dest[w], node.wait_flags[w], out)
+    if i >= 0:
+        node.seq = (node.seq - 1) & 65_535  # it keeps its number
+        node.q_seq[i] = node.wait_seq[w]
+        for k in range(node.wait_length[w]):
+            add8(node, i, node.wait_body[w * DATA_MAX + k])
+        launch(node, params, now, i, w, node.wait_handle[w], out)
+    return 1
+
+
+def on_end_ack(node, params, frame, now, out):
+    """The recipient has our message."""
+    at = inner(frame)
+    if frame.length < at + 2:
+        return
+    word = frame.origin // BITS
+    node.met[word] = node.met[word] | 1 << (frame.origin % BITS)
+    for w in range(WAITING):
+        if node.wait_kind[w] != FREE and node.wait_seq[w] == get16(frame, at):
+            if node.wait_dest[w] == frame.origin or node.wait_kind[w] == ALARM:
+                took = (now - node.wait_at[w]) & MASK30
+                # Of a retried message this is too much rather than too little: the ack may be
+                # for any of its sendings, and times out of reach of the first would never count.
+                if took < 16_777_216 and (node.wait_tries[w] == 1 or params.e2e_adapt):
+                    if node.round_trip == 0:
+                        node.round_trip = took
+                    else:
+                        node.round_trip = (7 * node.round_trip + took) >> 3
+                if is_own_crossing(node, w):
+                    node.heard_out = 1
+                report(out, REPORT_ARRIVED, node.wait_handle[w], node.wait_seq[w])
+                node.wait_kind[w] = FREE
+    hurry(node, now, frame.origin, out)
+
+
+def hurry(node, now, dest, out):
+    """`dest` is there: what was tried in vain, or not at all, is sent at once."""
+    for w in range(WAITING):
+        if node.wait_kind[w] == DATA and node.wait_dest[w] == dest and node.wait_tries[w] > 1:
+            node.wait_due[w] = now
+    wait_on(node, now, out)
+
+
+def is_own_crossing(node, w):
+    """1 if the message kept in place w is our alarm that we are outside ourselves."""
+    body = w * DATA_MAX
+    if node.wait_kind[w] != ALARM or node.wait_body[body] != node.number:
+        return 0
+    return node.wait_body[body + 3] == CROSS

@@ -1,0 +1,124 @@
+"""What all runs of a sweep have in common: a scenario's text and changes to it."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shlex
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from innervate import scenario as scenarios
+from innervate.scenario import Scenario, ScenarioError, inline
+from innervate.scenario.overrides import parse_value
+
+Settings = tuple[tuple[str, Any], ...]
+Source = str | os.PathLike[str] | Scenario | dict[str, Any]
+PLAN_FILE = "sweep.toml"
+
+
+@dataclass(frozen=True, slots=True)
+class Base:
+    """A scenario that is run many times.
+
+    Attributes:
+        text: its TOML.
+        file: what its copy in the results is called.
+        folder: where relative paths in it start.
+        settings: (dotted key, value) that hold for every run.
+    """
+
+    text: str
+    file: str
+    folder: str
+    settings: Settings = ()
+
+    def scenario(self, settings: Iterable[tuple[str, Any]] = (), seed: int | None = None) -> Any:
+        """The scenario with these settings besides.
+
+        Raises:
+            ScenarioError: it is not valid.
+        """
+        changes = [*self.settings, *settings]
+        return scenarios.loads(self.text, changes, seed, self.file, self.folder)
+
+    def mark(self) -> str:
+        """A text that tells it from other bases."""
+        told = repr((self.text, self.folder, self.settings)).encode()
+        return hashlib.blake2b(told, digest_size=12).hexdigest()
+
+    def command(self, settings: Settings, seed: int) -> str:
+        """The one command that runs it again, in the folder of the results."""
+        words = ["innervate", "run", self.file]
+        for key, value in (*self.settings, *settings):
+            words += ["--set", f"{key}={_as_word(value)}"]
+        return shlex.join([*words, "--seed", str(seed)])
+
+    def anywhere(self, settings: Settings) -> Base:
+        """The same, with relative paths made full, so that the copy can be run elsewhere.
+
+        Raises:
+            ScenarioError: it is not valid with these settings.
+        """
+        made = self.scenario(settings)
+        plain = msgspec.to_builtins(made.model)
+        full = tomllib.loads(scenarios.dump(made))
+        mine = {key for key, _ in settings}
+        paths = [pair for pair in _moved(plain, full) if pair[0] not in mine]
+        kept = [pair for pair in self.settings if pair[0] not in dict(paths)]
+        return replace(self, settings=(*kept, *paths))
+
+
+def base_of(source: Source, changes: Iterable[str] | Mapping[str, Any]) -> Base:
+    """The base that a file, a bundled name, tables or a Scenario give.
+
+    Raises:
+        ScenarioError: no such file, or unreadable, or a change that is no key=value.
+    """
+    if isinstance(source, dict):
+        source = scenarios.from_dict(source)
+    if isinstance(source, Scenario):
+        text, label, folder = scenarios.dump(source), "scenario.toml", source.source.folder
+    else:
+        text, label, folder = scenarios.read(source)
+    file = Path(label).name
+    settings = tuple(_setting(c) for c in changes) if not isinstance(changes, Mapping) else ()
+    if isinstance(changes, Mapping):
+        settings = tuple(changes.items())
+    if file == PLAN_FILE:  # that name is taken in the results; the scenario keeps its own
+        file, settings = "scenario.toml", (("name", Path(PLAN_FILE).stem), *settings)
+    return Base(text, file, os.path.abspath(folder or "."), settings)
+
+
+def _setting(text: str) -> tuple[str, Any]:
+    key, equals, value = text.partition("=")
+    if not equals:
+        raise ScenarioError("write it as key=value, like protocol.k=3", f"--set {text}")
+    return key.strip(), parse_value(value.strip())
+
+
+def _as_word(value: Any) -> str:
+    """A value as `--set` reads it back; plain words need no quotes of their own."""
+    if isinstance(value, str) and value == value.strip() and parse_value(value) == value:
+        return value
+    return inline(value)
+
+
+def _moved(plain: Any, full: Any, key: str = "") -> list[tuple[str, str]]:
+    """Texts that a dump writes otherwise than they were given, by dotted key."""
+    if isinstance(plain, dict) and isinstance(full, dict):
+        pairs = [(name, plain[name], full[name]) for name in plain if name in full]
+    elif isinstance(plain, list) and isinstance(full, list) and len(plain) == len(full):
+        pairs = [(str(i), a, b) for i, (a, b) in enumerate(zip(plain, full, strict=True))]
+    elif isinstance(plain, str) and isinstance(full, str) and plain != full:
+        return [(key, full)]
+    else:
+        return []
+    return [
+        found for name, a, b in pairs for found in _moved(a, b, f"{key}.{name}" if key else name)
+    ]

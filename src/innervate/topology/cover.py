@@ -1,0 +1,154 @@
+"""Cells spread evenly over a robot's surface, where its description has no skin of its own.
+
+Points are drawn on the triangles of a link's mesh and thinned so that none is nearer to another
+than the pitch (trimesh); same mesh, same pitch, same cells. A mesh is taken as it is: cells
+also lie on walls inside of it, if it has some.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import product
+from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import Element
+
+from innervate.topology.errors import TopologyError
+from innervate.topology.urdf import Link, Vector, moved, read_links
+
+SUFFIXES = (".stl", ".obj", ".ply", ".off", ".glb")
+SEED = 1
+DRAWN = 25  # points a square of the pitch; with more, hardly any more are kept
+CELLS_MAX = 5000
+
+
+def has_surface(link: Link) -> bool:
+    """Whether a link has a shape, rather than being a mere frame."""
+    return link.element.find("visual/geometry") is not None or (
+        link.element.find("collision/geometry") is not None
+    )
+
+
+def cells_on_surfaces(path: Path, pattern: str, pitch_mm: float) -> tuple[list[str], list[Vector]]:
+    """(names, positions in mm) of cells on the surfaces of the links that match.
+
+    Args:
+        path: a URDF file.
+        pattern: as for read_positions().
+        pitch_mm: least distance between two cells of a link, > 0.
+
+    Raises:
+        TopologyError: no link matches, none has a shape that can be read, or too many cells.
+    """
+    names: list[str] = []
+    positions: list[Vector] = []
+    for link in read_links(path, pattern):
+        for number, place in enumerate(_cells(path, link, pitch_mm)):
+            names.append(f"{link.name}_{number}")
+            positions.append(place)
+        if len(names) > CELLS_MAX:
+            message = f"a pitch of {pitch_mm:g} mm makes more than {CELLS_MAX} cells; take a wider"
+            raise TopologyError(message, "pitch_mm")
+    if not names:
+        message = f'no link of {path.name} that matches "{pattern}" has a surface to put cells on'
+        raise TopologyError(message, "links")
+    return names, positions
+
+
+def _cells(path: Path, link: Link, pitch_mm: float) -> Iterator[Vector]:
+    for mesh in _meshes(path, link):
+        from trimesh.sample import sample_surface
+
+        wanted = math.ceil(DRAWN * float(mesh.area) / pitch_mm**2)
+        if wanted > DRAWN * CELLS_MAX:
+            message = f"a pitch of {pitch_mm:g} mm is too fine for link {link.name}; take a wider"
+            raise TopologyError(message, "pitch_mm")
+        points, _ = sample_surface(mesh, wanted + 1, seed=SEED)
+        yield from thinned([(x, y, z) for x, y, z in points.round(3).tolist()], pitch_mm)
+
+
+def thinned(points: list[Vector], pitch_mm: float) -> list[Vector]:
+    """The points in order, without those nearer than the pitch to one that is kept."""
+    kept: dict[tuple[int, ...], list[Vector]] = {}  # by the cube of one pitch that they lie in
+    made = []
+    for point in points:
+        cube = tuple(math.floor(value / pitch_mm) for value in point)
+        near = product(*((i - 1, i, i + 1) for i in cube))
+        if all(math.dist(point, other) >= pitch_mm for at in near for other in kept.get(at, ())):
+            kept.setdefault(cube, []).append(point)
+            made.append(point)
+    return made
+
+
+def _meshes(path: Path, link: Link) -> Iterator[Any]:
+    """The shapes of a link, mm, in the root's frame: those to see if they can be read."""
+    for kind in ("visual", "collision"):
+        parts = [part for part in link.element.findall(kind) if _readable(part)]
+        if parts:
+            for part in parts:
+                mesh = _shape(path, link, part)
+                turn, place = moved(link.turn, link.place, part.find("origin"), link.name)
+                frame = [[*row, at] for row, at in zip(turn, place, strict=True)]
+                mesh.apply_transform([*frame, [0, 0, 0, 1]])
+                mesh.apply_scale(1000)
+                yield mesh
+            return
+
+
+def _readable(part: Element) -> bool:
+    mesh = part.find("geometry/mesh")
+    if mesh is not None:
+        return mesh.get("filename", "").lower().endswith(SUFFIXES)
+    return any(part.find(f"geometry/{shape}") is not None for shape in _SOLIDS)
+
+
+def _shape(path: Path, link: Link, part: Element) -> Any:
+    """A mesh, m, in the frame of its own <origin>."""
+    import trimesh
+
+    mesh = part.find("geometry/mesh")
+    if mesh is None:
+        name, solid = next(
+            (name, found)
+            for name in _SOLIDS
+            if (found := part.find(f"geometry/{name}")) is not None
+        )
+        return _SOLIDS[name](trimesh.creation, _sizes(solid, link))
+    file = find_mesh(mesh.get("filename", ""), path)
+    try:
+        made: Any = trimesh.load(file, force="mesh")
+    except Exception as error:  # whatever a reader of a dozen formats may raise
+        raise TopologyError(
+            f"{file.name} of link {link.name} is no mesh: {error}", "urdf"
+        ) from None
+    made.apply_scale([float(word) for word in mesh.get("scale", "1 1 1").split()])
+    return made
+
+
+def _sizes(solid: Element, link: Link) -> dict[str, list[float]]:
+    try:
+        return {key: [float(word) for word in text.split()] for key, text in solid.attrib.items()}
+    except ValueError:
+        message = f"link {link.name} has a {solid.tag} whose size is no number"
+        raise TopologyError(message, "urdf") from None
+
+
+_SOLIDS: dict[str, Any] = {
+    "box": lambda make, size: make.box(extents=size["size"]),
+    "cylinder": lambda make, size: make.cylinder(size["radius"][0], size["length"][0]),
+    "sphere": lambda make, size: make.icosphere(radius=size["radius"][0]),
+}
+
+
+def find_mesh(name: str, urdf: Path) -> Path:
+    """The file that a URDF means: beside it, or package://NAME/... below a folder above it.
+
+    Raises:
+        TopologyError: there is none.
+    """
+    inner = name.removeprefix("package://").removeprefix("file://")
+    for folder in (urdf.parent, *urdf.resolve().parents):
+        if (folder / inner).is_file():
+            return folder / inner
+    raise TopologyError(f"the mesh {name} is not there; install the robot's meshes too", "urdf")

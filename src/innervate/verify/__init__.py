@@ -1,0 +1,1 @@
+"""The explorer: every interleaving of the very functions that run live, on small networks."""

@@ -1,0 +1,163 @@
+"""What `innervate verify skin` does: which graphs, rules and updates, one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, field, fields
+from typing import Any
+
+from innervate.topology import Graph
+from innervate.verify import explore, fair, graphs, story
+from innervate.verify import skin_system as system
+from innervate.verify.errors import VerifyError
+
+RULES = system.RULES
+UPDATES = system.UPDATES
+CELLS_MAX = 4
+PROPERTIES = "no closed loop, feasible distances in order, no value out of range"
+
+
+@dataclass(slots=True)
+class Case:
+    """One exploration and what came of it.
+
+    Attributes:
+        model: what is explored.
+        cables: its graph as text.
+        tally: how far the search came.
+        fair: the fair schedule; None where it was not asked for or something broke before.
+        story: the counterexample, if something is broken.
+    """
+
+    model: system.SkinModel
+    cables: str
+    tally: explore.Tally
+    fair: fair.Fair | None = None
+    story: story.Story | None = None
+
+    @property
+    def is_broken(self) -> bool:
+        """True if a property does not hold."""
+        return self.story is not None or (self.fair is not None and self.fair.ended == "broken")
+
+    @property
+    def is_complete(self) -> bool:
+        """True if every state was looked at."""
+        return self.tally.ended == "complete" and (
+            self.fair is None
+            or (self.fair.ended == "complete" and self.fair.starts == self.fair.of)
+        )
+
+    def as_dict(self) -> dict[str, Any]:
+        """For --json."""
+        found = {
+            "graph": self.cables,
+            "rule": self.model.rule,
+            "updates": self.model.updates,
+            "budget": asdict(self.model.budget),
+            **{name: getattr(self.tally, name) for name in ("states", "expanded", "generated")},
+            "depth": self.tally.depth,
+            "wall_s": round(self.tally.wall_s, 3),
+            "ended": self.tally.ended,
+            "broken": self.story.title if self.story else None,
+            "story": self.story.sentences if self.story else None,
+            "fair": None,
+        }
+        if self.fair is not None:
+            names = ("bound", "rounds", "starts", "calm", "played", "ended")
+            found["fair"] = {name: getattr(self.fair, name) for name in names}
+        return found
+
+
+Tell = Callable[[str, explore.Tally], bool]
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What was asked for (see `innervate verify --help`)."""
+
+    rules: tuple[str, ...] = ("feasible",)
+    updates: tuple[str, ...] = UPDATES
+    graphs: tuple[Graph, ...] = ()
+    budget: system.Budget = field(default_factory=system.Budget)
+    prompt: bool = False
+    live: bool = True
+    starts: int = 0
+    walks: int = 0
+    seed: int = 1
+    states: int = 0
+    memory: int = explore.MEMORY
+    plain: bool = False
+
+
+def budget_of(text: str) -> system.Budget:
+    """Budgets from text like "ticks=3,loss=0,faults=1"; those left out keep their defaults.
+
+    Raises:
+        VerifyError: no such budget, or no number.
+    """
+    given: dict[str, int] = {}
+    names = [one.name for one in fields(system.Budget)]
+    for part in filter(None, text.replace(" ", ",").split(",")):
+        name, _, value = part.partition("=")
+        if name not in names or not (value.isascii() and value.isdigit() and int(value) <= 20):
+            message = f'--budget: "{part[:40]}" should be NAME=NUMBER, at most 20'
+            raise VerifyError(f"{message}; the names are {', '.join(names)}")
+        given[name] = int(value)
+    return system.Budget(**given)
+
+
+def graphs_of(text: str, cells: int) -> tuple[Graph, ...]:
+    """The graphs that --graph and --cells mean: "all" of up to so many cells, or one by name.
+
+    Raises:
+        VerifyError: there is no such graph, or the cells are too many.
+    """
+    if text != "all":
+        return (graphs.parse(text),)
+    if not 1 <= cells <= CELLS_MAX:
+        raise VerifyError(f"--cells must be 1 to {CELLS_MAX}, not {cells}")
+    return tuple(graph for count in range(1, cells + 1) for graph in graphs.all_graphs(count))
+
+
+def models(wanted: Wanted) -> Iterator[system.SkinModel]:
+    """Everything that is asked for, in order."""
+    for graph in wanted.graphs:
+        for rule in wanted.rules:
+            for updates in wanted.updates:
+                yield system.SkinModel(
+                    graph, rule, updates, wanted.budget, prompt=wanted.prompt,
+                    keep=wanted.live and rule == "feasible",
+                )  # fmt: skip
+
+
+def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> Case:
+    """Explore one model; then, under the recommended rule, play the fair schedule."""
+    cables = graphs.cables(model.graph)
+    name = f"{cables}, {model.rule}, {model.updates}"
+    if wanted.walks:
+        found = explore.wander(
+            model, wanted.walks, seed=wanted.seed, plain=wanted.plain,
+            progress=lambda tally: tell(name, tally),
+        )  # fmt: skip
+        told = story.tell(found) if found.broken else None
+        return Case(model, cables, found.tally, story=told)
+    found = explore.explore(
+        model,
+        plain=wanted.plain,
+        memory=wanted.memory,
+        states=wanted.states,
+        progress=lambda tally: tell(name, tally),
+    )
+    case = Case(model, cables, found.tally)
+    if found.broken:
+        case.story = story.tell(found)
+    elif wanted.live and model.rule == "feasible" and found.tally.ended != "interrupted":
+        case.fair = fair.check(
+            found,
+            plain=wanted.plain,
+            starts=wanted.starts,
+            memory=wanted.memory,
+            progress=lambda _: tell(f"{name}: the fair schedule", found.tally),
+        )
+    return case

@@ -1,0 +1,290 @@
+"""Drives a search: memory, progress, interruption; the result and the way to a broken state."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from innervate.kernel import door, tables
+from innervate.kernel.wall import wall_s
+from innervate.verify import search as s
+from innervate.verify import skin_system
+from innervate.verify.errors import VerifyError
+
+MEMORY = 2 << 30
+CHUNK = 20_000
+PLAIN_CHUNK = 500
+SLOTS = 1 << 18
+
+ENDS = {s.DONE: "complete", s.FULL: "memory", s.FOUND: "broken", s.GOING: "interrupted"}
+
+
+@dataclass(slots=True)
+class Tally:
+    """How far a search is, or came.
+
+    Attributes:
+        states: different states found.
+        expanded: states whose successors are all known.
+        generated: successors generated and looked up.
+        left_out: successors not followed because more was in flight than there is room for.
+        depth: events from the start to the latest state; all states less deep are expanded.
+        wall_s: seconds of searching, compiling and loading not included.
+        ended: "complete", "broken", "memory" (the bound was reached), "limit" (of states),
+            "walked" (random walks; `states` counts these then) or "interrupted".
+    """
+
+    states: int = 0
+    expanded: int = 0
+    generated: int = 0
+    left_out: int = 0
+    depth: int = 0
+    wall_s: float = 0.0
+    ended: str = "interrupted"
+
+    @property
+    def per_s(self) -> float:
+        """Successors generated and looked up per second."""
+        return self.generated / self.wall_s if self.wall_s > 0 else 0.0
+
+
+@dataclass(slots=True)
+class Result:
+    """What a search found.
+
+    Attributes:
+        model: what was explored.
+        tally: how much of it.
+        broken: what is broken, a number of skin_world.py; 0 nothing.
+        path: the states from the start to the last one before it broke, as rows of bytes.
+        last: the move that broke it: (move, variant, choice).
+        rows: all states as rows of 64-bit words.
+    """
+
+    model: Any
+    tally: Tally
+    broken: int = 0
+    path: list[bytes] = field(default_factory=list)
+    last: tuple[int, int, int] = (0, 0, 0)
+    rows: Any = None
+
+
+Progress = Callable[[Tally], bool]
+
+
+@functools.cache
+def compiled_engine() -> s.Engine:
+    """The search of skins, compiled: `expand` and `insert` take a world and a search."""
+    system = skin_system.compiled_parts()
+    helpers = (s.fetch_row, s.compare, s.choose_image, s.hash_of, s.look_up, s.insert, s.refill)
+    walking = (s.keep_words, s.fetch_words, s.append, s.room_left)
+    door.register_functions(*helpers, *walking, hot=True)
+    engine = s.build(system)
+    door.register_functions(*engine.parts, system.variants, hot=False)
+    expand = door.compiled(engine.expand)
+    wander = door.compiled(engine.wander)
+    return s.Engine(engine.parts, door.compiled(s.insert), expand, wander)
+
+
+@functools.cache
+def compiled_refill() -> Callable[..., None]:
+    """The function that enters all rows into a new table."""
+    compiled_engine()
+    return door.compiled(s.refill)
+
+
+def explore(
+    model: Any,
+    *,
+    plain: bool = False,
+    system: Any = None,
+    memory: int = MEMORY,
+    states: int = 0,
+    progress: Progress | None = None,
+    every_s: float = 0.5,
+) -> Result:
+    """All states that `model` can reach, breadth first, until something is broken.
+
+    Args:
+        model: what is explored.
+        plain: uncompiled.
+        system: a copy of the protocol to run plain (see skin_system.system_of); None the real one.
+        memory: bytes the states may take; reaching it ends the search.
+        states: end after so many states; 0 = no such limit.
+        progress: called now and then; the search ends if it returns True.
+        every_s: least seconds between two such calls.
+
+    Raises:
+        VerifyError: the model does not fit its rows, or the memory.
+    """
+    system = system or skin_system.system_of()
+    driver = _Driver(model, system, plain, memory, states)
+    tally, started, told = Tally(), wall_s(), wall_s()
+    while True:
+        status = driver.advance()
+        if status == s.GROW:
+            driver.grow()
+            continue
+        now = wall_s()
+        driver.count(tally, now - started)
+        if status != s.GOING:
+            tally.ended = ENDS[status]
+            break
+        if states and tally.states >= states:
+            tally.ended = "limit"
+            break
+        if progress is not None and now - told >= every_s:
+            told = now
+            if progress(tally):
+                break
+    return driver.result(tally)
+
+
+def wander(
+    model: Any,
+    walks: int,
+    *,
+    seed: int = 1,
+    length: int = 400,
+    plain: bool = False,
+    system: Any = None,
+    progress: Progress | None = None,
+) -> Result:
+    """So many random walks of at most `length` events, for budgets too large to exhaust."""
+    system = system or skin_system.system_of()
+    driver = _Driver(model, system, plain, 64 << 20, length + 2)
+    walk = s.build(system).wander if plain else compiled_engine().wander
+    run = driver.search.run
+    run[s.RANDOM], run[s.NEXT] = seed * 2_654_435_761 + 97, 0
+    walk(driver.seen_world, driver.seen_search, 0, length)  # compiles
+    tally, started = Tally(depth=length), wall_s()
+    while int(run[s.NEXT]) < walks and not int(run[s.BROKEN]):
+        batch = min(20 if plain else 2000, walks - int(run[s.NEXT]))
+        walk(driver.seen_world, driver.seen_search, batch, length)
+        tally.states = tally.expanded = int(run[s.NEXT])
+        tally.generated, tally.wall_s = int(run[s.GENERATED]), wall_s() - started
+        if progress is not None and progress(tally):
+            return driver.result(tally)
+    tally.ended = "broken" if int(run[s.BROKEN]) else "walked"
+    return driver.result(tally)
+
+
+class _Driver:
+    """A search and the tables it works on."""
+
+    def __init__(self, model: Any, system: Any, plain: bool, memory: int, states: int) -> None:
+        self.model, self.plain = model, plain
+        self.lay = skin_system.layout(model)
+        self.world = skin_system.world_of(model, plain)
+        words = self.lay.width // 8
+        # A row, its links backward, and 2 places of the table (at most 70 % full, then doubled).
+        limit = memory // (8 * words + 12 + 2 * 12)
+        limit = min(limit, states + 2 * s.MARGIN if states else limit)
+        if limit < 2 * s.MARGIN:
+            raise VerifyError("memory for the states is too small; give at least 64 MB")
+        if plain:
+            limit = min(limit, max(states, 1 << 18) + 2 * s.MARGIN)
+        self.search = self._tables(words, limit)
+        run = self.search.run
+        run[s.LIMIT], run[s.SLOTS] = limit, SLOTS
+        run[s.MOVES], run[s.WORDS] = len(self.lay.moves()), words
+        run[s.WIDTH], run[s.IMAGES] = self.lay.width, len(self.lay.images()) // self.lay.width
+        if plain:
+            engine = s.build(system)
+            self.expand, insert = engine.expand, s.insert
+            self.refill: Any = s.refill
+        else:
+            engine = compiled_engine()
+            insert, self.refill = engine.insert, compiled_refill()
+            self.expand = engine.expand
+        first = skin_system.first_row(model, system)
+        for i, value in enumerate(first):
+            self.world.work[i] = value
+        self.seen_world = self.world if plain else tables.borrowed(self.world)
+        self.seen_search = self.search if plain else tables.borrowed(self.search)
+        insert(self.seen_world, self.seen_search, -1, 0)
+        self.expand(self.seen_world, self.seen_search, 0)  # compiles, or loads what was compiled
+        self.levels = [0, 1]
+        self.chunk = PLAIN_CHUNK if plain else CHUNK
+
+    def _tables(self, words: int, limit: int) -> s.Search:
+        if self.plain:
+
+            def longs(count: int) -> Any:
+                return memoryview(bytearray(8 * count)).cast("q")
+
+            return s.Search(longs(s.NUMBERS), longs(limit * words), longs(SLOTS), longs(limit),
+                            longs(limit))  # fmt: skip
+        return s.Search(
+            run=np.zeros(s.NUMBERS, np.int64),
+            rows=np.empty(limit * words, np.int64),
+            table=np.zeros(SLOTS, np.int64),
+            before=np.empty(limit, np.int32),
+            move=np.empty(limit, np.int64),
+        )
+
+    def advance(self) -> int:
+        """Another stretch of the search, at most to the end of the present depth."""
+        run = self.search.run
+        budget = min(self.chunk, self.levels[-1] - int(run[s.NEXT]))
+        self.expand(self.seen_world, self.seen_search, max(budget, 1))
+        if int(run[s.NEXT]) == self.levels[-1] and int(run[s.COUNT]) > self.levels[-1]:
+            self.levels.append(int(run[s.COUNT]))
+        status = int(run[s.STATUS])
+        if status == s.GOING and run[s.NEXT] >= run[s.COUNT]:
+            return s.DONE
+        return status
+
+    def grow(self) -> None:
+        """A table with twice the places."""
+        run = self.search.run
+        slots = 2 * int(run[s.SLOTS])
+        run[s.SLOTS] = slots
+        empty = memoryview(bytearray(8 * slots)).cast("q") if self.plain else np.zeros(slots, "i8")
+        self.search = self.search._replace(table=empty)
+        self.seen_search = self.search if self.plain else tables.borrowed(self.search)
+        self.refill(self.seen_search)
+        run[s.STATUS] = s.GOING
+
+    def count(self, tally: Tally, took_s: float) -> None:
+        """Bring a tally up to date."""
+        run = self.search.run
+        tally.states, tally.expanded = int(run[s.COUNT]), int(run[s.NEXT])
+        tally.generated, tally.wall_s = int(run[s.GENERATED]), took_s
+        tally.left_out = int(run[s.LEFT_OUT])
+        tally.depth = len(self.levels) - 2
+
+    def row(self, index: int) -> bytes:
+        """A kept state."""
+        words = self.lay.width // 8
+        part = self.search.rows[index * words : (index + 1) * words]
+        return bytes(part.tobytes())
+
+    def result(self, tally: Tally) -> Result:
+        """What came of it."""
+        run = self.search.run
+        count, words = int(run[s.COUNT]), self.lay.width // 8
+        kept = self.search.rows[: count * words]
+        done = Result(self.model, tally, int(run[s.BROKEN]), rows=kept)
+        if done.broken:
+            index, word = int(run[s.BROKEN_AT]), int(run[s.BROKEN_MOVE])
+            done.last = unpacked(word)
+            while index >= 0:
+                done.path.append(self.row(index))
+                index = int(self.search.before[index])
+            done.path.reverse()
+        return done
+
+
+def unpacked(word: int) -> tuple[int, int, int]:
+    """(move, variant, choice) of a kept move."""
+    rest, choice = divmod(word, s.CHOICE)
+    move, variant = divmod(rest, s.VARIANT)
+    return move, variant, choice
+
+
+__all__ = ["Progress", "Result", "Tally", "explore", "unpacked"]

@@ -1,0 +1,273 @@
+"""Breadth-first search through the states of a system: rows of bytes, each kept once.
+
+A system brings `parts` (functions that compiled code calls), `start`, `variants(world, move)`,
+`step(world, move, variant, choice)` and `check(world)`; they work on the row `world.work`. The row
+that is kept is the smallest among its images under the symmetries of the graph. The table of
+known states has open addresses; its entries hold 32 bits of a row's hash and its number.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from innervate.kernel.bits import mix
+
+# Places in `Search.run`.
+COUNT, NEXT, LIMIT, SLOTS, GENERATED, STATUS, MOVES, WORDS, IMAGES, WIDTH = range(10)
+BROKEN, BROKEN_AT, BROKEN_MOVE, LEFT_OUT, RANDOM = range(10, 15)
+NUMBERS = 16
+
+# Why `expand` stopped.
+GOING, DONE, GROW, FULL, FOUND = range(5)
+
+# What a step says of a state that is not to be followed: more in flight than there is room for.
+TOO_MANY = -1
+
+# Most successors of one state; more would be a mistake in the system.
+MARGIN = 1 << 14
+LOW32 = 0xFFFFFFFF
+
+# A move as it is kept: move, variant and choice of its draw in one number.
+VARIANT, CHOICE = 1 << 12, 1 << 4
+
+
+class Search(NamedTuple):
+    """The states found so far."""
+
+    run: Any
+    rows: Any  # their words, one after the other
+    table: Any  # hash << 32 | number + 1; 0 = free
+    before: Any  # the state each was first reached from, -1 the start
+    move: Any  # and by which move
+
+
+class Engine(NamedTuple):
+    """The search, bound to a system."""
+
+    parts: tuple[Callable[..., Any], ...]
+    insert: Callable[..., int]
+    expand: Callable[..., None]
+    wander: Callable[..., None]
+
+
+def fetch_row(world, search, index):
+    """A kept row into the one to work on."""
+    words = search.run[WORDS]
+    for i in range(words):
+        world.work_words[i] = search.rows[index * words + i]
+
+
+def compare(a, b, words):
+    """1 if row a is smaller than b in the order of their words."""
+    for i in range(words):
+        if a[i] != b[i]:
+            return a[i] < b[i]
+    return False
+
+
+def choose_image(world, search):
+    """The smallest image of `world.work` into `world.best`."""
+    run = search.run
+    words, width = run[WORDS], run[WIDTH]
+    for i in range(words):
+        world.best_words[i] = world.work_words[i]
+    for g in range(1, run[IMAGES]):
+        for i in range(width):
+            world.trial[i] = world.work[world.image[g * width + i]]
+        if compare(world.trial_words, world.best_words, words):
+            for i in range(words):
+                world.best_words[i] = world.trial_words[i]
+
+
+def hash_of(table, start, words):
+    """64 bits of a row."""
+    state = 0
+    for i in range(words):
+        state = mix(state, table[start + i])
+    return mix(state, words)
+
+
+def look_up(search, best, mark):
+    """The slot of the table that holds the row `best`, or the free one where it belongs."""
+    run = search.run
+    words = run[WORDS]
+    mask = run[SLOTS] - 1
+    slot = mark & mask
+    while True:
+        entry = search.table[slot]
+        if entry == 0:
+            return slot
+        if ((entry ^ mark) >> 32) == 0:
+            start = ((entry & LOW32) - 1) * words
+            same = True
+            for i in range(words):
+                if search.rows[start + i] != best[i]:
+                    same = False
+                    break
+            if same:
+                return slot
+        slot = (slot + 1) & mask
+
+
+def insert(world, search, before, move):
+    """Keep the state in `world.work` unless it is known; 1 if it is new."""
+    choose_image(world, search)
+    run = search.run
+    words = run[WORDS]
+    mark = hash_of(world.best_words, 0, words)
+    slot = look_up(search, world.best_words, mark)
+    if search.table[slot] != 0:
+        return False
+    index = run[COUNT]
+    for i in range(words):
+        search.rows[index * words + i] = world.best_words[i]
+    search.before[index] = before
+    search.move[index] = move
+    search.table[slot] = (mark & ~LOW32) | (index + 1)
+    run[COUNT] = index + 1
+    return True
+
+
+def refill(search):
+    """Enter all rows into an empty table."""
+    run = search.run
+    words = run[WORDS]
+    mask = run[SLOTS] - 1
+    for index in range(run[COUNT]):
+        mark = hash_of(search.rows, index * words, words)
+        slot = mark & mask
+        while search.table[slot] != 0:
+            slot = (slot + 1) & mask
+        search.table[slot] = (mark & ~LOW32) | (index + 1)
+
+
+def keep_words(world, search):
+    """Remember the row in the last place of the rows, to come back to."""
+    words = search.run[WORDS]
+    last = (search.run[LIMIT] - 1) * words
+    for i in range(words):
+        search.rows[last + i] = world.work_words[i]
+
+
+def fetch_words(world, search):
+    """Come back to it."""
+    fetch_row(world, search, search.run[LIMIT] - 1)
+
+
+def append(world, search):
+    """Keep the image of the present state behind the others."""
+    choose_image(world, search)
+    run = search.run
+    words = run[WORDS]
+    index = run[COUNT]
+    for i in range(words):
+        search.rows[index * words + i] = world.best_words[i]
+    search.before[index] = index - 1
+    run[COUNT] = index + 1
+
+
+def room_left(run):
+    """GOING, or why the search cannot go on as it is."""
+    if run[NEXT] >= run[COUNT]:
+        return DONE
+    if run[COUNT] + MARGIN > run[LIMIT]:
+        return FULL
+    if (run[COUNT] + MARGIN) * 10 > run[SLOTS] * 7:
+        return GROW
+    return GOING
+
+
+def build(system):
+    """The search for a system."""
+    variants, step, check = system.variants, system.step, system.check
+
+    def note(world, search, index, word, is_new):
+        """Remember the first thing that is broken."""
+        run = search.run
+        broken = world.found[0]
+        if broken == 0 and is_new:
+            broken = check(world)
+        if broken != 0 and run[BROKEN] == 0:
+            run[BROKEN] = broken
+            run[BROKEN_AT] = index
+            run[BROKEN_MOVE] = word
+            run[STATUS] = FOUND
+
+    def follow(world, search, index, move, variant):
+        """All successors of a state by one variant of a move."""
+        run = search.run
+        choice, asked = 0, 1
+        while choice < asked:
+            fetch_row(world, search, index)
+            asked = step(world, move, variant, choice)
+            if asked > 0 and world.found[0] == TOO_MANY:
+                run[LEFT_OUT] += 1
+            elif asked > 0:
+                run[GENERATED] += 1
+                word = (move * VARIANT + variant) * CHOICE + choice
+                is_new = insert(world, search, index, word)
+                note(world, search, index, word, is_new)
+            choice += 1
+
+    def expand(world, search, budget):
+        """Find the successors of up to `budget` more states."""
+        run = search.run
+        for _ in range(budget):
+            run[STATUS] = room_left(run)
+            if run[STATUS] != GOING:
+                return
+            index = run[NEXT]
+            for move in range(run[MOVES]):
+                fetch_row(world, search, index)
+                for variant in range(variants(world, move)):
+                    follow(world, search, index, move, variant)
+            run[NEXT] = index + 1
+            if run[BROKEN] != 0:
+                run[STATUS] = FOUND
+                return
+
+    def choose(world, number):
+        """A move and variant that can be made, by a number; (-1, 0) if there is none."""
+        total = 0
+        for move in range(len(world.move_kind)):
+            total += variants(world, move)
+        if total == 0:
+            return -1, 0
+        wanted = number % total
+        for move in range(len(world.move_kind)):
+            count = variants(world, move)
+            if wanted < count:
+                return move, wanted
+            wanted -= count
+        return -1, 0
+
+    def wander(world, search, walks, length):
+        """So many random walks from the state in row 0; the rows of the last one are kept."""
+        run = search.run
+        for _ in range(walks):
+            fetch_row(world, search, 0)
+            run[COUNT] = 1
+            while run[COUNT] < length:
+                run[RANDOM] = mix(run[RANDOM], run[COUNT])
+                move, variant = choose(world, (run[RANDOM] >> 20) & LOW32)
+                if move < 0:
+                    break
+                keep_words(world, search)
+                asked = step(world, move, variant, (run[RANDOM] >> 8) & 1)
+                if asked < 0 or world.found[0] == TOO_MANY:
+                    fetch_words(world, search)  # not that way; the next number is another
+                    run[GENERATED] += 1
+                    run[RANDOM] = mix(run[RANDOM], 7)
+                    if run[RANDOM] & 63 == 0:
+                        break
+                    continue
+                run[GENERATED] += 1
+                broken = world.found[0]
+                if broken == 0:
+                    broken = check(world)
+                if broken != 0:
+                    run[BROKEN], run[BROKEN_AT] = broken, run[COUNT] - 1
+                    return
+                append(world, search)
+            run[NEXT] += 1
+
+    return Engine((note, follow, choose), insert, expand, wander)

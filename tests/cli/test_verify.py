@@ -1,0 +1,69 @@
+"""`innervate verify`: what it prints, writes and returns."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+SMALL = ("--plain", "--graph", "pc-1 1-2", "--updates", "periodic", "--budget", "ticks=2,faults=1")
+
+
+def test_nothing_broken_is_0(sh):
+    assert sh("verify", *SMALL) == 0
+    first, last = sh.out.splitlines()
+    assert first.startswith("pc-1 1-2 ")
+    assert "all states; settled in" in first
+    assert last == "Nothing broken in 1 explorations, all completely."
+
+
+def test_a_sample_is_called_one(sh):
+    assert sh("verify", *SMALL, "--states", "50", "--no-liveness") == 0
+    assert "as asked" in sh.out
+    assert sh.out.splitlines()[-1].endswith("1 of them only in part.")
+    assert sh("verify", *SMALL, "--walks", "20") == 0
+    assert "20 walks " in sh.out
+    assert "a sample of random walks" in sh.out
+
+
+def test_a_counterexample_is_told_written_and_1(sh):
+    words = ("--plain", "--graph", "triangle", "--rule", "paper", "--updates", "periodic")
+    assert sh("verify", *words, "--out", "found") == 1
+    assert "    1. The PC sends its beacon with number 1." in sh.out
+    assert "So: closed loop n1 -> " in sh.out
+    assert {path.suffix for path in Path("found").iterdir()} == {".svg", ".toml", ".txt"}
+    assert sh("run", "found/counterexample-1.toml", "--no-report") == 0
+    assert "1 forwarding loop" in sh.out
+
+
+def test_json_is_all_there_is(sh):
+    assert sh("verify", *SMALL, "--rule", "all", "--json") in (0, 1)
+    cases = json.loads(sh.out)
+    assert [case["rule"] for case in cases] == ["feasible", "strict", "paper"]
+    assert cases[0]["fair"]["ended"] == "complete"
+    assert all(case["states"] > 100 for case in cases)
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (("mesh",), 'verify explores skin or radio, not "mesh"'),
+        (("--rule", "other"), "--rule is feasible, strict, paper or all"),
+        (("--graph", "pc-1 3-4"), "all of them by cables"),
+        (("--cells", "9"), "--cells must be 1 to 4"),
+        (("--budget", "ticks=many"), "should be NAME=NUMBER"),
+        (("--walks", "-3"), "--walks must be 0 or more"),
+        (("--memory", "lots"), "--memory takes a size like 800M or 4G"),
+        (("--plain", "--memory", "1M"), "give at least 64 MB"),
+        (("radio", "--cells", "7"), "--cells is 2 to 4 stations"),
+        (("radio", "--rule", "strict"), "--rule is practical or paper for radio"),
+    ],
+)
+def test_mistakes_are_one_line(sh, words, line):
+    assert sh("verify", *words) == 2
+    assert line in sh.err
+    assert sh.err.count("\n") == 1
+
+
+def test_random_networks_end_after_as_many_as_asked_for(sh):
+    assert sh("verify", "--random", "--seed", "3", "--count", "1") == 0
+    assert sh.out == "Nothing broken in 1 networks, 3 to 3.\n"

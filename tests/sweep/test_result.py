@@ -1,0 +1,196 @@
+"""Frames, means, quantiles, pairs, figures; plan files and the command."""
+
+import tomllib
+from pathlib import Path
+
+import polars
+import pytest
+
+import innervate
+from innervate.analysis.intervals import mean_interval, quantile
+from innervate.cli import main
+from innervate.scenario import ScenarioError
+from innervate.sweep import SweepError, load, make_plan
+
+PLAN = """\
+scenario = "four.toml"
+name = "both"
+repeat = 4
+paired = ["protocol.rule", "protocol.updates"]
+
+[set]
+data.rate_hz = 10
+
+[vary]
+protocol.k = "2..3"
+event.0.interface = [0, { name = "last", value = 1 }]
+
+[[zip]]
+protocol.rule = ["paper", "feasible"]
+protocol.updates = ["periodic", "wave"]
+
+[derive]
+duration_s = "protocol.k / 5"
+
+[[plot]]
+x = "protocol.k"
+y = "recoveries.routed_ms"
+by = "protocol.rule"
+name = "ways-back"
+
+[[plot]]
+x = "protocol.k"
+y = "recoveries.routed_ms"
+by = "protocol.rule"
+kind = "heat"
+"""
+
+
+@pytest.fixture
+def both(four):
+    Path("both.toml").write_text(PLAN)
+    return innervate.sweep("both.toml", workers=1, out="out")
+
+
+def test_a_plan_file_says_everything(both):
+    assert both.plan.name == "both"
+    assert both.results.height == 2 * 2 * 2 * 4
+    assert both.results["event.0.interface"].unique().sort().to_list() == ["0", "last"]
+    assert set(both.results["duration_s"]) == {0.4, 0.6}
+    assert both.results["data.sent"].min() > 0
+    pairs = set(both.results.select("protocol.rule", "protocol.updates").rows())
+    assert pairs == {("paper", "periodic"), ("feasible", "wave")}
+
+
+def test_the_folder_holds_a_plan_that_gives_the_same_table(both):
+    again = innervate.sweep("out/sweep.toml", workers=1, out="again")
+    assert Path("again/results.parquet").read_bytes() == Path("out/results.parquet").read_bytes()
+    assert again.results.equals(polars.read_parquet("out/results.parquet"))
+    assert load("out").results.equals(again.results)
+
+
+def test_points_are_means_with_students_interval(both):
+    table = both.points("recoveries.routed_ms")
+    for row in table.iter_rows(named=True):
+        mine = both.results.filter(both.results["point"] == row["point"])
+        values = mine["recoveries.routed_ms"].to_list()
+        assert (row["mean"], row["low"], row["high"]) == tuple(mean_interval(values))
+        assert row["runs"] == 4
+        assert row["p50"] == quantile(values, 0.5)
+    wide = both.points("recoveries.routed_ms", level=0.99)
+    assert all(a > b for a, b in zip(wide["high"], table["high"], strict=True))
+    found = both.quantiles("recoveries.routed_ms", [0, 1])
+    assert found["q0"].to_list() == table["min"].to_list()
+    assert found["q1"].to_list() == table["max"].to_list()
+
+
+def test_pairs_are_compared_run_by_run(both):
+    table = both.compare("protocol.rule", "paper", "feasible", "recoveries.routed_ms")
+    assert table.height == 4
+    for row in table.iter_rows(named=True):
+        mine = both.results.filter(
+            (polars.col("protocol.k") == row["protocol.k"])
+            & (polars.col("event.0.interface") == row["event.0.interface"])
+        )
+        one, other = (
+            mine.filter(polars.col("protocol.rule") == rule) for rule in ("paper", "feasible")
+        )
+        assert one["seed"].to_list() == other["seed"].to_list()
+        times = zip(one["recoveries.routed_ms"], other["recoveries.routed_ms"], strict=True)
+        assert (row["difference"], row["low"], row["high"]) == tuple(
+            mean_interval([b - a for a, b in times])
+        )
+
+
+@pytest.mark.parametrize(("arguments", "message"), [
+    (("protocol.m", 1, 2, "recoveries.routed_ms"), "not varied"),
+    (("protocol.k", 2, 9, "recoveries.routed_ms"), "no point has protocol.k=9"),
+    (("protocol.k", 2, 3, "recoveries.routed_ms"), "not paired"),
+    (("protocol.rule", "paper", "feasible", "routed_ms"), "no column"),
+])  # fmt: skip
+def test_comparisons_that_cannot_be_made(both, arguments, message):
+    with pytest.raises(SweepError, match=message):
+        both.compare(*arguments)
+
+
+@pytest.mark.parametrize(("options", "marks"), [
+    ({"x": "protocol.k", "y": "recoveries.routed_ms"}, 1),
+    ({"x": "protocol.k", "y": "recoveries.routed_ms", "by": "protocol.rule"}, 2),
+    ({"x": "protocol.rule", "y": "data.loss_ratio"}, 1),
+    ({"x": "recoveries.detected_ms", "y": "recoveries.routed_ms", "by": "protocol.k"}, 2),
+])  # fmt: skip
+def test_figures_show_the_points(both, options, marks):
+    (ax,) = both.plot(**options).axes
+    assert len(ax.lines) == marks
+    if options["x"] in both.plan.keys:
+        means = both.results.filter(polars.col(options["y"]).is_not_null())
+        keys = [options["x"]] + ([options["by"]] if "by" in options else [])
+        expected = sorted(means.group_by(keys).agg(polars.col(options["y"]).mean())[options["y"]])
+        drawn = sorted(float(v) for line in ax.lines for v in line.get_ydata())
+        assert drawn == pytest.approx(expected)
+        assert len(ax.collections) == marks  # a band each
+
+
+def test_a_heat_map_shows_every_mean(both):
+    ax, bar = both.plot("protocol.k", "recoveries.routed_ms", "protocol.rule", "heat").axes
+    shown = ax.images[0].get_array()
+    means = both.results.group_by("protocol.rule", "protocol.k").agg(
+        polars.col("recoveries.routed_ms").mean()
+    )
+    assert sorted(shown.flatten().tolist()) == pytest.approx(
+        sorted(means["recoveries.routed_ms"].to_list())
+    )
+    assert "mean" in bar.get_ylabel()
+
+
+def test_the_command_runs_a_plan_and_draws_its_figures(four, capsys):
+    Path("both.toml").write_text(PLAN)
+    assert main(["sweep", "both.toml", "--repeat", "2", "--workers", "1"]) == 0
+    out = capsys.readouterr().out
+    head, *rows = out.splitlines()
+    assert head.split()[-2:] == ["recoveries.routed_ms", "data.loss_ratio"]
+    assert len(rows) == 8 + 3
+    folder = Path("sweeps/both")
+    assert (folder / "ways-back.png").stat().st_size > 5_000
+    assert (folder / "plot-1.svg").exists()
+    plan = tomllib.loads((folder / "sweep.toml").read_text())
+    assert plan["repeat"] == 2
+
+
+@pytest.mark.parametrize(("text", "error", "message"), [
+    ('scenario = "four.toml"\nrepaet = 3', ScenarioError, 'plan.toml:2: .*did you mean "repeat"'),
+    ('scenario = "four.toml"\nrepeat = 0', ScenarioError, "plan.toml:2: repeat must be"),
+    ('scenario = "nowhere.toml"', ScenarioError, "no such file"),
+    ('scenario = "four.toml"\n[vary]\na = 3', SweepError, "a must be a list of values"),
+    ('scenario = "four.toml"\n[[zip]]\na = [1]\nb = [1, 2]', SweepError, "equally long"),
+    ('scenario = "four.toml"\n[derive]\na = "1 +"', SweepError, "no arithmetic"),
+    ('scenario = "four.toml"\n[vary]\na = "3..1"', SweepError, "leads nowhere"),
+])  # fmt: skip
+def test_mistakes_in_plan_files(four, text, error, message):
+    Path("plan.toml").write_text(text)
+    with pytest.raises(error, match=message):
+        assert make_plan("plan.toml").points
+
+
+def test_the_command_tells_mistakes_in_one_line(four, capsys):
+    for tokens in (
+        ("four.toml", "--vary", "protocol.k"),
+        ("four.toml", "--until", "x"),
+        ("nowhere.toml",),
+        ("four.toml", "--workers", "0"),
+        ("four.toml", "--engine", "steam"),
+        ("four.toml", "--paired", "protocol.k"),
+    ):
+        assert main(["sweep", *tokens]) == 2, tokens
+        out, err = capsys.readouterr()
+        assert out == ""
+        assert err.count("\n") == 1
+
+
+def test_folders_that_are_no_sweeps(four):
+    with pytest.raises(SweepError, match="not a finished sweep's folder"):
+        load("nowhere")
+    innervate.sweep("four.toml", workers=1, out="out")
+    Path("out/results.parquet").write_bytes(b"PAR1 not")
+    with pytest.raises(SweepError, match="damaged"):
+        load("out")

@@ -1,0 +1,68 @@
+"""How many interface ports a robot's skin needs: the iCub, and one arm of another maker."""
+
+from pathlib import Path
+
+import pytest
+
+from innervate import scenario
+from innervate.cli import main
+from innervate.sweep import SweepError
+from innervate.sweep.sizing import Question, answer_lines, parse_ports, size
+
+pytest.importorskip("icub_models")
+ICUB = "package:icub-models/iCubGenova02"
+UR5 = "package:example-robot-data/ur5_robot"
+
+
+def test_the_icubs_forearm_needs_more_ports_at_higher_rates():
+    asked = Question(ICUB, "r_forearm_skin_*", (100.0, 1000.0), (1, 2, 3))
+    answer = size(asked, repeat=4)
+    assert (answer.cells, answer.frames) == (24, True)
+    assert answer.needed[100.0] == 1
+    assert answer.needed[1000.0] in (2, 3)
+    fast = answer.table.filter(answer.table["rate_hz"] == 1000)
+    # 24 cells send 24,000 samples a second, a cable carries 16,667 frames.
+    assert fast["loss_cell_mean"][0] == pytest.approx(1 - 16_667 / 24_000, abs=0.05)
+    assert fast["loss_cell_mean"].to_list() == sorted(fast["loss_cell_mean"], reverse=True)
+    assert all(set(cells) <= {f"r_forearm_skin_{i}" for i in range(100)}
+               for cells in answer.where.values())  # fmt: skip
+    assert [len(cells) for cells in answer.where.values()] == [1, 2, 3]
+    two = answer.table.filter(answer.table["ports"] == 2)
+    assert all(0 < ms < 50 for ms in two["recovery_ms_pc_mean"])
+
+
+def test_ports_of_the_variants_are_compared_on_the_same_seeds():
+    answer = size(Question(ICUB, "r_forearm_skin_*", (100.0,), (1, 2)), repeat=2)
+    pairs = answer.sweep.compare("body.interfaces", 1, 2, "data.sent")
+    assert pairs["difference"].to_list() == [0, 0]
+
+
+def test_an_arm_without_skin_gets_cells_on_its_surface(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    tokens = ("--links", "*arm_link", "--pitch", "60", "--rate", "250", "--ports", "1,3",
+              "--repeat", "2", "--workers", "1", "--out", "out")  # fmt: skip
+    assert main(["size", UR5, *tokens]) == 0
+    out = capsys.readouterr().out
+    assert "cells 60 mm apart" in out
+    assert "250 Hz: " in out
+    assert Path("out/size.png").stat().st_size > 10_000
+    assert main(["size", UR5, *tokens]) == 0  # nothing is run twice
+    assert capsys.readouterr().out == out
+    tables = scenario.loads(Path("out/scenario.toml").read_text()).model
+    assert tables.body.pitch_mm == 60
+
+
+def test_what_cannot_be_sized():
+    with pytest.raises(SweepError, match=r'no link of .* matches "nono"'):
+        size(Question(ICUB, "nono"))
+    with pytest.raises(SweepError, match="install it with"):
+        size(Question("package:no-such-robots/x", "a"))
+    with pytest.raises(SweepError, match="whole numbers from 1"):
+        parse_ports("0..2")
+    assert parse_ports("4,1..2") == (1, 2, 4)
+
+
+def test_nothing_is_enough():
+    asked = Question(ICUB, "r_forearm_skin_*", (1000.0,), (1,))
+    lines = answer_lines(size(asked, repeat=2))
+    assert "1000 Hz: none of up to 1 ports is enough for 1 % lost, ways back in 50 ms." in lines

@@ -1,0 +1,50 @@
+"""Liveness: routes become shortest in time once faults have ended, and the check can fail."""
+
+import pytest
+
+from innervate.verify import explore, fair, graphs, mutants
+from innervate.verify.skin_system import Budget, SkinModel
+
+FAULTY = Budget(ticks=2, counts=2, faults=2)
+
+
+def model(graph, **keys):
+    return SkinModel(graphs.parse(graph), keep=True, **{"budget": FAULTY} | keys)
+
+
+@pytest.mark.parametrize("updates", ["periodic", "triggered"])
+@pytest.mark.parametrize("graph", ["pc-1 1-2", "pair"])
+def test_every_state_settles(graph, updates):
+    budget = FAULTY if updates == "periodic" else Budget(ticks=1, counts=2, faults=1)
+    result = explore.explore(model(graph, updates=updates, budget=budget))
+    assert result.tally.ended == "complete"
+    found = fair.check(result)
+    assert (found.ended, found.starts, found.left_out) == ("complete", result.tally.states, 0)
+    assert 0 < found.rounds <= found.bound
+    assert found.left == sorted(found.left, reverse=True)
+
+
+def test_plain_and_compiled_agree():
+    made = model("pc-1 1-2", budget=Budget(ticks=2, counts=1, faults=1))
+    one, other = (fair.check(explore.explore(made, plain=p), plain=p) for p in (False, True))
+    for name in ("rounds", "left", "played", "calm", "ended", "starts"):
+        assert getattr(one, name) == getattr(other, name), name
+
+
+def test_a_sample_says_that_it_is_one():
+    result = explore.explore(model("pair"))
+    found = fair.check(result, starts=50)
+    assert found.starts == 50 < found.of == result.tally.states
+
+
+def test_a_network_that_never_settles_is_found():
+    lost = next(m for m in mutants.MUTANTS if m.name == "the PC says that it is a hop away")
+    catch = mutants.hunt(lost)
+    assert "no shortest routes after" in catch.by
+
+
+def test_too_small_a_bound_is_broken(monkeypatch):
+    monkeypatch.setattr(fair, "bound_of", lambda _: 1)
+    found = fair.check(explore.explore(model("pair")))
+    assert found.ended == "broken"
+    assert len(found.path) == 3  # the state, before the first round, after it
