@@ -29,7 +29,7 @@ def machine_has(need):
         return hasattr(os, "geteuid") and os.geteuid() == 0
     if need == "needs_gpu":
         return succeeds("nvidia-smi", "-L")
-    return succeeds("unshare", "--net", "true")
+    return succeeds("unshare", "--net", "true") and all(map(shutil.which, ("ip", "nft")))
 
 
 def succeeds(*command):

@@ -152,10 +152,13 @@ def show(results):
                   f"{'(' + texts + ')':>26}{total['lost']:>6}{total['duplicates']:>5}"
                   f"{total['reordered']:>7}")  # fmt: skip
     print()
-    print(f"{'idle':13}{'side':11}{'control B/s per link':>22}{'CPU %':>8}{'memory MiB':>12}")
+    print(f"{'idle':13}{'side':11}{'control B/s per link':>22}{'with probes':>13}"
+          f"{'CPU %':>8}{'memory MiB':>12}")  # fmt: skip
     for (shape, side), found in results.items():
         idle = found["idle"]
-        print(f"{shape:13}{side:11}{idle['control_bytes_per_link_s']:>22.0f}"
+        rows = [row for fault, rows in found.items() if fault != "idle" for row in rows]
+        probed = statistics.median(row["bytes_per_link_s"] for row in rows)
+        print(f"{shape:13}{side:11}{idle['control_bytes_per_link_s']:>22.0f}{probed:>13.0f}"
               f"{idle['cpu_percent']:>8.2f}{idle['memory_mib']:>12.1f}")  # fmt: skip
 
 
