@@ -54,6 +54,7 @@ MISTAKES = (
     ("mean_degree = 6", "reach_m = 1", "raise radio.reach_m"),
     ("mean_degree = 6", "reach_m = 9\ntx_dbm = 3", "6: radio.reach_m and radio.tx_dbm both set"),
     ("mean_degree = 6", 'mac = "csma-cd-r"', '5: radio.mac = "csma-cd-r" needs all nodes to hear'),
+    ("mean_degree = 6", 'mac = "csma-cd-d1"', "hears others while it sends, as on a cable; radios"),
     ("mean_degree = 6", 'mac = "aloha"', '5: radio.mac must be "csma", "none"'),
     ("mean_degree = 6", 'profile = "ideal"\nmac = "csma"', "6: radio.mac = \"csma\" has nothing"),
     (SQUARE, "[[20, 20], [80, 80], [80, 20], [20, 80]]", "8: fence.polygon crosses itself: edge 0"),

@@ -14,6 +14,7 @@ from innervate.scenario.radio_plan import parameters
 from innervate.topology.placement import path_loss_cdb
 
 DELAY_US = (1, 2)  # from one node to another; detection included
+CABLE = "csma-cd-d1"
 PRACTICAL_NODES_MAX = 120  # places in a round of practical CSMA/CD-R
 E2E_S_MAX = 16.0
 # Rounds of turns until all have passed a request on; over which responses are spread; until all
@@ -75,6 +76,9 @@ def access(
         raise network.nodes.source.error(("radio", "mac"), message + 'collisions; use "none"')
     if mac == "csma":
         return mac, {"backoff_us": profile.backoff_us}
+    if mac == CABLE:
+        message = f'radio.mac = "{mac}" hears others while it sends, as on a cable; radios cannot: '
+        raise network.nodes.source.error(("radio", "mac"), f'{message}use "csma-cd-d2" or another')
     _check_one_cell(model, network, mac)
     _check_walks(network, mac, walks)
     _check_events(model, network, mac)

@@ -57,11 +57,10 @@ class Up(NamedTuple):
 def note_sent(world, node, frame, time):
     """A frame of the router is to go on the air: note when all have heard its end."""
     traffic.note_sent(world, node, frame, time)
-    last = node * world.run[0].stations + world.degree[node] - 1
-    heard = world.radios[node].data_end + (world.delay[last] if world.degree[node] > 0 else 0)
+    heard = world.radios[node].data_end + tail_us(world, node)
     for i in range(frame.count):
         place = place_of(node, frame.handle + i)
-        queue.push(world.above, queue.key_of(heard + 1, queue.ENDS, node, place))
+        queue.push(world.above, queue.key_of(heard, queue.ENDS, node, place))
 
 
 def note_received(world, node, frame, time):
@@ -79,6 +78,12 @@ def note_delivered(world, node, handle, time):
     queue.push(world.above, queue.key_of(time, queue.TELL, node, place))
 
 
+def tail_us(world, node):
+    """From the end of a station's frame until it is over at all others, too."""
+    count = world.degree[node]
+    return 1 + (world.delay[node * world.run[0].stations + count - 1] if count > 0 else 0)
+
+
 def place_of(node, handle):
     """Where the frame is that a node handed down as this packet."""
     return node * KEPT + (handle & (KEPT - 1))
@@ -89,11 +94,11 @@ def slots_of(world, length):
     return world.run[0].phy_bytes + HEADER_SLOTS + length
 
 
-def began(world, node, place, length):
-    """When the node's transmission under way, or its last, began: the frame of so many bytes."""
-    air, below = world.air[place], world.below
-    air.end = below.radios[node].data_end
-    air.start = air.end - slots_of(world, length) * below.run[0].slot_us
+def began(world, place, length, end):
+    """When the transmission that ends, or would have ended, at `end` began: so many bytes."""
+    air = world.air[place]
+    air.end = end
+    air.start = end - slots_of(world, length) * world.below.run[0].slot_us
     return air.start
 
 
@@ -165,7 +170,7 @@ def layer(handlers):
         def cut_short(world, node, place, time):
             """A node stops in mid-frame, if it has begun; nobody receives that."""
             length = frame_bytes(world.frames[place])
-            if began(world, node, place, length) < time:
+            if began(world, place, length, world.below.radios[node].data_end) < time:
                 books.keep_transmission(world, place, time, length, 0)
 
         def switch_off(world, node, time):
@@ -205,10 +210,11 @@ def layer(handlers):
             if air.state == VOID:
                 return
             length = frame_bytes(world.frames[place])
-            began(world, node, place, length)
+            end = time - tail_us(world.below, node)
+            began(world, place, length, end)
             run.transmissions += 1
             run.received += air.receivers
-            books.keep_transmission(world, place, air.end, length, air.receivers)
+            books.keep_transmission(world, place, end, length, air.receivers)
             air.receivers = 0
             if run.checks and digest(world.frames[place]) != air.digest:
                 books.breaks(world, books.BROKEN_FRAME, node)
