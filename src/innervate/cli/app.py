@@ -13,15 +13,12 @@ from cyclopts import App, Parameter
 import innervate
 from innervate.cli import errors
 from innervate.cli.live_commands import live_app
-from innervate.cli.seeds import Seed
+from innervate.cli.seeds import Seed, Sets
 from innervate.cli.verify_options import VERIFY_DEFAULTS, VerifyOptions
 
 HELP = """Describe and simulate the networks inside and between robots.
 
 Start with: innervate demo. The first run on a machine compiles for about half a minute."""
-
-_SET = Parameter(name=["--set"], negative="", allow_leading_hyphen=True)
-Sets = Annotated[list[str] | None, _SET]
 
 
 app = App(

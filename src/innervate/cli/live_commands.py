@@ -7,6 +7,9 @@ from typing import Annotated
 
 from cyclopts import App, Parameter
 
+from innervate.cli import errors
+from innervate.cli.seeds import Sets
+
 Json = Annotated[bool, Parameter(negative="")]
 live_app = App(
     name="live",

@@ -20,3 +20,6 @@ def _whole_seed(_type: Any, tokens: Sequence[Any]) -> int:
 
 
 Seed = Annotated[int | None, Parameter(converter=_whole_seed)]
+
+_SET = Parameter(name=["--set"], negative="", allow_leading_hyphen=True)
+Sets = Annotated[list[str] | None, _SET]
