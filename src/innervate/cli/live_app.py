@@ -1,0 +1,182 @@
+"""`innervate live`: its commands."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import App, Parameter
+
+from innervate.cli import errors
+
+Sets = Annotated[
+    list[str] | None, Parameter(name=["--set"], negative="", allow_leading_hyphen=True)
+]
+Json = Annotated[bool, Parameter(negative="")]
+live_app = App(
+    name="live",
+    help="Nodes between real processes: UDP, serial ports.",
+    help_format="plaintext",
+)
+
+
+@live_app.command(name="node")
+def live_node(file: Path, /) -> int:
+    """Run one node until SIGTERM or Ctrl-C; SIGHUP reads its keys again.
+
+    Parameters
+    ----------
+    file
+        A node file (see docs/live.md).
+    """
+    from innervate.live.main import run as command
+
+    return command(file)
+
+
+@live_app.command(name="up")
+def live_up(
+    file: str,
+    /,
+    *,
+    set_: Sets = None,
+    netns: Json = False,
+    pty: Json = False,
+    folder: Path | None = None,
+    for_: Annotated[float, Parameter(name=["--for"])] = 0.0,
+    json: Json = False,
+) -> int:
+    """Bring a scenario up, a process for every node, until Ctrl-C.
+
+    Parameters
+    ----------
+    file
+        A mesh or skin scenario, or the name of a bundled one.
+    set_
+        Change a key, as for run.
+    netns
+        Every node in its own network namespace; needs root.
+    pty
+        Skin: serial cables (ptys) instead of UDP.
+    folder
+        Where node files, logs and sockets go; a temporary one if left out.
+    for_
+        End after so many seconds.
+    json
+        Say where the nodes are as JSON.
+    """
+    from innervate.cli import live as command
+
+    if netns and pty:
+        raise errors.UserError("--netns and --pty exclude each other; name one")
+    cables = "netns" if netns else "pty" if pty else "udp"
+    return command.up(file, set_ or [], cables, folder, for_, json)
+
+
+@live_app.command(name="status")
+def live_status(*nodes: str, json: Json = False) -> int:
+    """Show neighbours, routes, counters, broken cables of running nodes.
+
+    Parameters
+    ----------
+    nodes
+        Names or sockets; all nodes of this user if left out.
+    json
+        Print JSON.
+    """
+    from innervate.cli import live as command
+
+    return command.show(list(nodes), json)
+
+
+@live_app.command(name="send")
+def live_send(
+    node: str,
+    to: int,
+    text: str,
+    /,
+    *,
+    priority: Json = False,
+    reliable: bool = True,
+    json: Json = False,
+) -> int:
+    """Send a message from a running node; prints what becomes of it.
+
+    Parameters
+    ----------
+    node
+        Name or socket of the node that sends.
+    to
+        Number of the recipient; 255 all, 254 the monitor.
+    text
+        The message; - reads standard input.
+    priority
+        Before other messages.
+    reliable
+        Kept until acknowledged.
+    json
+        Print JSON lines.
+    """
+    from innervate.cli import live as command
+
+    return command.send(node, to, text, priority, reliable, json)
+
+
+@live_app.command(name="listen")
+def live_listen(node: str, /, *, count: int = 0, json: Json = False) -> int:
+    """Print messages that come in at a running node, until Ctrl-C.
+
+    Parameters
+    ----------
+    node
+        Name or socket.
+    count
+        End after so many; 0 = never.
+    json
+        Print JSON lines.
+    """
+    from innervate.cli import live as command
+
+    return command.listen(node, count, json)
+
+
+@live_app.command(name="medium")
+def live_medium(
+    address: str = "127.0.0.1:4600",
+    /,
+    *,
+    slot_us: int = 10_000,
+    turnaround_us: int = 5_000,
+) -> int:
+    """Run a radio channel: stations whose files name its address hear each other on it.
+
+    Parameters
+    ----------
+    address
+        Where stations find it.
+    slot_us
+        Time of a slot on the air.
+    turnaround_us
+        From deciding to send to being on the air, and back.
+    """
+    from innervate.cli import live as command
+
+    return command.medium(address, slot_us, turnaround_us)
+
+
+@live_app.command(name="cut")
+def live_cut(node: str, port: int, /, *, restore: Json = False) -> int:
+    """Cut a cable in silence at one end, as if its plug had come out; or put it back.
+
+    Parameters
+    ----------
+    node
+        Name or socket.
+    port
+        Number of the path, as status shows it.
+    restore
+        Put it back.
+    """
+    from innervate.cli import live as command
+
+    return command.change(node, port, "restore" if restore else "cut")
