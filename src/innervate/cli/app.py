@@ -12,7 +12,7 @@ from cyclopts import App, Parameter
 
 import innervate
 from innervate.cli import errors
-from innervate.cli.live_commands import live_app
+from innervate.cli.live_app import live_app
 from innervate.cli.seeds import Seed, Sets
 from innervate.cli.verify_options import VERIFY_DEFAULTS, VerifyOptions
 

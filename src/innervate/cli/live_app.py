@@ -1,4 +1,4 @@
-"""The command line of live nodes: `innervate live ...`; what each does stands in live.py."""
+"""`innervate live`: its commands."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from innervate.cli import errors
-from innervate.cli.seeds import Sets
 
+from innervate.cli.seeds import Sets
+    list[str] | None, Parameter(name=["--set"], negative="", allow_leading_hyphen=True)
+]
 Json = Annotated[bool, Parameter(negative="")]
 live_app = App(
     name="live",
