@@ -8,10 +8,8 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from innervate.cli import errors
-
 from innervate.cli.seeds import Sets
-    list[str] | None, Parameter(name=["--set"], negative="", allow_leading_hyphen=True)
-]
+
 Json = Annotated[bool, Parameter(negative="")]
 live_app = App(
     name="live",
