@@ -2,7 +2,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from innervate.papers import main, radio, skin
+from innervate.papers import main, mesh, radio, skin
 from innervate.papers.book import RESULTS
 from innervate.papers.store import Store, stamp
 
@@ -42,3 +42,11 @@ def radio_made(tmp_path_factory):
     folder = tmp_path_factory.mktemp("papers-radio")
     main("radio", folder, quick=True)
     return read(folder, True, radio.FIGURES, radio)
+
+
+@pytest.fixture(scope="session")
+def mesh_made(tmp_path_factory):
+    """All figures of the mesh in quick mode."""
+    folder = tmp_path_factory.mktemp("papers-mesh")
+    main("mesh", folder, quick=True)
+    return read(folder, True, mesh.FIGURES, mesh)

@@ -55,7 +55,7 @@ def main(
     """Draw and tabulate the figures of a paper.
 
     Args:
-        system: which paper: "skin" or "radio".
+        system: which paper: "skin", "radio" or "mesh".
         out: folder for the figures, tables and kept results.
         quick: few seeds and settings, in under a minute.
         only: names of figures ("fig8a"); empty = all.

@@ -45,7 +45,8 @@ class Claim:
         claim: as the paper means it.
         measurement: with its unit and how many runs it is of.
         verdict: "holds", "holds with reading E..", "does not hold". Readings are
-            those of the skin's errata (E) or of the radio's questions and findings (Q, F).
+            those of the skin's errata (E), of the radio's questions and findings (Q, F), of the
+            mesh's ambiguities (A).
         reason: why; empty where it simply holds.
     """
 

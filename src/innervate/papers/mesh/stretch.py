@@ -127,7 +127,8 @@ def draw(results: Results, quick: bool) -> Figure:
     left.set_xlabel("mean degree")
     left.set_ylabel("hops / shortest way")
     left.set_title("a  stretch of the tables' ways")
-    left.legend(loc="center right")
+    left.set_ylim(0.95, 2.3)
+    left.legend(loc="upper left")
     _kinds(right, results, quick)
     return figure
 
