@@ -142,7 +142,7 @@ def test_parameters(profile: str, nodes: int) -> None:
     assert p.capacity == p.params["width"] == (32 if nodes <= 32 else 64 if nodes <= 64 else 254)
     assert p.params["standby"] == 1
     seconds = p.params["tick_us"] / 1e6
-    wanted = {"250k": (10, 60, 25, 5), "ideal": (10, 60, 25, 5), "ip": (2, 12, 5, 1),
+    wanted = {"250k": (10, 60, 25, 5), "ideal": (10, 60, 25, 5), "ip": (2, 2, 5, 1),
               "38k4": (30, 300, 75, 5) if nodes <= 15 else (60, 300, 150, 5)}[profile]  # fmt: skip
     for name, time_s in zip(("period", "period_max", "dead", "dead_step"), wanted, strict=True):
         assert time_s <= p.params[name] * seconds < time_s + seconds
