@@ -1,6 +1,6 @@
 """Messages that are kept until their recipient acknowledges them [mesh RELIABLE]."""
 
-from innervate.protocol.arith import MASK30, after, later
+from innervate.protocol.arith import MASK16, MASK30, after, later
 from innervate.protocol.mesh_fields import WAITING
 from innervate.protocol.mesh_frames import add8, get16, inner
 from innervate.protocol.mesh_queue import ALARMS, CONTROL, MESSAGES, compose, drop, kick
@@ -25,6 +25,7 @@ from innervate.protocol.outbox import report, set_timer
 
 FREE = 0
 LONGEST_US = 1 << 27
+OLDEST = 64  # numbers: a packet older than that its recipient could not tell from one it had
 
 
 def free_wait(node):
@@ -117,7 +118,8 @@ def launch(node, params, now, i, owner, handle, out):
 
 def try_again(node, params, now, w, out):
     """Send a kept message once more, or give it up: 1 if it was sent."""
-    if node.wait_tries[w] > params.e2e_tries:
+    old = (node.seq - node.wait_seq[w]) & MASK16 > OLDEST
+    if node.wait_tries[w] > params.e2e_tries or old:
         report(out, REPORT_EXPIRED, node.wait_handle[w], NO_ACK)
         if node.wait_kind[w] == DATA:
             note_no_way(node, node.wait_dest[w], node.wait_tries[w] > 2)

@@ -131,8 +131,8 @@ def last_resort(node, params, i):
     return node.near[best]
 
 
-def by_search(node, params, i):
-    """The next hop by table, alternates and path-trace search; back where it came from if none."""
+def seek(node, params, i):
+    """Whoever leads on by what we know, or else anybody; back where it came from if nobody."""
     who = search(node, params, i, 0)
     if who == NOBODY:
         who = search(node, params, i, 1)
@@ -144,6 +144,12 @@ def by_search(node, params, i):
                 who = NOBODY
     if who == NOBODY and params.failover == SEARCH and node.q_origin[i] == node.number:
         who = last_resort(node, params, i)
+    return who
+
+
+def by_search(node, params, i):
+    """The next hop by table, alternates and path-trace search."""
+    who = seek(node, params, i)
     if who != NOBODY and who != planned(node, params, node.q_dest[i]):
         node.q_flags[i] = node.q_flags[i] | DETOURED
     return who
@@ -155,18 +161,19 @@ def room_of(node, params, i):
 
 
 def by_graph(node, params, i):
-    """The next hop on a shortest path around all that failed; NOBODY if there is none."""
+    """The next hop on a shortest path around all that failed and all that had the packet.
+
+    Where the graph knows none, links may have come that it does not have: search.
+    """
     dest = node.q_dest[i]
     near = is_strong(node, params, place_of(node, params, dest))
     if near and not is_suspect(node, params, dest):
         return dest
     if node.version:
-        who = towards(node, params, i, dest, room_of(node, params, i))
+        who = towards(node, params, i, dest, room_of(node, params, i), 1)
         if who != NONE:
             return who
-    if dest == node.gateway:
-        return uplink(node, params, i)
-    return NOBODY
+    return seek(node, params, i)
 
 
 def along_route(node, params, i):
@@ -192,10 +199,10 @@ def plan_route(node, params, i):
     dest = node.q_dest[i]
     if dest >= params.nodes:
         return
-    first = towards(node, params, i, dest, room_of(node, params, i))
+    first = towards(node, params, i, dest, room_of(node, params, i), 0)
     if first == NONE:
         return
-    distances(node, params, i, dest, node.number)
+    distances(node, params, i, dest, node.number, 0)
     count = node.far[first] + 1
     length = node.q_length[i]
     if length + count + 1 > room_of(node, params, i):

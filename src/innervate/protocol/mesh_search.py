@@ -3,7 +3,7 @@
 Packets carry the nodes that failed on their way: the payload ends with them, then their number.
 """
 
-from innervate.protocol.mesh_frames import add8
+from innervate.protocol.mesh_frames import add8, was_at
 from innervate.protocol.mesh_near import is_suspect
 from innervate.protocol.mesh_words import BODY, DETOURED
 
@@ -59,8 +59,11 @@ def add_failed(node, i, who, room):
     return 1
 
 
-def distances(node, params, i, dest, here):
-    """Hops from everyone to `dest`, around `here` and whoever failed for the packet in place i."""
+def distances(node, params, i, dest, here, anew):
+    """Hops from everyone to `dest`, around `here` and whoever failed for the packet in place i.
+
+    With `anew` around whoever had the packet, too.
+    """
     for k in range(params.nodes):
         node.far[k] = FAR
     node.far[dest] = 0
@@ -80,19 +83,19 @@ def distances(node, params, i, dest, here):
                 for b in range(BITS):
                     c = word * BITS + b
                     if bits >> b & 1 and c < params.nodes and node.far[c] == FAR:
-                        if not has_failed(node, i, c):
+                        if not has_failed(node, i, c) and not (anew and was_at(node, i, c)):
                             node.far[c] = node.far[a] + 1
                             node.line[last] = c
                             last = last + 1
 
 
-def nearest(node, params, i, dest):
+def nearest(node, params, i, dest, anew):
     """The neighbour with the shortest way to `dest` for the packet in place i, or 255.
 
     Where the recipient itself did not answer us, somebody else may reach it.
     """
     me = node.number
-    distances(node, params, i, dest, me)
+    distances(node, params, i, dest, me, anew)
     best = 255
     for c in range(params.nodes):
         if node.far[c] != FAR and c != me and is_edge(node, params, me, c):
@@ -103,13 +106,13 @@ def nearest(node, params, i, dest):
     return best
 
 
-def towards(node, params, i, dest, room):
+def towards(node, params, i, dest, room, anew):
     """Where the packet in place i goes on a shortest path, or 255.
 
     Whoever would be next but does not answer is added to the failed that the packet carries.
     """
     for _ in range(params.places + 1):
-        who = nearest(node, params, i, dest)
+        who = nearest(node, params, i, dest, anew)
         if who == 255 or not is_suspect(node, params, who):
             return who
         if not add_failed(node, i, who, room):

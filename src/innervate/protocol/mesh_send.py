@@ -24,7 +24,6 @@ from innervate.protocol.mesh_words import (
     TABLE,
     TABLE_ACK,
     TABLE_FREE,
-    TABLES,
 )
 from innervate.protocol.outbox import report
 from innervate.protocol.rng import draw
@@ -89,7 +88,7 @@ def goes_back(node, params, i):
 
     24 nodes can be searched so, not 24 hops; dead ends cost no room.
     """
-    if params.mode != TABLES or params.failover != SEARCH or node.q_ttl[i] == 0:
+    if params.mode == TABLE_FREE or params.failover != SEARCH or node.q_ttl[i] == 0:
         return 0
     if not was_at(node, i, node.number):
         return 0
