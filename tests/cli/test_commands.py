@@ -163,7 +163,7 @@ def test_interrupted_papers_can_be_taken_up_again(sh, monkeypatch):
     assert "goes on from there" in sh.err
 
 
-@pytest.mark.parametrize("tokens", [("mesh",), ("--only", "fig99")])
+@pytest.mark.parametrize("tokens", [("kitchen",), ("--only", "fig99")])
 def test_papers_and_figures_that_are_not_there(sh, tokens):
     assert sh("papers", *tokens, "--out", "figures") == 2
     assert "choose from:" in sh.err

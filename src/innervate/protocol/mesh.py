@@ -33,7 +33,7 @@ from innervate.protocol.mesh_queue import (
 )
 from innervate.protocol.mesh_relay import flood_data, rank_of, relay
 from innervate.protocol.mesh_round import on_request, step
-from innervate.protocol.mesh_seen import age, forget, is_repeated
+from innervate.protocol.mesh_seen import age, forget, hope_again, is_repeated
 from innervate.protocol.mesh_send import is_upward, send_up, unanswered
 from innervate.protocol.mesh_table import on_activate, on_graph, on_table
 from innervate.protocol.mesh_watch import NEVER, beacon, on_position, watch
@@ -67,6 +67,7 @@ from innervate.protocol.outbox import report, set_timer
 from innervate.protocol.rng import draw
 
 NONE = 255
+HOPELESS_TICKS = 4  # whoever could not be reached is tried again after at most so long
 RETRIES = 4  # of kept messages in one go: the outbox has to hold them
 
 
@@ -252,6 +253,8 @@ def on_tick(node, gate, params, now, out):
     set_timer(out, TICK, (now + params.tick_us) & MASK30)
     sweep(node, params, now)
     age(node, params)
+    if node.ticks % HOPELESS_TICKS == 0:
+        hope_again(node)
     watch(node, params, now, out)
     if node.robot and node.placed:
         insist(node, params, now, out)

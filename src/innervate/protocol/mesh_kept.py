@@ -5,7 +5,7 @@ from innervate.protocol.mesh_fields import WAITING
 from innervate.protocol.mesh_frames import add8, get16, inner
 from innervate.protocol.mesh_queue import ALARMS, CONTROL, MESSAGES, compose, drop, kick
 from innervate.protocol.mesh_search import BITS
-from innervate.protocol.mesh_seen import is_hopeless, note_no_way, unskip
+from innervate.protocol.mesh_seen import NO_WAY, is_hopeless, mark_bad, unskip
 from innervate.protocol.mesh_send import send_on
 from innervate.protocol.mesh_words import (
     ALARM,
@@ -91,23 +91,25 @@ def due_wait(node, now):
     return -1
 
 
-def is_in_vain(node, i, owner):
-    """1 if no way is known to the recipient, or an older message to it is looking for one."""
-    dest = node.q_dest[i]
-    if is_hopeless(node, dest):
-        return 1
+def is_behind(node, dest, seq):
+    """1 if an older message to the same recipient is looking for a way: one at a time does."""
     for w in range(WAITING):
-        if w != owner and node.wait_kind[w] == DATA and node.wait_dest[w] == dest:
-            if node.wait_tries[w] > 1 and later(node.q_seq[i], node.wait_seq[w]):
+        if node.wait_kind[w] == DATA and node.wait_dest[w] == dest:
+            if node.wait_tries[w] > 2 and later(seq, node.wait_seq[w]):
                 return 1
     return 0
+
+
+def is_in_vain(node, dest, seq):
+    """1 if no way is known to the recipient, or an older message to it is looking for one."""
+    return is_hopeless(node, dest) or is_behind(node, dest, seq)
 
 
 def launch(node, params, now, i, owner, handle, out):
     """A packet of ours goes out; without a way, only one that is kept may come to one later."""
     node.q_owner[i] = owner
     sent = 0
-    if node.q_kind[i] != ALARM and is_in_vain(node, i, owner):
+    if node.q_kind[i] != ALARM and is_in_vain(node, node.q_dest[i], node.q_seq[i]):
         drop(node, i)
     else:
         sent = send_on(node, params, now, i, out)
@@ -122,8 +124,11 @@ def try_again(node, params, now, w, out):
     if node.wait_tries[w] > params.e2e_tries or old:
         report(out, REPORT_EXPIRED, node.wait_handle[w], NO_ACK)
         if node.wait_kind[w] == DATA:
-            note_no_way(node, node.wait_dest[w], node.wait_tries[w] > 2)
+            mark_bad(node, NO_WAY, node.wait_dest[w])
         node.wait_kind[w] = FREE
+        return 0
+    if node.wait_kind[w] == DATA and is_behind(node, node.wait_dest[w], node.wait_seq[w]):
+        node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
         return 0
     node.wait_tries[w] = node.wait_tries[w] + 1
     node.wait_flags[w] = node.wait_flags[w] ^ PARITY

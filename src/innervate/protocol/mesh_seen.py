@@ -196,15 +196,8 @@ def is_bad(node, who, dest):
     return 0
 
 
-def note_no_way(node, dest, sure):
-    """A packet of ours found no way to `dest`, whoever we asked."""
-    if sure or is_bad(node, node.number, dest):
-        mark_bad(node, NO_WAY, dest)
-    mark_bad(node, node.number, dest)
-
-
 def is_hopeless(node, dest):
-    """1 if again and again no way was found to `dest`, and nothing has changed since.
+    """1 if all tries of a message to `dest` were in vain, and nothing was heard of it since.
 
     A search asks the whole network. All who have messages for somebody who died would search
     without end, and leave no room for the round that mends the tables.
@@ -216,14 +209,14 @@ def is_there(node, dest):
     """`dest` is heard of: forget that no way was found."""
     for k in range(SKIPS):
         if node.bad_dest[k] == dest:
-            if node.bad_near[k] == NO_WAY or node.bad_near[k] == node.number:
+            if node.bad_near[k] == NO_WAY:
                 node.bad_near[k] = ALL
 
 
 def hope_again(node):
-    """A new round: whoever could not be reached may be there."""
+    """Whoever could not be reached may be there."""
     for k in range(SKIPS):
-        if node.bad_near[k] == NO_WAY or node.bad_near[k] == node.number:
+        if node.bad_near[k] == NO_WAY:
             node.bad_near[k] = ALL
 
 

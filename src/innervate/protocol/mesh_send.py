@@ -1,7 +1,7 @@
 """A packet goes on: its next hop is chosen, and another when that does not answer."""
 
 from innervate.protocol.arith import MASK30
-from innervate.protocol.mesh_fields import QUEUE, WAITING
+from innervate.protocol.mesh_fields import QUEUE
 from innervate.protocol.mesh_frames import add_hop, was_at
 from innervate.protocol.mesh_near import suspect, trust
 from innervate.protocol.mesh_queue import UNACKED, WAITS, drop, kick
@@ -12,7 +12,7 @@ from innervate.protocol.mesh_route import (
     planned,
     room_of,
 )
-from innervate.protocol.mesh_seen import note_no_way, skip, unskip
+from innervate.protocol.mesh_seen import skip, unskip
 from innervate.protocol.mesh_upward import uplink
 from innervate.protocol.mesh_words import (
     ACK_WANTED,
@@ -29,7 +29,6 @@ from innervate.protocol.outbox import report
 from innervate.protocol.rng import draw
 
 FAILURES_MAX = 6
-SURE_AFTER = 2  # sent so often in vain, the next failure of a kept message counts
 HOPS_MAX = 40  # failures of a routed packet at a node: every neighbour once, and some to spare
 
 
@@ -37,23 +36,6 @@ def give_up(node, i, out):
     """Nobody can take the packet in place i."""
     report(out, REPORT_DROPPED, node.q_origin[i], node.q_seq[i])
     drop(node, i)
-
-
-def tries_of(node, seq):
-    """How often a message of ours that is kept was sent, 0 if this one is not kept."""
-    for w in range(WAITING):
-        if node.wait_kind[w] and node.wait_seq[w] == seq:
-            return node.wait_tries[w]
-    return 0
-
-
-def no_way(node, i, out):
-    """Everybody was asked who could take the packet in place i."""
-    if node.q_origin[i] == node.number:
-        tries = tries_of(node, node.q_seq[i])
-        if tries == 0 or tries > SURE_AFTER:
-            note_no_way(node, node.q_dest[i], tries)
-    give_up(node, i, out)
 
 
 def pass_on(node, params, i, who):
@@ -101,7 +83,7 @@ def send_on(node, params, now, i, out):
     if not goes_back(node, params, i) and not enter(node, params, i, out):
         return 0
     if not aim(node, params, i, out):
-        no_way(node, i, out)
+        give_up(node, i, out)
         return 0
     return 1
 
@@ -159,7 +141,7 @@ def hop_failed(node, params, now, i, out):
         if not params.retry or node.q_fails[i] > HOPS_MAX:
             give_up(node, i, out)
         elif not aim(node, params, i, out):
-            no_way(node, i, out)
+            give_up(node, i, out)
 
 
 def turn_away(node, params, dead, out):
