@@ -113,7 +113,7 @@ def test_the_ninth_message_that_waits_is_refused_and_none_blocks_the_others():
     for k in range(9):
         net.send(1, 0, handle=k)
     assert receipts(net, 1).count(REPORT_FULL) >= 1
-    net.run(READY + 9_000_000)
+    net.run(READY + 90_000_000)
     assert receipts(net, 1).count(REPORT_EXPIRED) == receipts(net, 1).count(REPORT_ACCEPTED)
     assert not net.queued()
 

@@ -25,6 +25,7 @@ from innervate.protocol.outbox import report, set_timer
 
 FREE = 0
 LONGEST_US = 1 << 27
+SURE_AFTER = 2  # tries; after fewer in vain nothing is concluded
 OLDEST = 64  # numbers: a packet older than that its recipient could not tell from one it had
 
 
@@ -95,7 +96,7 @@ def is_behind(node, dest, seq):
     """1 if an older message to the same recipient is looking for a way: one at a time does."""
     for w in range(WAITING):
         if node.wait_kind[w] == DATA and node.wait_dest[w] == dest:
-            if node.wait_tries[w] > 2 and later(seq, node.wait_seq[w]):
+            if node.wait_tries[w] > SURE_AFTER and later(seq, node.wait_seq[w]):
                 return 1
     return 0
 
@@ -123,7 +124,7 @@ def try_again(node, params, now, w, out):
     old = (node.seq - node.wait_seq[w]) & MASK16 > OLDEST
     if node.wait_tries[w] > params.e2e_tries or old:
         report(out, REPORT_EXPIRED, node.wait_handle[w], NO_ACK)
-        if node.wait_kind[w] == DATA:
+        if node.wait_kind[w] == DATA and node.wait_tries[w] > SURE_AFTER:
             mark_bad(node, NO_WAY, node.wait_dest[w])
         node.wait_kind[w] = FREE
         return 0
