@@ -76,6 +76,70 @@ def joined(*entries: str) -> str:
     return HEADER.format(", ".join(entries)) + "\n".join(functions(*entries).values()) + "\n"
 
 
+class _Short(ast.NodeTransformer):
+    """Gives short names to local variables, and to what `renamed` has: functions, attributes."""
+
+    def __init__(self, renamed: dict[str, str]) -> None:
+        self.renamed = renamed
+        self.local: dict[str, str] = {}
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
+        names = [arg.arg for arg in node.args.args]
+        for inner in ast.walk(node):
+            if isinstance(inner, ast.Name) and isinstance(inner.ctx, ast.Store):
+                names.append(inner.id)
+        self.local = {name: short(i) for i, name in enumerate(dict.fromkeys(names))}
+        for arg in node.args.args:
+            arg.arg = self.local[arg.arg]
+        node.name = self.renamed.get(node.name, node.name)
+        self.generic_visit(node)
+        return node
+
+    def visit_Name(self, node: ast.Name) -> ast.Name:
+        found = self.local.get(node.id) or self.renamed.get(node.id, node.id)
+        return ast.copy_location(ast.Name(found, node.ctx), node)
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.Attribute:
+        self.generic_visit(node)
+        node.attr = self.renamed.get(node.attr, node.attr)
+        return node
+
+
+class _Fixed(ast.NodeTransformer):
+    """Puts numbers for the attributes of `params`."""
+
+    def __init__(self, params: dict[str, int]) -> None:
+        self.params = params
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
+        if isinstance(node.value, ast.Name) and node.value.id == "params":
+            return ast.copy_location(ast.Constant(self.params[node.attr]), node)
+        self.generic_visit(node)
+        return node
+
+
+def fixed(source: str, params: dict[str, int]) -> str:
+    """The same source for given parameters."""
+    return ast.unparse(_Fixed(params).visit(ast.parse(source)))
+
+
+LETTERS = "abcdefghijklmnopqrstuvwxyz"
+
+
+def short(i: int) -> str:
+    """The i-th shortest name: a, b .. z, ba, bb ..; none is a word of the language."""
+    name = LETTERS[i % 26]
+    while i >= 26:
+        i //= 26
+        name = LETTERS[i % 26] + name
+    return name if name not in ("as", "do", "if", "in", "is", "or", "eq", "id") else name + "_"
+
+
+def shortened(source: str, renamed: dict[str, str]) -> str:
+    """The same source with short names; `renamed` are those of functions and attributes."""
+    return ast.unparse(_Short(renamed).visit(ast.parse(source)))
+
+
 def one_text(*sources: str) -> str:
     """Modules of a board as one, those that others import first; whole numbers in capitals inlined.
 

@@ -5,6 +5,8 @@ An array takes as many bytes per item as its declared range needs.
 
 from __future__ import annotations
 
+from typing import Any
+
 from boards.roles import Declaration
 
 # Type codes of `array`, narrowest first, with their ranges.
@@ -19,28 +21,24 @@ def code_of(low: int, high: int) -> str:
     return next(code for code, least, most in CODES if least <= low and high <= most)
 
 
-def class_source(name: str, declaration: Declaration, values: dict[str, int] | None = None) -> str:
-    """A class whose instances have the declared fields, at 0, or the value in range nearest 0.
+def initial(field: tuple[str, Any, int, int, str, str]) -> str:
+    """What a field begins with, as an expression: 0, or the value in range nearest 0."""
+    _name, length, low, high, *_ = field
+    start, code = min(max(0, low), high), code_of(low, high)
+    if not length:
+        return str(start)
+    if start:
+        return f'array("{code}", [{start}] * {length})'
+    if code == "B":
+        return f"bytearray({length})"
+    return f'array("{code}", bytes({BYTES[code] * length}))'
 
-    Args:
-        name: of the class.
-        declaration: (name, length, low, high, unit, meaning) of each field.
-        values: of single fields that are to begin otherwise.
-    """
-    lines = [f"class {name}:", "    def __init__(self):"]
-    for field, length, low, high, *_ in declaration:
-        start = (values or {}).get(field, min(max(0, low), high))
-        if not length:
-            made = str(start)
-        elif start == 0 and code_of(low, high) == "B":
-            made = f"bytearray({length})"
-        elif start == 0:
-            code = code_of(low, high)
-            made = f'array("{code}", bytes({BYTES[code] * length}))'
-        else:
-            made = f'array("{code_of(low, high)}", [{start}] * {length})'
-        lines.append(f"        self.{field} = {made}")
-    return "\n".join(lines if declaration else [lines[0], "    pass"]) + "\n"
+
+def class_source(name: str, declaration: Declaration) -> str:
+    """A class whose instances have the declared fields, as they begin."""
+    lines = [f"        self.{field[0]} = {initial(field)}" for field in declaration]
+    head = [f"class {name}:", "    def __init__(self):" if lines else "    pass"]
+    return "\n".join(head + lines) + "\n"
 
 
 def module_source(**classes: Declaration) -> str:
