@@ -21,10 +21,10 @@ def code_of(low: int, high: int) -> str:
     return next(code for code, least, most in CODES if least <= low and high <= most)
 
 
-def initial(field: tuple[str, Any, int, int, str, str]) -> str:
-    """What a field begins with, as an expression: 0, or the value in range nearest 0."""
+def initial(field: tuple[str, Any, int, int, str, str], value: int | None = None) -> str:
+    """What a field begins with, as an expression: `value`, 0, or the value in range nearest 0."""
     _name, length, low, high, *_ = field
-    start, code = min(max(0, low), high), code_of(low, high)
+    start, code = min(max(value or 0, low), high), code_of(low, high)
     if not length:
         return str(start)
     if start:
@@ -34,13 +34,18 @@ def initial(field: tuple[str, Any, int, int, str, str]) -> str:
     return f'array("{code}", bytes({BYTES[code] * length}))'
 
 
-def class_source(name: str, declaration: Declaration) -> str:
-    """A class whose instances have the declared fields, as they begin."""
-    lines = [f"        self.{field[0]} = {initial(field)}" for field in declaration]
+def class_source(name: str, declaration: Declaration, values: dict[str, int] | None = None) -> str:
+    """A class whose instances have the declared fields; `values` are what some begin with."""
+    known = values or {}
+    lines = [f"        self.{f[0]} = {initial(f, known.get(f[0]))}" for f in declaration]
     head = [f"class {name}:", "    def __init__(self):" if lines else "    pass"]
     return "\n".join(head + lines) + "\n"
 
 
-def module_source(**classes: Declaration) -> str:
-    """A module with such classes."""
-    return HEAD + "\n\n".join(class_source(name, fields) for name, fields in classes.items())
+def module_source(params: dict[str, int] | None = None, /, **classes: Declaration) -> str:
+    """A module with such classes; a class Params begins with `params`."""
+    made = (
+        class_source(name, fields, params if name == "Params" else None)
+        for name, fields in classes.items()
+    )
+    return HEAD + "\n\n".join(made)

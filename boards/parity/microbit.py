@@ -22,7 +22,7 @@ from boards.parity.nodejs import BoardFailed, BoardMissing
 from boards.parity.record import HANDLERS, Transcript, flat, layout_of, names_of
 from boards.parity.replay import SEND, START, TIMER, fold_out, fold_state
 from boards.roles import Declaration, Role
-from innervate.protocol.skin_words import BEACON, DATA
+from innervate.protocol.skin_words import BEACON
 
 FIRMWARE = Path("/usr/share/firmware-microbit-micropython/firmware.hex")
 QEMU = "qemu-system-arm"
@@ -148,9 +148,8 @@ class Names:
 
 def _fields(names: Names, record: str, declaration: Declaration) -> Iterator[str]:
     """Lines that give an object its fields."""
-    for name, *_ in declaration:
-        made = records.initial(next(field for field in declaration if field[0] == name))
-        yield f"{record}.{names.short[name]}={made}"
+    for field in declaration:
+        yield f"{record}.{names.short[field[0]]}={records.initial(field)}"
 
 
 def _set_up(board: Microbit, role: Role, room: int, names: Names) -> None:
@@ -236,7 +235,8 @@ def _read(board: Microbit, names: Names, record: str, fields: Declaration) -> Si
         part = fields[at : at + AT_ONCE]
         values = [f"{record}.{names.short[name]}" for name, *_ in part]
         asked = [f"list({v})" if f[1] else v for v, f in zip(values, part, strict=True)]
-        for field, value in zip(part, literal_eval(board.run(f"print(({','.join(asked)},))"))):
+        said = literal_eval(board.run(f"print(({','.join(asked)},))"))
+        for field, value in zip(part, said, strict=True):
             setattr(found, field[0], value)
     return found
 

@@ -108,7 +108,8 @@ class Player:
         if handler == END:
             return None
         now = read()
-        self.handlers[handler](*(self.who + (now,) + self.given(handler) + (self.out,)))
+        given = self.given(handler)
+        self.handlers[handler](*self.who, now, *given, self.out)
         marks = fold_state(self.who[0], self.layouts.NAMES), fold_out(self.out, self.layouts.KINDS)
         self.out.clear()
         return marks
