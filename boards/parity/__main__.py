@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 
+from boards.errors import BoardFailed, BoardMissing
 from boards.parity import microbit, nodejs, record
 from boards.parity.record import Transcript
 
@@ -61,10 +62,10 @@ def main(arguments: list[str]) -> int:
         return 2
     try:
         results = [compare(name, "--quick" in arguments) for name in names or record.WATCHED]
-    except nodejs.BoardMissing as error:
+    except BoardMissing as error:
         print(error, file=sys.stderr)
         return 2
-    except nodejs.BoardFailed as error:
+    except BoardFailed as error:
         print(f"a board did not get through: {error}", file=sys.stderr)
         return 1
     print("all the same" if all(results) else "NOT the same")

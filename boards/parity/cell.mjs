@@ -2,23 +2,10 @@
 // The devices are the board's UARTs, from 0. It runs until it is killed.
 import fs from "node:fs";
 import path from "node:path";
-import { pathToFileURL } from "node:url";
+import { load } from "./load.mjs";
 
 const [home, folder, ...devices] = process.argv.slice(2);
-const { loadMicroPython } = await import(pathToFileURL(path.join(home, "micropython.mjs")));
-const python = await loadMicroPython({ stdout: (line) => fs.writeSync(1, line + "\n") });
-
-function copy(from, to) {
-  for (const entry of fs.readdirSync(from, { withFileTypes: true })) {
-    const [here, there] = [path.join(from, entry.name), `${to}/${entry.name}`];
-    if (entry.isDirectory()) {
-      python.FS.mkdir(there);
-      copy(here, there);
-    } else {
-      python.FS.writeFile(there, fs.readFileSync(here));
-    }
-  }
-}
+const python = await load(home, folder, {});
 
 const { O_RDWR, O_NOCTTY, O_NONBLOCK } = fs.constants;
 const lines = devices.map((name) => ({
@@ -54,7 +41,6 @@ python.registerJsModule("host", {
   },
   rest: () => void Atomics.wait(clock, 0, 0, 1),
 });
-copy(folder, "");
 try {
   python.runPython(fs.readFileSync(path.join(folder, "main.py"), "utf8"));
 } catch (error) {

@@ -18,7 +18,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from boards import join, records
-from boards.parity.nodejs import BoardFailed, BoardMissing
+from boards.errors import BoardFailed, BoardMissing
 from boards.parity.record import HANDLERS, Transcript, flat, layout_of, names_of
 from boards.parity.replay import SEND, START, TIMER, fold_out, fold_state
 from boards.roles import Declaration, Role

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from boards import join, records
 from boards.compile import mpy
+from boards.errors import BoardFailed, BoardMissing
 from boards.parity import replay
 from boards.parity.record import Transcript, flat, layout_of, names_of
 from boards.roles import Role
@@ -23,14 +24,6 @@ CAP = 16_384
 ROM = 262_144  # besides, where code counts as flash
 LIMIT_S = 60  # out of memory, it can hang
 FILL = [f"=filling.fill:{size}" for size in (8192, 1024, 128, 32, 1)]
-
-
-class BoardMissing(Exception):
-    """What to install; one line."""
-
-
-class BoardFailed(Exception):
-    """MicroPython did not get through."""
 
 
 @dataclass
@@ -130,6 +123,13 @@ def script_of(transcript: Transcript) -> bytes:
     return b"".join(map(encoded, numbers))
 
 
+def write(folder: Path, files: dict[str, bytes]) -> None:
+    """Put files, some of them perhaps in subfolders, into a folder."""
+    for name, content in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(content)
+
+
 def run(files: dict[str, bytes], heap: int, *scripts: str, limit_s: float = LIMIT_S) -> str:
     """What scripts print, with these files and that heap.
 
@@ -139,8 +139,7 @@ def run(files: dict[str, bytes], heap: int, *scripts: str, limit_s: float = LIMI
     """
     package = home()
     with tempfile.TemporaryDirectory() as folder:
-        for name, content in files.items():
-            Path(folder, name).write_bytes(content)
+        write(Path(folder), files)
         command = ["node", HERE / "run.mjs", package, str(heap), folder, *scripts]
         try:
             done = subprocess.run(

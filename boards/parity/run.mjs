@@ -7,19 +7,13 @@
 // it returns False; other scripts are Python, compiled in the same heap. This port collects garbage only after each of them, and after each call.
 import fs from "node:fs";
 import path from "node:path";
-import { pathToFileURL } from "node:url";
+import { load } from "./load.mjs";
 
 const SPARE = 8192; // for what JavaScript hands over; too little for the heap to grow by
 const [home, heap, folder, ...scripts] = process.argv.slice(2);
-const { loadMicroPython } = await import(pathToFileURL(path.join(home, "micropython.mjs")));
-const python = await loadMicroPython({
-  heapsize: Number(heap),
-  stdout: (line) => fs.writeSync(1, line + "\n"),
-});
-for (const name of fs.readdirSync(folder)) {
-  python.FS.writeFile("/" + name, fs.readFileSync(path.join(folder, name)));
-}
-const transcript = fs.readFileSync(path.join(folder, "transcript"));
+const python = await load(home, folder, { heapsize: Number(heap) });
+const script = path.join(folder, "transcript");
+const transcript = fs.existsSync(script) ? fs.readFileSync(script) : [];
 let at = 0;
 python.registerJsModule("feed", { char: () => transcript[at++] });
 WebAssembly.Memory.prototype.grow = () => { throw new RangeError("memory is capped"); };
