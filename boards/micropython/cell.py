@@ -107,8 +107,11 @@ class Cell:
         """The protocol's clock."""
         return self.ticks_us() & MASK30
 
-    def start(self, again=0):
-        """Switch on; `again` is 1 after a reset, so that neighbours first give up our old self."""
+    def start(self, again=1):
+        """Switch on; 1 waits some periods, until neighbours that know us from before give us up.
+
+        0 takes the first route that is heard: only where all cells are switched on at once.
+        """
         now = self.now()
         node.on_start(self.state, self.params, now, again, self.out)
         self.drain()
