@@ -60,8 +60,12 @@ def main(arguments: list[str]) -> int:
     if unknown:
         print(f"no protocol {unknown[0]!r}; known: {', '.join(record.WATCHED)}", file=sys.stderr)
         return 2
+    names = names or list(record.WATCHED)
     try:
-        results = [compare(name, "--quick" in arguments) for name in names or record.WATCHED]
+        nodejs.home()
+        if "skin" in names:
+            microbit.look()
+        results = [compare(name, "--quick" in arguments) for name in names]
     except BoardMissing as error:
         print(error, file=sys.stderr)
         return 2

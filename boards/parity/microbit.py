@@ -39,31 +39,48 @@ ACTION_FIELDS = tuple((name, 0, 0, 0, "", "") for name in ACTION)
 OUTBOX = ("count", "limit", "overflow", "action", "frame", *ACTION)
 
 
-class Microbit:
-    """An emulated board, and the terminal on its serial line.
+def look() -> None:
+    """See whether there is a board to emulate.
 
     Raises:
         BoardMissing: QEMU or the firmware is not there.
     """
+    if shutil.which(QEMU) is None or not FIRMWARE.exists():
+        raise BoardMissing(
+            f"{QEMU} or the micro:bit's firmware is missing; install them (Debian, Ubuntu: "
+            "apt install qemu-system-arm firmware-microbit-micropython)"
+        )
+
+
+class Microbit:
+    """An emulated board, and the terminal on its serial line.
+
+    Raises:
+        BoardMissing: see look().
+    """
 
     def __init__(self) -> None:
-        if shutil.which(QEMU) is None or not FIRMWARE.exists():
-            raise BoardMissing(
-                f"{QEMU} or the micro:bit's firmware is missing; install them (Debian, Ubuntu: "
-                "apt install qemu-system-arm firmware-microbit-micropython)"
-            )
+        look()
         command = [QEMU, "-M", "microbit", "-device", f"loader,file={FIRMWARE}",
                    "-display", "none", "-monitor", "none", "-serial", "stdio"]  # fmt: skip
         self._process = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
         )
-        self._expect(PROMPT)
-        self._type("import gc")
+        try:
+            self._expect(PROMPT)
+            self._type("import gc")
+        except BoardFailed:
+            self.stop()
+            raise
 
     def __enter__(self) -> Microbit:
         return self
 
     def __exit__(self, *_error: object) -> None:
+        self.stop()
+
+    def stop(self) -> None:
+        """Switch it off."""
         self._process.kill()
         self._process.communicate()
 

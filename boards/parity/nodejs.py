@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
 import os
 import shutil
 import subprocess
@@ -58,19 +60,32 @@ def home() -> Path:
     if shutil.which("node") is None:
         raise BoardMissing("Node.js is missing; install it (Debian, Ubuntu: apt install nodejs)")
     cache = os.environ.get("INNERVATE_CACHE") or os.environ.get("XDG_CACHE_HOME")
-    folder = Path(cache or Path.home() / ".cache") / "innervate-micropython"
-    if not (folder / PACKAGE / "micropython.wasm").exists():
-        if shutil.which("npm") is None:
-            raise BoardMissing("npm is missing; install it (Debian, Ubuntu: apt install npm)")
-        folder.mkdir(parents=True, exist_ok=True)
-        for name in ("package.json", "package-lock.json"):
-            shutil.copy(HERE / name, folder / name)
-        command = ["npm", "ci", "--no-audit", "--no-fund", "--ignore-scripts"]
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-        if done.returncode:
-            why = (done.stderr.strip() or "npm failed").splitlines()[-1]
-            raise BoardMissing(f"MicroPython could not be installed with npm: {why}")
+    lock = (HERE / "package-lock.json").read_bytes()
+    mark = hashlib.blake2b(lock, digest_size=4).hexdigest()
+    folder = Path(cache or Path.home() / ".cache") / f"innervate-micropython-{mark}"
+    if not folder.exists():
+        _install(folder)
     return folder / PACKAGE
+
+
+def _install(folder: Path) -> None:
+    """Install beside it and move it there whole: several may want it at the same time."""
+    if shutil.which("npm") is None:
+        raise BoardMissing("npm is missing; install it (Debian, Ubuntu: apt install npm)")
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=folder.parent, prefix="npm-") as beside:
+        made = Path(beside, "made")
+        made.mkdir()
+        for name in ("package.json", "package-lock.json"):
+            shutil.copy(HERE / name, made / name)
+        command = ["npm", "ci", "--no-audit", "--no-fund", "--ignore-scripts"]
+        done = subprocess.run(command, cwd=made, capture_output=True, text=True, check=False)
+        if done.returncode:
+            said = [line for line in done.stderr.splitlines() if line.startswith("npm err")]
+            why = said[0] if said else "npm failed"
+            raise BoardMissing(f"MicroPython could not be installed with npm: {why}")
+        with contextlib.suppress(OSError):  # somebody else was faster
+            made.rename(folder)
 
 
 def files_of(role: Role) -> dict[str, bytes]:

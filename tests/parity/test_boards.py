@@ -129,6 +129,19 @@ def test_an_unknown_protocol_is_the_users_mistake(capsys):
     assert "known: skin, csma, radio, mesh" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("home", "said"), [("empty", "Node.js is missing"), ("with node", "npm is missing")]
+)
+def test_what_is_missing_is_one_line(tmp_path, monkeypatch, capsys, home, said):
+    if home == "with node":
+        (tmp_path / "node").touch(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path / "cache"))
+    assert parity.main(["csma"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert said in line
+
+
 @pytest.mark.parametrize("number", [0, 1, -1, 31, 32, -513, 1 << 16, (1 << 30) - 1, -(1 << 30)])
 def test_numbers_travel_as_characters(number):
     feed = iter(nodejs.encoded(number))
