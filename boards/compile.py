@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import importlib.util
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from pathlib import Path
 from boards.errors import BoardMissing
 
 
+@functools.cache
 def mpy(source: str, name: str) -> bytes:
     """The .mpy file of a module's source; line numbers are left out.
 

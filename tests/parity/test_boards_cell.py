@@ -4,12 +4,15 @@ import asyncio
 import contextlib
 import re
 import subprocess
+import tomllib
+from types import SimpleNamespace
 
 import pytest
 
 from boards import __main__ as build
 from boards.errors import BoardMissing
 from boards.parity import nodejs
+from innervate.live import nodefile
 from innervate.live.profile import skin_parameters
 from innervate.live.serial import SerialLink
 from innervate.live.serial_cables import Cables
@@ -105,3 +108,15 @@ def test_a_folder_of_something_else_is_left_alone(tmp_path, capsys, files):
     assert build.main([str(tmp_path)]) == 2
     assert "not empty" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
+
+
+def test_the_readme_is_right():
+    text = (build.HERE / "README.md").read_text(encoding="utf-8")
+    (node_file,) = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    assert nodefile.parse(tomllib.loads(node_file)).role == "sink"
+    (uarts,) = re.findall(r"```python\n(UARTS.*?)```", text, re.DOTALL)
+    space = {"machine": SimpleNamespace(Pin=int)}
+    exec(uarts, space)
+    assert len(space["UARTS"]) == 4
+    for target in re.findall(r"\]\(([^)#]+)", text):
+        assert (build.HERE / target).exists(), target
