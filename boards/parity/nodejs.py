@@ -24,7 +24,7 @@ HARNESS = (BOARD / "outbox.py", HERE / "replay.py", HERE / "board.py")
 PACKAGE = "node_modules/@micropython/micropython-webassembly-pyscript"
 CAP = 16_384
 ROM = 262_144  # besides, where code counts as flash
-LIMIT_S = 60  # out of memory, it can hang
+LIMIT_S = 120  # out of memory, it can hang
 FILL = [f"=filling.fill:{size}" for size in (8192, 1024, 128, 32, 1)]
 
 
