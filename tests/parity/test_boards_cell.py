@@ -1,5 +1,6 @@
 """The cell that goes to a board: the folder, and two of them on real serial ports with a PC."""
 
+import ast
 import asyncio
 import contextlib
 import re
@@ -11,12 +12,13 @@ import pytest
 
 from boards import __main__ as build
 from boards.errors import BoardMissing
-from boards.parity import nodejs
+from boards.parity import nodejs, replay
 from innervate.live import nodefile
 from innervate.live.profile import skin_parameters
 from innervate.live.serial import SerialLink
 from innervate.live.serial_cables import Cables
 from innervate.live.skin import SinkNode, SinkStack
+from innervate.protocol import outbox, rng, skin_words
 from tests.live_net import until
 
 FAR_SAMPLES = 5
@@ -120,3 +122,13 @@ def test_the_readme_is_right():
     assert len(space["UARTS"]) == 4
     for target in re.findall(r"\]\(([^)#]+)", text):
         assert (build.HERE / target).exists(), target
+
+
+def test_what_the_boards_files_repeat_is_the_protocols():
+    for path in (build.HERE / "cell.py", nodejs.HERE / "replay.py"):
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant):
+                (name,) = (target.id for target in node.targets)
+                for module in (outbox, skin_words):
+                    assert getattr(module, name, node.value.value) == node.value.value, name
+    assert replay.fold(77, 0) == rng.step(77)
