@@ -3,7 +3,8 @@
 #   make demo     the main job: a skin, a cut cable, the recovery
 #   make test     the tests in small sizes (minutes)     make full    all of them (long)
 #   make lint     style, types, import walls             make bench   how fast it is
-#   make papers   the published figures, redrawn         make clean   remove what these made
+#   make papers   the published figures, redrawn         make parity  the same code on boards' Python
+#   make boards   the folder to copy to a board          make clean   remove what these made
 
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
@@ -15,7 +16,7 @@ STAMP := .venv/stamp-$(shell cksum < pyproject.toml | cut -d ' ' -f 1)
 WORKERS ?= 2
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
-.PHONY: help demo test full lint bench papers clean
+.PHONY: help demo test full lint bench papers boards parity clean
 
 help:
 	@sed -n '2,/^$$/s/^# \{0,1\}//p' Makefile
@@ -64,6 +65,12 @@ bench: $(STAMP)
 papers: $(STAMP)
 	@$(BIN)/innervate papers
 
+boards: $(STAMP)
+	@$(BIN)/python -m boards
+
+parity: $(STAMP)
+	@$(BIN)/python -m boards.parity
+
 clean:
 	rm -rf .venv build dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
-	find src tests benchmarks examples -name __pycache__ -type d -prune -exec rm -rf {} +
+	find src tests benchmarks boards examples -name __pycache__ -type d -prune -exec rm -rf {} +

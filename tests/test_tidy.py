@@ -21,7 +21,7 @@ def sources(*folders, suffixes=SUFFIXES):
     )
 
 
-CODE = sources("src", "tests", "benchmarks", "examples")
+CODE = sources("src", "tests", "benchmarks", "boards", "examples")
 PYTHON = [path for path in CODE if path.suffix == ".py"]
 
 

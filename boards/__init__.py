@@ -1,0 +1,1 @@
+"""What goes to microcontroller boards, and what holds it against the simulator."""

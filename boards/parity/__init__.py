@@ -1,0 +1,1 @@
+"""The same scenario compiled, plain and on MicroPython: `python -m boards.parity`."""

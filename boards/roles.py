@@ -1,0 +1,69 @@
+"""What runs on a board: the protocols, their records, and what of a frame is on the wire."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from innervate.protocol import csma_fields, mesh_fields, mesh_words, radio_fields, skin_fields
+from innervate.protocol.radio_words import CRR
+from innervate.wire import mesh, radio, skin
+from innervate.wire.layout import SPARE
+
+MESH_CLASS = 32  # nodes: the smallest capacity class
+COUNTED = {"path": "path_len", "body": "length"}  # mesh: how much of an array is used
+
+Declaration = tuple[tuple[str, Any, int, int, str, str], ...]
+Kinds = dict[int, tuple[tuple[str, Any], ...]]
+
+
+class Role(NamedTuple):
+    """A node's protocol.
+
+    Attributes:
+        entry: the module in `protocol/` with the five functions.
+        state, params, frame, item: declarations of its records; `item` is what its user hands
+            down. CSMA looks into no frame.
+        kinds: what a frame of each kind has on the wire: (field, how many: 0 one, a number, or
+            the field that says).
+        room: actions that its outbox must hold.
+        in_ram: 16 KiB hold its code, too.
+    """
+
+    entry: str
+    state: Declaration
+    params: Declaration
+    frame: Declaration
+    item: Declaration
+    kinds: Kinds
+    room: int
+    in_ram: bool
+
+
+def _wire(fields: Any) -> tuple[tuple[str, Any], ...]:
+    return tuple((name, many) for name, many, _bits, _signed in fields if name != SPARE)
+
+
+def _mesh_kinds() -> Kinds:
+    packet = (*_wire(mesh.COMMON), *COUNTED.items())
+    return {mesh_words.ACK: _wire(mesh.HOP_ACK), **dict.fromkeys(mesh.FIELDS, packet)}
+
+
+ROLES = {
+    "skin": Role(
+        "skin", skin_fields.CELL, skin_fields.PARAMS, skin_fields.FRAME, skin_fields.FRAME,
+        {kind: _wire(fields) for kind, fields in skin.FIELDS.items()}, 12, True,
+    ),
+    "csma": Role(
+        "csma", csma_fields.STATION, csma_fields.PARAMS, (), csma_fields.ITEM,
+        {}, 4, True,
+    ),
+    "radio": Role(
+        "radio_practical", radio_fields.STATION + radio_fields.PRACTICAL, radio_fields.PARAMS,
+        radio_fields.FRAME, radio_fields.PACKET,
+        {CRR: (("slots", 0),), **{kind: _wire(f) for kind, f in radio.FIELDS.items()}}, 16, False,
+    ),
+    "mesh": Role(
+        "mesh", mesh_fields.node(MESH_CLASS), mesh_fields.PARAMS, mesh_fields.FRAME,
+        mesh_fields.ITEM, _mesh_kinds(), 32, False,
+    ),
+}  # fmt: skip
