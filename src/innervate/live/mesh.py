@@ -7,6 +7,8 @@ from typing import Any
 
 from innervate.protocol import mesh, plain
 from innervate.protocol import mesh_fields as fields
+from innervate.protocol.mesh_kept import is_ahead
+from innervate.protocol.mesh_messages import resolve
 from innervate.protocol.mesh_near import FREE
 from innervate.protocol.mesh_queue import MESSAGES, has_room
 from innervate.protocol.mesh_words import ACK, ACK_WANTED, TIMERS
@@ -94,9 +96,11 @@ class MeshStack:
         """Read bytes into the inbox; 0, or why not."""
         return wire.decode(data, self.inbox)
 
-    def may_send(self) -> bool:
-        """True if the router has room for a message of ours, besides what others send through."""
-        return bool(has_room(self.node, MESSAGES)) and 0 in self.node.wait_kind
+    def may_send(self, recipient: int) -> bool:
+        """True if the router takes a message of ours, besides what others send through it."""
+        if not has_room(self.node, MESSAGES) or 0 not in self.node.wait_kind:
+            return False
+        return not is_ahead(self.node, resolve(self.node, self.params, recipient))
 
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """Where a frame leaves: on the path its receiver was heard on last; None = on all.

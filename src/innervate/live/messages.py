@@ -264,7 +264,7 @@ class MeshNode(LiveNode):
             return
         assert self.engine is not None
         self._feeding = True
-        while self._backlog and self.stack.may_send():
+        while self._backlog and self.stack.may_send(self._backlog[0][1].dest):
             handle, item = self._backlog.popleft()
             self.engine.input(MESSAGE, item)
             if not item.flags & END_TO_END or item.dest == ALL:

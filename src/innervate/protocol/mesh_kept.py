@@ -27,6 +27,7 @@ FREE = 0
 LONGEST_US = 1 << 27
 SURE_AFTER = 2  # tries; after fewer in vain nothing is concluded
 OLDEST = 64  # numbers: a packet older than that its recipient could not tell from one it had
+TICK_MAX_US = 1 << 22
 
 
 def free_wait(node):
@@ -61,13 +62,33 @@ def timeout(node, params, w):
     everywhere each time.
     """
     wait = params.e2e_us
+    longest = LONGEST_US
     double = max(0, node.wait_tries[w] - 2)
     if params.e2e_adapt:
         wait = max(params.e2e_us, 4 * node.round_trip)
+        longest = max(params.e2e_us, life(params) >> 3)
         double = node.wait_tries[w] - 1
     if node.wait_kind[w] != ALARM:
         wait = wait << min(double, 4)
-    return min(wait, LONGEST_US)
+    return min(wait, longest)
+
+
+def life(params):
+    """How long a message may be tried, us: who hears nothing of us forgets what it had of us."""
+    silence = params.forget * min(params.tick_us, TICK_MAX_US)
+    return min(silence - (silence >> 3), LONGEST_US)
+
+
+def is_ahead(node, dest):
+    """1 if a new packet to `dest` would be too far ahead of one that is kept for it.
+
+    Its recipient's window would move past the older one, which could then not come any more.
+    """
+    for w in range(WAITING):
+        if node.wait_kind[w] != FREE and node.wait_dest[w] == dest:
+            if (node.seq + 1 - node.wait_seq[w]) & MASK16 > OLDEST:
+                return 1
+    return 0
 
 
 def wait_on(node, now, out):
@@ -121,7 +142,7 @@ def launch(node, params, now, i, owner, handle, out):
 
 def try_again(node, params, now, w, out):
     """Send a kept message once more, or give it up: 1 if it was sent."""
-    old = (node.seq - node.wait_seq[w]) & MASK16 > OLDEST
+    old = (now - node.wait_at[w]) & MASK30 > life(params)
     if node.wait_tries[w] > params.e2e_tries or old:
         report(out, REPORT_EXPIRED, node.wait_handle[w], NO_ACK)
         if node.wait_kind[w] == DATA and node.wait_tries[w] > SURE_AFTER:
@@ -158,19 +179,31 @@ def on_end_ack(node, params, frame, now, out):
     for w in range(WAITING):
         if node.wait_kind[w] != FREE and node.wait_seq[w] == get16(frame, at):
             if node.wait_dest[w] == frame.origin or node.wait_kind[w] == ALARM:
-                took = (now - node.wait_at[w]) & MASK30
-                # Of a retried message this is too much rather than too little: the ack may be
-                # for any of its sendings, and times out of reach of the first would never count.
-                if took < 16_777_216 and (node.wait_tries[w] == 1 or params.e2e_adapt):
-                    if node.round_trip == 0:
-                        node.round_trip = took
-                    else:
-                        node.round_trip = (7 * node.round_trip + took) >> 3
+                learn_round_trip(node, params, w, now)
                 if is_own_crossing(node, w):
                     node.heard_out = 1
                 report(out, REPORT_ARRIVED, node.wait_handle[w], node.wait_seq[w])
                 node.wait_kind[w] = FREE
     hurry(node, now, frame.origin, out)
+
+
+def learn_round_trip(node, params, w, now):
+    """The message in place w was acknowledged.
+
+    Of a retried one the time is too long rather than too short, for the ack may be of any of its
+    sendings. If it never counted, a network slower than e2e_us would be filled with retries for
+    ever; if it counted in full, one lost message would make us wait for the next even longer.
+    """
+    took = (now - node.wait_at[w]) & MASK30
+    if node.wait_tries[w] > 1:
+        if not params.e2e_adapt:
+            return
+        took = min(took, 2 * max(params.e2e_us, node.round_trip))
+    if took < 16_777_216:
+        if node.round_trip == 0:
+            node.round_trip = took
+        else:
+            node.round_trip = (7 * node.round_trip + took) >> 3
 
 
 def hurry(node, now, dest, out):

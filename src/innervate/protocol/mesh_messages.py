@@ -1,7 +1,7 @@
 """send_message and receive_messages: receipts, end-to-end acks and retries [mesh 1, RELIABLE]."""
 
 from innervate.protocol.mesh_frames import add8, add16, add_hop, copy_frame, inner
-from innervate.protocol.mesh_kept import free_wait, keep, launch, on_end_ack
+from innervate.protocol.mesh_kept import free_wait, is_ahead, keep, launch, on_end_ack
 from innervate.protocol.mesh_queue import (
     ALARMS,
     CONTROL,
@@ -69,6 +69,9 @@ def on_message(node, params, now, item, out):
         flags = item.flags & (END_TO_END | PRIORITY)
     if dest == node.number:
         hand_up_own(node, item, out)
+        return
+    if is_ahead(node, dest):
+        report(out, REPORT_FULL, item.handle, NO_ROOM)
         return
     owner = -1
     if flags & END_TO_END and dest != ALL:
@@ -146,12 +149,15 @@ def hand_up(params, frame, out):
 
 
 def take(node, params, now, frame, out):
-    """A packet for us: deliver it once, acknowledge it always."""
+    """A packet for us: deliver it once, acknowledge it always.
+
+    An end-to-end ack may come twice, but does not move the window: else acks would shut out
+    messages that are still tried.
+    """
     first = frame.flags & FIRST
     is_there(node, frame.origin)
     if frame.kind == E2E_ACK:
-        if accept(node, params, frame.origin, frame.seq, first):
-            on_end_ack(node, params, frame, now, out)
+        on_end_ack(node, params, frame, now, out)
         return
     if accept(node, params, frame.origin, frame.seq, first):
         hand_up(params, frame, out)
