@@ -1,5 +1,8 @@
 """Messages that are kept: none is tried when its recipient could not tell it any more."""
 
+from itertools import pairwise
+
+from innervate.protocol import mesh_queue
 from innervate.protocol.mesh_kept import OLDEST
 from innervate.protocol.mesh_words import (
     DATA,
@@ -86,3 +89,30 @@ def test_acks_do_not_shut_out_a_message_that_is_still_tried():
     net.lost = lambda frame, to: False
     net.run(net.now + 10_000_000)
     assert heard(net, 1) == [b"first", b"late"]
+
+
+def forget(net, who, seq):
+    """A node loses a packet that it has acknowledged, as if it had been restarted."""
+    node = net.nodes[who]
+    for i, found in enumerate(node.q_seq):
+        if found == seq and node.q_state[i]:
+            mesh_queue.drop(node, i)
+
+
+def test_acks_of_others_do_not_use_up_the_tries_of_one_that_is_lost_on_its_way():
+    net = Net(3, line(3), e2e_adapt=1, e2e_us=30_000)
+    net.run(READY)
+    net.send(0, 2, b"late", handle=7)
+    late = net.nodes[0].seq
+    net.lost = lambda frame, to: to == 2 and frame.seq == late and net.now < READY + 100_000
+    for k in range(40):
+        net.send(0, 2, b"%d" % k)
+        until = net.now + 10_000
+        while net.now < until:
+            net.run(net.now + 500)
+            if k < 10:
+                forget(net, 1, late)  # before its hop's ack is missed
+    assert 7 in [handle for handle, _ in codes(net, 0, REPORT_ARRIVED)]
+    assert heard(net, 2).count(b"late") == 1
+    tries = [at for at, who, frame in net.sent if who == 0 and frame.seq == late]
+    assert all(b - a > net.params.e2e_us // 2 for a, b in pairwise(tries))

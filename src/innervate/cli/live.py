@@ -39,11 +39,11 @@ def show(names: list[str], as_json: bool) -> int:
     return 0
 
 
-def send(name: str, to: int, text: str, priority: bool, reliable: bool, as_json: bool) -> int:
+def send(name: str, to: int, text: str, how: dict[str, bool], as_json: bool) -> int:
     """Send a message; 0 if it was delivered, or only accepted where no receipt is asked for."""
     payload = sys.stdin.buffer.read() if text == "-" else text.encode()
-    request = {"do": "send", "to": to, "payload": payload.hex(), "priority": priority,
-               "reliable": reliable, "wait": reliable and to != 255}  # fmt: skip
+    request = {"do": "send", "to": to, "payload": payload.hex(), **how,
+               "wait": how["reliable"] and to != 255}  # fmt: skip
     state = "refused"
     for answer in status.ask(status.find(name), request):
         state = answer["state"]
@@ -54,10 +54,11 @@ def send(name: str, to: int, text: str, priority: bool, reliable: bool, as_json:
     return 0 if state in ("delivered", "accepted") else 1
 
 
-def listen(name: str, count: int, as_json: bool) -> int:
+def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:
     """Print messages that come in at a node."""
     heard = 0
-    for answer in status.ask(status.find(name), {"do": "listen"}):
+    request = {"do": "listen", **({"in_order": True} if in_order else {})}
+    for answer in status.ask(status.find(name), request):
         if "from" not in answer:
             continue
         if as_json:

@@ -96,6 +96,7 @@ def live_send(
     *,
     priority: Json = False,
     reliable: bool = True,
+    in_order: Json = False,
     json: Json = False,
 ) -> int:
     """Send a message from a running node; prints what becomes of it.
@@ -112,16 +113,19 @@ def live_send(
         Before other messages.
     reliable
         Kept until acknowledged.
+    in_order
+        Its recipient may put it in order behind those that were sent so before it.
     json
         Print JSON lines.
     """
     from innervate.cli import live as command
 
-    return command.send(node, to, text, priority, reliable, json)
+    how = {"priority": priority, "reliable": reliable, **({"in_order": True} if in_order else {})}
+    return command.send(node, to, text, how, json)
 
 
 @live_app.command(name="listen")
-def live_listen(node: str, /, *, count: int = 0, json: Json = False) -> int:
+def live_listen(node: str, /, *, count: int = 0, in_order: Json = False, json: Json = False) -> int:
     """Print messages that come in at a running node, until Ctrl-C.
 
     Parameters
@@ -130,12 +134,14 @@ def live_listen(node: str, /, *, count: int = 0, json: Json = False) -> int:
         Name or socket.
     count
         End after so many; 0 = never.
+    in_order
+        Each sender's messages as it sent them, where it sent them in order.
     json
         Print JSON lines.
     """
     from innervate.cli import live as command
 
-    return command.listen(node, count, json)
+    return command.listen(node, count, in_order, json)
 
 
 @live_app.command(name="medium")

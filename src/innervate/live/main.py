@@ -107,7 +107,7 @@ class Process:
         elif what == "send":
             await self._send(request, writer)
         elif what == "listen":
-            await self._listen(writer)
+            await self._listen(request, writer)
         elif what in ("cut", "restore"):
             path = self.node.path_at(int(request["port"]))
             path.cut = what == "cut"
@@ -126,6 +126,7 @@ class Process:
                 payload,
                 reliable=bool(request.get("reliable", True)),
                 priority=bool(request.get("priority", False)),
+                in_order=request.get("in_order"),
             )
         else:
             send_packet = getattr(node, "send_packet", None)
@@ -138,10 +139,10 @@ class Process:
             told = await receipt.change()
             await writer.line({"state": receipt.state, "reason": receipt.reason})
 
-    async def _listen(self, writer: status.Writer) -> None:
+    async def _listen(self, request: dict[str, Any], writer: status.Writer) -> None:
         node = self.node
         if isinstance(node, MeshNode):
-            messages = node.receive_messages()
+            messages = node.receive_messages(in_order=request.get("in_order"))
             try:
                 await writer.line({"listening": self.loaded.name})
                 async for sender, payload in messages:

@@ -55,6 +55,14 @@ class KeysTable(Struct, frozen=True, forbid_unknown_fields=True):
     secret: dict[str, str]
 
 
+class DeliverTable(Struct, frozen=True, forbid_unknown_fields=True):
+    """[deliver]: messages in the order in which they were sent."""
+
+    in_order: bool = False
+    wait_ms: Annotated[int, Meta(ge=1, le=60_000)] = 3000
+    buffer: Annotated[int, Meta(ge=1, le=4096)] = 256
+
+
 class NodeFile(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A node."""
 
@@ -72,6 +80,7 @@ class NodeFile(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     metrics: str | None = None
     rate_hz: Annotated[float, Meta(ge=0, le=1000)] = 0.0
     keys: KeysTable | None = None
+    deliver: DeliverTable | None = None
     protocol: dict[str, int] = {}
     link: Annotated[list[LinkTable], Meta(min_length=1)] = field(default_factory=list)
 
@@ -135,6 +144,8 @@ def parse(raw: dict[str, Any], where: str = "node") -> NodeFile:
         raise LiveError(f"{where}: role of a {table.kind} node can be {', '.join(roles)}")
     if table.keys is not None and str(table.keys.use) not in table.keys.secret:
         raise LiveError(f"{where}: keys.use = {table.keys.use}, but there is no such secret")
+    if table.deliver is not None and table.kind != "mesh":
+        raise LiveError(f"{where}: [deliver] is about messages of a mesh; remove it")
     return table
 
 

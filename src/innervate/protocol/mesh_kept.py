@@ -47,6 +47,7 @@ def keep(node, params, now, w, i, handle, out):
     node.wait_tries[w] = 1
     node.wait_hop[w] = 0
     node.wait_at[w] = now
+    node.wait_sent[w] = now
     node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
     node.wait_handle[w] = handle
     node.wait_length[w] = node.q_length[i]
@@ -61,16 +62,27 @@ def timeout(node, params, w):
     Twice as long after every further retry, but for alarms: who is not there is searched
     everywhere each time.
     """
-    wait = params.e2e_us
-    longest = LONGEST_US
+    wait = shortest(node, params)
     double = max(0, node.wait_tries[w] - 2)
     if params.e2e_adapt:
-        wait = max(params.e2e_us, 4 * node.round_trip)
-        longest = max(params.e2e_us, life(params) >> 3)
         double = node.wait_tries[w] - 1
     if node.wait_kind[w] != ALARM:
         wait = wait << min(double, 4)
-    return min(wait, longest)
+    return min(wait, longest(params))
+
+
+def shortest(node, params):
+    """How long an end-to-end ack may take, us."""
+    if params.e2e_adapt:
+        return min(max(params.e2e_us, 4 * node.round_trip), longest(params))
+    return params.e2e_us
+
+
+def longest(params):
+    """Longest wait for an end-to-end ack, us: five of them must fit into a message's life."""
+    if params.e2e_adapt:
+        return max(params.e2e_us, life(params) >> 3)
+    return LONGEST_US
 
 
 def life(params):
@@ -153,6 +165,7 @@ def try_again(node, params, now, w, out):
         node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
         return 0
     node.wait_tries[w] = node.wait_tries[w] + 1
+    node.wait_sent[w] = now
     node.wait_flags[w] = node.wait_flags[w] ^ PARITY
     node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
     unskip(node, node.number, node.wait_seq[w])
@@ -184,7 +197,7 @@ def on_end_ack(node, params, frame, now, out):
                     node.heard_out = 1
                 report(out, REPORT_ARRIVED, node.wait_handle[w], node.wait_seq[w])
                 node.wait_kind[w] = FREE
-    hurry(node, now, frame.origin, out)
+    hurry(node, params, now, frame.origin, out)
 
 
 def learn_round_trip(node, params, w, now):
@@ -206,11 +219,19 @@ def learn_round_trip(node, params, w, now):
             node.round_trip = (7 * node.round_trip + took) >> 3
 
 
-def hurry(node, now, dest, out):
-    """`dest` is there: what was tried in vain, or not at all, is sent at once."""
+def hurry(node, params, now, dest, out):
+    """`dest` is there: what was tried in vain is sent again as soon as its ack is overdue.
+
+    Who acknowledges much would else use up all tries before the first of them can arrive.
+    """
+    pause = shortest(node, params)
     for w in range(WAITING):
         if node.wait_kind[w] == DATA and node.wait_dest[w] == dest and node.wait_tries[w] > 1:
-            node.wait_due[w] = now
+            due = (node.wait_sent[w] + pause) & MASK30
+            if after(now, due):
+                due = now
+            if after(node.wait_due[w], due):
+                node.wait_due[w] = due
     wait_on(node, now, out)
 
 

@@ -27,6 +27,7 @@ from innervate.protocol.mesh_words import (
     MONITOR,
     NO_ROOM,
     NO_ROUTE,
+    ORDERED,
     PATH_MAX,
     PRIORITY,
     REPORT_ACCEPTED,
@@ -64,9 +65,9 @@ def on_message(node, params, now, item, out):
     if item.length > payload_limit(params) or nobody:
         report(out, REPORT_FULL, item.handle, NO_ROUTE)
         return
-    flags = item.flags & PRIORITY
+    flags = item.flags & (PRIORITY | ORDERED)
     if params.reliable:
-        flags = item.flags & (END_TO_END | PRIORITY)
+        flags = item.flags & (END_TO_END | PRIORITY | ORDERED)
     if dest == node.number:
         hand_up_own(node, item, out)
         return
