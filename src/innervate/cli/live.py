@@ -57,7 +57,7 @@ def send(name: str, to: int, text: str, how: dict[str, bool], as_json: bool) -> 
 def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:
     """Print messages that come in at a node."""
     heard = 0
-    request = {"do": "listen", **({"in_order": True} if in_order else {})}
+    request = {"do": "listen", "alarms": True, **({"in_order": True} if in_order else {})}
     for answer in status.ask(status.find(name), request):
         if "from" not in answer:
             continue
@@ -65,6 +65,8 @@ def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:
             print(json.dumps(answer), flush=True)
         else:
             text = str(answer.get("touch", ""))
+            if "alarm" in answer:
+                text = f"alarm: {_alarm_text(answer['alarm'])}"
             if "payload" in answer:
                 text = bytes.fromhex(answer["payload"]).decode("utf-8", "backslashreplace")
             print(f"{answer['from']}: {text}", flush=True)
@@ -116,4 +118,17 @@ def _mesh_lines(told: dict[str, Any]) -> list[str]:
         suspect = ", does not answer" if near["suspect"] else ""
         lines.append(f"  neighbour {near['node']}: acknowledged {quality}{suspect}")
     ways = [f"{dest} by {hop[0]}" for dest, hop in told["routes"].items()]
-    return [*lines, f"  routes: {', '.join(ways) or 'none'}"]
+    lines.append(f"  routes: {', '.join(ways) or 'none'}")
+    if "robot" in told:
+        at = told["robot"]["at_cm"]
+        place = "no position yet" if at is None else f"at {at[0] / 100:.2f}, {at[1] / 100:.2f} m"
+        lines.append(f"  robot: {place}, {told['robot']['fence']}")
+    for alarm in told.get("alarms", ()):
+        lines.append(f"  alarm {alarm['ago_s']:.1f} s ago: {_alarm_text(alarm)}")
+    return lines
+
+
+def _alarm_text(alarm: dict[str, Any]) -> str:
+    x, y, margin = (alarm[key] / 100 for key in ("x_cm", "y_cm", "margin_cm"))
+    where = "" if alarm["kind"] == "lost" else f" at {x:.2f}, {y:.2f} m, margin {margin:.2f} m"
+    return f"{alarm['kind']}, robot {alarm['robot']}{where} (from node {alarm['reporter']})"

@@ -92,14 +92,17 @@ def _mesh(loaded: Loaded) -> LiveNode:
     from innervate.live.mesh import MeshStack
     from innervate.live.messages import MeshNode
     from innervate.live.order import Orderly
-    from innervate.live.profile import mesh_parameters
+    from innervate.live.profile import fence_parameters, mesh_parameters
 
     table = loaded.table
     assert table.nodes is not None
     ranks = {"gateway": 0, "standby": table.rank}
     rank = ranks.get(table.role or "node", -1)
     params = mesh_parameters(table.nodes, dict(table.protocol), f"{loaded.path}")
-    stack = MeshStack(table.number, rank, params, secrets.randbits(60))
+    if table.fence is not None:
+        rings = [table.fence.polygon, *table.fence.holes]
+        params.update(fence_parameters(rings, f"{loaded.path}"))
+    stack = MeshStack(table.number, rank, params, secrets.randbits(60), table.robot)
     state = state_of(loaded)
     sealer, deliver = sealer_of(loaded, state), table.deliver or DeliverTable()
     orderly = Orderly(1000 * deliver.wait_ms, deliver.buffer)

@@ -19,6 +19,8 @@ CLASSES = (32, 64, 254)
 OUTBOX = 32
 RSSI = -50  # of every frame that comes over a cable, dBm
 
+FENCE_WORDS = ("inside", "about to cross", "outside")
+
 Frame = plain.make("Frame", fields.FRAME)
 Item = plain.make("Item", fields.ITEM)
 Params = plain.make("Params", fields.PARAMS)
@@ -32,12 +34,15 @@ class MeshStack:
         rank: 0 gateway, 1.. standby, -1 neither.
         params: the protocol's parameters by name (`mesh_fields.PARAMS`).
         seed: any whole number; nodes must have different ones.
+        robot: True = it moves, has a fence and tells where it is.
     """
 
     timers = TIMERS
     reasons: tuple[str, ...] = wire.REASONS
 
-    def __init__(self, number: int, rank: int, params: dict[str, Any], seed: int) -> None:
+    def __init__(
+        self, number: int, rank: int, params: dict[str, Any], seed: int, robot: bool = False
+    ) -> None:
         self.params = Params()
         for name, value in params.items():
             setattr(self.params, name, value)
@@ -46,7 +51,7 @@ class MeshStack:
         self.silent_us = 3 * self.params.period_max * self.params.tick_us + self.params.tick_us
         self.node = plain.make("Node", fields.node(width))()
         self.gate = plain.make("Gate", fields.gate(width))() if rank >= 0 else None
-        self.node.number, self.node.rank = number, rank
+        self.node.number, self.node.rank, self.node.robot = number, rank, int(robot)
         self.node.rng, self.node.choice = seeded(seed), -1
         self.out = plain.Outbox(Frame, OUTBOX)
         self.inbox = Frame()
@@ -139,6 +144,7 @@ class MeshStack:
         return {
             "kind": "mesh",
             "number": node.number,
+            **self._robot_status(),
             "role": "gateway" if node.leading else "standby" if node.rank >= 0 else "node",
             "gateway": node.gateway if node.known else None,
             "epoch": node.epoch,
@@ -149,3 +155,11 @@ class MeshStack:
             "queue": sum(state != 0 for state in node.q_state),
             "round_trip_ms": round(node.round_trip / 1000, 3),
         }
+
+    def _robot_status(self) -> dict[str, Any]:
+        """Where a robot is, from the fence's origin; nothing of other nodes."""
+        node, unit_cm = self.node, self.params.unit_cm
+        if not node.robot:
+            return {}
+        place = [node.x * unit_cm, node.y * unit_cm] if node.placed else None
+        return {"robot": {"at_cm": place, "fence": FENCE_WORDS[node.outside]}}

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import asyncio
 from collections import Counter, deque
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Callable
 from typing import Any
 
+from innervate.live.alarms import Alarm, Alarms, place_of, read_alarm
 from innervate.live.keys import Sealer
 from innervate.live.links import Link
 from innervate.live.mesh import Item, MeshStack
@@ -14,22 +15,27 @@ from innervate.live.node import LiveNode
 from innervate.live.order import BEFORE_BYTES, Callback, Message, Orderly
 from innervate.live.receipts import DELIVERED, EXPIRED, FINAL, HOP_ACKED, REFUSED, Receipt
 from innervate.live.state import State
+from innervate.live.streams import iterate
 from innervate.protocol.arith import MASK16
 from innervate.protocol.mesh_messages import payload_limit, resolve
 from innervate.protocol.mesh_words import (
+    ALARM,
     ALL,
     DATA,
     END_TO_END,
+    IDS,
     MESSAGE,
     MONITOR,
     ORDERED,
     PRIORITY,
     REPORT_ACCEPTED,
+    REPORT_ALARM,
     REPORT_ARRIVED,
     REPORT_EXPIRED,
     REPORT_FULL,
     REPORT_GATEWAY,
     REPORT_HOP,
+    SAMPLE,
 )
 
 BACKLOG = 4096  # messages that wait for a place in the router
@@ -73,6 +79,9 @@ class MeshNode(LiveNode):
         self._backlog: deque[tuple[int, Any]] = deque()
         self._receipts: dict[int, Receipt] = {}
         self._handle = 0
+        self.alarms = Alarms()
+        self._alarmed: list[Alarm] = []
+        self._place = Item()
         self._inbox: list[Message] = []
         self._callbacks: list[Callback] = []
         self._feeding = False
@@ -143,21 +152,37 @@ class MeshNode(LiveNode):
         ordered = self.in_order if in_order is None else in_order
         callbacks = self.orderly.callbacks if ordered else self._callbacks
         callbacks.append(callback)
-        return self._iterate(queue, callbacks, callback)
-
-    async def _iterate(
-        self, queue: asyncio.Queue[tuple[int, bytes]], callbacks: list[Callback], own: Callback
-    ) -> AsyncGenerator[tuple[int, bytes], None]:
-        try:
-            while True:
-                yield await queue.get()
-        finally:
-            callbacks.remove(own)
+        return iterate(queue, callbacks, callback)
 
     async def stop(self) -> None:
         """Stop at once; what waits for its turn is handed up."""
         self.orderly.stop()
         await super().stop()
+
+    def locate(
+        self, at_cm: tuple[float, float], speed_cm_s: tuple[float, float] = (0.0, 0.0)
+    ) -> None:
+        """A robot says where it is, from the fence's origin; many times a second.
+
+        Raises:
+            ValueError: this node is no robot, or not started.
+        """
+        if not self.stack.node.robot or self.engine is None:
+            raise ValueError("only a running robot has a position; its file says robot = true")
+        item = self._place
+        unit_cm = self.stack.params.unit_cm
+        item.x, item.y, item.vx, item.vy = place_of(at_cm, speed_cm_s, unit_cm)
+        self.engine.input(SAMPLE, item)
+
+    def receive_alarms(
+        self, callback: Callable[[Alarm], None] | None = None
+    ) -> AsyncGenerator[Alarm, None]:
+        """Alarms of the fence, at the monitor: to a callback, and as an async iterator."""
+        queue: asyncio.Queue[Alarm] = asyncio.Queue()
+        if callback is None:
+            callback = queue.put_nowait
+        self.alarms.callbacks.append(callback)
+        return iterate(queue, self.alarms.callbacks, callback)
 
     async def drain(self, limit_s: float) -> bool:
         """Wait until no message is under way, at most `limit_s` seconds: True if none is."""
@@ -180,11 +205,12 @@ class MeshNode(LiveNode):
             "backlog": len(self._backlog),
             "under_way": len(self._receipts) - len(self._backlog),
             "out_of_turn": self.orderly.held(),
+            "alarms": self.alarms.status(),
             "arrived_by": {str(sender): path for sender, path in self.arrived_by.items()},
         }
 
     def _take_handle(self, receipt: Receipt) -> int:
-        while self._handle in self._receipts:
+        while self._handle in self._receipts or self._handle < IDS:  # alarms bear robots' numbers
             self._handle = (self._handle + 1) % HANDLES
         handle = self._handle
         self._handle = (self._handle + 1) % HANDLES
@@ -192,6 +218,12 @@ class MeshNode(LiveNode):
         return handle
 
     def _deliver(self, kind: int, frame: Any) -> None:
+        if kind == ALARM:
+            body, unit_cm = bytes(frame.body[: frame.length]), self.stack.params.unit_cm
+            alarm = read_alarm(frame.origin, body, unit_cm)
+            if alarm is not None:
+                self.outcomes[f"alarms received: {alarm.kind}"] += 1
+                self._alarmed.append(alarm)
         if kind == DATA:
             self.arrived_by[frame.origin] = [*frame.path[: frame.path_len], frame.dest]
             self.outcomes["messages received"] += 1
@@ -206,6 +238,8 @@ class MeshNode(LiveNode):
         if code == REPORT_GATEWAY and b != self.state.epoch:
             self.state.epoch = b
             self.save(False)
+        if code == REPORT_ALARM:
+            self.outcomes["alarms raised"] += 1
         if not REPORT_ACCEPTED <= code <= REPORT_FULL:
             return
         receipt = self._receipts.get(a)
@@ -226,6 +260,10 @@ class MeshNode(LiveNode):
             self.outcomes[f"messages {receipt.state}"] += 1
 
     def _settled(self) -> None:
+        if self._alarmed:
+            alarmed, self._alarmed = self._alarmed, []
+            for alarm in alarmed:
+                self.alarms.note(alarm)
         inbox = self._inbox
         if inbox:
             self._inbox = []

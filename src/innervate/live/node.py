@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import time
 from collections import Counter
 from typing import Any
@@ -91,7 +92,7 @@ class LiveNode:
         return self.paths[port]
 
     def _receive(self, path: Path, data: bytes) -> None:
-        if path.cut:
+        if path.cut or (path.loss and random.random() < path.loss):
             return
         path.counters["received"] += 1
         path.counters["received bytes"] += len(data)

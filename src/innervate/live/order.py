@@ -104,8 +104,9 @@ class Order:
     def _is_before(self, seq: int, anew: int) -> bool:
         """True if a message is of the time before its sender began anew with number `anew`."""
         if self.last is None:
-            return not later(seq, anew)
-        return (seq - self.last) & MASK16 < (seq - anew) & MASK16
+            return bool(later(seq, anew) == 0)
+        ahead, ahead_anew = ((seq - number) & MASK16 for number in (self.last, anew))
+        return bool(ahead < ahead_anew)
 
     def _skip(self) -> list[bytes]:
         """Whatever is missing is not waited for any longer: the oldest one that waits goes up."""
