@@ -13,14 +13,20 @@ from innervate.live import status
 
 
 def up(
-    file: str, sets: list[str], cables: str, folder: Path | None, for_s: float, as_json: bool
+    file: str,
+    sets: list[str],
+    cables: str,
+    sealed: bool,
+    folder: Path | None,
+    for_s: float,
+    as_json: bool,
 ) -> int:
     """Bring a scenario up as processes."""
     from innervate import scenario as scenarios
-    from innervate.live import up as room
+    from innervate.live import run_up as room
 
     plan = scenarios.plan(scenarios.load(file, sets))
-    return asyncio.run(room.run(plan, folder, cables, for_s, as_json))
+    return asyncio.run(room.run(plan, folder, cables, sealed, for_s, as_json))
 
 
 def show(names: list[str], as_json: bool) -> int:

@@ -40,22 +40,25 @@ def live_up(
     set_: Sets = None,
     netns: Json = False,
     pty: Json = False,
+    sealed: Json = False,
     folder: Path | None = None,
     for_: Annotated[float, Parameter(name=["--for"])] = 0.0,
     json: Json = False,
 ) -> int:
-    """Bring a scenario up, a process for every node, until Ctrl-C.
+    """Bring a scenario up, a process for every node, and play its events, until Ctrl-C.
 
     Parameters
     ----------
     file
-        A mesh or skin scenario, or the name of a bundled one.
+        A scenario, or the name of a bundled one.
     set_
         Change a key, as for run.
     netns
         Every node in its own network namespace; needs root.
     pty
         Skin: serial cables (ptys) instead of UDP.
+    sealed
+        With a key made for this run.
     folder
         Where node files, logs and sockets go; a temporary one if left out.
     for_
@@ -68,7 +71,7 @@ def live_up(
     if netns and pty:
         raise errors.UserError("--netns and --pty exclude each other; name one")
     cables = "netns" if netns else "pty" if pty else "udp"
-    return command.up(file, set_ or [], cables, folder, for_, json)
+    return command.up(file, set_ or [], cables, sealed, folder, for_, json)
 
 
 @live_app.command(name="status")

@@ -16,6 +16,7 @@ from innervate.live.messages import MeshNode
 from innervate.live.metrics import MetricsPage
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import Loaded, address, load
+from innervate.live.rotation import Rotation
 from innervate.live.skin import SinkNode
 
 # Makes the line that a listener gets of what came.
@@ -42,6 +43,8 @@ class Process:
     def __init__(self, loaded: Loaded) -> None:
         self.loaded = loaded
         self.node: LiveNode = build(loaded)
+        sealer = self.node.sealer
+        self.rotation = None if sealer is None else Rotation(sealer)
         named = loaded.table.socket
         where = Path(named) if named else status.folder() / f"{loaded.name}.sock"
         self.server = status.Server(where, self._answer)
@@ -78,13 +81,18 @@ class Process:
         """SIGHUP: read the file again; keys may be others, all else needs a restart."""
         try:
             fresh = load(self.loaded.path)
-            if self.node.sealer is None or fresh.table.keys is None:
+            if self.rotation is None or fresh.table.keys is None:
                 raise LiveError(f"{fresh.path}: only other keys can be taken over without restart")
-            self.node.sealer.load_keys(keys_of(fresh.table.keys, fresh), fresh.table.keys.use)
+            keys = fresh.table.keys
+            self.rotation.begin(keys_of(keys, fresh), keys.use, keys.grace_s)
         except LiveError as error:
             self._say(f"not reloaded: {error}")
-        else:
-            self._say("keys reloaded")
+            return
+        names = fresh.table.__struct_fields__
+        others = [name for name in names if name != "keys"
+                  and getattr(fresh.table, name) != getattr(self.loaded.table, name)]  # fmt: skip
+        restart = f"; restart it for what else has changed: {', '.join(others)}" if others else ""
+        self._say(f"keys reloaded: {keys.use} seals after {keys.grace_s:g} s{restart}")
 
     async def _sleep(self, seconds: float) -> None:
         try:

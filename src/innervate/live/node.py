@@ -136,11 +136,18 @@ class LiveNode:
             "name": self.name,
             "up_s": round(time.time() - self.started_at, 1),
             "sealed": self.sealer is not None,
+            "keys": self._keys_status(),
             "paths": paths,
             "broken": [path["name"] for path in paths if path["broken"]],
             "counters": dict(sorted(self.counters().items())),
             **self.stack.status(clock_us()),
         }
+
+    def _keys_status(self) -> dict[str, Any] | None:
+        """Which key seals, and which are accepted; None = frames go in the clear."""
+        if self.sealer is None:
+            return None
+        return {"use": self.sealer.use, "accepted": sorted(self.sealer.keys)}
 
     def _note_report(self, code: int, a: int, b: int) -> None:
         self.reports[code] += 1

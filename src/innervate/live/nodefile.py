@@ -49,10 +49,11 @@ LinkTable = UdpTable | MulticastTable | SerialTable | MediumTable
 
 
 class KeysTable(Struct, frozen=True, forbid_unknown_fields=True):
-    """[keys]: `secret.N` are keys by number, `use` seals what leaves."""
+    """[keys]: `secret.N` are keys by number, `use` seals what leaves; `grace_s` at reload."""
 
     use: Annotated[int, Meta(ge=0, le=15)]
     secret: dict[str, str]
+    grace_s: Annotated[float, Meta(ge=0, le=86_400)] = 10.0
 
 
 class DeliverTable(Struct, frozen=True, forbid_unknown_fields=True):

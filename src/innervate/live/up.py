@@ -1,14 +1,11 @@
-"""`innervate live up`: a whole scenario as processes, on loopback or in network namespaces."""
+"""A whole scenario as processes, on loopback or in network namespaces."""
 
 from __future__ import annotations
 
 import asyncio
-import json
-import os
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from pathlib import Path
 from typing import Any
@@ -19,6 +16,7 @@ from innervate.live.netns import UDP_PORT, Lab
 from innervate.live.serial_cables import Cables
 from innervate.live.wiring import free_ports, skin_cables, udp
 
+NodeTables = tuple[dict[str, Any], dict[str, dict[str, Any]], list[dict[str, Any]]]
 START_S = 30.0
 STOP_S = 5.0
 
@@ -30,6 +28,7 @@ class Network:
         plan: a scenario's plan.
         folder: where files, logs and sockets go.
         cables: "udp" (loopback), "pty" (skins only) or "netns" (as root).
+        keys: a [keys] table for all nodes; None = frames go in the clear.
 
     Attributes:
         names: every node's name, by number; the PC of a skin is the last.
@@ -37,10 +36,13 @@ class Network:
         absent: who is not started until an event says so.
     """
 
-    def __init__(self, plan: Any, folder: Path, cables: str) -> None:
+    def __init__(
+        self, plan: Any, folder: Path, cables: str, keys: dict[str, Any] | None = None
+    ) -> None:
         self.plan = plan
         self.folder = folder
         self.cables = cables
+        self.keys = keys
         self.processes: dict[str, subprocess.Popen[bytes]] = {}
         self.lab: Lab | None = None
         self.relay: Cables | None = None
@@ -56,13 +58,14 @@ class Network:
             files.check_station_plan(plan)
         if cables == "pty" and plan.kind != "skin":
             raise LiveError("--pty joins the cells of a skin; mesh nodes take --netns or UDP")
-        if cables == "netns" and plan.kind == "radio":
-            raise LiveError("stations share a channel on one machine; leave --netns out")
+        if plan.kind == "radio" and (cables == "netns" or keys is not None):
+            raise LiveError("stations share a channel: leave --netns and --sealed out")
         away = getattr(plan, "absent", ())
         self.absent = {name for name, gone in zip(self.names, away, strict=False) if gone}
         self._ports: list[list[int]] = []  # per node: the cables of its paths
         self._hurt: dict[int, tuple[str, float]] = {}  # cable: cut, or loose
         self._medium = ""  # its address
+        self._tables: dict[str, NodeTables] = {}
 
     async def up(self) -> None:
         """Write the files, start the processes, wait until all of them answer.
@@ -81,8 +84,8 @@ class Network:
             await self._start_medium()
         paths = self._paths()
         for number, name in enumerate(self.names):
-            text = self._file(number, paths[number])
-            (self.folder / f"{name}.toml").write_text(text)
+            self._tables[name] = self._file(number, paths[number])
+            self.write_file(name)
         for name in self.names:
             if name not in self.absent:
                 self.start_node(name)
@@ -209,8 +212,17 @@ class Network:
         self._ports = [[k for k, _ in paths] for paths in found]
         return found
 
-    def _file(self, number: int, paths: list[tuple[int, dict[str, Any]]]) -> str:
-        """A node file."""
+    def write_file(self, name: str) -> None:
+        """Write a node's file, with the keys as they are now."""
+        head, tables, links = self._tables[name]
+        if self.keys is not None:
+            tables = {**tables, "keys": self.keys}
+        path = self.folder / f"{name}.toml"
+        path.touch(mode=0o600)  # keys may stand in it
+        path.write_text(files.text(head, tables, links))
+
+    def _file(self, number: int, paths: list[tuple[int, dict[str, Any]]]) -> NodeTables:
+        """What a node's file says: its own keys, tables, links."""
         plan, name = self.plan, self.names[number]
         links = [table for _, table in paths]
         if plan.kind == "mesh":
@@ -225,75 +237,4 @@ class Network:
             head, tables = files.cell(plan, ports)
         common = {"kind": plan.kind, "name": name, "number": number}
         common["socket"] = str(self.socket(name))
-        return files.text({**common, **head}, tables, links)
-
-
-async def run(plan: Any, folder: Path | None, cables: str, for_s: float, as_json: bool) -> int:
-    """Bring a scenario up and keep it until Ctrl-C, SIGTERM or the time is over; 0."""
-    own = folder is None
-    folder = Path(tempfile.mkdtemp(prefix="innervate-")) if folder is None else folder.absolute()
-    network = Network(plan, folder, cables)
-    player = _player(network, as_json)
-    ending = asyncio.Event()
-    loop = asyncio.get_running_loop()
-    for number in (signal.SIGTERM, signal.SIGINT):
-        loop.add_signal_handler(number, ending.set)
-    began = time.monotonic()
-    try:
-        await network.up()
-        _announce(network, time.monotonic() - began, as_json)
-        await _until(ending, asyncio.create_task(player.play()), for_s)
-    finally:
-        await network.down()
-        if own and os.path.isdir(folder):
-            import shutil
-
-            shutil.rmtree(folder, ignore_errors=True)
-    return 0
-
-
-async def _until(ending: asyncio.Event, playing: asyncio.Task[None], limit_s: float) -> None:
-    """Until a signal says stop, or the time (0 = none) is over, or a played event went wrong."""
-    began = time.monotonic()
-    ended = asyncio.ensure_future(ending.wait())
-    both = {ended, playing}
-    try:
-        await asyncio.wait(both, timeout=limit_s or None, return_when=asyncio.FIRST_COMPLETED)
-        if playing.done():
-            playing.result()
-            left_s = max(0.0, limit_s - (time.monotonic() - began)) if limit_s else None
-            await asyncio.wait([ended], timeout=left_s)
-    finally:
-        ended.cancel()
-        playing.cancel()
-        await asyncio.gather(*both, return_exceptions=True)
-
-
-def _player(network: Network, as_json: bool) -> play.Player:
-    """What plays the scenario; what cannot be played is said."""
-    events = play.events(network.plan, network.names, network.links, network.cable_of)
-    for event in events:
-        if not play.is_played(event):
-            print(f"not played: {event.what} at {event.at_s:g} s", file=sys.stderr)
-
-    def tell(event: play.Event) -> None:
-        told = {"at_s": event.at_s, "event": event.text}
-        print(json.dumps(told) if as_json else f"{event.at_s:g} s: {event.text}", flush=True)
-
-    return play.Player(network, network.plan, events, tell)
-
-
-def _announce(network: Network, took_s: float, as_json: bool) -> None:
-    if as_json:
-        nodes = {
-            name: {"pid": network.processes[name].pid, "socket": str(network.socket(name))}
-            for name in network.names
-            if name in network.processes
-        }
-        told = {"folder": str(network.folder), "up_s": round(took_s, 3), "nodes": nodes}
-        print(json.dumps(told), flush=True)
-        return
-    count = len(network.names) - len(network.absent)
-    what = f"{len(network.links)} cables" if network.links else "their channel"
-    print(f"{count} nodes and {what} are up after {took_s:.1f} s; Ctrl-C ends them.")
-    print(f"Look: INNERVATE_RUN={network.folder} innervate live status", flush=True)
+        return {**common, **head}, tables, links
