@@ -16,6 +16,7 @@ from innervate.live.messages import MeshNode
 from innervate.live.metrics import MetricsPage
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import Loaded, address, load
+from innervate.live.receipts import FINAL
 from innervate.live.rotation import Rotation
 from innervate.live.skin import SinkNode
 
@@ -162,9 +163,11 @@ class Process:
             receipt = send_packet(payload)
         await writer.line({"state": receipt.state, "reason": receipt.reason})
         told = receipt.state
-        while told not in ("delivered", "expired", "refused") and request.get("wait", True):
-            told = await receipt.change()
-            await writer.line({"state": receipt.state, "reason": receipt.reason})
+        while told not in FINAL and request.get("wait", True):
+            await receipt.change()
+            if told != receipt.state:  # it may have moved twice since
+                told = receipt.state
+                await writer.line({"state": told, "reason": receipt.reason})
 
     async def _listen(self, request: dict[str, Any], writer: status.Writer) -> None:
         pumps = [

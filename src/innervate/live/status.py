@@ -98,6 +98,8 @@ class Server:
                     await writer.line({"error": str(error)})
         except (ConnectionError, ValueError):  # gone, or a line longer than any request
             pass
+        except asyncio.CancelledError:  # the node ends while somebody listens
+            pass
         finally:
             self._open.discard(stream)
             stream.close()

@@ -1,7 +1,7 @@
 """Messages that are kept until their recipient acknowledges them [mesh RELIABLE]."""
 
 from innervate.protocol.arith import MASK16, MASK30, after, later
-from innervate.protocol.mesh_fields import WAITING
+from innervate.protocol.mesh_fields import QUEUE, WAITING
 from innervate.protocol.mesh_frames import add8, get16, inner
 from innervate.protocol.mesh_queue import ALARMS, CONTROL, MESSAGES, compose, drop, kick
 from innervate.protocol.mesh_search import BITS
@@ -152,6 +152,18 @@ def launch(node, params, now, i, owner, handle, out):
     kick(node, params, now, out)
 
 
+def is_queued(node, seq):
+    """1 if a copy of a message of ours has not left us yet: another would only be in its way.
+
+    Where several are under way, one that is late can make a node take a new one for it.
+    """
+    for i in range(QUEUE):
+        if node.q_state[i] != FREE and node.q_seq[i] == seq and node.q_kind[i] == DATA:
+            if node.q_origin[i] == node.number:
+                return 1
+    return 0
+
+
 def try_again(node, params, now, w, out):
     """Send a kept message once more, or give it up: 1 if it was sent."""
     old = (now - node.wait_at[w]) & MASK30 > life(params)
@@ -163,6 +175,9 @@ def try_again(node, params, now, w, out):
         return 0
     if node.wait_kind[w] == DATA and is_behind(node, node.wait_dest[w], node.wait_seq[w]):
         node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
+        return 0
+    if node.wait_kind[w] == DATA and is_queued(node, node.wait_seq[w]):
+        node.wait_due[w] = (now + shortest(node, params)) & MASK30
         return 0
     node.wait_tries[w] = node.wait_tries[w] + 1
     node.wait_sent[w] = now
