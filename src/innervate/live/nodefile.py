@@ -60,7 +60,7 @@ class DeliverTable(Struct, frozen=True, forbid_unknown_fields=True):
     """[deliver]: messages in the order in which they were sent."""
 
     in_order: bool = False
-    wait_ms: Annotated[int, Meta(ge=1, le=60_000)] = 3000
+    wait_ms: Annotated[int, Meta(ge=1, le=60_000)] = 10_000
     buffer: Annotated[int, Meta(ge=1, le=4096)] = 256
 
 

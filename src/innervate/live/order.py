@@ -14,7 +14,7 @@ from typing import NamedTuple
 from innervate.live.engine import clock_us
 from innervate.protocol.arith import MASK16, later
 
-WAIT_US = 3_000_000  # longer than a message is tried while round trips are short
+WAIT_US = 10_000_000  # a message is rarely tried longer; at most 26 s
 BUFFER = 256
 BEFORE_BYTES = 2  # in front of the payload: the number of the message before
 
