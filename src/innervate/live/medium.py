@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
+from collections import deque
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
@@ -20,6 +21,7 @@ from innervate.live.radio import HEARD, JOIN, SEND, Listener, read_heard
 
 DATAGRAM_MAX = 2048
 JOIN_S = 1.0
+LOGGED = 4096  # transmissions
 SLOT_US = 10_000
 TURNAROUND_US = 5_000
 DELAY_US = 500  # from a station to every other: who has sent listens again before an answer comes
@@ -66,14 +68,14 @@ class Medium:
     Attributes:
         slot_us: a slot on the air.
         turnaround_us: from deciding to send to being on the air, and back.
-        log: every transmission so far: (start, end, station, frame).
+        log: the newest transmissions: (start, end, station, frame).
         collisions: signals that began while another was on the air.
         late: transmissions that should have begun before they were known here.
     """
 
     slot_us: int = SLOT_US
     turnaround_us: int = TURNAROUND_US
-    log: list[tuple[int, int, int, bytes]] = field(default_factory=list)
+    log: deque[tuple[int, int, int, bytes]] = field(default_factory=lambda: deque(maxlen=LOGGED))
     collisions: int = 0
     late: int = 0
     _ears: dict[int, Ear] = field(default_factory=dict)
@@ -111,6 +113,10 @@ class Medium:
             data, where = self._socket.recvfrom(DATAGRAM_MAX)
         except OSError:
             return
+        self.take(data, where)
+
+    def take(self, data: bytes, where: Any) -> None:
+        """A station says that it joins, or sends; what is neither is dropped."""
         if data[:1] == b"J" and len(data) == JOIN.size:
             self._join(JOIN.unpack(data)[1], where)
         elif data[:1] == b"T" and len(data) > SEND.size:
