@@ -16,7 +16,7 @@ from innervate.live.up import Network
 from tests.live_net import until
 
 FIRST_S = 40.0
-MANY = 150
+MANY = 40
 LINE = {
     "kind": "mesh", "nodes": 3, "radio": {"profile": "ip"},
     "link": [{"a": 0, "b": 1}, {"a": 1, "b": 2}],
@@ -59,7 +59,7 @@ def test_a_node_that_is_told_to_end_gets_rid_of_its_messages_first(tmp_path):
 
 @pytest.mark.needs_root
 @pytest.mark.needs_netns
-@pytest.mark.parametrize("kind", ["udp", "multicast"])
+@pytest.mark.parametrize("kind", [pytest.param("udp", marks=pytest.mark.slow), "multicast"])
 def test_an_interface_that_vanishes_comes_back_by_itself(tmp_path, kind):
     lab = Lab("ivaway", 2, [(0, 1)])
     own = [lab.address(0, node) for node in range(2)]

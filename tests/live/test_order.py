@@ -25,7 +25,7 @@ def chain(count, start, steps):
     return list(zip(numbers, [start, *numbers], strict=False))
 
 
-@settings(max_examples=300, deadline=None, database=None)
+@settings(max_examples=100, deadline=None, database=None)
 @given(
     st.integers(1, 40), st.integers(0, MASK16), st.lists(st.integers(1, 9), min_size=1),
     st.randoms(use_true_random=False),
@@ -44,7 +44,7 @@ def test_whatever_the_order_in_which_they_come_they_go_up_as_they_were_sent(
     assert order.late == 0
 
 
-@settings(max_examples=300, deadline=None, database=None)
+@settings(max_examples=100, deadline=None, database=None)
 @given(
     st.integers(2, 40), st.integers(0, MASK16), st.integers(1, 8),
     st.randoms(use_true_random=False),
