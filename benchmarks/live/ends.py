@@ -16,7 +16,7 @@ from pathlib import Path
 
 PERIOD_S = 0.005
 PORT = 4800
-SETTLE_S = 3.0
+SETTLE_S = 30.0  # longer than any message is tried
 
 
 class Mesh:

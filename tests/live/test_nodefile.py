@@ -63,7 +63,14 @@ def test_what_is_wrong_is_said_in_one_line(tmp_path, old, new, says):
 def test_the_profile_has_every_parameter_and_agrees_with_that_of_scenarios():
     params = mesh_parameters(20, {})
     assert set(params) == {name for name, *_ in PARAMS}
-    ours = (IP["ack_us"], IP["transmissions"], IP["suspect_us"], IP["jitter_us"], IP["e2e_us"])
+    ours = (
+        IP["ack_us"],
+        IP["transmissions"],
+        IP["suspect_us"],
+        IP["jitter_us"],
+        IP["e2e_us"],
+        IP["e2e_tries"],
+    )
     theirs = SCENARIOS_IP
     assert ours == (
         theirs.ack_us,
@@ -71,6 +78,7 @@ def test_the_profile_has_every_parameter_and_agrees_with_that_of_scenarios():
         round(theirs.suspect * 1e6),
         round(theirs.jitter * 1e6),
         round(theirs.e2e * 1e6),
+        theirs.e2e_tries,
     )
     ticks = (IP["period"], IP["period_max"])
     assert ticks == (theirs.period / theirs.beacon, theirs.period_max / theirs.beacon)

@@ -3,6 +3,7 @@ import json
 import os
 import resource
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -65,12 +66,29 @@ def send(network, name, to, text):
     return "gone"
 
 
+def states(network, name, to):
+    """How many of 50 messages, one after the other on one connection, had just one end."""
+    good = 0
+    with socket.socket(socket.AF_UNIX) as sock:
+        sock.connect(str(network.socket(name)))
+        lines = sock.makefile("rw")
+        for _ in range(50):
+            lines.write(json.dumps({"do": "send", "to": to, "payload": "00"}) + "\n")
+            lines.flush()
+            told = [json.loads(lines.readline())["state"]]
+            while told[-1] not in ("delivered", "expired"):
+                told.append(json.loads(lines.readline())["state"])
+            good += told[0] == "accepted" and len(told) == len(set(told))
+    return good
+
+
 def test_killed_and_started_again_a_node_rejoins(tmp_path):
     async def main():
         network = await network_of(ring_scenario(), tmp_path)
         try:
             await until(lambda: all(ask(network, n)["table"] for n in network.names), FIRST_S)
             assert await asyncio.to_thread(send, network, "n0", 2, "one") == "delivered"
+            assert await asyncio.to_thread(states, network, "n0", 1) == 50
             for name in ("n1", "n0"):  # one in the middle, and the gateway itself
                 network.processes[name].send_signal(signal.SIGKILL)
                 network.processes[name].wait()
@@ -190,8 +208,6 @@ def test_no_node_is_said_in_one_line(tmp_path):
 
 
 def free_port():
-    import socket
-
     with socket.socket() as sock:
         sock.bind(("127.0.0.1", 0))
         return sock.getsockname()[1]

@@ -13,14 +13,20 @@ from innervate.live import status
 
 
 def up(
-    file: str, sets: list[str], cables: str, folder: Path | None, for_s: float, as_json: bool
+    file: str,
+    sets: list[str],
+    cables: str,
+    sealed: bool,
+    folder: Path | None,
+    for_s: float,
+    as_json: bool,
 ) -> int:
     """Bring a scenario up as processes."""
     from innervate import scenario as scenarios
-    from innervate.live import up as room
+    from innervate.live import run_up as room
 
     plan = scenarios.plan(scenarios.load(file, sets))
-    return asyncio.run(room.run(plan, folder, cables, for_s, as_json))
+    return asyncio.run(room.run(plan, folder, cables, sealed, for_s, as_json))
 
 
 def show(names: list[str], as_json: bool) -> int:
@@ -39,11 +45,11 @@ def show(names: list[str], as_json: bool) -> int:
     return 0
 
 
-def send(name: str, to: int, text: str, priority: bool, reliable: bool, as_json: bool) -> int:
+def send(name: str, to: int, text: str, how: dict[str, bool], as_json: bool) -> int:
     """Send a message; 0 if it was delivered, or only accepted where no receipt is asked for."""
     payload = sys.stdin.buffer.read() if text == "-" else text.encode()
-    request = {"do": "send", "to": to, "payload": payload.hex(), "priority": priority,
-               "reliable": reliable, "wait": reliable and to != 255}  # fmt: skip
+    request = {"do": "send", "to": to, "payload": payload.hex(), **how,
+               "wait": how["reliable"] and to != 255}  # fmt: skip
     state = "refused"
     for answer in status.ask(status.find(name), request):
         state = answer["state"]
@@ -54,16 +60,19 @@ def send(name: str, to: int, text: str, priority: bool, reliable: bool, as_json:
     return 0 if state in ("delivered", "accepted") else 1
 
 
-def listen(name: str, count: int, as_json: bool) -> int:
+def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:
     """Print messages that come in at a node."""
     heard = 0
-    for answer in status.ask(status.find(name), {"do": "listen"}):
+    request = {"do": "listen", "alarms": True, **({"in_order": True} if in_order else {})}
+    for answer in status.ask(status.find(name), request):
         if "from" not in answer:
             continue
         if as_json:
             print(json.dumps(answer), flush=True)
         else:
             text = str(answer.get("touch", ""))
+            if "alarm" in answer:
+                text = f"alarm: {_alarm_text(answer['alarm'])}"
             if "payload" in answer:
                 text = bytes.fromhex(answer["payload"]).decode("utf-8", "backslashreplace")
             print(f"{answer['from']}: {text}", flush=True)
@@ -115,4 +124,17 @@ def _mesh_lines(told: dict[str, Any]) -> list[str]:
         suspect = ", does not answer" if near["suspect"] else ""
         lines.append(f"  neighbour {near['node']}: acknowledged {quality}{suspect}")
     ways = [f"{dest} by {hop[0]}" for dest, hop in told["routes"].items()]
-    return [*lines, f"  routes: {', '.join(ways) or 'none'}"]
+    lines.append(f"  routes: {', '.join(ways) or 'none'}")
+    if "robot" in told:
+        at = told["robot"]["at_cm"]
+        place = "no position yet" if at is None else f"at {at[0] / 100:.2f}, {at[1] / 100:.2f} m"
+        lines.append(f"  robot: {place}, {told['robot']['fence']}")
+    for alarm in told.get("alarms", ()):
+        lines.append(f"  alarm {alarm['ago_s']:.1f} s ago: {_alarm_text(alarm)}")
+    return lines
+
+
+def _alarm_text(alarm: dict[str, Any]) -> str:
+    x, y, margin = (alarm[key] / 100 for key in ("x_cm", "y_cm", "margin_cm"))
+    where = "" if alarm["kind"] == "lost" else f" at {x:.2f}, {y:.2f} m, margin {margin:.2f} m"
+    return f"{alarm['kind']}, robot {alarm['robot']}{where} (from node {alarm['reporter']})"

@@ -40,22 +40,25 @@ def live_up(
     set_: Sets = None,
     netns: Json = False,
     pty: Json = False,
+    sealed: Json = False,
     folder: Path | None = None,
     for_: Annotated[float, Parameter(name=["--for"])] = 0.0,
     json: Json = False,
 ) -> int:
-    """Bring a scenario up, a process for every node, until Ctrl-C.
+    """Bring a scenario up, a process for every node, and play its events, until Ctrl-C.
 
     Parameters
     ----------
     file
-        A mesh or skin scenario, or the name of a bundled one.
+        A scenario, or the name of a bundled one.
     set_
         Change a key, as for run.
     netns
         Every node in its own network namespace; needs root.
     pty
         Skin: serial cables (ptys) instead of UDP.
+    sealed
+        With a key made for this run.
     folder
         Where node files, logs and sockets go; a temporary one if left out.
     for_
@@ -68,7 +71,7 @@ def live_up(
     if netns and pty:
         raise errors.UserError("--netns and --pty exclude each other; name one")
     cables = "netns" if netns else "pty" if pty else "udp"
-    return command.up(file, set_ or [], cables, folder, for_, json)
+    return command.up(file, set_ or [], cables, sealed, folder, for_, json)
 
 
 @live_app.command(name="status")
@@ -96,6 +99,7 @@ def live_send(
     *,
     priority: Json = False,
     reliable: bool = True,
+    in_order: Json = False,
     json: Json = False,
 ) -> int:
     """Send a message from a running node; prints what becomes of it.
@@ -112,16 +116,19 @@ def live_send(
         Before other messages.
     reliable
         Kept until acknowledged.
+    in_order
+        Its recipient may put it in order behind those that were sent so before it.
     json
         Print JSON lines.
     """
     from innervate.cli import live as command
 
-    return command.send(node, to, text, priority, reliable, json)
+    how = {"priority": priority, "reliable": reliable, **({"in_order": True} if in_order else {})}
+    return command.send(node, to, text, how, json)
 
 
 @live_app.command(name="listen")
-def live_listen(node: str, /, *, count: int = 0, json: Json = False) -> int:
+def live_listen(node: str, /, *, count: int = 0, in_order: Json = False, json: Json = False) -> int:
     """Print messages that come in at a running node, until Ctrl-C.
 
     Parameters
@@ -130,12 +137,14 @@ def live_listen(node: str, /, *, count: int = 0, json: Json = False) -> int:
         Name or socket.
     count
         End after so many; 0 = never.
+    in_order
+        Each sender's messages as it sent them, where it sent them in order.
     json
         Print JSON lines.
     """
     from innervate.cli import live as command
 
-    return command.listen(node, count, json)
+    return command.listen(node, count, in_order, json)
 
 
 @live_app.command(name="medium")

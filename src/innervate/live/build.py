@@ -11,6 +11,7 @@ from innervate.live.keys import Sealer, read_key
 from innervate.live.links import Link
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import (
+    DeliverTable,
     KeysTable,
     Loaded,
     MediumTable,
@@ -90,16 +91,23 @@ def keys_of(table: KeysTable, loaded: Loaded) -> dict[int, bytes]:
 def _mesh(loaded: Loaded) -> LiveNode:
     from innervate.live.mesh import MeshStack
     from innervate.live.messages import MeshNode
-    from innervate.live.profile import mesh_parameters
+    from innervate.live.order import Orderly
+    from innervate.live.profile import fence_parameters, mesh_parameters
 
     table = loaded.table
     assert table.nodes is not None
     ranks = {"gateway": 0, "standby": table.rank}
     rank = ranks.get(table.role or "node", -1)
     params = mesh_parameters(table.nodes, dict(table.protocol), f"{loaded.path}")
-    stack = MeshStack(table.number, rank, params, secrets.randbits(60))
+    if table.fence is not None:
+        rings = [table.fence.polygon, *table.fence.holes]
+        params.update(fence_parameters(rings, f"{loaded.path}"))
+    stack = MeshStack(table.number, rank, params, secrets.randbits(60), table.robot)
     state = state_of(loaded)
-    return MeshNode(loaded.name, stack, links_of(loaded), sealer_of(loaded, state), state)
+    sealer, deliver = sealer_of(loaded, state), table.deliver or DeliverTable()
+    orderly = Orderly(1000 * deliver.wait_ms, deliver.buffer)
+    links, in_order = links_of(loaded), deliver.in_order
+    return MeshNode(loaded.name, stack, links, sealer, state, orderly, in_order)
 
 
 def _skin(loaded: Loaded) -> LiveNode:

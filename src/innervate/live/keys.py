@@ -50,6 +50,8 @@ class Sealer:
 
     Attributes:
         dropped: frames that were not taken, by reason.
+        keys: those that are accepted now.
+        use: which one seals what leaves.
     """
 
     def __init__(
@@ -71,6 +73,7 @@ class Sealer:
         from cryptography.hazmat.primitives.ciphers.aead import ChaCha20Poly1305
 
         self._ciphers = {number: ChaCha20Poly1305(key) for number, key in keys.items()}
+        self.keys = dict(keys)
         self.use = use
 
     def close(self, data: bytes) -> bytes:

@@ -18,6 +18,7 @@ class Path:
         port: its place in the node's file, from 0; protocols with ports know it by that.
         up: False while its device is away.
         cut: True = it carries nothing, as if its plug had come out; for tests and experiments.
+        loss: share of the frames that are lost as they come in, 0 to 1; as of a loose plug.
         heard_at: when a good frame came in last, us of the driver's clock; 0 never.
         counters: frames and bytes out and in, and why frames were not sent.
     """
@@ -27,6 +28,7 @@ class Path:
         self.port = port
         self.up = True
         self.cut = False
+        self.loss = 0.0
         self.heard_at = 0
         self.counters: Counter[str] = Counter()
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import signal
 import sys
+from collections.abc import AsyncGenerator, Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +16,16 @@ from innervate.live.messages import MeshNode
 from innervate.live.metrics import MetricsPage
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import Loaded, address, load
+from innervate.live.receipts import FINAL
+from innervate.live.rotation import Rotation
 from innervate.live.skin import SinkNode
+
+# Makes the line that a listener gets of what came.
+Form = Callable[[Any], dict[str, Any]]
 
 DRAIN_S = 2.0
 SAVE_S = 10.0
+REQUESTS = ("status", "send", "listen", "cut", "restore", "loose", "locate", "stop")
 
 
 def run(path: Path) -> int:
@@ -37,6 +44,8 @@ class Process:
     def __init__(self, loaded: Loaded) -> None:
         self.loaded = loaded
         self.node: LiveNode = build(loaded)
+        sealer = self.node.sealer
+        self.rotation = None if sealer is None else Rotation(sealer)
         named = loaded.table.socket
         where = Path(named) if named else status.folder() / f"{loaded.name}.sock"
         self.server = status.Server(where, self._answer)
@@ -73,13 +82,18 @@ class Process:
         """SIGHUP: read the file again; keys may be others, all else needs a restart."""
         try:
             fresh = load(self.loaded.path)
-            if self.node.sealer is None or fresh.table.keys is None:
+            if self.rotation is None or fresh.table.keys is None:
                 raise LiveError(f"{fresh.path}: only other keys can be taken over without restart")
-            self.node.sealer.load_keys(keys_of(fresh.table.keys, fresh), fresh.table.keys.use)
+            keys = fresh.table.keys
+            self.rotation.begin(keys_of(keys, fresh), keys.use, keys.grace_s)
         except LiveError as error:
             self._say(f"not reloaded: {error}")
-        else:
-            self._say("keys reloaded")
+            return
+        names = fresh.table.__struct_fields__
+        others = [name for name in names if name != "keys"
+                  and getattr(fresh.table, name) != getattr(self.loaded.table, name)]  # fmt: skip
+        restart = f"; restart it for what else has changed: {', '.join(others)}" if others else ""
+        self._say(f"keys reloaded: {keys.use} seals after {keys.grace_s:g} s{restart}")
 
     async def _sleep(self, seconds: float) -> None:
         try:
@@ -107,16 +121,30 @@ class Process:
         elif what == "send":
             await self._send(request, writer)
         elif what == "listen":
-            await self._listen(writer)
+            await self._listen(request, writer)
         elif what in ("cut", "restore"):
             path = self.node.path_at(int(request["port"]))
-            path.cut = what == "cut"
+            path.cut, path.loss = what == "cut", 0.0
             await writer.line({"path": path.name, "cut": path.cut})
+        elif what == "loose":
+            path = self.node.path_at(int(request["port"]))
+            path.cut, path.loss = False, float(request["loss"])
+            await writer.line({"path": path.name, "loss": path.loss})
+        elif what == "locate":
+            self._locate(request)
+            await writer.line({"ok": True})
         elif what == "stop":
             self.ending.set()
             await writer.line({"ok": True})
         else:
-            raise ValueError('a request has "do": status, send, listen, cut, restore or stop')
+            raise ValueError(f'a request has "do": {", ".join(REQUESTS)}')
+
+    def _locate(self, request: dict[str, Any]) -> None:
+        if not isinstance(self.node, MeshNode):
+            raise ValueError("only robots of a mesh have a position")
+        x, y = (float(value) for value in request["at_cm"])
+        vx, vy = (float(value) for value in request.get("speed_cm_s", (0, 0)))
+        self.node.locate((x, y), (vx, vy))
 
     async def _send(self, request: dict[str, Any], writer: status.Writer) -> None:
         node, payload = self.node, bytes.fromhex(request["payload"])
@@ -126,6 +154,7 @@ class Process:
                 payload,
                 reliable=bool(request.get("reliable", True)),
                 priority=bool(request.get("priority", False)),
+                in_order=request.get("in_order"),
             )
         else:
             send_packet = getattr(node, "send_packet", None)
@@ -134,27 +163,55 @@ class Process:
             receipt = send_packet(payload)
         await writer.line({"state": receipt.state, "reason": receipt.reason})
         told = receipt.state
-        while told not in ("delivered", "expired", "refused") and request.get("wait", True):
-            told = await receipt.change()
-            await writer.line({"state": receipt.state, "reason": receipt.reason})
+        while told not in FINAL and request.get("wait", True):
+            await receipt.change()
+            if told != receipt.state:  # it may have moved twice since
+                told = receipt.state
+                await writer.line({"state": told, "reason": receipt.reason})
 
-    async def _listen(self, writer: status.Writer) -> None:
+    async def _listen(self, request: dict[str, Any], writer: status.Writer) -> None:
+        pumps = [
+            asyncio.ensure_future(_pump(stream, form, writer))
+            for stream, form in self._streams(request)
+        ]
+        await writer.line({"listening": self.loaded.name})
+        try:
+            done, _ = await asyncio.wait(pumps, return_when=asyncio.FIRST_COMPLETED)
+            for pump in done:
+                pump.result()
+        finally:
+            for pump in pumps:
+                pump.cancel()
+
+    def _streams(self, request: dict[str, Any]) -> list[tuple[AsyncGenerator[Any, None], Form]]:
+        """What a listener wants to hear, and how it is told."""
         node = self.node
-        if isinstance(node, MeshNode):
-            messages = node.receive_messages()
-            try:
-                await writer.line({"listening": self.loaded.name})
-                async for sender, payload in messages:
-                    await writer.line({"from": sender, "payload": payload.hex()})
-            finally:
-                await messages.aclose()
-        elif isinstance(node, SinkNode):
-            touches = node.receive_touch()
-            try:
-                await writer.line({"listening": self.loaded.name})
-                async for touch in touches:
-                    await writer.line({"from": touch.cell, "touch": touch._asdict()})
-            finally:
-                await touches.aclose()
-        else:
+        if isinstance(node, SinkNode):
+            return [(node.receive_touch(), _touch_line)]
+        if not isinstance(node, MeshNode):
             raise ValueError("only mesh nodes and the PC of a skin can be listened to")
+        messages = node.receive_messages(in_order=request.get("in_order"))
+        streams: list[tuple[AsyncGenerator[Any, None], Form]] = [(messages, _message_line)]
+        if request.get("alarms"):
+            streams.append((node.receive_alarms(), _alarm_line))
+        return streams
+
+
+async def _pump(stream: AsyncGenerator[Any, None], form: Form, writer: status.Writer) -> None:
+    try:
+        async for item in stream:
+            await writer.line(form(item))
+    finally:
+        await stream.aclose()
+
+
+def _message_line(message: tuple[int, bytes]) -> dict[str, Any]:
+    return {"from": message[0], "payload": message[1].hex()}
+
+
+def _alarm_line(alarm: Any) -> dict[str, Any]:
+    return {"from": alarm.reporter, "alarm": alarm._asdict()}
+
+
+def _touch_line(touch: Any) -> dict[str, Any]:
+    return {"from": touch.cell, "touch": touch._asdict()}

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import asyncio
 import socket
+from collections import deque
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,6 +20,8 @@ from innervate.live.nodefile import address
 from innervate.live.radio import HEARD, JOIN, SEND, Listener, read_heard
 
 DATAGRAM_MAX = 2048
+JOIN_S = 1.0
+LOGGED = 4096  # transmissions
 SLOT_US = 10_000
 TURNAROUND_US = 5_000
 DELAY_US = 500  # from a station to every other: who has sent listens again before an answer comes
@@ -64,14 +68,14 @@ class Medium:
     Attributes:
         slot_us: a slot on the air.
         turnaround_us: from deciding to send to being on the air, and back.
-        log: every transmission so far: (start, end, station, frame).
+        log: the newest transmissions: (start, end, station, frame).
         collisions: signals that began while another was on the air.
         late: transmissions that should have begun before they were known here.
     """
 
     slot_us: int = SLOT_US
     turnaround_us: int = TURNAROUND_US
-    log: list[tuple[int, int, int, bytes]] = field(default_factory=list)
+    log: deque[tuple[int, int, int, bytes]] = field(default_factory=lambda: deque(maxlen=LOGGED))
     collisions: int = 0
     late: int = 0
     _ears: dict[int, Ear] = field(default_factory=dict)
@@ -109,6 +113,10 @@ class Medium:
             data, where = self._socket.recvfrom(DATAGRAM_MAX)
         except OSError:
             return
+        self.take(data, where)
+
+    def take(self, data: bytes, where: Any) -> None:
+        """A station says that it joins, or sends; what is neither is dropped."""
         if data[:1] == b"J" and len(data) == JOIN.size:
             self._join(JOIN.unpack(data)[1], where)
         elif data[:1] == b"T" and len(data) > SEND.size:
@@ -117,9 +125,12 @@ class Medium:
                 self._transmit(station, at, slots, data[SEND.size :])
 
     def _join(self, station: int, where: Any) -> None:
+        known = self._ears.get(station)
+        if known is not None and known.where == where:
+            return  # it joins again and again, so that it is heard by a channel started later
         self._ears[station] = ear = Ear(where)
         ear.told = self._carrier()
-        self._say(ear, b"C", clock_us(), b"")
+        self._say(ear, b"R", clock_us(), b"")  # it may have sent when no channel was there
 
     def _carrier(self) -> tuple[bool, bool]:
         return bool(self._present), len(self._present) == 1
@@ -200,6 +211,7 @@ class MediumRadio:
         self.mode = "off"
         self._socket: socket.socket | None = None
         self._listener: Listener | None = None
+        self._again: asyncio.TimerHandle | None = None
 
     async def start(self, listener: Listener) -> None:
         """Join the channel."""
@@ -210,16 +222,26 @@ class MediumRadio:
         self._socket = sock
         asyncio.get_running_loop().add_reader(sock.fileno(), self._readable)
         self.mode = "listening"
-        sock.send(JOIN.pack(b"J", self.number))
+        self._join()
+
+    def _join(self) -> None:
+        """Join, and again now and then: the channel may have been started anew."""
+        assert self._socket is not None
+        with suppress(OSError):  # no channel there yet
+            self._socket.send(JOIN.pack(b"J", self.number))
+        self._again = asyncio.get_running_loop().call_later(JOIN_S, self._join)
 
     def send(self, at: int, data: bytes, slots: int) -> None:
         """Send a frame."""
         assert self._socket is not None
         self.mode = "sending"
-        self._socket.send(SEND.pack(b"T", self.number, at, slots) + data)
+        with suppress(OSError):  # no channel there: it is lost
+            self._socket.send(SEND.pack(b"T", self.number, at, slots) + data)
 
     def stop(self) -> None:
         """Leave the channel."""
+        if self._again is not None:
+            self._again.cancel()
         if self._socket is not None:
             asyncio.get_running_loop().remove_reader(self._socket.fileno())
             self._socket.close()

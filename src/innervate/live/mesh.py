@@ -7,8 +7,10 @@ from typing import Any
 
 from innervate.protocol import mesh, plain
 from innervate.protocol import mesh_fields as fields
+from innervate.protocol.mesh_kept import crowds, is_ahead
+from innervate.protocol.mesh_messages import resolve
 from innervate.protocol.mesh_near import FREE
-from innervate.protocol.mesh_queue import MESSAGES, has_room
+from innervate.protocol.mesh_queue import OWN, has_room
 from innervate.protocol.mesh_words import ACK, ACK_WANTED, TIMERS
 from innervate.protocol.rng import seeded
 from innervate.wire import mesh as wire
@@ -16,6 +18,8 @@ from innervate.wire import mesh as wire
 CLASSES = (32, 64, 254)
 OUTBOX = 32
 RSSI = -50  # of every frame that comes over a cable, dBm
+
+FENCE_WORDS = ("inside", "about to cross", "outside")
 
 Frame = plain.make("Frame", fields.FRAME)
 Item = plain.make("Item", fields.ITEM)
@@ -30,12 +34,15 @@ class MeshStack:
         rank: 0 gateway, 1.. standby, -1 neither.
         params: the protocol's parameters by name (`mesh_fields.PARAMS`).
         seed: any whole number; nodes must have different ones.
+        robot: True = it moves, has a fence and tells where it is.
     """
 
     timers = TIMERS
     reasons: tuple[str, ...] = wire.REASONS
 
-    def __init__(self, number: int, rank: int, params: dict[str, Any], seed: int) -> None:
+    def __init__(
+        self, number: int, rank: int, params: dict[str, Any], seed: int, robot: bool = False
+    ) -> None:
         self.params = Params()
         for name, value in params.items():
             setattr(self.params, name, value)
@@ -44,7 +51,7 @@ class MeshStack:
         self.silent_us = 3 * self.params.period_max * self.params.tick_us + self.params.tick_us
         self.node = plain.make("Node", fields.node(width))()
         self.gate = plain.make("Gate", fields.gate(width))() if rank >= 0 else None
-        self.node.number, self.node.rank = number, rank
+        self.node.number, self.node.rank, self.node.robot = number, rank, int(robot)
         self.node.rng, self.node.choice = seeded(seed), -1
         self.out = plain.Outbox(Frame, OUTBOX)
         self.inbox = Frame()
@@ -94,9 +101,12 @@ class MeshStack:
         """Read bytes into the inbox; 0, or why not."""
         return wire.decode(data, self.inbox)
 
-    def may_send(self) -> bool:
-        """True if the router has room for a message of ours, besides what others send through."""
-        return bool(has_room(self.node, MESSAGES)) and 0 in self.node.wait_kind
+    def may_send(self, recipient: int) -> bool:
+        """True if the router takes a message of ours, besides what others send through it."""
+        if not has_room(self.node, OWN) or 0 not in self.node.wait_kind:
+            return False
+        dest = resolve(self.node, self.params, recipient)
+        return not is_ahead(self.node, dest) and not crowds(self.node, dest)
 
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """Where a frame leaves: on the path its receiver was heard on last; None = on all.
@@ -135,6 +145,7 @@ class MeshStack:
         return {
             "kind": "mesh",
             "number": node.number,
+            **self._robot_status(),
             "role": "gateway" if node.leading else "standby" if node.rank >= 0 else "node",
             "gateway": node.gateway if node.known else None,
             "epoch": node.epoch,
@@ -145,3 +156,11 @@ class MeshStack:
             "queue": sum(state != 0 for state in node.q_state),
             "round_trip_ms": round(node.round_trip / 1000, 3),
         }
+
+    def _robot_status(self) -> dict[str, Any]:
+        """Where a robot is, from the fence's origin; nothing of other nodes."""
+        node, unit_cm = self.node, self.params.unit_cm
+        if not node.robot:
+            return {}
+        place = [node.x * unit_cm, node.y * unit_cm] if node.placed else None
+        return {"robot": {"at_cm": place, "fence": FENCE_WORDS[node.outside]}}

@@ -71,20 +71,23 @@ class Lab:
         self.down()
         for node in range(self.count):
             _ip("netns", "add", self.name(node))
-        for k, (a, b) in enumerate(self.links):
-            here, there = self.name(a), self.name(b)
-            _ip("link", "add", f"c{k}", "netns", here, "type", "veth",
-                "peer", "name", f"c{k}", "netns", there)  # fmt: skip
+        for k in range(len(self.links)):
+            self.plug(k)
         for node in range(self.count):
             lines = ["link set lo up", f"addr add {self.loopback(node)}/32 dev lo"]
-            for k, ends in enumerate(self.links):
-                if node in ends:
-                    lines.append(f"addr add {self.address(k, node)}/30 dev c{k}")
-                    lines.append(f"link set c{k} up")
             _ip("-n", self.name(node), "-batch", "-", text="\n".join(lines) + "\n")
             self.run(node, ["nft", "-f", "-"], RULES)
             knobs = ["net.ipv4.ip_forward=1", "net.ipv4.conf.all.rp_filter=0"]
             self.run(node, ["sysctl", "-qw", *knobs])
+
+    def plug(self, link: int) -> None:
+        """Make a cable: two interfaces with their addresses."""
+        here, there = (self.name(node) for node in self.links[link])
+        _ip("link", "add", f"c{link}", "netns", here, "type", "veth",
+            "peer", "name", f"c{link}", "netns", there)  # fmt: skip
+        for node in self.links[link]:
+            lines = [f"addr add {self.address(link, node)}/30 dev c{link}", f"link set c{link} up"]
+            _ip("-n", self.name(node), "-batch", "-", text="\n".join(lines) + "\n")
 
     def down(self) -> None:
         """Remove the namespaces; processes in them lose their interfaces."""

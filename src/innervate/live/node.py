@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import time
 from collections import Counter
 from typing import Any
@@ -91,7 +92,7 @@ class LiveNode:
         return self.paths[port]
 
     def _receive(self, path: Path, data: bytes) -> None:
-        if path.cut:
+        if path.cut or (path.loss and random.random() < path.loss):
             return
         path.counters["received"] += 1
         path.counters["received bytes"] += len(data)
@@ -135,11 +136,18 @@ class LiveNode:
             "name": self.name,
             "up_s": round(time.time() - self.started_at, 1),
             "sealed": self.sealer is not None,
+            "keys": self._keys_status(),
             "paths": paths,
             "broken": [path["name"] for path in paths if path["broken"]],
             "counters": dict(sorted(self.counters().items())),
             **self.stack.status(clock_us()),
         }
+
+    def _keys_status(self) -> dict[str, Any] | None:
+        """Which key seals, and which are accepted; None = frames go in the clear."""
+        if self.sealer is None:
+            return None
+        return {"use": self.sealer.use, "accepted": sorted(self.sealer.keys)}
 
     def _note_report(self, code: int, a: int, b: int) -> None:
         self.reports[code] += 1

@@ -49,10 +49,29 @@ LinkTable = UdpTable | MulticastTable | SerialTable | MediumTable
 
 
 class KeysTable(Struct, frozen=True, forbid_unknown_fields=True):
-    """[keys]: `secret.N` are keys by number, `use` seals what leaves."""
+    """[keys]: `secret.N` are keys by number, `use` seals what leaves; `grace_s` at reload."""
 
     use: Annotated[int, Meta(ge=0, le=15)]
     secret: dict[str, str]
+    grace_s: Annotated[float, Meta(ge=0, le=86_400)] = 10.0
+
+
+class DeliverTable(Struct, frozen=True, forbid_unknown_fields=True):
+    """[deliver]: messages in the order in which they were sent."""
+
+    in_order: bool = False
+    wait_ms: Annotated[int, Meta(ge=1, le=60_000)] = 10_000
+    buffer: Annotated[int, Meta(ge=1, le=4096)] = 256
+
+
+Ring = Annotated[list[tuple[int, int]], Meta(min_length=3)]
+
+
+class FenceTable(Struct, frozen=True, forbid_unknown_fields=True):
+    """[fence]: corners in units of protocol.unit_cm from its origin; the same in every file."""
+
+    polygon: Ring
+    holes: list[Ring] = []
 
 
 class NodeFile(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -72,6 +91,9 @@ class NodeFile(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     metrics: str | None = None
     rate_hz: Annotated[float, Meta(ge=0, le=1000)] = 0.0
     keys: KeysTable | None = None
+    deliver: DeliverTable | None = None
+    robot: bool = False
+    fence: FenceTable | None = None
     protocol: dict[str, int] = {}
     link: Annotated[list[LinkTable], Meta(min_length=1)] = field(default_factory=list)
 
@@ -135,6 +157,9 @@ def parse(raw: dict[str, Any], where: str = "node") -> NodeFile:
         raise LiveError(f"{where}: role of a {table.kind} node can be {', '.join(roles)}")
     if table.keys is not None and str(table.keys.use) not in table.keys.secret:
         raise LiveError(f"{where}: keys.use = {table.keys.use}, but there is no such secret")
+    for key in ("deliver", "robot", "fence"):
+        if getattr(table, key) and table.kind != "mesh":
+            raise LiveError(f"{where}: {key} is for nodes of a mesh; remove it")
     return table
 
 

@@ -13,8 +13,8 @@ from typing import Any, Protocol
 
 from innervate.live.engine import clock_us
 from innervate.live.errors import LiveError
-from innervate.live.messages import DELIVERED, REFUSED, Receipt
 from innervate.live.node import LiveNode
+from innervate.live.receipts import DELIVERED, REFUSED, Receipt
 from innervate.protocol import plain, radio_practical
 from innervate.protocol import radio_fields as fields
 from innervate.protocol.radio_words import PACKET, QUEUE, REPORT_DELIVERED

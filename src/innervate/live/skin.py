@@ -11,6 +11,7 @@ from innervate.live.keys import Sealer
 from innervate.live.links import Link
 from innervate.live.node import LiveNode
 from innervate.live.state import State
+from innervate.live.streams import iterate
 from innervate.protocol import plain, skin, skin_sink
 from innervate.protocol import skin_fields as fields
 from innervate.protocol.rng import seeded
@@ -291,16 +292,7 @@ class SinkNode(LiveNode):
         if callback is None:
             callback = queue.put_nowait
         self._callbacks.append(callback)
-        return self._iterate(queue, callback)
-
-    async def _iterate(
-        self, queue: asyncio.Queue[Touch], callback: Callable[[Touch], None]
-    ) -> AsyncGenerator[Touch, None]:
-        try:
-            while True:
-                yield await queue.get()
-        finally:
-            self._callbacks.remove(callback)
+        return iterate(queue, self._callbacks, callback)
 
     def counters(self) -> Counter[str]:
         """Handler calls, frames dropped by reason, samples received."""

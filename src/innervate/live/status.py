@@ -89,18 +89,25 @@ class Server:
         writer = Writer(stream)
         try:
             while line := await reader.readline():
-                try:
-                    request = json.loads(line)
-                    if not isinstance(request, dict):
-                        raise ValueError("a request is a JSON object")
-                    await self._handle(request, writer)
-                except (ValueError, KeyError, TypeError) as error:
-                    await writer.line({"error": str(error)})
+                await answer(line, self._handle, writer)
         except (ConnectionError, ValueError):  # gone, or a line longer than any request
+            pass
+        except asyncio.CancelledError:  # the node ends while somebody listens
             pass
         finally:
             self._open.discard(stream)
             stream.close()
+
+
+async def answer(line: bytes, handle: Handler, writer: Writer) -> None:
+    """Answer a line; what cannot be done is said."""
+    try:
+        request = json.loads(line)
+        if not isinstance(request, dict):
+            raise ValueError("a request is a JSON object")
+        await handle(request, writer)
+    except (ValueError, KeyError, TypeError, OverflowError) as error:
+        await writer.line({"error": str(error)})
 
 
 def answers(path: Path) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import socket
 import struct
 from contextlib import suppress
@@ -15,6 +16,7 @@ Address = tuple[str, int]
 DATAGRAM_MAX = 2048
 BATCH = 64  # datagrams read at once, before timers have their turn
 REOPEN_S = 0.5
+RENEW_S = 1.0
 
 
 class UdpPath(Path):
@@ -162,16 +164,38 @@ class MulticastLink(UdpLink):
             sock.setblocking(False)
             sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             sock.bind(self.group)
-            member = socket.inet_aton(self.group[0]) + socket.inet_aton(self.interface)
-            sock.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
-            own = socket.inet_aton(self.interface)
-            sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, own)
+            self._join(sock)
             sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, struct.pack("B", 1))
             sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_LOOP, 1)
         except BaseException:
             sock.close()
             raise
         return sock
+
+    async def open(self, receive: Receiver) -> None:
+        """Join the group; a wrong address is the user's mistake."""
+        await super().open(receive)
+        self._again = asyncio.get_running_loop().call_later(RENEW_S, self._renew)
+
+    def _renew(self) -> None:
+        """A membership goes with its interface, and nobody is told: join anew now and then."""
+        if self._closed:
+            return
+        self._again = asyncio.get_running_loop().call_later(RENEW_S, self._renew)
+        if self.socket is None:
+            return
+        try:
+            self._join(self.socket)
+        except OSError as error:
+            self._group.up = error.errno == errno.EADDRINUSE  # that says: it is a member
+        else:
+            self._group.up = True
+
+    def _join(self, sock: socket.socket) -> None:
+        own = socket.inet_aton(self.interface)
+        sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, own)
+        member = socket.inet_aton(self.group[0]) + own
+        sock.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
 
     def _origin(self, address: Address) -> UdpPath | None:
         """Whoever sends to the group is in it; our own frames come back, too: protocols know."""

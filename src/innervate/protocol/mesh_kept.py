@@ -3,12 +3,12 @@
 from innervate.protocol.arith import MASK16, MASK30, after, later
 from innervate.protocol.mesh_fields import QUEUE, WAITING
 from innervate.protocol.mesh_frames import add8, get16, inner
+from innervate.protocol.mesh_patience import LONGEST_US, learn_round_trip, life, shortest, timeout
 from innervate.protocol.mesh_queue import (
     ALARMS,
     CONTROL,
     MESSAGES,
     OWN,
-    WAITS,
     compose,
     drop,
     has_room,
@@ -35,7 +35,6 @@ from innervate.protocol.mesh_words import (
 from innervate.protocol.outbox import report, set_timer
 
 FREE = 0
-LONGEST_US = 1 << 27
 SURE_AFTER = 2  # tries; after fewer in vain nothing is concluded
 DESPAIR_MAX = 3
 PATIENCE = 48  # first waits: all tries of a message take 32
@@ -59,6 +58,7 @@ def keep(node, params, now, w, i, handle, out):
     node.wait_tries[w] = 1
     node.wait_hop[w] = 0
     node.wait_at[w] = now
+    node.wait_sent[w] = now
     node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
     node.wait_handle[w] = handle
     node.wait_length[w] = node.q_length[i]
@@ -77,6 +77,7 @@ def keep_for_later(node, params, now, w, item, dest, flags, out):
     node.wait_tries[w] = 0
     node.wait_hop[w] = 0
     node.wait_at[w] = now
+    node.wait_sent[w] = now
     node.wait_due[w] = (now + (params.e2e_us >> 2)) & MASK30
     node.wait_handle[w] = item.handle
     node.wait_length[w] = item.length
@@ -86,20 +87,16 @@ def keep_for_later(node, params, now, w, item, dest, flags, out):
     wait_on(node, now, out)
 
 
-def timeout(node, params, w):
-    """How long to wait for the end-to-end ack of the message in place w, us.
+def is_ahead(node, dest):
+    """1 if a new packet to `dest` would be too far ahead of one that is kept for it.
 
-    Twice as long after every further retry, but for alarms: who is not there is searched
-    everywhere each time.
+    Its recipient's window would move past the older one, which could then not come any more.
     """
-    wait = params.e2e_us
-    double = max(0, node.wait_tries[w] - 2)
-    if params.e2e_adapt:
-        wait = max(params.e2e_us, 4 * node.round_trip)
-        double = max(0, node.wait_tries[w] - 1)
-    if node.wait_kind[w] != ALARM:
-        wait = wait << min(double, 4)
-    return min(wait, LONGEST_US)
+    for w in range(WAITING):
+        if node.wait_kind[w] != FREE and node.wait_dest[w] == dest:
+            if (node.seq + 1 - node.wait_seq[w]) & MASK16 > OLDEST:
+                return 1
+    return 0
 
 
 def wait_on(node, now, out):
@@ -152,32 +149,34 @@ def launch(node, params, now, i, owner, handle, out):
 
 
 def is_old(node, params, now, w):
-    """1 if the message in place w is sent no more, however often it was.
-
-    Its recipient could have forgotten that it had it; and its place is wanted.
-    """
-    if (node.seq - node.wait_seq[w]) & MASK16 > OLDEST:
-        return 1
-    return (now - node.wait_at[w]) & MASK30 > patience(node, params)
+    """1 if the message in place w is sent no more, however often it was: its place is wanted."""
+    most = life(params)
+    if not params.e2e_adapt:
+        most = min(most, PATIENCE * min(params.e2e_us, LONGEST_US // PATIENCE))
+    return (now - node.wait_at[w]) & MASK30 > most
 
 
-def patience(node, params):
-    """For how long a message is sent again at most, us: all its tries, and half of it more."""
-    wait = params.e2e_us
-    if params.e2e_adapt:
-        wait = max(wait, 4 * node.round_trip)
-    return PATIENCE * min(wait, LONGEST_US // PATIENCE)
-
-
-def crowds(node, dest, seq):
-    """1 if so many messages wait for a way to this recipient that they leave none for others."""
-    if not is_in_vain(node, dest, seq):
+def crowds(node, dest):
+    """1 if so many messages wait for a way to this recipient that another would leave no place."""
+    if not is_in_vain(node, dest, (node.seq + 1) & MASK16):
         return 0
     count = 0
     for w in range(WAITING):
         if node.wait_kind[w] == DATA and node.wait_dest[w] == dest:
             count = count + 1
     return count >= WAITING // 2
+
+
+def is_queued(node, seq):
+    """1 if a copy of a message of ours has not left us yet: another would only be in its way.
+
+    Where several are under way, one that is late can make a node take a new one for it.
+    """
+    for i in range(QUEUE):
+        if node.q_state[i] != FREE and node.q_seq[i] == seq and node.q_kind[i] == DATA:
+            if node.q_origin[i] == node.number:
+                return 1
+    return 0
 
 
 def try_again(node, params, now, w, out):
@@ -192,15 +191,17 @@ def try_again(node, params, now, w, out):
     if node.wait_kind[w] == DATA and is_behind(node, node.wait_dest[w], node.wait_seq[w]):
         node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
         return 0
+    if node.wait_kind[w] == DATA and (is_queued(node, node.wait_seq[w]) or not has_room(node, OWN)):
+        node.wait_due[w] = (now + shortest(node, params)) & MASK30
+        return 0
     node.wait_tries[w] = node.wait_tries[w] + 1
+    node.wait_sent[w] = now
     node.wait_flags[w] = node.wait_flags[w] ^ PARITY
     node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
     unskip(node, node.number, node.wait_seq[w])
     rank = CONTROL if node.wait_flags[w] & PRIORITY else MESSAGES
     if node.wait_kind[w] == ALARM:
         rank = ALARMS
-    elif not clear_way(node, w):
-        return 1
     i = compose(node, now, rank, node.wait_kind[w], node.wait_dest[w], node.wait_flags[w], out)
     if i >= 0:
         node.seq = (node.seq - 1) & 65_535  # it keeps its number
@@ -209,19 +210,6 @@ def try_again(node, params, now, w, out):
             add8(node, i, node.wait_body[w * DATA_MAX + k])
         launch(node, params, now, i, w, node.wait_handle[w], out)
     return 1
-
-
-def clear_way(node, w):
-    """Before the message in place w goes out again: what is left of its last try does not.
-
-    0 if that is just being sent, or if there is no room.
-    """
-    for i in range(QUEUE):
-        if node.q_state[i] != FREE and node.q_owner[i] == w and node.q_seq[i] == node.wait_seq[w]:
-            if node.q_state[i] != WAITS:
-                return 0
-            drop(node, i)
-    return has_room(node, OWN)
 
 
 def on_end_ack(node, params, frame, now, out):
@@ -234,26 +222,27 @@ def on_end_ack(node, params, frame, now, out):
     for w in range(WAITING):
         if node.wait_kind[w] != FREE and node.wait_seq[w] == get16(frame, at):
             if node.wait_dest[w] == frame.origin or node.wait_kind[w] == ALARM:
-                took = (now - node.wait_at[w]) & MASK30
-                # Of a retried message this is too much rather than too little: the ack may be
-                # for any of its sendings, and times out of reach of the first would never count.
-                if took < 16_777_216 and (node.wait_tries[w] == 1 or params.e2e_adapt):
-                    if node.round_trip == 0:
-                        node.round_trip = took
-                    else:
-                        node.round_trip = (7 * node.round_trip + took) >> 3
+                learn_round_trip(node, params, w, now)
                 if is_own_crossing(node, w):
                     node.heard_out = 1
                 report(out, REPORT_ARRIVED, node.wait_handle[w], node.wait_seq[w])
                 node.wait_kind[w] = FREE
-    hurry(node, now, frame.origin, out)
+    hurry(node, params, now, frame.origin, out)
 
 
-def hurry(node, now, dest, out):
-    """`dest` is there: what was tried in vain, or not at all, is sent at once."""
+def hurry(node, params, now, dest, out):
+    """`dest` is there: what was tried in vain is sent again as soon as its ack is overdue.
+
+    Who acknowledges much would else use up all tries before the first of them can arrive.
+    """
+    pause = shortest(node, params)
     for w in range(WAITING):
         if node.wait_kind[w] == DATA and node.wait_dest[w] == dest and node.wait_tries[w] > 1:
-            node.wait_due[w] = now
+            due = (node.wait_sent[w] + pause) & MASK30
+            if after(now, due):
+                due = now
+            if after(node.wait_due[w], due):
+                node.wait_due[w] = due
     wait_on(node, now, out)
 
 

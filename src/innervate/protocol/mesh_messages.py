@@ -1,7 +1,15 @@
 """send_message and receive_messages: receipts, end-to-end acks and retries [mesh 1, RELIABLE]."""
 
 from innervate.protocol.mesh_frames import add8, add16, add_hop, copy_frame, inner
-from innervate.protocol.mesh_kept import crowds, free_wait, keep, keep_for_later, launch, on_end_ack
+from innervate.protocol.mesh_kept import (
+    crowds,
+    free_wait,
+    is_ahead,
+    keep,
+    keep_for_later,
+    launch,
+    on_end_ack,
+)
 from innervate.protocol.mesh_queue import (
     ALARMS,
     CONTROL,
@@ -29,6 +37,7 @@ from innervate.protocol.mesh_words import (
     MONITOR,
     NO_ROOM,
     NO_ROUTE,
+    ORDERED,
     PATH_MAX,
     PRIORITY,
     REPORT_ACCEPTED,
@@ -66,16 +75,19 @@ def on_message(node, params, now, item, out):
     if item.length > payload_limit(params) or nobody:
         report(out, REPORT_FULL, item.handle, NO_ROUTE)
         return
-    flags = item.flags & PRIORITY
+    flags = item.flags & (PRIORITY | ORDERED)
     if params.reliable:
-        flags = item.flags & (END_TO_END | PRIORITY)
+        flags = item.flags & (END_TO_END | PRIORITY | ORDERED)
     if dest == node.number:
         hand_up_own(node, item, out)
+        return
+    if is_ahead(node, dest):
+        report(out, REPORT_FULL, item.handle, NO_ROOM)
         return
     owner = -1
     if flags & END_TO_END and dest != ALL:
         owner = free_wait(node)
-        if owner < 0 or crowds(node, dest, (node.seq + 1) & 65_535):
+        if owner < 0 or crowds(node, dest):
             report(out, REPORT_FULL, item.handle, NO_ROOM)
             return
     i = -1
@@ -155,12 +167,15 @@ def hand_up(params, frame, out):
 
 
 def take(node, params, now, frame, out):
-    """A packet for us: deliver it once, acknowledge it always."""
+    """A packet for us: deliver it once, acknowledge it always.
+
+    An end-to-end ack may come twice, but does not move the window: else acks would shut out
+    messages that are still tried.
+    """
     first = frame.flags & FIRST
     is_there(node, frame.origin)
     if frame.kind == E2E_ACK:
-        if accept(node, params, frame.origin, frame.seq, first):
-            on_end_ack(node, params, frame, now, out)
+        on_end_ack(node, params, frame, now, out)
         return
     if accept(node, params, frame.origin, frame.seq, first):
         hand_up(params, frame, out)

@@ -17,6 +17,7 @@ ACK = 16  # of a hop: a frame without the common header
 ACK_WANTED = 1
 END_TO_END = 2
 FLOOD = 4
+ORDERED = 4  # of a message to one recipient: its payload begins with the seq of the one before it
 SOURCE_ROUTE = 8  # the payload begins with the rest of the route: its length, then its nodes
 DETOURED = 16  # graph forwarding: the payload ends with the failed nodes, then their number
 PRIORITY = 32

@@ -105,7 +105,7 @@ def parameters(
         "min_rssi": chosen.value("min_rssi_dbm", min_rssi_dbm),
         "e2e_us": chosen.micros("e2e_s", profile.e2e),
         "e2e_adapt": int(chosen.value("e2e_adapt", profile.e2e_adapt)),
-        "e2e_tries": chosen.value("e2e_tries", 5),
+        "e2e_tries": chosen.value("e2e_tries", profile.e2e_tries),
         "monitor": monitor,
         **_rounds(profile, chosen),
         "standby": int(standbys > 0),

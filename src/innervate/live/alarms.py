@@ -1,0 +1,88 @@
+"""Alarms of the virtual fence, as they come in at the monitor [mesh 2 FENCE_ALARM]."""
+
+from __future__ import annotations
+
+import struct
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+KINDS = ("predict", "cross", "lost", "clear")
+BODY = struct.Struct(">BBBBhhbbIh")
+SHOWN = 16  # alarms that a status shows
+CM_S = 2  # unit of speeds, cm/s
+PLACE_MAX = 32_767  # units
+SPEED_MAX = 127
+
+
+class Alarm(NamedTuple):
+    """An alarm.
+
+    Attributes:
+        kind: "predict" (it is about to cross), "cross", "lost" (not heard any more) or "clear".
+        robot: whom it is about.
+        reporter: who raised it: the robot, a witness or the monitor.
+        fence: the fence's number.
+        number: counts its reporter's alarms, modulo 256.
+        x_cm: where the robot was, from the fence's origin.
+        y_cm: the same.
+        margin_cm: how far inside, negative outside.
+    """
+
+    kind: str
+    robot: int
+    reporter: int
+    fence: int
+    number: int
+    x_cm: int
+    y_cm: int
+    margin_cm: int
+
+
+def read_alarm(reporter: int, body: bytes, unit_cm: int) -> Alarm | None:
+    """The alarm in a packet's payload; None if it is of no kind that is known."""
+    if len(body) < BODY.size:
+        return None
+    robot, fence, number, kind, x, y, _vx, _vy, _at_ms, gap = BODY.unpack_from(body)
+    if kind >= len(KINDS):
+        return None
+    x, y, gap = x * unit_cm, y * unit_cm, gap * unit_cm
+    return Alarm(KINDS[kind], robot, reporter, fence, number, x, y, gap)
+
+
+def place_of(
+    at_cm: tuple[float, float], speed_cm_s: tuple[float, float], unit_cm: int
+) -> tuple[int, int, int, int]:
+    """Position and speed in the protocol's units; beyond their ranges the last value of them."""
+    x, y = (_bound(value / unit_cm, PLACE_MAX) for value in at_cm)
+    vx, vy = (_bound(value / CM_S, SPEED_MAX) for value in speed_cm_s)
+    return x, y, vx, vy
+
+
+def _bound(value: float, most: int) -> int:
+    return max(-most, min(most, round(value)))
+
+
+class Alarms:
+    """Alarms that came in.
+
+    Attributes:
+        callbacks: who is told of each.
+        recent: the newest, with the second of the epoch at which they came.
+    """
+
+    def __init__(self) -> None:
+        self.callbacks: list[Callable[[Alarm], None]] = []
+        self.recent: deque[tuple[float, Alarm]] = deque(maxlen=SHOWN)
+
+    def note(self, alarm: Alarm) -> None:
+        """One came."""
+        self.recent.append((time.time(), alarm))
+        for callback in self.callbacks:
+            callback(alarm)
+
+    def status(self) -> list[dict[str, Any]]:
+        """The newest alarms, with how long ago they came, s."""
+        now = time.time()
+        return [{**alarm._asdict(), "ago_s": round(now - at, 3)} for at, alarm in self.recent]

@@ -1,0 +1,65 @@
+"""Receipts: what becomes of a message."""
+
+from __future__ import annotations
+
+import asyncio
+
+ACCEPTED = "accepted"
+HOP_ACKED = "next hop acked"
+DELIVERED = "delivered"
+EXPIRED = "expired"
+REFUSED = "refused"
+FINAL = (DELIVERED, EXPIRED, REFUSED)
+
+
+class Receipt:
+    """What becomes of a message.
+
+    Attributes:
+        state: "accepted", "next hop acked", then "delivered" or "expired"; "refused" at once.
+        reason: why it was refused or has expired, "" else.
+        seq: the packet's number once the router has it, -1 before.
+    """
+
+    __slots__ = ("_changes", "_waiters", "reason", "seq", "state")
+
+    def __init__(self) -> None:
+        self.state = ACCEPTED
+        self.reason = ""
+        self.seq = -1
+        self._waiters: list[asyncio.Future[str]] = []
+        self._changes: list[asyncio.Future[str]] = []
+
+    async def wait(self) -> str:
+        """Wait until nothing changes any more; the state then.
+
+        Messages to all, or without end-to-end acknowledgement, stay "accepted": do not wait.
+        """
+        if self.state in FINAL:
+            return self.state
+        future = asyncio.get_running_loop().create_future()
+        self._waiters.append(future)
+        return str(await future)
+
+    async def change(self) -> str:
+        """Wait for the next change; the state then."""
+        if self.state in FINAL:
+            return self.state
+        future = asyncio.get_running_loop().create_future()
+        self._changes.append(future)
+        return str(await future)
+
+    def move(self, state: str, reason: str = "") -> None:
+        """The state changes."""
+        self.state, self.reason = state, reason
+        told = self._changes
+        self._changes = []
+        if state in FINAL:
+            told += self._waiters
+            self._waiters = []
+        for future in told:
+            if not future.done():
+                future.set_result(state)
+
+    def __repr__(self) -> str:
+        return f"<Receipt {self.state}{': ' if self.reason else ''}{self.reason}>"

@@ -1,0 +1,90 @@
+"""`innervate live up`: a scenario's network, and what happens to it, until somebody ends it."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import secrets
+import shutil
+import signal
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+from innervate.live import play
+from innervate.live.up import Network
+
+
+async def run(
+    plan: Any, folder: Path | None, cables: str, sealed: bool, for_s: float, as_json: bool
+) -> int:
+    """Bring a scenario up and keep it until Ctrl-C, SIGTERM or the time is over; 0."""
+    own = folder is None
+    folder = Path(tempfile.mkdtemp(prefix="innervate-")) if folder is None else folder.absolute()
+    keys = {"use": 1, "secret.1": secrets.token_hex(32)} if sealed else None
+    network = Network(plan, folder, cables, keys)
+    player = _player(network, as_json)
+    ending = asyncio.Event()
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        loop.add_signal_handler(number, ending.set)
+    began = time.monotonic()
+    try:
+        await network.up()
+        _announce(network, time.monotonic() - began, as_json)
+        await _until(ending, asyncio.create_task(player.play()), for_s)
+    finally:
+        await network.down()
+        if own and os.path.isdir(folder):
+            shutil.rmtree(folder, ignore_errors=True)
+    return 0
+
+
+async def _until(ending: asyncio.Event, playing: asyncio.Task[None], limit_s: float) -> None:
+    """Until a signal says stop, or the time (0 = none) is over, or a played event went wrong."""
+    began = time.monotonic()
+    ended = asyncio.ensure_future(ending.wait())
+    both = {ended, playing}
+    try:
+        await asyncio.wait(both, timeout=limit_s or None, return_when=asyncio.FIRST_COMPLETED)
+        if playing.done():
+            playing.result()
+            left_s = max(0.0, limit_s - (time.monotonic() - began)) if limit_s else None
+            await asyncio.wait([ended], timeout=left_s)
+    finally:
+        ended.cancel()
+        playing.cancel()
+        await asyncio.gather(*both, return_exceptions=True)
+
+
+def _player(network: Network, as_json: bool) -> play.Player:
+    """What plays the scenario; what cannot be played is said."""
+    events = play.events(network.plan, network.names, network.links, network.cable_of)
+    for event in events:
+        if not play.is_played(event):
+            print(f"not played: {event.what} at {event.at_s:g} s", file=sys.stderr)
+
+    def tell(event: play.Event) -> None:
+        told = {"at_s": event.at_s, "event": event.text}
+        print(json.dumps(told) if as_json else f"{event.at_s:g} s: {event.text}", flush=True)
+
+    return play.Player(network, network.plan, events, tell)
+
+
+def _announce(network: Network, took_s: float, as_json: bool) -> None:
+    if as_json:
+        nodes = {
+            name: {"pid": network.processes[name].pid, "socket": str(network.socket(name))}
+            for name in network.names
+            if name in network.processes
+        }
+        told = {"folder": str(network.folder), "up_s": round(took_s, 3), "nodes": nodes}
+        print(json.dumps(told), flush=True)
+        return
+    count = len(network.names) - len(network.absent)
+    what = f"{len(network.links)} cables" if network.links else "their channel"
+    print(f"{count} nodes and {what} are up after {took_s:.1f} s; Ctrl-C ends them.")
+    print(f"Look: INNERVATE_RUN={network.folder} innervate live status", flush=True)

@@ -1,0 +1,21 @@
+"""Async iterators over what callbacks are told."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncGenerator, Callable
+from typing import TypeVar
+
+Item = TypeVar("Item")
+Told = TypeVar("Told", bound=Callable[..., None])
+
+
+async def iterate(
+    queue: asyncio.Queue[Item], callbacks: list[Told], own: Told
+) -> AsyncGenerator[Item, None]:
+    """What comes into a queue by a callback; at its end the callback is taken away."""
+    try:
+        while True:
+            yield await queue.get()
+    finally:
+        callbacks.remove(own)

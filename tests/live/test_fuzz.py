@@ -1,0 +1,163 @@
+"""Whatever comes in from outside is taken or dropped and counted, and never raises."""
+
+import asyncio
+import binascii
+import json
+from contextlib import suppress
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from innervate.live import status
+from innervate.live.alarms import KINDS, read_alarm
+from innervate.live.medium import Medium
+from innervate.live.order import Order
+from innervate.live.radio import Frame as RadioFrame
+from innervate.live.radio import read_heard
+from innervate.live.skin import Frame as SkinFrame
+from innervate.wire import cobs, radio, seal, skin
+from tests.live.test_keys import FRAMES, sealer
+
+FEW, MANY = 200, 100_000
+
+
+def crc(body):
+    return body + binascii.crc_hqx(body, 0xFFFF).to_bytes(2, "big")
+
+
+SOME = st.one_of(st.binary(max_size=64), st.binary(min_size=5, max_size=20).map(crc))
+MEDIUM = st.one_of(
+    SOME,
+    st.tuples(st.sampled_from([b"J", b"T", b"C", b"F"]), st.binary(max_size=40)).map(b"".join),
+)  # fmt: skip
+
+
+def reads_skin(data):
+    frame = SkinFrame()
+    assert 0 <= skin.decode(data, frame) < len(skin.REASONS)
+
+
+def reads_radio(data):
+    frame = RadioFrame()
+    assert 0 <= radio.decode(data, frame) < len(radio.REASONS)
+
+
+def reads_line(data):
+    decoder = cobs.Decoder(32)
+    frames = decoder.feed(data)
+    assert all(len(frame) <= 32 for frame in frames)
+    assert len(frames) + decoder.dropped <= data.count(0) + len(data) // 32 + 1
+
+
+def reads_sealed(data):
+    one = sealer(2)
+    assert one.open(data) is None
+    assert sum(one.dropped.values()) == 1
+    if seal.is_sealed(data):
+        seal.fields(data)
+
+
+def reads_heard(data):
+    heard = read_heard(data)
+    assert heard is None or heard[0] in (b"C", b"R", b"F")
+
+
+def reads_alarm(data):
+    alarm = read_alarm(3, data, 100)
+    assert alarm is None or alarm.kind in KINDS
+
+
+def orders(data):
+    order, got = Order(None, 10, 8), []
+    for k in range(0, len(data) - 3, 4):
+        seq, before = int.from_bytes(data[k : k + 2], "big"), data[k + 2] << 8 | data[k + 3]
+        got += order.take(seq, before, b"x", k)
+        assert len(order.held) <= 8
+    got += order.release(1 << 40)
+    assert len(got) + order.late == len(data) // 4
+
+
+DECODERS = [
+    (reads_skin, SOME), (reads_radio, SOME), (reads_line, SOME), (reads_sealed, FRAMES),
+    (reads_heard, MEDIUM), (reads_alarm, SOME), (orders, SOME),
+]  # fmt: skip
+
+
+def fuzz(reads, inputs, count):
+    @settings(max_examples=count, deadline=None, database=None)
+    @given(inputs)
+    def feed(data):
+        reads(data)
+
+    feed()
+
+
+@pytest.mark.parametrize(("reads", "inputs"), DECODERS)
+def test_decoders(reads, inputs):
+    fuzz(reads, inputs, FEW)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("reads", "inputs"), DECODERS)
+def test_decoders_a_hundred_thousand_times(reads, inputs):
+    fuzz(reads, inputs, MANY)
+
+
+@pytest.mark.parametrize("count", [FEW, pytest.param(MANY, marks=pytest.mark.slow)])
+def test_a_channel_hears_what_is_no_frame_and_goes_on(count):
+    async def main():
+        medium = Medium()
+        medium.open(("127.0.0.1", 0))
+        fuzz(lambda data: medium.take(data, ("127.0.0.1", 9)), MEDIUM, count)
+        medium.close()
+
+    asyncio.run(main())
+
+
+ASKED = st.one_of(
+    st.binary(max_size=60),
+    st.dictionaries(
+        st.sampled_from(["do", "to", "payload", "port", "loss", "at_cm", "speed_cm_s", "in_order"]),
+        st.one_of(
+            st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=6),
+            st.sampled_from(["status", "send", "cut", "restore", "loose", "locate", "00"]),
+            st.lists(st.floats() | st.text(max_size=2), max_size=3),
+        ),
+    ).map(lambda request: json.dumps(request).encode()),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("count", [100, pytest.param(20_000, marks=pytest.mark.slow)])
+def test_whatever_is_asked_of_a_node_gets_an_answer(tmp_path, count):
+    from innervate.live.main import Process
+    from innervate.live.nodefile import Loaded, parse
+
+    table = parse({
+        "kind": "mesh", "number": 0, "nodes": 2, "role": "gateway", "state": str(tmp_path / "s"),
+        "link": [{"kind": "udp", "bind": "127.0.0.1:0", "peers": ["127.0.0.1:9"]}],
+    })  # fmt: skip
+
+    class Lines:
+        """Takes an answer and hangs up."""
+
+        got = 0
+
+        async def line(self, answer):
+            json.dumps(answer)
+            self.got += 1
+            raise ConnectionResetError
+
+    async def main():
+        process = Process(Loaded(table, tmp_path / "n0.toml"))
+        await process.node.start()
+        asked, lines = [], Lines()
+        fuzz(asked.append, ASKED, count)
+        for line in asked:
+            with suppress(ConnectionResetError):
+                async with asyncio.timeout(5):
+                    await status.answer(line, process._answer, lines)
+        assert lines.got == len(asked)
+        await process.node.stop()
+
+    asyncio.run(main())

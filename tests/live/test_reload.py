@@ -1,0 +1,101 @@
+"""SIGHUP on real processes: keys change while messages run, and nobody is shut out."""
+
+import asyncio
+import signal
+import threading
+
+from innervate import scenario as scenarios
+from innervate.live import status
+from innervate.live.up import Network
+from tests.live_net import until
+
+FIRST_S = 40.0
+OLD, NEW = "11" * 32, "22" * 32
+GRACE_S = 0.5
+LINE = {
+    "kind": "mesh", "nodes": 3, "radio": {"profile": "ip"},
+    "link": [{"a": 0, "b": 1}, {"a": 1, "b": 2}],
+    "protocol": {"ack_us": 30_000, "e2e_s": 0.3},
+}  # fmt: skip
+
+
+def told(network, name):
+    return status.ask_one(network.socket(name), {"do": "status"})
+
+
+class Sender(threading.Thread):
+    """Messages from n0 to node 2, one after the other, until told to stop."""
+
+    def __init__(self, network):
+        super().__init__(daemon=True)
+        self.where = network.socket("n0")
+        self.states = []
+        self.enough = threading.Event()
+
+    def run(self):
+        while not self.enough.is_set():
+            for answer in status.ask(self.where, {"do": "send", "to": 2, "payload": "00"}):
+                if answer["state"] in ("delivered", "expired", "refused"):
+                    self.states.append(answer["state"])
+                    break
+
+
+def log(network, name):
+    return (network.folder / f"{name}.log").read_text()
+
+
+def test_other_keys_are_taken_over_node_by_node_and_no_message_is_lost(tmp_path):
+    async def main():
+        plan = scenarios.plan(scenarios.from_dict(LINE))
+        keys = {"use": 1, "secret.1": OLD, "grace_s": GRACE_S}
+        network = Network(plan, tmp_path, "udp", keys)
+        await network.up()
+        try:
+            await until(lambda: all(told(network, n)["table"] for n in network.names), FIRST_S)
+            sender = Sender(network)
+            sender.start()
+            network.keys = {"use": 2, "secret.2": NEW, "grace_s": GRACE_S}
+            for name in network.names:
+                network.write_file(name)
+                network.processes[name].send_signal(signal.SIGHUP)
+                await until(lambda name=name: "keys reloaded" in log(network, name), FIRST_S)
+                assert told(network, name)["keys"]["accepted"] == [1, 2]
+            only = {"use": 2, "accepted": [2]}
+            await until(lambda: all(told(network, n)["keys"] == only for n in network.names))
+            sent = len(sender.states)
+            await until(lambda: len(sender.states) > sent + 5)
+            sender.enough.set()
+            await asyncio.to_thread(sender.join)
+            counters = [told(network, name)["counters"] for name in network.names]
+        finally:
+            await network.down()
+        return sender.states, counters
+
+    states, counters = asyncio.run(main())
+    assert set(states) == {"delivered"}
+    for counted in counters:
+        assert [what for what in counted if what.startswith("dropped")] == []
+
+
+def test_what_cannot_be_reloaded_is_said_and_nothing_changes(tmp_path):
+    async def main():
+        plan = scenarios.plan(scenarios.from_dict(LINE))
+        keys = {"use": 1, "secret.1": OLD, "grace_s": GRACE_S}
+        network = Network(plan, tmp_path, "udp", keys)
+        await network.up()
+        try:
+            path, process = tmp_path / "n0.toml", network.processes["n0"]
+            good = path.read_text()
+            for text, says in (
+                (good.replace(OLD, NEW), "keys.secret.1 is another key now"),
+                (good + "[keys]\n", "not valid TOML"),
+                (good.replace("nodes = 3", "nodes = 4"), "for what else has changed: nodes"),
+            ):  # fmt: skip
+                path.write_text(text)
+                process.send_signal(signal.SIGHUP)
+                await until(lambda says=says: says in log(network, "n0"), FIRST_S)
+                assert told(network, "n0")["keys"] == {"use": 1, "accepted": [1]}
+        finally:
+            await network.down()
+
+    asyncio.run(main())
