@@ -1,0 +1,194 @@
+// The page of `innervate watch`: takes in what the server says, shows it, and sends back commands.
+import { setUpTheme } from "./colours.js";
+import { Controls } from "./controls.js";
+import { setUpKeys } from "./keys.js";
+import { showLegend } from "./legend.js";
+import { Network } from "./network.js";
+import { Card, Log, commandFor, showNumbers } from "./panel.js";
+import { Plots } from "./plots.js";
+import { Pointer } from "./pointer.js";
+import { MeshView } from "./mesh.js";
+import { RadioView } from "./radio.js";
+import { SkinView } from "./skin.js";
+import { Connection } from "./socket.js";
+import { LAYERS, Stage } from "./stage.js";
+import { Timeline } from "./timeline.js";
+
+const VIEWS = { skin: SkinView, mesh: MeshView, radio: RadioView };
+const TOUCHED = 200; // of 255: what a click presses
+const PANEL_MS = 100; // numbers and plots follow this often: nobody reads faster
+const $ = (id) => document.getElementById(id);
+
+let network = null;
+let view = null;
+let plots = null;
+let panelDue = 0;
+let panelStale = false;
+
+const stage = new Stage($("stage"));
+const log = new Log($("log"));
+const controls = new Controls(send);
+const card = new Card(act);
+const pointer = new Pointer(stage, { select: (what) => card.show(view, what), act });
+const timeline = new Timeline($("timeline"));
+const nextTheme = setUpTheme($("theme"), redraw);
+const connection = new Connection(onMessage, onConnection);
+
+function send(command) {
+  if (!connection.send(command)) {
+    log.add({ text: "not connected: nothing was sent", level: "bad" });
+  }
+}
+
+/** Cut, kill, heal, revive or touch what was clicked. */
+function act(what) {
+  const tool = $("tool").value;
+  if (tool === "look") return;
+  if (tool === "touch" && what.node !== undefined) {
+    const value = network.now.touch[what.node] ? 0 : TOUCHED;
+    return send({ do: "touch", node: network.nodes[what.node].id, value });
+  }
+  const command = commandFor(network, what);
+  if (command) send(command);
+}
+
+function onMessage(message) {
+  if (message.type === "scene") showScene(message);
+  else if (message.type === "state" && network) takeIn(message);
+  else if (message.type === "log") log.add(message);
+  else if (message.type === "error") log.add({ text: message.text, level: "bad" });
+  else if (message.type === "end") log.add({ text: message.text, level: "info" });
+  else if (message.type === "saved") download(message.toml);
+}
+
+function onConnection(open, tries) {
+  $("connection").textContent = open ? "connected" : "not connected";
+  $("connection").classList.toggle("lost", !open);
+  $("lost").hidden = open;
+  if (!open) {
+    $("lost").textContent = tries < 4
+      ? "The connection to the server is lost. Trying again …"
+      : "The server does not answer. Trying again; if it was started anew, open the address "
+        + "that it printed.";
+  }
+}
+
+function showScene(scene) {
+  network = new Network(scene);
+  view = new VIEWS[scene.kind](network);
+  pointer.forget();
+  card.show(view, null);
+  log.clear();
+  $("name").textContent = scene.name;
+  document.title = `${scene.name} – innervate watch`;
+  $("what").textContent = `${scene.kind}, ${{ run: "recorded run", live: "live nodes" }[scene.source]
+    ?? "simulation"}`;
+  $("report").hidden = scene.source !== "run";
+  options($("colour"), $("colour-box"), view.choices(), view.colour);
+  const { can } = network;
+  const acts = can.has("cut") || can.has("kill");
+  options($("tool"), $("tool-box"), [
+    ...(acts ? [["cut", "cuts and kills, or heals"]] : []),
+    ...(can.has("touch") ? [["touch", "touches"]] : []),
+    ["look", "only selects"],
+  ]);
+  $("stage").classList.toggle("acts", acts);
+  $("stage").setAttribute("aria-label", `Map of ${scene.name}: ${scene.nodes.length} nodes, `
+    + `${scene.links.length} links`);
+  $("timeline").hidden = scene.kind !== "radio";
+  timeline.network = scene.kind === "radio" ? network : null;
+  controls.scene(network);
+  plots = new Plots($("plots"), network);
+  stage.show(view);
+  showLegend($("legend"), view);
+  panelStale = true;
+}
+
+/** Fill a list of choices; one with a single choice is not shown. */
+function options(list, box, choices, chosen) {
+  list.replaceChildren(...choices.map(([value, text]) => {
+    const option = document.createElement("option");
+    Object.assign(option, { value, textContent: text, selected: value === chosen });
+    return option;
+  }));
+  box.hidden = choices.length < 2;
+}
+
+function takeIn(state) {
+  const changed = network.apply(state);
+  if (changed.has("position")) stage.moved();
+  stage.touch(...view.layersOf(changed));
+  panelStale = true;
+}
+
+function redraw() {
+  view?.repaint?.();
+  stage?.touch(...Object.values(LAYERS));
+  if (view) showLegend($("legend"), view);
+  panelStale = true;
+}
+
+function download(toml) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([toml], { type: "application/toml" }));
+  link.download = `${network.scene.name.replace(/[^\w-]+/g, "-") || "scenario"}.toml`;
+  link.click();
+  URL.revokeObjectURL(link.href);
+}
+
+function setColour(name) {
+  view.colour = name;
+  $("colour").value = name;
+  redraw();
+}
+
+$("colour").addEventListener("change", () => setColour($("colour").value));
+$("zoom-in").addEventListener("click", () => stage.zoomBy(1.5));
+$("zoom-out").addEventListener("click", () => stage.zoomBy(1 / 1.5));
+$("zoom-fit").addEventListener("click", () => stage.fit());
+setUpKeys({
+  " ": ["Space", "pause or go on", () => controls.toggle()],
+  ".": [".", "one event further, when paused", () => send({ do: "step" })],
+  "[": ["[", "slower", () => controls.shift(-1)],
+  "]": ["]", "faster", () => controls.shift(1)],
+  "+": ["+", "zoom in", () => stage.zoomBy(1.5)],
+  "-": ["−", "zoom out", () => stage.zoomBy(1 / 1.5)],
+  0: ["0", "show all", () => stage.fit()],
+  c: ["c", "next colouring", nextColour],
+  t: ["t", "light, dark or as the system", () => nextTheme()],
+});
+
+function nextColour() {
+  const names = view.choices().map(([name]) => name);
+  if (names.length > 1) setColour(names[(names.indexOf(view.colour) + 1) % names.length]);
+}
+
+/** Frames drawn in the last second, for whoever measures: `innervate.fps`. */
+const speedometer = { fps: 0, frames: 0, states: 0, drawn_ms: 0 };
+window.innervate = speedometer;
+let second = performance.now();
+let counted = 0;
+
+function frame(now) {
+  if (network) {
+    const before = performance.now();
+    stage.draw();
+    timeline.draw();
+    if (panelStale && now >= panelDue) {
+      panelStale = false;
+      panelDue = now + PANEL_MS;
+      showNumbers(network);
+      controls.state(network);
+      plots.draw();
+      if (pointer.selected) card.show(view, pointer.selected);
+    }
+    speedometer.drawn_ms = performance.now() - before;
+  }
+  speedometer.frames += 1;
+  if (now - second >= 1000) {
+    speedometer.fps = (1000 * (speedometer.frames - counted)) / (now - second);
+    [second, counted] = [now, speedometer.frames];
+  }
+  requestAnimationFrame(frame);
+}
+requestAnimationFrame(frame);

@@ -1,0 +1,138 @@
+// Numbers, events and what is selected.
+import { ago, clock, duration, plural } from "./words.js";
+
+const MARKS = { info: "·", good: "✓", bad: "✕" };
+const KEPT = 300;
+const $ = (id) => document.getElementById(id);
+
+function show(id, text, more, state) {
+  const box = $(id);
+  box.querySelector("output").textContent = text;
+  box.querySelector(".more").textContent = more;
+  box.className = `number ${state}`;
+}
+
+/** The large numbers: time since the last cut, how long the recovery took, who has no way. */
+export function showNumbers(network) {
+  const { since_cut_s: since, recovery, unconnected } = network.now;
+  const none = since === null || since === undefined;
+  show("since", none ? "–" : ago(since), none ? "nothing was cut yet" : "", "");
+  if (!recovery) show("recovery", "–", "", "");
+  else {
+    const noticed = recovery.detected_ms === null || recovery.detected_ms === undefined
+      ? "not noticed yet" : `noticed after ${duration(recovery.detected_ms)}`;
+    const isOpen = recovery.recovered_ms === null || recovery.recovered_ms === undefined;
+    const open_s = Math.max(0, network.now.t_s - recovery.at_s);
+    const text = isOpen ? `${ago(open_s)} …` : duration(recovery.recovered_ms);
+    const state = isOpen ? "not over, " : "";
+    show("recovery", text, `${recovery.cause}: ${state}${noticed}`, isOpen ? "open" : "done");
+  }
+  $("unconnected").hidden = network.kind === "radio"; // there everybody hears everybody
+  const all = network.nodes.filter((node) => node.role !== "sink" && node.role !== "port").length;
+  show("unconnected", String(unconnected), `of ${plural(all, WORDS[network.kind])}`,
+    unconnected ? "bad" : "");
+}
+
+export const WORDS = { skin: "cell", radio: "station", mesh: "node" };
+
+/** Events, the newest at the end; it follows them unless the reader scrolled up. */
+export class Log {
+  constructor(list) {
+    this.list = list;
+  }
+
+  clear() {
+    this.list.replaceChildren();
+  }
+
+  add({ t_s, text, level }) {
+    const { list } = this;
+    const follows = list.scrollHeight - list.scrollTop - list.clientHeight < 30;
+    const item = document.createElement("li");
+    item.className = level;
+    const time = document.createElement("time");
+    time.textContent = typeof t_s === "number" ? clock(t_s) : "";
+    const mark = document.createElement("span");
+    mark.className = "mark";
+    mark.textContent = MARKS[level] ?? MARKS.info;
+    const words = document.createElement("span");
+    words.textContent = text;
+    item.append(time, mark, words);
+    list.append(item);
+    while (list.childElementCount > KEPT) list.firstElementChild.remove();
+    if (follows) list.scrollTop = list.scrollHeight;
+  }
+}
+
+/** What is selected: its name, what is known of it, and a button for all that can be done. */
+export class Card {
+  /** @param {(what: object) => void} act cuts, kills or heals something */
+  constructor(act) {
+    this.act = act;
+    this.shown = "";
+  }
+
+  /** Show {node} or {link} of a view's network, or nothing. */
+  show(view, what) {
+    $("selection").hidden = !what;
+    if (!what) return void (this.shown = "");
+    const { network } = view;
+    const isNode = what.node !== undefined;
+    const name = isNode ? network.nodes[what.node].label : network.linkName(what.link);
+    const facts = isNode ? view.facts(what.node) : linkFacts(view, what.link);
+    $("selected-name").textContent = name;
+    $("selected-facts").textContent = facts;
+    this.#buttons(network, what);
+    const said = `${name}: ${facts}`;
+    if (what !== this.what) $("spoken").textContent = said;
+    this.what = what;
+  }
+
+  /** Buttons are made anew only when there are others: a focused one must not vanish. */
+  #buttons(network, what) {
+    const wanted = (what.node !== undefined ? [what] : [])
+      .concat(what.link !== undefined ? [what] : network.linksOf[what.node].map((link) => ({ link })))
+      .map((one) => [one, this.#label(network, one, what.node)])
+      .filter(([, label]) => label);
+    const key = JSON.stringify(wanted.map(([one]) => one));
+    const box = $("selected-do");
+    if (key !== this.shown) {
+      box.replaceChildren(...wanted.map(([one]) => {
+        const button = document.createElement("button");
+        button.type = "button";
+        button.addEventListener("click", () => this.act(one));
+        return button;
+      }));
+      this.shown = key;
+    }
+    wanted.forEach(([, label], i) => {
+      if (box.children[i].textContent !== label) box.children[i].textContent = label;
+    });
+  }
+
+  #label(network, { node, link }, from) {
+    const command = commandFor(network, { node, link });
+    if (!command) return "";
+    if (node !== undefined) return command.do === "kill" ? "Kill" : "Revive";
+    const verb = command.do === "cut" ? "Cut" : "Heal";
+    if (from === undefined) return `${verb} this link`;
+    return `${verb} – ${network.nodes[network.across(link, from)].label}`;
+  }
+}
+
+function linkFacts(view, link) {
+  const { network } = view;
+  const { quality } = network.links[link];
+  const good = quality === undefined || quality === null ? "" : `, quality ${Math.round(100 * quality)} %`;
+  return `link, ${network.now.link_up[link] ? "up" : "cut"}${good}`;
+}
+
+/** The command that changes the state of {node} or {link}; null where that cannot be done. */
+export function commandFor(network, { node, link }) {
+  const { now, can } = network;
+  const [verb, of] = link !== undefined
+    ? [now.link_up[link] ? "cut" : "heal", { link: network.links[link].id }]
+    : [now.node_up[node] ? "kill" : "revive", { node: network.nodes[node].id }];
+  const fixed = node !== undefined && ["sink", "port"].includes(network.nodes[node].role);
+  return can.has(verb) && !fixed ? { do: verb, ...of } : null;
+}
