@@ -17,6 +17,7 @@ export class MeshView {
   constructor(network) {
     this.network = network;
     this.yUp = true;
+    this.margin = [30, 26];
     this.colour = "";
     this.moves = network.nodes.some((node) => node.role === "robot");
   }

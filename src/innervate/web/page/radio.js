@@ -20,6 +20,7 @@ export class RadioView {
   constructor(network) {
     this.network = network;
     this.colour = "";
+    this.margin = [76, 44];
     const count = network.nodes.length;
     network.place = network.nodes.map((_, i) => {
       const turn = (2 * Math.PI * i) / count - Math.PI / 2;
@@ -80,15 +81,21 @@ export class RadioView {
       const [x, y] = [stage.x[i], stage.y[i]];
       this.#disc(context, x, y, radius, radio.now[i], now.node_up[i]);
       if (radius < 6) return;
-      const far = radius + 12;
       const away = Math.hypot(x - x0, y - y0) || 1;
-      context.textAlign = "center";
-      const turn = radio.turn[i] > 0 ? ` · turn ${radio.turn[i]}` : "";
-      const name = short(node.label);
-      const dx = (x - x0) / away;
-      context.textAlign = dx > 0.3 ? "left" : dx < -0.3 ? "right" : "center";
-      word(context, `${name}${radius >= 10 ? turn : ""}`, x + dx * (far - 4),
-        y + ((y - y0) / away) * far, colours.soft, colours.ground);
+      this.#name(context, i, x, y, (x - x0) / away, (y - y0) / away, radius);
+    });
+  }
+
+  /** A station's name and its turn, beside it, looking away from the middle. */
+  #name(context, i, x, y, dx, dy, radius) {
+    const turn = this.network.radio.turn[i];
+    const lines = [short(this.network.nodes[i].label)];
+    if (turn > 0 && radius >= 10) lines.push(`turn ${turn}`);
+    context.textAlign = dx > 0.3 ? "left" : dx < -0.3 ? "right" : "center";
+    const middle = y + dy * (radius + (lines.length > 1 ? 16 : 10));
+    lines.forEach((text, n) => {
+      const shift = 13 * (n - (lines.length - 1) / 2);
+      word(context, text, x + dx * (radius + 6), middle + shift, colours.soft, colours.ground);
     });
   }
 

@@ -16,6 +16,7 @@ export class SkinView {
   constructor(network) {
     this.network = network;
     this.scaleMax = 46;
+    this.margin = [18, 18];
     this.colour = network.scene.ports >= 2 && network.scene.ports <= PORT_COLOURS ? "port" : "depth";
     this.isCell = network.nodes.map((node) => node.role === "cell");
     this.ports = network.nodes.flatMap((node, i) => (node.role === "port" ? [i] : []));
@@ -173,6 +174,7 @@ export class SkinView {
       } else {
         context.fillStyle = colours[kind[0]][Number(kind.slice(1))];
         context.fill(path);
+        if (kind[0] !== "p") stroke(context, colours.faint, 0.8, path); // pale shades end somewhere
       }
     }
   }

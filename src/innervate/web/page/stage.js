@@ -7,7 +7,6 @@ import { zoom, zoomIdentity } from "d3-zoom";
 export const LAYERS = { ground: 0, lines: 1, moving: 2, marks: 3 };
 const COUNT = 4;
 const ZOOM = [0.8, 60];
-const MARGIN_PX = 34;
 const RATIO_MAX = 2; // pixels per CSS pixel that drawing is worth
 
 /** A box with layers of canvas over each other. */
@@ -30,6 +29,7 @@ export class Stage {
     this.y = [];
     this.zoom = zoom().scaleExtent(ZOOM).on("zoom", (event) => {
       this.transform = event.transform;
+      box.classList.toggle("zoomed", event.transform.k > 1); // else a finger scrolls the page
       this.moved();
     });
     this.zoom.filter((event) => !event.button && event.type !== "dblclick");
@@ -124,8 +124,8 @@ export class Stage {
   #measure() {
     if (!this.view) return;
     const [x0, y0, x1, y1] = this.view.bounds();
-    const wide = this.width - 2 * MARGIN_PX;
-    const high = this.height - 2 * MARGIN_PX;
+    const wide = this.width - 2 * this.view.margin[0];
+    const high = this.height - 2 * this.view.margin[1];
     this.fitted = Math.min(wide / (x1 - x0), high / (y1 - y0), this.view.scaleMax ?? Infinity);
     this.centre = [(x0 + x1) / 2, (y0 + y1) / 2];
     this.up = this.view.yUp ? -1 : 1;
