@@ -31,7 +31,7 @@ function stored() {
   }
 }
 
-/** Let a button choose the colours; `onChange` draws anew. Returns what goes on to the next choice. */
+/** Let a button choose the colours; `onChange` draws anew. Returns what makes the next choice. */
 export function setUpTheme(button, onChange) {
   let choice = CHOICES.includes(stored()) ? stored() : "auto";
   const show = () => {

@@ -15,6 +15,7 @@ import { LAYERS, Stage } from "./stage.js";
 import { Timeline } from "./timeline.js";
 
 const VIEWS = { skin: SkinView, mesh: MeshView, radio: RadioView };
+const SOURCES = { simulation: "simulation", run: "recorded run", live: "live nodes" };
 const TOUCHED = 200; // of 255: what a click presses
 const PANEL_MS = 100; // numbers and plots follow this often: nobody reads faster
 const $ = (id) => document.getElementById(id);
@@ -81,8 +82,7 @@ function showScene(scene) {
   log.clear();
   $("name").textContent = scene.name;
   document.title = `${scene.name} – innervate watch`;
-  $("what").textContent = `${scene.kind}, ${{ run: "recorded run", live: "live nodes" }[scene.source]
-    ?? "simulation"}`;
+  $("what").textContent = `${scene.kind}, ${SOURCES[scene.source] ?? scene.source}`;
   $("report").hidden = scene.source !== "run";
   options($("colour"), $("colour-box"), view.choices(), view.colour);
   const { can } = network;

@@ -93,7 +93,9 @@ export class MeshView {
       const path = new Path2D("M1 8h24");
       stroke(context, colours[colour], width, path, dash);
     };
-    const shape = (role, up = 1) => (context) => symbol(context, 13, 8, role === "monitor" ? 3.5 : 5, role, up);
+    const shape = (role, up = 1) => (context) => {
+      symbol(context, 13, 8, role === "monitor" ? 3.5 : 5, role, up);
+    };
     const found = [...roles].map((role) => [shape(role), role]);
     found.push([shape("node", 0), "switched off"]);
     found.push([line("soft", 1.4, []), "good link"], [line("soft", 1.4, [5, 4]), "fair"],
@@ -128,7 +130,7 @@ export class MeshView {
       const { now, links } = network;
       const quality = links[link].quality ?? 1;
       const gone = !now.node_up[a] || !now.node_up[b];
-      const kind = !now.link_up[link] ? "cut" : gone ? "gone"
+      const kind = network.isCut(link) ? "cut" : gone ? "gone"
         : quality >= GOOD ? "good" : quality >= FAIR ? "fair" : "poor";
       if (!paths.has(kind)) paths.set(kind, new Path2D());
       const path = paths.get(kind);
@@ -154,7 +156,7 @@ export class MeshView {
   #gaps(context, stage) {
     const gaps = new Path2D();
     this.network.ends.forEach(([a, b], link) => {
-      if (this.network.now.link_up[link]) return;
+      if (!this.network.isCut(link)) return;
       cross(gaps, (stage.x[a] + stage.x[b]) / 2, (stage.y[a] + stage.y[b]) / 2, 5);
     });
     stroke(context, colours.ground, 6, gaps);

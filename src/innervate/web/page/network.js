@@ -1,4 +1,4 @@
-// What the server says of the network, kept: the scene, and the last value of every field of a state.
+// What the server says of the network: the scene, and the last value of every field of a state.
 
 const KEPT = 20000; // boxes of the timeline
 const POINTS = 3000; // of a plot
@@ -35,8 +35,9 @@ export class Network {
 
   /** Take in a state message. Returns the names of what it changed. */
   apply(state) {
-    if (state.t_s < this.now.t_s) this.#forgetAfter(state.t_s);
-    const { type, timeline, series, position, radio, ...plain } = state;
+    const back_s = state.back_s ?? (state.t_s < this.now.t_s ? state.t_s : null);
+    if (back_s !== null) this.#forgetAfter(back_s);
+    const { type, back_s: _, timeline, series, position, radio, ...plain } = state;
     Object.assign(this.now, plain);
     if (position) this.place = position;
     if (radio) Object.assign(this.radio, radio);
@@ -53,6 +54,12 @@ export class Network {
   parentOf(i) {
     const id = this.now.parent[i];
     return id === -1 || id === null ? -1 : (this.index.get(id) ?? -1);
+  }
+
+  /** Whether a link was cut itself; one of a node that is off is not. */
+  isCut(link) {
+    const [a, b] = this.ends[link];
+    return !this.now.link_up[link] && this.now.node_up[a] && this.now.node_up[b];
   }
 
   /** The other end of a link. */

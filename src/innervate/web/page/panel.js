@@ -90,9 +90,10 @@ export class Card {
 
   /** Buttons are made anew only when there are others: a focused one must not vanish. */
   #buttons(network, what) {
-    const wanted = (what.node !== undefined ? [what] : [])
-      .concat(what.link !== undefined ? [what] : network.linksOf[what.node].map((link) => ({ link })))
-      .map((one) => [one, this.#label(network, one, what.node)])
+    const { node } = what;
+    const links = node === undefined ? [] : network.linksOf[node].map((link) => ({ link }));
+    const wanted = [what, ...links]
+      .map((one) => [one, this.#label(network, one, node)])
       .filter(([, label]) => label);
     const key = JSON.stringify(wanted.map(([one]) => one));
     const box = $("selected-do");
@@ -123,7 +124,8 @@ export class Card {
 function linkFacts(view, link) {
   const { network } = view;
   const { quality } = network.links[link];
-  const good = quality === undefined || quality === null ? "" : `, quality ${Math.round(100 * quality)} %`;
+  const known = quality !== undefined && quality !== null;
+  const good = known ? `, quality ${Math.round(100 * quality)} %` : "";
   return `link, ${network.now.link_up[link] ? "up" : "cut"}${good}`;
 }
 

@@ -1,6 +1,6 @@
 // Small plots of what is measured over time: load, loss, latency.
 import { colours } from "./colours.js";
-import { stroke } from "./shapes.js";
+import { prepared, stroke } from "./shapes.js";
 import { value } from "./words.js";
 
 const SPAN_S = 10; // of the network's time, at most
@@ -11,7 +11,6 @@ const SIDE_PX = 10;
 export class Plots {
   constructor(box, network) {
     this.network = network;
-    this.ratio = Math.min(devicePixelRatio, 2);
     this.plots = network.scene.series.map((series) => this.#make(series));
     box.replaceChildren(...this.plots.map(({ box: one }) => one));
   }
@@ -44,13 +43,7 @@ export class Plots {
   #curve({ canvas, series }, points) {
     const { clientWidth: width, clientHeight: height } = canvas;
     if (!width) return;
-    if (canvas.width !== Math.round(width * this.ratio)) {
-      canvas.width = Math.round(width * this.ratio);
-      canvas.height = Math.round(height * this.ratio);
-    }
-    const context = canvas.getContext("2d");
-    context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
-    context.clearRect(0, 0, width, height);
+    const context = prepared(canvas, width, height);
     const to = this.network.now.t_s;
     const first = points[0]?.[0] ?? 0;
     const from = Math.max(first, to - SPAN_S);

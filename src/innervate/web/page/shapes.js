@@ -1,19 +1,39 @@
 // Shapes that several views draw.
 import { colours } from "./colours.js";
 
+const RATIO_MAX = 2; // pixels per px of the page that drawing is worth
 const CALM = matchMedia("(prefers-reduced-motion: reduce)");
 
-/** Corners of a pointy-top hexagon whose neighbours are 1 apart, a little smaller than its place. */
+/** Corners of a pointy-top hexagon, a little smaller than its place; neighbours are 1 apart. */
 export const HEXAGON = Array.from({ length: 6 }, (_, i) => {
   const radius = 0.96 / Math.sqrt(3);
   return [radius * Math.sin((i * Math.PI) / 3), -radius * Math.cos((i * Math.PI) / 3)];
 });
+
+/** Make a canvas as fine as the screen, empty; its context then draws in px of the page. */
+export function prepared(canvas, width, height) {
+  const ratio = Math.min(devicePixelRatio, RATIO_MAX);
+  const [wide, high] = [Math.round(width * ratio), Math.round(height * ratio)];
+  if (canvas.width !== wide || canvas.height !== high) {
+    canvas.width = wide;
+    canvas.height = high;
+  }
+  const context = canvas.getContext("2d");
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.clearRect(0, 0, width, height);
+  return context;
+}
 
 /** Add a hexagon to a path. */
 export function hexagon(path, x, y, pitch) {
   path.moveTo(x + HEXAGON[0][0] * pitch, y + HEXAGON[0][1] * pitch);
   for (let i = 1; i < 6; i++) path.lineTo(x + HEXAGON[i][0] * pitch, y + HEXAGON[i][1] * pitch);
   path.closePath();
+}
+
+/** Add what stands for a hexagon where it is very small. */
+export function brick(path, x, y, pitch) {
+  path.rect(x - 0.48 * pitch, y - 0.41 * pitch, 0.96 * pitch, 0.82 * pitch);
 }
 
 /** Add a cross. */

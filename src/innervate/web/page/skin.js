@@ -2,7 +2,7 @@
 import { colours, shade } from "./colours.js";
 import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
-import { cross, flights, hexagon, stroke, word } from "./shapes.js";
+import { brick, cross, flights, hexagon, stroke, word } from "./shapes.js";
 import { plural } from "./words.js";
 
 const NEAR = 1.6; // cables up to this many pitches long are between neighbours
@@ -17,7 +17,8 @@ export class SkinView {
     this.network = network;
     this.scaleMax = 46;
     this.margin = [18, 18];
-    this.colour = network.scene.ports >= 2 && network.scene.ports <= PORT_COLOURS ? "port" : "depth";
+    const { ports } = network.scene;
+    this.colour = ports >= 2 && ports <= PORT_COLOURS ? "port" : "depth";
     this.isCell = network.nodes.map((node) => node.role === "cell");
     this.ports = network.nodes.flatMap((node, i) => (node.role === "port" ? [i] : []));
     this.hidden = network.nodes.map((node) => node.role === "sink" && this.ports.length > 0);
@@ -26,10 +27,7 @@ export class SkinView {
   }
 
   choices() {
-    const { network } = this;
-    const found = [["port", "by port"], ["depth", "by hops"], ["load", "by load"]];
-    if (network.can.has("touch") || network.now.touch.some(Boolean)) found.push(["touch", "by touch"]);
-    return found;
+    return [["port", "by port"], ["depth", "by hops"], ["load", "by load"], ["touch", "by touch"]];
   }
 
   bounds() {
@@ -101,8 +99,11 @@ export class SkinView {
     const cell = (kind) => (context) => {
       this.#shapes(context, new Map([[kind, whole(13, 8)]]));
       const sign = new Path2D();
-      if (kind === "off" || kind === "none") cross(sign, 13, 8, kind === "off" ? 4 : 2.5);
-      stroke(context, kind === "off" ? colours.alarm : colours.ink, kind === "off" ? 2.2 : 1.2, sign);
+      if (kind === "none") cross(sign, 13, 8, 2.5);
+      stroke(context, colours.ink, 1.2, sign);
+      const dead = new Path2D();
+      if (kind === "off") cross(dead, 13, 8, 4);
+      stroke(context, colours.alarm, 2.2, dead);
     };
     const line = (colour, width, dash) => (context) => {
       stroke(context, colours[colour], width, new Path2D("M1 8h24"), dash);
@@ -148,9 +149,7 @@ export class SkinView {
   #cells(context, stage, cells) {
     const paths = new Map();
     const under = new Path2D();
-    const shape = stage.scale < BRICKS_PX
-      ? (path, x, y, pitch) => path.rect(x - 0.48 * pitch, y - 0.41 * pitch, 0.96 * pitch, 0.82 * pitch)
-      : hexagon;
+    const shape = stage.scale < BRICKS_PX ? brick : hexagon;
     for (const i of cells) {
       const x = stage.x[i];
       const y = stage.y[i];
@@ -245,7 +244,7 @@ export class SkinView {
     const dashes = new Path2D();
     const shown = (i) => !this.hidden[i];
     network.ends.forEach(([a, b], link) => {
-      if (network.now.link_up[link] || !shown(a) || !shown(b)) return;
+      if (!network.isCut(link) || !shown(a) || !shown(b)) return;
       line(dashes, stage, a, b);
       const size = Math.max(3.5, Math.min(6, 0.2 * stage.scale));
       cross(gaps, (stage.x[a] + stage.x[b]) / 2, (stage.y[a] + stage.y[b]) / 2, size);

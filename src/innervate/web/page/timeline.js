@@ -1,6 +1,6 @@
 // The running timeline of a radio channel: a lane for each station, boxes for what it sent.
 import { colours } from "./colours.js";
-import { cross, stroke, word } from "./shapes.js";
+import { cross, prepared, stroke, word } from "./shapes.js";
 import { clock } from "./words.js";
 
 const LEFT = 74;
@@ -28,29 +28,22 @@ export class Timeline {
     this.canvas.setAttribute("role", "img");
     this.canvas.setAttribute("aria-label", "Timeline of the channel: who sent when");
     box.append(this.canvas);
-    this.context = this.canvas.getContext("2d");
     this.drawn = "";
   }
 
   draw() {
-    const { network, box, canvas, context } = this;
+    const { network, box } = this;
     if (!network || box.hidden) return;
     const { clientWidth: width, clientHeight: height } = box;
     if (!width) return;
     const theme = colours.ground;
     const last = network.timeline.at(-1);
-    const state = [network.now.t_s, network.timeline.length, last?.to_s, width, height, theme].join();
+    const { t_s: to, speed } = network.now;
+    const state = [to, speed, network.timeline.length, last?.to_s, width, height, theme].join();
     if (state === this.drawn) return;
     this.drawn = state;
-    const ratio = Math.min(devicePixelRatio, 2);
-    if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
-      canvas.width = Math.round(width * ratio);
-      canvas.height = Math.round(height * ratio);
-    }
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    context.clearRect(0, 0, width, height);
-    const to = network.now.t_s;
-    const wanted = WALL_S * (network.now.speed || SPAN_S[1]);
+    this.context = prepared(this.canvas, width, height);
+    const wanted = WALL_S * (speed || SPAN_S[1]);
     const span = Math.max(SPAN_S[0], Math.min(SPAN_S[1], wanted));
     const across = (t) => LEFT + ((t - to + span) / span) * (width - LEFT - 12);
     const lane = Math.min(LANE_PX, (height - TOP - BOTTOM) / network.nodes.length);
@@ -114,8 +107,9 @@ export class Timeline {
       context.strokeStyle = look.struck ? colours.alarm : colours.soft;
       context.lineWidth = look.struck ? 1.6 : 0.8;
       context.strokeRect(left, top, wide, high);
-      if (look.struck) cross(struck, left + wide / 2, top + high / 2, Math.min(4, wide / 2, high / 2));
-      else if (wide > 9 * look.letter.length + 3 && high >= 11) {
+      if (look.struck) {
+        cross(struck, left + wide / 2, top + high / 2, Math.min(4, wide / 2, high / 2));
+      } else if (wide > 9 * look.letter.length + 3 && high >= 11) {
         context.fillStyle = colours.ink;
         context.textAlign = "center";
         context.textBaseline = "middle";
