@@ -10,7 +10,7 @@ import { Pointer } from "./pointer.js";
 import { MeshView } from "./mesh.js";
 import { RadioView } from "./radio.js";
 import { SkinView } from "./skin.js";
-import { Connection } from "./socket.js";
+import { Connection, TOKEN } from "./socket.js";
 import { LAYERS, Stage } from "./stage.js";
 import { Timeline } from "./timeline.js";
 
@@ -25,6 +25,13 @@ let view = null;
 let plots = null;
 let panelDue = 0;
 let panelStale = false;
+
+/** For whoever measures: `innervate.fps`, and the slowest drawing of the last second. */
+const speedometer = { fps: 0, frames: 0, states: 0, slowest_ms: 0 };
+window.innervate = speedometer;
+let second = performance.now();
+let counted = 0;
+let slowest = 0;
 
 const stage = new Stage($("stage"));
 const log = new Log($("log"));
@@ -62,16 +69,13 @@ function onMessage(message) {
   else if (message.type === "saved") download(message.toml);
 }
 
-function onConnection(open, tries) {
+function onConnection(open, refused) {
   $("connection").textContent = open ? "connected" : "not connected";
   $("connection").classList.toggle("lost", !open);
   $("lost").hidden = open;
-  if (!open) {
-    $("lost").textContent = tries < 4
-      ? "The connection to the server is lost. Trying again …"
-      : "The server does not answer. Trying again; if it was started anew, open the address "
-        + "that it printed.";
-  }
+  $("lost").textContent = refused
+    ? "The server refuses this address: open the one that it printed, with its token."
+    : "The connection to the server is lost. Trying again …";
 }
 
 function showScene(scene) {
@@ -84,6 +88,7 @@ function showScene(scene) {
   document.title = `${scene.name} – innervate watch`;
   $("what").textContent = `${scene.kind}, ${SOURCES[scene.source] ?? scene.source}`;
   $("report").hidden = scene.source !== "run";
+  $("report").href = `report?token=${encodeURIComponent(TOKEN)}`;
   options($("colour"), $("colour-box"), view.choices(), view.colour);
   const { can } = network;
   const acts = can.has("cut") || can.has("kill");
@@ -116,6 +121,7 @@ function options(list, box, choices, chosen) {
 
 function takeIn(state) {
   const changed = network.apply(state);
+  speedometer.states += 1;
   if (changed.has("position")) stage.moved();
   stage.touch(...view.layersOf(changed));
   panelStale = true;
@@ -163,11 +169,6 @@ function nextColour() {
   if (names.length > 1) setColour(names[(names.indexOf(view.colour) + 1) % names.length]);
 }
 
-/** Frames drawn in the last second, for whoever measures: `innervate.fps`. */
-const speedometer = { fps: 0, frames: 0, states: 0, drawn_ms: 0 };
-window.innervate = speedometer;
-let second = performance.now();
-let counted = 0;
 
 function frame(now) {
   if (network) {
@@ -182,12 +183,13 @@ function frame(now) {
       plots.draw();
       if (pointer.selected) card.show(view, pointer.selected);
     }
-    speedometer.drawn_ms = performance.now() - before;
+    slowest = Math.max(slowest, performance.now() - before);
   }
   speedometer.frames += 1;
   if (now - second >= 1000) {
     speedometer.fps = (1000 * (speedometer.frames - counted)) / (now - second);
-    [second, counted] = [now, speedometer.frames];
+    speedometer.slowest_ms = slowest;
+    [second, counted, slowest] = [now, speedometer.frames, 0];
   }
   requestAnimationFrame(frame);
 }
