@@ -26,8 +26,9 @@ let plots = null;
 let panelDue = 0;
 let panelStale = false;
 
-/** For whoever measures: `innervate.fps`, and the slowest drawing of the last second. */
-const speedometer = { fps: 0, frames: 0, states: 0, slowest_ms: 0 };
+/** For whoever measures: `innervate.fps`, the slowest drawing of the last second, and where on the
+ * page a node or link is, by its name. */
+const speedometer = { fps: 0, frames: 0, states: 0, slowest_ms: 0, at: placeOf };
 window.innervate = speedometer;
 let second = performance.now();
 let counted = 0;
@@ -87,7 +88,7 @@ function showScene(scene) {
   $("name").textContent = scene.name;
   document.title = `${scene.name} – innervate watch`;
   $("what").textContent = `${scene.kind}, ${SOURCES[scene.source] ?? scene.source}`;
-  $("report").hidden = scene.source !== "run";
+  $("report").hidden = !scene.report;
   $("report").href = `report?token=${encodeURIComponent(TOKEN)}`;
   options($("colour"), $("colour-box"), view.choices(), view.colour);
   const { can } = network;
@@ -122,9 +123,19 @@ function options(list, box, choices, chosen) {
 function takeIn(state) {
   const changed = network.apply(state);
   speedometer.states += 1;
+  if (changed.has("back_s")) log.forgetAfter(state.back_s);
   if (changed.has("position")) stage.moved();
   stage.touch(...view.layersOf(changed));
   panelStale = true;
+}
+
+function placeOf(name) {
+  const { left, top } = stage.box.getBoundingClientRect();
+  const node = network.nodes.findIndex(({ label }) => label === name);
+  const link = network.links.findIndex((_, i) => network.linkName(i) === name);
+  if (node < 0 && link < 0) return null;
+  const [a, b] = node < 0 ? network.ends[link] : [node, node];
+  return [left + (stage.x[a] + stage.x[b]) / 2, top + (stage.y[a] + stage.y[b]) / 2];
 }
 
 function redraw() {

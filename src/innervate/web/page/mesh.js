@@ -65,6 +65,7 @@ export class MeshView {
   }
 
   linkDistance(stage, link, x, y) {
+    if (!this.network.isThere(link)) return Infinity;
     const [a, b] = this.network.ends[link];
     const away = distance(stage.x[a], stage.y[a], stage.x[b], stage.y[b], x, y);
     return away <= LINK_PX ? away : Infinity;
@@ -127,6 +128,7 @@ export class MeshView {
     context.fill(fence, "evenodd");
     const paths = new Map();
     network.ends.forEach(([a, b], link) => {
+      if (!network.isThere(link)) return;
       const { now, links } = network;
       const quality = links[link].quality ?? 1;
       const gone = !now.node_up[a] || !now.node_up[b];

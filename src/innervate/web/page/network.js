@@ -1,5 +1,6 @@
 // What the server says of the network: the scene, and the last value of every field of a state.
 
+const OUT_OF_RANGE = 2; // in link_up
 const KEPT = 20000; // boxes of the timeline
 const POINTS = 3000; // of a plot
 
@@ -33,11 +34,10 @@ export class Network {
     this.cuts_s = [];
   }
 
-  /** Take in a state message. Returns the names of what it changed. */
+  /** Take in a state message. Returns the names of what it changed, `back_s` if time went back. */
   apply(state) {
-    const back_s = state.back_s ?? (state.t_s < this.now.t_s ? state.t_s : null);
-    if (back_s !== null) this.#forgetAfter(back_s);
-    const { type, back_s: _, timeline, series, position, radio, ...plain } = state;
+    if (state.back_s !== undefined) this.#forgetAfter(state.back_s);
+    const { type, back_s, timeline, series, position, radio, ...plain } = state;
     Object.assign(this.now, plain);
     if (position) this.place = position;
     if (radio) Object.assign(this.radio, radio);
@@ -56,10 +56,15 @@ export class Network {
     return id === -1 || id === null ? -1 : (this.index.get(id) ?? -1);
   }
 
+  /** Whether a link is there at all: robots move out of each other's range. */
+  isThere(link) {
+    return this.now.link_up[link] !== OUT_OF_RANGE;
+  }
+
   /** Whether a link was cut itself; one of a node that is off is not. */
   isCut(link) {
     const [a, b] = this.ends[link];
-    return !this.now.link_up[link] && this.now.node_up[a] && this.now.node_up[b];
+    return this.now.link_up[link] === 0 && this.now.node_up[a] && this.now.node_up[b];
   }
 
   /** The other end of a link. */

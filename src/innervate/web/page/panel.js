@@ -39,17 +39,33 @@ export const WORDS = { skin: "cell", radio: "station", mesh: "node" };
 export class Log {
   constructor(list) {
     this.list = list;
+    this.follows = true;
+    list.addEventListener("scroll", () => {
+      this.follows = list.scrollHeight - list.scrollTop - list.clientHeight < 30;
+    });
+    new ResizeObserver(() => this.#follow()).observe(list);
+  }
+
+  #follow() {
+    if (this.follows) this.list.scrollTop = this.list.scrollHeight;
   }
 
   clear() {
     this.list.replaceChildren();
   }
 
+  /** Time went back: what was later has not happened. */
+  forgetAfter(t_s) {
+    for (const item of [...this.list.children]) {
+      if (Number(item.dataset.t_s) > t_s) item.remove();
+    }
+  }
+
   add({ t_s, text, level }) {
     const { list } = this;
-    const follows = list.scrollHeight - list.scrollTop - list.clientHeight < 30;
     const item = document.createElement("li");
     item.className = level;
+    if (typeof t_s === "number") item.dataset.t_s = t_s;
     const time = document.createElement("time");
     time.textContent = typeof t_s === "number" ? clock(t_s) : "";
     const mark = document.createElement("span");
@@ -60,7 +76,7 @@ export class Log {
     item.append(time, mark, words);
     list.append(item);
     while (list.childElementCount > KEPT) list.firstElementChild.remove();
-    if (follows) list.scrollTop = list.scrollHeight;
+    this.#follow();
   }
 }
 
@@ -126,7 +142,8 @@ function linkFacts(view, link) {
   const { quality } = network.links[link];
   const known = quality !== undefined && quality !== null;
   const good = known ? `, quality ${Math.round(100 * quality)} %` : "";
-  return `link, ${network.now.link_up[link] ? "up" : "cut"}${good}`;
+  const state = network.isCut(link) ? "cut" : network.now.link_up[link] ? "up" : "off at one end";
+  return `link, ${network.isThere(link) ? state : "out of range"}${good}`;
 }
 
 /** The command that changes the state of {node} or {link}; null where that cannot be done. */
@@ -135,6 +152,7 @@ export function commandFor(network, { node, link }) {
   const [verb, of] = link !== undefined
     ? [now.link_up[link] ? "cut" : "heal", { link: network.links[link].id }]
     : [now.node_up[node] ? "kill" : "revive", { node: network.nodes[node].id }];
+  if (link !== undefined && !network.isThere(link)) return null;
   const fixed = node !== undefined && ["sink", "port"].includes(network.nodes[node].role);
   return can.has(verb) && !fixed ? { do: verb, ...of } : null;
 }

@@ -1,6 +1,6 @@
 // Small plots of what is measured over time: load, loss, latency.
 import { colours } from "./colours.js";
-import { prepared, stroke } from "./shapes.js";
+import { prepared, stroke, word } from "./shapes.js";
 import { value } from "./words.js";
 
 const SPAN_S = 10; // of the network's time, at most
@@ -52,7 +52,9 @@ export class Plots {
     const most = nice(Math.max(0, ...shown.map(([, v]) => v)));
     const across = (t) => SIDE_PX + ((t - from) / span) * (width - 2 * SIDE_PX);
     const up = (v) => height - 6 - (v / most) * (height - 14);
-    this.#frame(context, width, up, most, series);
+    const lines = new Path2D(`M${SIDE_PX} ${up(0)}H${width - SIDE_PX}M${SIDE_PX} ${up(most)}`
+      + `H${width - SIDE_PX}`);
+    stroke(context, colours.faint, 1, lines);
     const cuts = new Path2D();
     for (const t of this.network.cuts_s.filter((at) => at >= from)) {
       cuts.moveTo(across(t), 4);
@@ -63,26 +65,19 @@ export class Plots {
     shown.forEach(([t, v], i) => curve[i ? "lineTo" : "moveTo"](across(Math.max(t, from)), up(v)));
     context.lineJoin = "round";
     stroke(context, colours.accent, 1.8, curve);
+    this.#most(context, up(most), value(most, series.unit));
   }
 
-  #frame(context, width, up, most, series) {
-    const lines = new Path2D();
-    for (const v of [0, most]) {
-      lines.moveTo(SIDE_PX, up(v));
-      lines.lineTo(width - SIDE_PX, up(v));
-    }
-    stroke(context, colours.faint, 1, lines);
-    context.font = "10px system-ui, sans-serif";
-    context.textBaseline = "top";
+  /** What the upper line stands for; the lower one is 0. */
+  #most(context, y, text) {
     context.textAlign = "left";
-    context.fillStyle = colours.soft;
-    context.fillText(value(most, series.unit), SIDE_PX, up(most) + 2);
+    word(context, text, SIDE_PX, y + 8, colours.soft, colours.panel, "10px system-ui, sans-serif");
   }
 }
 
-/** The next of 1, 2, 5, 10 … at or above a value. */
+/** The next round number at or above a value. */
 function nice(v) {
   if (v <= 0) return 1;
   const ten = 10 ** Math.floor(Math.log10(v));
-  return [1, 2, 5, 10].map((n) => n * ten).find((n) => n >= v * 0.999);
+  return [1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10].map((n) => n * ten).find((n) => n >= v * 0.999);
 }

@@ -153,8 +153,8 @@ export class Pointer {
     const [a, b] = stage.view.network.ends[link];
     path.moveTo(stage.x[a], stage.y[a]);
     path.lineTo(stage.x[b], stage.y[b]);
-    context.globalAlpha = 0.8;
-    stroke(context, colour, width + 3, path);
+    context.globalAlpha = 0.5; // what lies below shows whether it is cut
+    stroke(context, colour, width + 7, path);
     context.globalAlpha = 1;
   }
 }
