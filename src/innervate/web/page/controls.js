@@ -1,5 +1,5 @@
 // Pause, step, speed, time: what the reader does to the clock of the network.
-import { SPEEDS, clock, speed, speedIndex } from "./words.js";
+import { SPEEDS, clock, speed, speedIndex, whole } from "./words.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -72,8 +72,8 @@ export class Controls {
   }
 
   #showTime(t_s) {
-    const whole = this.duration_s ? ` / ${clock(this.duration_s)}` : "";
-    $("clock").textContent = `${clock(t_s)}${whole}`;
+    const of = this.duration_s ? ` / ${whole(this.duration_s)}` : "";
+    $("clock").textContent = `${clock(t_s, this.paused ? 6 : 3)}${of}`;
     $("seek").setAttribute("aria-valuetext", clock(t_s));
   }
 }

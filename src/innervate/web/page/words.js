@@ -1,10 +1,17 @@
 // Numbers and states as words.
 
-/** A time of the network in seconds, with as many digits as its size deserves. */
-export function clock(t_s) {
-  if (t_s < 100) return `${t_s.toFixed(3)} s`;
+/** A time of the network: milliseconds, or microseconds where single events are looked at. */
+export function clock(t_s, digits = 3) {
+  if (t_s < 100) return `${t_s.toFixed(digits)} s`;
   const minutes = Math.floor(t_s / 60);
-  return `${minutes}:${(t_s - 60 * minutes).toFixed(1).padStart(4, "0")} min`;
+  return `${minutes}:${(t_s - 60 * minutes).toFixed(digits).padStart(digits + 3, "0")} min`;
+}
+
+/** How long a run lasts, without more digits than it has. */
+export function whole(t_s) {
+  if (t_s < 100) return `${Number(t_s.toFixed(3))} s`;
+  const minutes = Math.floor(t_s / 60);
+  return `${minutes}:${String(Math.round(t_s - 60 * minutes)).padStart(2, "0")} min`;
 }
 
 /** How long something took, in milliseconds or seconds. */

@@ -1,0 +1,213 @@
+"""The page of `innervate watch` in a browser: what a user does, and what is seen of it."""
+
+import re
+import socket
+
+from tests.watch_net import PHONE, click, place, serving
+
+CABLE = "p0 r0 c2 – pc.0"
+OTHER = "p0 r2 c3 – p0 r2 c4"
+DURATION = re.compile(r"^\d+(\.\d+)? m?s$")
+STOPS_MAX = 40  # of the Tab key
+
+
+def expect(locator):
+    from playwright.sync_api import expect as expected
+
+    return expected(locator, "on the page")
+
+
+def text(page, selector):
+    return page.locator(selector).inner_text()
+
+
+def test_it_shows_the_network_and_asks_nobody_else(look, skin):
+    page = look(skin)
+    assert page.title() == "a small skin – innervate watch"
+    expect(page.locator("#connection")).to_have_text("connected")
+    expect(page.locator("#unconnected .more")).to_have_text("of 48 cells")
+    expect(page.locator(".plot")).to_have_count(2)
+    asked = page.evaluate("performance.getEntriesByType('resource').map((one) => one.name)")
+    assert asked
+    assert all(address.startswith(skin.partition("?")[0]) for address in asked)
+
+
+def test_a_click_cuts_a_cable_and_the_next_heals_it(look, skin):
+    page = look(skin)
+    click(page, CABLE)
+    expect(page.locator("#selected-facts")).to_have_text("link, cut")
+    expect(page.locator("#recovery")).to_have_class("number done")
+    expect(page.locator("#recovery output")).to_have_text(DURATION)
+    expect(page.locator("#recovery .more")).to_contain_text("interface 0")
+    expect(page.locator("#since output")).to_have_text(DURATION)
+    expect(page.locator("#log")).to_contain_text("cable to interface 0 cut")
+    click(page, CABLE)
+    expect(page.locator("#selected-facts")).to_have_text("link, up")
+
+
+def test_a_click_kills_a_cell_and_the_next_revives_it(look, skin):
+    page = look(skin)
+    click(page, "p0 r3 c3")
+    expect(page.locator("#selected-facts")).to_have_text("switched off")
+    click(page, "p0 r3 c3")
+    expect(page.locator("#selected-facts")).to_contain_text("through port")
+
+
+def test_keys_alone_cut_and_heal(look, skin):
+    page = look(skin)
+    for _ in range(STOPS_MAX):
+        page.keyboard.press("Tab")
+        if page.evaluate("document.activeElement.id") == "stage":
+            break
+    for key in ("ArrowRight", "ArrowDown", "Shift+ArrowRight"):
+        page.keyboard.press(key)
+    expect(page.locator("#selected-name")).to_contain_text(" – ")
+    assert page.locator("#spoken").inner_text().endswith("link, up")
+    page.keyboard.press("Enter")
+    expect(page.locator("#selected-facts")).to_have_text("link, cut")
+    page.keyboard.press("Enter")
+    expect(page.locator("#selected-facts")).to_have_text("link, up")
+
+
+def test_every_control_has_a_name_and_is_reached_by_tab(look, skin):
+    page = look(skin)
+    click(page, OTHER)
+    found = {}
+    for _ in range(STOPS_MAX):
+        page.keyboard.press("Tab")
+        one = page.evaluate(
+            "() => { const e = document.activeElement; return [e.id || e.innerText, "
+            "e.getAttribute('aria-label') || e.labels?.[0]?.innerText || e.innerText, "
+            "getComputedStyle(e).outlineStyle]; }"
+        )
+        found[one[0]] = one[1:]
+    wanted = page.evaluate(
+        "[...document.querySelectorAll('main button, main input, main select, header button')]"
+        ".filter((e) => e.offsetParent && !e.disabled).map((e) => e.id || e.innerText)"
+    )
+    assert set(wanted) <= set(found)
+    assert all(name.strip() for name, _ in found.values())
+    assert all(outline == "solid" for one, (_, outline) in found.items() if one in wanted)
+    click(page, OTHER)
+
+
+def test_pause_step_and_speed(look, skin):
+    page = look(skin)
+    page.keyboard.press("Space")
+    expect(page.locator("#go")).to_have_text("Go")
+    before = text(page, "#clock")
+    page.locator("#step").click()
+    expect(page.locator("#clock")).not_to_have_text(before)
+    page.locator("#speed").focus()
+    page.keyboard.press("ArrowLeft")
+    expect(page.locator("#speed-text")).to_have_text("0.05×")
+    page.locator("#stage").focus()
+    page.keyboard.press("]")
+    expect(page.locator("#speed-text")).to_have_text("0.1×")
+    page.locator("#go").click()
+    expect(page.locator("#go")).to_have_text("Pause")
+
+
+def test_scrubbing_leads_back(look, skin):
+    page = look(skin)
+    page.locator("#go").click()
+    page.locator("#seek").fill("2")
+    expect(page.locator("#clock")).to_have_text(re.compile(r"^2\.000000 s"))
+    page.locator("#seek").fill("0.5")
+    expect(page.locator("#clock")).to_have_text(re.compile(r"^0\.500000 s"))
+    page.locator("#go").click()
+
+
+def test_two_pages_see_the_same(look, skin):
+    one, other = look(skin), look(skin, colours="dark")
+    one.locator("#go").click()
+    expect(other.locator("#go")).to_have_text("Go")
+    click(other, OTHER)
+    click(one, "p0 r2 c3")
+    expect(other.locator("#selected-facts")).to_have_text("link, off at one end")
+    one.locator("#selected-do button", has_text="Revive").click()
+    expect(other.locator("#selected-facts")).to_have_text("link, cut")
+    assert text(one, "#clock") == text(other, "#clock")
+    click(other, OTHER)
+    expect(other.locator("#selected-facts")).to_have_text("link, up")
+    other.locator("#go").click()
+    expect(one.locator("#go")).to_have_text("Pause")
+
+
+def test_dark_as_the_system_has_it_or_as_chosen(look, skin):
+    page = look(skin, colours="dark")
+    ground = "() => getComputedStyle(document.documentElement).backgroundColor"
+    assert page.evaluate(ground) == "rgb(18, 22, 28)"
+    page.locator("#theme").click()
+    expect(page.locator("#theme")).to_have_text("Light")
+    assert page.evaluate(ground) == "rgb(255, 255, 255)"
+    page.reload()
+    expect(page.locator("#theme")).to_have_text("Light")
+    page.keyboard.press("t")
+    assert page.evaluate(ground) == "rgb(18, 22, 28)"
+
+
+def test_a_phone_shows_it_all(look, skin):
+    page = look(skin, PHONE, has_touch=True, is_mobile=True)
+    assert page.evaluate("document.documentElement.scrollWidth") == PHONE["width"]
+    page.touchscreen.tap(*place(page, OTHER))
+    expect(page.locator("#selected-name")).to_have_text(OTHER)
+    facts = text(page, "#selected-facts")
+    page.locator("#selected-do button").tap()
+    expect(page.locator("#selected-facts")).not_to_have_text(facts)
+    page.locator("#selected-do button").tap()
+    expect(page.locator("#selected-facts")).to_have_text(facts)
+    assert page.evaluate("document.documentElement.scrollWidth") == PHONE["width"]
+
+
+def test_the_scenario_is_saved_with_what_was_done(look, skin):
+    page = look(skin)
+    click(page, OTHER)
+    expect(page.locator("#selected-facts")).to_have_text("link, cut")
+    with page.expect_download() as told:
+        page.locator("#save").click()
+    assert told.value.suggested_filename == "a-small-skin.toml"
+    saved = told.value.path().read_text()
+    assert 'name = "a small skin"' in saved
+    assert 'action = "cut"' in saved
+    click(page, OTHER)
+
+
+def test_keys_are_listed(look, skin):
+    page = look(skin)
+    page.keyboard.press("?")
+    expect(page.locator("#help")).to_be_visible()
+    assert "cut or heal the link" in text(page, "#keys")
+    page.keyboard.press("Escape")
+    expect(page.locator("#help")).to_be_hidden()
+
+
+def test_an_address_without_the_token_says_so(look, skin, browser):
+    page = browser.new_page()
+    page.goto(skin.partition("?")[0])
+    expect(page.locator("#lost")).to_contain_text("refuses this address")
+    page.close()
+
+
+def test_a_name_is_no_markup(look, tmp_path):
+    path = tmp_path / "skin.toml"
+    name = "<img src=x onerror=alert(1)>"
+    path.write_text(f'kind = "skin"\nname = "{name}"\n[[patch]]\ncolumns = 2\nrows = 2\n'
+                    "[[interface]]\nrow = 0\ncolumn = 0\n")  # fmt: skip
+    with serving(path) as address:
+        page = look(address)
+        expect(page.locator("#name")).to_have_text(name)
+        assert page.locator("img").count() == 0
+
+
+def test_the_server_goes_and_comes_back(look, tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    with serving("setup-1", port=port) as address:
+        page = look(address)
+        expect(page.locator("#lost")).to_be_hidden()
+    expect(page.locator("#lost")).to_contain_text("lost. Trying again")
+    expect(page.locator("#log")).to_contain_text("the server was stopped")
+    with serving("setup-1", port=port):
+        expect(page.locator("#lost")).to_be_hidden()
+        expect(page.locator("#connection")).to_have_text("connected")
