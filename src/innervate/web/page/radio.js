@@ -9,7 +9,7 @@ export const DOING = [
   { sign: "", words: "idle", colour: () => colours.panel },
   { sign: "S", words: "sends", colour: () => colours.p[0] },
   { sign: "R", words: "receives", colour: () => colours.p[2] },
-  { sign: "X", words: "hears a collision", colour: () => colours.p[1] },
+  { sign: "X", words: "hears several at once", colour: () => colours.p[1] },
   { sign: "W", words: "waits its turn", colour: () => colours.p[7] },
 ];
 const SENDS = 1;
@@ -99,7 +99,7 @@ export class RadioView {
     });
   }
 
-  /** Who sends now, to the middle of the ring; two at once meet there. */
+  /** Who sends now, to the middle of the ring; of two nobody hears one. */
   #waves(context, stage, x0, y0) {
     const { radio, now } = this.network;
     const senders = radio.now.flatMap((state, i) => (state === SENDS && now.node_up[i] ? [i] : []));
@@ -110,7 +110,7 @@ export class RadioView {
     }
     stroke(context, senders.length > 1 ? colours.alarm : colours.accent, 2.4, path,
       senders.length > 1 ? [6, 4] : []);
-    const text = senders.length > 1 ? "collision" : senders.length ? "one sends" : "channel free";
+    const text = senders.length > 1 ? "several send" : senders.length ? "one sends" : "channel free";
     context.textAlign = "center";
     word(context, text, x0, y0, senders.length > 1 ? colours.alarm : colours.ink, colours.ground,
       "600 13px system-ui, sans-serif");

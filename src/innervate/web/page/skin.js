@@ -15,7 +15,7 @@ const WORDS_PX = 27; // from this pitch on cells bear a number
 export class SkinView {
   constructor(network) {
     this.network = network;
-    this.scaleMax = 46;
+    this.scaleMax = 60;
     this.margin = [18, 18];
     const { ports } = network.scene;
     this.colour = ports >= 2 && ports <= PORT_COLOURS ? "port" : "depth";
@@ -41,7 +41,7 @@ export class SkinView {
   layersOf(changed) {
     const any = (...names) => names.some((name) => changed.has(name));
     const found = [];
-    if (any("node_up", "parent", this.colour)) found.push(LAYERS.ground);
+    if (any("node_up", "parent", "port", this.colour)) found.push(LAYERS.ground);
     if (any("node_up", "link_up", "parent", "port")) found.push(LAYERS.lines);
     if (any("flights")) found.push(LAYERS.moving);
     return found;
@@ -77,10 +77,15 @@ export class SkinView {
     const { now } = this.network;
     if (!now.node_up[i]) return "off";
     if (this.colour === "touch") return `h${shade(now.touch[i], 256)}`;
-    if (now.parent[i] === -1) return "none";
+    if (!this.#isRouted(i)) return "none";
     if (this.colour === "load") return `h${shade(now.load[i], 1)}`;
     if (this.colour === "depth") return `d${shade(now.depth[i] - 1, this.deepest)}`;
-    return `p${Math.max(0, now.port[i]) % PORT_COLOURS}`;
+    return `p${now.port[i] % PORT_COLOURS}`;
+  }
+
+  /** A cell that has a parent may still have no way: the chain can end at a cut. */
+  #isRouted(i) {
+    return this.network.now.parent[i] !== -1 && this.network.now.port[i] >= 0;
   }
 
   facts(i) {
@@ -89,7 +94,7 @@ export class SkinView {
     if (!this.isCell[i]) return "the PC";
     if (!now.node_up[i]) return "switched off";
     const touched = now.touch[i] ? `, touched ${now.touch[i]} of 255` : "";
-    if (now.parent[i] === -1) return `no way to the PC${touched}`;
+    if (!this.#isRouted(i)) return `no way to the PC${touched}`;
     const hops = now.depth[i] >= 0 ? `${plural(now.depth[i], "hop")} to the PC, ` : "";
     const load = now.load[i] ? `, load ${Math.round(100 * now.load[i])} %` : "";
     return `${hops}through port ${now.port[i]}${load}${touched}`;
@@ -182,7 +187,7 @@ export class SkinView {
   #number(context, stage, i) {
     const { now } = this.network;
     if (!now.node_up[i]) return;
-    const routed = now.parent[i] !== -1;
+    const routed = this.#isRouted(i);
     const text = {
       port: routed ? now.port[i] : "", depth: routed ? now.depth[i] : "",
       load: routed ? `${Math.round(100 * now.load[i])}` : "", touch: now.touch[i] || "",
@@ -232,7 +237,7 @@ export class SkinView {
       if (!this.isCell[i]) continue;
       const size = 0.17 * stage.scale;
       if (!now.node_up[i]) cross(off, stage.x[i], stage.y[i], 1.6 * size);
-      else if (now.parent[i] === -1) cross(lost, stage.x[i], stage.y[i], size);
+      else if (!this.#isRouted(i)) cross(lost, stage.x[i], stage.y[i], size);
     }
     stroke(context, colours.ink, 1.2, lost);
     stroke(context, colours.alarm, 2.4, off);

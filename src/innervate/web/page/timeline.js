@@ -10,13 +10,13 @@ const WALL_S = 4; // so much of the reader's time is in sight
 const SPAN_S = [0.002, 10];
 const LANE_PX = 40;
 
-/** How boxes look: letter, height as a share of the lane's, fill. */
+/** How boxes look, as in reports: letter, height as a share of the lane's, fill. */
 const BOXES = {
-  frame: { letter: "D", high: 1, fill: () => colours.p[0], words: "frame" },
-  ack: { letter: "A", high: 0.75, fill: () => colours.p[2], words: "ack" },
-  cr: { letter: "CR", high: 0.5, fill: () => colours.p[3], words: "collision resolution (CR)" },
-  voc: { letter: "V", high: 0.3, fill: () => colours.p[7], words: "carrier signal (VOC)" },
-  collision: { letter: "", high: 1, fill: () => colours.ground, words: "collision", struck: true },
+  frame: { letter: "D", high: 1, fill: () => colours.p[0], words: "data" },
+  voc: { letter: "O", high: 1, fill: () => colours.p[2], words: "opening of a sequence" },
+  cr: { letter: "C", high: 0.45, fill: () => colours.p[1], words: "CR-R: collision report" },
+  ack: { letter: "R", high: 0.72, fill: () => colours.p[3], words: "report: who was heard" },
+  collision: { letter: "", high: 1, fill: () => colours.ground, words: "collided", struck: true },
 };
 
 /** The timeline below the stations; it follows the network's time. */
