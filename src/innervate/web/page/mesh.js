@@ -16,7 +16,6 @@ const FONT = "12px system-ui, sans-serif";
 export class MeshView {
   constructor(network) {
     this.network = network;
-    this.yUp = true;
     this.margin = [30, 26];
     this.colour = "";
     this.moves = network.nodes.some((node) => node.role === "robot");

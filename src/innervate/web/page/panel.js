@@ -27,7 +27,8 @@ export function showNumbers(network) {
     const state = isOpen ? "not over, " : "";
     show("recovery", text, `${recovery.cause}: ${state}${noticed}`, isOpen ? "open" : "done");
   }
-  $("unconnected").hidden = network.kind === "radio"; // there everybody hears everybody
+  const isRadio = network.kind === "radio"; // there everybody hears everybody
+  $("unconnected").querySelector(".label").textContent = isRadio ? "switched off" : "without a way";
   const all = network.nodes.filter((node) => node.role !== "sink" && node.role !== "port").length;
   show("unconnected", String(unconnected), `of ${plural(all, WORDS[network.kind])}`,
     unconnected ? "bad" : "");

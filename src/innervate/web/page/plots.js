@@ -5,6 +5,7 @@ import { value } from "./words.js";
 
 const SPAN_S = 10; // of the network's time, at most
 const LEAST_S = 0.05;
+const FEW = 40; // points that are marked one by one
 const SIDE_PX = 10;
 
 /** One small plot for each series of a scene. */
@@ -62,7 +63,12 @@ export class Plots {
     }
     stroke(context, colours.alarm, 1.2, cuts, [4, 3]);
     const curve = new Path2D();
-    shown.forEach(([t, v], i) => curve[i ? "lineTo" : "moveTo"](across(Math.max(t, from)), up(v)));
+    const marks = shown.map(([t, v]) => [across(Math.max(t, from)), up(v)]);
+    marks.forEach((at, i) => curve[i ? "lineTo" : "moveTo"](...at));
+    for (const [x, y] of marks.length < FEW ? marks : []) {
+      curve.moveTo(x + 1.5, y);
+      curve.arc(x, y, 1.5, 0, 7);
+    }
     context.lineJoin = "round";
     stroke(context, colours.accent, 1.8, curve);
     this.#most(context, up(most), value(most, series.unit));

@@ -128,13 +128,12 @@ export class Stage {
     const high = this.height - 2 * this.view.margin[1];
     this.fitted = Math.min(wide / (x1 - x0), high / (y1 - y0), this.view.scaleMax ?? Infinity);
     this.centre = [(x0 + x1) / 2, (y0 + y1) / 2];
-    this.up = this.view.yUp ? -1 : 1;
   }
 
   #at([px, py], k, x, y) {
     return [
       (this.width / 2 + (px - this.centre[0]) * this.fitted) * k + x,
-      (this.height / 2 + this.up * (py - this.centre[1]) * this.fitted) * k + y,
+      (this.height / 2 + (py - this.centre[1]) * this.fitted) * k + y,
     ];
   }
 }
