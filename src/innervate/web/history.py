@@ -46,11 +46,13 @@ class History:
                 del items[: -MOST[stream]]
 
     def go_back(self, to_us: int) -> None:
-        """The network went back: what happened after that time has not happened."""
+        """The network went back: what happened from that time on has not happened."""
         with self._lock:
             for name, items in self._streams.items():
                 if name != BACK:
-                    self._streams[name] = [item for item in items if item.at_us <= to_us]
+                    # A point of a plot stands for what was before its moment.
+                    until_us = to_us + 1 if name == SERIES else to_us
+                    self._streams[name] = [item for item in items if item.at_us < until_us]
         self.add(BACK, to_us, None)
 
     def after(self, stream: str, number: int, upto: int, most: int) -> list[Item]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 from innervate import __version__
 from innervate.sim.simulate import InvariantBroken
@@ -47,7 +47,7 @@ class Simulated(Source):
         broken: a checker found what must not happen, and the network is held there.
     """
 
-    kind_of_source = "simulation"
+    kind_of_source: ClassVar[str] = "simulation"
 
     def __init__(self, plan: Any, speed: float | None = None) -> None:
         super().__init__()
@@ -194,12 +194,7 @@ class Simulated(Source):
         to_us = min(max(0, round(t_s * 1e6)), self.plan.duration_us)
         if to_us < self.engine.now_us:
             self.back_to(to_us)
-        ahead = [kept for kept in self._marks if self.engine.now_us < kept.engine.now_us <= to_us]
-        if ahead and self._is_recorded:
-            self.back_to(to_us)
         self._target_us = to_us
-
-    _is_recorded = False
 
     def _step(self) -> None:
         self.pace.hold(self.engine.now_us)
