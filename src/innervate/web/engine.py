@@ -58,13 +58,13 @@ class Engine(ABC):
         Raises:
             InvariantBroken: a checker found what must not happen.
         """
-        if until_us <= self.now_us or self.is_complete:
+        if until_us <= self.now_us or self.is_complete():
             return
         if self._slice(until_us, budget) != loop.DONE:
             until_us = min(until_us, max(self._clock(), self.now_us) + 1)
             while self._slice(until_us, budget) != loop.DONE:
                 pass
-        self.now_us = self._clock() + 1 if self.is_complete else until_us
+        self.now_us = self._clock() + 1 if self.is_complete() else until_us
 
     def take(self) -> Rows:
         """The rows that were made since the last call, by table."""
@@ -104,7 +104,6 @@ class Engine(ABC):
         """When something can be done at the earliest: the network begins at 0, by itself."""
         return max(self.now_us, 1)
 
-    @property
     def is_complete(self) -> bool:
         """True if it ended before its time because there was no more to do."""
         return False

@@ -41,7 +41,9 @@ def engine_of(plan: Any) -> Engine:
     if plan.kind == "radio" and plan.scenario.model.channel.level == "slotted":
         why = 'the slotted level has no stations to watch; set channel.level = "event"'
         raise WatchError(f"{source}: {why}")
-    return {"skin": SkinEngine, "radio": RadioEngine, "mesh": MeshEngine}[plan.kind](plan)
+    if plan.kind == "skin":
+        return SkinEngine(plan)
+    return RadioEngine(plan) if plan.kind == "radio" else MeshEngine(plan)
 
 
 class SkinEngine(Engine):
@@ -50,6 +52,7 @@ class SkinEngine(Engine):
     tables: ClassVar[tuple[str, ...]] = ("rows", "deliveries")
 
     def next_us(self) -> int | None:
+        """When something happens next."""
         world = self.world
         events = world.wheel.events[: int(world.wheel.pool[wheel.FRESH])]
         times = events["time"][events["bucket"] != wheel.NIL]
@@ -89,13 +92,13 @@ class RadioEngine(Engine):
 
     tables: ClassVar[tuple[str, ...]] = ("rows", "sent", "packets")
 
-    @property
     def is_complete(self) -> bool:
         """A team that had so many packets to deliver ends with the last of them."""
         wanted = int(get(self.world.run, 0, "wanted"))
         return int(get(self.world.run, 0, "completed")) >= wanted > 0
 
     def next_us(self) -> int | None:
+        """When something happens next."""
         if self.world.told[0]:
             return self._clock()
         return first_of(self.world.heap)
@@ -139,6 +142,7 @@ class MeshEngine(Engine):
     tables: ClassVar[tuple[str, ...]] = ("rows", "sent", "delivered", "rounds")
 
     def next_us(self) -> int | None:
+        """When something happens next."""
         times = [first_of(self.world.heap)]
         if self.world.below:
             told = bool(self.world.below.told[0])
@@ -198,5 +202,3 @@ def with_command(world: Any, time: str, row: tuple[int, ...]) -> tuple[Any, bool
 def first_of(queue: Any) -> int | None:
     """Time of the first event in a heap; None = it is empty."""
     return int(queue.keys[0]) >> heap.TIME_SHIFT if queue.size[0] else None
-
-

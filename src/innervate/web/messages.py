@@ -15,62 +15,62 @@ class _Command(msgspec.Struct, frozen=True, tag_field="do", forbid_unknown_field
     """The base of all."""
 
 
-class Cut(_Command, tag="cut"):
+class Cut(_Command, frozen=True, tag="cut"):
     """Cut a link."""
 
     link: int
 
 
-class Heal(_Command, tag="heal"):
+class Heal(_Command, frozen=True, tag="heal"):
     """Put a link back."""
 
     link: int
 
 
-class Kill(_Command, tag="kill"):
+class Kill(_Command, frozen=True, tag="kill"):
     """Switch a node off without warning."""
 
     node: int
 
 
-class Revive(_Command, tag="revive"):
+class Revive(_Command, frozen=True, tag="revive"):
     """Switch a node on again."""
 
     node: int
 
 
-class Touch(_Command, tag="touch"):
+class Touch(_Command, frozen=True, tag="touch"):
     """Touch a cell: 1 .. 255 presses it, 0 lets go."""
 
     node: int
     value: int
 
 
-class Pause(_Command, tag="pause"):
+class Pause(_Command, frozen=True, tag="pause"):
     """Hold the network's time."""
 
 
-class Go(_Command, tag="go"):
+class Go(_Command, frozen=True, tag="go"):
     """Let the network's time go on."""
 
 
-class Step(_Command, tag="step"):
+class Step(_Command, frozen=True, tag="step"):
     """Have one event happen, then hold."""
 
 
-class Speed(_Command, tag="speed"):
+class Speed(_Command, frozen=True, tag="speed"):
     """Seconds of the network per second of the page; 0 = as fast as possible."""
 
     value: float
 
 
-class Seek(_Command, tag="seek"):
+class Seek(_Command, frozen=True, tag="seek"):
     """Go to a moment of the network's time."""
 
     t_s: float
 
 
-class Save(_Command, tag="save"):
+class Save(_Command, frozen=True, tag="save"):
     """Give back the scenario with all that was done to it as events."""
 
 

@@ -71,10 +71,11 @@ class Simulated(Source):
     @property
     def at_end(self) -> bool:
         """True if nothing more can happen."""
-        done = self.engine.now_us >= self.plan.duration_us or self.engine.is_complete
+        done = self.engine.now_us >= self.plan.duration_us or self.engine.is_complete()
         return done or self.broken
 
     def scene(self) -> dict[str, Any]:
+        """Nodes, links and what else stands still."""
         return {
             "kind": self.plan.kind,
             "name": self.plan.scenario.name,
@@ -87,6 +88,7 @@ class Simulated(Source):
         }
 
     def fields(self) -> dict[str, Any]:
+        """The state now."""
         paced = self.pace.paused or 0 < self.pace.speed <= self.view.slow
         return {
             "t_s": self.engine.now_us / 1e6,
@@ -97,6 +99,7 @@ class Simulated(Source):
         }
 
     def work(self) -> float:
+        """Go on as far as the pace says."""
         now_us, end_us = self.engine.now_us, self.plan.duration_us
         if self._target_us is not None:
             self._advance(self._target_us)
@@ -112,6 +115,7 @@ class Simulated(Source):
         return BEAT_S if self.engine.now_us >= due_us else 0.0
 
     def do(self, command: Command) -> dict[str, Any] | None:
+        """Carry out a command."""
         now_us = self.engine.now_us
         if isinstance(command, Pause):
             self.pace.hold(now_us)
@@ -158,7 +162,7 @@ class Simulated(Source):
         """Go on towards a time, for about a slice."""
         began = time.perf_counter()
         while self.engine.now_us < until_us and not self.at_end:
-            edge = min(until_us, self._next_point_us)
+            edge = min(until_us, self._next_point_us, self._next_check_us())
             started = time.thread_time()  # not the time others have the processor
             try:
                 self.engine.advance(edge, self._budget)
@@ -170,12 +174,21 @@ class Simulated(Source):
             elif took < SLICE_S / 4 and self.engine.now_us < edge:
                 self._budget *= 2
             self.view.note(self.engine.take())
+            if self.view.is_open and self.engine.now_us >= edge:
+                self.view.check()
             if self.engine.now_us >= self._next_point_us:
                 self.view.sample()
                 self._next_point_us += self._point_us
                 self._keep()
             if time.perf_counter() - began > SLICE_S:
                 return
+
+    def _next_check_us(self) -> int:
+        """When the view is to look next whether the network has got over a fault."""
+        every_us = self.view.check_us
+        if not every_us or not self.view.is_open:
+            return int(self.plan.duration_us)
+        return (self.engine.now_us // every_us + 1) * every_us
 
     def _break(self, text: str) -> None:
         self.broken = True

@@ -35,6 +35,7 @@ from innervate.web.errors import Refused
 from innervate.web.history import History
 from innervate.web.skin_scene import nodes_of_ends, places
 from innervate.web.view import FLIGHTS_MAX, Memory, View, number
+from innervate.web.ways import NOWHERE, follow
 
 KINDS = {BEACON: "beacon", DATA: "data"}
 HZ_WITHOUT_DATA = 250.0  # load is shown as if cells sampled so often
@@ -76,6 +77,7 @@ class SkinView(View):
         )
 
     def scene(self) -> dict[str, Any]:
+        """Nodes, links and what else stands still."""
         graph, where = self.plan.graph, places(self.plan.graph).round(3).tolist()
         nodes = [
             {"id": i, "label": graph.label(i), "x": x, "y": y, "role": "cell"}
@@ -100,6 +102,7 @@ class SkinView(View):
         }  # fmt: skip
 
     def note(self, rows: Rows) -> None:
+        """Take in what happened since the last call."""
         memory = self.memory
         told = rows["deliveries"]
         if len(told):
@@ -158,6 +161,7 @@ class SkinView(View):
         self.log.often("broken", at_us, f"{label} {'found broken' if broken else 'works again'}")
 
     def points(self) -> dict[str, float | None]:
+        """A point of every plot, for now."""
         ways = self._ways()
         loads = np.bincount(ways["port"][ways["port"] >= 0], minlength=self.ports)
         balance = balance_factor(loads.tolist())
@@ -167,7 +171,9 @@ class SkinView(View):
         }
         if self.plan.data_period_us:
             counters = self.engine.world.counters
-            lost = counters[LOST_CUT : LOST_BROKEN + 1].sum() + counters[NO_ROUTE : LOOPED + 1].sum()
+            lost = (
+                counters[LOST_CUT : LOST_BROKEN + 1].sum() + counters[NO_ROUTE : LOOPED + 1].sum()
+            )
             now = (int(counters[OFFERED]), int(lost))
             offered, gone = (a - b for a, b in zip(now, self.memory.counted, strict=True))
             self.memory.counted = now
@@ -180,25 +186,22 @@ class SkinView(View):
         parent = world.watch.port
         end = PORTS * np.arange(cells) + np.maximum(parent, 0)
         hop = np.where(parent >= 0, self.node_of[self.peer[end]], -1)
-        nowhere = cells + ports
         live = (parent >= 0) & ((world.epoch[end] & 1) == 0)
-        jump = np.concatenate([np.where(live, hop, nowhere), np.arange(cells, nowhere + 1)])
-        steps = np.concatenate([np.ones(cells, np.int64), np.zeros(ports + 1, np.int64)])
-        for _ in range(max(1, cells.bit_length())):
-            steps = steps + steps[jump]
-            jump = jump[jump]
-        last = jump[:cells]
-        there = (last >= cells) & (last < nowhere)
+        none = np.full(ports, NOWHERE)
+        is_port = np.arange(cells + ports) >= cells
+        root, depth = follow(np.concatenate([np.where(live, hop, NOWHERE), none]), is_port)
+        there = root[:cells] != NOWHERE
         alive = world.alive[:cells] != DEAD
         return {
-            "parent": np.concatenate([hop, np.full(ports, -1)]),
-            "port": np.concatenate([np.where(there, last - cells, -1), np.arange(ports)]),
-            "depth": np.concatenate([np.where(there, steps[:cells], -1), np.zeros(ports, int)]),
+            "parent": np.concatenate([hop, none]),
+            "port": np.where(root == NOWHERE, NOWHERE, root - cells),
+            "depth": depth,
             "unconnected": int(np.count_nonzero(alive & ~there)),
             "there": there,
         }
 
     def arrays(self, flights: bool) -> dict[str, Any]:
+        """The state's fields for nodes and links."""
         world, memory = self.engine.world, self.memory
         ways = self._ways()
         share = world.cells["own_load"] * self.rate_hz * self.plan.wire_us * 1e-6
@@ -239,9 +242,11 @@ class SkinView(View):
         ]
 
     def words(self, fault: Any) -> str:
+        """A fault in words."""
         return fault_words(self.plan.graph, fault)
 
     def cut(self, link: int, heal: bool) -> dict[str, int]:
+        """The fault that cuts a link, or puts it back."""
         a, b = self.ends[number("link", link, len(self.ends))].tolist()
         reasons = int(self.engine.world.ends["impaired"][a]) >> 2
         dead = sum(self._is_dead(self.node_of[end]) for end in (a, b))
@@ -257,6 +262,7 @@ class SkinView(View):
         return node < self.cells and int(self.engine.world.alive[node]) == DEAD
 
     def kill(self, node: int, revive: bool) -> dict[str, int]:
+        """The fault that switches a node off, or on."""
         number("node", node, self.cells + self.ports)
         if node >= self.cells:
             raise Refused("the PC cannot be switched off; cut the cable of this port")
@@ -265,9 +271,11 @@ class SkinView(View):
         return {"action": REVIVE if revive else KILL, "end": -1, "node": node}
 
     def make(self, at_us: int, index: int, fields: dict[str, int]) -> Fault:
+        """A fault of the kind's own type."""
         return Fault(at_us=at_us, loss_q15=0, frames=0, index=index, **fields)
 
     def event(self, fault: Any) -> dict[str, Any]:
+        """The [[event]] table of a fault, without its time."""
         graph = self.plan.graph
         if fault.end >= PORTS * self.cells:
             return {"interface": fault.end - PORTS * self.cells}

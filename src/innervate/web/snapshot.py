@@ -49,12 +49,14 @@ class Snapshot:
         newest: number of the newest item in the history at that moment.
     """
 
-    __slots__ = ("newest", "parts", "scene")
+    scene: Part
+    parts: dict[str, Part]
+    newest: int
 
     def __init__(
         self, scene: Part, fields: dict[str, Any], newest: int, before: Snapshot | None
     ) -> None:
-        old = before.parts if before is not None and before.scene is scene else {}
+        old: dict[str, Part] = before.parts if before is not None and before.scene is scene else {}
         self.scene = scene
         self.newest = newest
         self.parts = {

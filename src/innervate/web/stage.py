@@ -40,7 +40,7 @@ class Stage:
         self._ended = ended
         self._waiting: deque[tuple[Command, Reply]] = deque()
         self._wake = threading.Condition()
-        self._stopping = False
+        self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="stage", daemon=True)
 
     def start(self) -> None:
@@ -51,7 +51,7 @@ class Stage:
     def stop(self) -> None:
         """End, and wait for it."""
         with self._wake:
-            self._stopping = True
+            self._stopping.set()
             self._wake.notify()
         if self._thread.is_alive():
             self._thread.join(timeout=5.0)
@@ -72,7 +72,7 @@ class Stage:
     def _run(self) -> None:
         due = time.monotonic()
         try:
-            while not self._stopping:
+            while not self._stopping.is_set():
                 told = self._obey()
                 rest = self.source.work()
                 now = time.monotonic()
@@ -81,7 +81,7 @@ class Stage:
                     due = max(due + 1 / STATES_PER_S, now)
                 until_shown = max(0.0, due - time.monotonic())
                 with self._wake:
-                    if not self._waiting and not self._stopping and rest > 0:
+                    if not self._waiting and not self._stopping.is_set() and rest > 0:
                         self._wake.wait(min(rest, max(until_shown, 0.001)))
         except Exception as error:
             self._show()

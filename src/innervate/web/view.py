@@ -47,6 +47,7 @@ class Memory:
 
     recovery: Recovery | None = None
     fault: Any = None  # the newest
+    told_us: int = 0  # faults before this are told
 
 
 class View(ABC):
@@ -61,6 +62,8 @@ class View(ABC):
     speed: ClassVar[float]
     slow: ClassVar[float]
     can: ClassVar[tuple[str, ...]]
+    # `check` is called at multiples of this time, us, while somebody has no way; 0 = never.
+    check_us: ClassVar[int] = 0
     memory: Any
 
     def __init__(self, engine: Engine, history: History) -> None:
@@ -105,6 +108,15 @@ class View(ABC):
     def event(self, fault: Any) -> dict[str, Any]:
         """The [[event]] table of a fault, without its time."""
 
+    @property
+    def is_open(self) -> bool:
+        """True if the network has not got over the newest fault yet."""
+        recovery = self.memory.recovery
+        return recovery is not None and recovery.recovered_ms is None
+
+    def check(self) -> None:
+        """Look whether it has."""
+
     def sample(self) -> None:
         """Keep a point of every plot."""
         self.history.add(SERIES, self.engine.now_us, self.points())
@@ -126,11 +138,23 @@ class View(ABC):
     def begin_fault(self, fault: Any) -> Recovery:
         """Something is done to the network now."""
         cause = self.words(fault)
-        self.memory.recovery = Recovery(cause, fault.at_us)
+        recovery = Recovery(cause, fault.at_us)
+        self.memory.recovery = recovery
         self.memory.fault = fault
         self.log.calm()
         self.log.say(fault.at_us, cause)
-        return self.memory.recovery
+        return recovery
+
+    def tell_faults(self) -> list[Any]:
+        """Begin all faults that have happened and were not told yet; them, in order of time."""
+        since_us, until_us = self.memory.told_us, self.engine.now_us
+        self.memory.told_us = until_us
+        happened = [fault for fault in (*self.plan.faults, *self.engine.given)
+                    if since_us <= fault.at_us < until_us]  # fmt: skip
+        happened.sort(key=lambda fault: fault.at_us)
+        for fault in happened:
+            self.begin_fault(fault)
+        return happened
 
     def fields(self, flights: bool) -> dict[str, Any]:
         """The state now."""
