@@ -45,7 +45,5 @@ def _event(view: View, fault: Any) -> dict[str, Any]:
 
 def _plain(view: View, table: dict[str, Any], fault: Any) -> dict[str, Any]:
     """An event with nothing drawn: its time and target as they are in the plan."""
-    kept: dict[str, Any] = {
-        key: table[key] for key in ("loss", "frames", "noise_dbm") if key in table
-    }
-    return {**_event(view, fault), **kept}
+    kept = [key for key in ("loss", "frames", "noise_dbm") if key in table]
+    return {**_event(view, fault), **{key: table[key] for key in kept}}

@@ -8,6 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from starlette.applications import Starlette
+from starlette.datastructures import Headers
 from starlette.requests import Request
 from starlette.responses import FileResponse, PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
@@ -111,9 +112,7 @@ class _Addressed:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] in ("http", "websocket"):
-            headers = {key.decode("latin-1"): value.decode("latin-1")
-                       for key, value in scope["headers"] if key in (b"host", b"origin")}  # fmt: skip
-            if not self._guard.knows(headers):
+            if not self._guard.knows(Headers(scope=scope)):
                 if scope["type"] == "http":
                     answer = PlainTextResponse("not the name of this server\n", 421, _PAGE_HEADERS)
                     await answer(scope, receive, send)

@@ -49,7 +49,7 @@ class Source(ABC):
             Refused: why it cannot be done.
         """
 
-    def close(self) -> None:
+    def close(self) -> None:  # noqa: B027 - most have nothing to let go of
         """Let go of everything."""
 
     def carry_out(self, command: Command) -> dict[str, Any] | None:

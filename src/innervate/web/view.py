@@ -114,7 +114,7 @@ class View(ABC):
         recovery = self.memory.recovery
         return recovery is not None and recovery.recovered_ms is None
 
-    def check(self) -> None:
+    def check(self) -> None:  # noqa: B027 - only who says so by `check_us`
         """Look whether it has."""
 
     def sample(self) -> None:
