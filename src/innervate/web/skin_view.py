@@ -1,0 +1,290 @@
+"""What a simulated skin looks like."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from innervate.analysis.load import balance_factor
+from innervate.plot.words import fault_words, number_of
+from innervate.protocol.skin_words import (
+    BEACON,
+    DATA,
+    NONE,
+    REPORT_BALANCE,
+    REPORT_BROKEN,
+    REPORT_PARENT,
+)
+from innervate.scenario import CUT, KILL, RESTORE, REVIVE, Fault
+from innervate.sim import wheel
+from innervate.sim.observer import CUT_OFF, LOOP_OPEN, UNROUTED
+from innervate.sim.wires import (
+    DELAYED,
+    LOOPED,
+    LOST_BROKEN,
+    LOST_CUT,
+    NO_ROUTE,
+    OFFERED,
+)
+from innervate.sim.world import DEAD
+from innervate.topology import PORTS
+from innervate.web.engine import Engine, Rows
+from innervate.web.errors import Refused
+from innervate.web.history import History
+from innervate.web.skin_scene import nodes_of_ends, places
+from innervate.web.view import FLIGHTS_MAX, Memory, View, number
+from innervate.web.ways import NOWHERE, follow
+
+KINDS = {BEACON: "beacon", DATA: "data"}
+HZ_WITHOUT_DATA = 250.0  # load is shown as if cells sampled so often
+FORCE_FULL_MN = 5_000  # shown as 255
+STALE_US = 200_000  # of a cell not heard for so long nothing is known any more
+
+
+@dataclass(slots=True)
+class SkinMemory(Memory):
+    """Besides: the observer's newest word, and what the PC received of every cell."""
+
+    unrouted: int = 0
+    settled: bool = False
+    touch: Any = None
+    touch_us: Any = None
+    counted: tuple[int, int] = field(default=(0, 0))
+
+
+class SkinView(View):
+    """Cells and interface ports; the links are the cables, in order of their lower end."""
+
+    speed: ClassVar[float] = 0.1
+    slow: ClassVar[float] = 0.05
+    can: ClassVar[tuple[str, ...]] = ("cut", "heal", "kill", "revive")
+
+    def __init__(self, engine: Engine, history: History) -> None:
+        super().__init__(engine, history)
+        graph = self.plan.graph
+        self.cells, self.ports = graph.cells, graph.interfaces
+        self.peer = np.frombuffer(graph.peer, np.int32).astype(np.int64)
+        self.node_of = nodes_of_ends(graph)
+        self.ends = np.array(list(graph.links()), np.int64).reshape(-1, 2)
+        self.rate_hz = (
+            1e6 / self.plan.data_period_us if self.plan.data_period_us else HZ_WITHOUT_DATA
+        )
+        self._planned = {fault.index: fault for fault in self.plan.faults}
+        self.memory = SkinMemory(
+            touch=np.zeros(self.cells, np.int64), touch_us=np.full(self.cells, -STALE_US, np.int64)
+        )
+
+    def scene(self) -> dict[str, Any]:
+        """Nodes, links and what else stands still."""
+        graph, where = self.plan.graph, places(self.plan.graph).round(3).tolist()
+        nodes = [
+            {"id": i, "label": graph.label(i), "x": x, "y": y, "role": "cell"}
+            for i, (x, y) in enumerate(where[: self.cells])
+        ]
+        nodes += [
+            {"id": self.cells + i, "label": f"pc.{i}", "x": x, "y": y, "role": "port", "port": i}
+            for i, (x, y) in enumerate(where[self.cells :])
+        ]
+        links = [
+            {"id": i, "a": int(self.node_of[a]), "b": int(self.node_of[b])}
+            for i, (a, b) in enumerate(self.ends.tolist())
+        ]
+        series = [
+            {"id": "unconnected", "label": "cells without a way", "unit": "cells"},
+            {"id": "balance", "label": "balance of the ports", "unit": ""},
+        ]
+        if self.plan.data_period_us:
+            series.append({"id": "loss", "label": "samples lost", "unit": "%"})
+        return {
+            "nodes": nodes, "links": links, "ports": self.ports, "fence": None, "series": series,
+        }  # fmt: skip
+
+    def note(self, rows: Rows) -> None:
+        """Take in what happened since the last call."""
+        memory = self.memory
+        told = rows["deliveries"]
+        if len(told):
+            force = told["force"].mean(axis=1)
+            memory.touch[told["cell"]] = np.minimum(255, force * 255 / FORCE_FULL_MN)
+            memory.touch_us[told["cell"]] = told["time"]
+        codes = (CUT_OFF, UNROUTED, LOOP_OPEN, REPORT_BROKEN, REPORT_PARENT, REPORT_BALANCE)
+        found = rows["rows"]
+        found = found[np.isin(found["code"], codes)]
+        for at, node, code, a, b in found.tolist():
+            if code == CUT_OFF and a >= 0:
+                self._fault(a, b)
+            elif code == UNROUTED:
+                self._unrouted(at, a)
+            elif code == REPORT_BROKEN:
+                self._broken(at, PORTS * node + a, b)
+            elif code == LOOP_OPEN:
+                self.log.often("loop", at, f"a forwarding loop of {number_of(a, 'cell')}", "bad")
+            elif code == REPORT_PARENT and b == NONE and memory.settled:
+                label = self.plan.graph.label(node)
+                self.log.often("lost", at, f"{label} lost its parent", "bad")
+
+    def _fault(self, index: int, cut_off: int) -> None:
+        """A mark of the observer: something was done to the skin."""
+        given = index - len(self.plan.scenario.model.event)
+        fault = self._planned[index] if given < 0 else self.engine.given[given]
+        recovery = self.begin_fault(fault)
+        if self.memory.unrouted == 0:
+            recovery.recovered_ms = 0.0
+        if cut_off:
+            text = f"{number_of(cut_off, 'cell')} lost the way to the PC"
+            self.log.say(fault.at_us, text, "bad")
+
+    def _unrouted(self, at_us: int, cells: int) -> None:
+        """So many cells that are connected to the PC have no way to it from now on."""
+        memory, recovery = self.memory, self.memory.recovery
+        memory.unrouted = cells
+        after_us = at_us - (recovery.at_us if recovery else 0)
+        if recovery is not None:
+            recovery.recovered_ms = after_us / 1e3 if cells == 0 else None
+        if cells == 0:
+            what = "again after" if memory.settled else "after"
+            self.log.often("routed", at_us, f"all cells have a way {what} {after_us / 1e3:.1f} ms",
+                           "good")  # fmt: skip
+            memory.settled = True
+
+    def _broken(self, at_us: int, end: int, broken: int) -> None:
+        """A cell finds a port broken, or working again."""
+        recovery = self.memory.recovery
+        label = self.plan.graph.label_end(end)
+        if recovery is not None and broken and recovery.detected_ms is None:
+            graph, fault = self.plan.graph, self.memory.fault
+            own = [fault.end] if fault.end >= 0 else list(graph.ends_of(fault.node))
+            if end in own or graph.peer[end] in own:
+                recovery.detected_ms = (at_us - recovery.at_us) / 1e3
+        self.log.often("broken", at_us, f"{label} {'found broken' if broken else 'works again'}")
+
+    def points(self) -> dict[str, float | None]:
+        """A point of every plot, for now."""
+        ways = self._ways()
+        loads = np.bincount(ways["port"][ways["port"] >= 0], minlength=self.ports)
+        balance = balance_factor(loads.tolist())
+        found = {
+            "unconnected": float(ways["unconnected"]),
+            "balance": None if balance is None else round(balance, 4),
+        }
+        if self.plan.data_period_us:
+            counters = self.engine.world.counters
+            lost = (
+                counters[LOST_CUT : LOST_BROKEN + 1].sum() + counters[NO_ROUTE : LOOPED + 1].sum()
+            )
+            now = (int(counters[OFFERED]), int(lost))
+            offered, gone = (a - b for a, b in zip(now, self.memory.counted, strict=True))
+            self.memory.counted = now
+            found["loss"] = round(100 * gone / offered, 3) if offered else 0.0
+        return found
+
+    def _ways(self) -> dict[str, Any]:
+        """Whose way leads where: next node, interface port, hops; over live cables."""
+        world, cells, ports = self.engine.world, self.cells, self.ports
+        parent = world.watch.port
+        end = PORTS * np.arange(cells) + np.maximum(parent, 0)
+        hop = np.where(parent >= 0, self.node_of[self.peer[end]], -1)
+        live = (parent >= 0) & ((world.epoch[end] & 1) == 0)
+        none = np.full(ports, NOWHERE)
+        is_port = np.arange(cells + ports) >= cells
+        root, depth = follow(np.concatenate([np.where(live, hop, NOWHERE), none]), is_port)
+        there = root[:cells] != NOWHERE
+        alive = world.alive[:cells] != DEAD
+        return {
+            "parent": np.concatenate([hop, none]),
+            "port": np.where(root == NOWHERE, NOWHERE, root - cells),
+            "depth": depth,
+            "unconnected": int(np.count_nonzero(alive & ~there)),
+            "there": there,
+        }
+
+    def arrays(self, flights: bool) -> dict[str, Any]:
+        """The state's fields for nodes and links."""
+        world, memory = self.engine.world, self.memory
+        ways = self._ways()
+        share = world.cells["own_load"] * self.rate_hz * self.plan.wire_us * 1e-6
+        load = np.where(ways.pop("there"), np.minimum(share, 1.0), 0.0).round(3)
+        up = (world.alive[: self.cells] != DEAD).astype(np.int64)
+        none = np.zeros(self.ports, np.int64)
+        fields = {
+            "node_up": np.concatenate([up, none + 1]),
+            "link_up": 1 - (world.epoch[self.ends[:, 0]] & 1),
+            **ways,
+            "load": np.concatenate([load, none]),
+            "flights": self._flights() if flights else [],
+        }
+        if self.plan.data_period_us:
+            heard = self.engine.now_us - memory.touch_us < STALE_US
+            fields["touch"] = np.concatenate([np.where(heard, memory.touch, 0), none])
+        return fields
+
+    def _flights(self) -> list[dict[str, Any]]:
+        """Frames on their way."""
+        world, now = self.engine.world, self.engine.now_us
+        first, last = int(world.run["pool_slots"][0]), int(world.wheel.pool[wheel.FRESH])
+        events = world.wheel.events[first:last]
+        on_way = (events["bucket"] != wheel.NIL) & (events["kind"] != DELAYED)
+        slots = np.flatnonzero(on_way)[:FLIGHTS_MAX]
+        to = events["target"][slots].astype(np.int64)
+        sent = self.peer[to]
+        latency = world.ends["latency"][sent]
+        if self.plan.latency_per_frame:
+            latency = np.full(len(to), sum(self.plan.latency_us) // 2)
+        part = 1 - (events["time"][slots] - now) / latency
+        part = np.clip(part, 0.0, 1.0).round(3)
+        kinds = world.frames["kind"][slots]
+        columns = (self.node_of[sent], self.node_of[to], kinds, part)
+        return [
+            {"a": a, "b": b, "kind": KINDS.get(kind, "restart"), "p": p}
+            for a, b, kind, p in zip(*(column.tolist() for column in columns), strict=True)
+        ]
+
+    def words(self, fault: Any) -> str:
+        """A fault in words."""
+        return fault_words(self.plan.graph, fault)
+
+    def cut(self, link: int, heal: bool) -> dict[str, int]:
+        """The fault that cuts a link, or puts it back."""
+        a, b = self.ends[number("link", link, len(self.ends))].tolist()
+        reasons = int(self.engine.world.ends["impaired"][a]) >> 2
+        dead = sum(self._is_dead(self.node_of[end]) for end in (a, b))
+        if heal and reasons <= dead:
+            raise Refused("this cable is not cut" if not reasons else "its cell is switched off")
+        if not heal and reasons > dead:
+            raise Refused("this cable is cut already")
+        # As a scenario names it: an interface's cable by the PC's end.
+        end = b if b >= PORTS * self.cells else a
+        return {"action": RESTORE if heal else CUT, "end": end, "node": -1}
+
+    def _is_dead(self, node: int) -> bool:
+        return node < self.cells and int(self.engine.world.alive[node]) == DEAD
+
+    def kill(self, node: int, revive: bool) -> dict[str, int]:
+        """The fault that switches a node off, or on."""
+        number("node", node, self.cells + self.ports)
+        if node >= self.cells:
+            raise Refused("the PC cannot be switched off; cut the cable of this port")
+        if self._is_dead(node) != revive:
+            raise Refused("this cell is on" if revive else "this cell is off already")
+        return {"action": REVIVE if revive else KILL, "end": -1, "node": node}
+
+    def make(self, at_us: int, index: int, fields: dict[str, int]) -> Fault:
+        """A fault of the kind's own type."""
+        return Fault(at_us=at_us, loss_q15=0, frames=0, index=index, **fields)
+
+    def event(self, fault: Any) -> dict[str, Any]:
+        """The [[event]] table of a fault, without its time."""
+        graph = self.plan.graph
+        if fault.end >= PORTS * self.cells:
+            return {"interface": fault.end - PORTS * self.cells}
+        cell = fault.node if fault.end < 0 else fault.end // PORTS
+        if cell == graph.sink:
+            return {"pc": True}
+        port = {} if fault.end < 0 else {"port": fault.end % PORTS}
+        patch = graph.patch_of(cell)
+        if patch < 0:
+            return {"node": graph.label(cell), **port}
+        row, column = graph.patches[patch].row_column(cell)
+        return {"cell": {"patch": patch, "row": row, "column": column}, **port}
