@@ -22,8 +22,7 @@ export function showNumbers(network) {
     const noticed = recovery.detected_ms === null || recovery.detected_ms === undefined
       ? "not noticed yet" : `noticed after ${duration(recovery.detected_ms)}`;
     const isOpen = recovery.recovered_ms === null || recovery.recovered_ms === undefined;
-    const open_s = Math.max(0, network.now.t_s - recovery.at_s);
-    const text = isOpen ? `${ago(open_s)} …` : duration(recovery.recovered_ms);
+    const text = isOpen ? `${ago(network.now.t_s - recovery.at_s)} …` : duration(recovery.recovered_ms);
     const state = isOpen ? "not over, " : "";
     show("recovery", text, `${recovery.cause}: ${state}${noticed}`, isOpen ? "open" : "done");
   }
@@ -153,6 +152,7 @@ export function commandFor(network, { node, link }) {
   const [verb, of] = link !== undefined
     ? [now.link_up[link] ? "cut" : "heal", { link: network.links[link].id }]
     : [now.node_up[node] ? "kill" : "revive", { node: network.nodes[node].id }];
+  if (link !== undefined && !now.link_up[link] && !network.isCut(link)) return null; // a dead end
   if (link !== undefined && !network.isThere(link)) return null;
   const fixed = node !== undefined && ["sink", "port"].includes(network.nodes[node].role);
   return can.has(verb) && !fixed ? { do: verb, ...of } : null;

@@ -6,6 +6,7 @@ import { hexagon, stroke } from "./shapes.js";
 
 const TOUCH_PX = 22; // on a touch screen what is smaller is selected first, not cut
 const MOUSE_PX = 9;
+const ROUND_PX = 9; // from a link to the line round it
 const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 /** Follows the pointer and the keys over a stage. */
@@ -151,11 +152,11 @@ export class Pointer {
       return stroke(context, colour, width, path);
     }
     const [a, b] = stage.view.network.ends[link];
-    path.moveTo(stage.x[a], stage.y[a]);
-    path.lineTo(stage.x[b], stage.y[b]);
-    context.globalAlpha = 0.5; // what lies below shows whether it is cut
-    stroke(context, colour, width + 7, path);
-    context.globalAlpha = 1;
+    const way = Math.atan2(stage.y[b] - stage.y[a], stage.x[b] - stage.x[a]);
+    path.arc(stage.x[a], stage.y[a], ROUND_PX, way + Math.PI / 2, way - Math.PI / 2);
+    path.arc(stage.x[b], stage.y[b], ROUND_PX, way - Math.PI / 2, way + Math.PI / 2);
+    path.closePath();
+    stroke(context, colour, width, path);
   }
 }
 

@@ -9,7 +9,7 @@ const NEAR = 1.6; // cables up to this many pitches long are between neighbours
 const PORT_COLOURS = 8;
 const FEW = 0.1; // up to this share of cells is painted over one by one
 const BRICKS_PX = 5; // below this pitch hexagons are squares
-const WORDS_PX = 27; // from this pitch on cells bear a number
+const WORDS_PX = 22; // from this pitch on cells bear a number
 
 /** Draws a skin on a stage. */
 export class SkinView {
@@ -192,7 +192,7 @@ export class SkinView {
       port: routed ? now.port[i] : "", depth: routed ? now.depth[i] : "",
       load: routed ? `${Math.round(100 * now.load[i])}` : "", touch: now.touch[i] || "",
     }[this.colour];
-    context.font = `${Math.min(13, 0.36 * stage.scale)}px system-ui, sans-serif`;
+    context.font = `${Math.max(9, Math.min(13, 0.36 * stage.scale))}px system-ui, sans-serif`;
     context.fillStyle = colours.ink;
     context.textAlign = "center";
     context.textBaseline = "middle";
@@ -221,7 +221,7 @@ export class SkinView {
       const parent = network.parentOf(i);
       if (parent >= 0 && this.isCell[i] && this.isCell[parent]) line(tree, stage, i, parent);
     }
-    context.globalAlpha = 0.65;
+    context.globalAlpha = this.colour === "load" || this.colour === "touch" ? 0.3 : 0.65;
     stroke(context, colours.link, Math.max(0.6, Math.min(2.6, 0.1 * stage.scale)), tree);
     context.globalAlpha = 1;
     this.#lacks(context, stage);

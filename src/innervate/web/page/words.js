@@ -23,7 +23,8 @@ export function duration(ms) {
 
 /** How long ago something was, in seconds: steady in width, for a number that runs. */
 export function ago(s) {
-  if (s < 1) return `${(1000 * s).toFixed(0)} ms`;
+  const ms = 1000 * s;
+  if (ms < 1000) return `${ms.toFixed(ms < 99.5 ? 1 : 0)} ms`;
   return s < 100 ? `${s.toFixed(2)} s` : `${(s / 60).toFixed(1)} min`;
 }
 
