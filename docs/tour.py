@@ -96,7 +96,7 @@ def take(browser: Any, name: str) -> int:
         taken = Image.open(BytesIO(page.screenshot()))
         page.close()
     path = FOLDER / f"watch-{name}.png"
-    few = taken.convert("RGB").quantize(COLOURS, Image.Quantize.MAXCOVERAGE, dither=NO_DITHER)
+    few = taken.convert("RGB").quantize(COLOURS, Image.Quantize.MEDIANCUT, dither=NO_DITHER)
     few.save(path, optimize=True)
     return path.stat().st_size
 

@@ -123,7 +123,7 @@ function options(list, box, choices, chosen) {
 function takeIn(state) {
   const changed = network.apply(state);
   speedometer.states += 1;
-  if (changed.has("back_s")) log.forgetAfter(state.back_s);
+  if (changed.has("back_s")) log.forgetFrom(state.back_s);
   if (changed.has("position")) stage.moved();
   stage.touch(...view.layersOf(changed));
   panelStale = true;

@@ -94,7 +94,7 @@ export class Network {
   }
 
   #forgetAfter(t_s) {
-    this.timeline = this.timeline.filter((box) => box.from_s <= t_s);
+    this.timeline = this.timeline.filter((box) => box.to_s <= t_s);
     for (const [id, points] of this.series) {
       this.series.set(id, points.filter(([at]) => at <= t_s));
     }

@@ -22,8 +22,8 @@ export function showNumbers(network) {
     const noticed = recovery.detected_ms === null || recovery.detected_ms === undefined
       ? "not noticed yet" : `noticed after ${duration(recovery.detected_ms)}`;
     const isOpen = recovery.recovered_ms === null || recovery.recovered_ms === undefined;
-    const text = isOpen ? `${ago(network.now.t_s - recovery.at_s)} …` : duration(recovery.recovered_ms);
-    const state = isOpen ? "not over, " : "";
+    const text = isOpen ? ago(network.now.t_s - recovery.at_s) : duration(recovery.recovered_ms);
+    const state = isOpen ? "not yet, " : "";
     show("recovery", text, `${recovery.cause}: ${state}${noticed}`, isOpen ? "open" : "done");
   }
   const isRadio = network.kind === "radio"; // there everybody hears everybody
@@ -54,10 +54,10 @@ export class Log {
     this.list.replaceChildren();
   }
 
-  /** Time went back: what was later has not happened. */
-  forgetAfter(t_s) {
+  /** Time went back: what was then or later has not happened. */
+  forgetFrom(t_s) {
     for (const item of [...this.list.children]) {
-      if (Number(item.dataset.t_s) > t_s) item.remove();
+      if (Number(item.dataset.t_s) >= t_s) item.remove();
     }
   }
 
