@@ -61,7 +61,7 @@ class Page:
         self.backs.append(back_s)
         for name, points in self.series.items():
             self.series[name] = [point for point in points if point[0] <= back_s]
-        self.timeline = [box for box in self.timeline if box["from_s"] < back_s]
+        self.timeline = [box for box in self.timeline if box["to_s"] <= back_s]
         self.lines = [line for line in self.lines if line["t_s"] < back_s]
 
     async def until(self, what, limit_s=WAIT_S):

@@ -128,4 +128,6 @@ def _bound(host: str, port: int) -> socket.socket:
         return socket.create_server((host, port), family=family)
     except (OSError, OverflowError) as error:
         why = getattr(error, "strerror", None) or str(error)
-        raise WatchError(f"cannot listen at {host}:{port}: {why}; try another --host or --port") from None
+        raise WatchError(
+            f"cannot listen at {host}:{port}: {why}; try another --host or --port"
+        ) from None
