@@ -12,6 +12,7 @@ from innervate.cli import errors
 from innervate.cli.progress import Progress, is_compiled
 
 if TYPE_CHECKING:
+    from innervate.web.recorded import Recorded
     from innervate.web.source import Source
 
 LIVE = "live"
@@ -42,14 +43,17 @@ def watch(what: str, nodes: list[str], settings: Settings, place: Place) -> int:
     if not 0 <= place.port <= 65_535:
         raise errors.UserError(f"--port is 0 to 65535, not {place.port}")
     is_live = what == LIVE and not Path(what).exists()
+    source: Source
+    if settings.speed is not None:
+        _check_speed(settings.speed)
     if nodes and not is_live:
         raise errors.UserError(f'"{nodes[0]}" is too much; nodes go with: innervate watch live')
-    report = None
+    report: Path | None = None
     if is_live:
         source = _live(nodes, settings)
     elif Path(what).is_dir():
-        source = _recorded(Path(what), settings)
-        report = Path(what) / "report.html"
+        source = recorded = _recorded(Path(what), settings)
+        report = recorded.report
     else:
         source = _simulated(what, settings)
 
@@ -58,9 +62,18 @@ def watch(what: str, nodes: list[str], settings: Settings, place: Place) -> int:
         if place.opened:
             webbrowser.open(address)
 
-    found = report if report is not None and report.is_file() else None
-    asyncio.run(serve(source, place.host, place.port, announce, found))
+    asyncio.run(serve(source, place.host, place.port, announce, report))
     return 0
+
+
+def _check_speed(speed: float) -> None:
+    from innervate.web.errors import Refused
+    from innervate.web.pace import Pace
+
+    try:
+        Pace(speed)
+    except Refused as error:
+        raise errors.UserError(f"--speed: {error}, not {speed:g}") from None
 
 
 def _simulated(what: str, settings: Settings) -> Source:
@@ -75,7 +88,7 @@ def _simulated(what: str, settings: Settings) -> Source:
     return source
 
 
-def _recorded(folder: Path, settings: Settings) -> Source:
+def _recorded(folder: Path, settings: Settings) -> Recorded:
     from innervate.web.recorded import Recorded, plan_of
 
     if settings.sets or settings.seed is not None:

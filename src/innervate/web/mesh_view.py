@@ -41,6 +41,7 @@ class MeshMemory(Memory):
     latency_us: list[int] = field(default_factory=list)
     messages: dict[tuple[int, int], int] = field(default_factory=dict)
     alarms: dict[tuple[int, int], int] = field(default_factory=dict)
+    heard: set[int] = field(default_factory=set)  # who got a message through since the fault
 
 
 class MeshView(View):
@@ -76,6 +77,7 @@ class MeshView(View):
         memory, sent = self.memory, rows["sent"]
         np.add.at(memory.air_us, sent["node"], sent["end"] - sent["time"])
         if self.tell_faults():
+            memory.heard.clear()
             self.check()
         for at, node, code, a, b in rows["rows"].tolist():
             self._report(at, node, code, a, b)
@@ -84,6 +86,8 @@ class MeshView(View):
             accepted = memory.messages.pop((int(row["origin"]), int(row["seq"])), None)
             if accepted is not None:
                 memory.latency_us.append(int(row["time"]) - accepted)
+                if memory.fault is not None and accepted > memory.fault.at_us:
+                    memory.heard.add(int(row["origin"]))
         for row in came[came["kind"] == w.ALARM]:
             self._alarm_came(int(row["time"]), int(row["body0"]), int(row["body3"]))
 
@@ -157,10 +161,14 @@ class MeshView(View):
         return hop, *follow(over, self._roots())
 
     def _lacking(self) -> int:
-        """Nodes that could reach a gateway, and whose next hops do not lead to one."""
+        """Nodes that could reach a gateway, and neither do their next hops lead to one, nor has
+        anything that they sent since the fault come through.
+        """
         live = self._live()
         _hop, root, _depth = self._ways(live)
-        return int(np.count_nonzero(reach(live, self._roots()) & (root == NOWHERE)))
+        lacking = reach(live, self._roots()) & (root == NOWHERE)
+        lacking[list(self.memory.heard)] = False
+        return int(np.count_nonzero(lacking))
 
     def points(self) -> dict[str, float | None]:
         """A point of every plot, for now."""

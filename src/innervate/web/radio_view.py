@@ -15,7 +15,8 @@ from innervate.scenario.radio_plan import JOIN, KILL, RadioFault
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import TIMELINE, History
-from innervate.web.view import Memory, Recovery, View, number
+from innervate.web.recovery import Recovery
+from innervate.web.view import Memory, View, number
 
 KINDS = {DATA: "frame", OPEN: "voc", CRR: "cr", REPORT: "ack"}
 IDLE, SENDING, RECEIVING, SEVERAL, WAITING = range(5)
@@ -108,22 +109,23 @@ class RadioView(View):
                 behind += 1
             if end > now:
                 break
-            self._show(air[first:behind])
+            self._show(air[first:behind], end - 1)
             first = behind
         del air[:first]
 
-    def _show(self, group: list[list[int]]) -> None:
+    def _show(self, group: list[list[int]], at_us: int) -> None:
+        """Add a group to the timeline; `at_us` is its last moment."""
         carrying = any(kind in CARRYING for _, _, _, kind in group)
         collided = len(group) > 1 and carrying
         self.memory.collisions += collided
         if collided:
             stations = ", ".join(str(sent[2]) for sent in group[:6])
             more = ", ..." if len(group) > 6 else ""
-            self.log.often("collision", group[0][0], f"collision of stations {stations}{more}")
+            self.log.often("collision", at_us, f"collision of stations {stations}{more}")
         for start, end, station, kind in group:
             what = "collision" if collided and kind in CARRYING else KINDS.get(kind, "frame")
             box = {"station": station, "from_s": start / 1e6, "to_s": end / 1e6, "kind": what}
-            self.history.add(TIMELINE, start, box)
+            self.history.add(TIMELINE, at_us, box)
 
     def points(self) -> dict[str, float | None]:
         """A point of every plot, for now."""

@@ -47,6 +47,16 @@ class Recorded(Simulated):
         self._folder = folder
         self._summary = folders.read_json(folder, folders.SUMMARY)
 
+    @property
+    def report(self) -> Path | None:
+        """The run's page, if it was written."""
+        path = self._folder / folders.REPORT
+        return path if path.is_file() else None
+
+    def scene(self) -> dict[str, Any]:
+        """Nodes, links and what else stands still."""
+        return {**super().scene(), "report": self.report is not None}
+
     def replay(self, progress: Progress = lambda now_us, end_us: None) -> None:
         """Simulate it to its end, see that it is the same, and go back to the beginning.
 

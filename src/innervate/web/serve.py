@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import signal
 import socket
-from collections.abc import Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
+from typing import NamedTuple
 
 import uvicorn
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
@@ -26,31 +27,35 @@ ANYWHERE = ("0.0.0.0", "::", "")  # every address of this machine
 Announce = Callable[[str], None]
 
 
-async def serve(
-    source: Source, host: str, port: int, announce: Announce, report: Path | None = None
-) -> None:
-    """Serve a source's page until SIGINT or SIGTERM.
+class Served(NamedTuple):
+    """A page that can be opened; `address` has the token."""
+
+    address: str
+    hub: Hub
+
+
+@asynccontextmanager
+async def serving(
+    source: Source, host: str = "127.0.0.1", port: int = 0, report: Path | None = None
+) -> AsyncIterator[Served]:
+    """Serve a source's page; at the end pages are told, and the source is closed.
 
     Args:
-        source: what is watched; it is closed at the end.
-        host: address to bind.
+        source: what is watched.
+        host: address to listen at.
         port: 0 = any that is free.
-        announce: is given the page's address, once it can be opened.
         report: a run's page.
 
     Raises:
         WatchError: nobody can listen there.
     """
-    guard = Guard(host)
-    hub = Hub(source)
+    guard, hub = Guard(host), Hub(source)
     try:
         sock = _bound(host, port)
     except WatchError:
         source.close()
         raise
     with sock:
-        shown = socket.gethostname() if host in ANYWHERE else f"[{host}]" if ":" in host else host
-        address = f"http://{shown}:{sock.getsockname()[1]}/?token={guard.token}"
         config = uvicorn.Config(
             application(hub, guard, report),
             log_level="critical",
@@ -62,43 +67,58 @@ async def serve(
             ws_per_message_deflate=False,
             timeout_graceful_shutdown=LINGER_S,
         )
-        server = _Server(config, lambda: announce(address))
+        server, ready = _Server(config), asyncio.Event()
+        server.ready = ready.set
         hub.start()
-        ending = asyncio.create_task(_end_on_signal(hub, server))
+        running = asyncio.create_task(server.serve(sockets=[sock]))
+        running.add_done_callback(lambda _task: ready.set())
         try:
-            await server.serve(sockets=[sock])
+            await ready.wait()
+            shown = socket.gethostname() if host in ANYWHERE else host
+            shown = f"[{shown}]" if ":" in shown else shown
+            yield Served(f"http://{shown}:{sock.getsockname()[1]}/?token={guard.token}", hub)
         finally:
-            ending.cancel()
+            hub.say_end("the server was stopped")
+            await asyncio.sleep(GOODBYE_S if hub.pages else 0)
+            server.should_exit = True
+            await running
             hub.stop()
 
 
-async def _end_on_signal(hub: Hub, server: uvicorn.Server) -> None:
-    """Wait for a signal, say goodbye to the pages, end."""
-    loop, asked = asyncio.get_running_loop(), asyncio.Event()
+async def serve(
+    source: Source, host: str, port: int, announce: Announce, report: Path | None = None
+) -> None:
+    """Serve a source's page until SIGINT or SIGTERM; see `serving`.
+
+    Args:
+        source: what is watched.
+        host: address to listen at.
+        port: 0 = any that is free.
+        announce: is given the page's address, once it can be opened.
+        report: a run's page.
+    """
+    asked, loop = asyncio.Event(), asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, asked.set)
-    await asked.wait()
-    hub.say_end("the server was stopped")
-    await asyncio.sleep(GOODBYE_S if hub.pages else 0)
-    server.should_exit = True
+    async with serving(source, host, port, report) as served:
+        announce(served.address)
+        await asked.wait()
 
 
 class _Server(uvicorn.Server):
     """A server that leaves signals alone and says when it can be reached."""
 
-    def __init__(self, config: uvicorn.Config, ready: Callable[[], None]) -> None:
-        super().__init__(config)
-        self._ready = ready
+    ready: Callable[[], None]
 
-    @contextlib.contextmanager
+    @contextmanager
     def capture_signals(self) -> Iterator[None]:
-        """Signals are handled by `serve`."""
+        """Signals are for who serves."""
         yield
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         """Listen, and say so."""
         await super().startup(sockets)
-        self._ready()
+        self.ready()
 
 
 def _bound(host: str, port: int) -> socket.socket:
@@ -108,4 +128,6 @@ def _bound(host: str, port: int) -> socket.socket:
         return socket.create_server((host, port), family=family)
     except (OSError, OverflowError) as error:
         why = getattr(error, "strerror", None) or str(error)
-        raise WatchError(f"cannot listen at {host}:{port}: {why}; try --port 0") from None
+        raise WatchError(
+            f"cannot listen at {host}:{port}: {why}; try another --host or --port"
+        ) from None

@@ -112,11 +112,10 @@ class _Addressed:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] in ("http", "websocket"):
-            if not self._guard.knows(Headers(scope=scope)):
-                if scope["type"] == "http":
-                    answer = PlainTextResponse("not the name of this server\n", 421, _PAGE_HEADERS)
-                    await answer(scope, receive, send)
-                else:
-                    await send({"type": "websocket.close", "code": REFUSED})
-                return
-        await self._app(scope, receive, send)
+            if self._guard.knows(Headers(scope=scope)):
+                await self._app(scope, receive, send)
+            elif scope["type"] == "http":
+                answer = PlainTextResponse("not the name of this server\n", 421, _PAGE_HEADERS)
+                await answer(scope, receive, send)
+            else:
+                await send({"type": "websocket.close", "code": REFUSED})

@@ -11,34 +11,9 @@ from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import SERIES, History, Logbook
 from innervate.web.messages import Command, Cut, Heal, Kill, Revive
+from innervate.web.recovery import Recovery
 
 FLIGHTS_MAX = 2_000
-
-
-@dataclass(slots=True)
-class Recovery:
-    """How the network gets over the newest fault, as in a run's summary.
-
-    Attributes:
-        cause: in words.
-        at_us: when.
-        detected_ms: the first who noticed, from there.
-        recovered_ms: everybody has a way again since then; None = not yet.
-    """
-
-    cause: str
-    at_us: int
-    detected_ms: float | None = None
-    recovered_ms: float | None = None
-
-    def shown(self) -> dict[str, Any]:
-        """For pages."""
-        return {
-            "cause": self.cause,
-            "at_s": self.at_us / 1e6,
-            "detected_ms": self.detected_ms,
-            "recovered_ms": self.recovered_ms,
-        }
 
 
 @dataclass(slots=True)
