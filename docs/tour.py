@@ -19,10 +19,8 @@ from playwright.sync_api import expect, sync_playwright
 from tests.watch_net import PHONE, click, serving
 
 FOLDER = Path(__file__).resolve().parent / "images"
-COLOURS = 256  # of a picture's palette
 FINE = 1.5  # px of the picture per px of the page
-NO_DITHER = Image.Dither.NONE
-PAGE = {"width": 1120, "height": 680}
+PAGE = {"width": 1160, "height": 760}
 WAIT_MS = 60_000
 
 
@@ -40,7 +38,7 @@ def at(page: Any, t_s: float) -> None:
 def skin(page: Any) -> None:
     """A cable is cut by a click; 13 ms later half of the cells look for a way."""
     at(page, 1.0)
-    click(page, "p0 r16 c7 – pc.1")
+    click(page, "p0 r16 c7 - pc.1")
     expect(page.locator("#selected-facts")).to_have_text("link, cut")
     page.locator("#speed").fill("2")
     at(page, 1.0145)
@@ -96,7 +94,7 @@ def take(browser: Any, name: str) -> int:
         taken = Image.open(BytesIO(page.screenshot()))
         page.close()
     path = FOLDER / f"watch-{name}.png"
-    few = taken.convert("RGB").quantize(COLOURS, Image.Quantize.MEDIANCUT, dither=NO_DITHER)
+    few = taken.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
     few.save(path, optimize=True)
     return path.stat().st_size
 

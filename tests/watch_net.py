@@ -11,9 +11,26 @@ from contextlib import contextmanager
 import pytest
 
 TOKEN = "a-token-of-the-tests"
+WAIT_MS = 20_000
 START_S = 240  # the first simulation of a kind is compiled
 WIDE = {"width": 1280, "height": 800}
 PHONE = {"width": 360, "height": 740}
+SKIN = """
+kind = "skin"
+name = "a <b>small</b> skin"
+duration_s = 60
+[[patch]]
+columns = 8
+rows = 6
+[[interface]]
+row = 0
+column = 2
+[[interface]]
+row = 5
+column = 6
+[protocol]
+updates = "wave"
+"""
 
 
 @contextmanager
@@ -51,3 +68,11 @@ def place(page, name):
 def click(page, name):
     """Click a node or link."""
     page.mouse.click(*place(page, name))
+
+
+def expect(locator):
+    """Playwright's `expect`, for machines that have other work, too."""
+    from playwright import sync_api
+
+    sync_api.expect.set_options(timeout=WAIT_MS)
+    return sync_api.expect(locator)

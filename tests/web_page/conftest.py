@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.watch_net import WIDE, serving
+from tests.watch_net import SKIN, WIDE, serving
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
@@ -46,24 +46,6 @@ def look(browser, request, tmp_path):
             page.screenshot(path=folder / f"{request.node.name}-{number}.png", full_page=True)
         context.close()
     assert wrong == []
-
-
-SKIN = """
-kind = "skin"
-name = "a small skin"
-duration_s = 600
-[[patch]]
-columns = 8
-rows = 6
-[[interface]]
-row = 0
-column = 2
-[[interface]]
-row = 5
-column = 6
-[protocol]
-updates = "wave"
-"""
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""The committed bundle of the page is what its sources make, and keeps to what the page promises."""
+"""The committed bundle of the page is what its sources make, and keeps what the page promises."""
 
 import hashlib
 import re

@@ -7,11 +7,13 @@ token, it cannot hide its origin, and a name that it has lead here (DNS rebindin
 from __future__ import annotations
 
 import ipaddress
+import os
 import secrets
 import socket
 from collections.abc import Mapping
 
 TOKEN_BYTES = 18
+TOKEN_GIVEN = "INNERVATE_WATCH_TOKEN"  # so that pages know a server that was started anew
 REFUSED = 4403  # close code of a socket
 
 
@@ -23,7 +25,7 @@ class Guard:
     """
 
     def __init__(self, host: str) -> None:
-        self.token = secrets.token_urlsafe(TOKEN_BYTES)
+        self.token = os.environ.get(TOKEN_GIVEN) or secrets.token_urlsafe(TOKEN_BYTES)
         own = socket.gethostname().lower()
         self._names = {"localhost", host.lower(), own, f"{own}.local", socket.getfqdn().lower()}
 

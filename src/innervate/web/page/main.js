@@ -86,7 +86,7 @@ function showScene(scene) {
   card.show(view, null);
   log.clear();
   $("name").textContent = scene.name;
-  document.title = `${scene.name} – innervate watch`;
+  document.title = `${scene.name} - innervate watch`;
   $("what").textContent = `${scene.kind}, ${SOURCES[scene.source] ?? scene.source}`;
   $("report").hidden = !scene.report;
   $("report").href = `report?token=${encodeURIComponent(TOKEN)}`;

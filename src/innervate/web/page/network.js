@@ -75,7 +75,7 @@ export class Network {
 
   linkName(link) {
     const [a, b] = this.ends[link];
-    return `${this.nodes[a].label} – ${this.nodes[b].label}`;
+    return `${this.nodes[a].label} - ${this.nodes[b].label}`;
   }
 
   #addPoints(id, points) {

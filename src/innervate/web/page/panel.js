@@ -133,7 +133,7 @@ export class Card {
     if (node !== undefined) return command.do === "kill" ? "Kill" : "Revive";
     const verb = command.do === "cut" ? "Cut" : "Heal";
     if (from === undefined) return `${verb} this link`;
-    return `${verb} – ${network.nodes[network.across(link, from)].label}`;
+    return `${verb}: ${network.nodes[network.across(link, from)].label}`;
   }
 }
 

@@ -99,7 +99,7 @@ export class RadioView {
     });
   }
 
-  /** Who sends now, to the middle of the ring; of two nobody hears one. */
+  /** Who sends now, to the middle of the ring. */
   #waves(context, stage, x0, y0) {
     const { radio, now } = this.network;
     const senders = radio.now.flatMap((state, i) => (state === SENDS && now.node_up[i] ? [i] : []));
@@ -110,7 +110,7 @@ export class RadioView {
     }
     stroke(context, senders.length > 1 ? colours.alarm : colours.accent, 2.4, path,
       senders.length > 1 ? [6, 4] : []);
-    const text = senders.length > 1 ? "several send" : senders.length ? "one sends" : "channel free";
+    const text = ["channel free", "one sends", "several send"][Math.min(2, senders.length)];
     context.textAlign = "center";
     word(context, text, x0, y0, senders.length > 1 ? colours.alarm : colours.ink, colours.ground,
       "600 13px system-ui, sans-serif");

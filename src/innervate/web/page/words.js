@@ -41,7 +41,7 @@ export const SPEEDS = [
 
 /** A speed in times real time; 0 = as fast as possible. */
 export function speed(v) {
-  return v === 0 ? "fastest" : `${v}×`;
+  return v === 0 ? "fastest" : `${v}x`;
 }
 
 /** The place on the slider nearest to a speed. */
