@@ -16,22 +16,22 @@ name = "a row"
 duration_s = 60
 [[node]]
 name = "home"
-x = 0
-y = 0
+x_m = 0
+y_m = 0
 [[node]]
 name = "middle"
-x = 25
-y = 0
+x_m = 25
+y_m = 0
 [[node]]
 name = "far"
-x = 50
-y = 0
+x_m = 50
+y_m = 0
 [fence]
 polygon = [[-10, -10], [60, -10], [60, 10], [-10, 10]]
 """
-PAINTED = """(selector) => [...document.querySelectorAll(`${selector} canvas`)].reduce((sum, canvas) =>
-  sum + canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data
-    .filter((_, i, data) => i % 4 === 3 && data[i]).length, 0)"""
+PAINTED = """(selector) => [...document.querySelectorAll(`${selector} canvas`)]
+  .map((canvas) => canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data)
+  .reduce((sum, data) => sum + data.filter((value, i) => i % 4 === 3 && value).length, 0)"""
 
 
 def test_a_radio_team(look, tmp_path):
