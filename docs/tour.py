@@ -36,12 +36,12 @@ def at(page: Any, t_s: float) -> None:
 
 
 def skin(page: Any) -> None:
-    """A cable is cut by a click; 13 ms later half of the cells look for a way."""
+    """A cable is cut by a click; 16 ms later the way back spreads."""
     at(page, 1.0)
     click(page, "p0 r16 c7 - pc.1")
     expect(page.locator("#selected-facts")).to_have_text("link, cut")
     page.locator("#speed").fill("2")
-    at(page, 1.0145)
+    at(page, 1.0162)
 
 
 def touch(page: Any) -> None:

@@ -3,7 +3,7 @@ import { colours } from "./colours.js";
 import { Labels } from "./labels.js";
 import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
-import { arrow, cross, flights, stroke, word } from "./shapes.js";
+import { arrow, boxRound, cross, flights, stroke, word } from "./shapes.js";
 import { symbol } from "./symbols.js";
 import { plural } from "./words.js";
 
@@ -26,13 +26,9 @@ export class MeshView {
   }
 
   bounds() {
-    const fence = (this.network.scene.fence ?? []).flat();
-    const all = [...this.network.place, ...fence];
-    const xs = all.map(([x]) => x);
-    const ys = all.map(([, y]) => y);
-    const least = Math.max(1, 0.02 * (Math.max(...xs) - Math.min(...xs)));
-    return [Math.min(...xs) - least, Math.min(...ys) - least, Math.max(...xs) + least,
-      Math.max(...ys) + least];
+    const all = [...this.network.place, ...(this.network.scene.fence ?? []).flat()];
+    const [left, , right] = boxRound(all, 0);
+    return boxRound(all, Math.max(1, 0.02 * (right - left)));
   }
 
   layersOf(changed) {

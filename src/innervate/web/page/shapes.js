@@ -24,6 +24,18 @@ export function prepared(canvas, width, height) {
   return context;
 }
 
+/** The smallest box round places, as [left, top, right, bottom], wider by `more` on all sides. */
+export function boxRound(places, more) {
+  const box = [Infinity, Infinity, -Infinity, -Infinity];
+  for (const [x, y] of places) {
+    box[0] = Math.min(box[0], x - more);
+    box[1] = Math.min(box[1], y - more);
+    box[2] = Math.max(box[2], x + more);
+    box[3] = Math.max(box[3], y + more);
+  }
+  return box;
+}
+
 /** Add a hexagon to a path. */
 export function hexagon(path, x, y, pitch) {
   path.moveTo(x + HEXAGON[0][0] * pitch, y + HEXAGON[0][1] * pitch);

@@ -2,7 +2,7 @@
 import { colours, shade } from "./colours.js";
 import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
-import { brick, cross, flights, hexagon, stroke, word } from "./shapes.js";
+import { boxRound, brick, cross, flights, hexagon, stroke, word } from "./shapes.js";
 import { plural } from "./words.js";
 
 const NEAR = 1.6; // cables up to this many pitches long are between neighbours
@@ -31,11 +31,7 @@ export class SkinView {
   }
 
   bounds() {
-    const shown = this.network.place.filter((_, i) => !this.hidden[i]);
-    const xs = shown.map(([x]) => x);
-    const ys = shown.map(([, y]) => y);
-    return [Math.min(...xs) - 0.5, Math.min(...ys) - 0.5, Math.max(...xs) + 0.5,
-      Math.max(...ys) + 0.5];
+    return boxRound(this.network.place.filter((_, i) => !this.hidden[i]), 0.5);
   }
 
   layersOf(changed) {
@@ -137,7 +133,7 @@ export class SkinView {
 
   #ground(context, stage) {
     const { network } = this;
-    this.deepest = Math.max(1, ...network.now.depth);
+    this.deepest = network.now.depth.reduce((most, hops) => Math.max(most, hops), 1);
     const kinds = network.nodes.map((_, i) => (this.isCell[i] ? this.kindOf(i) : ""));
     const same = this.drawnAt === stage.transform && this.area === stage.width * stage.height;
     const numbered = stage.scale >= WORDS_PX;
