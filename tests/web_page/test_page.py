@@ -67,6 +67,7 @@ def test_keys_alone_cut_and_heal(look, skin):
 def test_every_control_has_a_name_and_is_reached_by_tab(look, skin):
     page = look(skin)
     click(page, OTHER)
+    expect(page.locator("#selected-facts")).to_have_text("link, cut")
     found = {}
     for _ in range(STOPS_MAX):
         page.keyboard.press("Tab")
@@ -84,6 +85,7 @@ def test_every_control_has_a_name_and_is_reached_by_tab(look, skin):
     assert all(name.strip() for name, _ in found.values())
     assert all(outline == "solid" for one, (_, outline) in found.items() if one in wanted)
     click(page, OTHER)
+    expect(page.locator("#selected-facts")).to_have_text("link, up")
 
 
 def test_pause_step_and_speed(look, skin):
@@ -111,6 +113,7 @@ def test_scrubbing_leads_back(look, skin):
     page.locator("#seek").fill("0.5")
     expect(page.locator("#clock")).to_have_text(re.compile(r"^0\.500000 s"))
     page.locator("#go").click()
+    expect(page.locator("#go")).to_have_text("Pause")
 
 
 def test_two_pages_see_the_same(look, skin):
@@ -146,13 +149,20 @@ def test_a_phone_shows_it_all(look, skin):
     page = look(skin, PHONE, has_touch=True, is_mobile=True)
     assert page.evaluate("document.documentElement.scrollWidth") == PHONE["width"]
     page.touchscreen.tap(*place(page, OTHER))
-    expect(page.locator("#selected-name")).to_have_text(OTHER)
-    facts = text(page, "#selected-facts")
+    expect(page.locator("#selected-facts")).to_have_text("link, cut")
     page.locator("#selected-do button").tap()
-    expect(page.locator("#selected-facts")).not_to_have_text(facts)
-    page.locator("#selected-do button").tap()
-    expect(page.locator("#selected-facts")).to_have_text(facts)
+    expect(page.locator("#selected-facts")).to_have_text("link, up")
     assert page.evaluate("document.documentElement.scrollWidth") == PHONE["width"]
+
+
+def test_a_tap_on_what_is_smaller_than_a_finger_only_selects(look, skin):
+    page = look(skin, {"width": 200, "height": 740}, has_touch=True)
+    page.touchscreen.tap(*place(page, "p0 r2 c3"))
+    expect(page.locator("#selected-name")).to_have_text("p0 r2 c3")
+    page.locator("#selected-do button", has_text="Kill").tap()
+    expect(page.locator("#selected-facts")).to_have_text("switched off")
+    page.locator("#selected-do button", has_text="Revive").tap()
+    expect(page.locator("#selected-facts")).to_contain_text("through port")
 
 
 def test_the_scenario_is_saved_with_what_was_done(look, skin):
@@ -166,6 +176,7 @@ def test_the_scenario_is_saved_with_what_was_done(look, skin):
     assert 'name = "a <b>small</b> skin"' in saved
     assert 'action = "cut"' in saved
     click(page, OTHER)
+    expect(page.locator("#selected-facts")).to_have_text("link, up")
 
 
 def test_keys_are_listed(look, skin):
