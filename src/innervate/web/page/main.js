@@ -23,6 +23,7 @@ const $ = (id) => document.getElementById(id);
 let network = null;
 let view = null;
 let plots = null;
+let chosenColour = null; // outlives a server that is started anew
 let panelDue = 0;
 let panelStale = false;
 
@@ -90,11 +91,15 @@ function showScene(scene) {
   $("what").textContent = `${scene.kind}, ${SOURCES[scene.source] ?? scene.source}`;
   $("report").hidden = !scene.report;
   $("report").href = `report?token=${encodeURIComponent(TOKEN)}`;
-  options($("colour"), $("colour-box"), view.choices(), view.colour);
+  const choices = view.choices();
+  if (choices.some(([name]) => name === chosenColour)) view.colour = chosenColour;
+  options($("colour"), $("colour-box"), choices, view.colour);
   const { can } = network;
   const acts = can.has("cut") || can.has("kill");
+  const deed = !can.has("kill") ? "cuts or heals"
+    : can.has("cut") ? "cuts and kills, or heals" : "switches off or on";
   options($("tool"), $("tool-box"), [
-    ...(acts ? [["cut", "cuts and kills, or heals"]] : []),
+    ...(acts ? [["cut", deed]] : []),
     ...(can.has("touch") ? [["touch", "touches"]] : []),
     ["look", "only selects"],
   ]);
@@ -154,7 +159,7 @@ function download(toml) {
 }
 
 function setColour(name) {
-  view.colour = name;
+  view.colour = chosenColour = name;
   $("colour").value = name;
   redraw();
 }

@@ -27,8 +27,8 @@ export class MeshView {
 
   bounds() {
     const all = [...this.network.place, ...(this.network.scene.fence ?? []).flat()];
-    const [left, , right] = boxRound(all, 0);
-    return boxRound(all, Math.max(1, 0.02 * (right - left)));
+    const [left, top, right, bottom] = boxRound(all, 0);
+    return boxRound(all, 0.04 * Math.max(right - left, bottom - top) || 1);
   }
 
   layersOf(changed) {
@@ -147,7 +147,7 @@ export class MeshView {
     draw("cut", colours.alarm, 2, [4, 3]);
     stroke(context, colours.ink, 2, fence);
     this.#gaps(context, stage);
-    this.#measure(context, stage);
+    if (network.scene.source !== "live") this.#measure(context, stage);
   }
 
   #gaps(context, stage) {
@@ -160,7 +160,7 @@ export class MeshView {
     stroke(context, colours.alarm, 3, gaps);
   }
 
-  /** A bar that says how long so many metres are. */
+  /** A bar that says how long so many metres are; live nodes do not know where they are. */
   #measure(context, stage) {
     const most = 130 / stage.scale;
     const ten = 10 ** Math.floor(Math.log10(most));

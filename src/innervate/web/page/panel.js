@@ -16,7 +16,7 @@ function show(id, text, more, state) {
 export function showNumbers(network) {
   const { since_cut_s: since, recovery, unconnected } = network.now;
   const none = since === null || since === undefined;
-  show("since", none ? "–" : ago(since), none ? "nothing was cut yet" : "", "");
+  show("since", none ? "–" : ago(since), none ? "none yet" : "", "");
   if (!recovery) show("recovery", "–", "", "");
   else {
     const noticed = recovery.detected_ms === null || recovery.detected_ms === undefined
@@ -28,6 +28,8 @@ export function showNumbers(network) {
   }
   const isRadio = network.kind === "radio"; // there everybody hears everybody
   $("unconnected").querySelector(".label").textContent = isRadio ? "switched off" : "without a way";
+  $("since").querySelector(".label").textContent = `since the last ${isRadio ? "failure" : "cut"}`;
+  $("recovery").hidden = isRadio;
   const all = network.nodes.filter((node) => node.role !== "sink" && node.role !== "port").length;
   show("unconnected", String(unconnected), `of ${plural(all, WORDS[network.kind])}`,
     unconnected ? "bad" : "");
