@@ -70,6 +70,15 @@ class Page:
             while not what():
                 await self.take()
 
+    async def closed(self, limit_s=WAIT_S):
+        """Take messages until the server hangs up; its code."""
+        async with asyncio.timeout(limit_s):
+            while True:
+                try:
+                    await self.take()
+                except websockets.ConnectionClosed:
+                    return self.socket.close_code
+
     async def give(self, do, **fields):
         await self.socket.send(json.dumps({"do": do, **fields}))
 

@@ -325,3 +325,30 @@ def test_plans_are_not_altered():
     made = simulated(SKIN)
     made.carry_out(messages.Cut(0))
     assert (plan.faults, list(plan.graph.peer)) == before
+
+
+@pytest.mark.parametrize("touch", [{}, {"touch": {"path": [[0.0, 0.0, 0.0], [0.9, 80.0, 50.0]]}}])
+def test_a_touch_by_hand_is_felt_and_replayed(touch):
+    made = simulated(SKIN, **touch)
+    go_to(made, 0.3)
+    made.carry_out(messages.Touch(20, 255))
+    go_to(made, 0.5)
+    felt = made.fields()["touch"]
+    assert felt[20] == felt.max() > 200
+    assert felt[0] == 0
+    made.carry_out(messages.Touch(20, 0))
+    go_to(made, 0.8)
+    assert made.fields()["touch"].max() == 0
+    go_to(made, 0.4)  # and again
+    assert made.fields()["touch"][20] > 200
+    made.run_to_end()
+    again = run(scenario.loads(saved(made.view)))
+    assert again.result.fingerprint == made.engine.fingerprint
+    assert again.result.fingerprint != run({**SKIN, **touch}).result.fingerprint
+
+
+def test_without_data_nothing_is_felt():
+    made = simulated(SKIN, data={"rate_hz": 0})
+    assert "touch" not in made.scene()["can"]
+    with pytest.raises(Refused):
+        made.carry_out(messages.Touch(3, 255))

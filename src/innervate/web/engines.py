@@ -22,8 +22,9 @@ from innervate.sim.mesh import simulate as mesh
 from innervate.sim.radio import build as radio_build
 from innervate.sim.radio import heap
 from innervate.sim.radio import simulate as radio
-from innervate.web.engine import Engine
+from innervate.web.engine import Engine, Mark
 from innervate.web.errors import WatchError
+from innervate.web.touching import Finger
 
 Loop = Callable[[Any, int, int], None]
 
@@ -50,6 +51,20 @@ class SkinEngine(Engine):
     """A skin."""
 
     tables: ClassVar[tuple[str, ...]] = ("rows", "deliveries")
+    finger: Finger | None = None  # once a hand has touched the skin
+
+    def touch(self, cell: int | None) -> None:
+        """Touch a cell from now on, or none."""
+        if self.finger is None:
+            self.finger = Finger(self.plan)
+        self.finger.move(self.earliest_us, cell)
+        self.world = self.finger.into(self.world)
+
+    def back_to(self, mark: Mark) -> None:
+        """Go back to a moment that was remembered; what was touched later is touched again."""
+        super().back_to(mark)
+        if self.finger is not None:
+            self.world = self.finger.into(self.world)
 
     def next_us(self) -> int | None:
         """When something happens next."""

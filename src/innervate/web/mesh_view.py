@@ -49,7 +49,7 @@ class MeshView(View):
 
     speed: ClassVar[float] = 1.0
     slow: ClassVar[float] = 0.2
-    can: ClassVar[tuple[str, ...]] = ("cut", "heal", "kill", "revive")
+    can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
     check_us: ClassVar[int] = 10_000
 
     def __init__(self, engine: Engine, history: History) -> None:

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
 import msgspec
 
 from innervate.web.errors import Refused
 
 LENGTH_MAX = 4096
+
+Number = Annotated[int, msgspec.Meta(ge=0, le=100_000_000)]
+Level = Annotated[int, msgspec.Meta(ge=0, le=255)]
+Seconds = Annotated[float, msgspec.Meta(ge=0, le=1e9)]
 
 
 class _Command(msgspec.Struct, frozen=True, tag_field="do", forbid_unknown_fields=True):
@@ -18,32 +23,32 @@ class _Command(msgspec.Struct, frozen=True, tag_field="do", forbid_unknown_field
 class Cut(_Command, frozen=True, tag="cut"):
     """Cut a link."""
 
-    link: int
+    link: Number
 
 
 class Heal(_Command, frozen=True, tag="heal"):
     """Put a link back."""
 
-    link: int
+    link: Number
 
 
 class Kill(_Command, frozen=True, tag="kill"):
     """Switch a node off without warning."""
 
-    node: int
+    node: Number
 
 
 class Revive(_Command, frozen=True, tag="revive"):
     """Switch a node on again."""
 
-    node: int
+    node: Number
 
 
 class Touch(_Command, frozen=True, tag="touch"):
     """Touch a cell: 1 .. 255 presses it, 0 lets go."""
 
-    node: int
-    value: int
+    node: Number
+    value: Level
 
 
 class Pause(_Command, frozen=True, tag="pause"):
@@ -67,7 +72,7 @@ class Speed(_Command, frozen=True, tag="speed"):
 class Seek(_Command, frozen=True, tag="seek"):
     """Go to a moment of the network's time."""
 
-    t_s: float
+    t_s: Seconds
 
 
 class Save(_Command, frozen=True, tag="save"):

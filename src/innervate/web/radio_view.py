@@ -39,7 +39,7 @@ class RadioView(View):
 
     speed: ClassVar[float] = 0.1
     slow: ClassVar[float] = 0.0
-    can: ClassVar[tuple[str, ...]] = ("kill", "revive")
+    can: tuple[str, ...] = ("kill", "revive")
 
     def __init__(self, engine: Engine, history: History) -> None:
         super().__init__(engine, history)

@@ -34,7 +34,7 @@ def saved(view: View) -> str:
         else:
             events.append(table)
     events += [_event(view, fault) for fault in view.engine.given]
-    return to_toml({**tables, "event": events} if events else tables)
+    return to_toml({**tables, **view.extra(), **({"event": events} if events else {})})
 
 
 def _event(view: View, fault: Any) -> dict[str, Any]:

@@ -221,8 +221,8 @@ class Simulated(Source):
         """Something is done to the network, now."""
         if self.broken or self.engine.now_us >= self.plan.duration_us:
             raise Refused("this is the end; go back first")
-        fault = self.view.fault(command)
-        self._marks = [kept for kept in self._marks if kept.engine.now_us <= fault.at_us]
-        self.engine.add(fault)
-        self._advance(fault.at_us + 1)
+        at_us = self.engine.earliest_us
+        self.view.apply(command)
+        self._marks = [kept for kept in self._marks if kept.engine.now_us <= at_us]
+        self._advance(at_us + 1)
         self.pace.start_from(self.engine.now_us)

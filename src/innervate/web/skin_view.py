@@ -31,8 +31,10 @@ from innervate.sim.wires import (
 from innervate.sim.world import DEAD
 from innervate.topology import PORTS
 from innervate.web.engine import Engine, Rows
+from innervate.web.engines import SkinEngine
 from innervate.web.errors import Refused
 from innervate.web.history import History
+from innervate.web.messages import Command, Touch
 from innervate.web.skin_scene import nodes_of_ends, places
 from innervate.web.view import FLIGHTS_MAX, Memory, View, number
 from innervate.web.ways import NOWHERE, follow
@@ -59,7 +61,7 @@ class SkinView(View):
 
     speed: ClassVar[float] = 0.1
     slow: ClassVar[float] = 0.05
-    can: ClassVar[tuple[str, ...]] = ("cut", "heal", "kill", "revive")
+    can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
 
     def __init__(self, engine: Engine, history: History) -> None:
         super().__init__(engine, history)
@@ -72,9 +74,10 @@ class SkinView(View):
             1e6 / self.plan.data_period_us if self.plan.data_period_us else HZ_WITHOUT_DATA
         )
         self._planned = {fault.index: fault for fault in self.plan.faults}
-        self.memory = SkinMemory(
-            touch=np.zeros(self.cells, np.int64), touch_us=np.full(self.cells, -STALE_US, np.int64)
-        )
+        touch_us = np.full(self.cells, -STALE_US, np.int64)
+        self.memory = SkinMemory(touch=np.zeros(self.cells, np.int64), touch_us=touch_us)
+        if self.plan.data_period_us:
+            self.can = (*self.can, "touch")
 
     def scene(self) -> dict[str, Any]:
         """Nodes, links and what else stands still."""
@@ -240,6 +243,23 @@ class SkinView(View):
             {"a": a, "b": b, "kind": KINDS.get(kind, "restart"), "p": p}
             for a, b, kind, p in zip(*(column.tolist() for column in columns), strict=True)
         ]
+
+    def apply(self, command: Command) -> None:
+        """Have a command happen at the earliest moment."""
+        if not isinstance(command, Touch):
+            super().apply(command)
+            return
+        cell = number("cell", command.node, self.cells)
+        assert isinstance(self.engine, SkinEngine)
+        self.engine.touch(cell if command.value else None)
+        what = f"{self.plan.graph.label(cell)} touched" if command.value else "let go"
+        self.log.often("touch", self.engine.now_us, what)
+
+    def extra(self) -> dict[str, Any]:
+        """The touch, as a hand has led it."""
+        assert isinstance(self.engine, SkinEngine)
+        finger = self.engine.finger
+        return {} if finger is None else {"touch": finger.table()}
 
     def words(self, fault: Any) -> str:
         """A fault in words."""

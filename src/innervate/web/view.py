@@ -36,7 +36,7 @@ class View(ABC):
     # frames on their way can.
     speed: ClassVar[float]
     slow: ClassVar[float]
-    can: ClassVar[tuple[str, ...]]
+    can: tuple[str, ...]
     # `check` is called at multiples of this time, us, while somebody has no way; 0 = never.
     check_us: ClassVar[int] = 0
     memory: Any
@@ -109,6 +109,18 @@ class View(ABC):
         else:
             raise Refused("not possible here")
         return self.make(self.engine.earliest_us, self.engine.next_index, fields)
+
+    def apply(self, command: Command) -> None:
+        """Have a command happen at the earliest moment.
+
+        Raises:
+            Refused: see `fault`.
+        """
+        self.engine.add(self.fault(command))
+
+    def extra(self) -> dict[str, Any]:
+        """Tables of the scenario, besides its events, that commands have changed."""
+        return {}
 
     def begin_fault(self, fault: Any) -> Recovery:
         """Something is done to the network now."""
