@@ -1,7 +1,7 @@
 // Builds ../static from the sources in this folder. `node build.mjs [FOLDER]` writes elsewhere.
 //
 // What is built carries a fingerprint of what it was built from, so that a test without Node can
-// tell whether it is current (tests/web_page/test_bundle.py).
+// tell whether it is current (tests/browser/test_bundle.py).
 import { createHash } from "node:crypto";
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";

@@ -38,7 +38,7 @@ let slowest = 0;
 const stage = new Stage($("stage"));
 const log = new Log($("log"));
 const controls = new Controls(send);
-const card = new Card(act);
+const card = new Card(change);
 const pointer = new Pointer(stage, { select: (what) => card.show(view, what), act });
 const timeline = new Timeline($("timeline"));
 const nextTheme = setUpTheme($("theme"), redraw);
@@ -58,6 +58,11 @@ function act(what) {
     const value = network.now.touch[what.node] ? 0 : TOUCHED;
     return send({ do: "touch", node: network.nodes[what.node].id, value });
   }
+  change(what);
+}
+
+/** Cut, kill, heal or revive something, whatever a click does. */
+function change(what) {
   const command = commandFor(network, what);
   if (command) send(command);
 }

@@ -84,9 +84,9 @@ export class Log {
 
 /** What is selected: its name, what is known of it, and a button for all that can be done. */
 export class Card {
-  /** @param {(what: object) => void} act cuts, kills or heals something */
-  constructor(act) {
-    this.act = act;
+  /** @param {(what: object) => void} change cuts, kills, heals or revives something */
+  constructor(change) {
+    this.change = change;
     this.shown = "";
   }
 
@@ -119,7 +119,7 @@ export class Card {
       box.replaceChildren(...wanted.map(([one]) => {
         const button = document.createElement("button");
         button.type = "button";
-        button.addEventListener("click", () => this.act(one));
+        button.addEventListener("click", () => this.change(one));
         return button;
       }));
       this.shown = key;

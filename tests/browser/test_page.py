@@ -3,7 +3,7 @@
 import re
 import socket
 
-from tests.watch_net import PHONE, SKIN, click, expect, place, serving
+from tests.browser_net import PHONE, SKIN, click, expect, place, serving
 
 CABLE = "p0 r0 c2 - pc.0"
 OTHER = "p0 r2 c3 - p0 r2 c4"
@@ -21,7 +21,7 @@ def test_it_shows_the_network_and_asks_nobody_else(look, skin):
     expect(page.locator("#name")).to_have_text("a <b>small</b> skin")  # a name is no markup
     expect(page.locator("#connection")).to_have_text("connected")
     expect(page.locator("#unconnected .more")).to_have_text("of 48 cells")
-    expect(page.locator(".plot")).to_have_count(2)
+    expect(page.locator(".plot")).to_have_count(3)
     asked = page.evaluate("performance.getEntriesByType('resource').map((one) => one.name)")
     assert asked
     assert all(address.startswith(skin.partition("?")[0]) for address in asked)
@@ -45,6 +45,20 @@ def test_a_click_kills_a_cell_and_the_next_revives_it(look, skin):
     click(page, "p0 r3 c3")
     expect(page.locator("#selected-facts")).to_have_text("switched off")
     click(page, "p0 r3 c3")
+    expect(page.locator("#selected-facts")).to_contain_text("through port")
+
+
+def test_a_click_touches_a_cell_and_the_pc_receives_it(look, skin):
+    page = look(skin)
+    page.locator("#tool").select_option("touch")
+    page.locator("#colour").select_option("touch")
+    click(page, "p0 r4 c1")
+    expect(page.locator("#selected-facts")).to_contain_text("touched")
+    click(page, "p0 r4 c1")
+    expect(page.locator("#selected-facts")).not_to_contain_text("touched")
+    page.locator("#selected-do button", has_text="Kill").click()
+    expect(page.locator("#selected-facts")).to_have_text("switched off")
+    page.locator("#selected-do button", has_text="Revive").click()
     expect(page.locator("#selected-facts")).to_contain_text("through port")
 
 
@@ -155,7 +169,7 @@ def test_a_phone_shows_it_all(look, skin):
 
 
 def test_a_tap_on_what_is_smaller_than_a_finger_only_selects(look, skin):
-    page = look(skin, {"width": 200, "height": 740}, has_touch=True)
+    page = look(skin, {"width": 200, "height": 1600}, has_touch=True)
     page.touchscreen.tap(*place(page, "p0 r2 c3"))
     expect(page.locator("#selected-name")).to_have_text("p0 r2 c3")
     page.locator("#selected-do button", has_text="Kill").tap()

@@ -30,6 +30,8 @@ row = 5
 column = 6
 [protocol]
 updates = "wave"
+[data]
+rate_hz = 50
 """
 
 
