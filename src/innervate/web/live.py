@@ -206,7 +206,8 @@ class Live(Source):
             raise Refused("neither end could be told; do they still run?")
         names = f"{self._label(link.a)} - {self._label(link.b)}"
         cause = f"link {names} {'put back' if heal else 'cut'}"
-        self._recovery = Recovery(cause, self._now_us())
+        if not heal:
+            self._recovery = Recovery(cause, self._now_us())
         self._log.say(self._now_us(), cause)
         self._next = 0.0
         return None
