@@ -13,6 +13,7 @@ from innervate.web.history import LOG, SERIES, TIMELINE, History, Logbook
 from innervate.web.messages import Command, Cut, Go, Pause, Seek, Speed, name_of, parse
 from innervate.web.pace import Pace
 from innervate.web.snapshot import Part, Snapshot, Teller
+from innervate.web.ways import follow, reach
 
 SCENE = Part({"type": "scene"})
 
@@ -215,3 +216,30 @@ def test_nothing_that_a_page_sends_raises_anything_else(text):
     except Refused:
         return
     assert isinstance(command, Command)
+
+
+HOPS = st.lists(st.integers(-1, 11), min_size=12, max_size=12)
+
+
+@given(HOPS, st.sets(st.integers(0, 11)))
+def test_chains_are_followed_to_their_roots(hops, roots):
+    is_root = np.isin(np.arange(12), list(roots))
+    root, depth = follow(np.array(hops), is_root)
+    for start in range(12):
+        node, steps = start, 0
+        while node != -1 and node not in roots and steps <= 12:
+            node, steps = hops[node], steps + 1
+        there = node in roots
+        assert root[start] == (node if there else -1)
+        assert depth[start] == (steps if there else -1)
+
+
+@given(st.sets(st.tuples(st.integers(0, 7), st.integers(0, 7))), st.sets(st.integers(0, 7)))
+def test_what_can_be_reached_is_found(pairs, start):
+    links = np.zeros((8, 8), bool)
+    for a, b in pairs:
+        links[a, b] = True
+    found = set(start)
+    for _ in range(8):
+        found |= {b for a, b in pairs if a in found}
+    assert set(np.flatnonzero(reach(links, np.isin(np.arange(8), list(start))))) == found

@@ -14,10 +14,9 @@ from innervate.web.history import SERIES, Logbook
 from innervate.web.live_map import Map, Place, Status
 from innervate.web.live_poll import Poller
 from innervate.web.live_state import State
-from innervate.web.messages import Command, Cut, Heal
+from innervate.web.messages import Command, Cut, Heal, number
 from innervate.web.recovery import Recovery
 from innervate.web.source import Source
-from innervate.web.view import number
 
 POLL_S = 0.2
 SOON_S = 0.05  # while somebody has no way

@@ -16,7 +16,8 @@ from innervate.web.errors import Refused
 from innervate.web.history import History
 from innervate.web.mesh_scene import Field
 from innervate.web.mesh_ways import hops
-from innervate.web.view import Memory, View, number
+from innervate.web.messages import number
+from innervate.web.view import Memory, View
 from innervate.web.ways import NOWHERE, follow, reach
 
 KINDS = {

@@ -15,7 +15,8 @@ from innervate.scenario.radio_plan import JOIN, KILL, RadioFault
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import TIMELINE, History
-from innervate.web.view import Memory, View, number
+from innervate.web.messages import number
+from innervate.web.view import Memory, View
 
 KINDS = {DATA: "frame", OPEN: "voc", CRR: "cr", REPORT: "ack"}
 IDLE, SENDING, RECEIVING, SEVERAL, WAITING = range(5)

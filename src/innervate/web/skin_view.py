@@ -30,10 +30,10 @@ from innervate.web.engine import Engine, Rows
 from innervate.web.engines import SkinEngine
 from innervate.web.errors import Refused
 from innervate.web.history import History
-from innervate.web.messages import Command, Touch
+from innervate.web.messages import Command, Touch, number
 from innervate.web.skin_scene import places
 from innervate.web.skin_state import Cables
-from innervate.web.view import Memory, View, number
+from innervate.web.view import Memory, View
 from innervate.web.ways import NOWHERE
 
 HZ_WITHOUT_DATA = 250.0  # load is shown as if cells sampled so often

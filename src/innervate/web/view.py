@@ -164,14 +164,3 @@ class View(ABC):
         """Go back to a memory."""
         self.memory = copy.deepcopy(memory)
         self.log.calm()
-
-
-def number(kind: str, given: int, count: int) -> int:
-    """A number of a link or node that is there.
-
-    Raises:
-        Refused: there is none.
-    """
-    if not 0 <= given < count:
-        raise Refused(f"there is no {kind} {given}; they are numbered 0 to {count - 1}")
-    return given
