@@ -57,12 +57,14 @@ def test_who_missed_states_is_told_what_changed_in_all_of_them():
 def test_another_scene_begins_anew():
     record = History()
     teller = Teller(record)
+    record.add(SERIES, 7, {"loss": 1.0})
     first = snapshot(record, t_s=0.0, up=np.array([1]))
     told(teller, first)
-    again = snapshot(
-        record, first, scene=Part({"type": "scene", "n": 2}), t_s=0.0, up=np.array([1])
-    )
-    assert [message["type"] for message in told(teller, again)] == ["scene", "state"]
+    other = Part({"type": "scene", "name": "other"})
+    scene, state = told(teller, snapshot(record, first, other, t_s=0.0, up=np.array([1])))
+    assert scene["name"] == "other"
+    assert state["series"] == {"loss": [[7e-06, 1.0]]}
+    assert state["up"] == [1]
 
 
 def test_points_boxes_and_lines_are_never_lost_and_never_told_twice():
