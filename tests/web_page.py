@@ -42,7 +42,7 @@ class Page:
         kind = message.pop("type")
         if kind == "scene":
             self.scenes.append(message)
-            self.state = {}
+            self.state, self.series, self.timeline, self.lines = {}, {}, [], []
         elif kind == "state":
             self.states += 1
             if "back_s" in message:

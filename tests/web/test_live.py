@@ -245,3 +245,17 @@ def test_a_group_is_not_cut(monkeypatch):
     source = Live([Path("a"), Path("b"), Path("c")])
     with pytest.raises(Refused, match="same path"):
         source.carry_out(messages.Cut(0))
+
+
+def test_a_radio_team_is_a_ring_of_stations():
+    told = {
+        i: {"kind": "radio", "role": "station", "number": i, "mode": 0, "queued": i,
+            "place": None if i else 4, "paths": [], "counters": {}}
+        for i in range(3)
+    }  # fmt: skip
+    where = Map(told)
+    fields = State(where, {i: told[i] for i in (0, 1)}).fields()
+    assert fields["node_up"].tolist() == [1, 1, 0]
+    assert fields["radio"] == {"now": [0, 4, 0], "turn": [4, -1, -1]}
+    assert fields["unconnected"] == 0
+    assert len({tuple(place) for place in where.spread().round(3).tolist()}) == 3

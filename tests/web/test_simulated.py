@@ -1,5 +1,7 @@
 """A simulation as pages see it: its fields, its way back, its recovery."""
 
+import time
+
 import numpy as np
 import pytest
 
@@ -13,6 +15,7 @@ from innervate.web.recorded import Recorded
 from innervate.web.recorded import plan_of as plan_of_folder
 from innervate.web.saving import saved
 from innervate.web.skin_scene import places
+from innervate.web.snapshot import Part, Snapshot, Teller
 from tests.web_runs import KINDS, MESH, RADIO, SKIN, go_to, plan_of, simulated
 
 ROLES = {"cell", "sink", "port", "node", "gateway", "standby", "robot", "post", "monitor",
@@ -352,3 +355,75 @@ def test_without_data_nothing_is_felt():
     assert "touch" not in made.scene()["can"]
     with pytest.raises(Refused):
         made.carry_out(messages.Touch(3, 255))
+
+
+def test_healing_leaves_the_number_of_the_cut():
+    made = simulated(SKIN)
+    go_to(made, 0.5)
+    link = next(link["id"] for link in made.scene()["links"] if link["b"] == 30)
+    made.carry_out(messages.Cut(link))
+    go_to(made, 0.7)
+    was = made.fields()["recovery"]
+    assert was["recovered_ms"] > 0
+    made.carry_out(messages.Heal(link))
+    made.carry_out(messages.Kill(12))
+    assert made.fields()["recovery"]["at_s"] > was["at_s"]
+    go_to(made, 0.8)
+    was = made.fields()["recovery"]
+    made.carry_out(messages.Revive(12))
+    made.run_to_end()
+    assert made.fields()["recovery"] == was
+    assert made.fields()["since_cut_s"] == pytest.approx(0.3, abs=1e-5)
+
+
+def test_a_cell_alone_has_recovered_when_it_is_back():
+    """A cut that nothing can get over, until it is healed."""
+    line = {**SKIN, "patch": [{"columns": 3, "rows": 1}],
+            "interface": [{"row": 0, "column": 0, "port": "W"}]}  # fmt: skip
+    made = simulated(line)
+    go_to(made, 0.5)
+    made.carry_out(messages.Kill(1))
+    made.carry_out(messages.Revive(1))
+    made.run_to_end()
+    assert made.fields()["recovery"]["cause"] == "cell p0 r0 c1 switched off"
+    assert made.fields()["unconnected"] == 0
+
+
+@pytest.mark.parametrize(("speed", "every_s"), [(0, 1.2), (0.1, 0.01), (0.002, 0.01), (1, 0.1)])
+def test_plots_have_points_enough_for_who_looks_on(speed, every_s):
+    made = simulated(SKIN, speed, duration_s=600.0)
+    assert made._next_point_us == round(1e6 * every_s)
+    made.carry_out(messages.Speed(0.5))
+    assert made._next_point_us == 50_000
+
+
+def test_who_was_doubted_before_a_fault_did_not_notice_it():
+    made = simulated(MESH)
+    go_to(made, 4.0)
+    made.carry_out(messages.Kill(3))
+    fault = made.view.memory.fault
+    for after_us, noticed in ((-3_000, None), (2_000, 2.0)):
+        made.view._suspect(fault.at_us + after_us, 5, 3)
+        assert made.fields()["recovery"]["detected_ms"] == noticed
+
+
+def test_what_is_too_large_is_not_drawn():
+    with pytest.raises(WatchError, match="too many"):
+        simulated(SKIN, patch=[{"columns": 1000, "rows": 21}], protocol={"max_depth": 254},
+                  data={"rate_hz": 0},
+                  interface=[{"row": 0, "column": 50 * i} for i in range(20)])  # fmt: skip
+
+
+def test_a_thousand_cells_cost_little():
+    made = simulated(SKIN, 0.02, patch=[{"columns": 40, "rows": 25}], interface=[
+        {"row": 0, "column": 10}, {"row": 24, "column": 30}])  # fmt: skip
+    go_to(made, 0.2)
+    scene, before, sizes = Part({"type": "scene"}), None, []
+    teller = Teller(made.history)
+    began = time.thread_time()
+    for _ in range(30):
+        made.carry_out(messages.Step())
+        before = Snapshot(scene, made.fields(), made.history.newest, before)
+        sizes.append(sum(len(message) for message in teller.messages(before)))
+    assert (time.thread_time() - began) / 30 < 0.02  # of 0.033 s; measured 0.002
+    assert sum(sizes) / 30 < 100_000

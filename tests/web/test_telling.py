@@ -13,6 +13,7 @@ from innervate.web.history import LOG, SERIES, TIMELINE, History, Logbook
 from innervate.web.messages import Command, Cut, Go, Pause, Seek, Speed, name_of, parse
 from innervate.web.pace import Pace
 from innervate.web.snapshot import Part, Snapshot, Teller
+from innervate.web.ways import follow, reach
 
 SCENE = Part({"type": "scene"})
 
@@ -56,12 +57,14 @@ def test_who_missed_states_is_told_what_changed_in_all_of_them():
 def test_another_scene_begins_anew():
     record = History()
     teller = Teller(record)
+    record.add(SERIES, 7, {"loss": 1.0})
     first = snapshot(record, t_s=0.0, up=np.array([1]))
     told(teller, first)
-    again = snapshot(
-        record, first, scene=Part({"type": "scene", "n": 2}), t_s=0.0, up=np.array([1])
-    )
-    assert [message["type"] for message in told(teller, again)] == ["scene", "state"]
+    other = Part({"type": "scene", "name": "other"})
+    scene, state = told(teller, snapshot(record, first, other, t_s=0.0, up=np.array([1])))
+    assert scene["name"] == "other"
+    assert state["series"] == {"loss": [[7e-06, 1.0]]}
+    assert state["up"] == [1]
 
 
 def test_points_boxes_and_lines_are_never_lost_and_never_told_twice():
@@ -215,3 +218,30 @@ def test_nothing_that_a_page_sends_raises_anything_else(text):
     except Refused:
         return
     assert isinstance(command, Command)
+
+
+HOPS = st.lists(st.integers(-1, 11), min_size=12, max_size=12)
+
+
+@given(HOPS, st.sets(st.integers(0, 11)))
+def test_chains_are_followed_to_their_roots(hops, roots):
+    is_root = np.isin(np.arange(12), list(roots))
+    root, depth = follow(np.array(hops), is_root)
+    for start in range(12):
+        node, steps = start, 0
+        while node != -1 and node not in roots and steps <= 12:
+            node, steps = hops[node], steps + 1
+        there = node in roots
+        assert root[start] == (node if there else -1)
+        assert depth[start] == (steps if there else -1)
+
+
+@given(st.sets(st.tuples(st.integers(0, 7), st.integers(0, 7))), st.sets(st.integers(0, 7)))
+def test_what_can_be_reached_is_found(pairs, start):
+    links = np.zeros((8, 8), bool)
+    for a, b in pairs:
+        links[a, b] = True
+    found = set(start)
+    for _ in range(8):
+        found |= {b for a, b in pairs if a in found}
+    assert set(np.flatnonzero(reach(links, np.isin(np.arange(8), list(start))))) == found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 import webbrowser
 from dataclasses import dataclass
 from pathlib import Path
@@ -38,6 +39,7 @@ class Place:
 
 def watch(what: str, nodes: list[str], settings: Settings, place: Place) -> int:
     """Serve a page until Ctrl-C."""
+    from innervate.scenario import bundled
     from innervate.web.serve import serve
 
     if not 0 <= place.port <= 65_535:
@@ -51,7 +53,7 @@ def watch(what: str, nodes: list[str], settings: Settings, place: Place) -> int:
     report: Path | None = None
     if is_live:
         source = _live(nodes, settings)
-    elif Path(what).is_dir():
+    elif Path(what).is_dir() and what not in bundled():
         source = recorded = _recorded(Path(what), settings)
         report = recorded.report
     else:
@@ -60,7 +62,8 @@ def watch(what: str, nodes: list[str], settings: Settings, place: Place) -> int:
     def announce(address: str) -> None:
         print(f"Open {address}\nCtrl-C ends it.", flush=True)
         if place.opened:
-            webbrowser.open(address)
+            # A browser that runs in the terminal would keep the page waiting.
+            threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
 
     asyncio.run(serve(source, place.host, place.port, announce, report))
     return 0

@@ -26,6 +26,8 @@ from innervate.web.engine import Engine, Mark
 from innervate.web.errors import WatchError
 from innervate.web.touching import Finger
 
+CELLS_MAX = 20_000
+
 Loop = Callable[[Any, int, int], None]
 
 
@@ -33,9 +35,12 @@ def engine_of(plan: Any) -> Engine:
     """The engine of a plan.
 
     Raises:
-        WatchError: it has no clock to be watched by.
+        WatchError: it has no clock to be watched by, or is too large.
     """
     source = plan.scenario.path or plan.scenario.name
+    if plan.kind == "skin" and plan.graph.cells > CELLS_MAX:
+        what = f"{plan.graph.cells:,} cells are too many to be drawn"
+        raise WatchError(f"{source}: {what}; at most {CELLS_MAX:,}")
     if plan.kind == "skin" and plan.script:
         why = "its [script] replaces the clock"
         raise WatchError(f"{source}: {why}; use: innervate run")

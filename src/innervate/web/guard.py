@@ -27,7 +27,7 @@ class Guard:
     def __init__(self, host: str) -> None:
         self.token = os.environ.get(TOKEN_GIVEN) or secrets.token_urlsafe(TOKEN_BYTES)
         own = socket.gethostname().lower()
-        self._names = {"localhost", host.lower(), own, f"{own}.local", socket.getfqdn().lower()}
+        self._names = {"localhost", host.lower(), own, f"{own}.local"}
 
     def knows(self, headers: Mapping[str, str]) -> bool:
         """True if a request is addressed to us: by number, or by a name of ours."""

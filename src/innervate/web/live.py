@@ -14,10 +14,9 @@ from innervate.web.history import SERIES, Logbook
 from innervate.web.live_map import Map, Place, Status
 from innervate.web.live_poll import Poller
 from innervate.web.live_state import State
-from innervate.web.messages import Command, Cut, Heal
+from innervate.web.messages import Command, Cut, Heal, number
 from innervate.web.recovery import Recovery
 from innervate.web.source import Source
-from innervate.web.view import number
 
 POLL_S = 0.2
 SOON_S = 0.05  # while somebody has no way
@@ -206,7 +205,8 @@ class Live(Source):
             raise Refused("neither end could be told; do they still run?")
         names = f"{self._label(link.a)} - {self._label(link.b)}"
         cause = f"link {names} {'put back' if heal else 'cut'}"
-        self._recovery = Recovery(cause, self._now_us())
+        if not heal:
+            self._recovery = Recovery(cause, self._now_us())
         self._log.say(self._now_us(), cause)
         self._next = 0.0
         return None

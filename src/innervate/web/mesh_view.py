@@ -9,14 +9,15 @@ import numpy as np
 
 from innervate.plot.mesh_words import fault_words
 from innervate.protocol import mesh_words as w
-from innervate.scenario.mesh_plan import CUT, KILL, ONE, RESTORE, REVIVE, MeshFault
+from innervate.scenario.mesh_plan import CUT, KILL, ONE, QUIET, RESTORE, REVIVE, MeshFault
 from innervate.sim.mesh.world import ALIVE, DEAD, ON_AIR
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import History
 from innervate.web.mesh_scene import Field
 from innervate.web.mesh_ways import hops
-from innervate.web.view import FLIGHTS_MAX, Memory, View, number
+from innervate.web.messages import number
+from innervate.web.view import Memory, View
 from innervate.web.ways import NOWHERE, follow, reach
 
 KINDS = {
@@ -28,6 +29,7 @@ ALARMS = {w.PREDICT: "is about to cross", w.CROSS: "has crossed the fence", w.LO
           w.CLEAR: "is inside again"}  # fmt: skip
 SMOOTH = 0.3  # share of a new value in a load
 MESSAGES_MAX = 4_096
+FLIGHTS_MAX = 2_000
 HALF = ONE // 2  # a link counts if half the frames come through
 
 
@@ -115,7 +117,7 @@ class MeshView(View):
     def _suspect(self, at_us: int, node: int, near: int) -> None:
         recovery, fault = self.memory.recovery, self.memory.fault
         name = self.plan.names
-        if recovery is not None and recovery.detected_ms is None:
+        if recovery is not None and recovery.detected_ms is None and at_us >= recovery.at_us:
             pair = {fault.node, fault.other} if fault.action == CUT else {fault.node}
             hit = pair == {node, near} if fault.action == CUT else near in pair
             if hit and fault.action in (CUT, KILL):
@@ -232,6 +234,10 @@ class MeshView(View):
     def words(self, fault: Any) -> str:
         """A fault in words."""
         return fault_words(self.plan, fault)
+
+    def takes(self, fault: Any) -> bool:
+        """True if a fault takes something away, false if it gives it back."""
+        return fault.action not in (RESTORE, REVIVE, QUIET)
 
     def cut(self, link: int, heal: bool) -> dict[str, int]:
         """The fault that cuts a link, or puts it back."""

@@ -108,3 +108,14 @@ def parse(text: str | bytes) -> Command:
         if isinstance(value, float) and not math.isfinite(value):
             raise Refused(f"{field} must be a finite number")
     return command
+
+
+def number(kind: str, given: int, count: int) -> int:
+    """A number of a link or node that is there.
+
+    Raises:
+        Refused: there is none.
+    """
+    if not 0 <= given < count:
+        raise Refused(f"there is no {kind} {given}; they are numbered 0 to {count - 1}")
+    return given

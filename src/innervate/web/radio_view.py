@@ -15,8 +15,8 @@ from innervate.scenario.radio_plan import JOIN, KILL, RadioFault
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import TIMELINE, History
-from innervate.web.recovery import Recovery
-from innervate.web.view import Memory, View, number
+from innervate.web.messages import number
+from innervate.web.view import Memory, View
 
 KINDS = {DATA: "frame", OPEN: "voc", CRR: "cr", REPORT: "ack"}
 IDLE, SENDING, RECEIVING, SEVERAL, WAITING = range(5)
@@ -93,8 +93,9 @@ class RadioView(View):
 
     def _stop(self, station: int, at_us: int) -> None:
         """A transmission is broken off."""
+        decided_us = at_us + int(self.plan.params["ta_us"])
         for sent in self.memory.air:
-            if sent[2] == station and sent[1] > at_us:
+            if sent[2] == station and sent[0] <= decided_us and sent[1] > at_us:
                 sent[1] = max(sent[0], at_us)
 
     def _close(self) -> None:
@@ -171,11 +172,14 @@ class RadioView(View):
                 return found
         return [-1] * self.plan.stations
 
-    def begin_fault(self, fault: Any) -> Recovery:
+    def begin_fault(self, fault: Any) -> None:
         """A team has nothing to recover: what matters is who waits, and that is shown."""
-        recovery = super().begin_fault(fault)
+        super().begin_fault(fault)
         self.memory.recovery = None
-        return recovery
+
+    def takes(self, fault: Any) -> bool:
+        """True if a fault takes something away, false if it gives it back."""
+        return bool(fault.action != JOIN)
 
     def words(self, fault: Any) -> str:
         """A fault in words."""

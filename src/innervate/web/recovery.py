@@ -15,12 +15,18 @@ class Recovery:
         at_us: when.
         detected_ms: the first who noticed, from there.
         recovered_ms: everybody has a way again since then; None = not yet.
+        closed: something else was done since everybody had: this does not change any more.
     """
 
     cause: str
     at_us: int
     detected_ms: float | None = None
     recovered_ms: float | None = None
+    closed: bool = False
+
+    def close(self) -> None:
+        """Something that takes nothing away is done to the network."""
+        self.closed = self.recovered_ms is not None
 
     def shown(self) -> dict[str, Any]:
         """For pages."""

@@ -21,8 +21,9 @@ from innervate.web.views import view_of
 SLICE_S = 0.01  # so long nobody is listened to
 BUDGET = 500  # events at least, and as many as fit into a slice
 BEAT_S = 1 / 60  # paced networks are brought up to date so often
-POINTS = 500  # of every plot, over the whole time
-POINT_US_MIN = 1_000
+POINTS = 500  # of every plot, over the whole time, at least
+POINT_US = (1_000, 10_000)  # between two of them: at least; and at most, for who looks on
+POINTS_PER_S = 10  # so many are enough for who looks on
 MARKS = 32
 MARKS_BYTES = 256 * 1024 * 1024
 
@@ -58,10 +59,9 @@ class Simulated(Source):
         self.pace = Pace(self.view.speed if speed is None else speed)
         self.broken = False
         self._budget = BUDGET
-        self._point_us = max(POINT_US_MIN, plan.duration_us // POINTS)
-        self._next_point_us = self._point_us
-        self._marks: list[Kept] = []
         self._target_us: int | None = None  # where a seek leads
+        self._next_point_us = self._point_us()
+        self._marks: list[Kept] = []
 
     def prepare(self) -> None:
         """Compile what has to be compiled: up to a minute, once on a machine."""
@@ -105,6 +105,7 @@ class Simulated(Source):
             self._advance(self._target_us)
             if self.engine.now_us >= self._target_us or self.at_end:
                 self._target_us = None
+                self._plan_point()
                 self.pace.start_from(self.engine.now_us)
             return 0.0
         due_us = self.pace.due_us(end_us)
@@ -123,6 +124,7 @@ class Simulated(Source):
             self.pace.go(now_us)
         elif isinstance(command, Speed):
             self.pace.set_speed(command.value, now_us)
+            self._plan_point()
         elif isinstance(command, Seek):
             self._seek(command.t_s)
         elif isinstance(command, Save):
@@ -155,7 +157,7 @@ class Simulated(Source):
         self.view.forget(kept.memory)
         self.history.go_back(kept.engine.now_us)
         self.broken = False
-        self._next_point_us = (self.engine.now_us // self._point_us + 1) * self._point_us
+        self._plan_point()
         self.pace.start_from(self.engine.now_us)
 
     def _advance(self, until_us: int) -> None:
@@ -178,10 +180,21 @@ class Simulated(Source):
                 self.view.check()
             if self.engine.now_us >= self._next_point_us:
                 self.view.sample()
-                self._next_point_us += self._point_us
+                self._plan_point()
                 self._keep()
             if time.perf_counter() - began > SLICE_S:
                 return
+
+    def _point_us(self) -> int:
+        """Time between two points of the plots now."""
+        whole_us = max(POINT_US[0], int(self.plan.duration_us) // POINTS)
+        if self.pace.speed == 0 or self._target_us is not None:
+            return whole_us
+        return min(whole_us, max(POINT_US[1], round(1e6 * self.pace.speed / POINTS_PER_S)))
+
+    def _plan_point(self) -> None:
+        every_us = self._point_us()
+        self._next_point_us = (self.engine.now_us // every_us + 1) * every_us
 
     def _next_check_us(self) -> int:
         """When the view is to look next whether the network has got over a fault."""
@@ -208,6 +221,7 @@ class Simulated(Source):
         if to_us < self.engine.now_us:
             self.back_to(to_us)
         self._target_us = to_us
+        self._plan_point()
 
     def _step(self) -> None:
         self.pace.hold(self.engine.now_us)

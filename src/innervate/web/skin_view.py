@@ -10,18 +10,14 @@ import numpy as np
 from innervate.analysis.load import balance_factor
 from innervate.plot.words import fault_words, number_of
 from innervate.protocol.skin_words import (
-    BEACON,
-    DATA,
     NONE,
     REPORT_BALANCE,
     REPORT_BROKEN,
     REPORT_PARENT,
 )
-from innervate.scenario import CUT, KILL, RESTORE, REVIVE, Fault
-from innervate.sim import wheel
+from innervate.scenario import CUT, KILL, LOOSE, RESTORE, REVIVE, Fault
 from innervate.sim.observer import CUT_OFF, LOOP_OPEN, UNROUTED
 from innervate.sim.wires import (
-    DELAYED,
     LOOPED,
     LOST_BROKEN,
     LOST_CUT,
@@ -34,12 +30,12 @@ from innervate.web.engine import Engine, Rows
 from innervate.web.engines import SkinEngine
 from innervate.web.errors import Refused
 from innervate.web.history import History
-from innervate.web.messages import Command, Touch
-from innervate.web.skin_scene import nodes_of_ends, places
-from innervate.web.view import FLIGHTS_MAX, Memory, View, number
-from innervate.web.ways import NOWHERE, follow
+from innervate.web.messages import Command, Touch, number
+from innervate.web.skin_scene import places
+from innervate.web.skin_state import Cables
+from innervate.web.view import Memory, View
+from innervate.web.ways import NOWHERE
 
-KINDS = {BEACON: "beacon", DATA: "data"}
 HZ_WITHOUT_DATA = 250.0  # load is shown as if cells sampled so often
 FORCE_FULL_MN = 5_000  # shown as 255
 STALE_US = 200_000  # of a cell not heard for so long nothing is known any more
@@ -67,9 +63,7 @@ class SkinView(View):
         super().__init__(engine, history)
         graph = self.plan.graph
         self.cells, self.ports = graph.cells, graph.interfaces
-        self.peer = np.frombuffer(graph.peer, np.int32).astype(np.int64)
-        self.node_of = nodes_of_ends(graph)
-        self.ends = np.array(list(graph.links()), np.int64).reshape(-1, 2)
+        self.cables = Cables(self.plan)
         self.rate_hz = (
             1e6 / self.plan.data_period_us if self.plan.data_period_us else HZ_WITHOUT_DATA
         )
@@ -91,8 +85,8 @@ class SkinView(View):
             for i, (x, y) in enumerate(where[self.cells :])
         ]
         links = [
-            {"id": i, "a": int(self.node_of[a]), "b": int(self.node_of[b])}
-            for i, (a, b) in enumerate(self.ends.tolist())
+            {"id": i, "a": int(self.cables.node_of[a]), "b": int(self.cables.node_of[b])}
+            for i, (a, b) in enumerate(self.cables.ends.tolist())
         ]
         series = [
             {"id": "unconnected", "label": "cells without a way", "unit": "cells"},
@@ -132,8 +126,9 @@ class SkinView(View):
         """A mark of the observer: something was done to the skin."""
         given = index - len(self.plan.scenario.model.event)
         fault = self._planned[index] if given < 0 else self.engine.given[given]
-        recovery = self.begin_fault(fault)
-        if self.memory.unrouted == 0:
+        self.begin_fault(fault)
+        recovery = self.memory.recovery
+        if self.memory.unrouted == 0 and self.takes(fault) and recovery is not None:
             recovery.recovered_ms = 0.0
         if cut_off:
             text = f"{number_of(cut_off, 'cell')} lost the way to the PC"
@@ -143,9 +138,10 @@ class SkinView(View):
         """So many cells that are connected to the PC have no way to it from now on."""
         memory, recovery = self.memory, self.memory.recovery
         memory.unrouted = cells
-        after_us = at_us - (recovery.at_us if recovery else 0)
-        if recovery is not None:
-            recovery.recovered_ms = after_us / 1e3 if cells == 0 else None
+        if recovery is not None and not recovery.closed:
+            recovery.recovered_ms = None if cells else (at_us - recovery.at_us) / 1e3
+            recovery.closed = cells == 0 and memory.event_us > recovery.at_us
+        after_us = at_us - memory.event_us
         if cells == 0:
             what = "again after" if memory.settled else "after"
             self.log.often("routed", at_us, f"all cells have a way {what} {after_us / 1e3:.1f} ms",
@@ -165,7 +161,7 @@ class SkinView(View):
 
     def points(self) -> dict[str, float | None]:
         """A point of every plot, for now."""
-        ways = self._ways()
+        ways = self.cables.ways(self.engine.world)
         loads = np.bincount(ways["port"][ways["port"] >= 0], minlength=self.ports)
         balance = balance_factor(loads.tolist())
         found = {
@@ -183,66 +179,26 @@ class SkinView(View):
             found["loss"] = round(100 * gone / offered, 3) if offered else 0.0
         return found
 
-    def _ways(self) -> dict[str, Any]:
-        """Whose way leads where: next node, interface port, hops; over live cables."""
-        world, cells, ports = self.engine.world, self.cells, self.ports
-        parent = world.watch.port
-        end = PORTS * np.arange(cells) + np.maximum(parent, 0)
-        hop = np.where(parent >= 0, self.node_of[self.peer[end]], -1)
-        live = (parent >= 0) & ((world.epoch[end] & 1) == 0)
-        none = np.full(ports, NOWHERE)
-        is_port = np.arange(cells + ports) >= cells
-        root, depth = follow(np.concatenate([np.where(live, hop, NOWHERE), none]), is_port)
-        there = root[:cells] != NOWHERE
-        alive = world.alive[:cells] != DEAD
-        return {
-            "parent": np.concatenate([hop, none]),
-            "port": np.where(root == NOWHERE, NOWHERE, root - cells),
-            "depth": depth,
-            "unconnected": int(np.count_nonzero(alive & ~there)),
-            "there": there,
-        }
-
     def arrays(self, flights: bool) -> dict[str, Any]:
         """The state's fields for nodes and links."""
         world, memory = self.engine.world, self.memory
-        ways = self._ways()
+        ways = self.cables.ways(self.engine.world)
         share = world.cells["own_load"] * self.rate_hz * self.plan.wire_us * 1e-6
-        load = np.where(ways.pop("there"), np.minimum(share, 1.0), 0.0).round(3)
+        there = ways["port"][: self.cells] != NOWHERE
+        load = np.where(there, np.minimum(share, 1.0), 0.0).round(3)
         up = (world.alive[: self.cells] != DEAD).astype(np.int64)
         none = np.zeros(self.ports, np.int64)
         fields = {
             "node_up": np.concatenate([up, none + 1]),
-            "link_up": 1 - (world.epoch[self.ends[:, 0]] & 1),
+            "link_up": 1 - (world.epoch[self.cables.ends[:, 0]] & 1),
             **ways,
             "load": np.concatenate([load, none]),
-            "flights": self._flights() if flights else [],
+            "flights": self.cables.flights(world, self.engine.now_us) if flights else [],
         }
         if self.plan.data_period_us:
             heard = self.engine.now_us - memory.touch_us < STALE_US
             fields["touch"] = np.concatenate([np.where(heard, memory.touch, 0), none])
         return fields
-
-    def _flights(self) -> list[dict[str, Any]]:
-        """Frames on their way."""
-        world, now = self.engine.world, self.engine.now_us
-        first, last = int(world.run["pool_slots"][0]), int(world.wheel.pool[wheel.FRESH])
-        events = world.wheel.events[first:last]
-        on_way = (events["bucket"] != wheel.NIL) & (events["kind"] != DELAYED)
-        slots = np.flatnonzero(on_way)[:FLIGHTS_MAX]
-        to = events["target"][slots].astype(np.int64)
-        sent = self.peer[to]
-        latency = world.ends["latency"][sent]
-        if self.plan.latency_per_frame:
-            latency = np.full(len(to), sum(self.plan.latency_us) // 2)
-        part = 1 - (events["time"][slots] - now) / latency
-        part = np.clip(part, 0.0, 1.0).round(3)
-        kinds = world.frames["kind"][slots]
-        columns = (self.node_of[sent], self.node_of[to], kinds, part)
-        return [
-            {"a": a, "b": b, "kind": KINDS.get(kind, "restart"), "p": p}
-            for a, b, kind, p in zip(*(column.tolist() for column in columns), strict=True)
-        ]
 
     def apply(self, command: Command) -> None:
         """Have a command happen at the earliest moment."""
@@ -265,11 +221,16 @@ class SkinView(View):
         """A fault in words."""
         return fault_words(self.plan.graph, fault)
 
+    def takes(self, fault: Any) -> bool:
+        """True if a fault takes something away, false if it gives it back."""
+        mends = fault.action in (RESTORE, REVIVE)
+        return not mends and not (fault.action == LOOSE and fault.loss_q15 == 0)
+
     def cut(self, link: int, heal: bool) -> dict[str, int]:
         """The fault that cuts a link, or puts it back."""
-        a, b = self.ends[number("link", link, len(self.ends))].tolist()
+        a, b = self.cables.ends[number("link", link, len(self.cables.ends))].tolist()
         reasons = int(self.engine.world.ends["impaired"][a]) >> 2
-        dead = sum(self._is_dead(self.node_of[end]) for end in (a, b))
+        dead = sum(self._is_dead(self.cables.node_of[end]) for end in (a, b))
         if heal and reasons <= dead:
             raise Refused("this cable is not cut" if not reasons else "its cell is switched off")
         if not heal and reasons > dead:

@@ -82,14 +82,14 @@ class Teller:
         self._history = history
         self._scene: Part | None = None
         self._told: dict[str, Part] = {}
-        self._numbers = dict.fromkeys((LOG, SERIES, TIMELINE, BACK), 0)
+        self._numbers: dict[str, int] = {}
 
     def messages(self, snapshot: Snapshot) -> Iterable[bytes]:
         """The messages that bring the page up to a snapshot; none if it knows it all."""
         if snapshot.scene is not self._scene:
-            if self._scene is None:
-                self._numbers[BACK] = snapshot.newest
+            # The page begins anew, too: it is told all that is kept.
             self._scene, self._told = snapshot.scene, {}
+            self._numbers = {LOG: 0, SERIES: 0, TIMELINE: 0, BACK: snapshot.newest}
             yield bytes(snapshot.scene.json)
         fields: dict[str, Any] = {
             name: part.json

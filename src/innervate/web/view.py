@@ -13,15 +13,14 @@ from innervate.web.history import SERIES, History, Logbook
 from innervate.web.messages import Command, Cut, Heal, Kill, Revive
 from innervate.web.recovery import Recovery
 
-FLIGHTS_MAX = 2_000
-
 
 @dataclass(slots=True)
 class Memory:
     """What a view remembers of the time before; goes back with the network."""
 
     recovery: Recovery | None = None
-    fault: Any = None  # the newest
+    fault: Any = None  # the newest that took something away
+    event_us: int = 0  # when something was done last, whatever it was
     told_us: int = 0  # faults before this are told
 
 
@@ -66,6 +65,10 @@ class View(ABC):
     @abstractmethod
     def words(self, fault: Any) -> str:
         """A fault in words."""
+
+    @abstractmethod
+    def takes(self, fault: Any) -> bool:
+        """True if a fault takes something away, false if it gives it back."""
 
     @abstractmethod
     def cut(self, link: int, heal: bool) -> dict[str, int]:
@@ -122,15 +125,16 @@ class View(ABC):
         """Tables of the scenario, besides its events, that commands have changed."""
         return {}
 
-    def begin_fault(self, fault: Any) -> Recovery:
+    def begin_fault(self, fault: Any) -> None:
         """Something is done to the network now."""
-        cause = self.words(fault)
-        recovery = Recovery(cause, fault.at_us)
-        self.memory.recovery = recovery
-        self.memory.fault = fault
+        memory, cause = self.memory, self.words(fault)
+        memory.event_us = fault.at_us
+        if self.takes(fault):
+            memory.recovery, memory.fault = Recovery(cause, fault.at_us), fault
+        elif memory.recovery is not None:
+            memory.recovery.close()
         self.log.calm()
         self.log.say(fault.at_us, cause)
-        return recovery
 
     def tell_faults(self) -> list[Any]:
         """Begin all faults that have happened and were not told yet; them, in order of time."""
@@ -160,14 +164,3 @@ class View(ABC):
         """Go back to a memory."""
         self.memory = copy.deepcopy(memory)
         self.log.calm()
-
-
-def number(kind: str, given: int, count: int) -> int:
-    """A number of a link or node that is there.
-
-    Raises:
-        Refused: there is none.
-    """
-    if not 0 <= given < count:
-        raise Refused(f"there is no {kind} {given}; they are numbered 0 to {count - 1}")
-    return given
