@@ -9,12 +9,12 @@ const ON_MAP = [
   ["Esc", "on the map: select nothing"],
 ];
 
-/** @param {Object<string, [string, string, Function]>} keys name, meaning and deed by key */
+/** @param {[string, string, string, Function][]} keys each with its name, meaning and deed */
 export function setUpKeys(keys) {
   const help = $("help");
   const open = () => help.showModal();
-  const all = { ...keys, "?": ["?", "these keys", open] };
-  for (const [name, meaning] of [...ON_MAP, ...Object.values(all)]) {
+  const all = [...keys, ["?", "?", "these keys", open]];
+  for (const [name, meaning] of [...ON_MAP, ...all.map((one) => one.slice(1))]) {
     const term = document.createElement("dt");
     const text = document.createElement("dd");
     term.textContent = name;
@@ -27,8 +27,9 @@ export function setUpKeys(keys) {
     const { target, key } = event;
     const typing = target.matches("input, select, dialog *");
     const pressing = key === " " && target.matches("button, a");
-    if (typing || pressing || !all[key]) return;
+    const found = all.find(([one]) => one === key);
+    if (typing || pressing || !found) return;
     event.preventDefault();
-    all[key][2]();
+    found[3]();
   });
 }

@@ -173,17 +173,17 @@ $("colour").addEventListener("change", () => setColour($("colour").value));
 $("zoom-in").addEventListener("click", () => stage.zoomBy(1.5));
 $("zoom-out").addEventListener("click", () => stage.zoomBy(1 / 1.5));
 $("zoom-fit").addEventListener("click", () => stage.fit());
-setUpKeys({
-  " ": ["Space", "pause or go on", () => controls.toggle()],
-  ".": [".", "one event further, when paused", () => send({ do: "step" })],
-  "[": ["[", "slower", () => controls.shift(-1)],
-  "]": ["]", "faster", () => controls.shift(1)],
-  "+": ["+", "zoom in", () => stage.zoomBy(1.5)],
-  "-": ["−", "zoom out", () => stage.zoomBy(1 / 1.5)],
-  0: ["0", "show all", () => stage.fit()],
-  c: ["c", "next colouring", nextColour],
-  t: ["t", "light, dark or as the system", () => nextTheme()],
-});
+setUpKeys([
+  [" ", "Space", "pause or go on", () => controls.toggle()],
+  [".", ".", "one event further, when paused", () => send({ do: "step" })],
+  ["[", "[", "slower", () => controls.shift(-1)],
+  ["]", "]", "faster", () => controls.shift(1)],
+  ["+", "+", "zoom in", () => stage.zoomBy(1.5)],
+  ["-", "−", "zoom out", () => stage.zoomBy(1 / 1.5)],
+  ["0", "0", "show all", () => stage.fit()],
+  ["c", "c", "next colouring", nextColour],
+  ["t", "t", "light, dark or as the system", () => nextTheme()],
+]);
 
 function nextColour() {
   const names = view.choices().map(([name]) => name);

@@ -14,6 +14,8 @@ export const DOING = [
 ];
 const SENDS = 1;
 const RING_PX = 15;
+const WORDS_PX = 55; // from this radius on there is room for words in the middle
+const TURNS_PX = 34; // from this distance on there is room for turns below names
 
 /** Draws stations round a circle on a stage. */
 export class RadioView {
@@ -82,15 +84,17 @@ export class RadioView {
       this.#disc(context, x, y, radius, radio.now[i], now.node_up[i]);
       if (radius < 6) return;
       const away = Math.hypot(x - x0, y - y0) || 1;
-      this.#name(context, i, x, y, (x - x0) / away, (y - y0) / away, radius);
+      this.#name(context, i, x, y, (x - x0) / away, (y - y0) / away, stage.scale);
     });
   }
 
   /** A station's name and its turn, beside it, looking away from the middle. */
-  #name(context, i, x, y, dx, dy, radius) {
+  #name(context, i, x, y, dx, dy, scale) {
+    const radius = 0.5 * this.size(scale);
+    const apart = (2 * Math.PI * scale) / this.network.nodes.length;
     const turn = this.network.radio.turn[i];
     const lines = [short(this.network.nodes[i].label)];
-    if (turn > 0 && radius >= 10) lines.push(`turn ${turn}`);
+    if (turn > 0 && apart >= TURNS_PX) lines.push(`turn ${turn}`);
     context.textAlign = dx > 0.3 ? "left" : dx < -0.3 ? "right" : "center";
     const middle = y + dy * (radius + (lines.length > 1 ? 16 : 10));
     lines.forEach((text, n) => {
@@ -110,6 +114,7 @@ export class RadioView {
     }
     stroke(context, senders.length > 1 ? colours.alarm : colours.accent, 2.4, path,
       senders.length > 1 ? [6, 4] : []);
+    if (stage.scale < WORDS_PX) return;
     const text = ["channel free", "one sends", "several send"][Math.min(2, senders.length)];
     context.textAlign = "center";
     word(context, text, x0, y0, senders.length > 1 ? colours.alarm : colours.ink, colours.ground,
