@@ -168,3 +168,16 @@ def test_a_copy_keeps_views_of_the_same_memory():
     assert engine.world.nodes["seq"][3] == 0
     assert made.rows is engine.world.rows
     assert not np.shares_memory(made.heap.keys, engine.world.heap.keys)
+
+
+def test_a_team_that_is_done_goes_on_when_somebody_dies():
+    engine = ready("radio")
+    to_end(engine)
+    assert engine.is_complete()
+    assert engine.now_us < engine.plan.duration_us
+    view = view_of(engine, History())
+    engine.add(view.fault(Kill(3)))
+    assert not engine.is_complete()
+    to_end(engine)
+    assert engine.now_us == engine.plan.duration_us
+    assert run(scenario.loads(saved(view))).result.fingerprint == engine.fingerprint

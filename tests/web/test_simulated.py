@@ -427,3 +427,30 @@ def test_a_thousand_cells_cost_little():
         sizes.append(sum(len(message) for message in teller.messages(before)))
     assert (time.thread_time() - began) / 30 < 0.02  # of 0.033 s; measured 0.002
     assert sum(sizes) / 30 < 100_000
+
+
+def test_what_the_scenario_does_is_told_in_its_place():
+    events = [
+        {"at_s": 4.0, "action": "kill", "node": 5},
+        {"at_s": 6.0, "action": "revive", "node": 5},
+    ]
+    made = simulated(MESH, event=events)
+    made.run_to_end()
+    times = [item.what["t_s"] for item in items(made, LOG)]
+    assert times == sorted(times)
+    assert "node n5 switched off" in texts(made)
+    by_hand = simulated(MESH)
+    go_to(by_hand, 4.0)
+    by_hand.carry_out(messages.Kill(5))
+    by_hand.run_to_end()
+    shown = [each.fields()["recovery"] for each in (made, by_hand)]
+    assert shown[0] == shown[1]
+
+
+def test_a_node_at_the_edge_of_a_mesh_is_missed_by_nobody():
+    leaf = {**MESH, "nodes": None, "radio": {"profile": "250k"},
+            "link": [{"a": "g", "b": "x"}, {"a": "x", "b": "y"}], "flow": [],
+            "event": [{"at_s": 5.0, "action": "kill", "node": "y"}]}  # fmt: skip
+    made = simulated({key: value for key, value in leaf.items() if value is not None})
+    made.run_to_end()
+    assert made.fields()["recovery"]["recovered_ms"] == 0.0

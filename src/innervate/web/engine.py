@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from bisect import bisect_left, insort
 from collections.abc import Callable
 from typing import Any, ClassVar, NamedTuple
 
@@ -43,6 +44,7 @@ class Engine(ABC):
         self.plan = plan
         self.now_us = 0
         self.given: list[Any] = []
+        self._times: list[int] = sorted(fault.at_us for fault in plan.faults)
         self._advance = self._loop()
         self.world = self._build()
         self._fresh: dict[str, list[Any]] = {name: [] for name in self.tables}
@@ -92,12 +94,21 @@ class Engine(ABC):
     def add(self, fault: Any) -> None:
         """Something is to be done to the network, not before `earliest_us`."""
         self.given.append(fault)
+        insort(self._times, fault.at_us)
         self._schedule(fault)
 
     @property
     def next_index(self) -> int:
         """The index of the next fault to be added: behind the scenario's events."""
         return len(self.plan.scenario.model.event) + len(self.given)
+
+    @property
+    def edge_us(self) -> int:
+        """Just before the next fault, or just behind those of this moment."""
+        at = bisect_left(self._times, self.now_us)
+        if at == len(self._times):
+            return int(self.plan.duration_us)
+        return max(int(self._times[at]), self.now_us + 1)
 
     @property
     def earliest_us(self) -> int:

@@ -164,7 +164,7 @@ class Simulated(Source):
         """Go on towards a time, for about a slice."""
         began = time.perf_counter()
         while self.engine.now_us < until_us and not self.at_end:
-            edge = min(until_us, self._next_point_us, self._next_check_us())
+            edge = min(until_us, self._next_point_us, self._next_check_us(), self.engine.edge_us)
             started = time.thread_time()  # not the time others have the processor
             try:
                 self.engine.advance(edge, self._budget)
