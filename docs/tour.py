@@ -16,7 +16,7 @@ from typing import Any
 from PIL import Image
 from playwright.sync_api import expect, sync_playwright
 
-from tests.browser_net import PHONE, click, serving
+from tests.browser_net import PHONE, click, seek, serving
 
 FOLDER = Path(__file__).resolve().parent / "images"
 FINE = 1.5  # px of the picture per px of the page
@@ -29,9 +29,7 @@ def at(page: Any, t_s: float) -> None:
     if page.locator("#go").inner_text() == "Pause":
         page.locator("#go").click()
         expect(page.locator("#go")).to_have_text("Go")
-    page.locator("#seek").evaluate(
-        "(seek, t) => { seek.value = t; seek.dispatchEvent(new Event('change')); }", t_s
-    )
+    seek(page, t_s)
     expect(page.locator("#clock")).to_contain_text(f"{t_s:.6f} s", timeout=WAIT_MS)
 
 

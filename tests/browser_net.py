@@ -78,3 +78,10 @@ def expect(locator):
 
     sync_api.expect.set_options(timeout=WAIT_MS)
     return sync_api.expect(locator)
+
+
+def seek(page, t_s):
+    """Let go of the time slider at a time: without the preview while it is in hand."""
+    page.locator("#seek").evaluate(
+        "(seek, t) => { seek.value = t; seek.dispatchEvent(new Event('change')); }", t_s
+    )
