@@ -4,7 +4,8 @@
 #   make test     the tests in small sizes (minutes)     make full    all of them (long)
 #   make lint     style, types, import walls             make bench   how fast it is
 #   make papers   the published figures, redrawn         make parity  the same code on boards' Python
-#   make boards   the folder to copy to a board          make clean   remove what these made
+#   make boards   the folder to copy to a board          make page    build the page of `watch` (npm)
+#   make clean    remove what these made
 
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
@@ -16,7 +17,11 @@ STAMP := .venv/stamp-$(shell cksum < pyproject.toml | cut -d ' ' -f 1)
 WORKERS ?= 2
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
-.PHONY: help demo test full lint bench papers boards parity clean
+# Packages that the page is built with, as package-lock.json has them; no scripts of theirs are run.
+PAGE := src/innervate/web/page
+MODULES := $(PAGE)/node_modules/.package-lock.json
+
+.PHONY: help demo test full lint bench papers boards parity page page-check clean
 
 help:
 	@sed -n '2,/^$$/s/^# \{0,1\}//p' Makefile
@@ -71,6 +76,20 @@ boards: $(STAMP)
 parity: $(STAMP)
 	@$(BIN)/python -m boards.parity
 
+$(MODULES): $(PAGE)/package-lock.json
+	@command -v npm >/dev/null || { echo "npm is missing (Debian, Ubuntu: apt install npm)" >&2; exit 1; }
+	npm ci --prefix $(PAGE) --ignore-scripts --no-audit --no-fund --loglevel=error
+	@touch $@
+
+page: $(MODULES)
+	@node $(PAGE)/build.mjs
+
+page-check: $(MODULES)
+	@built=$$(mktemp -d); trap 'rm -rf "$$built"' EXIT; node $(PAGE)/build.mjs "$$built"; \
+	diff -rq "$$built" src/innervate/web/static || \
+	  { echo "the bundle is not what its sources make: run \`make page\`" >&2; exit 1; }
+
 clean:
+	rm -rf $(PAGE)/node_modules
 	rm -rf .venv build dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	find src tests benchmarks boards examples -name __pycache__ -type d -prune -exec rm -rf {} +

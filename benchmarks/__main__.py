@@ -12,7 +12,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from benchmarks import beacons, c_heap, explorer, mesh, radio, simpy_timeouts, sweeps
+from benchmarks import beacons, c_heap, explorer, mesh, page, radio, simpy_timeouts, sweeps
 
 NS3_BEST = {204: 0.64e6, 10_020: 0.13e6}  # beacons/s of ns-3 3.37, measured on another such machine
 COMMAND_RUNS = 5
@@ -48,6 +48,7 @@ def main():
               ", ".join(f"{k} {v:.2f}" if isinstance(v, float) else f"{k} {v:,}"
                         for k, v in figures["million"].items()))  # fmt: skip
     figures["sweeps"] = sweep_row()
+    figures["page"] = [page_row(cells) for cells in page.CELLS]
     figures["commands"] = commands()
     if options.json:
         options.json.write_text(json.dumps(figures, indent=2) + "\n")
@@ -114,6 +115,20 @@ def sweep_row():
     speed = f"{scaling['per_core']:.2f} per core on {scaling['cores']} cores"
     print(f"sweep, overhead of a small run: {shown}; {speed}", flush=True)
     return {"overhead_s": overhead, **scaling}
+
+
+def page_row(cells):
+    """The page of `watch` in a browser."""
+    found = page.measure(cells)
+    if found is None:
+        print("page of watch: not measured, Chromium is missing")
+        return None
+    print(
+        f"page of watch, {cells:,} cells: {found['frames_per_s']:.0f} frames/s, "
+        f"{found['states_per_s']:.0f} states/s, slowest drawing {found['slowest_ms']:.1f} ms",
+        flush=True,
+    )
+    return {"cells": cells, **found}
 
 
 def million(baseline, width):

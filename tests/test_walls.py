@@ -48,6 +48,7 @@ BREACHES = {
     "room without a layer": ("attic/__init__.py", "import ast", "layers"),
     "numba": ("analysis/bad.py", "import numba", "numba"),
     "matplotlib": ("analysis/bad.py", "from matplotlib import pyplot", "matplotlib"),
+    "web server elsewhere": ("run/bad.py", "import uvicorn", "web"),
     "Dask elsewhere": ("sweep/bad.py", "import distributed", "dask"),
     "clock in a protocol": ("protocol/bad.py", "import time", "protocol"),
     "clock in sim": ("sim/bad.py", "import time", "sim"),
@@ -59,6 +60,7 @@ NAMES = {
     "numba": "Numba stays",
     "matplotlib": "matplotlib is",
     "dask": "Dask is one engine",
+    "web": "Web servers are",
     "protocol": "Protocols know",
     "sim": "Simulated time",
     "bare": "The wire runs",
@@ -104,6 +106,10 @@ def test_help_loads_nothing_heavy():
         "try:\n    main()\nexcept SystemExit as done:\n    assert not done.code"
     )
     assert loaded_after(code) == []
+
+
+def test_running_nodes_are_watched_without_the_simulator():
+    assert loaded_after("import innervate.web.live, innervate.web.serve") == ["numpy"]
 
 
 def test_help_is_quick():

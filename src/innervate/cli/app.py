@@ -275,6 +275,45 @@ def verify(
 
 
 @app.command
+def watch(
+    what: str,
+    /,
+    *nodes: str,
+    set_: Sets = None,
+    seed: Seed = None,
+    speed: float | None = None,
+    host: str = "127.0.0.1",
+    port: int = 0,
+    open_: Annotated[bool, Parameter(negative="")] = False,
+) -> int:
+    """Serve a page to watch a network on and to break it, until Ctrl-C.
+
+    Parameters
+    ----------
+    what
+        A scenario, the name of a bundled one, a run folder, or live: nodes that run.
+    nodes
+        With live: names or sockets; all nodes of this user if left out.
+    set_
+        Change a key of the scenario, as for run.
+    seed
+        Root seed in place of the scenario's.
+    speed
+        Seconds of the network per second; 0 is as fast as possible.
+    host
+        Address to listen at; others than this machine reach 0.0.0.0.
+    port
+        Port to listen at; 0 is any that is free.
+    open_
+        Open the page in a browser.
+    """
+    from innervate.cli import watching as command
+
+    settings = command.Settings(set_ or [], seed, speed)
+    return command.watch(what, list(nodes), settings, command.Place(host, port, open_))
+
+
+@app.command
 def scenarios() -> int:
     """List the bundled scenarios."""
     from innervate.cli import files as command

@@ -19,6 +19,7 @@ _EXTRAS = {
     "icub_models": "body", "trimesh": "body",
     "distributed": "sweep",
     "cryptography": "live",
+    "starlette": "web", "uvicorn": "web", "websockets": "web",
 }  # fmt: skip
 # Errors whose text is one line for the user: module and class, and whose mistake they are.
 _KNOWN = (
@@ -27,6 +28,7 @@ _KNOWN = (
     ("innervate.verify.errors", "VerifyError", USERS),
     ("innervate.sweep.errors", "SweepError", USERS),
     ("innervate.live.errors", "LiveError", USERS),
+    ("innervate.web.errors", "WatchError", USERS),
     ("cyclopts", "CycloptsError", USERS),
     ("innervate.sim.simulate", "InvariantBroken", OURS),
     ("innervate.analysis.frames", "FramesLost", OURS),

@@ -167,6 +167,7 @@ def _path_status(path: Path, now: int, most_us: int) -> dict[str, Any]:
     silent_us = now - path.heard_at if path.heard_at else None
     return {
         "name": path.name,
+        "own": path.own,
         "port": path.port,
         "up": path.up and not path.cut,
         "heard_s": None if silent_us is None else round(silent_us / 1e6, 3),

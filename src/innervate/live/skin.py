@@ -126,6 +126,7 @@ class CellStack(SkinStack):
         ports = [
             {
                 "port": port,
+                "path": self.path_of_port.get(port),
                 "cabled": port in self.path_of_port,
                 "broken": cell.pf[port] >= ONE,
                 "dist": cell.dist[port],

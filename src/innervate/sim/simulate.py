@@ -118,7 +118,7 @@ def simulate(
         stack = static_stack if static else skin_stack
         world, now = script.play(plan, stack, checks, trail)
         if int(get(world.run, 0, "status")) == loop.BROKEN:
-            raise InvariantBroken(_story(plan, world))
+            raise InvariantBroken(story(plan, world))
         return _result(plan, world, _Keep(), now, wall_s() - started, False)
     advance = (plain_loop if plain else compiled_loop)(static)
     world = builder.build(plan, plain, checks, observe, deliveries, trail)
@@ -133,7 +133,7 @@ def simulate(
             advance(world, plan.duration_us, SLICE_EVENTS)
             status = int(get(world.run, 0, "status"))
             if status == loop.BROKEN:
-                raise InvariantBroken(_story(plan, world))
+                raise InvariantBroken(story(plan, world))
             if status == loop.POOL_FULL:
                 world = builder.grow_pool(world)
             keep.collect(world, final=False)
@@ -194,7 +194,7 @@ class _Keep:
         return np.array(tuples, w.row_dtype(fields))
 
 
-def _story(plan: Any, world: w.World) -> str:
+def story(plan: Any, world: w.World) -> str:
     """A broken invariant in one line."""
     from innervate.sim import observer
 

@@ -176,7 +176,7 @@ def simulate(
             advance(world, plan.duration_us, PLAIN_SLICE_EVENTS if plain else SLICE_EVENTS)
             status = int(get(world.run, 0, "status"))
             if status == skin_loop.BROKEN:
-                raise InvariantBroken(_story(plan, world))
+                raise InvariantBroken(story(plan, world))
             if status == skin_loop.POOL_FULL:
                 world = channel.grown(world)
             if status == loop.SEEN_FULL:
@@ -225,7 +225,7 @@ def _collect(world: w.World, parts: dict[str, list[Any]]) -> None:
         put(world.run, 0, **{name: 0})
 
 
-def _story(plan: Any, world: w.World) -> str:
+def story(plan: Any, world: w.World) -> str:
     """A broken invariant in one line."""
     if int(get(world.run, 0, "broken")) == books.BROKEN_BELOW:
         return radio_simulate.story(plan, world.below)

@@ -1,0 +1,111 @@
+"""`innervate watch`."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+import webbrowser
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from innervate.cli import errors
+from innervate.cli.progress import Progress, is_compiled
+
+if TYPE_CHECKING:
+    from innervate.web.recorded import Recorded
+    from innervate.web.source import Source
+
+LIVE = "live"
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What a scenario is changed by, and how fast it runs."""
+
+    sets: list[str]
+    seed: int | None
+    speed: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where the page is served."""
+
+    host: str
+    port: int
+    opened: bool
+
+
+def watch(what: str, nodes: list[str], settings: Settings, place: Place) -> int:
+    """Serve a page until Ctrl-C."""
+    from innervate.scenario import bundled
+    from innervate.web.serve import serve
+
+    if not 0 <= place.port <= 65_535:
+        raise errors.UserError(f"--port is 0 to 65535, not {place.port}")
+    is_live = what == LIVE and not Path(what).exists()
+    source: Source
+    if settings.speed is not None:
+        _check_speed(settings.speed)
+    if nodes and not is_live:
+        raise errors.UserError(f'"{nodes[0]}" is too much; nodes go with: innervate watch live')
+    report: Path | None = None
+    if is_live:
+        source = _live(nodes, settings)
+    elif Path(what).is_dir() and what not in bundled():
+        source = recorded = _recorded(Path(what), settings)
+        report = recorded.report
+    else:
+        source = _simulated(what, settings)
+
+    def announce(address: str) -> None:
+        print(f"Open {address}\nCtrl-C ends it.", flush=True)
+        if place.opened:
+            # A browser that runs in the terminal would keep the page waiting.
+            threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+
+    asyncio.run(serve(source, place.host, place.port, announce, report))
+    return 0
+
+
+def _check_speed(speed: float) -> None:
+    from innervate.web.errors import Refused
+    from innervate.web.pace import Pace
+
+    try:
+        Pace(speed)
+    except Refused as error:
+        raise errors.UserError(f"--speed: {error}, not {speed:g}") from None
+
+
+def _simulated(what: str, settings: Settings) -> Source:
+    from innervate import scenario as scenarios
+
+    plan = scenarios.plan(scenarios.load(what, settings.sets, settings.seed))
+    from innervate.web.simulated import Simulated
+
+    source = Simulated(plan, settings.speed)
+    with Progress(is_compiled(plan)):
+        source.prepare()
+    return source
+
+
+def _recorded(folder: Path, settings: Settings) -> Recorded:
+    from innervate.web.recorded import Recorded, plan_of
+
+    if settings.sets or settings.seed is not None:
+        raise errors.UserError("a run is shown as it was; --set and --seed go with a scenario")
+    plan = plan_of(folder)
+    source = Recorded(folder, plan, settings.speed)
+    with Progress(is_compiled(plan)) as progress:
+        source.replay(progress)
+    return source
+
+
+def _live(nodes: list[str], settings: Settings) -> Source:
+    from innervate.web.live import Live, find
+
+    if settings.sets or settings.seed is not None or settings.speed is not None:
+        raise errors.UserError("nodes run as they are; --set, --seed, --speed are for scenarios")
+    return Live(find(nodes))

@@ -1,0 +1,221 @@
+"""Running nodes as a source: asked over their status sockets, cut by telling their drivers."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+from innervate import __version__
+from innervate.live import status
+from innervate.web.errors import Refused, WatchError
+from innervate.web.history import SERIES, Logbook
+from innervate.web.live_map import Map, Place, Status
+from innervate.web.live_poll import Poller
+from innervate.web.live_state import State
+from innervate.web.messages import Command, Cut, Heal, number
+from innervate.web.recovery import Recovery
+from innervate.web.source import Source
+
+POLL_S = 0.2
+SOON_S = 0.05  # while somebody has no way
+STATUS = {"do": "status"}
+
+
+def find(names: list[str]) -> list[Path]:
+    """The sockets of nodes by name or path; without names, of all nodes of this user.
+
+    Raises:
+        LiveError: one of them is not there.
+        WatchError: none is there.
+    """
+    found = [status.find(name) for name in names] if names else status.sockets()
+    if not found:
+        where = f"no node runs here (folder {status.folder()})"
+        raise WatchError(f"{where}; start some with: innervate live up SCENARIO")
+    return found
+
+
+class Live(Source):
+    """Nodes that run now.
+
+    Args:
+        sockets: their status sockets.
+
+    Raises:
+        WatchError: none of them answers, or they are of different kinds.
+    """
+
+    def __init__(self, sockets: list[Path]) -> None:
+        super().__init__()
+        self._names = [path.stem for path in sockets]
+        self._poller = Poller(sockets)
+        self._began = time.monotonic()
+        self._told: dict[int, Status] = {}
+        self._last: dict[int, Status] = {}  # the newest word of those that do not answer, too
+        self._log = Logbook(self.history)
+        self._next = 0.0
+        self._counters: Counter[str] = Counter()
+        self._counted_us = 0
+        self._recovery: Recovery | None = None
+        self._poll()
+        if not self._told:
+            raise WatchError(f"{sockets[0]}: no node answers here; are they still running?")
+        kinds = {str(one["kind"]) for one in self._told.values()}
+        if len(kinds) > 1:
+            raise WatchError(f"{' and '.join(sorted(kinds))} nodes: name those of one network")
+        self._map = Map(self._last)
+        self._state = State(self._map, self._told)
+        self.can = ("cut", "heal") if self._map.links else ()
+
+    def scene(self) -> dict[str, Any]:
+        """Who answered, and who is linked with whom as they say."""
+        places = self._map.spread().round(3).tolist()
+        nodes = []
+        for at, (place, (x, y)) in enumerate(zip(self._map.places, places, strict=True)):
+            node = {
+                "id": at,
+                "label": self._label(place),
+                "x": x,
+                "y": y,
+                "role": self._role(place),
+            }
+            nodes.append({**node, "port": place.port} if place.port >= 0 else node)
+        numbers = self._map.number
+        links = [
+            {"id": at, "a": numbers[link.a], "b": numbers[link.b]}
+            for at, link in enumerate(self._map.links)
+        ]
+        series = [
+            {"id": "unconnected", "label": "nodes without a way", "unit": "nodes"},
+            {"id": "frames", "label": "frames received, all nodes", "unit": "per s"},
+            {"id": "dropped", "label": "frames dropped, all nodes", "unit": "per s"},
+        ]
+        return {
+            "kind": self._map.kind, "name": "live", "source": "live", "version": __version__,
+            "can": list(self.can), "duration_s": None, "t_s": self._now_us() / 1e6,
+            "nodes": nodes, "links": links, "fence": None, "series": series,
+            "ports": sum(place.port >= 0 for place in self._map.places),
+        }  # fmt: skip
+
+    def _label(self, place: Place) -> str:
+        name = self._names[place.node]
+        return f"{name}.{place.port}" if place.port >= 0 else name
+
+    def _role(self, place: Place) -> str:
+        if place.port >= 0:
+            return "port"
+        return str(self._last[place.node].get("role", "node"))
+
+    def _now_us(self) -> int:
+        return round((time.monotonic() - self._began) * 1e6)
+
+    def work(self) -> float:
+        """Ask all nodes, if it is time."""
+        now = time.monotonic()
+        if now < self._next:
+            return self._next - now
+        self._poll()
+        fresh = Map(self._last, self._map)
+        if (fresh.places, fresh.links) != (self._map.places, self._map.links):
+            self._map = fresh
+            self.can = ("cut", "heal") if fresh.links else ()
+            self.scenes += 1
+        self._look()
+        waits = self._recovery is not None and self._recovery.recovered_ms is None
+        self._next = now + (SOON_S if waits else POLL_S)
+        return max(0.0, self._next - time.monotonic())
+
+    def _poll(self) -> None:
+        """Ask everybody; say who went and who came back."""
+        before, self._told = self._told, self._poller.ask_all(STATUS)
+        at_us = self._now_us()
+        for i in before.keys() - self._told.keys():
+            self._log.say(at_us, f"{self._names[i]} does not answer any more", "bad")
+        for i in self._told.keys() - before.keys():
+            if i in self._last:
+                self._log.say(at_us, f"{self._names[i]} answers again", "good")
+        self._last = {**self._last, **self._told}
+
+    def _look(self) -> None:
+        """Take in what everybody said: who has a way again, a point of the plots."""
+        at_us = self._now_us()
+        self._state = State(self._map, self._told)
+        lost, recovery = self._state.unconnected, self._recovery
+        if recovery is not None:
+            after_ms = round((at_us - recovery.at_us) / 1e3, 1)
+            if recovery.detected_ms is None and lost:
+                recovery.detected_ms = after_ms
+            if recovery.recovered_ms is None and not lost:
+                kept = recovery.detected_ms is None
+                recovery.recovered_ms = 0.0 if kept else after_ms
+                how = "kept its way" if kept else f"has a way again after {after_ms:.0f} ms"
+                self._log.say(at_us, f"every node {how}, as they say", "good")
+        total = self._frames()
+        took_s = max(1e-3, (at_us - self._counted_us) / 1e6)
+        point: dict[str, float | None] = {
+            name: round(max(0, total[name] - self._counters[name]) / took_s, 1) for name in total
+        }
+        if self._counted_us:
+            self.history.add(SERIES, at_us, {"unconnected": float(lost), **point})
+        self._counters, self._counted_us = total, at_us
+
+    def _frames(self) -> Counter[str]:
+        """Frames received and dropped, by everybody so far."""
+        total = Counter({"frames": 0, "dropped": 0})
+        for one in self._last.values():
+            for path in one.get("paths", ()):
+                total["frames"] += path["counters"].get("received", 0)
+            for what, count in one["counters"].items():
+                if what.startswith("dropped"):
+                    total["dropped"] += count
+        return total
+
+    def fields(self) -> dict[str, Any]:
+        """The state as it was told last."""
+        at_us, recovery = self._now_us(), self._recovery
+        return {
+            "t_s": round(at_us / 1e6, 1),
+            "paused": False,
+            "speed": 1.0,
+            "at_end": False,
+            **self._state.fields(),
+            "since_cut_s": None if recovery is None else round((at_us - recovery.at_us) / 1e6, 1),
+            "recovery": None if recovery is None else recovery.shown(),
+        }
+
+    def do(self, command: Command) -> dict[str, Any] | None:
+        """Have both ends of a link drop what comes over it, or take it again."""
+        if not isinstance(command, Cut | Heal):
+            raise Refused("not possible here")
+        at = number("link", command.link, len(self._map.links))
+        heal, link = isinstance(command, Heal), self._map.links[at]
+        if bool(self._state.link_up[at]) == heal:
+            raise Refused("this link is not cut" if heal else "this link carries nothing already")
+        ends = [(link.a, link.paths_a), (link.b, link.paths_b)]
+        told = 0
+        for place, paths in ends:
+            for path in paths:
+                if self._is_shared(place, path):
+                    raise Refused(f"{self._label(place)} hears others on the same path, too")
+                request = {"do": "restore" if heal else "cut", "port": path}
+                told += len(self._poller.ask({place.node: request}))
+        if not told:
+            raise Refused("neither end could be told; do they still run?")
+        names = f"{self._label(link.a)} - {self._label(link.b)}"
+        cause = f"link {names} {'put back' if heal else 'cut'}"
+        if not heal:
+            self._recovery = Recovery(cause, self._now_us())
+        self._log.say(self._now_us(), cause)
+        self._next = 0.0
+        return None
+
+    def _is_shared(self, place: Place, path: int) -> bool:
+        """True if a path leads to several neighbours: a group, or the air."""
+        near = self._last[place.node].get("neighbours", ())
+        return sum(path in one["ports"] for one in near) > 1
+
+    def close(self) -> None:
+        """Hang up."""
+        self._poller.close()

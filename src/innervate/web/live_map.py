@@ -1,0 +1,142 @@
+"""Who is linked with whom among running nodes, as far as their own words tell."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+Status = dict[str, Any]
+
+
+class Place(NamedTuple):
+    """A node on the map: a running node, or one interface port of a skin's PC.
+
+    Attributes:
+        node: which running node it is.
+        port: the PC's interface port; -1 for others.
+    """
+
+    node: int
+    port: int
+
+
+class Link(NamedTuple):
+    """A link between two places, with the paths of either end that carry it, if they are known."""
+
+    a: Place
+    b: Place
+    paths_a: tuple[int, ...]
+    paths_b: tuple[int, ...]
+
+
+class Map:
+    """Places and links of a network, from what its nodes said.
+
+    Args:
+        told: what they said, by their index.
+        before: a map that this one takes the place of: a link that nobody names any more stays.
+
+    Attributes:
+        kind: skin, radio or mesh.
+        places: the map's nodes: all that are no PC first, then the PC's ports.
+        links: in order of their places.
+    """
+
+    def __init__(self, told: Mapping[int, Status], before: Map | None = None) -> None:
+        self.kind = str(next(iter(told.values()))["kind"])
+        ports = [
+            Place(i, int(path["port"]))
+            for i, one in sorted(told.items())
+            if one.get("role") == "sink"
+            for path in one["paths"]
+        ]
+        plain = [Place(i, -1) for i, one in sorted(told.items()) if one.get("role") != "sink"]
+        self.places = [*plain, *ports]
+        self.number = {place: at for at, place in enumerate(self.places)}
+        named = self._meshed(told) if self.kind == "mesh" else self._cabled(told)
+        # Two cells can have two cables; two nodes of a mesh hear each other, or not.
+        whole = 2 if self.kind == "mesh" else 4
+        known = {link[:whole]: link for link in (*(before.links if before else ()), *named)}
+        self.links: list[Link] = sorted(known.values())
+
+    def place(self, index: int, path: int) -> Place:
+        """The place that a path of a node belongs to."""
+        port = Place(index, path)
+        return port if port in self.number else Place(index, -1)
+
+    def numbered(self, told: Mapping[int, Status]) -> dict[int, Place]:
+        """Places by the number that nodes know each other by."""
+        return {int(one["number"]): Place(i, -1) for i, one in told.items() if "number" in one}
+
+    def _cabled(self, told: Mapping[int, Status]) -> list[Link]:
+        """Cables whose ends name each other: each is called what the other is at home."""
+        ends: dict[tuple[str, str], list[tuple[str, str, int, int]]] = {}
+        for i, one in told.items():
+            for path in one.get("paths", ()):
+                own, far = str(path.get("own", "")), str(path["name"])
+                if own:
+                    key = (_port(own), _port(far))
+                    ends.setdefault(key, []).append((own, far, i, int(path["port"])))
+        found = []
+        for (near, away), here in ends.items():
+            for own, far, i, port in here:
+                for their_own, their_far, j, their_port in ends.get((away, near), ()):
+                    if not (_fits(own, their_far) and _fits(their_own, far)):
+                        continue
+                    a, b = self.place(i, port), self.place(j, their_port)
+                    if self.number[a] < self.number[b]:
+                        found.append(Link(a, b, (port,), (their_port,)))
+        return found
+
+    def _meshed(self, told: Mapping[int, Status]) -> list[Link]:
+        """Neighbours that hear each other, at least one way."""
+        places = self.numbered(told)
+        ports: dict[tuple[Place, Place], tuple[int, ...]] = {}
+        for i, one in told.items():
+            for near in one["neighbours"]:
+                if near["node"] in places:
+                    ports[Place(i, -1), places[near["node"]]] = tuple(near["ports"])
+        pairs = {(min(pair), max(pair)) for pair in ports if pair[0] != pair[1]}
+        return [Link(a, b, ports.get((a, b), ()), ports.get((b, a), ())) for a, b in pairs]
+
+    def spread(self) -> Any:
+        """x, y of every place: as far apart as they are in hops, about one from the next."""
+        count = len(self.places)
+        if count < 3 or not self.links:
+            turn = 2 * math.pi * np.arange(count) / max(1, count)
+            return max(1.0, count / 6) * np.stack([np.sin(turn), -np.cos(turn)], axis=1)
+        far = np.full((count, count), np.inf)
+        np.fill_diagonal(far, 0)
+        for link in self.links:
+            a, b = self.number[link.a], self.number[link.b]
+            far[a, b] = far[b, a] = 1
+        for middle in range(count):
+            far = np.minimum(far, far[:, middle : middle + 1] + far[middle])
+        far[np.isinf(far)] = far[np.isfinite(far)].max() + 1
+        return _scaled(far)
+
+
+def _scaled(far: Any) -> Any:
+    """Places whose distances are about those given (classical scaling)."""
+    squares = far**2
+    centred = -0.5 * (
+        squares - squares.mean(axis=0) - squares.mean(axis=1)[:, None] + squares.mean()
+    )
+    values, vectors = np.linalg.eigh(centred)
+    places = vectors[:, :-3:-1] * np.sqrt(np.maximum(values[:-3:-1], 0.0))
+    # Signs of eigenvectors are arbitrary; who is as far from everybody would lie on one place.
+    places = places * np.where(places[0] > 0, -1.0, 1.0)
+    turn = np.arange(len(places)) * 2.4
+    return places + 0.15 * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+
+
+def _port(address: str) -> str:
+    return address.rpartition(":")[2]
+
+
+def _fits(own: str, far: str) -> bool:
+    """True if `far` can be what the other end calls `own`: the same, or any address of here."""
+    return own == far or (own.split(" ")[-1].startswith("0.0.0.0:") and _port(own) == _port(far))

@@ -1,0 +1,58 @@
+// The colours of the style sheet for drawing on a canvas, and light, dark or as the system has it.
+
+const NAMES = ["ground", "panel", "ink", "soft", "faint", "link", "alarm", "good", "accent"];
+const SHADES = 8;
+const dark = matchMedia("(prefers-color-scheme: dark)");
+const KEY = "innervate-colours";
+const CHOICES = ["auto", "light", "dark"];
+
+/** Colours by name; `p`, `d` and `h` are ports, depth and heat, eight of each. */
+export const colours = { p: [], d: [], h: [] };
+
+function read() {
+  const style = getComputedStyle(document.documentElement);
+  const of = (name) => style.getPropertyValue(`--${name}`).trim();
+  for (const name of NAMES) colours[name] = of(name);
+  for (const family of "pdh") {
+    colours[family] = Array.from({ length: SHADES }, (_, i) => of(`${family}${i}`));
+  }
+}
+
+/** Which of the shades stands for a value of 0 .. most. */
+export function shade(value, most) {
+  return most > 0 ? Math.max(0, Math.min(SHADES - 1, Math.floor((SHADES * value) / most))) : 0;
+}
+
+function stored() {
+  try {
+    return localStorage.getItem(KEY);
+  } catch {
+    return null; // a browser that keeps nothing
+  }
+}
+
+/** Let a button choose the colours; `onChange` draws anew. Returns what makes the next choice. */
+export function setUpTheme(button, onChange) {
+  let choice = CHOICES.includes(stored()) ? stored() : "auto";
+  const show = () => {
+    const is = choice === "auto" ? (dark.matches ? "dark" : "light") : choice;
+    document.documentElement.dataset.theme = is;
+    button.textContent = choice[0].toUpperCase() + choice.slice(1);
+    button.setAttribute("aria-label", `Colours: ${choice}`);
+    read();
+    onChange();
+  };
+  const next = () => {
+    choice = CHOICES[(CHOICES.indexOf(choice) + 1) % CHOICES.length];
+    try {
+      localStorage.setItem(KEY, choice);
+    } catch {
+      // chosen for this page alone
+    }
+    show();
+  };
+  button.addEventListener("click", next);
+  dark.addEventListener("change", show);
+  show();
+  return next;
+}

@@ -1,0 +1,217 @@
+// The page of `innervate watch`: takes in what the server says, shows it, and sends back commands.
+import { setUpTheme } from "./colours.js";
+import { Controls } from "./controls.js";
+import { setUpKeys } from "./keys.js";
+import { showLegend } from "./legend.js";
+import { Network } from "./network.js";
+import { Card, Log, commandFor, showNumbers } from "./panel.js";
+import { Plots } from "./plots.js";
+import { Pointer } from "./pointer.js";
+import { MeshView } from "./mesh.js";
+import { RadioView } from "./radio.js";
+import { SkinView } from "./skin.js";
+import { Connection, TOKEN } from "./socket.js";
+import { LAYERS, Stage } from "./stage.js";
+import { Timeline } from "./timeline.js";
+
+const VIEWS = { skin: SkinView, mesh: MeshView, radio: RadioView };
+const SOURCES = { simulation: "simulation", run: "recorded run", live: "live nodes" };
+const TOUCHED = 200; // of 255: what a click presses
+const PANEL_MS = 100; // numbers and plots follow this often: nobody reads faster
+const $ = (id) => document.getElementById(id);
+
+let network = null;
+let view = null;
+let plots = null;
+let chosenColour = null; // outlives a server that is started anew
+let panelDue = 0;
+let panelStale = false;
+
+/** For whoever measures: `innervate.fps`, the slowest drawing of the last second, and where on the
+ * page a node or link is, by its name. */
+const speedometer = { fps: 0, frames: 0, states: 0, slowest_ms: 0, at: placeOf };
+window.innervate = speedometer;
+let second = performance.now();
+let counted = 0;
+let slowest = 0;
+
+const stage = new Stage($("stage"));
+const log = new Log($("log"));
+const controls = new Controls(send);
+const card = new Card(change);
+const pointer = new Pointer(stage, { select: (what) => card.show(view, what), act });
+const timeline = new Timeline($("timeline"));
+const nextTheme = setUpTheme($("theme"), redraw);
+const connection = new Connection(onMessage, onConnection);
+
+function send(command) {
+  if (!connection.send(command)) {
+    log.add({ text: "not connected: nothing was sent", level: "bad" });
+  }
+}
+
+/** Cut, kill, heal, revive or touch what was clicked. */
+function act(what) {
+  const tool = $("tool").value;
+  if (tool === "look") return;
+  if (tool === "touch" && what.node !== undefined) {
+    const value = network.now.touch[what.node] ? 0 : TOUCHED;
+    return send({ do: "touch", node: network.nodes[what.node].id, value });
+  }
+  change(what);
+}
+
+/** Cut, kill, heal or revive something, whatever a click does. */
+function change(what) {
+  const command = commandFor(network, what);
+  if (command) send(command);
+}
+
+function onMessage(message) {
+  if (message.type === "scene") showScene(message);
+  else if (message.type === "state" && network) takeIn(message);
+  else if (message.type === "log") log.add(message);
+  else if (message.type === "error") log.add({ text: message.text, level: "bad" });
+  else if (message.type === "end") log.add({ text: message.text, level: "info" });
+  else if (message.type === "saved") download(message.toml);
+}
+
+function onConnection(open, refused) {
+  $("connection").textContent = open ? "connected" : "not connected";
+  $("connection").classList.toggle("lost", !open);
+  $("lost").hidden = open;
+  $("lost").textContent = refused
+    ? "The server refuses this address: open the one that it printed, with its token."
+    : "The connection to the server is lost. Trying again …";
+}
+
+function showScene(scene) {
+  network = new Network(scene);
+  view = new VIEWS[scene.kind](network);
+  pointer.forget();
+  card.show(view, null);
+  log.clear();
+  $("name").textContent = scene.name;
+  document.title = `${scene.name} - innervate watch`;
+  $("what").textContent = `${scene.kind}, ${SOURCES[scene.source] ?? scene.source}`;
+  $("report").hidden = !scene.report;
+  $("report").href = `report?token=${encodeURIComponent(TOKEN)}`;
+  const choices = view.choices();
+  if (choices.some(([name]) => name === chosenColour)) view.colour = chosenColour;
+  options($("colour"), $("colour-box"), choices, view.colour);
+  const { can } = network;
+  const acts = can.has("cut") || can.has("kill");
+  const deed = !can.has("kill") ? "cuts or heals"
+    : can.has("cut") ? "cuts and kills, or heals" : "switches off or on";
+  options($("tool"), $("tool-box"), [
+    ...(acts ? [["cut", deed]] : []),
+    ...(can.has("touch") ? [["touch", "touches"]] : []),
+    ["look", "only selects"],
+  ]);
+  $("stage").classList.toggle("acts", acts);
+  $("stage").setAttribute("aria-label", `Map of ${scene.name}: ${scene.nodes.length} nodes, `
+    + `${scene.links.length} links`);
+  $("timeline").hidden = scene.kind !== "radio";
+  timeline.network = scene.kind === "radio" ? network : null;
+  controls.scene(network);
+  plots = new Plots($("plots"), network);
+  stage.show(view);
+  showLegend($("legend"), view);
+  panelStale = true;
+}
+
+/** Fill a list of choices; one with a single choice is not shown. */
+function options(list, box, choices, chosen) {
+  list.replaceChildren(...choices.map(([value, text]) => {
+    const option = document.createElement("option");
+    Object.assign(option, { value, textContent: text, selected: value === chosen });
+    return option;
+  }));
+  box.hidden = choices.length < 2;
+}
+
+function takeIn(state) {
+  const changed = network.apply(state);
+  speedometer.states += 1;
+  if (changed.has("back_s")) log.forgetFrom(state.back_s);
+  if (changed.has("position")) stage.moved();
+  stage.touch(...view.layersOf(changed));
+  panelStale = true;
+}
+
+function placeOf(name) {
+  const { left, top } = stage.box.getBoundingClientRect();
+  const node = network.nodes.findIndex(({ label }) => label === name);
+  const link = network.links.findIndex((_, i) => network.linkName(i) === name);
+  if (node < 0 && link < 0) return null;
+  const [a, b] = node < 0 ? network.ends[link] : [node, node];
+  return [left + (stage.x[a] + stage.x[b]) / 2, top + (stage.y[a] + stage.y[b]) / 2];
+}
+
+function redraw() {
+  view?.repaint?.();
+  stage?.touch(...Object.values(LAYERS));
+  if (view) showLegend($("legend"), view);
+  panelStale = true;
+}
+
+function download(toml) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([toml], { type: "application/toml" }));
+  link.download = `${network.scene.name.replace(/[^\w-]+/g, "-") || "scenario"}.toml`;
+  link.click();
+  URL.revokeObjectURL(link.href);
+}
+
+function setColour(name) {
+  view.colour = chosenColour = name;
+  $("colour").value = name;
+  redraw();
+}
+
+$("colour").addEventListener("change", () => setColour($("colour").value));
+$("zoom-in").addEventListener("click", () => stage.zoomBy(1.5));
+$("zoom-out").addEventListener("click", () => stage.zoomBy(1 / 1.5));
+$("zoom-fit").addEventListener("click", () => stage.fit());
+setUpKeys([
+  [" ", "Space", "pause or go on", () => controls.toggle()],
+  [".", ".", "one event further, when paused", () => send({ do: "step" })],
+  ["[", "[", "slower", () => controls.shift(-1)],
+  ["]", "]", "faster", () => controls.shift(1)],
+  ["+", "+", "zoom in", () => stage.zoomBy(1.5)],
+  ["-", "−", "zoom out", () => stage.zoomBy(1 / 1.5)],
+  ["0", "0", "show all", () => stage.fit()],
+  ["c", "c", "next colouring", nextColour],
+  ["t", "t", "light, dark or as the system", () => nextTheme()],
+]);
+
+function nextColour() {
+  const names = view.choices().map(([name]) => name);
+  if (names.length > 1) setColour(names[(names.indexOf(view.colour) + 1) % names.length]);
+}
+
+
+function frame(now) {
+  if (network) {
+    const before = performance.now();
+    stage.draw();
+    timeline.draw();
+    if (panelStale && now >= panelDue) {
+      panelStale = false;
+      panelDue = now + PANEL_MS;
+      showNumbers(network);
+      controls.state(network);
+      plots.draw();
+      if (pointer.selected) card.show(view, pointer.selected);
+    }
+    slowest = Math.max(slowest, performance.now() - before);
+  }
+  speedometer.frames += 1;
+  if (now - second >= 1000) {
+    speedometer.fps = (1000 * (speedometer.frames - counted)) / (now - second);
+    speedometer.slowest_ms = slowest;
+    [second, counted, slowest] = [now, speedometer.frames, 0];
+  }
+  requestAnimationFrame(frame);
+}
+requestAnimationFrame(frame);

@@ -1,0 +1,222 @@
+// A mesh: links by quality, routes to the gateway, robots that move, the fence and alarms.
+import { colours } from "./colours.js";
+import { Labels } from "./labels.js";
+import { distance } from "./pointer.js";
+import { LAYERS } from "./stage.js";
+import { arrow, boxRound, cross, flights, stroke, word } from "./shapes.js";
+import { symbol } from "./symbols.js";
+import { plural } from "./words.js";
+
+const GOOD = 0.9; // links of this quality are drawn whole, worse ones dashed, poor ones dotted
+const FAIR = 0.6;
+const LINK_PX = 7; // how near a click must be to a link
+const FONT = "12px system-ui, sans-serif";
+
+/** Draws a mesh on a stage. */
+export class MeshView {
+  constructor(network) {
+    this.network = network;
+    this.margin = [30, 26];
+    this.colour = "";
+    this.moves = network.nodes.some((node) => node.role === "robot");
+  }
+
+  choices() {
+    return [];
+  }
+
+  bounds() {
+    const all = [...this.network.place, ...(this.network.scene.fence ?? []).flat()];
+    const [left, top, right, bottom] = boxRound(all, 0);
+    return boxRound(all, 0.04 * Math.max(right - left, bottom - top) || 1);
+  }
+
+  layersOf(changed) {
+    const any = (...names) => names.some((name) => changed.has(name));
+    const found = [];
+    if (any("link_up", "node_up")) found.push(LAYERS.ground);
+    if (any("parent", "node_up", "alarm", "outside")) found.push(LAYERS.lines);
+    if (any("flights")) found.push(LAYERS.moving);
+    return found;
+  }
+
+  draw(layer, context, stage) {
+    stage.clear(context);
+    if (layer === LAYERS.ground) this.#ground(context, stage);
+    else if (layer === LAYERS.lines) this.#nodes(context, stage);
+    else flights(context, this.network, stage, 4);
+  }
+
+  size() {
+    return 2 * this.dot();
+  }
+
+  reach() {
+    return this.dot() + 6;
+  }
+
+  linkFirst() {
+    return false;
+  }
+
+  linkDistance(stage, link, x, y) {
+    if (!this.network.isThere(link)) return Infinity;
+    const [a, b] = this.network.ends[link];
+    const away = distance(stage.x[a], stage.y[a], stage.x[b], stage.y[b], x, y);
+    return away <= LINK_PX ? away : Infinity;
+  }
+
+  dot() {
+    return this.network.nodes.length > 120 ? 4 : 6;
+  }
+
+  facts(i) {
+    const { now, nodes } = this.network;
+    const facts = [nodes[i].role];
+    if (!now.node_up[i]) return `${nodes[i].role}, switched off`;
+    const next = this.network.parentOf(i);
+    if (next >= 0) facts.push(`sends to the gateway through ${nodes[next].label}`);
+    else if (nodes[i].role !== "gateway") facts.push("no way to the gateway");
+    if (next >= 0 && now.depth[i] > 0) facts.push(plural(now.depth[i], "hop"));
+    if (now.outside[i]) facts.push("outside the fence");
+    if (now.alarm[i]) facts.push("alarm");
+    return facts.join(", ");
+  }
+
+  legend() {
+    const roles = new Set(this.network.nodes.map((node) => node.role));
+    const line = (colour, width, dash) => (context) => {
+      const path = new Path2D("M1 8h24");
+      stroke(context, colours[colour], width, path, dash);
+    };
+    const shape = (role, up = 1) => (context) => {
+      symbol(context, 13, 8, role === "monitor" ? 3.5 : 5, role, up);
+    };
+    const found = [...roles].map((role) => [shape(role), role]);
+    found.push([shape("node", 0), "switched off"]);
+    found.push([line("soft", 1.4, []), "good link"], [line("soft", 1.4, [5, 4]), "fair"],
+      [line("soft", 1.4, [1.5, 4]), "poor"]);
+    found.push([(context) => {
+      stroke(context, colours.alarm, 2, new Path2D("M1 8h24"), [4, 3]);
+      const gap = new Path2D();
+      cross(gap, 13, 8, 4);
+      stroke(context, colours.alarm, 3, gap);
+    }, "cut"]);
+    found.push([(context) => {
+      const path = new Path2D();
+      arrow(path, 0, 8, 26, 8, 1);
+      stroke(context, colours.accent, 2.4, path);
+    }, "way to the gateway"]);
+    if (this.network.scene.fence) found.push([line("ink", 2, []), "fence"]);
+    return found;
+  }
+
+  #ground(context, stage) {
+    const { network } = this;
+    const rings = network.scene.fence ?? [];
+    const fence = new Path2D();
+    for (const ring of rings) {
+      ring.forEach((place, i) => fence[i ? "lineTo" : "moveTo"](...stage.of(place)));
+      fence.closePath();
+    }
+    context.fillStyle = colours.panel;
+    context.fill(fence, "evenodd");
+    const paths = new Map();
+    network.ends.forEach(([a, b], link) => {
+      if (!network.isThere(link)) return;
+      const { now, links } = network;
+      const quality = links[link].quality ?? 1;
+      const gone = !now.node_up[a] || !now.node_up[b];
+      const kind = network.isCut(link) ? "cut" : gone ? "gone"
+        : quality >= GOOD ? "good" : quality >= FAIR ? "fair" : "poor";
+      if (!paths.has(kind)) paths.set(kind, new Path2D());
+      const path = paths.get(kind);
+      path.moveTo(stage.x[a], stage.y[a]);
+      path.lineTo(stage.x[b], stage.y[b]);
+    });
+    const draw = (kind, colour, width, dash, alpha = 1) => {
+      if (!paths.has(kind)) return;
+      context.globalAlpha = alpha;
+      stroke(context, colour, width, paths.get(kind), dash);
+      context.globalAlpha = 1;
+    };
+    draw("gone", colours.soft, 1, [1, 7], 0.5);
+    draw("poor", colours.soft, 1.2, [1.5, 4], 0.6);
+    draw("fair", colours.soft, 1.2, [5, 4], 0.6);
+    draw("good", colours.soft, 1.2, [], 0.5);
+    draw("cut", colours.alarm, 2, [4, 3]);
+    stroke(context, colours.ink, 2, fence);
+    this.#gaps(context, stage);
+    if (network.scene.source !== "live") this.#measure(context, stage);
+  }
+
+  #gaps(context, stage) {
+    const gaps = new Path2D();
+    this.network.ends.forEach(([a, b], link) => {
+      if (!this.network.isCut(link)) return;
+      cross(gaps, (stage.x[a] + stage.x[b]) / 2, (stage.y[a] + stage.y[b]) / 2, 5);
+    });
+    stroke(context, colours.ground, 6, gaps);
+    stroke(context, colours.alarm, 3, gaps);
+  }
+
+  /** A bar that says how long so many metres are; live nodes do not know where they are. */
+  #measure(context, stage) {
+    const most = 130 / stage.scale;
+    const ten = 10 ** Math.floor(Math.log10(most));
+    const metres = ten * (most >= 5 * ten ? 5 : most >= 2 * ten ? 2 : 1);
+    const [x, y] = [stage.width - 14 - metres * stage.scale, stage.height - 12];
+    const bar = new Path2D(`M${x} ${y - 4}v4h${metres * stage.scale}v-4`);
+    stroke(context, colours.soft, 1.2, bar);
+    context.textAlign = "center";
+    word(context, `${metres} m`, x + 0.5 * metres * stage.scale, y - 9, colours.soft,
+      colours.ground, FONT);
+  }
+
+  #nodes(context, stage) {
+    const { network } = this;
+    const { now, nodes } = network;
+    const routes = new Path2D();
+    const dot = this.dot();
+    nodes.forEach((_, i) => {
+      const next = now.node_up[i] ? network.parentOf(i) : -1;
+      if (next >= 0) arrow(routes, stage.x[i], stage.y[i], stage.x[next], stage.y[next], dot + 4);
+    });
+    stroke(context, colours.accent, 2.2, routes);
+    context.font = FONT;
+    const names = new Labels(context, stage.width, stage.height);
+    nodes.forEach((node, i) => {
+      const [x, y] = [stage.x[i], stage.y[i]];
+      symbol(context, x, y, dot, node.role, now.node_up[i]);
+      names.block(x - dot - 2, y - dot - 2, x + dot + 2, y + dot + 2);
+      if (now.alarm[i]) this.#ring(context, x, y, dot + 6, [], 3);
+      else if (now.outside[i]) this.#ring(context, x, y, dot + 6, [4, 3], 2);
+    });
+    this.#names(context, stage, names, dot);
+  }
+
+  #ring(context, x, y, radius, dash, width) {
+    const ring = new Path2D();
+    ring.arc(x, y, radius, 0, 7);
+    stroke(context, colours.alarm, width, ring, dash);
+  }
+
+  /** Those with a part to play are named first: the others find what room is left. */
+  #names(context, stage, names, dot) {
+    const { now, nodes } = this.network;
+    const told = (i) => nodes[i].role !== "node" || now.alarm[i] || now.outside[i];
+    const order = [...nodes.keys()].sort((a, b) => told(b) - told(a) || a - b);
+    context.textAlign = "left";
+    for (const i of order) {
+      const { role, label } = nodes[i];
+      const state = now.alarm[i] ? " ALARM" : now.outside[i] ? " outside" : "";
+      const plain = role === "node" || role === "post" || label.includes(role);
+      const text = `${label}${plain ? "" : ` ${role}`}${state}`;
+      const strong = told(i);
+      context.font = strong ? `600 ${FONT}` : FONT;
+      const at = names.put(text, stage.x[i], stage.y[i], dot + (state ? 9 : 4));
+      const colour = state ? colours.alarm : strong ? colours.ink : colours.soft;
+      if (at) word(context, text, ...at, colour, colours.ground, context.font);
+    }
+  }
+}

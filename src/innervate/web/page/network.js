@@ -1,0 +1,103 @@
+// What the server says of the network: the scene, and the last value of every field of a state.
+
+const OUT_OF_RANGE = 2; // in link_up
+const KEPT = 20000; // boxes of the timeline
+const POINTS = 3000; // of a plot
+
+/** One network as it is looked at: a scene and what became of it. */
+export class Network {
+  constructor(scene) {
+    this.scene = scene;
+    this.kind = scene.kind;
+    this.nodes = scene.nodes;
+    this.links = scene.links;
+    this.can = new Set(scene.can);
+    this.index = new Map(scene.nodes.map((node, i) => [node.id, i]));
+    this.ends = scene.links.map((link) => [this.index.get(link.a), this.index.get(link.b)]);
+    this.linksOf = scene.nodes.map(() => []);
+    this.ends.forEach(([a, b], i) => {
+      this.linksOf[a].push(i);
+      this.linksOf[b].push(i);
+    });
+    this.place = scene.nodes.map((node) => [node.x, node.y]);
+    const none = (value) => scene.nodes.map(() => value);
+    this.now = {
+      t_s: scene.t_s ?? 0, paused: false, speed: 1, at_end: false,
+      node_up: none(1), link_up: scene.links.map(() => 1),
+      parent: none(-1), port: none(-1), depth: none(-1), load: none(0), touch: none(0),
+      alarm: none(0), outside: none(0), flights: [],
+      since_cut_s: null, recovery: null, unconnected: 0,
+    };
+    this.radio = { now: none(0), turn: none(-1) };
+    this.timeline = [];
+    this.series = new Map(scene.series.map((one) => [one.id, []]));
+    this.cuts_s = [];
+  }
+
+  /** Take in a state message. Returns the names of what it changed, `back_s` if time went back. */
+  apply(state) {
+    if (state.back_s !== undefined) this.#forgetAfter(state.back_s);
+    const { type, back_s, timeline, series, position, radio, ...plain } = state;
+    Object.assign(this.now, plain);
+    if (position) this.place = position;
+    if (radio) Object.assign(this.radio, radio);
+    if (timeline?.length) {
+      for (const box of timeline) this.timeline.push(box);
+      if (this.timeline.length > KEPT) this.timeline.splice(0, this.timeline.length - KEPT / 2);
+    }
+    for (const [id, points] of Object.entries(series ?? {})) this.#addPoints(id, points);
+    this.#noteCut();
+    return new Set(Object.keys(state));
+  }
+
+  /** The node that stands for an id of `parent`, as an index, or -1. */
+  parentOf(i) {
+    const id = this.now.parent[i];
+    return id === -1 || id === null ? -1 : (this.index.get(id) ?? -1);
+  }
+
+  /** Whether a link is there at all: robots move out of each other's range. */
+  isThere(link) {
+    return this.now.link_up[link] !== OUT_OF_RANGE;
+  }
+
+  /** Whether a link was cut itself; one of a node that is off is not. */
+  isCut(link) {
+    const [a, b] = this.ends[link];
+    return this.now.link_up[link] === 0 && this.now.node_up[a] && this.now.node_up[b];
+  }
+
+  /** The other end of a link. */
+  across(link, node) {
+    const [a, b] = this.ends[link];
+    return a === node ? b : a;
+  }
+
+  linkName(link) {
+    const [a, b] = this.ends[link];
+    return `${this.nodes[a].label} - ${this.nodes[b].label}`;
+  }
+
+  #addPoints(id, points) {
+    const kept = this.series.get(id);
+    if (!kept) return;
+    for (const point of points) kept.push(point);
+    if (kept.length > POINTS) kept.splice(0, kept.length - POINTS / 2);
+  }
+
+  #noteCut() {
+    const { since_cut_s: since, t_s } = this.now;
+    if (since === null || since === undefined) return;
+    const at = t_s - since;
+    if (!this.cuts_s.length || Math.abs(this.cuts_s.at(-1) - at) > 1e-6) this.cuts_s.push(at);
+    if (this.cuts_s.length > 200) this.cuts_s.shift();
+  }
+
+  #forgetAfter(t_s) {
+    this.timeline = this.timeline.filter((box) => box.to_s <= t_s);
+    for (const [id, points] of this.series) {
+      this.series.set(id, points.filter(([at]) => at <= t_s));
+    }
+    this.cuts_s = this.cuts_s.filter((at) => at <= t_s);
+  }
+}

@@ -1,0 +1,161 @@
+// Numbers, events and what is selected.
+import { ago, clock, duration, plural } from "./words.js";
+
+const MARKS = { info: "·", good: "✓", bad: "✕" };
+const KEPT = 300;
+const $ = (id) => document.getElementById(id);
+
+function show(id, text, more, state) {
+  const box = $(id);
+  box.querySelector("output").textContent = text;
+  box.querySelector(".more").textContent = more;
+  box.className = `number ${state}`;
+}
+
+/** The large numbers: time since the last cut, how long the recovery took, who has no way. */
+export function showNumbers(network) {
+  const { since_cut_s: since, recovery, unconnected } = network.now;
+  const none = since === null || since === undefined;
+  show("since", none ? "–" : ago(since), none ? "none yet" : "", "");
+  if (!recovery) show("recovery", "–", "", "");
+  else {
+    const noticed = recovery.detected_ms === null || recovery.detected_ms === undefined
+      ? "not noticed yet" : `noticed after ${duration(recovery.detected_ms)}`;
+    const isOpen = recovery.recovered_ms === null || recovery.recovered_ms === undefined;
+    const text = isOpen ? ago(network.now.t_s - recovery.at_s) : duration(recovery.recovered_ms);
+    const state = isOpen ? "not yet, " : "";
+    show("recovery", text, `${recovery.cause}: ${state}${noticed}`, isOpen ? "open" : "done");
+  }
+  const isRadio = network.kind === "radio"; // there everybody hears everybody
+  $("unconnected").querySelector(".label").textContent = isRadio ? "switched off" : "without a way";
+  $("since").querySelector(".label").textContent = `since the last ${isRadio ? "failure" : "cut"}`;
+  $("recovery").hidden = isRadio;
+  const all = network.nodes.filter((node) => node.role !== "sink" && node.role !== "port").length;
+  show("unconnected", String(unconnected), `of ${plural(all, WORDS[network.kind])}`,
+    unconnected ? "bad" : "");
+}
+
+export const WORDS = { skin: "cell", radio: "station", mesh: "node" };
+
+/** Events, the newest at the end; it follows them unless the reader scrolled up. */
+export class Log {
+  constructor(list) {
+    this.list = list;
+    this.follows = true;
+    list.addEventListener("scroll", () => {
+      this.follows = list.scrollHeight - list.scrollTop - list.clientHeight < 30;
+    });
+    new ResizeObserver(() => this.#follow()).observe(list);
+  }
+
+  #follow() {
+    if (this.follows) this.list.scrollTop = this.list.scrollHeight;
+  }
+
+  clear() {
+    this.list.replaceChildren();
+  }
+
+  /** Time went back: what was then or later has not happened. */
+  forgetFrom(t_s) {
+    for (const item of [...this.list.children]) {
+      if (Number(item.dataset.t_s) >= t_s) item.remove();
+    }
+  }
+
+  add({ t_s, text, level }) {
+    const { list } = this;
+    const item = document.createElement("li");
+    item.className = level;
+    if (typeof t_s === "number") item.dataset.t_s = t_s;
+    const time = document.createElement("time");
+    time.textContent = typeof t_s === "number" ? clock(t_s) : "";
+    const mark = document.createElement("span");
+    mark.className = "mark";
+    mark.textContent = MARKS[level] ?? MARKS.info;
+    const words = document.createElement("span");
+    words.textContent = text;
+    item.append(time, mark, words);
+    list.append(item);
+    while (list.childElementCount > KEPT) list.firstElementChild.remove();
+    this.#follow();
+  }
+}
+
+/** What is selected: its name, what is known of it, and a button for all that can be done. */
+export class Card {
+  /** @param {(what: object) => void} change cuts, kills, heals or revives something */
+  constructor(change) {
+    this.change = change;
+    this.shown = "";
+  }
+
+  /** Show {node} or {link} of a view's network, or nothing. */
+  show(view, what) {
+    $("selection").hidden = !what;
+    if (!what) return void (this.shown = "");
+    const { network } = view;
+    const isNode = what.node !== undefined;
+    const name = isNode ? network.nodes[what.node].label : network.linkName(what.link);
+    const facts = isNode ? view.facts(what.node) : linkFacts(view, what.link);
+    $("selected-name").textContent = name;
+    $("selected-facts").textContent = facts;
+    this.#buttons(network, what);
+    const said = `${name}: ${facts}`;
+    if (what !== this.what) $("spoken").textContent = said;
+    this.what = what;
+  }
+
+  /** Buttons are made anew only when there are others: a focused one must not vanish. */
+  #buttons(network, what) {
+    const { node } = what;
+    const links = node === undefined ? [] : network.linksOf[node].map((link) => ({ link }));
+    const wanted = [what, ...links]
+      .map((one) => [one, this.#label(network, one, node)])
+      .filter(([, label]) => label);
+    const key = JSON.stringify(wanted.map(([one]) => one));
+    const box = $("selected-do");
+    if (key !== this.shown) {
+      box.replaceChildren(...wanted.map(([one]) => {
+        const button = document.createElement("button");
+        button.type = "button";
+        button.addEventListener("click", () => this.change(one));
+        return button;
+      }));
+      this.shown = key;
+    }
+    wanted.forEach(([, label], i) => {
+      if (box.children[i].textContent !== label) box.children[i].textContent = label;
+    });
+  }
+
+  #label(network, { node, link }, from) {
+    const command = commandFor(network, { node, link });
+    if (!command) return "";
+    if (node !== undefined) return command.do === "kill" ? "Kill" : "Revive";
+    const verb = command.do === "cut" ? "Cut" : "Heal";
+    if (from === undefined) return `${verb} this link`;
+    return `${verb}: ${network.nodes[network.across(link, from)].label}`;
+  }
+}
+
+function linkFacts(view, link) {
+  const { network } = view;
+  const { quality } = network.links[link];
+  const known = quality !== undefined && quality !== null;
+  const good = known ? `, quality ${Math.round(100 * quality)} %` : "";
+  const state = network.isCut(link) ? "cut" : network.now.link_up[link] ? "up" : "off at one end";
+  return `link, ${network.isThere(link) ? state : "out of range"}${good}`;
+}
+
+/** The command that changes the state of {node} or {link}; null where that cannot be done. */
+export function commandFor(network, { node, link }) {
+  const { now, can } = network;
+  const [verb, of] = link !== undefined
+    ? [now.link_up[link] ? "cut" : "heal", { link: network.links[link].id }]
+    : [now.node_up[node] ? "kill" : "revive", { node: network.nodes[node].id }];
+  if (link !== undefined && !now.link_up[link] && !network.isCut(link)) return null; // a dead end
+  if (link !== undefined && !network.isThere(link)) return null;
+  const fixed = node !== undefined && ["sink", "port"].includes(network.nodes[node].role);
+  return can.has(verb) && !fixed ? { do: verb, ...of } : null;
+}

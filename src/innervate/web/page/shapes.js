@@ -1,0 +1,120 @@
+// Shapes that several views draw.
+import { colours } from "./colours.js";
+
+const RATIO_MAX = 2; // pixels per px of the page that drawing is worth
+const CALM = matchMedia("(prefers-reduced-motion: reduce)");
+
+/** Corners of a pointy-top hexagon, a little smaller than its place; neighbours are 1 apart. */
+export const HEXAGON = Array.from({ length: 6 }, (_, i) => {
+  const radius = 0.96 / Math.sqrt(3);
+  return [radius * Math.sin((i * Math.PI) / 3), -radius * Math.cos((i * Math.PI) / 3)];
+});
+
+/** Make a canvas as fine as the screen, empty; its context then draws in px of the page. */
+export function prepared(canvas, width, height) {
+  const ratio = Math.min(devicePixelRatio, RATIO_MAX);
+  const [wide, high] = [Math.round(width * ratio), Math.round(height * ratio)];
+  if (canvas.width !== wide || canvas.height !== high) {
+    canvas.width = wide;
+    canvas.height = high;
+  }
+  const context = canvas.getContext("2d");
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.clearRect(0, 0, width, height);
+  return context;
+}
+
+/** The smallest box round places, as [left, top, right, bottom], wider by `more` on all sides. */
+export function boxRound(places, more) {
+  const box = [Infinity, Infinity, -Infinity, -Infinity];
+  for (const [x, y] of places) {
+    box[0] = Math.min(box[0], x - more);
+    box[1] = Math.min(box[1], y - more);
+    box[2] = Math.max(box[2], x + more);
+    box[3] = Math.max(box[3], y + more);
+  }
+  return box;
+}
+
+/** Add a hexagon to a path. */
+export function hexagon(path, x, y, pitch) {
+  path.moveTo(x + HEXAGON[0][0] * pitch, y + HEXAGON[0][1] * pitch);
+  for (let i = 1; i < 6; i++) path.lineTo(x + HEXAGON[i][0] * pitch, y + HEXAGON[i][1] * pitch);
+  path.closePath();
+}
+
+/** Add what stands for a hexagon where it is very small. */
+export function brick(path, x, y, pitch) {
+  path.rect(x - 0.48 * pitch, y - 0.41 * pitch, 0.96 * pitch, 0.82 * pitch);
+}
+
+/** Add a cross. */
+export function cross(path, x, y, size) {
+  path.moveTo(x - size, y - size);
+  path.lineTo(x + size, y + size);
+  path.moveTo(x - size, y + size);
+  path.lineTo(x + size, y - size);
+}
+
+/** Add a line with a head at its end, which stops `gap` px before both places. */
+export function arrow(path, x0, y0, x1, y1, gap, head = 6) {
+  const long = Math.hypot(x1 - x0, y1 - y0);
+  if (long < 2 * gap + 1) return;
+  const ux = (x1 - x0) / long;
+  const uy = (y1 - y0) / long;
+  const tx = x1 - ux * gap;
+  const ty = y1 - uy * gap;
+  path.moveTo(x0 + ux * gap, y0 + uy * gap);
+  path.lineTo(tx, ty);
+  path.moveTo(tx - head * (ux + 0.6 * uy), ty - head * (uy - 0.6 * ux));
+  path.lineTo(tx, ty);
+  path.lineTo(tx - head * (ux - 0.6 * uy), ty - head * (uy + 0.6 * ux));
+}
+
+/** Draw a path of lines. */
+export function stroke(context, colour, width, path, dash = []) {
+  context.strokeStyle = colour;
+  context.lineWidth = width;
+  context.lineCap = dash.length ? "butt" : "round";
+  context.setLineDash(dash);
+  context.stroke(path);
+  context.setLineDash([]);
+}
+
+/** Write a word with a rim of the ground's colour, so that lines behind do not cross it out. */
+export function word(context, text, x, y, colour, rim, font = "12px system-ui, sans-serif") {
+  context.font = font;
+  context.textBaseline = "middle";
+  context.lineJoin = "round";
+  context.strokeStyle = rim;
+  context.lineWidth = 3;
+  context.strokeText(text, x, y);
+  context.fillStyle = colour;
+  context.fillText(text, x, y);
+}
+
+/** The frames on their way, a shape for each kind; with less motion in the middle of their link. */
+export function flights(context, network, stage, size) {
+  const path = { dot: new Path2D(), square: new Path2D(), star: new Path2D() };
+  for (const { a, b, kind, p } of network.now.flights) {
+    const from = network.index.get(a);
+    const to = network.index.get(b);
+    if (from === undefined || to === undefined) continue;
+    const share = CALM.matches ? 0.5 : p;
+    const x = stage.x[from] + (stage.x[to] - stage.x[from]) * share;
+    const y = stage.y[from] + (stage.y[to] - stage.y[from]) * share;
+    if (kind === "alarm") cross(path.star, x, y, size + 1);
+    else if (kind === "beacon" || kind === "ack") {
+      path.dot.moveTo(x + size, y);
+      path.dot.arc(x, y, size, 0, 7);
+    } else path.square.rect(x - size, y - size, 2 * size, 2 * size);
+  }
+  context.lineWidth = 1;
+  context.strokeStyle = colours.ground;
+  for (const [name, colour] of [["dot", colours.ink], ["square", colours.accent]]) {
+    context.fillStyle = colour;
+    context.fill(path[name]);
+    context.stroke(path[name]);
+  }
+  stroke(context, colours.alarm, 3, path.star);
+}

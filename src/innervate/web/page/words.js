@@ -1,0 +1,54 @@
+// Numbers and states as words.
+
+/** A time of the network: milliseconds, or microseconds where single events are looked at. */
+export function clock(t_s, digits = 3) {
+  if (t_s < 100) return `${t_s.toFixed(digits)} s`;
+  const minutes = Math.floor(t_s / 60);
+  return `${minutes}:${(t_s - 60 * minutes).toFixed(digits).padStart(digits + 3, "0")} min`;
+}
+
+/** How long a run lasts, without more digits than it has. */
+export function whole(t_s) {
+  if (t_s < 100) return `${Number(t_s.toFixed(3))} s`;
+  const minutes = Math.floor(t_s / 60);
+  return `${minutes}:${String(Math.round(t_s - 60 * minutes)).padStart(2, "0")} min`;
+}
+
+/** How long something took, in milliseconds or seconds. */
+export function duration(ms) {
+  if (ms < 100) return `${ms.toFixed(1)} ms`;
+  if (ms < 1000) return `${ms.toFixed(0)} ms`;
+  return ms < 60e3 ? `${(ms / 1000).toFixed(2)} s` : `${(ms / 60e3).toFixed(1)} min`;
+}
+
+/** How long ago something was, in seconds: steady in width, for a number that runs. */
+export function ago(s) {
+  const ms = 1000 * s;
+  if (ms < 1000) return `${ms.toFixed(ms < 99.5 ? 1 : 0)} ms`;
+  return s < 100 ? `${s.toFixed(2)} s` : `${(s / 60).toFixed(1)} min`;
+}
+
+/** A value of a plot. */
+export function value(v, unit) {
+  const size = Math.abs(v);
+  const digits = size >= 100 || Number.isInteger(v) ? 0 : size >= 10 ? 1 : size >= 0.1 ? 2 : 3;
+  return `${v.toFixed(digits)}${unit ? ` ${unit}` : ""}`;
+}
+
+export const SPEEDS = [
+  0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 0,
+];
+
+/** A speed in times real time; 0 = as fast as possible. */
+export function speed(v) {
+  return v === 0 ? "fastest" : `${v}x`;
+}
+
+/** The place on the slider nearest to a speed. */
+export function speedIndex(v) {
+  if (v === 0) return SPEEDS.length - 1;
+  const apart = SPEEDS.slice(0, -1).map((s) => Math.abs(Math.log(s / v)));
+  return apart.indexOf(Math.min(...apart));
+}
+
+export const plural = (n, one, many = `${one}s`) => `${n} ${n === 1 ? one : many}`;

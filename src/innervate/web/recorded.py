@@ -1,0 +1,79 @@
+"""A recorded run as a source: simulated again from its scenario, which gives the same network.
+
+The tables of a run folder hold what happened, not what every node knew at every moment. The same
+scenario and seed give all of it again, on any machine; the fingerprint says that it is the same.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, ClassVar
+
+from innervate import scenario as scenarios
+from innervate.run import folder as folders
+from innervate.scenario import ScenarioError
+from innervate.web.errors import WatchError
+from innervate.web.simulated import Progress, Simulated
+
+
+def plan_of(folder: Path) -> Any:
+    """The plan of a run folder's scenario.
+
+    Raises:
+        WatchError: its scenario is not there, or cannot be run any more.
+        RunError: it is no run folder.
+    """
+    folders.read_json(folder, folders.SUMMARY)
+    try:
+        return scenarios.plan(scenarios.load(folder / folders.SCENARIO))
+    except ScenarioError as error:
+        raise WatchError(f"this run cannot be simulated again: {error}") from None
+
+
+class Recorded(Simulated):
+    """A run folder. Nothing can be done to it, but its time goes both ways.
+
+    Args:
+        folder: where the run is.
+        plan: of its scenario.
+        speed: see Simulated.
+    """
+
+    kind_of_source: ClassVar[str] = "run"
+
+    def __init__(self, folder: Path, plan: Any, speed: float | None = None) -> None:
+        super().__init__(plan, speed)
+        self.can = ("pause", "step", "speed", "seek")
+        self._folder = folder
+        self._summary = folders.read_json(folder, folders.SUMMARY)
+
+    @property
+    def report(self) -> Path | None:
+        """The run's page, if it was written."""
+        path = self._folder / folders.REPORT
+        return path if path.is_file() else None
+
+    def scene(self) -> dict[str, Any]:
+        """Nodes, links and what else stands still."""
+        return {**super().scene(), "report": self.report is not None}
+
+    def replay(self, progress: Progress = lambda now_us, end_us: None) -> None:
+        """Simulate it to its end, see that it is the same, and go back to the beginning.
+
+        Raises:
+            WatchError: this version of innervate makes another network of it.
+            InvariantBroken: a checker found what must not happen.
+        """
+        self.prepare()
+        self.run_to_end(progress)
+        was, now = self._summary.get("fingerprint"), self.engine.fingerprint
+        interrupted_s = self._summary.get("interrupted_at_s")
+        if interrupted_s is None and was != now:
+            raise WatchError(
+                f"{self._folder}: simulated again, its fingerprint is {now}, not {was}: it was "
+                "made by another version of innervate; run its scenario again"
+            )
+        self.back_to(0)
+        if interrupted_s is not None:
+            text = f"the run was interrupted at {interrupted_s:g} s; what follows was not recorded"
+            self.view.log.say(0, text)

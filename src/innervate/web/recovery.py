@@ -1,0 +1,38 @@
+"""How a network gets over what was done to it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(slots=True)
+class Recovery:
+    """How the network gets over the newest fault, as in a run's summary.
+
+    Attributes:
+        cause: in words.
+        at_us: when.
+        detected_ms: the first who noticed, from there.
+        recovered_ms: everybody has a way again since then; None = not yet.
+        closed: something else was done since everybody had: this does not change any more.
+    """
+
+    cause: str
+    at_us: int
+    detected_ms: float | None = None
+    recovered_ms: float | None = None
+    closed: bool = False
+
+    def close(self) -> None:
+        """Something that takes nothing away is done to the network."""
+        self.closed = self.recovered_ms is not None
+
+    def shown(self) -> dict[str, Any]:
+        """For pages."""
+        return {
+            "cause": self.cause,
+            "at_s": self.at_us / 1e6,
+            "detected_ms": self.detected_ms,
+            "recovered_ms": self.recovered_ms,
+        }

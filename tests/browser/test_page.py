@@ -1,0 +1,223 @@
+"""The page of `innervate watch` in a browser: what a user does, and what is seen of it."""
+
+import re
+import socket
+
+from tests.browser_net import PHONE, SKIN, click, expect, place, seek, serving
+
+CABLE = "p0 r0 c2 - pc.0"
+OTHER = "p0 r2 c3 - p0 r2 c4"
+DURATION = re.compile(r"^\d+(\.\d+)? m?s$")
+STOPS_MAX = 40  # of the Tab key
+
+
+def text(page, selector):
+    return page.locator(selector).inner_text()
+
+
+def test_it_shows_the_network_and_asks_nobody_else(look, skin):
+    page = look(skin)
+    assert page.title() == "a <b>small</b> skin - innervate watch"
+    expect(page.locator("#name")).to_have_text("a <b>small</b> skin")  # a name is no markup
+    expect(page.locator("#connection")).to_have_text("connected")
+    expect(page.locator("#unconnected .more")).to_have_text("of 48 cells")
+    expect(page.locator(".plot")).to_have_count(3)
+    asked = page.evaluate("performance.getEntriesByType('resource').map((one) => one.name)")
+    assert asked
+    assert all(address.startswith(skin.partition("?")[0]) for address in asked)
+
+
+def test_a_click_cuts_a_cable_and_the_next_heals_it(look, skin):
+    page = look(skin)
+    click(page, CABLE)
+    expect(page.locator("#selected-facts")).to_have_text("link, cut")
+    expect(page.locator("#recovery")).to_have_class("number done")
+    expect(page.locator("#recovery output")).to_have_text(DURATION)
+    expect(page.locator("#recovery .more")).to_contain_text("interface 0")
+    expect(page.locator("#since output")).to_have_text(DURATION)
+    expect(page.locator("#log")).to_contain_text("cable to interface 0 cut")
+    click(page, CABLE)
+    expect(page.locator("#selected-facts")).to_have_text("link, up")
+
+
+def test_a_click_kills_a_cell_and_the_next_revives_it(look, skin):
+    page = look(skin)
+    click(page, "p0 r3 c3")
+    expect(page.locator("#selected-facts")).to_have_text("switched off")
+    click(page, "p0 r3 c3")
+    expect(page.locator("#selected-facts")).to_contain_text("through port")
+
+
+def test_a_click_touches_a_cell_and_the_pc_receives_it(look, skin):
+    page = look(skin)
+    page.locator("#tool").select_option("touch")
+    page.locator("#colour").select_option("touch")
+    click(page, "p0 r4 c1")
+    expect(page.locator("#selected-facts")).to_contain_text("touched")
+    click(page, "p0 r4 c1")
+    expect(page.locator("#selected-facts")).not_to_contain_text("touched")
+    page.locator("#selected-do button", has_text="Kill").click()
+    expect(page.locator("#selected-facts")).to_have_text("switched off")
+    page.locator("#selected-do button", has_text="Revive").click()
+    expect(page.locator("#selected-facts")).to_contain_text("through port")
+
+
+def test_keys_alone_cut_and_heal(look, skin):
+    page = look(skin)
+    for _ in range(STOPS_MAX):
+        page.keyboard.press("Tab")
+        if page.evaluate("document.activeElement.id") == "stage":
+            break
+    for key in ("ArrowRight", "ArrowDown", "Shift+ArrowRight"):
+        page.keyboard.press(key)
+    expect(page.locator("#selected-name")).to_contain_text(" - ")
+    assert page.locator("#spoken").inner_text().endswith("link, up")
+    page.keyboard.press("Enter")
+    expect(page.locator("#selected-facts")).to_have_text("link, cut")
+    page.keyboard.press("Enter")
+    expect(page.locator("#selected-facts")).to_have_text("link, up")
+
+
+def test_every_control_has_a_name_and_is_reached_by_tab(look, skin):
+    page = look(skin)
+    click(page, OTHER)
+    expect(page.locator("#selected-facts")).to_have_text("link, cut")
+    found = {}
+    for _ in range(STOPS_MAX):
+        page.keyboard.press("Tab")
+        one = page.evaluate(
+            "() => { const e = document.activeElement; return [e.id || e.innerText, "
+            "e.getAttribute('aria-label') || e.labels?.[0]?.innerText || e.innerText, "
+            "getComputedStyle(e).outlineStyle]; }"
+        )
+        found[one[0]] = one[1:]
+    wanted = page.evaluate(
+        "[...document.querySelectorAll('main button, main input, main select, header button')]"
+        ".filter((e) => e.offsetParent && !e.disabled).map((e) => e.id || e.innerText)"
+    )
+    assert set(wanted) <= set(found)
+    assert all(name.strip() for name, _ in found.values())
+    assert all(outline == "solid" for one, (_, outline) in found.items() if one in wanted)
+    click(page, OTHER)
+    expect(page.locator("#selected-facts")).to_have_text("link, up")
+
+
+def test_pause_step_and_speed(look, skin):
+    page = look(skin)
+    page.keyboard.press("Space")
+    expect(page.locator("#go")).to_have_text("Go")
+    before = text(page, "#clock")
+    page.locator("#step").click()
+    expect(page.locator("#clock")).not_to_have_text(before)
+    page.locator("#speed").focus()
+    page.keyboard.press("ArrowLeft")
+    expect(page.locator("#speed-text")).to_have_text("0.05x")
+    page.locator("#stage").focus()
+    page.keyboard.press("]")
+    expect(page.locator("#speed-text")).to_have_text("0.1x")
+    page.locator("#go").click()
+    expect(page.locator("#go")).to_have_text("Pause")
+
+
+def test_scrubbing_leads_back(look, skin):
+    page = look(skin)
+    page.locator("#go").click()
+    for t_s in (2.0, 0.5, 30.0):  # at 30 s all that other tests did has been done again
+        seek(page, t_s)
+        expect(page.locator("#clock")).to_have_text(re.compile(rf"^{t_s:.6f} s"))
+    page.locator("#go").click()
+    expect(page.locator("#go")).to_have_text("Pause")
+
+
+def test_two_pages_see_the_same(look, skin):
+    one, other = look(skin), look(skin, colours="dark")
+    one.locator("#go").click()
+    expect(other.locator("#go")).to_have_text("Go")
+    click(other, OTHER)
+    click(one, "p0 r2 c3")
+    expect(other.locator("#selected-facts")).to_have_text("link, off at one end")
+    one.locator("#selected-do button", has_text="Revive").click()
+    expect(other.locator("#selected-facts")).to_have_text("link, cut")
+    assert text(one, "#clock") == text(other, "#clock")
+    click(other, OTHER)
+    expect(other.locator("#selected-facts")).to_have_text("link, up")
+    other.locator("#go").click()
+    expect(one.locator("#go")).to_have_text("Pause")
+
+
+def test_dark_as_the_system_has_it_or_as_chosen(look, skin):
+    page = look(skin, colours="dark")
+    ground = "() => getComputedStyle(document.documentElement).backgroundColor"
+    assert page.evaluate(ground) == "rgb(18, 22, 28)"
+    page.locator("#theme").click()
+    expect(page.locator("#theme")).to_have_text("Light")
+    assert page.evaluate(ground) == "rgb(255, 255, 255)"
+    page.reload()
+    expect(page.locator("#theme")).to_have_text("Light")
+    page.keyboard.press("t")
+    assert page.evaluate(ground) == "rgb(18, 22, 28)"
+
+
+def test_a_phone_shows_it_all(look, skin):
+    page = look(skin, PHONE, has_touch=True, is_mobile=True)
+    assert page.evaluate("document.documentElement.scrollWidth") == PHONE["width"]
+    page.touchscreen.tap(*place(page, OTHER))
+    expect(page.locator("#selected-facts")).to_have_text("link, cut")
+    page.locator("#selected-do button").tap()
+    expect(page.locator("#selected-facts")).to_have_text("link, up")
+    assert page.evaluate("document.documentElement.scrollWidth") == PHONE["width"]
+
+
+def test_a_tap_on_what_is_smaller_than_a_finger_only_selects(look, skin):
+    page = look(skin, {"width": 200, "height": 1600}, has_touch=True)
+    page.touchscreen.tap(*place(page, "p0 r2 c3"))
+    expect(page.locator("#selected-name")).to_have_text("p0 r2 c3")
+    page.locator("#selected-do button", has_text="Kill").tap()
+    expect(page.locator("#selected-facts")).to_have_text("switched off")
+    page.locator("#selected-do button", has_text="Revive").tap()
+    expect(page.locator("#selected-facts")).to_contain_text("through port")
+
+
+def test_the_scenario_is_saved_with_what_was_done(look, skin):
+    page = look(skin)
+    click(page, OTHER)
+    expect(page.locator("#selected-facts")).to_have_text("link, cut")
+    with page.expect_download() as told:
+        page.locator("#save").click()
+    assert told.value.suggested_filename == "a-b-small-b-skin.toml"
+    saved = told.value.path().read_text()
+    assert 'name = "a <b>small</b> skin"' in saved
+    assert 'action = "cut"' in saved
+    click(page, OTHER)
+    expect(page.locator("#selected-facts")).to_have_text("link, up")
+
+
+def test_keys_are_listed(look, skin):
+    page = look(skin)
+    page.keyboard.press("?")
+    expect(page.locator("#help")).to_be_visible()
+    assert "cut or heal the link" in text(page, "#keys")
+    page.keyboard.press("Escape")
+    expect(page.locator("#help")).to_be_hidden()
+
+
+def test_an_address_without_the_token_says_so(look, skin, browser):
+    page = browser.new_page()
+    page.goto(skin.partition("?")[0])
+    expect(page.locator("#lost")).to_contain_text("refuses this address")
+    page.close()
+
+
+def test_the_server_goes_and_comes_back(look, tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    path = tmp_path / "skin.toml"
+    path.write_text(SKIN)
+    with serving(path, port=port) as address:
+        page = look(address)
+        expect(page.locator("#lost")).to_be_hidden()
+    expect(page.locator("#lost")).to_contain_text("lost. Trying again")
+    expect(page.locator("#log")).to_contain_text("the server was stopped")
+    with serving(path, port=port):
+        expect(page.locator("#lost")).to_be_hidden()
+        expect(page.locator("#connection")).to_have_text("connected")

@@ -1,0 +1,87 @@
+"""Servers to look at: `innervate watch` as a user starts it, and what a user does to its page."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import threading
+from contextlib import contextmanager
+
+import pytest
+
+TOKEN = "a-token-of-the-tests"
+WAIT_MS = 20_000
+START_S = 240  # the first simulation of a kind is compiled
+WIDE = {"width": 1280, "height": 800}
+PHONE = {"width": 360, "height": 740}
+SKIN = """
+kind = "skin"
+name = "a <b>small</b> skin"
+duration_s = 60
+[[patch]]
+columns = 8
+rows = 6
+[[interface]]
+row = 0
+column = 2
+[[interface]]
+row = 5
+column = 6
+[protocol]
+updates = "wave"
+[data]
+rate_hz = 50
+"""
+
+
+@contextmanager
+def serving(what, *options, port=0):
+    """`innervate watch` as a process; gives the address that it printed."""
+    command = [sys.executable, "-m", "innervate.cli", "watch", str(what), "--port", str(port)]
+    process = subprocess.Popen(
+        [*command, *map(str, options)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        env=os.environ | {"INNERVATE_WATCH_TOKEN": TOKEN},
+    )  # fmt: skip
+    said = []
+    late = threading.Timer(START_S, process.kill)
+    late.start()
+    try:
+        for line in process.stdout:
+            said.append(line)
+            if found := re.search(r"http://\S+", line):
+                late.cancel()
+                yield found[0]
+                break
+        else:
+            pytest.fail(f"innervate watch ended: {''.join(said)}")
+    finally:
+        late.cancel()
+        process.send_signal(signal.SIGINT)
+        process.wait(timeout=20)
+        process.stdout.close()
+
+
+def place(page, name):
+    """Where on the page a node or link is, by its name."""
+    return page.evaluate("name => innervate.at(name)", name)
+
+
+def click(page, name):
+    """Click a node or link."""
+    page.mouse.click(*place(page, name))
+
+
+def expect(locator):
+    """Playwright's `expect`, for machines that have other work, too."""
+    from playwright import sync_api
+
+    sync_api.expect.set_options(timeout=WAIT_MS)
+    return sync_api.expect(locator)
+
+
+def seek(page, t_s):
+    """Let go of the time slider at a time: without the preview while it is in hand."""
+    page.locator("#seek").evaluate(
+        "(seek, t) => { seek.value = t; seek.dispatchEvent(new Event('change')); }", t_s
+    )

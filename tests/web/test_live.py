@@ -1,0 +1,261 @@
+"""Running nodes on a page: asked over their sockets, cut by their drivers."""
+
+import asyncio
+import socket
+import tempfile
+import threading
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import pytest
+
+from innervate import scenario
+from innervate.live import status
+from innervate.live.errors import LiveError
+from innervate.live.up import Network
+from innervate.web import messages
+from innervate.web.errors import Refused, WatchError
+from innervate.web.live import Live, find
+from innervate.web.live_map import Map
+from innervate.web.live_poll import Poller
+from innervate.web.live_state import State
+from innervate.web.serve import serving
+from tests.live_net import Mesh
+from tests.web_page import Page
+
+RING = [(0, 1), (1, 2), (2, 3), (3, 0)]
+
+
+@asynccontextmanager
+async def sockets_of(mesh):
+    """Status sockets of nodes of this process, as `live node` has them."""
+    with tempfile.TemporaryDirectory(prefix="iv") as folder:
+        servers = []
+        for node in mesh.nodes:
+
+            async def answer(request, writer, node=node):
+                if request["do"] == "status":
+                    await writer.line(node.status())
+                else:
+                    node.path_at(request["port"]).cut = request["do"] == "cut"
+                    await writer.line({"cut": request["do"] == "cut"})
+
+            servers.append(status.Server(Path(folder) / f"{node.name}.sock", answer))
+        for server in servers:
+            await server.start()
+        try:
+            yield [server.path for server in servers]
+        finally:
+            for server in servers:
+                await server.stop()
+
+
+def test_a_mesh_is_drawn_cut_and_mended():
+    async def main():
+        async with Mesh(4, RING) as mesh, sockets_of(mesh) as paths:
+            source = await asyncio.to_thread(Live, paths)
+            async with serving(source) as served, Page(served.address) as page:
+                await page.take()
+                scene = page.scene
+                assert (scene["kind"], scene["source"]) == ("mesh", "live")
+                assert scene["duration_s"] is None
+                assert scene["can"] == ["cut", "heal"]
+                assert [node["label"] for node in scene["nodes"]] == ["n0", "n1", "n2", "n3"]
+                assert scene["nodes"][0]["role"] == "gateway"
+                pairs = [(link["a"], link["b"]) for link in scene["links"]]
+                assert pairs == sorted((min(pair), max(pair)) for pair in RING)
+                await page.until(lambda: page.state.get("unconnected") == 0)
+                assert page.state["parent"][0] == -1
+                assert {page.state["parent"][1], page.state["parent"][3]} == {0}
+                await page.give("cut", link=0)  # n0 - n1
+                await page.until(lambda: page.state["link_up"] == [0, 1, 1, 1])
+                here, there = mesh.cables[0, 1]
+                assert here.cut
+                assert there.cut
+                assert "n0 - n1 cut" in page.state["recovery"]["cause"]
+                receipt = mesh.nodes[1].send_message(0, b"find another way")
+                assert await receipt.wait() == "delivered"
+                await page.until(lambda: page.state["parent"][1] == 2)
+                await page.until(lambda: page.state["recovery"]["recovered_ms"] is not None)
+                refused = await page.ask("cut", link=0)
+                assert "already" in refused["text"]
+                await page.give("heal", link=0)
+                await page.until(lambda: page.state["link_up"] == [1, 1, 1, 1])
+                assert not here.cut
+                assert page.series["frames"]
+                for impossible in ({"do": "kill", "node": 1}, {"do": "seek", "t_s": 0}):
+                    answer = await page.ask(**impossible)
+                    assert "not possible" in answer["text"]
+
+    asyncio.run(main())
+
+
+def test_a_node_that_stops_is_seen_and_comes_back():
+    async def main():
+        async with Mesh(4, RING) as mesh, sockets_of(mesh) as paths:
+            source = await asyncio.to_thread(Live, paths)
+            async with serving(source) as served, Page(served.address) as page:
+                await page.until(lambda: page.state.get("node_up") == [1, 1, 1, 1])
+                aside = paths[2].with_suffix(".aside")
+                paths[2].rename(aside)
+                source._poller._lines[2].drop()
+                await page.until(lambda: page.state["node_up"] == [1, 1, 0, 1])
+                assert page.state["link_up"][1:3] != [1, 1]
+                await page.until(lambda: "n2 does not answer any more" in page.text())
+                aside.rename(paths[2])
+                await page.until(lambda: page.state["node_up"] == [1, 1, 1, 1])
+                await page.until(lambda: "n2 answers again" in page.text())
+
+    asyncio.run(main())
+
+
+@pytest.mark.slow
+def test_a_skin_of_processes_is_drawn_with_its_tree():
+    plan = scenario.plan(scenario.load("loop-three", ["protocol.rule=feasible"]))
+
+    async def main(folder):
+        network = Network(plan, folder, "udp")
+        try:
+            await network.up()
+            paths = [network.socket(name) for name in network.names]
+            source = await asyncio.to_thread(Live, paths)
+            async with serving(source) as served, Page(served.address) as page:
+                await page.until(lambda: page.state.get("unconnected") == 0)
+                cells = plan.graph.cells
+                roles = [node["role"] for node in page.scene["nodes"]]
+                assert roles == ["cell"] * cells + ["port"] * plan.graph.interfaces
+                assert len(page.scene["links"]) == len(list(plan.graph.links()))
+                used = page.state["parent"][0]
+                link = next(link["id"] for link in page.scene["links"]
+                            if {link["a"], link["b"]} == {0, used})  # fmt: skip
+                await page.give("cut", link=link)
+                await page.until(lambda: page.state["link_up"][link] == 0)
+                await page.give("heal", link=link)
+                await page.until(lambda: page.state["link_up"][link] == 1)
+                await page.until(lambda: page.state["unconnected"] == 0)
+        finally:
+            await network.down()
+
+    with tempfile.TemporaryDirectory(prefix="iv") as folder:
+        asyncio.run(main(Path(folder)))
+
+
+def cell(number, parent, paths):
+    """What a cell of a live skin says; `paths` are (own, far) by path, at ports 0, 1, ..."""
+    return {
+        "kind": "skin", "role": "cell", "number": number, "parent": parent, "load": number + 1,
+        "paths": [{"own": own, "name": far, "port": at, "up": True, "counters": {"received": 1}}
+                  for at, (own, far) in enumerate(paths)],
+        "ports": [{"port": at, "path": at} for at in range(len(paths))], "counters": {},
+    }  # fmt: skip
+
+
+def udp(*ports):
+    return [(f"udp 127.0.0.1:{own}", f"udp 127.0.0.1:{far}") for own, far in ports]
+
+
+def skin_of_three():
+    """PC - c0 - c1, with a second cable between c0 and c1."""
+    pc = cell(0, None, udp((1, 2))) | {"role": "sink", "cells": [2]}
+    del pc["number"]
+    return {
+        0: cell(0, 0, udp((2, 1), (3, 4), (5, 6))),
+        1: cell(1, 1, [*udp((4, 3)), ("udp 0.0.0.0:6", "udp 127.0.0.1:5")]),
+        2: pc,
+    }
+
+
+def test_cables_are_found_by_their_addresses():
+    told = skin_of_three()
+    where = Map(told)
+    assert [place.port for place in where.places] == [-1, -1, 0]
+    found = [(where.number[link.a], where.number[link.b]) for link in where.links]
+    assert found == [(0, 1), (0, 1), (0, 2)]
+    state = State(where, told)
+    assert state.hop.tolist() == [2, 0, -1]
+    assert state.fields()["depth"].tolist() == [1, 2, 0]
+    assert state.fields()["port"].tolist() == [0, 0, 0]
+    assert state.unconnected == 0
+    told[0]["paths"][0]["up"] = False
+    state = State(where, told)
+    assert state.link_up.tolist() == [1, 1, 0]
+    assert state.unconnected == 2
+    assert where.spread().shape == (3, 2)
+
+
+def test_who_is_gone_stays_on_the_map():
+    told = skin_of_three()
+    where = Map(told)
+    left = {i: one for i, one in told.items() if i != 1}
+    assert State(Map(told, where), left).node_up.tolist() == [1, 0, 1]
+    assert Map(told, where).links == where.links
+
+
+def test_a_poller_waits_for_nobody(tmp_path):
+    """One that answers, one that is silent, one that talks rubbish, one that is not there."""
+    kinds = {"good": b'{"kind": "mesh"}\n', "silent": b"", "rubbish": b"\xff[\n"}
+    paths = []
+    for name, says in kinds.items():
+        server = socket.socket(socket.AF_UNIX)
+        server.bind(str(tmp_path / name))
+        server.listen()
+        paths.append(tmp_path / name)
+
+        def answer(server=server, says=says):
+            link, _ = server.accept()
+            while link.recv(1000):
+                link.sendall(says)
+
+        threading.Thread(target=answer, daemon=True).start()
+    poller = Poller([*paths, tmp_path / "nobody"])
+    requests = {index: {"do": "status"} for index in range(4)}
+    for _ in range(2):
+        assert poller.ask(requests, 0.2) == {0: {"kind": "mesh"}}
+    poller.close()
+
+
+def test_who_is_not_there_cannot_be_watched(tmp_path, monkeypatch):
+    monkeypatch.setenv("INNERVATE_RUN", str(tmp_path))
+    with pytest.raises(WatchError, match="no node runs here"):
+        find([])
+    with pytest.raises(LiveError, match="n7"):
+        find(["n7"])
+    with pytest.raises(WatchError, match="no node answers"):
+        Live([tmp_path / "n0.sock"])
+
+
+def test_networks_are_not_mixed(monkeypatch):
+    told = {0: cell(0, None, []), 1: cell(1, None, []) | {"kind": "radio"}}
+    monkeypatch.setattr(Poller, "ask_all", lambda self, request: told)
+    with pytest.raises(WatchError, match="one network"):
+        Live([Path("a"), Path("b")])
+
+
+def test_a_group_is_not_cut(monkeypatch):
+    near = [
+        {"node": 1, "ports": [0], "suspect": False},
+        {"node": 2, "ports": [0], "suspect": False},
+    ]
+    told = {
+        i: {"kind": "mesh", "role": "node", "number": i, "gateway": None, "routes": {},
+            "neighbours": near if i == 0 else [], "paths": [], "counters": {}}
+        for i in range(3)
+    }  # fmt: skip
+    monkeypatch.setattr(Poller, "ask_all", lambda self, request: told)
+    source = Live([Path("a"), Path("b"), Path("c")])
+    with pytest.raises(Refused, match="same path"):
+        source.carry_out(messages.Cut(0))
+
+
+def test_a_radio_team_is_a_ring_of_stations():
+    told = {
+        i: {"kind": "radio", "role": "station", "number": i, "mode": 0, "queued": i,
+            "place": None if i else 4, "paths": [], "counters": {}}
+        for i in range(3)
+    }  # fmt: skip
+    where = Map(told)
+    fields = State(where, {i: told[i] for i in (0, 1)}).fields()
+    assert fields["node_up"].tolist() == [1, 1, 0]
+    assert fields["radio"] == {"now": [0, 4, 0], "turn": [4, -1, -1]}
+    assert fields["unconnected"] == 0
+    assert len({tuple(place) for place in where.spread().round(3).tolist()}) == 3

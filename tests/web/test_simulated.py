@@ -1,0 +1,456 @@
+"""A simulation as pages see it: its fields, its way back, its recovery."""
+
+import time
+
+import numpy as np
+import pytest
+
+from innervate import scenario
+from innervate.run import run
+from innervate.sim.simulate import InvariantBroken
+from innervate.web import messages
+from innervate.web.errors import Refused, WatchError
+from innervate.web.history import LOG, SERIES, TIMELINE
+from innervate.web.recorded import Recorded
+from innervate.web.recorded import plan_of as plan_of_folder
+from innervate.web.saving import saved
+from innervate.web.skin_scene import places
+from innervate.web.snapshot import Part, Snapshot, Teller
+from tests.web_runs import KINDS, MESH, RADIO, SKIN, go_to, plan_of, simulated
+
+ROLES = {"cell", "sink", "port", "node", "gateway", "standby", "robot", "post", "monitor",
+         "station"}  # fmt: skip
+NODE_FIELDS = ("node_up", "parent", "port", "depth", "load", "touch", "alarm", "outside")
+
+
+def items(made, stream):
+    return made.history.after(stream, 0, made.history.newest, 100_000)
+
+
+def texts(made):
+    return [item.what["text"] for item in items(made, LOG)]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_scene_and_state_fit_together(kind):
+    made = simulated(KINDS[kind])
+    go_to(made, 0.8)
+    scene, state = made.scene(), made.fields()
+    ids = [node["id"] for node in scene["nodes"]]
+    assert ids == list(range(len(ids)))
+    assert {node["role"] for node in scene["nodes"]} <= ROLES
+    assert len({(node["x"], node["y"]) for node in scene["nodes"]}) == len(ids)
+    assert all({link["a"], link["b"]} <= set(ids) for link in scene["links"])
+    for name in NODE_FIELDS:
+        assert len(state.get(name, ids)) == len(ids), name
+    assert len(state.get("link_up", scene["links"])) == len(scene["links"])
+    assert set(state["node_up"].tolist()) <= {0, 1}
+    assert scene["kind"] == kind
+    assert scene["source"] == "simulation"
+    assert state["t_s"] == pytest.approx(0.8)
+    names = {series["id"] for series in scene["series"]}
+    assert all(set(item.what) == names for item in items(made, SERIES))
+
+
+def test_cells_show_whose_tree_they_are_in():
+    made = simulated(SKIN)
+    go_to(made, 0.5)
+    state, scene = made.fields(), made.scene()
+    joined = {frozenset((link["a"], link["b"])) for link in scene["links"]}
+    for cell in range(30):
+        node, hops = cell, 0
+        while node < 30:
+            up = state["parent"][node]
+            assert frozenset((node, int(up))) in joined
+            node, hops = up, hops + 1
+        assert state["port"][cell] == node - 30
+        assert state["depth"][cell] == hops
+    assert state["unconnected"] == 0
+    assert 0 < state["load"].max() <= 1
+
+
+def test_a_cell_that_is_off_and_those_behind_it_have_no_way():
+    line = {**SKIN, "patch": [{"columns": 5, "rows": 1}],
+            "interface": [{"row": 0, "column": 0, "port": "W"}]}  # fmt: skip
+    made = simulated(line)
+    go_to(made, 0.5)
+    made.carry_out(messages.Kill(2))
+    state = made.fields()
+    assert state["node_up"].tolist() == [1, 1, 0, 1, 1, 1]
+    assert state["link_up"].tolist() == [1, 1, 0, 0, 1]
+    assert state["port"].tolist() == [0, 0, -1, -1, -1, 0]
+    assert state["unconnected"] == 2
+    made.carry_out(messages.Revive(2))
+    go_to(made, 1.0)
+    assert made.fields()["unconnected"] == 0
+
+
+def test_frames_on_their_way_only_where_they_can_be_seen():
+    made = simulated(SKIN, speed=0.02)
+    go_to(made, 0.5)
+    frames = made.fields()["flights"]
+    joined = {frozenset((link["a"], link["b"])) for link in made.scene()["links"]}
+    assert frames
+    assert all(frozenset((frame["a"], frame["b"])) in joined for frame in frames)
+    assert all(0 <= frame["p"] <= 1 for frame in frames)
+    assert {frame["kind"] for frame in frames} <= {"beacon", "data"}
+    made.carry_out(messages.Speed(1.0))
+    assert made.fields()["flights"] == []
+
+
+@pytest.mark.parametrize(
+    "event", [("cut", {"interface": 0}), ("kill", {"cell": {"row": 1, "column": 2}})]
+)
+def test_the_recovery_is_that_of_the_batch_run(event):
+    action, target = event
+    batch = run({**SKIN, "event": [{"at_s": 0.5, "action": action, **target}]})
+    recovery = batch.summary["recoveries"][0]
+    made = simulated(SKIN)
+    go_to(made, 0.5)
+    links = made.scene()["links"]
+    command = messages.Kill(8)
+    if action == "cut":
+        command = messages.Cut(next(link["id"] for link in links if link["b"] == 30))
+    made.carry_out(command)
+    assert made.fields()["since_cut_s"] == pytest.approx(1e-6)
+    made.run_to_end()
+    shown = made.fields()["recovery"]
+    assert recovery["routed_ms"] > 0
+    assert (shown["at_s"], shown["detected_ms"], shown["recovered_ms"]) == (
+        0.5, recovery["detected_ms"], recovery["routed_ms"],
+    )  # fmt: skip
+    assert made.fields()["since_cut_s"] == pytest.approx(0.5)
+
+
+def test_what_disturbs_nobody_is_over_at_once():
+    made = simulated(SKIN)
+    go_to(made, 0.5)
+    state = made.fields()
+    used = {frozenset((cell, int(up))) for cell, up in enumerate(state["parent"])}
+    free = next(link["id"] for link in made.scene()["links"]
+                if frozenset((link["a"], link["b"])) not in used)  # fmt: skip
+    made.carry_out(messages.Cut(free))
+    assert made.fields()["recovery"]["recovered_ms"] == 0.0
+
+
+def test_a_mesh_finds_other_ways():
+    made = simulated(MESH)
+    go_to(made, 4.0)
+    state = made.fields()
+    assert state["unconnected"] == 0
+    relay = int(np.bincount(state["parent"][state["parent"] > 0]).argmax())
+    made.carry_out(messages.Kill(relay))
+    open_ = made.fields()["recovery"]
+    assert open_["recovered_ms"] is None
+    assert made.fields()["unconnected"] > 0
+    made.run_to_end()
+    shown = made.fields()["recovery"]
+    assert 0 < shown["detected_ms"] <= shown["recovered_ms"] < 8000
+    assert any("does not answer" in text for text in texts(made))
+
+
+def test_the_recovery_of_a_mesh_does_not_depend_on_the_pace():
+    found = set()
+    for pieces in (1, 300):
+        made = simulated(MESH)
+        go_to(made, 4.0)
+        made.carry_out(messages.Kill(int(made.fields()["parent"].max())))
+        for piece in range(pieces):
+            go_to(made, 4.0 + 8.0 * (piece + 1) / pieces)
+        found.add(made.fields()["recovery"]["recovered_ms"])
+    assert len(found) == 1
+    assert None not in found
+
+
+def test_stations_send_listen_and_wait():
+    made = simulated(RADIO)
+    seen = set()
+    for t_s in np.arange(0.0, 0.6, 0.002):
+        go_to(made, float(t_s))
+        seen |= set(made.fields()["radio"]["now"])
+    assert {1, 2, 4} <= seen <= {0, 1, 2, 3, 4}
+    boxes = [item.what for item in items(made, TIMELINE)]
+    assert all(box["from_s"] < box["to_s"] for box in boxes)
+    assert {"frame", "collision"} <= {box["kind"] for box in boxes}
+
+
+def test_the_timeline_is_what_was_sent():
+    made = simulated(RADIO)
+    made.run_to_end()
+    done = run(RADIO)
+    boxes = [item.what for item in items(made, TIMELINE)]
+    shown = {
+        (box["station"], round(1e6 * box["from_s"]), round(1e6 * box["to_s"])) for box in boxes
+    }
+    sent = {(int(row["node"]), int(row["time"]), int(row["end"])) for row in done.result.sent}
+    assert len(boxes) == len(shown)
+    assert shown <= sent
+    assert all(end > done.result.ended_us for _, _, end in sent - shown)
+    found = sum(text.startswith("collision of") for text in texts(made))
+    assert found == min(done.summary["collisions"], 8) > 0
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_going_back_shows_what_was(kind):
+    made, straight = simulated(KINDS[kind]), simulated(KINDS[kind])
+    go_to(straight, 0.7)
+    made.run_to_end()
+    assert made.at_end
+    go_to(made, 0.7)
+    assert not made.at_end
+    there, was = made.fields(), straight.fields()
+    assert there.keys() == was.keys()
+    for name, value in was.items():
+        assert np.array_equal(there[name], value), name
+    for stream in (LOG, SERIES, TIMELINE):
+        assert [i.what for i in items(made, stream)] == [i.what for i in items(straight, stream)]
+
+
+def test_what_was_done_stays_done_when_one_goes_back():
+    made = simulated(SKIN)
+    go_to(made, 0.6)
+    made.carry_out(messages.Cut(0))
+    made.run_to_end()
+    end = made.engine.fingerprint
+    go_to(made, 0.3)
+    assert made.fields()["link_up"][0] == 1
+    made.run_to_end()
+    assert made.fields()["link_up"][0] == 0
+    assert made.engine.fingerprint == end
+    go_to(made, 0.3)
+    made.carry_out(messages.Cut(5))  # something else before it
+    made.run_to_end()
+    again = run(scenario.loads(saved(made.view)))
+    assert again.result.fingerprint == made.engine.fingerprint != end
+
+
+def test_a_step_is_one_event():
+    made = simulated(SKIN)
+    go_to(made, 0.4)
+    before = made.engine.now_us
+    made.carry_out(messages.Step())
+    assert made.pace.paused
+    assert before < made.engine.now_us < before + 4_000
+    made.work()
+    assert made.engine.now_us == made.engine.next_us() or made.engine.next_us() is not None
+
+
+def test_nothing_can_be_done_after_the_end():
+    made = simulated(SKIN)
+    made.run_to_end()
+    for command in (messages.Cut(0), messages.Step()):
+        with pytest.raises(Refused):
+            made.carry_out(command)
+
+
+def test_a_held_network_stays_where_it_is():
+    made = simulated(SKIN, speed=1.0)
+    go_to(made, 0.2)
+    made.carry_out(messages.Pause())
+    for _ in range(3):
+        assert made.work() > 0
+    assert made.fields()["paused"]
+    assert made.engine.now_us == 200_000
+    made.carry_out(messages.Cut(1))
+    assert made.fields()["link_up"][1] == 0
+
+
+def test_a_broken_invariant_holds_the_network_and_is_said(monkeypatch):
+    made = simulated(SKIN)
+
+    def breaks(until_us, budget):
+        raise InvariantBroken("invariant broken at 0.1 s")
+
+    monkeypatch.setattr(made.engine, "advance", breaks)
+    made.run_to_end()
+    assert made.broken
+    assert made.fields()["at_end"]
+    assert texts(made) == ["invariant broken at 0.1 s"]
+
+
+def test_received_touch_is_shown():
+    made = simulated(SKIN, touch={"path": [[0.0, 0.0, 0.0]], "radius_mm": 30.0})
+    go_to(made, 0.9)
+    touch = made.fields()["touch"]
+    assert touch[0] == touch.max() > 50
+    assert touch[29] == 0
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_run_folder_is_shown_as_it_was(kind, tmp_path):
+    events = {"skin": [{"at_s": 0.5, "action": "cut", "interface": 0}], "radio": [], "mesh": []}
+    done = run({**KINDS[kind], "event": events[kind]}, out=tmp_path / "run")
+    made = Recorded(tmp_path / "run", plan_of_folder(tmp_path / "run"))
+    made.replay()
+    assert made.engine.now_us == 0
+    assert made.scene()["source"] == "run"
+    assert made.scene()["report"]
+    made.run_to_end()
+    assert made.engine.fingerprint == done.summary["fingerprint"]
+    if kind == "skin":
+        shown = made.fields()["recovery"]
+        assert shown["recovered_ms"] == done.summary["recoveries"][0]["routed_ms"]
+    with pytest.raises(Refused):
+        made.carry_out(messages.Kill(0))
+
+
+def test_another_run_than_the_recorded_one_is_refused(tmp_path):
+    done = run(SKIN, out=tmp_path / "run")
+    other = tmp_path / "run" / "scenario.toml"
+    other.write_text(other.read_text().replace("seed = 1", "seed = 2"))
+    made = Recorded(tmp_path / "run", plan_of_folder(tmp_path / "run"))
+    with pytest.raises(WatchError, match=done.summary["fingerprint"]):
+        made.replay()
+
+
+@pytest.mark.parametrize("setup", ["setup-1", "setup-8", "joined", "icub-forearm", "loop-five"])
+def test_interface_ports_lie_beside_the_skin(setup):
+    graph = scenario.plan(scenario.load(setup)).graph
+    where = places(graph)
+    assert len(where) == graph.cells + graph.interfaces
+    apart = np.hypot(*(where[:, None] - where[None]).transpose(2, 0, 1))
+    np.fill_diagonal(apart, 9)
+    assert apart[graph.cells :].min() > 0.4
+
+
+def test_a_skin_of_more_cells_than_memory_for_marks_keeps_few(monkeypatch):
+    monkeypatch.setattr("innervate.web.simulated.MARKS_BYTES", 1)
+    made = simulated(SKIN)
+    made.run_to_end()
+    assert len(made._marks) <= 2
+    go_to(made, 0.2)
+    assert made.engine.now_us == 200_000
+
+
+def test_plans_are_not_altered():
+    plan = plan_of(SKIN)
+    before = (list(plan.faults), list(plan.graph.peer))
+    made = simulated(SKIN)
+    made.carry_out(messages.Cut(0))
+    assert (plan.faults, list(plan.graph.peer)) == before
+
+
+@pytest.mark.parametrize("touch", [{}, {"touch": {"path": [[0.0, 0.0, 0.0], [0.9, 80.0, 50.0]]}}])
+def test_a_touch_by_hand_is_felt_and_replayed(touch):
+    made = simulated(SKIN, **touch)
+    go_to(made, 0.3)
+    made.carry_out(messages.Touch(20, 255))
+    go_to(made, 0.5)
+    felt = made.fields()["touch"]
+    assert felt[20] == felt.max() > 200
+    assert felt[0] == 0
+    made.carry_out(messages.Touch(20, 0))
+    go_to(made, 0.8)
+    assert made.fields()["touch"].max() == 0
+    go_to(made, 0.4)  # and again
+    assert made.fields()["touch"][20] > 200
+    made.run_to_end()
+    again = run(scenario.loads(saved(made.view)))
+    assert again.result.fingerprint == made.engine.fingerprint
+    assert again.result.fingerprint != run({**SKIN, **touch}).result.fingerprint
+
+
+def test_without_data_nothing_is_felt():
+    made = simulated(SKIN, data={"rate_hz": 0})
+    assert "touch" not in made.scene()["can"]
+    with pytest.raises(Refused):
+        made.carry_out(messages.Touch(3, 255))
+
+
+def test_healing_leaves_the_number_of_the_cut():
+    made = simulated(SKIN)
+    go_to(made, 0.5)
+    link = next(link["id"] for link in made.scene()["links"] if link["b"] == 30)
+    made.carry_out(messages.Cut(link))
+    go_to(made, 0.7)
+    was = made.fields()["recovery"]
+    assert was["recovered_ms"] > 0
+    made.carry_out(messages.Heal(link))
+    made.carry_out(messages.Kill(12))
+    assert made.fields()["recovery"]["at_s"] > was["at_s"]
+    go_to(made, 0.8)
+    was = made.fields()["recovery"]
+    made.carry_out(messages.Revive(12))
+    made.run_to_end()
+    assert made.fields()["recovery"] == was
+    assert made.fields()["since_cut_s"] == pytest.approx(0.3, abs=1e-5)
+
+
+def test_a_cell_alone_has_recovered_when_it_is_back():
+    """A cut that nothing can get over, until it is healed."""
+    line = {**SKIN, "patch": [{"columns": 3, "rows": 1}],
+            "interface": [{"row": 0, "column": 0, "port": "W"}]}  # fmt: skip
+    made = simulated(line)
+    go_to(made, 0.5)
+    made.carry_out(messages.Kill(1))
+    made.carry_out(messages.Revive(1))
+    made.run_to_end()
+    assert made.fields()["recovery"]["cause"] == "cell p0 r0 c1 switched off"
+    assert made.fields()["unconnected"] == 0
+
+
+@pytest.mark.parametrize(("speed", "every_s"), [(0, 1.2), (0.1, 0.01), (0.002, 0.01), (1, 0.1)])
+def test_plots_have_points_enough_for_who_looks_on(speed, every_s):
+    made = simulated(SKIN, speed, duration_s=600.0)
+    assert made._next_point_us == round(1e6 * every_s)
+    made.carry_out(messages.Speed(0.5))
+    assert made._next_point_us == 50_000
+
+
+def test_who_was_doubted_before_a_fault_did_not_notice_it():
+    made = simulated(MESH)
+    go_to(made, 4.0)
+    made.carry_out(messages.Kill(3))
+    fault = made.view.memory.fault
+    for after_us, noticed in ((-3_000, None), (2_000, 2.0)):
+        made.view._suspect(fault.at_us + after_us, 5, 3)
+        assert made.fields()["recovery"]["detected_ms"] == noticed
+
+
+def test_what_is_too_large_is_not_drawn():
+    with pytest.raises(WatchError, match="too many"):
+        simulated(SKIN, patch=[{"columns": 1000, "rows": 21}], protocol={"max_depth": 254},
+                  data={"rate_hz": 0},
+                  interface=[{"row": 0, "column": 50 * i} for i in range(20)])  # fmt: skip
+
+
+def test_a_thousand_cells_cost_little():
+    made = simulated(SKIN, 0.02, patch=[{"columns": 40, "rows": 25}], interface=[
+        {"row": 0, "column": 10}, {"row": 24, "column": 30}])  # fmt: skip
+    go_to(made, 0.2)
+    scene, before, sizes = Part({"type": "scene"}), None, []
+    teller = Teller(made.history)
+    began = time.thread_time()
+    for _ in range(30):
+        made.carry_out(messages.Step())
+        before = Snapshot(scene, made.fields(), made.history.newest, before)
+        sizes.append(sum(len(message) for message in teller.messages(before)))
+    assert (time.thread_time() - began) / 30 < 0.02  # of 0.033 s; measured 0.002
+    assert sum(sizes) / 30 < 100_000
+
+
+def test_what_the_scenario_does_is_told_in_its_place():
+    events = [
+        {"at_s": 4.0, "action": "kill", "node": 5},
+        {"at_s": 6.0, "action": "revive", "node": 5},
+    ]
+    made = simulated(MESH, event=events)
+    made.run_to_end()
+    times = [item.what["t_s"] for item in items(made, LOG)]
+    assert times == sorted(times)
+    assert "node n5 switched off" in texts(made)
+    by_hand = simulated(MESH)
+    go_to(by_hand, 4.0)
+    by_hand.carry_out(messages.Kill(5))
+    by_hand.run_to_end()
+    shown = [each.fields()["recovery"] for each in (made, by_hand)]
+    assert shown[0] == shown[1]
+
+
+def test_a_node_at_the_edge_of_a_mesh_is_missed_by_nobody():
+    leaf = {**MESH, "nodes": None, "radio": {"profile": "250k"},
+            "link": [{"a": "g", "b": "x"}, {"a": "x", "b": "y"}], "flow": [],
+            "event": [{"at_s": 5.0, "action": "kill", "node": "y"}]}  # fmt: skip
+    made = simulated({key: value for key, value in leaf.items() if value is not None})
+    made.run_to_end()
+    assert made.fields()["recovery"]["recovered_ms"] == 0.0
