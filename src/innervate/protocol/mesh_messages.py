@@ -93,7 +93,7 @@ def on_message(node, params, now, item, out):
     i = -1
     if flags & PRIORITY:
         i = compose(node, now, CONTROL, DATA, dest, flags, out)
-    elif make_room(node, OWN, out):
+    elif make_room(node, OWN if owner >= 0 else MESSAGES, out):
         i = compose(node, now, MESSAGES, DATA, dest, flags, out)
     if i < 0 and owner >= 0:
         keep_for_later(node, params, now, owner, item, dest, flags | first_flag(node, dest), out)

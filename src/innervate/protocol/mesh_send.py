@@ -18,6 +18,8 @@ from innervate.protocol.mesh_upward import uplink
 from innervate.protocol.mesh_words import (
     ACK_WANTED,
     ALTERNATE,
+    DATA,
+    END_TO_END,
     NOBODY,
     REPORT_DROPPED,
     RESPONSE,
@@ -148,12 +150,15 @@ def hop_failed(node, params, now, i, out):
 def is_stale(node, params, now, i):
     """1 if the message in place i waits here for so long that others need its place more.
 
-    Queues full of what has to go to others with full queues would not move on for ever; who sent
-    it sends it again.
+    Queues full of what has to go to others with full queues would not move on for ever. What its
+    origin sends again goes soon.
     """
     if node.q_rank[i] == ALARMS:
         return 0
-    return (now - node.q_born[i]) & MASK30 > max(4 * params.e2e_us, params.tick_us)
+    limit = max(4 * params.e2e_us, params.tick_us)
+    if node.q_kind[i] == DATA and node.q_flags[i] & END_TO_END == 0:
+        limit = 4 * limit
+    return (now - node.q_born[i]) & MASK30 > limit
 
 
 def turn_away(node, params, dead, out):
