@@ -19,6 +19,7 @@ _EXTRAS = {
     "icub_models": "body", "trimesh": "body",
     "distributed": "sweep",
     "cryptography": "live",
+    "mcap": "export",
 }  # fmt: skip
 # Errors whose text is one line for the user: module and class, and whose mistake they are.
 _KNOWN = (
@@ -27,6 +28,7 @@ _KNOWN = (
     ("innervate.verify.errors", "VerifyError", USERS),
     ("innervate.sweep.errors", "SweepError", USERS),
     ("innervate.live.errors", "LiveError", USERS),
+    ("innervate.export.errors", "ExportError", USERS),
     ("cyclopts", "CycloptsError", USERS),
     ("innervate.sim.simulate", "InvariantBroken", OURS),
     ("innervate.analysis.frames", "FramesLost", OURS),

@@ -3,18 +3,18 @@
 
 local BAD_CRC, MALFORMED = "bad_crc", "malformed"
 -- Lua 5.2 has bit32; later ones have the library that Wireshark brings.
-local bits = rawget(_G, "bit32") or rawget(_G, "bit")
+local bitop = rawget(_G, "bit32") or rawget(_G, "bit")
 local protos = {}
 
 -- CRC-16/CCITT-FALSE of all bytes but the last two.
 local function crc16(tvb)
   local crc = 0xFFFF
   for i = 0, tvb:len() - 3 do
-    crc = bits.bxor(crc, bits.lshift(tvb(i, 1):uint(), 8))
+    crc = bitop.bxor(crc, bitop.lshift(tvb(i, 1):uint(), 8))
     for _ = 1, 8 do
-      local high = bits.band(crc, 0x8000) ~= 0
-      crc = bits.band(bits.lshift(crc, 1), 0xFFFF)
-      if high then crc = bits.bxor(crc, 0x1021) end
+      local high = bitop.band(crc, 0x8000) ~= 0
+      crc = bitop.band(bitop.lshift(crc, 1), 0xFFFF)
+      if high then crc = bitop.bxor(crc, 0x1021) end
     end
   end
   return crc
@@ -140,14 +140,14 @@ end
 
 local function mesh_payload(self, tvb, tree, known, flags, first, last)
   local stop = last
-  if bits.band(flags, MESH_SOURCE_ROUTE) ~= 0 and first < last then
+  if bitop.band(flags, MESH_SOURCE_ROUTE) ~= 0 and first < last then
     local count = tvb(first, 1):uint()
     if first + 1 + count <= last then
       list(self.source_route, tvb, first + 1, first + 1 + count, tree)
       first = first + 1 + count
     end
   end
-  if bits.band(flags, MESH_DETOURED) ~= 0 and first < last and tvb(last - 1, 1):uint() > 0 then
+  if bitop.band(flags, MESH_DETOURED) ~= 0 and first < last and tvb(last - 1, 1):uint() > 0 then
     local at = last - 1 - tvb(last - 1, 1):uint()
     if is_whole(known.fields, tvb, first, at) then stop = at end
   end
@@ -162,7 +162,7 @@ end
 local function mesh_flags(item, flags)
   local set = {}
   for _, flag in ipairs(MESH_FLAGS) do
-    if bits.band(flags, flag[1]) ~= 0 then set[#set + 1] = flag[2] end
+    if bitop.band(flags, flag[1]) ~= 0 then set[#set + 1] = flag[2] end
   end
   if #set > 0 then item:append_text(" (" .. table.concat(set, ", ") .. ")") end
 end

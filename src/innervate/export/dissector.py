@@ -64,9 +64,9 @@ def _constants() -> list[str]:
         "SKIN_HEAD": skin.KIND_BITS,
         "SKIN_MIN": skin.CRC_BYTES + 1,
         "MESH_VERSION": mesh.VERSION,
-        "MESH_ACK": mesh.ACK,
-        "MESH_ACK_BYTES": mesh.ACK_BYTES,
-        "MESH_PATH_MAX": mesh.PATH_MAX,
+        "MESH_ACK": mesh_words.ACK,
+        "MESH_ACK_BYTES": mesh_words.ACK_BYTES,
+        "MESH_PATH_MAX": mesh_words.PATH_MAX,
         "MESH_SOURCE_ROUTE": mesh_words.SOURCE_ROUTE,
         "MESH_DETOURED": mesh_words.DETOURED,
         "RADIO_VERSION": radio.VERSION,
@@ -89,7 +89,7 @@ def _mesh() -> str:
     says = _meanings(mesh_fields.FRAME)
     return (
         f"local MESH = {{ kinds = {_kinds(mesh_payloads.LAYOUTS, MEANINGS)},\n"
-        f'  others = {{[{mesh.ACK}] = "ack"}},\n'
+        f'  others = {{[{mesh_words.ACK}] = "ack"}},\n'
         f"  common = {_fields(mesh.COMMON, says)},\n  ack = {_fields(mesh.HOP_ACK, says)} }}"
     )
 
@@ -114,10 +114,11 @@ def abbreviation(name: str) -> str:
 
 
 def _fields(fields: Any, says: dict[str, str]) -> str:
-    return "{\n" + ",\n".join(f"    {_field(*field, says)}" for field in fields) + " }"
+    return "{\n" + ",\n".join(f"    {_field(field, says)}" for field in fields) + " }"
 
 
-def _field(name: str, many: Any, bits: Any, signed: int, says: dict[str, str]) -> str:
+def _field(field: Any, says: dict[str, str]) -> str:
+    name, many, bits, signed = field
     count = f'"{many}"' if isinstance(many, str) else many
     size = f"group = {_fields(bits, says)}" if isinstance(bits, tuple) else f"bits = {bits}"
     sign = ", signed = true" if signed else ""
