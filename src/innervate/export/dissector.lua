@@ -6,16 +6,23 @@ local BAD_CRC, MALFORMED = "bad_crc", "malformed"
 local bitop = rawget(_G, "bit32") or rawget(_G, "bit")
 local protos = {}
 
--- CRC-16/CCITT-FALSE of all bytes but the last two.
+-- CRC-16/CCITT-FALSE of all bytes but the last two, by a table of every byte's remainder.
+local remainders = {}
+for byte = 0, 255 do
+  local crc = bitop.lshift(byte, 8)
+  for _ = 1, 8 do
+    local high = bitop.band(crc, 0x8000) ~= 0
+    crc = bitop.band(bitop.lshift(crc, 1), 0xFFFF)
+    if high then crc = bitop.bxor(crc, 0x1021) end
+  end
+  remainders[byte] = crc
+end
+
 local function crc16(tvb)
-  local crc = 0xFFFF
-  for i = 0, tvb:len() - 3 do
-    crc = bitop.bxor(crc, bitop.lshift(tvb(i, 1):uint(), 8))
-    for _ = 1, 8 do
-      local high = bitop.band(crc, 0x8000) ~= 0
-      crc = bitop.band(bitop.lshift(crc, 1), 0xFFFF)
-      if high then crc = bitop.bxor(crc, 0x1021) end
-    end
+  local crc, data = 0xFFFF, tvb:bytes(0, tvb:len() - 2)
+  for i = 0, data:len() - 1 do
+    local high = bitop.bxor(bitop.rshift(crc, 8), data:get_index(i))
+    crc = bitop.bxor(bitop.band(bitop.lshift(crc, 8), 0xFFFF), remainders[high])
   end
   return crc
 end
@@ -142,10 +149,12 @@ local function mesh_payload(self, tvb, tree, known, flags, first, last)
   local stop = last
   if bitop.band(flags, MESH_SOURCE_ROUTE) ~= 0 and first < last then
     local count = tvb(first, 1):uint()
-    if first + 1 + count <= last then
-      list(self.source_route, tvb, first + 1, first + 1 + count, tree)
-      first = first + 1 + count
+    if first + 1 + count > last then
+      complain(self, tree, MALFORMED, "Malformed: source route")
+      return
     end
+    list(self.source_route, tvb, first + 1, first + 1 + count, tree)
+    first = first + 1 + count
   end
   if bitop.band(flags, MESH_DETOURED) ~= 0 and first < last and tvb(last - 1, 1):uint() > 0 then
     local at = last - 1 - tvb(last - 1, 1):uint()

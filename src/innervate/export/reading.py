@@ -88,6 +88,8 @@ class Capture:
                 raise self._wrong("is damaged: a block is too short for its kind") from None
             if packet is not None:
                 yield packet
+        if not begun:
+            raise self._wrong("is no pcapng capture")
 
     def _begin_section(self, head: bytes) -> None:
         magic = head[8:12]

@@ -94,7 +94,7 @@ class _States:
 
     def snapshots(self) -> Iterator[tuple[int, _States]]:
         """Itself as it was every STEP_US, and at the end."""
-        ways = (
+        ways: Any = (
             (self.routes, self._route),
             (self.outages, self._outage),
             (self.samples, self._feel),
