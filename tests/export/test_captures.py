@@ -19,7 +19,7 @@ from tests.tshark_runs import fields_of, tshark
 __all__ = ["tshark"]
 SKIN = patch(
     3, 4, (0, 1), (3, 1),
-    seed=5, duration_s=0.12, data={"rate_hz": 900, "queue": 2}, timing={"loss": 0.02},
+    seed=5, duration_s=0.1, data={"rate_hz": 3000, "queue": 2}, timing={"loss": 0.02},
     event=[{"at_s": 0.04, "action": "cut", "interface": 1},
            {"at_s": 0.06, "action": "kill", "cell": {"patch": 0, "row": 1, "column": 1}}],
 )  # fmt: skip

@@ -138,6 +138,28 @@ def live_listen(node: str, /, *, count: int = 0, json: Json = False) -> int:
     return command.listen(node, count, json)
 
 
+@live_app.command(name="capture")
+def live_capture(
+    *nodes: str,
+    out: Path,
+    for_: Annotated[float, Parameter(name=["--for"])] = 0.0,
+) -> int:
+    """Write frames of running nodes to a capture for Wireshark, until Ctrl-C.
+
+    Parameters
+    ----------
+    nodes
+        Names or sockets; all nodes of this user if left out.
+    out
+        The capture; it can be read while it grows. - is standard output.
+    for_
+        End after so many seconds.
+    """
+    from innervate.cli import capturing as command
+
+    return command.capture(list(nodes), out, for_)
+
+
 @live_app.command(name="medium")
 def live_medium(
     address: str = "127.0.0.1:4600",

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from innervate.live import status
+from innervate.live import status, tap
 from innervate.live.build import build, keys_of
 from innervate.live.errors import LiveError
 from innervate.live.messages import MeshNode
@@ -112,11 +112,15 @@ class Process:
             path = self.node.path_at(int(request["port"]))
             path.cut = what == "cut"
             await writer.line({"path": path.name, "cut": path.cut})
+        elif what == "capture":
+            await tap.serve(self.node, writer)
         elif what == "stop":
             self.ending.set()
             await writer.line({"ok": True})
         else:
-            raise ValueError('a request has "do": status, send, listen, cut, restore or stop')
+            raise ValueError(
+                'a request has "do": status, send, listen, capture, cut, restore or stop'
+            )
 
     async def _send(self, request: dict[str, Any], writer: status.Writer) -> None:
         node, payload = self.node, bytes.fromhex(request["payload"])
