@@ -12,7 +12,7 @@ from cyclopts import App, Parameter
 
 import innervate
 from innervate.cli import errors
-from innervate.cli.export_app import export
+from innervate.cli.export_app import export, fit
 from innervate.cli.live_app import live_app
 from innervate.cli.seeds import Seed, Sets
 from innervate.cli.verify_options import VERIFY_DEFAULTS, VerifyOptions
@@ -334,6 +334,7 @@ def compare(first: Path, second: Path, /) -> int:
 
 
 app.command(export)
+app.command(fit)
 app.command(live_app)
 
 

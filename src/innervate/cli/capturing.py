@@ -114,13 +114,13 @@ class Recorder:
         if what is None:
             what = "pc" if about["role"] == "sink" else "cell"
         numbers = {}
-        for port, here, there in about["paths"]:
+        for path, port, here, there in about["paths"]:
             several = len(about["paths"]) > 1
             name = about["capturing"] + (f" port {port}" if several else "")
             text = links.describe(what, about["number"], port, (here, there))
             link_type = links.LINK_TYPES[about["kind"]]
             self.file.write(pcapng.interface(link_type, name, text))
-            numbers[port] = self.interfaces
+            numbers[path] = self.interfaces
             self.interfaces += 1
         self.file.flush()
         return numbers

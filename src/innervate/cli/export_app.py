@@ -59,3 +59,18 @@ def export(
         pcapng=pcapng, mcap=mcap, graph=graph, tables=tables, csv=csv, from_s=from_, to_s=to
     )
     return command.export(source, set_ or [], seed, wanted, dissector)
+
+
+def fit(capture: Path, /, *, out: Path | None = None) -> int:
+    """Make a scenario out of a capture of a mesh or a skin; 1 if its simulation has other links.
+
+    Parameters
+    ----------
+    capture
+        A capture by innervate: of a run, or of live nodes.
+    out
+        The scenario file to write; it is printed if left out.
+    """
+    from innervate.cli import fitting as command
+
+    return command.fit(capture, out)

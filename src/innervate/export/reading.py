@@ -38,12 +38,14 @@ class Capture:
 
     Attributes:
         interfaces: those that were told of so far.
+        comment: what the capture says of itself.
         cut_short: the file ends in the middle of a block, as that of a running capture may.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.interfaces: list[Interface] = []
+        self.comment = ""
         self.cut_short = False
         self._order = "<"
         self._ticks: list[tuple[int, int]] = []
@@ -101,7 +103,11 @@ class Capture:
         raise self._wrong("is no pcapng capture")
 
     def _block(self, kind: int, body: bytes) -> Packet | None:
-        if kind == pcapng.INTERFACE:
+        if kind == pcapng.SECTION:
+            self.comment = (
+                self._options(body[16:]).get(pcapng.COMMENT, b"").decode(errors="replace")
+            )
+        elif kind == pcapng.INTERFACE:
             self._interface(body)
         elif kind == pcapng.PACKET:
             return self._packet(body)

@@ -58,16 +58,18 @@ async def serve(node: LiveNode, writer: Writer) -> None:
 
 
 def about(node: LiveNode) -> dict[str, Any]:
-    """Who a node is, and where its paths lead."""
+    """Who a node is, and its paths: (number, port of the protocol, address here, and there)."""
     told = node.stack.status(0)
-    paths = [(path.port, *ends_of(path)) for path in node.paths] or [(0, "", "")]
+    # A cell's ports are its sockets, of which only some have a path.
+    ports = getattr(node.stack, "port_of_path", range(len(node.paths)))
+    paths = [(path.port, ports[path.port], *ends_of(path)) for path in node.paths]
     return {
         "capturing": node.name,
         "kind": told["kind"],
         "role": told["role"],
         "number": told.get("number", -1),
         "sealed": node.sealer is not None,
-        "paths": paths,
+        "paths": paths or [(0, 0, "", "")],
     }
 
 
