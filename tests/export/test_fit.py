@@ -1,13 +1,14 @@
 """What is simulated, captured, fitted and simulated again is the same network."""
 
 import asyncio
+import json
 import tomllib
 
 import pytest
 
 from innervate import scenario
 from innervate.cli import app, capturing
-from innervate.export import capture, fitting, measure, pcapng
+from innervate.export import capture, fitting, measure, pcapng, statuslog
 from innervate.export.errors import ExportError
 from innervate.live import status, tap
 from tests.live_net import Mesh, until
@@ -121,6 +122,33 @@ def test_the_command_says_what_it_did(tmp_path, capsys):
     assert f"Written: {out}" in said
     assert "a skin of 14 links" in said
     assert scenario.load(out).name == "skin"
+
+
+def told_by(number, *near):
+    neighbours = [{"node": node, "quality": quality} for node, quality in near]
+    return {"kind": "mesh", "number": number, "gateway": 0, "neighbours": neighbours}
+
+
+def test_what_nodes_say_of_themselves_is_fitted(tmp_path, capsys):
+    path, out = tmp_path / "status.json", tmp_path / "fitted.toml"
+    path.write_text(json.dumps([told_by(0, (1, 0.81)), told_by(1, (0, 0.81), (2, None))]))
+    assert app.main(["fit", str(path), "--out", str(out)]) == 0
+    links = scenario.load(out).model.link
+    assert [(link.a, link.b, link.quality) for link in links] == [
+        ("n0", "n1", (0.9, 0.9)), ("n1", "n2", (1.0, 1.0)),
+    ]  # fmt: skip
+    assert "1 links carried nothing" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "content", ["{", "[]", "[1]", '{"kind": "skin"}', '[{"kind": "mesh"}]', "[[[]]]"]
+)
+def test_json_that_is_no_status_is_told_in_one_line(content, tmp_path):
+    path = tmp_path / "status.json"
+    path.write_text(content)
+    assert statuslog.looks_like_one(path)
+    with pytest.raises(ExportError, match=r"no status of mesh nodes|no node has a neighbour"):
+        statuslog.measure(path)
 
 
 @pytest.mark.parametrize(

@@ -67,7 +67,7 @@ def fit(capture: Path, /, *, out: Path | None = None) -> int:
     Parameters
     ----------
     capture
-        A capture by innervate: of a run, or of live nodes.
+        A capture by innervate, of a run or of live nodes; or what `live status --json` said.
     out
         The scenario file to write; it is printed if left out.
     """

@@ -139,6 +139,8 @@ def profile_of(found: Measured) -> str:
         for way in found.ways.values()
         for size, delay in zip(way.sizes, way.delays_us, strict=True)
     ]
+    if not some:
+        return "ip"
 
     def off(name: str) -> float:
         radio = PROFILES[name]
@@ -175,6 +177,8 @@ def check(text: str, found: Measured) -> tuple[list[str], bool]:
                      f"{max(apart):.4f} at most")  # fmt: skip
     for what, some in (("captured", found), ("simulated", again)):
         low, middle, high = some.delay_us()
+        if not high:
+            continue
         lines.append(f"delay, {what}: {low:.0f} to {high:.0f} us, median {middle:.0f} us")
     return lines, not any(missing)
 
