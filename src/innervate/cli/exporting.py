@@ -127,10 +127,10 @@ class _Source:
         last = self.plan.duration_us
         begin = round(1e6 * wanted.from_s)
         end = last if wanted.to_s is None else round(1e6 * wanted.to_s)
-        if not 0 <= begin < end:
-            raise UserError("nothing lies in that window; let --from be less than --to")
         if begin >= last:
             raise UserError(f"the run ends at {last / 1e6:g} s; choose an earlier --from")
+        if not 0 <= begin < end:
+            raise UserError("nothing lies in that window; let --from be less than --to")
         return begin, end
 
     def _tables(self) -> dict[str, Any]:
