@@ -157,9 +157,7 @@ def simulate(
     """
     if through is not None and not plain:
         raise ValueError("frames pass through a function in plain runs only")
-    known = (*builder.MACS, *radio_stacks.PROTOCOLS)
-    if plan.mac not in known:
-        raise ValueError(f"mac must be one of {', '.join(known)}, not {plan.mac!r}")
+    _check_mac(plan.mac)
     router = entry or stacks.mesh()
     if plain:
         fields = mesh_fields.node(plan.capacity)
@@ -199,6 +197,12 @@ def simulate(
         interrupted=not done,
         **{name: np.concatenate(kept) for name, kept in parts.items()},
     )
+
+
+def _check_mac(mac: str) -> None:
+    known = (*builder.MACS, *radio_stacks.PROTOCOLS)
+    if mac not in known:
+        raise ValueError(f"mac must be one of {', '.join(known)}, not {mac!r}")
 
 
 def loop_name(plan: Any) -> str:
