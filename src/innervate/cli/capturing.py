@@ -51,6 +51,8 @@ class Recorder:
         self.sockets = sockets
         self.file = file
         self.frames = self.missed = self.interfaces = 0
+        self.silent = len(sockets)  # nodes that have not answered yet
+        self.since_ns = 0
         self.waiting: list[tuple[int, int, bool, bytes, str]] = []
         self.sealed: list[str] = []
 
@@ -103,8 +105,10 @@ class Recorder:
             told = json.loads(line)
             self.missed += told["missed"]
             for at_ns, port, is_out, text, why in told["frames"]:
-                data = bytes.fromhex(text)
-                self.waiting.append((at_ns, numbers[port], is_out, data, why))
+                # Before all were followed, what left would seem to come in nowhere.
+                if not self.silent and at_ns >= self.since_ns:
+                    data = bytes.fromhex(text)
+                    self.waiting.append((at_ns, numbers[port], is_out, data, why))
 
     def _announce(self, about: dict[str, Any]) -> dict[int, int]:
         """Write a node's interfaces; their numbers by port."""
@@ -123,6 +127,8 @@ class Recorder:
             numbers[path] = self.interfaces
             self.interfaces += 1
         self.file.flush()
+        self.silent -= 1
+        self.since_ns = time.time_ns()
         return numbers
 
     async def _write_on(self) -> None:

@@ -118,9 +118,9 @@ class LiveNode:
         ports = self.stack.ports_of(port, frame, attempt)
         for path in self.paths if ports is None else [self.paths[i] for i in ports]:
             if not path.cut:
+                at_ns = time.time_ns() if self.taps else 0  # before anybody can have received it
                 path.send(data)
-                if self.taps:
-                    self._tell(time.time_ns(), path.port, True, bare, "")
+                self._tell(at_ns, path.port, True, bare, "")
 
     def _tell(self, at_ns: int, port: int, out: bool, data: bytes, why: str) -> None:
         """Tell those who asked of a frame, in the clear."""

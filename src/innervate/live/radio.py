@@ -214,9 +214,9 @@ class RadioNode(LiveNode):
             payload += self._packets[(frame.handle + k) % HANDLES][0]
         assert self.engine is not None
         data = wire.encode(frame, payload)
+        at_ns = time.time_ns() if self.taps else 0
         self.radio.send(self.engine.now, data, frame.slots)
-        if self.taps:
-            self._tell(time.time_ns(), 0, True, data, "")
+        self._tell(at_ns, 0, True, data, "")
         self.outcomes["frames sent"] += 1
 
     def _deliver(self, kind: int, frame: Any) -> None:
