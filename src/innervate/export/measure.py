@@ -102,7 +102,7 @@ class Measured:
         return self.ways.setdefault((a, b), Way())
 
     def delay_us(self) -> tuple[float, float, float]:
-        """Least, median and greatest of the ways' median delays."""
+        """Least, median and greatest of the ways' median delays; 0 unknown."""
         found = [median(way.delays_us) for way in self.ways.values() if way.delays_us]
         return (min(found), median(found), max(found)) if found else (0.0, 0.0, 0.0)
 
@@ -175,8 +175,8 @@ class _Reader:
     def arrive(self, key: Any, packet: Packet, keep: bool) -> Packet | None:
         """The frame that came in as it left; `keep` it for others to whom it may come in too.
 
-        On a cable that is the oldest of those bytes; on the air, where many are never received,
-        the newest.
+        On a path it is the oldest of these bytes; a path keeps the order of frames, so that those
+        before it were lost, unless the capture names what was lost. On the air it is the newest.
         """
         waiting = self.left.get(key, deque())
         while waiting and packet.time_ns - waiting[0].time_ns > WAIT_NS:
@@ -187,6 +187,8 @@ class _Reader:
             if sent.data == packet.data and sent.time_ns <= packet.time_ns:
                 if not keep:
                     del waiting[i]
+                    for _ in range(0 if self.told else i):
+                        self.give_up(key, waiting.popleft())
                 return sent
         return None
 
@@ -237,14 +239,16 @@ class _Skin(_Reader):
         key = (place.there, place.here)
         sent = self.arrive(key, packet, keep=False)
         if not packet.comment:
-            self.note(self._way(key), sent, packet)
+            # One beacon is like another: where some are lost, nobody knows which came in.
+            is_known = self.told or _kind(packet) == skin_words.DATA
+            self.note(self._way(key), sent if is_known else None, packet)
 
     def _way(self, key: tuple[str, str]) -> Way:
         return self.found.way(*key)
 
     def _look(self, place: Place, packet: Packet) -> None:
         """What traffic there is."""
-        kind = packet.data[0] >> (8 - skin.KIND_BITS) if packet.data else 0
+        kind = _kind(packet)
         if kind == skin_words.BEACON:
             self.beacons.setdefault(place.here, []).append(packet.time_ns)
         elif kind == skin_words.DATA and len(packet.data) == skin.SIZES[kind]:
@@ -272,6 +276,11 @@ class _Skin(_Reader):
         self.found.rate_hz = self.samples / max(1, cells) / max(
             1e-9, self.found.seconds
         )  # fmt: skip
+
+
+def _kind(packet: Packet) -> int:
+    """The type of a skin's frame; 0 of no bytes."""
+    return packet.data[0] >> (8 - skin.KIND_BITS) if packet.data else 0
 
 
 class _Mesh(_Reader):
