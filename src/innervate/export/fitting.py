@@ -24,12 +24,23 @@ SPREAD_US = 2.0  # delays of a cable that differ by more are drawn for every fra
 
 
 def scenario_of(found: Measured, name: str) -> str:
-    """TOML of a scenario with the links, qualities, latencies and loss that were measured."""
+    """TOML of a scenario with the links, qualities, latencies and loss that were measured.
+
+    Raises:
+        ExportError: no scenario can have such a network.
+    """
     tables = _skin(found) if found.kind == "skin" else _mesh(found)
     head = {"schema": 1, "kind": found.kind, "name": name}
     duration = min(max(SETTLE_S, found.seconds), SECONDS_MAX)
     tables = {key: value for key, value in tables.items() if value or value == 0}
-    return to_toml(head | {"duration_s": round(duration, 3), "seed": 1} | tables)
+    text = to_toml(head | {"duration_s": round(duration, 3), "seed": 1} | tables)
+    try:
+        scenarios.plan(scenarios.loads(text))
+    except scenarios.ScenarioError as error:
+        raise ExportError(
+            f"{name}: no scenario has a network like the captured one: {error}"
+        ) from None
+    return text
 
 
 def _skin(found: Measured) -> dict[str, Any]:

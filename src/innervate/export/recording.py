@@ -79,7 +79,8 @@ def _rows(frame: Any) -> Iterator[Message]:
     """Rows of a table by their moment, the first column of a time."""
     moment = next(name for name in frame.columns if name.endswith("_us"))
     for row in frame.sort(moment, maintain_order=True).iter_rows(named=True):
-        yield row[moment], {"timestamp": stamp(row[moment]), **row}
+        told = {name: value for name, value in row.items() if value is not None}
+        yield row[moment], {"timestamp": stamp(row[moment]), **told}
 
 
 def _events(plan: Any) -> Iterator[Message]:

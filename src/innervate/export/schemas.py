@@ -2,6 +2,8 @@
 
 `foxglove.*` are subsets of Foxglove's well-known schemas, by whose names its panels know what to
 draw (docs.foxglove.dev/docs/sdk/schemas); a row of a table has a schema made from its columns.
+Foxglove reads plain schemas only: one type each, lists whose items are described. What is null in
+a table is left out of its message.
 """
 
 from __future__ import annotations
@@ -35,6 +37,7 @@ def array(items: Schema) -> Schema:
 
 
 TIME = record("time", sec=WHOLE, nsec=WHOLE)
+DURATION = record("duration", sec=WHOLE, nsec=WHOLE)
 VECTOR = record("foxglove.Vector3", x=NUMBER, y=NUMBER, z=NUMBER)
 POINT = record("foxglove.Point3", x=NUMBER, y=NUMBER, z=NUMBER)
 QUATERNION = record("foxglove.Quaternion", x=NUMBER, y=NUMBER, z=NUMBER, w=NUMBER)
@@ -52,17 +55,18 @@ LABEL = record(
     pose=POSE, billboard=FLAG, font_size=NUMBER, scale_invariant=FLAG, color=COLOR, text=TEXT,
 )  # fmt: skip
 PAIR = record("foxglove.KeyValuePair", key=TEXT, value=TEXT)
-NOTHING: Schema = {"type": "array", "maxItems": 0}
+DELETION = record("foxglove.SceneEntityDeletion", timestamp=TIME, type=WHOLE, id=TEXT)
+UNUSED = array(record("primitive", pose=POSE, color=COLOR))  # kinds that no scene of ours has
 ENTITY = record(
     "foxglove.SceneEntity",
-    timestamp=TIME, frame_id=TEXT, id=TEXT, lifetime=TIME, frame_locked=FLAG,
-    metadata=array(PAIR), arrows=NOTHING, cubes=NOTHING, spheres=array(SPHERE),
-    cylinders=NOTHING, lines=array(LINE), triangles=NOTHING, texts=array(LABEL), models=NOTHING,
+    timestamp=TIME, frame_id=TEXT, id=TEXT, lifetime=DURATION, frame_locked=FLAG,
+    metadata=array(PAIR), arrows=UNUSED, cubes=UNUSED, spheres=array(SPHERE),
+    cylinders=UNUSED, lines=array(LINE), triangles=UNUSED, texts=array(LABEL), models=UNUSED,
 )  # fmt: skip
 SCENE = record(
     "foxglove.SceneUpdate",
     "what the 3D panel shows from now on; an entity takes the place of that with its id",
-    deletions=NOTHING, entities=array(ENTITY),
+    deletions=array(DELETION), entities=array(ENTITY),
 )  # fmt: skip
 LOG = record(
     "foxglove.Log",
@@ -87,13 +91,14 @@ _TYPES = {"Boolean": "boolean", "Float64": "number"}
 
 
 def of_table(table: Table) -> Schema:
-    """The schema of a row: its moment, then its columns; null where it says so."""
+    """The schema of a row: its moment, then its columns as far as they are not null."""
     columns = {
         column.name: {
-            "type": [_TYPES.get(column.kind, "integer"), "null"],
+            "type": _TYPES.get(column.kind, "integer"),
             "description": f"{column.meaning} [{column.unit}]" if column.unit else column.meaning,
         }
         for column in table.columns
     }
     title = f"innervate.{table.name.capitalize()}"
-    return record(title, f"a row where {table.row}", timestamp=TIME, **columns)
+    made = record(title, f"a row where {table.row}", timestamp=TIME, **columns)
+    return made | {"required": ["timestamp"]}
