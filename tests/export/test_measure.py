@@ -83,7 +83,7 @@ def test_a_network_that_no_scenario_has_is_told(tmp_path):
     assert "\n" not in str(told.value)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=30)
 @given(st.data())
 def test_any_damage_gives_a_network_or_one_line(tmp_path_factory, data):
     mixed = bytearray(b"".join(cable({3}, [sample(1), beacon(), sample(2), beacon()])))

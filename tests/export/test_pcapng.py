@@ -78,7 +78,7 @@ def read_all(path):
     return said
 
 
-@settings(deadline=None, max_examples=200)
+@settings(deadline=None, max_examples=80)
 @given(st.data())
 def test_any_bytes_give_packets_or_one_line(tmp_path_factory, data):
     blocks, _interfaces, _packets = sample()

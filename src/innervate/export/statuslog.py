@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from innervate.export.errors import ExportError
-from innervate.export.measure import Measured
+from innervate.export.measured import Measured
 
 FRAMES = 10_000  # a share stands for so many, as nodes do not say how many there were
 
