@@ -104,6 +104,8 @@ class Process:
         what = request.get("do")
         if what == "status":
             await writer.line(self.node.status())
+        elif what == "capture":
+            await tap.serve(self.node, writer)
         elif what == "send":
             await self._send(request, writer)
         elif what == "listen":
@@ -112,14 +114,12 @@ class Process:
             path = self.node.path_at(int(request["port"]))
             path.cut = what == "cut"
             await writer.line({"path": path.name, "cut": path.cut})
-        elif what == "capture":
-            await tap.serve(self.node, writer)
         elif what == "stop":
             self.ending.set()
             await writer.line({"ok": True})
         else:
             raise ValueError(
-                'a request has "do": status, send, listen, capture, cut, restore or stop'
+                'a request has "do": status, send, listen, cut, restore or stop'
             )
 
     async def _send(self, request: dict[str, Any], writer: status.Writer) -> None:
