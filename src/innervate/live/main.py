@@ -118,9 +118,7 @@ class Process:
             self.ending.set()
             await writer.line({"ok": True})
         else:
-            raise ValueError(
-                'a request has "do": status, send, listen, cut, restore or stop'
-            )
+            raise ValueError('a request has "do": status, send, listen, cut, restore or stop')
 
     async def _send(self, request: dict[str, Any], writer: status.Writer) -> None:
         node, payload = self.node, bytes.fromhex(request["payload"])
