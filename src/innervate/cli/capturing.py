@@ -22,15 +22,16 @@ HOLD_S = 0.25
 LINE_MAX = 1 << 22
 
 
-def capture(names: list[str], out: Path, for_s: float) -> int:
+def capture(names: list[str], out: Path | None, for_s: float) -> int:
     """Capture until Ctrl-C, until `for_s` seconds are over, or until all nodes are gone."""
     sockets = [status.find(name) for name in names] if names else status.sockets()
     if not sockets:
         where = f"no node runs here (folder {status.folder()})"
         raise UserError(f"{where}; start one with: innervate live node FILE")
-    if str(out) == "-":
+    if out is None:
         if sys.stdout.isatty():
-            raise UserError("a capture is no text; name a file, or pipe it: … | wireshark -k -i -")
+            raise UserError("a capture is no text; name a file with --out, or pipe it to: "
+                            "wireshark -k -i -")  # fmt: skip
         return asyncio.run(Recorder(sockets, sys.stdout.buffer).run(for_s))
     try:
         with out.open("wb") as file:

@@ -141,7 +141,7 @@ def live_listen(node: str, /, *, count: int = 0, json: Json = False) -> int:
 @live_app.command(name="capture")
 def live_capture(
     *nodes: str,
-    out: Path,
+    out: Path | None = None,
     for_: Annotated[float, Parameter(name=["--for"])] = 0.0,
 ) -> int:
     """Write frames of running nodes to a capture for Wireshark, until Ctrl-C.
@@ -151,7 +151,7 @@ def live_capture(
     nodes
         Names or sockets; all nodes of this user if left out.
     out
-        The capture; it can be read while it grows. - is standard output.
+        The capture; it can be read while it grows. Standard output if left out.
     for_
         End after so many seconds.
     """
