@@ -12,6 +12,7 @@ from cyclopts import App, Parameter
 
 import innervate
 from innervate.cli import errors
+from innervate.cli.export_app import export, fit
 from innervate.cli.live_app import live_app
 from innervate.cli.seeds import Seed, Sets
 from innervate.cli.verify_options import VERIFY_DEFAULTS, VerifyOptions
@@ -371,6 +372,8 @@ def compare(first: Path, second: Path, /) -> int:
     return command.compare(first, second)
 
 
+app.command(export)
+app.command(fit)
 app.command(live_app)
 
 

@@ -20,6 +20,7 @@ _EXTRAS = {
     "distributed": "sweep",
     "cryptography": "live",
     "starlette": "web", "uvicorn": "web", "websockets": "web",
+    "mcap": "export",
 }  # fmt: skip
 # Errors whose text is one line for the user: module and class, and whose mistake they are.
 _KNOWN = (
@@ -29,6 +30,7 @@ _KNOWN = (
     ("innervate.sweep.errors", "SweepError", USERS),
     ("innervate.live.errors", "LiveError", USERS),
     ("innervate.web.errors", "WatchError", USERS),
+    ("innervate.export.errors", "ExportError", USERS),
     ("cyclopts", "CycloptsError", USERS),
     ("innervate.sim.simulate", "InvariantBroken", OURS),
     ("innervate.analysis.frames", "FramesLost", OURS),

@@ -147,6 +147,28 @@ def live_listen(node: str, /, *, count: int = 0, in_order: Json = False, json: J
     return command.listen(node, count, in_order, json)
 
 
+@live_app.command(name="capture")
+def live_capture(
+    *nodes: str,
+    out: Path | None = None,
+    for_: Annotated[float, Parameter(name=["--for"])] = 0.0,
+) -> int:
+    """Write frames of running nodes to a capture for Wireshark, until Ctrl-C.
+
+    Parameters
+    ----------
+    nodes
+        Names or sockets; all nodes of this user if left out.
+    out
+        The capture; it can be read while it grows. Standard output if left out.
+    for_
+        End after so many seconds.
+    """
+    from innervate.cli import capturing as command
+
+    return command.capture(list(nodes), out, for_)
+
+
 @live_app.command(name="medium")
 def live_medium(
     address: str = "127.0.0.1:4600",

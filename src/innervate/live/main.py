@@ -9,7 +9,7 @@ from collections.abc import AsyncGenerator, Callable
 from pathlib import Path
 from typing import Any
 
-from innervate.live import status
+from innervate.live import status, tap
 from innervate.live.build import build, keys_of
 from innervate.live.errors import LiveError
 from innervate.live.messages import MeshNode
@@ -25,7 +25,7 @@ Form = Callable[[Any], dict[str, Any]]
 
 DRAIN_S = 2.0
 SAVE_S = 10.0
-REQUESTS = ("status", "send", "listen", "cut", "restore", "loose", "locate", "stop")
+REQUESTS = ("status", "send", "listen", "cut", "restore", "loose", "locate", "capture", "stop")
 
 
 def run(path: Path) -> int:
@@ -118,6 +118,8 @@ class Process:
         what = request.get("do")
         if what == "status":
             await writer.line(self.node.status())
+        elif what == "capture":
+            await tap.serve(self.node, writer)
         elif what == "send":
             await self._send(request, writer)
         elif what == "listen":

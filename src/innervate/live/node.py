@@ -11,6 +11,7 @@ from innervate.live.engine import Engine, Stack, clock_us
 from innervate.live.keys import Sealer
 from innervate.live.links import Link, Path
 from innervate.live.state import State
+from innervate.live.tap import Tap
 
 
 class LiveNode:
@@ -26,6 +27,7 @@ class LiveNode:
     Attributes:
         paths: all paths, by port.
         reports: how often the protocol reported what, by code.
+        taps: who is told of every frame, as it leaves and comes in.
     """
 
     def __init__(
@@ -43,6 +45,7 @@ class LiveNode:
         self.state = state or State(None)
         self.paths: list[Path] = [path for link in links for path in link.paths]
         self.reports: Counter[int] = Counter()
+        self.taps: list[Tap] = []
         self.engine: Engine | None = None
         self.started_at = time.time()
 
@@ -96,23 +99,34 @@ class LiveNode:
             return
         path.counters["received"] += 1
         path.counters["received bytes"] += len(data)
+        at_ns = time.time_ns() if self.taps else 0
         if self.sealer is not None:
             opened = self.sealer.open(data)
             if opened is None:
+                self._tell(at_ns, path.port, False, data, "seal")
                 return
             data = opened
         assert self.engine is not None
-        if self.engine.receive(path.port, data) == 0:
+        reason = self.engine.receive(path.port, data)
+        if reason == 0:
             path.heard_at = clock_us()
+        self._tell(at_ns, path.port, False, data, self.stack.reasons[reason] if reason else "")
 
     def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
-        data = self.stack.encode(frame)
+        data = bare = self.stack.encode(frame)
         if self.sealer is not None:
             data = self.sealer.close(data)
         ports = self.stack.ports_of(port, frame, attempt)
         for path in self.paths if ports is None else [self.paths[i] for i in ports]:
             if not path.cut:
+                at_ns = time.time_ns() if self.taps else 0  # before anybody can have received it
                 path.send(data)
+                self._tell(at_ns, path.port, True, bare, "")
+
+    def _tell(self, at_ns: int, port: int, out: bool, data: bytes, why: str) -> None:
+        """Tell those who asked of a frame, in the clear."""
+        for tap in self.taps:
+            tap(at_ns, port, out, data, why)
 
     async def drain(self, limit_s: float) -> bool:
         """Wait until nothing of ours is under way, at most `limit_s` seconds: True if so."""

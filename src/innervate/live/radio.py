@@ -7,6 +7,7 @@ a channel made of a process (medium.py); a serial modem with such a line is anot
 from __future__ import annotations
 
 import struct
+import time
 from collections import Counter
 from collections.abc import Callable
 from typing import Any, Protocol
@@ -199,7 +200,9 @@ class RadioNode(LiveNode):
         """The radio received a frame."""
         assert self.engine is not None
         self._at, self._bytes = at, data
-        self.engine.receive(0, data, at)
+        at_ns = time.time_ns() if self.taps else 0
+        reason = self.engine.receive(0, data, at)
+        self._tell(at_ns, 0, False, data, self.stack.reasons[reason] if reason else "")
 
     def counters(self) -> Counter[str]:
         """Handler calls, frames dropped by reason, packets by what became of them."""
@@ -210,7 +213,10 @@ class RadioNode(LiveNode):
         for k in range(frame.count):
             payload += self._packets[(frame.handle + k) % HANDLES][0]
         assert self.engine is not None
-        self.radio.send(self.engine.now, wire.encode(frame, payload), frame.slots)
+        data = wire.encode(frame, payload)
+        at_ns = time.time_ns() if self.taps else 0
+        self.radio.send(self.engine.now, data, frame.slots)
+        self._tell(at_ns, 0, True, data, "")
         self.outcomes["frames sent"] += 1
 
     def _deliver(self, kind: int, frame: Any) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from innervate.kernel import records
 from innervate.protocol import rng, skin_fields
-from innervate.sim import commands
+from innervate.sim import commands, taps
 from innervate.sim import world as w
 from innervate.sim.loop import BATCH
 from innervate.sim.wheel import BUCKETS, FREE, FRESH, LAST, LEVELS, NIL, PENDING, WORDS
@@ -41,10 +41,12 @@ def build(
     observe: bool = True,
     deliveries: bool = False,
     trail: bool = False,
+    tap: bool = False,
 ) -> w.World:
     """The world of a plan, before its first event.
 
-    `deliveries` keeps a row per tactile sample the PC receives, `trail` a row per handler call.
+    `deliveries` keeps a row per tactile sample the PC receives, `trail` a row per handler call,
+    `tap` copies of frames as they leave and come in.
     """
     tables = w.Tables(plain)
     graph = plan.graph
@@ -54,6 +56,9 @@ def build(
     limit = max(16, graph.interfaces + 4)
     pool = 2 * ends + BATCH * 16 + 4 * limit
     queue_frames = ends * plan.queue_frames if plan.data_period_us else 1
+    # What a batch of events and a command can add: every action empties a queue, the PC goes off.
+    burst = (BATCH + 1) * limit * (1 + plan.queue_frames)
+    tapped = ROWS + burst if tap else 1
     states = tables.states(skin_fields.CELL, cells, CELL_BYTES)
     world = w.World(
         run=tables.records(w.RUN, 1),
@@ -77,12 +82,15 @@ def build(
         rows=tables.records(w.ROW, ROWS + 8 * limit, fresh=True),
         deliveries=tables.records(w.DELIVERY, ROWS if deliveries else 1, fresh=True),
         trail=tables.records(w.TRAIL, ROWS if trail else 1, fresh=True),
+        taps=tables.records(w.TAP, tapped, fresh=True),
+        tapped=tables.states(skin_fields.FRAME, tapped),
         **_touch(tables, plan),
     )
     _set_run(world, plan, tx_slots, pool_slots)
     put(world.run, 0, checks=int(checks), watchful=int(checks or trail), broken_at=-1)
     put(world.run, 0, row_limit=len(world.rows), observe=int(observe or checks))
     put(world.run, 0, delivery_limit=ROWS if deliveries else 0, trail_limit=ROWS if trail else 0)
+    put(world.run, 0, tap_limit=ROWS if tap else 0)
     put(world.params, 0, **{field[0]: plan.params[field[0]] for field in skin_fields.PARAMS})
     put(world.pc.own, 0, ports=graph.interfaces)
     _set_wires(world, plan)
@@ -163,6 +171,14 @@ def _longer(table: Any, length: int) -> Any:
     longer = np.zeros(length, table.dtype)
     longer[: len(table)] = table
     return longer
+
+
+def hand_over(world: Any, tap: taps.Tap | None, now: int) -> None:
+    """Give a tap the frames that were kept, and make room for more."""
+    if tap is not None:
+        count = int(get(world.run, 0, "taps"))
+        tap(world.taps[:count], world.tapped[:count], now)
+        put(world.run, 0, taps=0)
 
 
 def get(table: Any, place: int, name: str) -> Any:

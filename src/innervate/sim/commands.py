@@ -103,7 +103,7 @@ def forget(world, time, node, stopped):
             queue.remove(world.wheel, slot)
     first, behind = ends_of(world, node)
     for end in range(first, behind):
-        wires.drop_queue(world, end)
+        wires.drop_queue(world, end, time)
     stopped(world, time, node)
 
 

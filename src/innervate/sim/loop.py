@@ -67,6 +67,8 @@ def pressing(world):
         return ROWS_FULL
     if run.deliveries + BATCH > run.delivery_limit > 0 or run.trail + BATCH > run.trail_limit > 0:
         return ROWS_FULL
+    if run.taps > run.tap_limit:  # beyond the limit there is room for a batch
+        return ROWS_FULL
     return DONE
 
 
@@ -208,9 +210,10 @@ def build(stack):
         run = world.run[0]
         end = event.target
         node = min(end >> 2, run.cells)
-        if wires.lands(world, event, node):
+        frame = world.frames[slot - run.pool_slots]
+        if wires.lands(world, event, node, frame, time):
             port = end - 4 * node
-            hear(world, node, time, port, world.frames[slot - run.pool_slots])
+            hear(world, node, time, port, frame)
             world.counters[wires.ARRIVED + event.kind] += 1
             finish(world, node, time, ON_FRAME, port)
         queue.give(world.wheel, slot)

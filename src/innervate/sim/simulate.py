@@ -14,7 +14,7 @@ from innervate.kernel import door, tables
 from innervate.kernel.stop import Stop
 from innervate.kernel.wall import wall_s
 from innervate.sim import build as builder
-from innervate.sim import loop, script, skin_stack, static_stack
+from innervate.sim import loop, script, skin_stack, static_stack, taps
 from innervate.sim import world as w
 from innervate.sim.build import get
 from innervate.sim.wires import ARRIVED, URGENT_BLOCK
@@ -70,7 +70,7 @@ def _rare() -> list[ModuleType]:
     """What runs too seldom to be worth copying into every caller."""
     from innervate.sim import commands, observer, touch
 
-    return [observer, commands, touch]
+    return [observer, commands, touch, taps]
 
 
 @functools.cache
@@ -104,11 +104,13 @@ def simulate(
     deliveries: bool = False,
     trail: bool = False,
     progress: Progress | None = None,
+    tap: taps.Tap | None = None,
 ) -> Result:
     """Run a plan to its end; an interrupt (Ctrl-C) ends it early and keeps what was done.
 
     `plain` runs the same loop uncompiled. Without `checks` and `observe` no rows are kept.
     `progress(time_us, duration_us)` is called now and then.
+    `tap` is handed copies of all frames as they leave and come in (see taps.py); none of a script.
     A plan with a script plays that instead, on plain state.
     Raises InvariantBroken, and ScenarioError for a step that cannot be taken.
     """
@@ -121,7 +123,7 @@ def simulate(
             raise InvariantBroken(story(plan, world))
         return _result(plan, world, _Keep(), now, wall_s() - started, False)
     advance = (plain_loop if plain else compiled_loop)(static)
-    world = builder.build(plan, plain, checks, observe, deliveries, trail)
+    world = builder.build(plan, plain, checks, observe, deliveries, trail, tap is not None)
     keep = _Keep()
     advance(world, 0, 1)  # nothing is due before time 0: only compiles, or loads what was compiled
     if not plain:
@@ -138,6 +140,7 @@ def simulate(
                 world = builder.grow_pool(world)
             keep.collect(world, final=False)
             now = plan.duration_us if status == loop.DONE else int(world.wheel.clock[0])
+            builder.hand_over(world, tap, now)
             if progress is not None:
                 progress(now, plan.duration_us)
         done = _result(plan, world, keep, now, wall_s() - started, status != loop.DONE)

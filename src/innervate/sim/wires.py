@@ -8,6 +8,8 @@ A cable's `epoch` is odd while it is down; a frame arrives only if the epoch did
 
 from innervate.protocol.outbox import FLUSH, URGENT
 from innervate.protocol.rng import LOW15, step
+from innervate.protocol.skin import copy_frame as copy_skin_frame
+from innervate.sim import taps
 from innervate.sim import wheel as queue
 from innervate.sim.world import ALIVE
 
@@ -35,6 +37,12 @@ DOWN = 1
 LOSSY = 2
 
 
+def tap(world, end, frame, time, out, why):
+    """Keep a copy of a frame at this end of a cable, if a capture is wanted."""
+    if world.run[0].tap_limit > 0:
+        taps.keep(world, time, time, end, 0, out, why, frame, copy_skin_frame)
+
+
 def transmit(world, end, frame, time, flags, copy_frame):
     """A node hands a frame to its port at true time `time` (us)."""
     wire = world.ends[end]
@@ -42,22 +50,24 @@ def transmit(world, end, frame, time, flags, copy_frame):
         return
     if flags & FLUSH and world.buffers[end].queued > 0:
         world.counters[LOST_BROKEN] += world.buffers[end].queued
+        taps.keep_queue(world, end, time, taps.BROKEN, copy_skin_frame)
         world.buffers[end].queued = 0
     if flags & URGENT:
         launch(world, end, frame, max(time, wire.busy), URGENT_BLOCK, copy_frame)
     elif wire.waiting == 0 and time >= wire.busy:
         launch(world, end, frame, time, 0, copy_frame)
     else:
-        enqueue(world, end, frame, copy_frame)
+        enqueue(world, end, frame, time, copy_frame)
 
 
-def enqueue(world, end, frame, copy_frame):
+def enqueue(world, end, frame, time, copy_frame):
     """Put a frame into its port's drop-tail queue."""
     buffer = world.buffers[end]
     room = world.run[0].queue_frames
     world.counters[SENT] += 1
     if buffer.queued >= room:
         world.counters[LOST_QUEUE] += 1
+        tap(world, end, frame, time, 1, taps.QUEUE)
         return
     place = (buffer.first + buffer.queued) % room
     copy_frame(world.queue[end * room + place], frame)
@@ -99,7 +109,9 @@ def launch(world, end, frame, start, block, copy_frame):
     wire.busy = start + run.wire_us
     world.counters[SENT + block] += 1
     if wire.impaired and is_lost(world, end, block):
+        tap(world, end, frame, start, 1, taps.CUT if wire.impaired & DOWN else taps.NOISE)
         return
+    tap(world, end, frame, start, 1, taps.FINE)
     if run.latency_per_frame:
         latency = run.latency_low + chance(run, run.latency_high - run.latency_low + 1)
     slot = queue.take(world.wheel)
@@ -136,21 +148,26 @@ def chance(run, n):
     return ((run.rng & LOW15) * n) >> 15
 
 
-def lands(world, event, node):
+def lands(world, event, node, frame, time):
     """True if a frame gets through to the node at the end of its cable; counts it either way."""
-    if event.epoch == world.epoch[event.target]:
+    end = event.target
+    if event.epoch == world.epoch[end]:
         if world.alive[node] == ALIVE:
+            tap(world, end, frame, time, 0, taps.FINE)
             return True
         world.counters[LOST_OFF + event.kind] += 1
+        tap(world, end, frame, time, 0, taps.OFF)
     else:
         world.counters[LOST_CUT + event.kind] += 1
+        tap(world, end, frame, time, 0, taps.CUT)
     return False
 
 
-def drop_queue(world, end):
+def drop_queue(world, end, time):
     """Empty a port's queue because its node is switched off."""
     buffer = world.buffers[end]
     world.counters[LOST_OFF] += buffer.queued
+    taps.keep_queue(world, end, time, taps.OFF, copy_skin_frame)
     buffer.queued = 0
 
 

@@ -26,7 +26,7 @@ RUN = (
     "wire_us", "latency_low", "latency_high", "latency_per_frame", "queue_frames", "source_us",
     "checks", "observe", "watchful", "status", "fingerprint", "handled", "rng",
     "commands", "next_command", "rows", "row_limit", "deliveries", "delivery_limit",
-    "trail", "trail_limit",
+    "trail", "trail_limit", "taps", "tap_limit",
     "unrouted", "noted", "loops", "loops_open",
     "broken", "broken_at", "broken_node", "broken_other",
 )  # fmt: skip
@@ -34,8 +34,13 @@ COMMAND = ("at", "action", "end", "node", "value", "index")
 ROW = ("time", "node", "code", "a", "b")
 DELIVERY = ("time", "port", "cell", "seq", "hops", "proximity", "force", "temperature", "accel")
 TRAIL = ("time", "node", "handler", "port", "fingerprint")
+# A frame for a capture: when; when its sender began; whose interface (a cable's end, a node, a
+# station); who sent it (mesh, radio); 1 = it left, 0 = it came in; why it got no further.
+TAP = ("time", "start", "at", "sender", "out", "why")
 ACTION = ("kind", "a", "b", "c")
-WIDE = {"time", "busy", "offset", "rate", "inverse", "source", "at", "fingerprint"} | set(RUN)
+WIDE = {"time", "start", "busy", "offset", "rate", "inverse", "source", "at", "fingerprint"} | set(
+    RUN
+)
 
 # States of a node.
 OFF = 0
@@ -113,6 +118,8 @@ class World(NamedTuple):
     rows: Any
     deliveries: Any
     trail: Any
+    taps: Any  # frames for a capture (see taps.py): what happened to them
+    tapped: Any  # ... and they themselves
     touch_x: Any
     touch_y: Any
     touch_span: Any

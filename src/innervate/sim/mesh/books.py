@@ -1,6 +1,8 @@
 """What a run leaves behind: rows, and what is checked on the way."""
 
 from innervate.kernel.bits import mix
+from innervate.protocol.mesh_frames import copy_frame
+from innervate.sim import taps
 from innervate.sim.mesh.world import ON_AIR
 
 BROKEN_OUTBOX = 2
@@ -60,6 +62,14 @@ def keep_transmission(world, place, time, length, receivers):
         row.path_len = frame.path_len
         row.bytes = length
         row.receivers = receivers
+
+
+def tap(world, place, at, time, out, why):
+    """Keep a copy of the frame at `place`, as at node `at`, if a capture is wanted."""
+    if world.run[0].tap_limit > 0:
+        air = world.air[place]
+        frame = world.frames[place]
+        taps.keep(world, time, air.start, at, air.node, out, why, frame, copy_frame)
 
 
 def keep_delivered(world, node, frame, time):

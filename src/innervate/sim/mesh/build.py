@@ -19,6 +19,7 @@ from innervate.sim.radio.world import Heap
 
 ROWS = 1 << 16
 PLAIN_ROWS = 1 << 12  # objects: dear to make
+TAPS = 1 << 12
 OUTBOX = 32
 MAC_OUTBOX = 4
 SEEN = 1 << 15
@@ -29,10 +30,12 @@ CSMA = {"backoff_us": 320, "exponent_min": 3, "exponent_max": 6, "busy_max": 8}
 MACS = {"none": 0, "csma": 1}
 
 
-def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> m.World:
+def build(
+    plan: Any, plain: bool, checks: bool, keep: bool, trail: bool, tap: bool = False
+) -> m.World:
     """The world of a plan, before its first event.
 
-    `keep` keeps all rows, `trail` one per handler call.
+    `keep` keeps all rows, `trail` one per handler call, `tap` copies of frames on the air.
     """
     tables = w.Tables(plain, np.int64)
     n = plan.nodes
@@ -42,6 +45,7 @@ def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> m.Wo
     low, high = records.bounds(fields)
     rows = PLAIN_ROWS if plain else ROWS
     kept = rows + _margin(n) if keep else 1
+    tapped = TAPS + _margin(n) if tap else 1
     heap = Heap(tables.numbers(128 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64))
     world = m.World(
         run=tables.records(m.RUN, 1, wide=m.WIDE),
@@ -71,11 +75,13 @@ def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> m.Wo
         delivered=tables.records(m.DELIVERED, kept, fresh=True, wide=m.WIDE),
         rounds=tables.records(m.ROUND, kept, fresh=True, wide=m.WIDE),
         trail=tables.records(m.TRAIL, rows + _margin(n) if trail else 1, fresh=True, wide=m.WIDE),
+        taps=tables.records(w.TAP, tapped, fresh=True, wide=m.WIDE),
+        tapped=tables.states(mesh_fields.FRAME, tapped),
     )
     limit = rows if keep else 0
     put(world.run, 0, row_limit=limit, sent_limit=limit, delivered_limit=limit, round_limit=limit)
     put(world.run, 0, checks=int(checks), watchful=int(checks or trail))
-    put(world.run, 0, trail_limit=rows if trail else 0)
+    put(world.run, 0, trail_limit=rows if trail else 0, tap_limit=TAPS if tap else 0)
     _set_run(world, plan, sum(max(int(field[1]), 1) for field in gate_fields))
     _set_nodes(world, plan, gates - 1)
     _set_events(world, plan)

@@ -38,6 +38,8 @@ def pressing(world):
         return ROWS_FULL
     if run.delivered > run.delivered_limit or run.rounds > run.round_limit:
         return ROWS_FULL
+    if run.taps > run.tap_limit:
+        return ROWS_FULL
     if run.seen > run.seen_limit:
         return SEEN_FULL
     if world.heap.size[0] + 64 * run.nodes + 64 > len(world.heap.keys):

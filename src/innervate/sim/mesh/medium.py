@@ -10,7 +10,8 @@ have several frames on the air.
 """
 
 from innervate.protocol.rng import LOW15, step
-from innervate.sim.mesh import powers
+from innervate.sim import taps
+from innervate.sim.mesh import books, powers
 from innervate.sim.mesh.queue import ENDS, STARTS, key_of, push
 from innervate.sim.mesh.world import ALIVE, COMMITTED, DEAD, FREE, HELD, ON_AIR, VOID
 
@@ -87,6 +88,7 @@ def start(world, place, time, length):
         add_signal(world, node, 1)
         note_interference(world)
     push(world.heap, key_of(air.end, ENDS, node, place))
+    books.tap(world, place, node, time, 1, taps.FINE)
 
 
 def add_signal(world, node, times):
@@ -135,13 +137,25 @@ def receivers(world, place):
         if signal == 0 or world.radios[j].state != ALIVE:
             continue
         if signal * powers.CAPTURE_ONE // run.capture < world.worst[place * run.nodes + j]:
+            miss_frame(world, place, j, taps.COLLISION)
             continue
         run.rng = step(run.rng)
         if (run.rng & LOW15) < world.prob[node * run.nodes + j]:
             world.got[count] = j
             count += 1
+        else:
+            miss_frame(world, place, j, taps.NOISE)
     run.received += count
     return count
+
+
+def miss_frame(world, place, node, why):
+    """A node in reach has not received the frame at `place`: a capture says so."""
+    air = world.air[place]
+    at = place * world.run[0].nodes + node
+    if world.prob[air.node * world.run[0].nodes + node] > 0:
+        met = taps.SENDING if world.worst[at] == DEAF else why
+        books.tap(world, place, node, air.end, 0, met)
 
 
 def rssi_dbm(world, sender, node):

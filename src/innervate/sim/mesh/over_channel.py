@@ -12,6 +12,7 @@ from innervate.kernel.bits import mix
 from innervate.protocol.mesh_words import ACK
 from innervate.protocol.radio_words import QUEUE
 from innervate.scenario.mesh_plan import HEADER_SLOTS
+from innervate.sim import taps
 from innervate.sim.mesh import books, medium, queue
 from innervate.sim.mesh.medium import NONE
 from innervate.sim.mesh.world import ALIVE, HELD, VOID
@@ -200,6 +201,7 @@ def layer(handlers):
             if world.radios[node].state == ALIVE and air.state != VOID:
                 air.receivers += 1
                 run.arrived += 1
+                books.tap(world, place, node, time, 0, taps.FINE)
                 if frame.kind != ACK:
                     frame.rssi = medium.rssi_dbm(world, air.node, node)
                 take(world, node, frame, time)
@@ -215,6 +217,7 @@ def layer(handlers):
             run.transmissions += 1
             run.received += air.receivers
             books.keep_transmission(world, place, end, length, air.receivers)
+            books.tap(world, place, node, air.start, 1, taps.FINE)
             air.receivers = 0
             if run.checks and digest(world.frames[place]) != air.digest:
                 books.breaks(world, books.BROKEN_FRAME, node)

@@ -8,6 +8,7 @@ from innervate.protocol import csma, mesh_words
 from innervate.protocol.arith import MASK30
 from innervate.protocol.mesh_words import ACK
 from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
+from innervate.sim import taps
 from innervate.sim.loop import DONE, ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.sim.mesh import books, medium, queue
 from innervate.sim.mesh.books import MAC
@@ -165,6 +166,7 @@ def up(stack, below, take, tell_sent):
         if frame.kind != ACK:
             frame.rssi = medium.rssi_dbm(world, world.air[place].node, node)
         run.arrived += 1
+        books.tap(world, place, node, time, 0, taps.FINE)
         if run.mac:
             mac_hear(world, node, now & MASK30, frame)
             if not drain_mac(world, node, time, now, MAC + ON_FRAME):

@@ -15,7 +15,8 @@ from innervate.kernel.stop import Stop
 from innervate.kernel.wall import wall_s
 from innervate.protocol import mesh_fields
 from innervate.sim import loop as skin_loop
-from innervate.sim.build import get, put
+from innervate.sim import taps
+from innervate.sim.build import get, hand_over, put
 from innervate.sim.mesh import (
     books,
     channel,
@@ -105,7 +106,7 @@ def _compiled(entry: ModuleType, access: radio_stacks.Protocol | None) -> Callab
     from innervate.protocol import arith, csma, outbox, rng
 
     door.register(arith, outbox, rng, heap)
-    door.register(*stacks.modules_of(entry), csma, medium, motion, books, hot=False)
+    door.register(*stacks.modules_of(entry), csma, medium, motion, books, taps, hot=False)
     door.register_functions(powers.strength, powers.chance, powers.loss)
     door.register_functions(loop.pressing, loop.wipe, queue.set_timer, hot=False)
     layer: Any = over_medium
@@ -136,6 +137,7 @@ def simulate(
     progress: Progress | None = None,
     entry: ModuleType | None = None,
     through: Callable[[Any], Any] | None = None,
+    tap: taps.Tap | None = None,
 ) -> MeshResult:
     """Run a mesh plan to its end; an interrupt (Ctrl-C) ends it early and keeps what was done.
 
@@ -148,15 +150,14 @@ def simulate(
         progress: called with the time reached and the whole duration, us, now and then.
         entry: the router's module; the mesh's own if none is given.
         through: plain runs only: every frame passes through it on its way to the air.
+        tap: is handed copies of all frames as they leave and come in (see sim/taps.py).
 
     Raises:
         InvariantBroken: a checker found something that must not happen.
     """
     if through is not None and not plain:
         raise ValueError("frames pass through a function in plain runs only")
-    known = (*builder.MACS, *radio_stacks.PROTOCOLS)
-    if plan.mac not in known:
-        raise ValueError(f"mac must be one of {', '.join(known)}, not {plan.mac!r}")
+    _check_mac(plan.mac)
     router = entry or stacks.mesh()
     if plain:
         fields = mesh_fields.node(plan.capacity)
@@ -164,7 +165,7 @@ def simulate(
         advance = loop.build(stack, _plain_layer(plan.mac))[-1]
     else:
         advance = compiled_loop(router, plan.mac)
-    world = builder.build(plan, plain, checks, keep, trail)
+    world = builder.build(plan, plain, checks, keep, trail, tap is not None)
     advance(world, 0, 1)  # nothing is due before time 0: only compiles, or loads what was compiled
     if not plain:
         door.mark_compiled(loop_name(plan))
@@ -182,6 +183,7 @@ def simulate(
             if status == loop.SEEN_FULL:
                 world = builder.grow_seen(world)
             _collect(world, parts)
+            hand_over(world, tap, int(get(world.run, 0, "now")))
             if progress is not None:
                 progress(int(get(world.run, 0, "now")), plan.duration_us)
     done = status == skin_loop.DONE
@@ -195,6 +197,12 @@ def simulate(
         interrupted=not done,
         **{name: np.concatenate(kept) for name, kept in parts.items()},
     )
+
+
+def _check_mac(mac: str) -> None:
+    known = (*builder.MACS, *radio_stacks.PROTOCOLS)
+    if mac not in known:
+        raise ValueError(f"mac must be one of {', '.join(known)}, not {mac!r}")
 
 
 def loop_name(plan: Any) -> str:

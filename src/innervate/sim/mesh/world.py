@@ -15,7 +15,7 @@ RUN = (
     "seen", "seen_limit", "forget", "checks", "watchful", "status", "fingerprint", "now",
     "handled", "arrived", "transmissions", "received", "gave_up", "blocked", "unasked",
     "rows", "row_limit", "sent", "sent_limit", "delivered", "delivered_limit",
-    "rounds", "round_limit", "trail", "trail_limit",
+    "rounds", "round_limit", "trail", "trail_limit", "taps", "tap_limit",
     "broken", "broken_node",
 )  # fmt: skip
 # What the medium knows of a node.
@@ -103,3 +103,5 @@ class World(NamedTuple):
     delivered: Any
     rounds: Any
     trail: Any
+    taps: Any  # frames for a capture (see sim/taps.py): what happened to them
+    tapped: Any  # ... and they themselves

@@ -13,6 +13,7 @@ from innervate.sim import world as w
 from innervate.sim.build import put, uniform
 from innervate.sim.radio import world as r
 from innervate.sim.radio.heap import AIRS, COMMAND, OFFER, key_of, push
+from innervate.sim.radio.loop import BATCH
 from innervate.sim.radio.medium import NEVER
 from innervate.sim.radio.stacks import PROTOCOLS
 
@@ -20,10 +21,13 @@ ROWS = 1 << 16
 OUTBOX = 16
 
 
-def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> r.World:
+def build(
+    plan: Any, plain: bool, checks: bool, keep: bool, trail: bool, tap: bool = False
+) -> r.World:
     """The world of a plan, before its first event.
 
-    `keep` keeps a row per report, transmission and delivered packet, `trail` one per handler call.
+    `keep` keeps a row per report, transmission and delivered packet, `trail` one per handler call,
+    `tap` copies of frames on the air.
     """
     tables = w.Tables(plain)
     n = plan.stations
@@ -32,6 +36,7 @@ def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> r.Wo
     low, high = records.bounds(fields)
     order, delay, degree = _neighbours(plan)
     rows = ROWS if keep else 1
+    tapped = ROWS + OUTBOX * n * BATCH if tap else 1
     world = r.World(
         run=tables.records(r.RUN, 1, wide=r.WIDE),
         heap=r.Heap(tables.numbers(64 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64)),
@@ -68,6 +73,8 @@ def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> r.Wo
         sent=tables.records(r.SENT, rows, fresh=True, wide=r.WIDE),
         packets=tables.records(r.PACKET, rows, fresh=True, wide=r.WIDE),
         trail=tables.records(r.TRAIL, ROWS if trail else 1, fresh=True, wide=r.WIDE),
+        taps=tables.records(w.TAP, tapped, fresh=True, wide=r.WIDE),
+        tapped=tables.states(radio_fields.FRAME, tapped),
     )
     _set_run(world, plan, checks, keep, trail)
     _set_stations(world, plan)
@@ -143,6 +150,7 @@ def _set_run(world: r.World, plan: Any, checks: bool, keep: bool, trail: bool) -
         broken_at=-1,
         hurt=plan.stations,
     )
+    put(world.run, 0, tap_limit=ROWS if len(world.taps) > ROWS else 0)
     put(world.params, 0, **{field[0]: plan.params[field[0]] for field in radio_fields.PARAMS})
 
 

@@ -8,7 +8,6 @@ from innervate.protocol.arith import MASK16, MASK30
 from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER, STOP
 from innervate.protocol.radio_words import (
     CLOCK,
-    DATA,
     FORCE,
     LEAVE,
     PACKET,
@@ -32,6 +31,7 @@ from innervate.sim.loop import (
 )
 from innervate.sim.radio import heap as queue
 from innervate.sim.radio import medium, traffic
+from innervate.sim.radio.books import keep_received, keep_row, keep_sent, watch
 from innervate.sim.radio.heap import (
     ENDS,
     OFFER,
@@ -49,8 +49,6 @@ from innervate.sim.radio.world import RING, TIMERS
 
 ON_CARRIER = 4
 BROKEN_OUTBOX = 3
-BROKEN_RANGE = 4
-BROKEN_TURNS = 5
 WHAT_MASK = (1 << STATION_SHIFT) - 1
 
 COLD, LATE = 0, 1
@@ -87,64 +85,11 @@ def pressing(world):
         return ROWS_FULL
     if run.trail + MARGIN > run.trail_limit > 0:
         return ROWS_FULL
+    if run.taps > run.tap_limit:
+        return ROWS_FULL
     if world.heap.size[0] + 4 * run.stations + 8 * BATCH > len(world.heap.keys):
         return POOL_FULL
     return DONE
-
-
-def keep_row(world, time, node, code, a, b):
-    """A row of what stations report."""
-    run = world.run[0]
-    if run.row_limit > 0:
-        row = world.rows[run.rows]
-        run.rows += 1
-        row.time = time
-        row.node = node
-        row.code = code
-        row.a = a
-        row.b = b
-
-
-def keep_sent(world, node, frame, time):
-    """A row of what goes on the air."""
-    run = world.run[0]
-    start = time + run.ta_us
-    end = start + frame.slots * run.slot_us
-    if run.exclusive and frame.kind == DATA:
-        if start < run.data_until and run.broken == 0:
-            run.broken, run.broken_node = BROKEN_TURNS, node
-        run.data_until = end
-    if run.sent_limit > 0:
-        row = world.sent[run.sent]
-        run.sent += 1
-        row.time = start
-        row.end = end
-        row.node = node
-        row.kind = frame.kind
-        row.slots = frame.slots
-        row.pos = frame.pos
-        row.next = frame.next
-        row.handle = frame.handle
-        row.count = frame.count
-        row.more = frame.more
-
-
-def watch(world, node, time, handler, port):
-    """Checkers, and the trail of all handler calls."""
-    run = world.run[0]
-    if run.checks and run.broken == 0:
-        words = world.words[node]
-        for i in range(len(world.low)):
-            if words[i] < world.low[i] or words[i] > world.high[i]:
-                run.broken, run.broken_node = BROKEN_RANGE, node
-    if run.trail_limit > 0:
-        row = world.trail[run.trail]
-        run.trail += 1
-        row.time = time
-        row.node = node
-        row.handler = handler
-        row.port = port
-        row.fingerprint = run.fingerprint
 
 
 def build(stack, packets=traffic):
@@ -294,7 +239,10 @@ def build(stack, packets=traffic):
                 return
             air.at_end += 1
             medium.go_on(world, ENDS, what, air.end, air.at_end)
-            if medium.end_signal(world, node, what):
+            clear = radio.candidate == what
+            received = medium.end_signal(world, node, what)
+            keep_received(world, node, what, time, clear, received)
+            if received:
                 world.run[0].decoded += 1
                 now = time + radio.offset
                 hear(world, node, now & MASK30, world.frames[what])

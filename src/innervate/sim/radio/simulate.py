@@ -13,9 +13,10 @@ from innervate.kernel import door, tables
 from innervate.kernel.stop import Stop
 from innervate.kernel.wall import wall_s
 from innervate.sim import loop as skin_loop
-from innervate.sim.build import get, put
+from innervate.sim import taps
+from innervate.sim.build import get, hand_over, put
+from innervate.sim.radio import books, heap, loop, medium, stacks, traffic
 from innervate.sim.radio import build as builder
-from innervate.sim.radio import heap, loop, medium, stacks, traffic
 from innervate.sim.radio import world as w
 from innervate.sim.simulate import InvariantBroken
 from innervate.sim.world import row_dtype
@@ -72,10 +73,11 @@ def registered(protocol: stacks.Protocol, packets: Any) -> loop.Handlers:
     """A protocol's loop, plain; what its parts call may be compiled."""
     from innervate.protocol import arith, outbox, rng
 
-    door.register(traffic, hot=False)
+    door.register(traffic, taps, hot=False)
     door.register(arith, outbox, rng, heap, medium)
     door.register(*protocol.modules, hot=False)
-    door.register_functions(loop.pressing, loop.keep_row, loop.keep_sent, loop.watch, hot=False)
+    door.register(books, hot=False)
+    door.register_functions(loop.pressing, hot=False)
     stack = stacks.bind(protocol.entry)
     door.register_functions(*stack)
     return loop.build(stack, packets)
@@ -89,17 +91,19 @@ def simulate(
     keep: bool = True,
     trail: bool = False,
     progress: Progress | None = None,
+    tap: taps.Tap | None = None,
 ) -> RadioResult:
     """Run a radio plan to its end; an interrupt (Ctrl-C) ends it early and keeps what was done.
 
     `plain` runs the same loop uncompiled; without `keep` only the counts are kept.
+    `tap` is handed copies of all frames as they leave and come in (see sim/taps.py).
     Raises InvariantBroken.
     """
     if plain:
         advance = loop.build(stacks.bind(stacks.PROTOCOLS[plan.protocol].entry))[-1]
     else:
         advance = compiled_loop(plan.protocol)
-    world = builder.build(plan, plain, checks, keep, trail)
+    world = builder.build(plan, plain, checks, keep, trail, tap is not None)
     advance(world, 0, 1)
     if not plain:
         for name, protocol in stacks.PROTOCOLS.items():
@@ -117,6 +121,7 @@ def simulate(
             if status == skin_loop.POOL_FULL:
                 world = builder.grow_heap(world)
             _collect(world, parts)
+            hand_over(world, tap, int(get(world.run, 0, "now")))
             if progress is not None:
                 progress(int(get(world.run, 0, "now")), plan.duration_us)
     done = int(get(world.run, 0, "completed")) >= plan.wanted > 0
@@ -155,7 +160,7 @@ def story(plan: Any, world: w.World) -> str:
         medium.BROKEN_DEAF: f"station {node} sent while its radio could not",
         medium.BROKEN_AIR: f"station {node} has too many transmissions under way",
         loop.BROKEN_OUTBOX: f"outbox of station {node} overflowed",
-        loop.BROKEN_TURNS: f"station {node} began a turn while another station had its own",
-        loop.BROKEN_RANGE: f"a value of station {node} is out of its declared range",
+        books.BROKEN_TURNS: f"station {node} began a turn while another station had its own",
+        books.BROKEN_RANGE: f"a value of station {node} is out of its declared range",
     }[int(get(world.run, 0, "broken"))]
     return f"invariant broken at {at:.6f} s (seed {plan.seed}): {what}"

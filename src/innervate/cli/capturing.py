@@ -1,0 +1,152 @@
+"""`innervate live capture`: frames of running nodes to a capture, while they run."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import signal
+import sys
+import time
+from contextlib import closing, suppress
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import innervate
+from innervate.cli.errors import UserError, say
+from innervate.export import links, pcapng
+from innervate.export.errors import ExportError
+from innervate.live import status
+
+# Nodes tell of their frames a little later, each when it gets to it: time to put them in order.
+HOLD_S = 0.25
+LINE_MAX = 1 << 22
+
+
+def capture(names: list[str], out: Path | None, for_s: float) -> int:
+    """Capture until Ctrl-C, until `for_s` seconds are over, or until all nodes are gone."""
+    sockets = [status.find(name) for name in names] if names else status.sockets()
+    if not sockets:
+        where = f"no node runs here (folder {status.folder()})"
+        raise UserError(f"{where}; start one with: innervate live node FILE")
+    if out is None:
+        if sys.stdout.isatty():
+            raise UserError("a capture is no text; name a file with --out, or pipe it to: "
+                            "wireshark -k -i -")  # fmt: skip
+        return asyncio.run(Recorder(sockets, sys.stdout.buffer).run(for_s))
+    try:
+        with out.open("wb") as file:
+            return asyncio.run(Recorder(sockets, file).run(for_s))
+    except OSError as error:
+        raise ExportError(f"{out} cannot be written: {error.strerror}") from None
+
+
+class Recorder:
+    """Follows nodes and writes what they tell, in order of time.
+
+    Args:
+        sockets: of the nodes.
+        file: the capture; whole blocks are written, and none is held back for long.
+    """
+
+    def __init__(self, sockets: list[Path], file: BinaryIO) -> None:
+        self.sockets = sockets
+        self.file = file
+        self.frames = self.missed = self.interfaces = 0
+        self.silent = len(sockets)  # nodes that have not answered yet
+        self.since_ns = 0
+        self.waiting: list[tuple[int, int, bool, bytes, str]] = []
+        self.sealed: list[str] = []
+
+    async def run(self, for_s: float) -> int:
+        """Capture; 0."""
+        ending = asyncio.Event()
+        loop = asyncio.get_running_loop()
+        for number in (signal.SIGTERM, signal.SIGINT):
+            loop.add_signal_handler(number, ending.set)
+        comment = "innervate, live" + f" from {', '.join(path.stem for path in self.sockets)}"
+        self.file.write(pcapng.section(comment, f"innervate {innervate.__version__}"))
+        following = asyncio.gather(*(self._follow(path) for path in self.sockets))
+        parts: list[asyncio.Future[Any]] = [asyncio.ensure_future(ending.wait()), following]
+        writing = asyncio.create_task(self._write_on())
+        try:
+            await asyncio.wait(
+                parts, timeout=for_s or None, return_when=asyncio.FIRST_COMPLETED
+            )  # fmt: skip
+            if following.done():
+                following.result()  # a node that refused
+        finally:
+            for number in (signal.SIGTERM, signal.SIGINT):
+                loop.remove_signal_handler(number)
+            for part in (*parts, writing):
+                part.cancel()
+                with suppress(asyncio.CancelledError, Exception):
+                    await part
+            self._write(None)
+        lost = f"; {self.missed} more came too fast" if self.missed else ""
+        opened = f"; opened: sealed ones of {', '.join(self.sealed)}" if self.sealed else ""
+        say(f"{self.frames} frames of {len(self.sockets)} nodes{lost}{opened}")
+        return 0
+
+    async def _follow(self, path: Path) -> None:
+        """Take what a node tells, until it goes away."""
+        try:
+            reader, writer = await asyncio.open_unix_connection(path, limit=LINE_MAX)
+            with closing(writer):
+                writer.write(json.dumps({"do": "capture"}).encode() + b"\n")
+                await self._take(path.stem, reader)
+        except (OSError, ValueError) as error:
+            raise UserError(f"{path}: no node answers here: {error}") from None
+
+    async def _take(self, name: str, reader: asyncio.StreamReader) -> None:
+        about = json.loads(await reader.readline())
+        if "error" in about:
+            raise UserError(f"{name}: {about['error']}; start the node anew to capture it")
+        numbers = self._announce(about)
+        while line := await reader.readline():
+            told = json.loads(line)
+            self.missed += told["missed"]
+            for at_ns, port, is_out, text, why in told["frames"]:
+                # Before all were followed, what left would seem to come in nowhere.
+                if not self.silent and at_ns >= self.since_ns:
+                    data = bytes.fromhex(text)
+                    self.waiting.append((at_ns, numbers[port], is_out, data, why))
+
+    def _announce(self, about: dict[str, Any]) -> dict[int, int]:
+        """Write a node's interfaces; their numbers by port."""
+        if about["sealed"]:
+            self.sealed.append(about["capturing"])
+        what = {"mesh": "node", "radio": "station"}.get(about["kind"])
+        if what is None:
+            what = "pc" if about["role"] == "sink" else "cell"
+        numbers = {}
+        for path, port, here, there in about["paths"]:
+            several = len(about["paths"]) > 1
+            name = about["capturing"] + (f" port {port}" if several else "")
+            text = links.describe(what, about["number"], port, (here, there))
+            link_type = links.LINK_TYPES[about["kind"]]
+            self.file.write(pcapng.interface(link_type, name, text))
+            numbers[path] = self.interfaces
+            self.interfaces += 1
+        self.file.flush()
+        self.silent -= 1
+        self.since_ns = time.time_ns()
+        return numbers
+
+    async def _write_on(self) -> None:
+        while True:
+            await asyncio.sleep(HOLD_S)
+            self._write(time.time_ns() - int(1e9 * HOLD_S))
+
+    def _write(self, until_ns: int | None) -> None:
+        """Write what happened up to a time; None = all."""
+        self.waiting.sort(key=lambda frame: frame[0])
+        count = len(self.waiting)
+        if until_ns is not None:
+            count = sum(frame[0] <= until_ns for frame in self.waiting)
+        for at_ns, number, is_out, data, why in self.waiting[:count]:
+            flags = pcapng.OUTBOUND if is_out else pcapng.INBOUND
+            comment = f"dropped: {why}" if why else ""
+            self.file.write(pcapng.packet(number, at_ns, data, flags, comment.encode()))
+        self.frames += count
+        del self.waiting[:count]
+        self.file.flush()

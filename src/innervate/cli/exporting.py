@@ -1,0 +1,153 @@
+"""`innervate export`: runs and scenarios as files for other tools."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from innervate import scenario as scenarios
+from innervate.cli.errors import UserError
+from innervate.cli.progress import Progress, is_compiled
+from innervate.export import dissector
+from innervate.scenario import ScenarioError
+
+if TYPE_CHECKING:
+    from innervate.scenario import Scenario
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """Which files to write; None = not."""
+
+    pcapng: Path | None = None
+    mcap: Path | None = None
+    graph: Path | None = None
+    tables: Path | None = None
+    csv: bool = False
+    from_s: float = 0.0
+    to_s: float | None = None
+
+    @property
+    def anything(self) -> bool:
+        """True if there is something to write."""
+        return any((self.pcapng, self.mcap, self.graph, self.tables))
+
+
+def export(
+    source: str | None, sets: list[str], seed: int | None, wanted: Wanted, with_dissector: bool
+) -> int:
+    """Write what is wanted of a run folder or a scenario; with nothing else, only the dissector."""
+    if with_dissector:
+        folder = None if wanted.anything or source is None else Path(source)
+        file = dissector.install(folder)
+        print(f"Written: {file}. Wireshark and tshark load it from there.")
+        if not wanted.anything:
+            return 0
+    if not wanted.anything:
+        names = "--pcapng, --mcap, --graph, --tables or --dissector"
+        raise UserError(f"nothing to export; name one of {names}")
+    if source is None:
+        raise UserError("of what? name a run folder or a scenario; see: innervate export --help")
+    if wanted.csv and wanted.tables is None:
+        raise UserError("--csv is for tables; name their folder with --tables")
+    _Source(source, sets, seed).write(wanted)
+    return 0
+
+
+class _Source:
+    """A run folder, or a scenario that is run here."""
+
+    def __init__(self, source: str, sets: list[str], seed: int | None) -> None:
+        self.folder = Path(source) if Path(source).is_dir() else None
+        self.fingerprint = ""
+        if self.folder is not None:
+            if sets or seed is not None:
+                raise UserError(f"{source} was run as it is; export its scenario.toml to change it")
+            loaded = self._recorded(self.folder)
+        else:
+            loaded = scenarios.load(source, sets, seed)
+        self.scenario = loaded
+        self.plan: Any = scenarios.plan(loaded)
+
+    def _recorded(self, folder: Path) -> Scenario:
+        from innervate.run import RunError
+        from innervate.run import folder as folders
+
+        summary = folders.read_json(folder, folders.SUMMARY)
+        origin = folders.read_json(folder, folders.PROVENANCE)
+        folders.check_tables(folder, origin.get("tables_sha256"))
+        if "interrupted_at_s" not in summary:
+            self.fingerprint = str(summary.get("fingerprint", ""))
+        try:
+            return scenarios.load(folder / folders.SCENARIO)
+        except ScenarioError as error:
+            raise RunError(f"its scenario cannot be run any more: {error}") from None
+
+    def write(self, wanted: Wanted) -> None:
+        """Write all that is wanted."""
+        plan = self.plan
+        if wanted.graph is not None:
+            from innervate.export import graphs
+
+            graphs.write(plan, wanted.graph)
+            print(f"Written: {wanted.graph}")
+        if wanted.pcapng is not None:
+            self._capture(wanted)
+        if wanted.tables is not None:
+            from innervate.export import tables
+
+            files = tables.write(self._tables(), wanted.tables, wanted.csv)
+            print(f"Written: {', '.join(str(file) for file in files)}")
+        if wanted.mcap is not None:
+            from innervate.export import recording
+
+            frames = {name: table.collect() for name, table in self._tables().items()}
+            count = recording.write(plan, frames, wanted.mcap)
+            print(f"Written: {wanted.mcap}, {count} messages")
+
+    def _capture(self, wanted: Wanted) -> None:
+        from innervate.export import capture
+
+        assert wanted.pcapng is not None
+        with Progress(is_compiled(self.plan)) as progress:
+            written = capture.write(
+                self.plan,
+                wanted.pcapng,
+                window_us=self._window(wanted),
+                fingerprint=self.fingerprint,
+                progress=progress,
+            )
+        print(f"Written: {wanted.pcapng}, {written.frames} packets: "
+              f"{written.sent} sent, {written.received} received")  # fmt: skip
+        for why, count in written.dropped.items():
+            print(f"  dropped: {why} {count}")
+
+    def _window(self, wanted: Wanted) -> tuple[int, int] | None:
+        last = self.plan.duration_us
+        begin = round(1e6 * wanted.from_s)
+        end = last if wanted.to_s is None else round(1e6 * wanted.to_s)
+        if begin >= last:
+            raise UserError(f"the run ends at {last / 1e6:g} s; choose an earlier --from")
+        if not 0 <= begin < end:
+            raise UserError("nothing lies in that window; let --from be less than --to")
+        return begin, end
+
+    def _tables(self) -> dict[str, Any]:
+        """The run's tables: from its folder, or of a run made now, once."""
+        if self.folder is None:
+            from innervate import run as room
+
+            if not hasattr(self, "_run"):
+                with Progress(is_compiled(self.plan)) as progress:
+                    self._run = room.run(self.scenario, progress=progress)
+            return dict(self._run.tables)
+        from innervate.run import folder as folders
+        from innervate.trace import tables
+
+        here = self.folder
+        return {
+            table.name: tables.read(table, here)
+            for table in folders.TABLES
+            if (here / f"{table.name}.parquet").exists()
+        }

@@ -1,0 +1,1 @@
+"""Networks and runs as files that other tools open: captures, recordings, graphs, tables."""

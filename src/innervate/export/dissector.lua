@@ -1,0 +1,290 @@
+-- Runs the layouts above: what innervate's own decoders do (src/innervate/wire), on Wireshark's tree.
+-- Any bytes will do: what does not fit is flagged and shown as far as it goes.
+
+local BAD_CRC, MALFORMED = "bad_crc", "malformed"
+-- Lua 5.2 has bit32; later ones have the library that Wireshark brings.
+local bitop = rawget(_G, "bit32") or rawget(_G, "bit")
+local protos = {}
+
+-- CRC-16/CCITT-FALSE of all bytes but the last two, by a table of every byte's remainder.
+local remainders = {}
+for byte = 0, 255 do
+  local crc = bitop.lshift(byte, 8)
+  for _ = 1, 8 do
+    local high = bitop.band(crc, 0x8000) ~= 0
+    crc = bitop.band(bitop.lshift(crc, 1), 0xFFFF)
+    if high then crc = bitop.bxor(crc, 0x1021) end
+  end
+  remainders[byte] = crc
+end
+
+local function crc16(tvb)
+  local crc, data = 0xFFFF, tvb:bytes(0, tvb:len() - 2)
+  for i = 0, data:len() - 1 do
+    local high = bitop.bxor(bitop.rshift(crc, 8), data:get_index(i))
+    crc = bitop.bxor(bitop.band(bitop.lshift(crc, 8), 0xFFFF), remainders[high])
+  end
+  return crc
+end
+
+-- `bits` bits from bit `at` on, with the bytes that they are in.
+local function number(tvb, at, bits, signed)
+  local first = math.floor(at / 8)
+  local range = tvb(first, math.floor((at + bits - 1) / 8) - first + 1)
+  local value = range:bitfield(at - 8 * first, bits)
+  if signed and value >= 2 ^ (bits - 1) then value = value - 2 ^ bits end
+  return value, range
+end
+
+local function times(many, found)
+  if many == 0 then return 1 end
+  if type(many) == "string" then return found[many] or 0 end
+  return many
+end
+
+-- Reads fields from bit `at` to at most `stop`; without a tree it only looks if they fit. Returns
+-- the bit behind them and the numbers by name, or nil.
+local function read(fields, tvb, at, stop, tree)
+  local found = {}
+  for _, field in ipairs(fields) do
+    local count, done = times(field.many, found), 0
+    while (count == REST and at < stop) or done < count do
+      if field.group then
+        local first = math.floor(at / 8)
+        local node = tree and tree:add(field.proto, tvb(first, 0))
+        at = read(field.group, tvb, at, stop, node)
+        if not at then return nil end
+        if node then node:set_len(math.floor((at + 7) / 8) - first) end
+      else
+        if at + field.bits > stop then return nil end
+        if field.name ~= "" then
+          local value, range = number(tvb, at, field.bits, field.signed)
+          found[field.name] = value
+          if tree then tree:add(field.proto, range, value) end
+        end
+        at = at + field.bits
+      end
+      done = done + 1
+    end
+  end
+  return at, found
+end
+
+-- Bytes as a list of numbers of one field.
+local function list(proto, tvb, first, last, tree)
+  for i = first, last - 1 do tree:add(proto, tvb(i, 1), tvb(i, 1):uint()) end
+end
+
+local function complain(self, tree, what, text)
+  tree:add_proto_expert_info(self.experts[what], text)
+end
+
+local function show_crc(self, tvb, tree)
+  local size = tvb:len()
+  local given, computed = tvb(size - 2, 2):uint(), crc16(tvb)
+  local item = tree:add(self.crc, tvb(size - 2, 2), given)
+  if given ~= computed then
+    item:add_proto_expert_info(self.experts[BAD_CRC], string.format("Bad CRC, should be 0x%04X", computed))
+  end
+  return given == computed
+end
+
+-- Fields of a kind behind a head of `at` bits; says if they and nothing else are there.
+local function body(self, tvb, tree, kind, at, stop)
+  local known = self.kinds[kind]
+  if not known then
+    complain(self, tree, MALFORMED, "Malformed: no frame has this type")
+    return "unknown type"
+  end
+  local behind, found = read(known.fields, tvb, at, stop, tree)
+  if not behind then complain(self, tree, MALFORMED, "Malformed: too short for its type") end
+  return known.name, behind, found
+end
+
+local function skin(self, tvb, tree)
+  local size = tvb:len()
+  if size < SKIN_MIN then
+    complain(self, tree, MALFORMED, "Malformed: too short")
+    return "damaged"
+  end
+  local kind, range = number(tvb, 0, SKIN_HEAD)
+  tree:add(self.kind, range, kind)
+  local name, behind = body(self, tvb, tree, kind, SKIN_HEAD, 8 * size - 16)
+  if behind and math.ceil(behind / 8) ~= size - 2 then
+    complain(self, tree, MALFORMED, "Malformed: too long for its type")
+  end
+  show_crc(self, tvb, tree)
+  return name
+end
+
+local function radio(self, tvb, tree)
+  local size = tvb:len()
+  if size == 1 then
+    if tvb(0, 1):uint() ~= RADIO_CARRIER then complain(self, tree, MALFORMED, "Malformed: too short") end
+    return "CR-R or pulse"
+  elseif size < 3 then
+    complain(self, tree, MALFORMED, "Malformed: too short")
+    return "damaged"
+  end
+  local kind = number(tvb, 4, 4)
+  tree:add(self.version, tvb(0, 1), number(tvb, 0, 4))
+  tree:add(self.kind, tvb(0, 1), kind)
+  if number(tvb, 0, 4) ~= RADIO_VERSION then complain(self, tree, MALFORMED, "Malformed: version") end
+  local name, behind = body(self, tvb, tree, kind, 8, 8 * size - 16)
+  if behind and behind / 8 < size - 2 then
+    local first = behind / 8
+    tree:add(self.payload, tvb(first, size - 2 - first))
+    if kind == RADIO_REPORT then complain(self, tree, MALFORMED, "Malformed: too long for its type") end
+  end
+  show_crc(self, tvb, tree)
+  return name
+end
+
+-- True if bytes `first` to `last` are exactly a payload with these fields.
+local function is_whole(fields, tvb, first, last)
+  return first <= last and read(fields, tvb, 8 * first, 8 * last) == 8 * last
+end
+
+local function mesh_payload(self, tvb, tree, known, flags, first, last)
+  local stop = last
+  if bitop.band(flags, MESH_SOURCE_ROUTE) ~= 0 and first < last then
+    local count = tvb(first, 1):uint()
+    if first + 1 + count > last then
+      complain(self, tree, MALFORMED, "Malformed: source route")
+      return
+    end
+    list(self.source_route, tvb, first + 1, first + 1 + count, tree)
+    first = first + 1 + count
+  end
+  if bitop.band(flags, MESH_DETOURED) ~= 0 and first < last and tvb(last - 1, 1):uint() > 0 then
+    local at = last - 1 - tvb(last - 1, 1):uint()
+    if is_whole(known.fields, tvb, first, at) then stop = at end
+  end
+  if not is_whole(known.fields, tvb, first, stop) then
+    complain(self, tree, MALFORMED, "Malformed: payload")
+  end
+  local part = tree:add(self.body, tvb(first, stop - first), known.name)
+  read(known.fields, tvb, 8 * first, 8 * stop, part)
+  if stop < last then list(self.failed, tvb, stop, last - 1, tree) end
+end
+
+local function mesh_flags(item, flags)
+  local set = {}
+  for _, flag in ipairs(MESH_FLAGS) do
+    if bitop.band(flags, flag[1]) ~= 0 then set[#set + 1] = flag[2] end
+  end
+  if #set > 0 then item:append_text(" (" .. table.concat(set, ", ") .. ")") end
+end
+
+local function mesh(self, tvb, tree)
+  local size = tvb:len()
+  if size < MESH_ACK_BYTES then
+    complain(self, tree, MALFORMED, "Malformed: too short")
+    return "damaged"
+  end
+  local kind = number(tvb, 2, 6)
+  tree:add(self.version, tvb(0, 1), number(tvb, 0, 2))
+  tree:add(self.kind, tvb(0, 1), kind)
+  if number(tvb, 0, 2) ~= MESH_VERSION then complain(self, tree, MALFORMED, "Malformed: version") end
+  local last, name, found = size - 2, "ack"
+  if kind == MESH_ACK then
+    local behind
+    behind, found = read(self.ack, tvb, 8, 8 * last, tree)
+    if behind ~= 8 * last then complain(self, tree, MALFORMED, "Malformed: length of an ack") end
+  else
+    local known, behind = self.kinds[kind]
+    name = known and known.name or "unknown type"
+    behind, found = read(self.common, tvb, 8, 8 * last, tree)
+    if not behind then
+      complain(self, tree, MALFORMED, "Malformed: too short")
+    else
+      mesh_flags(tree, found.flags)
+      local first = behind / 8 + found.path_len
+      if found.path_len > MESH_PATH_MAX or first > last then
+        complain(self, tree, MALFORMED, "Malformed: path")
+      else
+        list(self.path, tvb, behind / 8, first, tree)
+        if known then
+          mesh_payload(self, tvb, tree, known, found.flags, first, last)
+        else
+          complain(self, tree, MALFORMED, "Malformed: no packet has this type")
+        end
+      end
+    end
+  end
+  show_crc(self, tvb, tree)
+  if not found then return name end
+  return string.format("%s %d > %s", name, found.link_src, found.link_dst == 255 and "all" or found.link_dst)
+end
+
+-- A sealed frame: only who holds the key can say more.
+local function sealed(self, tvb, tree)
+  tree:add(self.key, tvb(0, 1), number(tvb, 4, 4))
+  tree:add(self.sender, tvb(1, 2), tvb(1, 2):uint())
+  tree:add(self.counter, tvb(3, 6), tvb(3, 6):uint64())
+  return string.format("sealed by %d", tvb(1, 2):uint())
+end
+
+local function define(name, readable, encap, run, layouts)
+  local proto = Proto("innervate_" .. name, "innervate " .. readable)
+  local self = { kinds = {}, experts = {} }
+  local prefix, made = "innervate." .. name .. ".", {}
+  local function field(make, abbr, ...)
+    local one = make(prefix .. abbr, ...)
+    made[#made + 1] = one
+    return one
+  end
+  local function bind(fields, path)
+    for _, each in ipairs(fields) do
+      if each.group then
+        each.proto = field(ProtoField.none, path .. each.name, each.name, each.says)
+        bind(each.group, path .. each.name .. ".")
+      elseif each.name ~= "" then
+        local make = each.signed and ProtoField.int32 or ProtoField.uint32
+        each.proto = field(make, path .. each.name, each.name, base.DEC, nil, nil, each.says)
+      end
+    end
+    return fields
+  end
+  local names = {}
+  for kind, layout in pairs(layouts.kinds) do
+    names[kind] = layout.name
+    self.kinds[kind] = { name = layout.name, fields = bind(layout.fields, layout.abbr .. ".") }
+  end
+  for kind, other in pairs(layouts.others or {}) do names[kind] = other end
+  if layouts.common then self.common = bind(layouts.common, "") end
+  if layouts.ack then self.ack = bind(layouts.ack, "ack.") end
+  self.kind = field(ProtoField.uint8, "kind", "type", base.DEC, names)
+  self.version = field(ProtoField.uint8, "version", "version", base.DEC)
+  self.crc = field(ProtoField.uint16, "crc", "CRC", base.HEX)
+  self.path = field(ProtoField.uint8, "path", "path", base.DEC)
+  self.source_route = field(ProtoField.uint8, "source_route", "source route", base.DEC)
+  self.failed = field(ProtoField.uint8, "failed", "failed nodes", base.DEC)
+  self.payload = field(ProtoField.bytes, "payload", "payload")
+  self.body = field(ProtoField.string, "body", "payload")
+  self.key = field(ProtoField.uint8, "sealed.key", "key", base.DEC)
+  self.sender = field(ProtoField.uint16, "sealed.sender", "sender", base.DEC)
+  self.counter = field(ProtoField.uint64, "sealed.counter", "counter", base.DEC)
+  self.experts[BAD_CRC] = ProtoExpert.new(prefix .. BAD_CRC, "Bad CRC", expert.group.CHECKSUM,
+    expert.severity.ERROR)
+  self.experts[MALFORMED] = ProtoExpert.new(prefix .. MALFORMED, "Malformed", expert.group.MALFORMED,
+    expert.severity.ERROR)
+  proto.fields = made
+  proto.experts = { self.experts[BAD_CRC], self.experts[MALFORMED] }
+  function proto.dissector(tvb, pinfo, root)
+    local tree = root:add(proto, tvb())
+    pinfo.cols.protocol = string.upper(name)
+    local is_sealed = tvb:len() > SEALED_MIN and tvb(0, 1):uint() >= SEALED_MARK
+      and tvb(0, 1):uint() < SEALED_MARK + 16
+    local info = (is_sealed and sealed or run)(self, tvb, tree)
+    tree:append_text(", " .. info)
+    pinfo.cols.info = info
+    return tvb:len()
+  end
+  DissectorTable.get("wtap_encap"):add(encap, proto)
+  protos[name] = proto
+end
+
+define("skin", "skin", wtap.USER0, skin, SKIN)
+define("mesh", "mesh", wtap.USER1, mesh, MESH)
+define("radio", "radio", wtap.USER2, radio, RADIO)

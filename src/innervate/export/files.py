@@ -1,0 +1,54 @@
+"""Files are there whole or not at all: written beside their place, and moved there at the end."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import BinaryIO
+
+from innervate.export.errors import ExportError
+
+
+@contextmanager
+def whole(path: Path) -> Iterator[BinaryIO]:
+    """A binary file that takes the place of `path` when all went well, and goes if not.
+
+    Raises:
+        ExportError: it cannot be written.
+    """
+    fresh: Path | None = None
+    try:
+        if path.is_dir():
+            raise ExportError(f"{path} is a folder; name a file")
+        handle, name = tempfile.mkstemp(prefix=f".{path.name[:40]}-", dir=path.parent)
+        fresh = Path(name)
+        with os.fdopen(handle, "wb") as file:
+            yield file
+        fresh.chmod(0o666 & ~_umask())
+        fresh.replace(path)
+    except OSError as error:
+        why = error.strerror or type(error).__name__
+        raise ExportError(f"{path} cannot be written: {why}; choose another place") from None
+    finally:
+        if fresh is not None:
+            with suppress(OSError):
+                fresh.unlink()
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file, whole or not at all.
+
+    Raises:
+        ExportError: it cannot be written.
+    """
+    with whole(path) as file:
+        file.write(text.encode())
+
+
+def _umask() -> int:
+    mask = os.umask(0o077)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,71 @@
+"""What a capture says of its frames: numbers of link types, names of interfaces.
+
+pcapng keeps sixteen link types for private use; ours are the first three. An interface has a name
+for people, and a description in these words for programs, its parts after "; ":
+"cell 7 port 1", "pc port 0", "node 3" or "station 3" first, then "A to B" where its frames take
+one cable only, from one end to the other. The interface at the cable's other end says "B to A".
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+SKIN, MESH, RADIO = 147, 148, 149  # LINKTYPE_USER0, 1, 2
+LINK_TYPES = {"skin": SKIN, "mesh": MESH, "radio": RADIO}
+KINDS = {number: kind for kind, number in LINK_TYPES.items()}
+
+_FIRST = re.compile(r"(cell|pc|node|station)(?: (\d{1,9}))?(?: port (\d{1,9}))?")
+
+
+class Interface(NamedTuple):
+    """An interface of a capture.
+
+    Attributes:
+        link_type: of its frames.
+        name: for people.
+        description: as above.
+    """
+
+    link_type: int
+    name: str
+    description: str
+
+
+class Place(NamedTuple):
+    """What a description says.
+
+    Attributes:
+        what: "cell", "pc", "node", "station"; "" if it says nothing of the kind.
+        number: which; -1 not said.
+        port: of a cell or the PC, or a path of a live node; -1 not said.
+        here: this end of the cable; "" not said.
+        there: its other end.
+    """
+
+    what: str
+    number: int
+    port: int
+    here: str
+    there: str
+
+
+def describe(what: str, number: int = -1, port: int = -1, cable: tuple[str, str] = ("", "")) -> str:
+    """A description."""
+    text = what
+    if number >= 0:
+        text += f" {number}"
+    if port >= 0:
+        text += f" port {port}"
+    return f"{text}; {cable[0]} to {cable[1]}" if cable[0] else text
+
+
+def place_of(description: str) -> Place:
+    """What a description says; any text will do."""
+    first, _, cable = description.partition("; ")
+    here, _, there = cable.partition(" to ")
+    found = _FIRST.fullmatch(first)
+    if found is None:
+        return Place("", -1, -1, "", "")
+    what, number, port = found.groups()
+    return Place(what, int(number or -1), int(port or -1), here, there)

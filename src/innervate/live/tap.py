@@ -1,0 +1,82 @@
+"""Frames of a running node as they leave and come in, for captures: over its status socket.
+
+They are told in the clear, opened where they are sealed: only the node's own user can ask.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from innervate.live.links import Path
+from innervate.live.status import Writer
+
+if TYPE_CHECKING:
+    from innervate.live.node import LiveNode
+
+# When (ns since 1970), which port, True = it left, its bytes, why it was dropped ("" = it was not).
+Tap = Callable[[int, int, bool, bytes, str], None]
+
+PENDING_MAX = 20_000  # frames that wait for a slow reader
+BATCH = 200  # frames in a line
+
+
+async def serve(node: LiveNode, writer: Writer) -> None:
+    """Tell all frames of a node from now on, until the connection ends.
+
+    The first line says whose they are and which paths there are; each that follows holds
+    "frames", lists of what a Tap is given with the bytes in hexadecimal, and "missed", how many
+    were left out because nobody read fast enough.
+    """
+    pending: list[tuple[int, int, bool, str, str]] = []
+    missed = 0
+    some = asyncio.Event()
+
+    def take(at_ns: int, port: int, out: bool, data: bytes, why: str) -> None:
+        nonlocal missed
+        if len(pending) >= PENDING_MAX:
+            missed += 1
+        else:
+            pending.append((at_ns, port, out, data.hex(), why))
+        some.set()
+
+    node.taps.append(take)
+    try:
+        await writer.line(about(node))
+        while True:
+            await some.wait()
+            some.clear()
+            # A frame is told once it was handled, those that it caused before it.
+            told, pending[:] = sorted(pending), []
+            lost, missed = missed, 0
+            for i in range(0, len(told), BATCH):
+                await writer.line({"frames": told[i : i + BATCH], "missed": lost})
+                lost = 0
+    finally:
+        node.taps.remove(take)
+
+
+def about(node: LiveNode) -> dict[str, Any]:
+    """Who a node is, and its paths: (number, port of the protocol, address here, and there)."""
+    told = node.stack.status(0)
+    # A cell's ports are its sockets, of which only some have a path.
+    ports = getattr(node.stack, "port_of_path", range(len(node.paths)))
+    paths = [(path.port, ports[path.port], *ends_of(path)) for path in node.paths]
+    return {
+        "capturing": node.name,
+        "kind": told["kind"],
+        "role": told["role"],
+        "number": told.get("number", -1),
+        "sealed": node.sealer is not None,
+        "paths": paths or [(0, 0, "", "")],
+    }
+
+
+def ends_of(path: Path) -> tuple[str, str]:
+    """Addresses of both ends of a path; "" where only one neighbour can be there, or many."""
+    link: Any = getattr(path, "link", None)
+    here, there = getattr(link, "bind", None), getattr(path, "address", None)
+    if here is None or there is None or not here[1]:
+        return "", ""
+    return f"{here[0]}:{here[1]}", f"{there[0]}:{there[1]}"

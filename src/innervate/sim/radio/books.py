@@ -1,0 +1,82 @@
+"""What a run of a radio channel leaves behind: rows, and what is checked on the way."""
+
+from innervate.protocol.radio_station import copy_frame
+from innervate.protocol.radio_words import DATA
+from innervate.sim import taps
+from innervate.sim.radio.heap import AIR_BITS
+
+BROKEN_RANGE = 4
+BROKEN_TURNS = 5
+
+
+def keep_row(world, time, node, code, a, b):
+    """A row of what stations report."""
+    run = world.run[0]
+    if run.row_limit > 0:
+        row = world.rows[run.rows]
+        run.rows += 1
+        row.time = time
+        row.node = node
+        row.code = code
+        row.a = a
+        row.b = b
+
+
+def keep_sent(world, node, frame, time):
+    """A row of what goes on the air."""
+    run = world.run[0]
+    start = time + run.ta_us
+    end = start + frame.slots * run.slot_us
+    if run.tap_limit > 0:
+        taps.keep(world, start, start, node, node, 1, taps.FINE, frame, copy_frame)
+    if run.exclusive and frame.kind == DATA:
+        if start < run.data_until and run.broken == 0:
+            run.broken, run.broken_node = BROKEN_TURNS, node
+        run.data_until = end
+    if run.sent_limit > 0:
+        row = world.sent[run.sent]
+        run.sent += 1
+        row.time = start
+        row.end = end
+        row.node = node
+        row.kind = frame.kind
+        row.slots = frame.slots
+        row.pos = frame.pos
+        row.next = frame.next
+        row.handle = frame.handle
+        row.count = frame.count
+        row.more = frame.more
+
+
+def keep_received(world, node, what, time, clear, received):
+    """A signal has ended at a station: a capture says if its frame was received, or why not.
+
+    `clear` = it was alone, and heard from its start.
+    """
+    run, radio, air = world.run[0], world.radios[node], world.air[what]
+    if run.tap_limit > 0 and radio.alive:
+        why = taps.FINE
+        if not received:
+            why = taps.SENDING if radio.deaf else taps.COLLISION
+            if clear:
+                why = taps.SPOILT if air.spoilt else taps.NOISE
+        sender = what >> AIR_BITS
+        taps.keep(world, time, air.start, node, sender, 0, why, world.frames[what], copy_frame)
+
+
+def watch(world, node, time, handler, port):
+    """Checkers, and the trail of all handler calls."""
+    run = world.run[0]
+    if run.checks and run.broken == 0:
+        words = world.words[node]
+        for i in range(len(world.low)):
+            if words[i] < world.low[i] or words[i] > world.high[i]:
+                run.broken, run.broken_node = BROKEN_RANGE, node
+    if run.trail_limit > 0:
+        row = world.trail[run.trail]
+        run.trail += 1
+        row.time = time
+        row.node = node
+        row.handler = handler
+        row.port = port
+        row.fingerprint = run.fingerprint

@@ -1,0 +1,196 @@
+"""Every field of every type of frame comes out of tshark as it went into the record."""
+
+import random
+
+import pytest
+
+from innervate.export import dissector, links, pcapng
+from innervate.protocol import (
+    mesh_fields,
+    mesh_words,
+    plain,
+    radio_fields,
+    radio_words,
+    skin_fields,
+)
+from innervate.wire import crc, mesh, mesh_payloads, radio, seal, skin
+from innervate.wire.bits import put
+from innervate.wire.layout import REST, SPARE
+from tests.tshark_runs import fields_of, tshark
+
+__all__ = ["tshark"]
+EACH = 6  # frames of every type
+DRAW = random.Random(7)
+
+
+def capture_of(path, kind, frames):
+    blocks = [pcapng.section(), pcapng.interface(links.LINK_TYPES[kind], kind)]
+    blocks += [pcapng.packet(0, 1000 * i, frame, 0) for i, frame in enumerate(frames)]
+    path.write_bytes(b"".join(blocks))
+    return path
+
+
+def number(bits, signed):
+    """Any number, often the least or the greatest."""
+    low = -(1 << (bits - 1)) if signed else 0
+    high = low + (1 << bits) - 1
+    return DRAW.choice([low, high, DRAW.randint(low, high)])
+
+
+def set_all(record, fields, prefix):
+    """Give a record values; what tshark should say of them."""
+    expected = {}
+    for name, many, bits, signed in fields:
+        if name != SPARE:
+            values = [number(bits, signed) for _ in range(max(1, many))]
+            setattr(record, name, values if many else values[0])
+            expected[f"{prefix}.{name}"] = [str(value) for value in values]
+    return expected
+
+
+class Payload:
+    """Random bits of a layout, and what tshark should say of them."""
+
+    def __init__(self, fields, prefix):
+        self.bits, self.expected = [], {}
+        self.add(fields, prefix)
+        self.data = bytearray((sum(b for b, _ in self.bits) + 7) // 8)
+        at = 0
+        for bits, value in self.bits:
+            put(self.data, at, bits, value)
+            at += bits
+
+    def add(self, fields, prefix):
+        counts = {many: DRAW.randint(0, 3) for _n, many, _b, _s in fields if isinstance(many, str)}
+        for name, many, bits, signed in fields:
+            times = counts[many] if isinstance(many, str) else max(1, many)
+            if many == REST:
+                times = DRAW.randint(1, 3)
+            for _ in range(times):
+                if isinstance(bits, tuple):
+                    self.add(bits, f"{prefix}.{name}")
+                    continue
+                value = counts.get(name, number(bits, signed))
+                self.bits.append((bits, value))
+                self.expected.setdefault(f"{prefix}.{name}", []).append(str(value))
+
+
+def names_in(fields, prefix):
+    for name, _many, bits, _signed in fields:
+        if isinstance(bits, tuple):
+            yield from names_in(bits, f"{prefix}.{name}")
+        elif name != SPARE:
+            yield f"{prefix}.{name}"
+
+
+def all_names(kind):
+    layouts = {"skin": skin, "mesh": mesh_payloads, "radio": radio}[kind].LAYOUTS
+    found = [f"innervate.{kind}.{name}" for name in ("kind", "bad_crc", "malformed")]
+    if kind == "mesh":
+        found += names_in(mesh.COMMON, "innervate.mesh")
+        found += names_in(mesh.HOP_ACK, "innervate.mesh.ack")
+        found += [f"innervate.mesh.{name}" for name in ("path", "source_route", "failed")]
+    for _kind, name, fields in layouts:
+        found += names_in(fields, f"innervate.{kind}.{dissector.abbreviation(name)}")
+    return found
+
+
+def skin_frames():
+    for kind, name, fields in skin.LAYOUTS * EACH:
+        record = plain.make("Frame", skin_fields.FRAME)()
+        expected = set_all(record, fields, f"innervate.skin.{name}")
+        record.kind = kind
+        yield skin.encode(record), expected | {"innervate.skin.kind": [str(kind)]}
+
+
+def radio_frames():
+    for kind, name, fields in radio.LAYOUTS * EACH:
+        record = plain.make("Frame", radio_fields.FRAME)()
+        expected = set_all(record, fields, f"innervate.radio.{name}")
+        record.kind = kind
+        data = b"packets" if kind == radio_words.DATA else b""
+        yield radio.encode(record, data), expected | {"innervate.radio.kind": [str(kind)]}
+    yield bytes((radio.CRR_BYTE,)), {}
+
+
+def mesh_record(kind, flags, path, body):
+    record = plain.make("Frame", mesh_fields.FRAME)()
+    expected = set_all(record, mesh.COMMON, "innervate.mesh")
+    record.kind, record.flags, record.path_len, record.length = kind, flags, len(path), len(body)
+    record.path[: len(path)], record.body[: len(body)] = path, list(body)
+    expected |= {"innervate.mesh.flags": [str(flags)], "innervate.mesh.kind": [str(kind)]}
+    expected["innervate.mesh.path_len"] = [str(len(path))]
+    if path:
+        expected["innervate.mesh.path"] = [str(node) for node in path]
+    return record, expected
+
+
+def mesh_frames():
+    around = (0, mesh_words.SOURCE_ROUTE, mesh_words.DETOURED)
+    for i, (kind, name, fields) in enumerate(mesh_payloads.LAYOUTS * EACH):
+        payload = Payload(fields, f"innervate.mesh.{dissector.abbreviation(name)}")
+        flags, body, more = around[i // len(mesh_payloads.LAYOUTS) % 3], bytes(payload.data), {}
+        if flags == mesh_words.SOURCE_ROUTE:
+            body, more = b"\x02\x07\xc9" + body, {"innervate.mesh.source_route": ["7", "201"]}
+        elif flags and kind in mesh_payloads.SIZES:
+            body, more = body + b"\x05\x06\x02", {"innervate.mesh.failed": ["5", "6"]}
+        else:
+            flags = 0
+        path = [DRAW.randrange(254) for _ in range(DRAW.randint(0, 9))]
+        record, expected = mesh_record(kind, flags, path, body)
+        yield mesh.encode(record), expected | payload.expected | more
+    record = plain.make("Frame", mesh_fields.FRAME)()
+    expected = set_all(record, mesh.HOP_ACK, "innervate.mesh.ack")
+    record.kind = mesh_words.ACK
+    yield mesh.encode(record), expected | {"innervate.mesh.kind": [str(mesh_words.ACK)]}
+
+
+FRAMES = {"skin": skin_frames, "mesh": mesh_frames, "radio": radio_frames}
+
+
+@pytest.mark.parametrize("kind", FRAMES)
+def test_every_field_of_every_type_is_decoded(kind, tmp_path, tshark):
+    made = list(FRAMES[kind]())
+    capture = capture_of(tmp_path / "all.pcapng", kind, [data for data, _ in made])
+    names = all_names(kind)
+    found = fields_of(tshark, capture, names)
+    assert len(found) == len(made)
+    for (data, expected), fields in zip(made, found, strict=True):
+        assert fields == expected, data.hex()
+    decoded = {name for _, expected in made for name in expected}
+    assert set(names) - decoded == {f"innervate.{kind}.{what}" for what in ("bad_crc", "malformed")}
+
+
+@pytest.mark.parametrize("kind", FRAMES)
+def test_damage_is_flagged_as_the_decoders_find_it(kind, tmp_path, tshark):
+    wire = {"skin": skin, "mesh": mesh, "radio": radio}[kind]
+    fields = {"skin": skin_fields, "mesh": mesh_fields, "radio": radio_fields}[kind].FRAME
+    made = []
+    for data, _expected in FRAMES[kind]():
+        flipped = bytearray(data)
+        flipped[DRAW.randrange(len(data))] ^= 1 << DRAW.randrange(8)
+        body = data[: DRAW.randrange(len(data))]
+        made += [bytes(flipped), body, data + b"\1", DRAW.randbytes(DRAW.randint(1, 60))]
+        # A right CRC behind what is no frame, or one of an unknown type.
+        made.append(crc.seal(bytearray(body + b"\0\0")))
+        made.append(crc.seal(bytearray([DRAW.randrange(256), *data[1:], 0, 0])[: len(data)]))
+    made = [data for data in made if not (data and data[0] >> 4 == 12)]  # looks sealed
+    capture = capture_of(tmp_path / "damaged.pcapng", kind, made)
+    bad_crc, malformed = f"innervate.{kind}.bad_crc", f"innervate.{kind}.malformed"
+    found = fields_of(tshark, capture, ["frame.number", bad_crc, malformed])
+    frame = plain.make("Frame", fields)()
+    reasons = [wire.REASONS[wire.decode(data, frame)] for data in made]
+    assert {"crc", "length", "kind"} <= set(reasons)
+    for data, reason, said in zip(made, reasons, found, strict=True):
+        flags = [name for name in (bad_crc, malformed) if name in said]
+        assert bool(flags) == (reason != "ok"), (data.hex(), reason, said)
+        if reason == "crc":
+            assert bad_crc in said, data.hex()
+
+
+def test_a_sealed_frame_is_no_damage(tmp_path, tshark):
+    data = seal.header(3, 513, 77) + bytes(40)
+    capture = capture_of(tmp_path / "sealed.pcapng", "mesh", [data])
+    names = ["innervate.mesh.sealed." + name for name in ("key", "sender", "counter")]
+    found = fields_of(tshark, capture, [*names, "innervate.mesh.malformed"])
+    assert found == [dict(zip(names, (["3"], ["513"], ["77"]), strict=True))]

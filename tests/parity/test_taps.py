@@ -1,0 +1,50 @@
+"""A tap changes nothing, and compiled and plain runs hand it the same frames."""
+
+from importlib import import_module
+
+import pytest
+
+from innervate import scenario
+from innervate.wire import radio, skin
+from tests.export.test_captures import RADIO, SKIN
+
+FIELDS = ("time", "start", "at", "sender", "out", "why")
+
+
+class Tap:
+    """Keeps rows and bytes of compiled and plain runs alike."""
+
+    def __init__(self, wire, kind, plain):
+        self.wire, self.kind, self.plain = wire, kind, plain
+        self.kept = []
+
+    def __call__(self, rows, frames, now):
+        for row, frame in zip(rows, frames, strict=True):
+            read = getattr if self.plain else (lambda record, name: record[name])
+            data = self.wire.encode(frame if self.plain else Frame(frame))
+            self.kept.append((*(int(read(row, name)) for name in FIELDS), data))
+
+
+class Frame:
+    """A record of an array, with attributes."""
+
+    def __init__(self, record):
+        for name in record.dtype.names:
+            setattr(self, name, record[name].tolist())
+
+
+@pytest.mark.parametrize(
+    ("keys", "wire"), [(SKIN | {"duration_s": 0.07}, skin), (RADIO, radio)], ids=["skin", "radio"]
+)
+def test_taps(keys, wire):
+    plan = scenario.plan(scenario.from_dict(keys))
+    room = "innervate.sim" if plan.kind == "skin" else f"innervate.sim.{plan.kind}"
+    simulate = import_module(f"{room}.simulate").simulate
+    bare = simulate(plan)
+    taps = [Tap(wire, plan.kind, plain) for plain in (False, True)]
+    done = [simulate(plan, plain=tap.plain, tap=tap) for tap in taps]
+    assert {one.fingerprint for one in done} == {bare.fingerprint}
+    assert taps[0].kept == taps[1].kept
+    assert len(taps[0].kept) > 50
+    assert {row[4] for row in taps[0].kept} == {0, 1}
+    assert len({row[5] for row in taps[0].kept}) > 1
