@@ -318,6 +318,7 @@ def test_a_skin_of_more_cells_than_memory_for_marks_keeps_few(monkeypatch):
     made = simulated(SKIN)
     made.run_to_end()
     assert len(made._marks) <= 2
+    assert made._marks[0].engine.now_us == 0
     go_to(made, 0.2)
     assert made.engine.now_us == 200_000
 
@@ -454,3 +455,12 @@ def test_a_node_at_the_edge_of_a_mesh_is_missed_by_nobody():
     made = simulated({key: value for key, value in leaf.items() if value is not None})
     made.run_to_end()
     assert made.fields()["recovery"]["recovered_ms"] == 0.0
+
+
+def test_moments_to_go_back_to_lie_over_the_whole_time():
+    made = simulated(SKIN)
+    made.run_to_end()
+    kept = [mark.engine.now_us for mark in made._marks]
+    assert 16 <= len(kept) <= 32
+    assert kept[0] == 0
+    assert max(b - a for a, b in zip(kept, [*kept[1:], 1_000_000], strict=True)) <= 2 * 40_000

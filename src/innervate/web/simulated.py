@@ -25,6 +25,7 @@ POINTS = 500  # of every plot, over the whole time, at least
 POINT_US = (1_000, 10_000)  # between two of them: at least; and at most, for who looks on
 POINTS_PER_S = 10  # so many are enough for who looks on
 MARKS = 32
+APART_US = 20_000  # between two of them at first
 MARKS_BYTES = 256 * 1024 * 1024
 
 Progress = Callable[[int, int], None]
@@ -62,6 +63,7 @@ class Simulated(Source):
         self._target_us: int | None = None  # where a seek leads
         self._next_point_us = self._point_us()
         self._marks: list[Kept] = []
+        self._apart_us = APART_US
 
     def prepare(self) -> None:
         """Compile what has to be compiled: up to a minute, once on a machine."""
@@ -208,13 +210,15 @@ class Simulated(Source):
         self.view.log.say(self.engine.now_us, text, "bad")
 
     def _keep(self) -> None:
-        """Keep this moment, if the last one kept is long enough ago."""
-        newest = self._marks[-1].engine if self._marks else None
-        if newest is not None:
-            most = max(1, min(MARKS, MARKS_BYTES // newest.bytes))
-            if self.engine.now_us < newest.now_us + self.plan.duration_us // most:
-                return
+        """Keep this moment, if the last one kept is long enough ago; of too many every other."""
+        newest_us = self._marks[-1].engine.now_us if self._marks else -self._apart_us
+        if self.engine.now_us < newest_us + self._apart_us:
+            return
         self._marks.append(Kept(self.engine.mark(), self.view.remember()))
+        most = max(2, min(MARKS, MARKS_BYTES // self._marks[-1].engine.bytes))
+        if len(self._marks) > most:
+            self._marks = self._marks[::2]
+            self._apart_us *= 2
 
     def _seek(self, t_s: float) -> None:
         to_us = min(max(0, round(t_s * 1e6)), self.plan.duration_us)
