@@ -14,6 +14,7 @@ from innervate.web.history import LOG, SERIES, TIMELINE
 from innervate.web.recorded import Recorded
 from innervate.web.recorded import plan_of as plan_of_folder
 from innervate.web.saving import saved
+from innervate.web.simulated import Simulated
 from innervate.web.skin_scene import places
 from innervate.web.snapshot import Part, Snapshot, Teller
 from tests.web_runs import KINDS, MESH, RADIO, SKIN, go_to, plan_of, simulated
@@ -151,7 +152,7 @@ def test_a_mesh_finds_other_ways():
 
 def test_the_recovery_of_a_mesh_does_not_depend_on_the_pace():
     found = set()
-    for pieces in (1, 300):
+    for pieces in (1, 40):
         made = simulated(MESH)
         go_to(made, 4.0)
         made.carry_out(messages.Kill(int(made.fields()["parent"].max())))
@@ -464,3 +465,21 @@ def test_moments_to_go_back_to_lie_over_the_whole_time():
     assert 16 <= len(kept) <= 32
     assert kept[0] == 0
     assert max(b - a for a, b in zip(kept, [*kept[1:], 1_000_000], strict=True)) <= 2 * 40_000
+
+
+def test_without_a_gateway_nobody_has_a_way_until_the_standby_leads():
+    made = simulated(MESH, standby=[1], duration_s=30.0)
+    go_to(made, 4.0)
+    made.carry_out(messages.Kill(0))
+    assert made.fields()["recovery"]["recovered_ms"] is None
+    assert made.fields()["unconnected"] == 11
+    made.run_to_end()
+    assert 20_000 < made.fields()["recovery"]["recovered_ms"] < 24_000
+    assert "n1 leads as gateway" in texts(made)
+
+
+def test_on_a_channel_that_all_share_nothing_can_be_cut():
+    made = Simulated(scenario.plan(scenario.load("mesh-team")))
+    assert "cut" not in made.scene()["can"]
+    with pytest.raises(Refused):
+        made.carry_out(messages.Cut(0))

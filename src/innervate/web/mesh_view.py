@@ -167,9 +167,11 @@ class MeshView(View):
 
     def _lacking(self) -> int:
         """Nodes that could reach a gateway, and neither do their next hops lead to one, nor has
-        anything that they sent since the fault come through.
+        anything that they sent since the fault come through; all while there is no gateway.
         """
         live = self._live()
+        if not self._roots().any():
+            return int(self.plan.nodes)
         _hop, root, _depth = self._ways(live)
         lacking = reach(live, self._roots()) & (root == NOWHERE)
         lacking[list(self.memory.heard)] = False

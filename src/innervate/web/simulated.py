@@ -46,7 +46,7 @@ class Simulated(Source):
         speed: seconds of the network per second; None = one at which its changes can be seen.
 
     Attributes:
-        broken: a checker found what must not happen, and the network is held there.
+        broken: what a checker found that must not happen; the network is held there. "" = nothing.
     """
 
     kind_of_source: ClassVar[str] = "simulation"
@@ -58,7 +58,7 @@ class Simulated(Source):
         self.view: View = view_of(self.engine, self.history)
         self.can = ("pause", "step", "speed", "seek", *self.view.can, "save")
         self.pace = Pace(self.view.speed if speed is None else speed)
-        self.broken = False
+        self.broken = ""
         self._budget = BUDGET
         self._target_us: int | None = None  # where a seek leads
         self._next_point_us = self._point_us()
@@ -74,7 +74,7 @@ class Simulated(Source):
     def at_end(self) -> bool:
         """True if nothing more can happen."""
         done = self.engine.now_us >= self.plan.duration_us or self.engine.is_complete()
-        return done or self.broken
+        return done or bool(self.broken)
 
     def scene(self) -> dict[str, Any]:
         """Nodes, links and what else stands still."""
@@ -140,11 +140,7 @@ class Simulated(Source):
         return None
 
     def run_to_end(self, progress: Progress = lambda now_us, end_us: None) -> None:
-        """Go on to the end at once; `progress` is called now and then.
-
-        Raises:
-            InvariantBroken: a checker found what must not happen.
-        """
+        """Go on to the end at once; `progress` is called now and then."""
         while not self.at_end:
             self._advance(self.plan.duration_us)
             progress(self.engine.now_us, self.plan.duration_us)
@@ -158,7 +154,7 @@ class Simulated(Source):
         self.engine.back_to(kept.engine)
         self.view.forget(kept.memory)
         self.history.go_back(kept.engine.now_us)
-        self.broken = False
+        self.broken = ""
         self._plan_point()
         self.pace.start_from(self.engine.now_us)
 
@@ -206,7 +202,7 @@ class Simulated(Source):
         return (self.engine.now_us // every_us + 1) * every_us
 
     def _break(self, text: str) -> None:
-        self.broken = True
+        self.broken = text
         self.view.log.say(self.engine.now_us, text, "bad")
 
     def _keep(self) -> None:
