@@ -20,6 +20,14 @@ Reply = Callable[[dict[str, Any]], None]
 Publish = Callable[[Snapshot], None]
 
 
+def next_due(due: float, now: float) -> float:
+    """When the next state may be shown, if one was due at `due` and was shown now.
+
+    Who is late once, because others had the processor, may be early once.
+    """
+    return max(due + 1 / STATES_PER_S, now - 1 / STATES_PER_S)
+
+
 class Stage:
     """Runs a source in a thread of its own, so that no page can hold it up.
 
@@ -78,7 +86,7 @@ class Stage:
                 now = time.monotonic()
                 if now >= due or told:
                     fresh = self._show()
-                    due = max(due + 1 / STATES_PER_S, now)
+                    due = next_due(due, now)
                 until_shown = max(0.0, due - time.monotonic())
                 with self._wake:
                     if not self._waiting and not self._stopping.is_set() and rest > 0:
