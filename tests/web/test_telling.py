@@ -1,6 +1,7 @@
 """What a page is told: only what is new, all of it however slow it is, and whatever it says."""
 
 import json
+import threading
 
 import numpy as np
 import pytest
@@ -13,7 +14,9 @@ from innervate.web.history import LOG, SERIES, TIMELINE, History, Logbook
 from innervate.web.messages import Command, Cut, Go, Pause, Seek, Speed, name_of, parse
 from innervate.web.pace import Pace
 from innervate.web.snapshot import Part, Snapshot, Teller
+from innervate.web.stage import Stage
 from innervate.web.ways import follow, reach
+from tests.web_runs import SKIN, simulated
 
 SCENE = Part({"type": "scene"})
 
@@ -245,3 +248,20 @@ def test_what_can_be_reached_is_found(pairs, start):
     for _ in range(8):
         found |= {b for a, b in pairs if a in found}
     assert set(np.flatnonzero(reach(links, np.isin(np.arange(8), list(start))))) == found
+
+
+def test_where_nothing_changes_nothing_is_worked_out():
+    made = simulated(SKIN)
+    made.run_to_end()
+    looked = []
+    fields = made.fields
+    made.fields = lambda: looked.append(1) or fields()
+    stage = Stage(made, lambda snapshot: None)
+    stage.start()
+    answered = threading.Event()
+    for _ in range(3):
+        answered.clear()
+        stage.submit(Cut(0), lambda answer: answered.set())  # refused: this is the end
+        assert answered.wait(10)
+    stage.stop()
+    assert len(looked) < 12

@@ -14,7 +14,7 @@ from innervate.web.errors import Refused
 from innervate.web.messages import parse
 from innervate.web.snapshot import Snapshot, Teller
 from innervate.web.source import Source
-from innervate.web.stage import STATES_PER_S, Stage
+from innervate.web.stage import Stage, next_due
 
 PAGES_MAX = 32
 ANSWERS_MAX = 100
@@ -56,12 +56,11 @@ class Page:
 
     async def tell(self) -> None:
         """Send it what is new, for ever: always the newest state, whatever there was between."""
-        behind = False
+        behind, due = False, time.monotonic()
         while True:
             if not behind:
                 await self.wake.wait()
             self.wake.clear()
-            began = time.monotonic()
             newest = self._hub.newest
             if newest is not None and (behind or newest is not self._told):
                 self._told = newest
@@ -70,7 +69,8 @@ class Page:
                 behind = self._teller.is_behind(newest)
             while self._answers:
                 await self._send(msgspec.json.encode(self._answers.popleft()).decode())
-            await asyncio.sleep(max(0.0, 1 / STATES_PER_S - (time.monotonic() - began)))
+            due = next_due(due, time.monotonic())
+            await asyncio.sleep(max(0.0, due - time.monotonic()))
 
 
 class Hub:

@@ -10,6 +10,7 @@ import numpy as np
 from innervate.plot.mesh_words import fault_words
 from innervate.protocol import mesh_words as w
 from innervate.scenario.mesh_plan import CUT, KILL, ONE, QUIET, RESTORE, REVIVE, MeshFault
+from innervate.sim.mesh.build import MACS
 from innervate.sim.mesh.world import ALIVE, DEAD, ON_AIR
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
@@ -64,6 +65,8 @@ class MeshView(View):
             near[a].append(b)
             near[b].append(a)
         self.near = near
+        if self.plan.mac not in MACS:  # a channel on which everybody hears everybody
+            self.can = ("kill", "revive")
 
     def scene(self) -> dict[str, Any]:
         """Nodes, links and what else stands still."""
@@ -164,9 +167,11 @@ class MeshView(View):
 
     def _lacking(self) -> int:
         """Nodes that could reach a gateway, and neither do their next hops lead to one, nor has
-        anything that they sent since the fault come through.
+        anything that they sent since the fault come through; all while there is no gateway.
         """
         live = self._live()
+        if not self._roots().any():
+            return int(self.plan.nodes)
         _hop, root, _depth = self._ways(live)
         lacking = reach(live, self._roots()) & (root == NOWHERE)
         lacking[list(self.memory.heard)] = False

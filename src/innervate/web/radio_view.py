@@ -133,12 +133,15 @@ class RadioView(View):
         memory, now = self.memory, self.engine.now_us
         took = max(1, now - memory.since_us)
         delays = memory.delays_us
+        # A packet counts when it is known to be delivered: what is more than the time counts later.
+        carried_us = min(memory.carried_us, took)
         found = {
-            "throughput": round(100 * memory.carried_us / took, 2),
+            "throughput": round(100 * carried_us / took, 2),
             "collisions": round(1e6 * memory.collisions / took, 2),
             "delay": round(sum(delays) / len(delays) / 1e3, 3) if delays else None,
         }
-        memory.carried_us = memory.collisions = 0
+        memory.carried_us -= carried_us
+        memory.collisions = 0
         memory.delays_us, memory.since_us = [], now
         return found
 

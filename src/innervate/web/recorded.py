@@ -62,10 +62,11 @@ class Recorded(Simulated):
 
         Raises:
             WatchError: this version of innervate makes another network of it.
-            InvariantBroken: a checker found what must not happen.
         """
         self.prepare()
         self.run_to_end(progress)
+        if self.broken:
+            raise WatchError(f"{self._folder}: simulated again, {self.broken}")
         was, now = self._summary.get("fingerprint"), self.engine.fingerprint
         interrupted_s = self._summary.get("interrupted_at_s")
         if interrupted_s is None and was != now:

@@ -25,6 +25,7 @@ POINTS = 500  # of every plot, over the whole time, at least
 POINT_US = (1_000, 10_000)  # between two of them: at least; and at most, for who looks on
 POINTS_PER_S = 10  # so many are enough for who looks on
 MARKS = 32
+APART_US = 20_000  # between two of them at first
 MARKS_BYTES = 256 * 1024 * 1024
 
 Progress = Callable[[int, int], None]
@@ -45,7 +46,7 @@ class Simulated(Source):
         speed: seconds of the network per second; None = one at which its changes can be seen.
 
     Attributes:
-        broken: a checker found what must not happen, and the network is held there.
+        broken: what a checker found that must not happen; the network is held there. "" = nothing.
     """
 
     kind_of_source: ClassVar[str] = "simulation"
@@ -57,11 +58,12 @@ class Simulated(Source):
         self.view: View = view_of(self.engine, self.history)
         self.can = ("pause", "step", "speed", "seek", *self.view.can, "save")
         self.pace = Pace(self.view.speed if speed is None else speed)
-        self.broken = False
+        self.broken = ""
         self._budget = BUDGET
         self._target_us: int | None = None  # where a seek leads
         self._next_point_us = self._point_us()
         self._marks: list[Kept] = []
+        self._apart_us = APART_US
 
     def prepare(self) -> None:
         """Compile what has to be compiled: up to a minute, once on a machine."""
@@ -72,7 +74,7 @@ class Simulated(Source):
     def at_end(self) -> bool:
         """True if nothing more can happen."""
         done = self.engine.now_us >= self.plan.duration_us or self.engine.is_complete()
-        return done or self.broken
+        return done or bool(self.broken)
 
     def scene(self) -> dict[str, Any]:
         """Nodes, links and what else stands still."""
@@ -138,11 +140,7 @@ class Simulated(Source):
         return None
 
     def run_to_end(self, progress: Progress = lambda now_us, end_us: None) -> None:
-        """Go on to the end at once; `progress` is called now and then.
-
-        Raises:
-            InvariantBroken: a checker found what must not happen.
-        """
+        """Go on to the end at once; `progress` is called now and then."""
         while not self.at_end:
             self._advance(self.plan.duration_us)
             progress(self.engine.now_us, self.plan.duration_us)
@@ -156,7 +154,7 @@ class Simulated(Source):
         self.engine.back_to(kept.engine)
         self.view.forget(kept.memory)
         self.history.go_back(kept.engine.now_us)
-        self.broken = False
+        self.broken = ""
         self._plan_point()
         self.pace.start_from(self.engine.now_us)
 
@@ -204,17 +202,19 @@ class Simulated(Source):
         return (self.engine.now_us // every_us + 1) * every_us
 
     def _break(self, text: str) -> None:
-        self.broken = True
+        self.broken = text
         self.view.log.say(self.engine.now_us, text, "bad")
 
     def _keep(self) -> None:
-        """Keep this moment, if the last one kept is long enough ago."""
-        newest = self._marks[-1].engine if self._marks else None
-        if newest is not None:
-            most = max(1, min(MARKS, MARKS_BYTES // newest.bytes))
-            if self.engine.now_us < newest.now_us + self.plan.duration_us // most:
-                return
+        """Keep this moment, if the last one kept is long enough ago; of too many every other."""
+        newest_us = self._marks[-1].engine.now_us if self._marks else -self._apart_us
+        if self.engine.now_us < newest_us + self._apart_us:
+            return
         self._marks.append(Kept(self.engine.mark(), self.view.remember()))
+        most = max(2, min(MARKS, MARKS_BYTES // self._marks[-1].engine.bytes))
+        if len(self._marks) > most:
+            self._marks = self._marks[::2]
+            self._apart_us *= 2
 
     def _seek(self, t_s: float) -> None:
         to_us = min(max(0, round(t_s * 1e6)), self.plan.duration_us)

@@ -20,6 +20,14 @@ Reply = Callable[[dict[str, Any]], None]
 Publish = Callable[[Snapshot], None]
 
 
+def next_due(due: float, now: float) -> float:
+    """When the next state may be shown, if one was due at `due` and was shown now.
+
+    Who is late once, because others had the processor, may be early once.
+    """
+    return max(due + 1 / STATES_PER_S, now - 1 / STATES_PER_S)
+
+
 class Stage:
     """Runs a source in a thread of its own, so that no page can hold it up.
 
@@ -70,19 +78,20 @@ class Stage:
             self._wake.notify()
 
     def _run(self) -> None:
-        due = time.monotonic()
+        due, fresh = time.monotonic(), True
         try:
             while not self._stopping.is_set():
                 told = self._obey()
                 rest = self.source.work()
                 now = time.monotonic()
                 if now >= due or told:
-                    self._show()
-                    due = max(due + 1 / STATES_PER_S, now)
+                    fresh = self._show()
+                    due = next_due(due, now)
                 until_shown = max(0.0, due - time.monotonic())
                 with self._wake:
                     if not self._waiting and not self._stopping.is_set() and rest > 0:
-                        self._wake.wait(min(rest, max(until_shown, 0.001)))
+                        # Where nothing changes, nothing has to be shown.
+                        self._wake.wait(min(rest, max(until_shown, 0.001)) if fresh else rest)
         except Exception as error:
             self._show()
             self._ended(" ".join(str(error).split()) or type(error).__name__)
@@ -103,14 +112,16 @@ class Stage:
             if answer is not None:
                 reply(answer)
 
-    def _show(self) -> None:
-        """Publish the state, if there is anything new in it."""
+    def _show(self) -> bool:
+        """Publish the state, if there is anything new in it: was there?"""
         source = self.source
         if self._scenes != source.scenes:
             self._scenes = source.scenes
             self._scene = Part({"type": "scene", **source.scene()})
         newest = source.history.newest
         snapshot = Snapshot(self._scene, source.fields(), newest, self.newest)
-        if not snapshot.same_as(self.newest):
-            self.newest = snapshot
-            self._publish(snapshot)
+        if snapshot.same_as(self.newest):
+            return False
+        self.newest = snapshot
+        self._publish(snapshot)
+        return True

@@ -1,0 +1,183 @@
+"""A network's time: held, stepped, taken back, and gone through again in a recorded run."""
+
+import numpy as np
+import pytest
+
+from innervate import scenario
+from innervate.run import run
+from innervate.sim.simulate import InvariantBroken
+from innervate.web import messages
+from innervate.web.errors import Refused, WatchError
+from innervate.web.history import LOG, SERIES, TIMELINE
+from innervate.web.recorded import Recorded
+from innervate.web.recorded import plan_of as plan_of_folder
+from innervate.web.saving import saved
+from tests.web_runs import KINDS, SKIN, go_to, plan_of, simulated
+
+
+def items(made, stream):
+    return made.history.after(stream, 0, made.history.newest, 100_000)
+
+
+def texts(made):
+    return [item.what["text"] for item in items(made, LOG)]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_going_back_shows_what_was(kind):
+    made, straight = simulated(KINDS[kind]), simulated(KINDS[kind])
+    go_to(straight, 0.7)
+    made.run_to_end()
+    assert made.at_end
+    go_to(made, 0.7)
+    assert not made.at_end
+    there, was = made.fields(), straight.fields()
+    assert there.keys() == was.keys()
+    for name, value in was.items():
+        assert np.array_equal(there[name], value), name
+    for stream in (LOG, SERIES, TIMELINE):
+        assert [i.what for i in items(made, stream)] == [i.what for i in items(straight, stream)]
+
+
+def test_what_was_done_stays_done_when_one_goes_back():
+    made = simulated(SKIN)
+    go_to(made, 0.6)
+    made.carry_out(messages.Cut(0))
+    made.run_to_end()
+    end = made.engine.fingerprint
+    go_to(made, 0.3)
+    assert made.fields()["link_up"][0] == 1
+    made.run_to_end()
+    assert made.fields()["link_up"][0] == 0
+    assert made.engine.fingerprint == end
+    go_to(made, 0.3)
+    made.carry_out(messages.Cut(5))  # something else before it
+    made.run_to_end()
+    again = run(scenario.loads(saved(made.view)))
+    assert again.result.fingerprint == made.engine.fingerprint != end
+
+
+def test_a_step_is_one_event():
+    made = simulated(SKIN)
+    go_to(made, 0.4)
+    before = made.engine.now_us
+    made.carry_out(messages.Step())
+    assert made.pace.paused
+    assert before < made.engine.now_us < before + 4_000
+    made.work()
+    assert made.engine.now_us == made.engine.next_us() or made.engine.next_us() is not None
+
+
+def test_nothing_can_be_done_after_the_end():
+    made = simulated(SKIN)
+    made.run_to_end()
+    for command in (messages.Cut(0), messages.Step()):
+        with pytest.raises(Refused):
+            made.carry_out(command)
+
+
+def test_a_held_network_stays_where_it_is():
+    made = simulated(SKIN, speed=1.0)
+    go_to(made, 0.2)
+    made.carry_out(messages.Pause())
+    for _ in range(3):
+        assert made.work() > 0
+    assert made.fields()["paused"]
+    assert made.engine.now_us == 200_000
+    made.carry_out(messages.Cut(1))
+    assert made.fields()["link_up"][1] == 0
+
+
+def test_a_broken_invariant_holds_the_network_and_is_said(monkeypatch):
+    made = simulated(SKIN)
+
+    def breaks(until_us, budget):
+        raise InvariantBroken("invariant broken at 0.1 s")
+
+    monkeypatch.setattr(made.engine, "advance", breaks)
+    made.run_to_end()
+    assert made.broken
+    assert made.fields()["at_end"]
+    assert texts(made) == ["invariant broken at 0.1 s"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_run_folder_is_shown_as_it_was(kind, tmp_path):
+    events = {"skin": [{"at_s": 0.5, "action": "cut", "interface": 0}], "radio": [], "mesh": []}
+    done = run({**KINDS[kind], "event": events[kind]}, out=tmp_path / "run")
+    made = Recorded(tmp_path / "run", plan_of_folder(tmp_path / "run"))
+    made.replay()
+    assert made.engine.now_us == 0
+    assert made.scene()["source"] == "run"
+    assert made.scene()["report"]
+    made.run_to_end()
+    assert made.engine.fingerprint == done.summary["fingerprint"]
+    if kind == "skin":
+        shown = made.fields()["recovery"]
+        assert shown["recovered_ms"] == done.summary["recoveries"][0]["routed_ms"]
+    with pytest.raises(Refused):
+        made.carry_out(messages.Kill(0))
+
+
+def test_another_run_than_the_recorded_one_is_refused(tmp_path):
+    done = run(SKIN, out=tmp_path / "run")
+    other = tmp_path / "run" / "scenario.toml"
+    other.write_text(other.read_text().replace("seed = 1", "seed = 2"))
+    made = Recorded(tmp_path / "run", plan_of_folder(tmp_path / "run"))
+    with pytest.raises(WatchError, match=done.summary["fingerprint"]):
+        made.replay()
+
+
+def test_a_skin_of_more_cells_than_memory_for_marks_keeps_few(monkeypatch):
+    monkeypatch.setattr("innervate.web.simulated.MARKS_BYTES", 1)
+    made = simulated(SKIN)
+    made.run_to_end()
+    assert len(made._marks) <= 2
+    assert made._marks[0].engine.now_us == 0
+    go_to(made, 0.2)
+    assert made.engine.now_us == 200_000
+
+
+def test_plans_are_not_altered():
+    plan = plan_of(SKIN)
+    before = (list(plan.faults), list(plan.graph.peer))
+    made = simulated(SKIN)
+    made.carry_out(messages.Cut(0))
+    assert (plan.faults, list(plan.graph.peer)) == before
+
+
+@pytest.mark.parametrize("touch", [{}, {"touch": {"path": [[0.0, 0.0, 0.0], [0.9, 80.0, 50.0]]}}])
+def test_a_touch_by_hand_is_felt_and_replayed(touch):
+    made = simulated(SKIN, **touch)
+    go_to(made, 0.3)
+    made.carry_out(messages.Touch(20, 255))
+    go_to(made, 0.5)
+    felt = made.fields()["touch"]
+    assert felt[20] == felt.max() > 200
+    assert felt[0] == 0
+    made.carry_out(messages.Touch(20, 0))
+    go_to(made, 0.8)
+    assert made.fields()["touch"].max() == 0
+    go_to(made, 0.4)  # and again
+    assert made.fields()["touch"][20] > 200
+    made.run_to_end()
+    again = run(scenario.loads(saved(made.view)))
+    assert again.result.fingerprint == made.engine.fingerprint
+    assert again.result.fingerprint != run({**SKIN, **touch}).result.fingerprint
+
+
+@pytest.mark.parametrize(("speed", "every_s"), [(0, 1.2), (0.1, 0.01), (0.002, 0.01), (1, 0.1)])
+def test_plots_have_points_enough_for_who_looks_on(speed, every_s):
+    made = simulated(SKIN, speed, duration_s=600.0)
+    assert made._next_point_us == round(1e6 * every_s)
+    made.carry_out(messages.Speed(0.5))
+    assert made._next_point_us == 50_000
+
+
+def test_moments_to_go_back_to_lie_over_the_whole_time():
+    made = simulated(SKIN)
+    made.run_to_end()
+    kept = [mark.engine.now_us for mark in made._marks]
+    assert 16 <= len(kept) <= 32
+    assert kept[0] == 0
+    assert max(b - a for a, b in zip(kept, [*kept[1:], 1_000_000], strict=True)) <= 2 * 40_000
