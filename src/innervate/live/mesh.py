@@ -7,7 +7,8 @@ from typing import Any
 
 from innervate.protocol import mesh, plain
 from innervate.protocol import mesh_fields as fields
-from innervate.protocol.mesh_kept import is_ahead
+from innervate.protocol.arith import MASK16
+from innervate.protocol.mesh_kept import crowds, is_ahead
 from innervate.protocol.mesh_messages import resolve
 from innervate.protocol.mesh_near import FREE
 from innervate.protocol.mesh_queue import MESSAGES, has_room
@@ -105,7 +106,9 @@ class MeshStack:
         """True if the router takes a message of ours, besides what others send through it."""
         if not has_room(self.node, MESSAGES) or 0 not in self.node.wait_kind:
             return False
-        return not is_ahead(self.node, resolve(self.node, self.params, recipient))
+        dest = resolve(self.node, self.params, recipient)
+        seq = (self.node.seq + 1) & MASK16
+        return not is_ahead(self.node, dest) and not crowds(self.node, dest, seq)
 
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """Where a frame leaves: on the path its receiver was heard on last; None = on all.

@@ -21,6 +21,8 @@ from innervate.protocol.mesh_jobs import on_ack, retry_jobs
 from innervate.protocol.mesh_kept import due_wait, try_again, wait_on
 from innervate.protocol.mesh_messages import on_message, take
 from innervate.protocol.mesh_near import forget_all, hear, hear_again, sweep
+from innervate.protocol.mesh_overheard import spare
+from innervate.protocol.mesh_pace import NO_PAUSE, is_pausing
 from innervate.protocol.mesh_queue import (
     CONTROL,
     acked,
@@ -28,6 +30,7 @@ from innervate.protocol.mesh_queue import (
     has_room,
     kick,
     left,
+    make_room,
     take_over,
     tell_hop,
 )
@@ -45,6 +48,7 @@ from innervate.protocol.mesh_words import (
     ALARM,
     ALL,
     DATA,
+    DETOURED,
     E2E_ACK,
     FLOOD,
     GRAPH,
@@ -87,6 +91,9 @@ def on_start(node, gate, params, now, cause, out):
     node.quiet = 0
     node.leading = 0
     node.round_trip = 0
+    node.strain = 0
+    node.despair = 0
+    node.pause = NO_PAUSE
     node.version = 0
     node.table_epoch = 0
     node.new_version = 0
@@ -137,8 +144,12 @@ def on_frame(node, gate, params, now, port, frame, out):
         on_hop_ack(node, params, now, frame, out)
     elif frame.link_dst == ALL:
         on_broadcast(node, params, now, frame, k, out)
-    elif frame.link_dst == node.number:
-        on_unicast(node, gate, params, now, frame, out)
+    else:
+        spare(node, frame, out)
+        if frame.link_dst == node.number:
+            on_unicast(node, gate, params, now, frame, out)
+        else:
+            kick(node, params, now, out)
 
 
 def on_hop_ack(node, params, now, frame, out):
@@ -179,7 +190,8 @@ def on_unicast(node, gate, params, now, frame, out):
     if is_upward(frame.kind) or frame.kind == TABLE:
         rank = CONTROL
     if not here and not has_room(node, rank):
-        return
+        if frame.flags & DETOURED or not make_room(node, rank, out):
+            return
     if frame.flags & ACK_WANTED:
         acknowledge(node, frame, out)
     kind = frame.kind
@@ -252,8 +264,9 @@ def on_tick(node, gate, params, now, out):
     node.tick_at = now
     set_timer(out, TICK, (now + params.tick_us) & MASK30)
     sweep(node, params, now)
+    is_pausing(node, now)
     age(node, params)
-    if node.ticks % HOPELESS_TICKS == 0:
+    if node.ticks % (HOPELESS_TICKS << node.despair) == 0:
         hope_again(node)
     watch(node, params, now, out)
     if node.robot and node.placed:

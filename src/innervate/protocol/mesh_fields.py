@@ -75,6 +75,9 @@ OWN = (
     ("quiet", 0, 0, 65535, "ticks", "since the newest request"),
     ("leading", 0, 0, 1, "flag", "we are the gateway now"),
     ("round_trip", 0, 0, 16777215, "us", "smoothed, of end-to-end acks; 0 unknown"),
+    ("strain", 0, 0, 44, "weight", "of acks that are missing; each that comes takes one off"),
+    ("despair", 0, 0, 3, "doublings", "of how long nobody looks for whom there was no way to"),
+    ("pause", 0, -1, TIME, "us", "nothing but alarms goes out before; -1 none"),
 )
 
 
@@ -178,6 +181,7 @@ QUEUED = (
     ("q_rank", QUEUE, 0, 3, "priority", "0 alarm, 1 control, 2 data"),
     ("q_order", QUEUE, 0, TIME, "number", "first in, first out"),
     ("q_due", QUEUE, 0, TIME, "us", "not to be sent before"),
+    ("q_born", QUEUE, 0, TIME, "us", "since when it waits here"),
     ("q_tries", QUEUE, 0, 255, "tries", "transmissions of this hop so far"),
     ("q_fails", QUEUE, 0, 255, "failures", "hops that failed here"),
     ("q_copies", QUEUE, 0, 15, "copies", "broadcasts: still to be sent"),

@@ -54,7 +54,7 @@ def install_own(node, gate, params, out):
         for d in range(params.nodes):
             node.next[node.bank * params.width + d] = gate.next[d]
             node.alt[node.bank * params.width + d] = gate.alt[d]
-    in_force(node, node.epoch, gate.version, out)
+    in_force(node, params, node.epoch, gate.version, out)
     if not params.activation:
         node.active = gate.version
 

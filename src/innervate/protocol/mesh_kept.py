@@ -3,7 +3,17 @@
 from innervate.protocol.arith import MASK16, MASK30, after, later
 from innervate.protocol.mesh_fields import QUEUE, WAITING
 from innervate.protocol.mesh_frames import add8, get16, inner
-from innervate.protocol.mesh_queue import ALARMS, CONTROL, MESSAGES, compose, drop, kick
+from innervate.protocol.mesh_queue import (
+    ALARMS,
+    CONTROL,
+    MESSAGES,
+    OWN,
+    WAITS,
+    compose,
+    drop,
+    has_room,
+    kick,
+)
 from innervate.protocol.mesh_search import BITS
 from innervate.protocol.mesh_seen import NO_WAY, is_hopeless, mark_bad, unskip
 from innervate.protocol.mesh_send import send_on
@@ -17,6 +27,7 @@ from innervate.protocol.mesh_words import (
     NO_ROUTE,
     PARITY,
     PRIORITY,
+    REPORT_ACCEPTED,
     REPORT_ARRIVED,
     REPORT_EXPIRED,
     RETRY,
@@ -26,6 +37,8 @@ from innervate.protocol.outbox import report, set_timer
 FREE = 0
 LONGEST_US = 1 << 27
 SURE_AFTER = 2  # tries; after fewer in vain nothing is concluded
+DESPAIR_MAX = 3
+PATIENCE = 48  # first waits: all tries of a message take 32
 OLDEST = 64  # numbers: a packet older than that its recipient could not tell from one it had
 TICK_MAX_US = 1 << 22
 
@@ -56,6 +69,26 @@ def keep(node, params, now, w, i, handle, out):
     wait_on(node, now, out)
 
 
+def keep_for_later(node, params, now, w, item, dest, flags, out):
+    """Keep a message that finds no room in the queue: its first try comes soon."""
+    node.seq = (node.seq + 1) & MASK16
+    node.wait_kind[w] = DATA
+    node.wait_seq[w] = node.seq
+    node.wait_dest[w] = dest
+    node.wait_flags[w] = flags
+    node.wait_tries[w] = 0
+    node.wait_hop[w] = 0
+    node.wait_at[w] = now
+    node.wait_sent[w] = now
+    node.wait_due[w] = (now + (params.e2e_us >> 2)) & MASK30
+    node.wait_handle[w] = item.handle
+    node.wait_length[w] = item.length
+    for k in range(item.length):
+        node.wait_body[w * DATA_MAX + k] = item.body[k]
+    report(out, REPORT_ACCEPTED, item.handle, node.seq)
+    wait_on(node, now, out)
+
+
 def timeout(node, params, w):
     """How long to wait for the end-to-end ack of the message in place w, us.
 
@@ -65,7 +98,7 @@ def timeout(node, params, w):
     wait = shortest(node, params)
     double = max(0, node.wait_tries[w] - 2)
     if params.e2e_adapt:
-        double = node.wait_tries[w] - 1
+        double = max(0, node.wait_tries[w] - 1)
     if node.wait_kind[w] != ALARM:
         wait = wait << min(double, 4)
     return min(wait, longest(params))
@@ -164,19 +197,45 @@ def is_queued(node, seq):
     return 0
 
 
+def is_old(node, params, now, w):
+    """1 if the message in place w is sent no more, however often it was.
+
+    Its recipient could have forgotten that it had it; and its place is wanted.
+    """
+    return (now - node.wait_at[w]) & MASK30 > patience(params)
+
+
+def patience(params):
+    """For how long a message is sent again at most, us: all its tries, and half of it more."""
+    if params.e2e_adapt:
+        return life(params)
+    return min(life(params), PATIENCE * min(params.e2e_us, LONGEST_US // PATIENCE))
+
+
+def crowds(node, dest, seq):
+    """1 if so many messages wait for a way to this recipient that they leave none for others."""
+    if not is_in_vain(node, dest, seq):
+        return 0
+    count = 0
+    for w in range(WAITING):
+        if node.wait_kind[w] == DATA and node.wait_dest[w] == dest:
+            count = count + 1
+    return count >= WAITING // 2
+
+
 def try_again(node, params, now, w, out):
     """Send a kept message once more, or give it up: 1 if it was sent."""
-    old = (now - node.wait_at[w]) & MASK30 > life(params)
-    if node.wait_tries[w] > params.e2e_tries or old:
+    if node.wait_tries[w] > params.e2e_tries or is_old(node, params, now, w):
         report(out, REPORT_EXPIRED, node.wait_handle[w], NO_ACK)
         if node.wait_kind[w] == DATA and node.wait_tries[w] > SURE_AFTER:
             mark_bad(node, NO_WAY, node.wait_dest[w])
+            node.despair = min(node.despair + 1, DESPAIR_MAX)
         node.wait_kind[w] = FREE
         return 0
     if node.wait_kind[w] == DATA and is_behind(node, node.wait_dest[w], node.wait_seq[w]):
         node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
         return 0
-    if node.wait_kind[w] == DATA and is_queued(node, node.wait_seq[w]):
+    if params.e2e_adapt and node.wait_kind[w] == DATA and is_queued(node, node.wait_seq[w]):
         node.wait_due[w] = (now + shortest(node, params)) & MASK30
         return 0
     node.wait_tries[w] = node.wait_tries[w] + 1
@@ -187,6 +246,8 @@ def try_again(node, params, now, w, out):
     rank = CONTROL if node.wait_flags[w] & PRIORITY else MESSAGES
     if node.wait_kind[w] == ALARM:
         rank = ALARMS
+    elif not clear_way(node, w):
+        return 1
     i = compose(node, now, rank, node.wait_kind[w], node.wait_dest[w], node.wait_flags[w], out)
     if i >= 0:
         node.seq = (node.seq - 1) & 65_535  # it keeps its number
@@ -195,6 +256,19 @@ def try_again(node, params, now, w, out):
             add8(node, i, node.wait_body[w * DATA_MAX + k])
         launch(node, params, now, i, w, node.wait_handle[w], out)
     return 1
+
+
+def clear_way(node, w):
+    """Before the message in place w goes out again: what is left of its last try does not.
+
+    0 if that is just being sent, or if there is no room.
+    """
+    for i in range(QUEUE):
+        if node.q_state[i] != FREE and node.q_owner[i] == w and node.q_seq[i] == node.wait_seq[w]:
+            if node.q_state[i] != WAITS:
+                return 0
+            drop(node, i)
+    return has_room(node, OWN)
 
 
 def on_end_ack(node, params, frame, now, out):

@@ -1,13 +1,23 @@
 """send_message and receive_messages: receipts, end-to-end acks and retries [mesh 1, RELIABLE]."""
 
 from innervate.protocol.mesh_frames import add8, add16, add_hop, copy_frame, inner
-from innervate.protocol.mesh_kept import free_wait, is_ahead, keep, launch, on_end_ack
+from innervate.protocol.mesh_kept import (
+    crowds,
+    free_wait,
+    is_ahead,
+    keep,
+    keep_for_later,
+    launch,
+    on_end_ack,
+)
 from innervate.protocol.mesh_queue import (
     ALARMS,
     CONTROL,
     MESSAGES,
+    OWN,
     compose,
     kick,
+    make_room,
 )
 from innervate.protocol.mesh_search import BITS
 from innervate.protocol.mesh_seen import accept, is_there
@@ -77,10 +87,17 @@ def on_message(node, params, now, item, out):
     owner = -1
     if flags & END_TO_END and dest != ALL:
         owner = free_wait(node)
-        if owner < 0:
+        if owner < 0 or crowds(node, dest, (node.seq + 1) & 65_535):
             report(out, REPORT_FULL, item.handle, NO_ROOM)
             return
-    i = compose(node, now, MESSAGES if not flags & PRIORITY else CONTROL, DATA, dest, flags, out)
+    i = -1
+    if flags & PRIORITY:
+        i = compose(node, now, CONTROL, DATA, dest, flags, out)
+    elif make_room(node, OWN, out):
+        i = compose(node, now, MESSAGES, DATA, dest, flags, out)
+    if i < 0 and owner >= 0:
+        keep_for_later(node, params, now, owner, item, dest, flags | first_flag(node, dest), out)
+        return
     if i < 0:
         report(out, REPORT_FULL, item.handle, NO_ROOM)
         return

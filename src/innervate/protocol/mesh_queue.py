@@ -3,12 +3,15 @@
 from innervate.protocol.arith import MASK16, MASK30, after
 from innervate.protocol.mesh_fields import QUEUE
 from innervate.protocol.mesh_frames import load, store
+from innervate.protocol.mesh_pace import NO_PAUSE, answered, is_held, is_pausing
 from innervate.protocol.mesh_words import (
     ACK,
     ACK_WAIT,
     ACK_WANTED,
     ALARM,
     ALL,
+    DETOURED,
+    END_TO_END,
     REPORT_DROPPED,
     REPORT_HOP,
     TTL,
@@ -29,6 +32,7 @@ NO_OWNER = -1
 ALARMS = 0
 CONTROL = 1
 MESSAGES = 2
+OWN = 3  # messages begun here: what others began has been on its way for longer
 
 
 def free_places(node):
@@ -52,6 +56,27 @@ def has_room(node, rank):
             if node.q_state[i] == WAITS and node.q_rank[i] > ALARMS:
                 return 1
     return 0
+
+
+def make_room(node, rank, out):
+    """As has_room; what looks for a way, and will be sent again, makes room for what knows its."""
+    if has_room(node, rank):
+        return 1
+    newest = -1
+    for i in range(QUEUE):
+        if node.q_state[i] == WAITS and node.q_rank[i] == MESSAGES and is_searching(node, i):
+            if newest < 0 or (node.q_order[i] - node.q_order[newest]) & MASK30 < MASK30 >> 1:
+                newest = i
+    if newest < 0 or free_places(node) < rank:
+        return 0
+    report(out, REPORT_DROPPED, node.q_origin[newest], node.q_seq[newest])
+    node.q_state[newest] = FREE
+    return 1
+
+
+def is_searching(node, i):
+    """1 if the message in place i looks for a way, and its origin sends it again."""
+    return node.q_flags[i] & DETOURED and node.q_flags[i] & END_TO_END
 
 
 def take_place(node, rank, out):
@@ -82,6 +107,7 @@ def place(node, now, rank, giver, out):
         node.q_order[i] = node.q_next
         node.q_next = (node.q_next + 1) & MASK30
         node.q_due[i] = now
+        node.q_born[i] = now
         node.q_tries[i] = 0
         node.q_fails[i] = 0
         node.q_copies[i] = 1
@@ -139,7 +165,10 @@ def is_before(node, i, j):
 def first_due(node, now):
     """Which frame goes next, or -1."""
     best = -1
+    pausing = is_pausing(node, now)
     for i in range(QUEUE):
+        if pausing and is_held(node, i):
+            continue
         if node.q_state[i] == WAITS and after(now, node.q_due[i]):
             if best < 0 or is_before(node, i, best):
                 best = i
@@ -152,6 +181,10 @@ def wake(node, now, out):
     for i in range(QUEUE):
         if node.q_state[i] == WAITS:
             wait = (node.q_due[i] - now) & MASK30
+            if after(now, node.q_due[i]):
+                wait = 0
+            if node.pause != NO_PAUSE and is_held(node, i):
+                wait = max(wait, (node.pause - now) & MASK30)
             if soonest < 0 or wait < soonest:
                 soonest = wait
     if soonest >= 0:
@@ -194,9 +227,19 @@ def kick(node, params, now, out):
             return
         node.busy = i
         node.q_state[i] = DOWN
-        load(node, i, out.frame[send(out, 0, node.q_tries[i], 0)])
+        load(node, i, out.frame[send(out, 0, attempt(node, i), 0)])
         if not params.told:
             settle(node, params, now, 1, out)
+
+
+def attempt(node, i):
+    """How much the frame in place i yields to others' frames: as after so many attempts.
+
+    Packets that look for a way yield to those that know theirs.
+    """
+    if node.q_flags[i] & DETOURED and node.q_rank[i] == MESSAGES:
+        return node.q_tries[i] + 2
+    return node.q_tries[i]
 
 
 def left(node, params, now, sent, out):
@@ -232,6 +275,7 @@ def acked(node, frame):
         return -1
     if node.q_link_dst[i] != frame.link_src:
         return -1
+    answered(node)
     drop(node, i)
     return i
 

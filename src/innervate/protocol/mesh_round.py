@@ -13,7 +13,6 @@ from innervate.protocol.mesh_queue import (
     kick,
     place,
 )
-from innervate.protocol.mesh_seen import hope_again
 from innervate.protocol.mesh_send import send_up
 from innervate.protocol.mesh_table import activate
 from innervate.protocol.mesh_upward import is_uplink, is_weak
@@ -77,7 +76,6 @@ def begin(node, params, gateway, epoch, round, out):
     node.parent = ALL
     node.quiet = 0
     node.due = NOTHING
-    hope_again(node)
     if gateway != node.number:
         node.leading = 0
     for k in range(params.places):
@@ -92,7 +90,7 @@ def on_request(node, params, now, frame, k, out):
     if is_newer(node, params, gateway, epoch, round):
         begin(node, params, gateway, epoch, round, out)
         node.active = get16(frame, 4)
-        activate(node, epoch, node.active, out)  # should the flood have passed us by
+        activate(node, params, epoch, node.active, out)  # should the flood have passed us by
         node.jitter = frame.body[6]
     elif gateway != node.gateway or epoch != node.epoch or round != node.round:
         return

@@ -7,6 +7,7 @@ from innervate.protocol.mesh_words import ALL, PARITY
 NONE16 = 65536
 FLOODED = 20  # in done_kind: a flooded alarm, whose instances count apart
 BITS = 15
+ANEW = 320  # numbers behind the newest: more than a packet can be that is still on its way
 NO_WAY = 254  # in bad_near: nobody leads there
 
 
@@ -28,9 +29,11 @@ def forget(node, params):
 def accept(node, params, origin, seq, first):
     """1 if this packet was not delivered before [mesh 1]; it counts as delivered from now on.
 
-    The window of an origin begins anew after silence, and where a packet that says FIRST is too
-    old for it: its origin has started anew. One in the window does not throw it away, for what
-    its origin sent with FIRST it may send again. A packet too old for the window does not count
+    The window of an origin begins anew after silence, and where a packet that says FIRST is far
+    too old for it: its origin has started anew. One in the window, or not far behind it, does not
+    throw it away: what its origin sent with FIRST it may send again, and copies of that may have
+    lost their way for a while. (An origin that starts anew there, one in 200, is heard after a
+    silence.) A packet too old for the window does not count
     as a sign of life: else an origin that started anew would never be heard.
     """
     base = origin * WINDOW_WORDS
@@ -40,7 +43,7 @@ def accept(node, params, origin, seq, first):
         begin_window(node, params, origin, seq)
         return 1
     if ahead >= HALF16 and behind >= BITS * WINDOW_WORDS:
-        if not first or node.heard_seq[origin] == seq:
+        if not first or behind < ANEW or node.heard_seq[origin] == seq:
             return 0
         begin_window(node, params, origin, seq)
         node.heard_seq[origin] = seq
@@ -211,6 +214,7 @@ def is_there(node, dest):
         if node.bad_dest[k] == dest:
             if node.bad_near[k] == NO_WAY:
                 node.bad_near[k] = ALL
+                node.despair = 0
 
 
 def hope_again(node):
@@ -220,7 +224,10 @@ def hope_again(node):
             node.bad_near[k] = ALL
 
 
-def unbad(node):
-    """New tables: whoever gave packets back may know a way now."""
+def unbad(node, params):
+    """New tables: whoever gave packets back may know a way now, but not to whom they leave out."""
     for k in range(SKIPS):
-        node.bad_near[k] = ALL
+        dest = node.bad_dest[k]
+        listed = dest >= params.width or node.next[node.bank * params.width + dest] != ALL
+        if node.bad_near[k] != NO_WAY or listed:
+            node.bad_near[k] = ALL

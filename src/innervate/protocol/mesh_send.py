@@ -4,7 +4,8 @@ from innervate.protocol.arith import MASK30
 from innervate.protocol.mesh_fields import QUEUE
 from innervate.protocol.mesh_frames import add_hop, was_at
 from innervate.protocol.mesh_near import suspect, trust
-from innervate.protocol.mesh_queue import UNACKED, WAITS, drop, kick
+from innervate.protocol.mesh_pace import missed
+from innervate.protocol.mesh_queue import ALARMS, UNACKED, WAITS, drop, kick
 from innervate.protocol.mesh_route import (
     advance_route,
     learn_failure,
@@ -138,10 +139,21 @@ def hop_failed(node, params, now, i, out):
     else:
         suspect(node, params, now, dead, planned(node, params, node.q_dest[i]) == dead, out)
         learn_failure(node, params, i, dead)
-        if not params.retry or node.q_fails[i] > HOPS_MAX:
+        if not params.retry or node.q_fails[i] > HOPS_MAX or is_stale(node, params, now, i):
             give_up(node, i, out)
         elif not aim(node, params, i, out):
             give_up(node, i, out)
+
+
+def is_stale(node, params, now, i):
+    """1 if the message in place i waits here for so long that others need its place more.
+
+    Queues full of what has to go to others with full queues would not move on for ever; who sent
+    it sends it again.
+    """
+    if node.q_rank[i] == ALARMS:
+        return 0
+    return (now - node.q_born[i]) & MASK30 > max(4 * params.e2e_us, params.tick_us)
 
 
 def turn_away(node, params, dead, out):
@@ -168,6 +180,7 @@ def unanswered(node, params, now, out):
     if i < 0 or node.q_state[i] != UNACKED:
         return
     node.busy = -1
+    missed(node, params, now)
     if node.q_tries[i] < params.transmissions:
         node.q_state[i] = WAITS
         node.q_due[i] = now

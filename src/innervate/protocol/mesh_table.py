@@ -57,13 +57,13 @@ def expect(node, epoch, version, count):
     return 0
 
 
-def in_force(node, epoch, version, out):
+def in_force(node, params, epoch, version, out):
     """What came in is in force from now on."""
     node.version = version
     node.table_epoch = epoch
     node.new_version = 0
     node.ready = 0
-    unbad(node)
+    unbad(node, params)
     report(out, REPORT_TABLE, version, epoch)
 
 
@@ -132,19 +132,19 @@ def finish_table(node, params, out):
         node.ready = 1
     else:
         node.bank = 1 - node.bank
-        in_force(node, node.new_epoch, node.new_version, out)
+        in_force(node, params, node.new_epoch, node.new_version, out)
 
 
-def activate(node, epoch, version, out):
+def activate(node, params, epoch, version, out):
     """The gateway says that these tables are in force."""
     if node.ready and epoch == node.new_epoch and version == node.new_version:
         node.bank = 1 - node.bank
-        in_force(node, epoch, version, out)
+        in_force(node, params, epoch, version, out)
 
 
 def on_activate(node, params, now, frame, out):
     """Flooded: put the new tables into force."""
-    activate(node, frame.body[0], get16(frame, 1), out)
+    activate(node, params, frame.body[0], get16(frame, 1), out)
     if not is_flooded(node, frame.origin, frame.seq, ACTIVATE, 0):
         spread(node, params, now, frame, out)
 
@@ -188,7 +188,7 @@ def on_graph(node, params, now, frame, out):
         read_edges(node, params, frame, index)
         node.parts = node.parts | 1 << index
         if node.parts == all_parts(count):
-            in_force(node, epoch, version, out)
+            in_force(node, params, epoch, version, out)
             answer_graph(node, params, now, epoch, version, count, out)
     if fresh:
         spread(node, params, now, frame, out)

@@ -186,6 +186,7 @@ def judge(results: Results, quick: bool) -> list[Claim]:
             "nothing is delivered twice, to the old gateway or the new one",
             f"{twice} messages in {len(SETTINGS) * len(alone)} runs",
             verdict(twice == 0),
+            "a copy was on its way for longer than its recipient remembers",
         ),
     ]
 
@@ -219,8 +220,8 @@ def _busy(results: Results, seeds: range) -> Claim:
         f"{percent(before, 1)} come before its death and {percent(during, 1)} after it; tables of "
         f"the standby are complete in {taken} of {len(runs)} networks",
         verdict(during > 0.98),
-        "each packet looks at every node for a recipient that is dead, up to six times: searches "
-        "fill the channel, acks are lost, and live neighbours are suspected",
+        "each packet looks at every node for a recipient that is dead; who is not acknowledged "
+        "pauses, but until the first searches have ended they fill the channel",
     )
 
 
