@@ -152,16 +152,23 @@ def node_file(folder, **more):
     return path
 
 
+START = """
+import os, signal, sys, threading, time
+from innervate.cli import main
+def end():
+    while not os.path.exists({socket!r}):
+        time.sleep(0.01)
+    os.kill(os.getpid(), signal.SIGTERM)
+threading.Thread(target=end).start()
+code = main(["live", "node", {file!r}])
+print(sorted({{"numpy", "numba", "polars", "cyclopts"}} & set(sys.modules)))
+sys.exit(code)
+"""
+
+
 def test_a_node_starts_quickly_and_stays_small(tmp_path):
     path = node_file(tmp_path)
-    code = (
-        "import sys; from innervate.cli import main; "
-        "import threading, os, signal; "
-        "threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGTERM)).start(); "
-        f"code = main(['live', 'node', {str(path)!r}]); "
-        "heavy = {'numpy', 'numba', 'polars', 'cyclopts'} & set(sys.modules); "
-        "print(sorted(heavy)); sys.exit(code)"
-    )
+    code = START.format(socket=str(tmp_path / "n0.sock"), file=str(path))
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True
