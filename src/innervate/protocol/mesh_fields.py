@@ -88,6 +88,7 @@ def neighbours(k):
         ("heard", k, 0, 65535, "ticks", "when we heard it last"),
         ("rssi", k, -512, 511, "dBm/4", "smoothed"),
         ("suspect", k, 0, 1, "flag", "it does not answer; until `until`"),
+        ("doubt", k, 0, 1, "flag", "it did not answer, and was not heard since"),
         ("until", k, 0, TIME, "us", "... then it is trusted again"),
         ("round_rssi", k, -128, 127, "dBm", "of its request in this round"),
         ("round_depth", k, 0, 255, "hops", "it advertised in this round; 255 not heard"),

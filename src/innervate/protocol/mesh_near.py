@@ -6,6 +6,7 @@ from innervate.protocol.outbox import report
 
 FREE = 255
 UNHEARD = 255
+LIVELY_TICKS = 2
 
 
 def forget_all(node, params):
@@ -13,6 +14,7 @@ def forget_all(node, params):
     for k in range(params.places):
         node.near[k] = FREE
         node.suspect[k] = 0
+        node.doubt[k] = 0
         node.round_depth[k] = UNHEARD
 
 
@@ -34,6 +36,7 @@ def hear(node, params, who, rssi):
         node.rssi[k] = node.rssi[k] + ((4 * rssi - node.rssi[k]) >> 2)
         node.heard[k] = node.ticks
         node.suspect[k] = 0
+        node.doubt[k] = 0
         return k
     faintest = 0
     for j in range(params.places):
@@ -49,6 +52,7 @@ def hear(node, params, who, rssi):
     node.rssi[k] = 4 * rssi
     node.heard[k] = node.ticks
     node.suspect[k] = 0
+    node.doubt[k] = 0
     node.round_depth[k] = UNHEARD
     return k
 
@@ -59,6 +63,12 @@ def hear_again(node, params, who):
     if k >= 0:
         node.heard[k] = node.ticks
         node.suspect[k] = 0
+        node.doubt[k] = 0
+
+
+def is_lively(node, k):
+    """1 if the neighbour in place k was heard within the last two ticks."""
+    return ((node.ticks - node.heard[k]) & 65_535) <= LIVELY_TICKS
 
 
 def suspect(node, params, now, who, planned, out):
@@ -66,6 +76,7 @@ def suspect(node, params, now, who, planned, out):
     k = place_of(node, params, who)
     if k >= 0:
         node.suspect[k] = 1
+        node.doubt[k] = 1
         node.until[k] = (now + params.suspect_us) & MASK30
         report(out, REPORT_SUSPECT, who, planned)
 

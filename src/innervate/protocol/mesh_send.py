@@ -3,7 +3,7 @@
 from innervate.protocol.arith import MASK30
 from innervate.protocol.mesh_fields import QUEUE
 from innervate.protocol.mesh_frames import add_hop, was_at
-from innervate.protocol.mesh_near import suspect, trust
+from innervate.protocol.mesh_near import is_lively, place_of, suspect, trust
 from innervate.protocol.mesh_pace import missed
 from innervate.protocol.mesh_queue import ALARMS, UNACKED, WAITS, drop, kick
 from innervate.protocol.mesh_route import (
@@ -185,8 +185,10 @@ def unanswered(node, params, now, out):
     if i < 0 or node.q_state[i] != UNACKED:
         return
     node.busy = -1
-    missed(node, params, now)
-    if node.q_tries[i] < params.transmissions:
+    who = place_of(node, params, node.q_link_dst[i])
+    if who < 0 or is_lively(node, who):
+        missed(node, params, now)
+    if node.q_tries[i] < params.transmissions and not (who >= 0 and node.doubt[who]):
         node.q_state[i] = WAITS
         node.q_due[i] = now
     else:
