@@ -112,8 +112,8 @@ def _write(case: Case, out: Path, number: int, quiet: bool) -> None:
 
 def verify(system: str, options: VerifyOptions, as_json: bool, out: Path | None) -> int:
     """Explore a protocol with the options of the command line."""
-    if system not in ("skin", "radio"):
-        raise errors.UserError(f'verify explores skin or radio, not "{system[:40]}"')
+    if system not in ("skin", "radio", "mesh"):
+        raise errors.UserError(f'verify explores skin, radio or mesh, not "{system[:40]}"')
     for name in ("cells", "starts", "states", "walks", "count"):
         if getattr(options, name) < 0:
             raise errors.UserError(f"--{name} must be 0 or more, not {getattr(options, name)}")
@@ -127,6 +127,11 @@ def verify(system: str, options: VerifyOptions, as_json: bool, out: Path | None)
         return verifying_radio.search(options, as_json)
     if options.mutants:
         return _mutants(as_json)
+    if system == "mesh":
+        from innervate.cli import verifying_mesh
+
+        wanted_mesh = verifying_mesh.wanted_of(options, _bytes(options.memory))
+        return verifying_mesh.search(wanted_mesh, as_json, out)
     from innervate.verify import cases
 
     wanted = cases.Wanted(
