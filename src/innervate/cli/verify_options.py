@@ -48,7 +48,8 @@ class VerifyOptions:
     random
         Simulate whole networks, all settings and faults drawn, until interrupted.
     mutants
-        Try the explorer on copies of the protocol with a small mistake in each.
+        Try the explorer on copies of the protocols with a small mistake in each: all, or those of
+        radio or mesh.
     seed
         With --random the first network's number, with --walks the walks'.
     count

@@ -16,9 +16,8 @@ from innervate.verify.mesh_local import (
     BROKEN_UNHEARD,
     NONE,
 )
-from innervate.verify.mesh_net import DEAD, Net, Nets
+from innervate.verify.mesh_net import DEAD, EVENTS_MAX, Net, Nets
 
-EVENTS_MAX = 3_000  # of a message's calm future; a beat of six nodes has some ten
 IN_USE = (words.DATA, words.E2E_ACK, words.ALARM)
 
 
@@ -123,7 +122,7 @@ class Fair:
     def _last_quarrel(self, net: Net) -> End:
         rows: list[tuple[bytes, int, bool]] = []
         calm, end = net._replace(left=(0, 0, 0, 0)), End(0, 0, NONE)
-        while True:
+        while len(rows) < EVENTS_MAX:
             row = self.nets.pack(calm)
             known = self.ends.get(row)
             if known is not None:
@@ -137,6 +136,8 @@ class Fair:
             if step[2]:
                 end = End(step[2], 0, 0)
                 break
+        else:
+            end = End(BROKEN_ENDLESS, 0, 0)
         for row, wait, quarrels in reversed(rows):
             later = end.events
             here = wait + later if later != NONE else wait if quarrels else NONE

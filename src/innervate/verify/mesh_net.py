@@ -25,6 +25,7 @@ OFFER, OUTSIDE, AIR, FIRE, DIE, REVIVE = range(6)
 
 DEAD = -1
 SETTLED_US = 3_000_000  # tables are there; messages are offered from then on
+EVENTS_MAX = 5_000  # of a first round, and of a message's calm future; some hundred are enough
 
 
 class Move(NamedTuple):
@@ -122,8 +123,10 @@ class Nets:
         for who in order:
             nodes[who] = self.locals.start(who, 0)
         net = Net(tuple(nodes), (0,) * self.n, (0, 0, 0, 0), (1 << 20,) * self.n, 1 << 20, 0)
-        past = 0
+        past = events = 0
         while past < SETTLED_US and not model.beats:
+            events += 1
+            assert events < EVENTS_MAX, "the first round has no end"
             wait = self.soonest(net)[0]
             step = self.steady(net)
             assert step is not None

@@ -139,7 +139,8 @@ def _dest(found: Found) -> int:
         for number in last[1].nodes:
             handed = NONE if number == DEAD else found.nets.locals.handed(number)
             if handed != NONE and local.goes_round(found.nets.locals.packets[handed]):
-                return found.nets.locals.packets[handed].dest
+                dest = found.nets.locals.packets[handed].dest
+                return dest if dest < model.nodes else 0
     return model.offers[0][1] if model.offers else 0
 
 

@@ -20,10 +20,13 @@ ROWS = 1 << 16
 OUTBOX = 16
 
 
-def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> r.World:
+def build(
+    plan: Any, plain: bool, checks: bool, keep: bool, trail: bool, room: int = ROWS
+) -> r.World:
     """The world of a plan, before its first event.
 
-    `keep` keeps a row per report, transmission and delivered packet, `trail` one per handler call.
+    `keep` keeps a row per report, transmission and delivered packet, `trail` one per handler call;
+    there is `room` for so many before the loop stops.
     """
     tables = w.Tables(plain)
     n = plan.stations
@@ -31,7 +34,7 @@ def build(plan: Any, plain: bool, checks: bool, keep: bool, trail: bool) -> r.Wo
     stations = tables.states(fields, n)
     low, high = records.bounds(fields)
     order, delay, degree = _neighbours(plan)
-    rows = ROWS if keep else 1
+    rows = room if keep else 1
     world = r.World(
         run=tables.records(r.RUN, 1, wide=r.WIDE),
         heap=r.Heap(tables.numbers(64 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64)),
