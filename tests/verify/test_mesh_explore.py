@@ -74,6 +74,22 @@ def test_a_message_comes_once_and_comes_whoever_dies(failover):
     assert found.calls < found.tally.generated
 
 
+@pytest.mark.parametrize("failover", ["search", "graph"])
+def test_a_known_weakness_three_losses_on_a_bridge_silence_whoever_is_behind_it(failover):
+    # With the settings as shipped: the relay suspects the recipient for longer than the origin
+    # tries, and gives back what comes. This has to change when the router does.
+    budget = MeshBudget(deaths=0, frames=3, acks=0)
+    made = model("line", failover, offers=((2, 0),), budget=budget, settings=())
+    found = mesh_search.explore(made, states=3_000)
+    assert found.broken == mesh_local.BROKEN_UNHEARD
+    told = story.tell(found)
+    lost = [text for text in told.sentences if "but it is lost" in text]
+    assert len(lost) == 3
+    assert all(text.startswith("Node 1 sends message 1 to node 0") for text in lost)
+    fewer = made.changed(budget=MeshBudget(0, 0, 2, 0))
+    assert mesh_search.explore(fewer, states=2_000).broken == 0
+
+
 def test_two_gateways_agree_when_the_first_returns():
     made = MeshModel(
         mesh_model.parse("line"), standby=(2,), beats=4, budget=DEATH, settings=mesh_cases.QUICK

@@ -24,9 +24,6 @@ MUTANTS = tuple(
         ("nothing is ever proved",
          "        prove(station, out)\n    station.heard = 1\n",
          "        station.heard = 1\n    station.heard = 1\n"),
-        ("who has sent everything keeps its turn",
-         "    if not more:\n        station.live[station.pos] = 0\n    station.cur = behind\n",
-         "    station.cur = behind\n"),
     )
 )  # fmt: skip
 

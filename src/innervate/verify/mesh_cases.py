@@ -114,7 +114,7 @@ def _own(failover: str, wanted: MeshWanted) -> Iterator[tuple[str, MeshModel]]:
         yield "a message", MeshModel(links, failover, far, budget=budget, settings=SHORT)
     if failover == "search":
         links = wanted.links or mesh_model.parse("line")
-        budget = budget_of(wanted.budget, LOST_ACK)
+        budget = budget_of(wanted.budget, MeshBudget(0, 0, 0, 0))
         last = max(b for _, b in links)
         yield "an alarm", MeshModel(links, failover, (), last, budget=budget, settings=SHORT)
         budget = budget_of(wanted.budget, MeshBudget(1, 1, 0, 0))

@@ -24,8 +24,6 @@ MUTANTS = tuple(
          "    node.wait_seq[w] = node.q_seq[i]\n", "    node.wait_seq[w] = node.q_seq[i] ^ 1\n"),
         ("what is due waits", "WAITS and after(now, node.q_due[i]):",
          "WAITS and not after(now, node.q_due[i]):"),
-        ("of two gateways of one epoch none gives way", "return gateway < node.gateway",
-         "return 0"),
         ("nobody waits for a hop's ack",
          "        set_timer(out, ACK_WAIT, (now + wait) & MASK30)\n", ""),
         ("a packet that was delivered is delivered again",
@@ -48,9 +46,6 @@ MUTANTS = tuple(
          "    if node.q_tries[i] < params.transmissions:\n"),
         ("frames behind the first are forgotten",
          "            wake(node, now, out)\n            return\n", "            return\n"),
-        ("what is taken over is not sent on",
-         "    send_on(node, params, now, i, out)\n    kick(node, params, now, out)\n\n\ndef flood",
-         "    kick(node, params, now, out)\n\n\ndef flood"),
     )
 )  # fmt: skip
 

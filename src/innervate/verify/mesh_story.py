@@ -97,7 +97,8 @@ def tell(found: Found) -> MeshStory:
     story = MeshStory(found, TITLES[found.broken], _dest(found))
     before = found.start
     for move, after, _ in found.path:
-        story.sentences.append(_sentence(found.nets, move, before, after))
+        text = _sentence(found.nets, move, before, after)
+        story.sentences.append(f"{text[0].upper()}{text[1:]}.")
         story.scenes.append(_scene(found.nets, story.dest, move, after))
         before = after
     story.ring = ring(story.scenes[-1].hops if story.scenes else [])
