@@ -27,7 +27,7 @@ def test_every_mutant_is_caught(mutant):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("model", mesh_mutants.models(), ids=str)
+@pytest.mark.parametrize("model", list(mesh_mutants.models()), ids=str)
 def test_the_protocol_as_it_is_passes(model):
     found = mesh_search.explore(model)
     assert (found.broken, found.tally.ended) == (0, "complete")
