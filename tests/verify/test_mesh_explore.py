@@ -90,6 +90,13 @@ def test_a_known_weakness_three_losses_on_a_bridge_silence_whoever_is_behind_it(
     assert mesh_search.explore(fewer, states=2_000).broken == 0
 
 
+def test_a_relay_that_restarts_gives_everything_back_until_the_next_round():
+    budget = MeshBudget(deaths=1, revivals=1, frames=0, acks=0)
+    found = mesh_search.explore(model("line", offers=((2, 0),), budget=budget))
+    assert found.broken == mesh_local.BROKEN_UNHEARD
+    assert "is switched on again" in " ".join(story.tell(found).sentences)
+
+
 def test_two_gateways_agree_when_the_first_returns():
     made = MeshModel(
         mesh_model.parse("line"), standby=(2,), beats=4, budget=DEATH, settings=mesh_cases.QUICK
