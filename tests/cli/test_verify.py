@@ -43,10 +43,31 @@ def test_json_is_all_there_is(sh):
     assert all(case["states"] > 100 for case in cases)
 
 
+def test_a_mesh_is_explored(sh):
+    assert sh("verify", "mesh", "--graph", "line", "--rule", "graph") == 0
+    assert "0-1 1-2 " in sh.out
+    assert "all states; settled in" in sh.out
+    assert sh.out.splitlines()[-1] == "Nothing broken in 1 explorations, all completely."
+    assert sh("verify", "mesh", "--graph", "line", "--rule", "graph", "--walks", "9", "--json") == 0
+    assert [case["ended"] for case in json.loads(sh.out)] == ["walked"]
+
+
+def test_a_mesh_counterexample_is_told_written_and_1(sh):
+    assert sh("verify", "mesh", "--rule", "random", "--out", "found") == 1
+    assert "    1. Node 1 is given message 1 for node 0." in sh.out
+    assert "between nodes 1 and 2, for good" in sh.out
+    assert {path.suffix for path in Path("found").iterdir()} == {".svg", ".toml", ".txt"}
+    assert sh("run", "found/mesh-counterexample-1.toml", "--no-report", "--json") == 0
+    assert json.loads(sh.out)["looped"] > 30
+
+
 @pytest.mark.parametrize(
     ("words", "line"),
     [
-        (("mesh",), 'verify explores skin or radio, not "mesh"'),
+        (("car",), 'verify explores skin, radio or mesh, not "car"'),
+        (("mesh", "--rule", "guess"), "--rule is a failover for a mesh, search"),
+        (("mesh", "--graph", "0-1 2-3"), "a mesh joins the nodes 0, 1, ... by links"),
+        (("mesh", "--budget", "cuts=1"), "the names are deaths, revivals, frames, acks, ticks"),
         (("--rule", "other"), "--rule is feasible, strict, paper or all"),
         (("--graph", "pc-1 3-4"), "all of them by cables"),
         (("--cells", "9"), "--cells must be 1 to 4"),

@@ -33,6 +33,15 @@ def settled(count, links, **settings):
     return bench
 
 
+def on_a_full_channel(bench, until):
+    """Everybody is heard, nobody answers node 0."""
+    bench.lost = lambda frame, to: 0 in (frame.link_src, to)
+    while bench.now < until:
+        bench.nodes[0].heard = [bench.nodes[0].ticks] * 32
+        bench.nodes[0].doubt = [0] * 32
+        bench.run(bench.now + 100_000)
+
+
 def data_of(bench, node, since=SETTLED):
     return [at for at, i, f in bench.sent if i == node and f.kind == DATA and at >= since]
 
@@ -60,10 +69,9 @@ def test_an_end_to_end_ack_that_passes_by_spares_the_last_hop():
 
 def test_who_is_never_answered_sends_less_and_less():
     bench = settled(9, STAR)
-    bench.dead = set(range(1, 9))
     for k in range(1, 9):
         bench.send(0, k, handle=k)
-    bench.run(SETTLED + 8_000_000)
+    on_a_full_channel(bench, SETTLED + 8_000_000)
     times = data_of(bench, 0)
     early = sum(at < SETTLED + 500_000 for at in times)
     late = sum(at >= SETTLED + 7_500_000 for at in times)
@@ -73,16 +81,51 @@ def test_who_is_never_answered_sends_less_and_less():
 
 def test_strain_goes_when_answers_come():
     bench = settled(9, STAR)
-    bench.dead = set(range(1, 9))
     for k in range(1, 9):
         bench.send(0, k)
-    bench.run(SETTLED + 12_000_000)
-    bench.dead = set()
+    on_a_full_channel(bench, SETTLED + 12_000_000)
+    bench.lost = lambda frame, to: False
     before = bench.nodes[0].strain
     for _ in range(60):
         bench.send(0, 3)
         bench.run(bench.now + 200_000)
     assert bench.nodes[0].strain < before
+
+
+def test_neighbours_that_are_silent_do_not_make_us_pause():
+    bench = settled(9, STAR)
+    bench.run(SETTLED + 3_000_000)
+    bench.dead = set(range(1, 9))
+    bench.send(0, 3)
+    bench.run(SETTLED + 11_000_000)
+    assert bench.nodes[0].strain == 0
+    assert bench.nodes[0].doubt.count(1) == 8
+
+
+def test_who_did_not_answer_and_was_not_heard_since_is_tried_once():
+    bench = settled(3, LINE)
+    bench.dead = {1}
+    bench.send(0, 1, flags=0)
+    bench.run(SETTLED + 11_000_000)  # the suspicion has ended, the doubt has not
+    assert len(data_of(bench, 0)) == 3
+    bench.send(0, 1, flags=0)
+    bench.run(bench.now + 1_000_000)
+    assert len(data_of(bench, 0)) == 4
+
+
+def test_a_message_to_all_comes_once_however_many_are_on_their_way():
+    bench = settled(3, LINE)
+    old = [f for _, _, f in bench.sent]
+    bench.send(0, 255, text=b"old")
+    bench.run(bench.now + 500_000)
+    (first,) = [f for _, i, f in bench.sent[len(old) :] if i == 0 and f.kind == DATA][:1]
+    for k in range(70):
+        bench.send(0, 255, text=bytes([k]))
+        bench.run(bench.now + 50_000)
+    bench.push(bench.now + 1, ("frame", 1, first))  # a late copy
+    bench.run(bench.now + 500_000)
+    came = [bytes(f.body[: f.length]) for _, i, f in bench.delivered if i == 2]
+    assert came == [b"old"] + [bytes([k]) for k in range(70)]
 
 
 def test_messages_for_somebody_dead_leave_room_for_others():

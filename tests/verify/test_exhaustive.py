@@ -38,6 +38,11 @@ def test_triangle_with_triggered_updates(budget):
     fine(SkinModel(graphs.parse("triangle"), "feasible", "triggered", budget))
 
 
+@pytest.mark.parametrize("graph", ["line", "star"])
+def test_three_cells_with_triggered_updates_and_one_fault(graph):
+    fine(SkinModel(graphs.parse(graph), "feasible", "triggered", Budget(faults=1)))
+
+
 @pytest.mark.parametrize("rule", ["feasible", "strict"])
 def test_four_cells_with_a_failure_and_a_loss(rule):
     for graph in graphs.all_graphs(4):

@@ -3,7 +3,10 @@
 import pytest
 
 from innervate.run import radio_grid as grid
+from innervate.run import radio_mutants
+from innervate.run import radio_tree as tree
 from innervate.run.errors import RunError
+from innervate.verify import mutants
 
 
 def test_a_grid_has_all_its_points():
@@ -55,3 +58,53 @@ def test_a_grid_that_cannot_be_is_refused():
         grid.base_plan(grid.Grid(stations=5))
     with pytest.raises(RunError, match="at most twice"):
         grid.base_plan(grid.Grid(delays_us=(52, 208)))
+
+
+@pytest.mark.parametrize("turnaround_us", [0, 2000])
+def test_practical_is_in_order_whatever_two_stations_draw(turnaround_us):
+    made = grid.Grid(2, "practical", turnaround_us, offers_us=(0,), delays_us=(104,))
+    grown = tree.search(tree.Tree(made, depth=4))
+    assert (grown.ended, grown.broken) == ("complete", {})
+    assert grown.deepest == 4
+    assert grown.runs >= 3**2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("turnaround_us", [0, 2000])
+@pytest.mark.parametrize(("stations", "depth"), [(2, 8), (3, 6), (4, 5)])
+def test_practical_is_in_order_whatever_is_drawn(stations, depth, turnaround_us):
+    delays_us = (52, 104) if stations == 2 else (104,)
+    made = grid.Grid(stations, "practical", turnaround_us, 5, (0, 52), delays_us)
+    grown = tree.search(tree.Tree(made, depth), limit=4000)
+    assert grown.broken == {}
+
+
+def test_ties_do_not_depend_on_what_is_drawn():
+    made = grid.Grid(2, "paper", offers_us=(0,), delays_us=(104,))
+    grown = tree.search(tree.Tree(made, depth=2))
+    assert grown.ended == "complete"
+    assert grown.broken.keys() == {grid.OVERLAP}
+    assert tree.search(tree.Tree(made, depth=2), limit=1).ended == "limit"
+
+
+def test_all_values_of_a_small_draw_and_the_ends_of_a_large_one():
+    assert tree.values(3) == [0, 1, 2]
+    assert tree.values(1000) == [0, 500, 999]
+
+
+@pytest.mark.parametrize("name", ["a collision's wait is not drawn", "nothing is ever proved"])
+def test_a_radio_mutant_is_caught(name):
+    found = radio_mutants.hunt(next(m for m in radio_mutants.MUTANTS if m.name == name))
+    assert found.by == "a packet is never delivered"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("mutant", radio_mutants.MUTANTS, ids=str)
+def test_every_radio_mutant_is_caught(mutant):
+    assert radio_mutants.hunt(mutant).by
+
+
+@pytest.mark.slow
+def test_the_practical_protocol_as_it_is_passes():
+    same = mutants.Mutant("none", "PARITY = 128", "PARITY = 128")
+    assert radio_mutants.hunt(same).by == ""

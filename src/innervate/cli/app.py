@@ -264,7 +264,7 @@ def verify(
     Parameters
     ----------
     system
-        Which protocol: skin or radio.
+        Which protocol: skin, radio or mesh.
     json
         Print the results as JSON and nothing else.
     out

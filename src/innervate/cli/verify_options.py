@@ -20,16 +20,19 @@ class VerifyOptions:
     ----------
     rule
         Skin: feasible (if left out), strict, paper or all. Radio: practical (if left out) or paper.
+        Mesh: a failover, search or graph (both if left out), alternate, random or all.
     updates
         periodic, triggered or all.
     graph
         Cables like "pc-1 1-2 2-3", a name (line, star, triangle, ring, pair, complete), or all
-        graphs of up to --cells cells.
+        graphs of up to --cells cells. Mesh: links like "0-1 1-2" (0 is the gateway), or a name
+        (line, triangle, square, kite, house, spare, prism).
     cells
         How many cells the graphs may have, 1 to 4 (2 if left out); stations of a radio, 2 to 4.
     budget
         How often what may happen, like "ticks=3,counts=2,loss=1,cut=1,heal=1,false=1,restart=1,
-        faults=2"; these are the defaults, and faults counts all five kinds together.
+        faults=2"; these are the defaults, and faults counts all five kinds together. Mesh:
+        "deaths=1,revivals=0,frames=0,acks=1,ticks=0".
     prompt
         Every frame arrives or is lost before anything else happens.
     liveness
@@ -45,7 +48,8 @@ class VerifyOptions:
     random
         Simulate whole networks, all settings and faults drawn, until interrupted.
     mutants
-        Try the explorer on copies of the protocol with a small mistake in each.
+        Try the explorer on copies of the protocols with a small mistake in each: all, or those of
+        radio or mesh.
     seed
         With --random the first network's number, with --walks the walks'.
     count

@@ -10,6 +10,8 @@ from innervate.cli import errors
 from innervate.cli.progress import Display
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from innervate.cli.verify_options import VerifyOptions
     from innervate.verify.cases import Case, Wanted
 
@@ -112,8 +114,8 @@ def _write(case: Case, out: Path, number: int, quiet: bool) -> None:
 
 def verify(system: str, options: VerifyOptions, as_json: bool, out: Path | None) -> int:
     """Explore a protocol with the options of the command line."""
-    if system not in ("skin", "radio"):
-        raise errors.UserError(f'verify explores skin or radio, not "{system[:40]}"')
+    if system not in ("skin", "radio", "mesh"):
+        raise errors.UserError(f'verify explores skin, radio or mesh, not "{system[:40]}"')
     for name in ("cells", "starts", "states", "walks", "count"):
         if getattr(options, name) < 0:
             raise errors.UserError(f"--{name} must be 0 or more, not {getattr(options, name)}")
@@ -121,12 +123,17 @@ def verify(system: str, options: VerifyOptions, as_json: bool, out: Path | None)
         from innervate.cli import verifying_random
 
         return verifying_random.search(options.seed, options.count, as_json, out)
+    if options.mutants:
+        return _mutants(system, as_json)
     if system == "radio":
         from innervate.cli import verifying_radio
 
         return verifying_radio.search(options, as_json)
-    if options.mutants:
-        return _mutants(as_json)
+    if system == "mesh":
+        from innervate.cli import verifying_mesh
+
+        wanted_mesh = verifying_mesh.wanted_of(options, _bytes(options.memory))
+        return verifying_mesh.search(wanted_mesh, as_json, out)
     from innervate.verify import cases
 
     wanted = cases.Wanted(
@@ -146,16 +153,25 @@ def verify(system: str, options: VerifyOptions, as_json: bool, out: Path | None)
     return skin(wanted, as_json, out)
 
 
-def _mutants(as_json: bool) -> int:
+def _hunts(system: str) -> list[tuple[Any, Callable[[Any], Any]]]:
+    """All mutants of a protocol, or of all three where none was named, and what hunts each."""
+    from innervate.run import radio_mutants
+    from innervate.verify import mesh_mutants, mutants
+
+    rooms = {"skin": mutants, "mesh": mesh_mutants, "radio": radio_mutants}
+    wanted = rooms if system == "skin" else {system: rooms[system]}
+    return [(mutant, room.hunt) for room in wanted.values() for mutant in room.MUTANTS]
+
+
+def _mutants(system: str, as_json: bool) -> int:
     """Try the explorer on copies of the protocol with a mistake in each; 1 if one is missed."""
     from innervate.kernel.stop import Stop
-    from innervate.verify import mutants
 
-    caught = []
+    caught, hunts = [], _hunts(system)
     with Stop() as stop, Display(as_json) as display:
-        for number, mutant in enumerate(mutants.MUTANTS):
-            display.show(mutant.name, number, len(mutants.MUTANTS), None)
-            caught.append(mutants.hunt(mutant))
+        for number, (mutant, hunt) in enumerate(hunts):
+            display.show(mutant.name, number, len(hunts), None)
+            caught.append(hunt(mutant))
             if not as_json:
                 by = f"{caught[-1].by} ({caught[-1].where})" if caught[-1].by else "NOT CAUGHT"
                 print(f"{mutant.name}: {by}", flush=True)

@@ -33,7 +33,7 @@ def draw(story: Story) -> Drawing:
     shown = _shown(story)
     rows = -(-len(shown) // COLUMNS)
     wide = PANEL[0] * min(COLUMNS, len(shown)) if len(shown) > 2 else PANEL[0] * 4
-    texts = [part for i, s in enumerate(story.sentences, 1) for part in _wrapped(f"{i}. {s}")]
+    texts = [part for i, s in enumerate(story.sentences, 1) for part in wrapped(f"{i}. {s}")]
     high = TOP + rows * PANEL[1] + LINE * (len(texts) + 2)
     drawing = Drawing(max(wide, PANEL[0] * 4), high, f"Counterexample: {story.title}")
     drawing.text((12, 22), story.title, "strong alarm")
@@ -62,7 +62,8 @@ def _shown(story: Story) -> list[int]:
     return [*found, last] if found[-1] != last else found
 
 
-def _wrapped(text: str) -> list[str]:
+def wrapped(text: str) -> list[str]:
+    """A sentence in lines."""
     lines, line = [], ""
     for word in text.split():
         if len(line) + len(word) > LETTERS:
@@ -105,22 +106,23 @@ def _panel(story: Story, index: int, places: list[Point]) -> Drawing:
     for cell, parent in enumerate(scene.parents):
         if parent != NONE:
             closed = is_last and cell in story.ring
-            _arrow(panel, places[cell], places[parent], "ring" if closed else "way")
+            arrow(panel, places[cell], places[parent], "ring" if closed else "way")
     for start, end in cut:  # over the arrow of a cell that has not noticed yet
         panel.line(start, end, "cut")
     for node, place in enumerate(places):
-        _node(panel, place, graph.label(node), node == graph.sink, node == scene.actor)
+        label = "PC" if node == graph.sink else graph.label(node)
+        disc(panel, place, label, node == graph.sink, node == scene.actor)
     panel.text((12, 18), f"after {index + 1}", "small")
     return panel
 
 
-def _node(panel: Drawing, place: Point, label: str, is_pc: bool, is_actor: bool) -> None:
-    panel.circle(place, RADIUS, "pc" if is_pc else f"node{' actor' if is_actor else ''}")
-    kind = "portname" if is_pc else "small"
-    panel.text((place[0], place[1] + 4), "PC" if is_pc else label, kind, "middle")
+def disc(panel: Drawing, place: Point, label: str, is_end: bool, is_actor: bool) -> None:
+    """A node; `is_end` where ways lead to it."""
+    panel.circle(place, RADIUS, "pc" if is_end else f"node{' actor' if is_actor else ''}")
+    panel.text((place[0], place[1] + 4), label, "portname" if is_end else "small", "middle")
 
 
-def _arrow(panel: Drawing, start: Point, end: Point, kind: str) -> None:
+def arrow(panel: Drawing, start: Point, end: Point, kind: str) -> None:
     """From the rim of one node to the rim of the other."""
     angle = math.atan2(end[1] - start[1], end[0] - start[0])
     x, y = math.cos(angle), math.sin(angle)

@@ -19,6 +19,7 @@ from innervate.protocol.mesh_seen import NO_WAY, is_hopeless, mark_bad, unskip
 from innervate.protocol.mesh_send import send_on
 from innervate.protocol.mesh_words import (
     ALARM,
+    ALL,
     BODY,
     CROSS,
     DATA,
@@ -93,7 +94,7 @@ def is_ahead(node, dest):
     Its recipient's window would move past the older one, which could then not come any more.
     """
     for w in range(WAITING):
-        if node.wait_kind[w] != FREE and node.wait_dest[w] == dest:
+        if node.wait_kind[w] != FREE and (node.wait_dest[w] == dest or dest == ALL):
             if (node.seq + 1 - node.wait_seq[w]) & MASK16 > OLDEST:
                 return 1
     return 0

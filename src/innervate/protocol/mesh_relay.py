@@ -4,7 +4,13 @@ from innervate.protocol.arith import MASK30
 from innervate.protocol.mesh_frames import in_path
 from innervate.protocol.mesh_messages import hand_up
 from innervate.protocol.mesh_queue import ALARMS, CONTROL, MESSAGES, kick, take_over
-from innervate.protocol.mesh_seen import is_flooded, is_repeated, is_returned_again, mark_bad
+from innervate.protocol.mesh_seen import (
+    accept,
+    is_flooded,
+    is_repeated,
+    is_returned_again,
+    mark_bad,
+)
 from innervate.protocol.mesh_send import send_on
 from innervate.protocol.mesh_words import ALARM, ALL, DATA, E2E_ACK
 from innervate.protocol.rng import draw
@@ -39,6 +45,8 @@ def flood_data(node, params, now, frame, out):
     """A message to all: deliver it, pass it on once."""
     if frame.origin == node.number or is_flooded(node, frame.origin, frame.seq, DATA, 0):
         return
+    if not accept(node, params, frame.origin, frame.seq, 1):
+        return  # passed on so long ago that it is forgotten
     hand_up(params, frame, out)
     i = take_over(node, now, MESSAGES, frame, out)
     if i >= 0:

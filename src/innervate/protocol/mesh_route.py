@@ -114,6 +114,20 @@ def is_untried(node, i, who):
     return not is_skipped(node, node.q_origin[i], node.q_seq[i], who)
 
 
+def named(node, params, i):
+    """Before the packet goes back: recipient, or next in the table, that did not answer before.
+
+    Three lost frames would else shut out whoever is behind a bridge until the suspicion ends.
+    """
+    dest = node.q_dest[i]
+    if place_of(node, params, dest) >= 0 and is_untried(node, i, dest):
+        return dest
+    who = planned(node, params, dest)
+    if place_of(node, params, who) >= 0 and is_untried(node, i, who):
+        return who
+    return NOBODY
+
+
 def last_resort(node, params, i):
     """At the origin, before the packet is dropped: a neighbour that did not answer some other one.
 
@@ -136,6 +150,8 @@ def seek(node, params, i):
     who = search(node, params, i, 0)
     if who == NOBODY:
         who = search(node, params, i, 1)
+    if who == NOBODY and params.failover == SEARCH:
+        who = named(node, params, i)
     if who == NOBODY and params.failover == SEARCH:
         who = giver(node, i)
         if who != NOBODY and is_skipped(node, node.q_origin[i], node.q_seq[i], who):

@@ -190,15 +190,18 @@ def run_point(plan: Any, point: Point, seeds: dict[tuple[int, ...], list[int]]) 
     advance = simulator.compiled_loop(plan.protocol)
     advance(world, plan.duration_us, EVENTS)
     sent = world.sent[: int(get(world.run, 0, "sent"))]
+    return judge(world, plan, sent), sent
+
+
+def judge(world: Any, plan: Any, sent: Any) -> int:
+    """What is broken when a run is over, 0 nothing; `sent` are its frames."""
     if int(get(world.run, 0, "status")) == BROKEN:
-        return INVARIANT, sent
+        return INVARIANT
     if int(get(world.run, 0, "silent")):
-        return SILENT, sent
+        return SILENT
     if broken := check_turns(sent, plan.protocol):
-        return broken, sent
-    if int(get(world.run, 0, "completed")) < plan.wanted:
-        return DEADLOCK, sent
-    return 0, sent
+        return broken
+    return DEADLOCK if int(get(world.run, 0, "completed")) < plan.wanted else 0
 
 
 def check_turns(sent: Any, protocol: str) -> int:

@@ -13,6 +13,7 @@ from typing import Any
 
 from innervate import scenario as scenarios
 from innervate.analysis.frames import FramesLost
+from innervate.run import wild_mesh
 from innervate.run.run import run
 from innervate.sim.simulate import InvariantBroken
 
@@ -49,9 +50,12 @@ class Broken:
 
 
 def drawn(seed: int) -> Tables:
-    """The scenario that a number stands for: a skin, or less often a radio team."""
+    """The scenario that a number stands for: a skin, or less often a radio team or a mesh."""
     draw = random.Random(f"wild/{seed}")
-    return _radio(draw, seed) if draw.random() < 0.25 else _skin(draw, seed)
+    kind = draw.random()
+    if kind < 0.25:
+        return _radio(draw, seed)
+    return _skin(draw, seed) if kind < 0.75 else wild_mesh.drawn(draw, seed)
 
 
 def _skin(draw: random.Random, seed: int) -> Tables:
@@ -169,6 +173,8 @@ def smaller(tables: Tables) -> Iterator[Tables]:
             yield tables | {"event": half}
     for i in range(len(events)):
         yield tables | {"event": events[:i] + events[i + 1 :]}
+    if tables["kind"] == "mesh":
+        yield from wild_mesh.smaller(tables)
     for name in ("protocol", "timing", "data", "channel"):
         for key in tables.get(name, {}):
             if key not in ("rule", "updates"):

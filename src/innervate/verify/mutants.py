@@ -13,6 +13,7 @@ import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
 
 from innervate import protocol as protocol_room
 from innervate.verify import explore, fair, graphs, story
@@ -97,8 +98,8 @@ MUTANTS = tuple(
 )  # fmt: skip
 
 
-def copy_of(mutant: Mutant) -> system.System:
-    """The skin's system on a copy of the protocol with the mistake in it.
+def copies(mutant: Mutant, *names: str) -> list[ModuleType]:
+    """Modules of a copy of the protocol with the mistake in it.
 
     Raises:
         ValueError: the text does not stand exactly once in the sources.
@@ -118,13 +119,17 @@ def copy_of(mutant: Mutant) -> system.System:
         sys.path.insert(0, folder)
         importlib.invalidate_caches()
         try:
-            cell = importlib.import_module(f"{package}.skin")
-            sink = importlib.import_module(f"{package}.skin_sink")
-            return system.system_of(cell, sink)
+            return [importlib.import_module(f"{package}.{name}") for name in names]
         finally:
             sys.path.remove(folder)
             for name in [name for name in sys.modules if name.partition(".")[0] == package]:
                 del sys.modules[name]
+
+
+def copy_of(mutant: Mutant) -> system.System:
+    """The skin's system on a copy of the protocol with the mistake in it."""
+    cell, sink = copies(mutant, "skin", "skin_sink")
+    return system.system_of(cell, sink)
 
 
 def models() -> Iterator[system.SkinModel]:

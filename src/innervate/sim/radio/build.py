@@ -22,12 +22,18 @@ OUTBOX = 16
 
 
 def build(
-    plan: Any, plain: bool, checks: bool, keep: bool, trail: bool, tap: bool = False
+    plan: Any,
+    plain: bool,
+    checks: bool,
+    keep: bool,
+    trail: bool,
+    tap: bool = False,
+    room: int = ROWS,
 ) -> r.World:
     """The world of a plan, before its first event.
 
     `keep` keeps a row per report, transmission and delivered packet, `trail` one per handler call,
-    `tap` copies of frames on the air.
+    `tap` copies of frames on the air; there is `room` for so many rows before the loop stops.
     """
     tables = w.Tables(plain)
     n = plan.stations
@@ -35,7 +41,7 @@ def build(
     stations = tables.states(fields, n)
     low, high = records.bounds(fields)
     order, delay, degree = _neighbours(plan)
-    rows = ROWS if keep else 1
+    rows = room if keep else 1
     tapped = ROWS + OUTBOX * n * BATCH if tap else 1
     world = r.World(
         run=tables.records(r.RUN, 1, wide=r.WIDE),

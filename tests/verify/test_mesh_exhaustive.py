@@ -1,0 +1,58 @@
+"""The meshes that the documentation says are explored completely; `make full`."""
+
+import pytest
+
+from innervate.verify import mesh_model, mesh_search
+from innervate.verify.mesh_cases import DEATH_AND_ACK, QUICK, SHORT
+from innervate.verify.mesh_model import MeshBudget, MeshModel
+
+TWICE = (("e2e_tries", 1), ("transmissions", 2))
+DEATH, CALM = MeshBudget(1, 0, 0, 0), MeshBudget(0, 0, 0, 0)
+RETURNS, LOSSES = MeshBudget(1, 1, 0, 0), MeshBudget(0, 0, 2, 0)
+
+# Links, failover, the rest of the model, states.
+MESSAGES = [
+    ("line", "search", {"offers": ((2, 0),), "budget": DEATH_AND_ACK}, 3_432),
+    ("triangle", "search", {"offers": ((2, 0),), "budget": DEATH_AND_ACK}, 3_525),
+    ("square", "search", {"offers": ((3, 0),), "budget": DEATH_AND_ACK}, 41_848),
+    ("square", "graph", {"offers": ((3, 0),), "budget": DEATH_AND_ACK}, 41_459),
+    ("kite", "search", {"offers": ((3, 0),), "budget": DEATH_AND_ACK}, 58_232),
+    ("spare", "search", {"offers": ((4, 0),), "budget": DEATH}, 1_979),
+    ("house", "graph", {"offers": ((4, 0),), "budget": DEATH}, 1_488),
+    ("square", "search", {"offers": ((3, 0),), "budget": MeshBudget(2, 0, 0, 0)}, 3_925),
+    ("kite", "graph", {"offers": ((3, 0),), "budget": MeshBudget(2, 0, 0, 0)}, 5_815),
+    ("line", "search", {"offers": ((2, 0),), "budget": MeshBudget(0, 0, 0, 1, 1)}, 37_569),
+    ("line", "search", {"offers": ((2, 0),), "settings": TWICE, "budget": MeshBudget()}, 15_904),
+    ("line", "search", {"offers": ((2, 0),) * 2, "settings": TWICE, "budget": CALM}, 6_834),
+    ("line", "search", {"robot": 2, "budget": CALM}, 35_569),
+]
+GATEWAYS = [
+    ("line", "search", {"standby": (2,), "beats": 7, "budget": RETURNS}, 69_770),
+    ("line", "search", {"standby": (2,), "beats": 6, "budget": LOSSES}, 15_490),
+    ("triangle", "search", {"standby": (1, 2), "beats": 6, "budget": RETURNS}, 43_766),
+]
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.mark.parametrize(("links", "failover", "keys", "states"), MESSAGES + GATEWAYS)
+def test_nothing_breaks_and_the_documented_sizes_are_so(links, failover, keys, states):
+    settings = QUICK if "beats" in keys else SHORT
+    model = MeshModel(mesh_model.parse(links), failover, **{"settings": settings} | keys)
+    found = mesh_search.explore(model)
+    assert (found.broken, found.tally.ended) == (0, "complete")
+    assert found.tally.states == found.fair
+    # States may change with the router; what the documentation prints is of the same size.
+    assert states / 2 < found.tally.states < 2 * states
+
+
+@pytest.mark.parametrize("links", ["kite", "house", "prism"])
+@pytest.mark.parametrize("failover", ["search", "graph"])
+def test_walks_with_more_faults_than_can_be_exhausted_break_nothing(links, failover):
+    made = mesh_model.parse(links)
+    last = max(b for _, b in made)
+    budget = MeshBudget(deaths=2, revivals=1, frames=3, acks=3, ticks=3)
+    offers = ((last, 0), (0, last), (1, last))
+    model = MeshModel(made, failover, offers, budget=budget, settings=(("suspect_s", 1.0),))
+    found = mesh_search.wander(model, 200, length=120, live=False)
+    assert (found.broken, found.tally.ended) == (0, "walked")
