@@ -11,8 +11,7 @@ from innervate.protocol.arith import MASK30, after
 from innervate.protocol.mesh_words import DATA, DETOURED, E2E_ACK, POSITION
 from innervate.protocol.rng import draw
 
-MISSED = 2  # an ack that is missing weighs as much as two that came
-EASY = 12  # so many cost no pause
+EASY = 12  # more acks that are missing than acks that came: so many cost no pause
 HARD = 28  # from here on messages that know their way pause, too
 PER_DOUBLING = 4
 STRAIN_MAX = 44
@@ -23,7 +22,7 @@ ALARMS = 0  # rank in the queue
 
 def missed(node, params, now):
     """A transmission was not acknowledged: pause, the longer the more of them there were."""
-    node.strain = min(node.strain + MISSED, STRAIN_MAX)
+    node.strain = min(node.strain + 1, STRAIN_MAX)
     if node.strain > EASY:
         span = min(params.ack_us, LONGEST_US) << ((node.strain - EASY) // PER_DOUBLING)
         node.pause = (now + draw(node, span) + 1) & MASK30
