@@ -11,7 +11,7 @@ from tests.browser_net import SKIN, WIDE, serving
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")  # while it is open its event loop runs, in which no other may run
 def browser():
     sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is missing")
     path = next(filter(None, map(shutil.which, BROWSERS)), None)

@@ -9,7 +9,7 @@ from innervate.protocol import mesh, plain
 from innervate.protocol import mesh_fields as fields
 from innervate.protocol.mesh_kept import crowds, is_ahead
 from innervate.protocol.mesh_messages import resolve
-from innervate.protocol.mesh_near import FREE
+from innervate.protocol.mesh_near import FREE, SUSPECT
 from innervate.protocol.mesh_queue import OWN, has_room
 from innervate.protocol.mesh_words import ACK, ACK_WANTED, TIMERS
 from innervate.protocol.rng import seeded
@@ -132,7 +132,7 @@ class MeshStack:
                     {
                         "node": who,
                         "quality": round(min(1.0, self.acked[who] / asked), 4) if asked else None,
-                        "suspect": bool(node.suspect[k]),
+                        "suspect": bool(node.suspect[k] & SUSPECT),
                         "ports": self.places.get(who, []),
                     }
                 )

@@ -8,13 +8,16 @@ FREE = 255
 UNHEARD = 255
 LIVELY_TICKS = 2
 
+# In `suspect`.
+SUSPECT = 1  # avoided for a while
+DOUBT = 2  # not heard since: one transmission is enough to ask
+
 
 def forget_all(node, params):
     """No neighbours."""
     for k in range(params.places):
         node.near[k] = FREE
         node.suspect[k] = 0
-        node.doubt[k] = 0
         node.round_depth[k] = UNHEARD
 
 
@@ -36,7 +39,6 @@ def hear(node, params, who, rssi):
         node.rssi[k] = node.rssi[k] + ((4 * rssi - node.rssi[k]) >> 2)
         node.heard[k] = node.ticks
         node.suspect[k] = 0
-        node.doubt[k] = 0
         return k
     faintest = 0
     for j in range(params.places):
@@ -52,7 +54,6 @@ def hear(node, params, who, rssi):
     node.rssi[k] = 4 * rssi
     node.heard[k] = node.ticks
     node.suspect[k] = 0
-    node.doubt[k] = 0
     node.round_depth[k] = UNHEARD
     return k
 
@@ -63,7 +64,6 @@ def hear_again(node, params, who):
     if k >= 0:
         node.heard[k] = node.ticks
         node.suspect[k] = 0
-        node.doubt[k] = 0
 
 
 def is_lively(node, k):
@@ -75,8 +75,7 @@ def suspect(node, params, now, who, planned, out):
     """`who` did not acknowledge: avoid it for a while, or until it is heard."""
     k = place_of(node, params, who)
     if k >= 0:
-        node.suspect[k] = 1
-        node.doubt[k] = 1
+        node.suspect[k] = SUSPECT | DOUBT
         node.until[k] = (now + params.suspect_us) & MASK30
         report(out, REPORT_SUSPECT, who, planned)
 
@@ -84,13 +83,13 @@ def suspect(node, params, now, who, planned, out):
 def is_suspect(node, params, who):
     """1 if `who` is a neighbour that did not answer."""
     k = place_of(node, params, who)
-    return k >= 0 and node.suspect[k]
+    return k >= 0 and node.suspect[k] & SUSPECT
 
 
 def trust(node, params):
     """No suspicion any more."""
     for k in range(params.places):
-        node.suspect[k] = 0
+        node.suspect[k] = node.suspect[k] & DOUBT
 
 
 def sweep(node, params, now):
@@ -98,8 +97,8 @@ def sweep(node, params, now):
     most = 3 * params.period_max + 2
     for k in range(params.places):
         if node.near[k] != FREE:
-            if node.suspect[k] and after(now, node.until[k]):
-                node.suspect[k] = 0
+            if node.suspect[k] & SUSPECT and after(now, node.until[k]):
+                node.suspect[k] = DOUBT
             if ((node.ticks - node.heard[k]) & 65535) > most:
                 node.near[k] = FREE
 

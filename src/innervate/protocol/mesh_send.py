@@ -3,7 +3,7 @@
 from innervate.protocol.arith import MASK30
 from innervate.protocol.mesh_fields import QUEUE
 from innervate.protocol.mesh_frames import add_hop, was_at
-from innervate.protocol.mesh_near import is_lively, place_of, suspect, trust
+from innervate.protocol.mesh_near import DOUBT, is_lively, place_of, suspect, trust
 from innervate.protocol.mesh_pace import missed
 from innervate.protocol.mesh_queue import ALARMS, UNACKED, WAITS, drop, kick
 from innervate.protocol.mesh_route import (
@@ -188,7 +188,7 @@ def unanswered(node, params, now, out):
     who = place_of(node, params, node.q_link_dst[i])
     if who < 0 or is_lively(node, who):
         missed(node, params, now)
-    if node.q_tries[i] < params.transmissions and not (who >= 0 and node.doubt[who]):
+    if node.q_tries[i] < params.transmissions and not (who >= 0 and node.suspect[who] & DOUBT):
         node.q_state[i] = WAITS
         node.q_due[i] = now
     else:

@@ -1,6 +1,6 @@
 """Towards the gateway without tables: over those who advertised less depth [mesh 4 UPWARD]."""
 
-from innervate.protocol.mesh_near import FREE, UNHEARD
+from innervate.protocol.mesh_near import FREE, SUSPECT, UNHEARD
 from innervate.protocol.mesh_seen import is_skipped
 from innervate.protocol.mesh_words import LIST, NOBODY
 
@@ -32,7 +32,7 @@ def uplink(node, params, i):
     """The best uplink for the packet in place i that has not failed, or NOBODY."""
     best = -1
     for k in range(params.places):
-        if is_uplink(node, k) and not node.suspect[k]:
+        if is_uplink(node, k) and not node.suspect[k] & SUSPECT:
             who = node.near[k]
             if not is_skipped(node, node.q_origin[i], node.q_seq[i], who):
                 if params.discovery != LIST and who == node.parent:

@@ -67,7 +67,7 @@ FAST = Profile(
     loss_1m_cdb=4000, mtu=127, collisions=True, period=10, period_max=60, jitter=0.1, copies=2,
     listen=0.3, spread=0.4, collect=1.5, transmissions=3, ack_us=_ack_us(192, 6, 32_000, 320),
     suspect=10, e2e=0.25, e2e_adapt=False, e2e_tries=5,
-    jobs=4, job=0.5, beacon=1, dead_step=5, settled=8,
+    jobs=4, job=0.35, beacon=1, dead_step=5, settled=8,
 )  # fmt: skip
 SLOW = Profile(
     byte_ns=208_333, phy_bytes=7, turnaround_us=2000, backoff_us=2000, rssi50_cdb=-10_500,

@@ -15,7 +15,6 @@ STATES = 5_000
 MUTANTS = tuple(
     Mutant(*texts)
     for texts in (
-        ("a hop's ack is ignored", "    drop(node, i)\n    return i\n", "    return -1\n"),
         ("nobody acknowledges a hop",
          "    if frame.flags & ACK_WANTED:\n        acknowledge(node, frame, out)\n", ""),
         ("a packet for us is taken for somebody else's",

@@ -14,6 +14,7 @@ from innervate.protocol import mesh_fields as fields
 from innervate.protocol import mesh_words as words
 from innervate.protocol import plain
 from innervate.protocol.arith import MASK30
+from innervate.protocol.mesh_near import SUSPECT
 
 NOW = 1 << 28  # what a node's clock shows at every event
 FEW = 8  # draws out of so many or fewer are enumerated, others have one value a node
@@ -141,7 +142,7 @@ def tidy(node: Any, capacity: int, adapts: int) -> None:
         if node.near[k] == words.ALL:
             for name in NEAR:
                 getattr(node, name)[k] = 0
-        if not node.suspect[k]:
+        if not node.suspect[k] & SUSPECT:
             node.until[k] = NOW
     _sort_forwarded(node)
 
