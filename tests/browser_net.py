@@ -63,8 +63,23 @@ def serving(what, *options, port=0):
 
 
 def place(page, name):
-    """Where on the page a node or link is, by its name."""
-    return page.evaluate("name => innervate.at(name)", name)
+    """Where on the page a node or link is, by its name, once it stays there.
+
+    Panels that fill move the map; a few frames without a move, and it has found its place.
+    """
+    return page.evaluate(
+        """async name => {
+          let last = null, same = 0;
+          while (same < 5) {
+            await new Promise(requestAnimationFrame);
+            const at = innervate.at(name);
+            same = last && at[0] === last[0] && at[1] === last[1] ? same + 1 : 0;
+            last = at;
+          }
+          return last;
+        }""",
+        name,
+    )
 
 
 def click(page, name):
