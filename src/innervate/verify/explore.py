@@ -80,7 +80,8 @@ Progress = Callable[[Tally], bool]
 def compiled_engine() -> s.Engine:
     """The search of skins, compiled: `expand` and `insert` take a world and a search."""
     system = skin_system.compiled_parts()
-    helpers = (s.fetch_row, s.compare, s.choose_image, s.hash_of, s.look_up, s.insert, s.refill)
+    helpers = (s.fetch_row, s.compare, s.compare_bodies, s.choose_image, s.hash_of, s.covers)
+    helpers += (s.look_up, s.insert, s.refill)
     walking = (s.keep_words, s.fetch_words, s.append, s.room_left)
     door.register_functions(*helpers, *walking, hot=True)
     engine = s.build(system)
@@ -181,8 +182,8 @@ class _Driver:
         self.lay = skin_system.layout(model)
         self.world = skin_system.world_of(model, plain)
         words = self.lay.width // 8
-        # A row, its links backward, and 2 places of the table (at most 70 % full, then doubled).
-        limit = memory // (8 * words + 12 + 2 * 12)
+        # A row, its link backward, and 2 places of the table (at most 70 % full, then doubled).
+        limit = memory // (8 * words + 4 + 2 * 12)
         limit = min(limit, states + 2 * s.MARGIN if states else limit)
         if limit < 2 * s.MARGIN:
             raise VerifyError("memory for the states is too small; give at least 64 MB")
@@ -206,7 +207,7 @@ class _Driver:
             self.world.work[i] = value
         self.seen_world = self.world if plain else tables.borrowed(self.world)
         self.seen_search = self.search if plain else tables.borrowed(self.search)
-        insert(self.seen_world, self.seen_search, -1, 0)
+        insert(self.seen_world, self.seen_search, -1)
         self.expand(self.seen_world, self.seen_search, 0)  # compiles, or loads what was compiled
         self.levels = [0, 1]
         self.chunk = PLAIN_CHUNK if plain else CHUNK
@@ -218,13 +219,13 @@ class _Driver:
                 return memoryview(bytearray(8 * count)).cast("q")
 
             return s.Search(longs(s.NUMBERS), longs(limit * words), longs(SLOTS), longs(limit),
-                            longs(limit))  # fmt: skip
+                            body_words(self.lay.body(), True))  # fmt: skip
         return s.Search(
             run=np.zeros(s.NUMBERS, np.int64),
             rows=np.empty(limit * words, np.int64),
             table=np.zeros(SLOTS, np.int64),
             before=np.empty(limit, np.int32),
-            move=np.empty(limit, np.int64),
+            body=body_words(self.lay.body(), False),
         )
 
     def advance(self) -> int:
@@ -278,6 +279,12 @@ class _Driver:
                 index = int(self.search.before[index])
             done.path.reverse()
         return done
+
+
+def body_words(mask: list[int], plain: bool) -> Any:
+    """A mask of bytes as words, in the form that a search works on."""
+    data = bytearray(mask)
+    return memoryview(data).cast("q") if plain else np.frombuffer(data, np.int64)
 
 
 def unpacked(word: int) -> tuple[int, int, int]:

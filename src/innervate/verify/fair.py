@@ -72,7 +72,7 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
                 target.run[s.BROKEN] = 1
             if world.found[0] == s.TOO_MANY:
                 target.run[s.LEFT_OUT] += 1
-            s.insert(world, target, index, choice)
+            s.insert(world, target, index)
             if world.found[1] == 0:
                 break
 
@@ -89,7 +89,7 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
             if world.found[0] == s.TOO_MANY:
                 run[s.LEFT_OUT] += 1
             if not is_settled(world):
-                s.insert(world, target, index, order * CHOICES + choice)
+                s.insert(world, target, index)
             if world.found[1] == 0:  # nothing was drawn: the other choice is the same
                 break
 
@@ -236,7 +236,7 @@ class _Rows:
         self.plain, self.words = plain, words
         lay = skin_system.layout(model)
         given = len(rows) // words
-        limit = given or memory // (8 * words + 36)
+        limit = given or memory // (8 * words + 32)
         forms = w.Forms(plain)
         limit = min(limit, 1 << 19) if plain and not given else limit
         self.search = s.Search(
@@ -244,7 +244,7 @@ class _Rows:
             rows=rows if given else self._room(limit * words),
             table=forms.longs(ex.SLOTS),
             before=self._room(limit),
-            move=self._room(limit),
+            body=ex.body_words([255] * lay.width, plain),
         )
         run = self.search.run
         run[s.COUNT], run[s.LIMIT], run[s.SLOTS] = given, limit, ex.SLOTS

@@ -25,6 +25,7 @@ TOO_MANY = -1
 # Most successors of one state; more would be a mistake in the system.
 MARGIN = 1 << 14
 LOW32 = 0xFFFFFFFF
+HIGH_BITS = 0x8080808080808080 - (1 << 64)
 
 # A move as it is kept: move, variant and choice of its draw in one number.
 VARIANT, CHOICE = 1 << 12, 1 << 4
@@ -37,7 +38,7 @@ class Search(NamedTuple):
     rows: Any  # their words, one after the other
     table: Any  # hash << 32 | number + 1; 0 = free
     before: Any  # the state each was first reached from, -1 the start
-    move: Any  # and by which move
+    body: Any  # a mask of words: what has to be equal; of other bytes more is better
 
 
 class Engine(NamedTuple):
@@ -73,17 +74,37 @@ def choose_image(world, search):
     for g in range(1, run[IMAGES]):
         for i in range(width):
             world.trial[i] = world.work[world.image[g * width + i]]
-        if compare(world.trial_words, world.best_words, words):
+        if compare_bodies(world.trial_words, world.best_words, search.body, words):
             for i in range(words):
                 world.best_words[i] = world.trial_words[i]
 
 
-def hash_of(table, start, words):
-    """64 bits of a row."""
+def compare_bodies(a, b, body, words):
+    """As `compare`, the bodies first."""
+    for i in range(words):
+        here, there = a[i] & body[i], b[i] & body[i]
+        if here != there:
+            return here < there
+    return compare(a, b, words)
+
+
+def hash_of(table, start, body, words):
+    """64 bits of a row's body."""
     state = 0
     for i in range(words):
-        state = mix(state, table[start + i])
+        state = mix(state, table[start + i] & body[i])
     return mix(state, words)
+
+
+def covers(table, start, row, body, words):
+    """1 if a kept row has the body of `row`, and no byte beside it that is less (below 128)."""
+    for i in range(words):
+        here, there, mask = table[start + i], row[i], body[i]
+        if (here ^ there) & mask:
+            return False
+        if here != there and (((here & ~mask) | HIGH_BITS) - (there & ~mask)) & HIGH_BITS != HIGH_BITS:
+            return False
+    return True
 
 
 def look_up(search, best, mark):
@@ -98,22 +119,17 @@ def look_up(search, best, mark):
             return slot
         if ((entry ^ mark) >> 32) == 0:
             start = ((entry & LOW32) - 1) * words
-            same = True
-            for i in range(words):
-                if search.rows[start + i] != best[i]:
-                    same = False
-                    break
-            if same:
+            if covers(search.rows, start, best, search.body, words):
                 return slot
         slot = (slot + 1) & mask
 
 
-def insert(world, search, before, move):
+def insert(world, search, before):
     """Keep the state in `world.work` unless it is known; 1 if it is new."""
     choose_image(world, search)
     run = search.run
     words = run[WORDS]
-    mark = hash_of(world.best_words, 0, words)
+    mark = hash_of(world.best_words, 0, search.body, words)
     slot = look_up(search, world.best_words, mark)
     if search.table[slot] != 0:
         return False
@@ -121,7 +137,6 @@ def insert(world, search, before, move):
     for i in range(words):
         search.rows[index * words + i] = world.best_words[i]
     search.before[index] = before
-    search.move[index] = move
     search.table[slot] = (mark & ~LOW32) | (index + 1)
     run[COUNT] = index + 1
     return True
@@ -133,7 +148,7 @@ def refill(search):
     words = run[WORDS]
     mask = run[SLOTS] - 1
     for index in range(run[COUNT]):
-        mark = hash_of(search.rows, index * words, words)
+        mark = hash_of(search.rows, index * words, search.body, words)
         slot = mark & mask
         while search.table[slot] != 0:
             slot = (slot + 1) & mask
@@ -204,7 +219,7 @@ def build(system):
             elif asked > 0:
                 run[GENERATED] += 1
                 word = (move * VARIANT + variant) * CHOICE + choice
-                is_new = insert(world, search, index, word)
+                is_new = insert(world, search, index)
                 note(world, search, index, word, is_new)
             choice += 1
 

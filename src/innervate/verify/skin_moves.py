@@ -20,6 +20,7 @@ from innervate.protocol.skin_words import (
 from innervate.protocol.skin_words import SOON as SOON_TIMER
 from innervate.protocol.skin_words import TICK as TICK_TIMER
 from innervate.verify import skin_row as rows
+from innervate.verify.skin_dead import tidy
 from innervate.verify.skin_row import is_up, load_cell, save_cell
 from innervate.verify.skin_world import (
     BROKEN_OUTBOX,
@@ -38,6 +39,7 @@ from innervate.verify.skin_world import (
     FLAGS,
     HEAL,
     HEAL_LINK,
+    LEAN,
     LINK_AT,
     LOSE,
     LOSS,
@@ -84,7 +86,11 @@ def first_loaded(world):
 def may_break(world, c, p):
     """1 if the next tick may find this port broken: the cable is cut, or a false detection."""
     slot = world.port_at[PORTS * c + p]
-    if world.work[slot + DIST] == INFINITY or (world.work[slot + SAYS] >> 2) & 3:
+    if (world.work[slot + SAYS] >> 2) & 3:
+        return 0
+    # Without a route there only what comes before the next tick is ignored: nothing, if it is
+    # not looked at before that tick.
+    if world.work[slot + DIST] == INFINITY and world.at[MERGE]:
         return 0
     link = world.way_link[world.in_way[PORTS * c + p]]
     return 1 if not is_up(world, link) or rows.has_budget(world, FALSE) else 0
@@ -318,6 +324,13 @@ def bind(skin, skin_sink):
 
     def step(world, move, variant, choice):
         """Make a move in the row; out of how many the draw it asked for was, or REFUSED."""
+        asked = make(world, move, variant, choice)
+        if world.at[LEAN]:
+            tidy(world)
+        return asked
+
+    def make(world, move, variant, choice):
+        """The move alone."""
         world.found[0] = FINE
         kind, arg = world.move_kind[move], world.move_arg[move]
         if kind == TICK:
@@ -369,5 +382,5 @@ def bind(skin, skin_sink):
             tick(world, node, 0, choice)
         return settle(world, choice)
 
-    parts = (hear, attend, tick, soon, pc_tick, step, settle, turn)
+    parts = (hear, attend, tick, soon, pc_tick, make, step, settle, turn)
     return Moves(parts, start, variants, step, settle, turn)

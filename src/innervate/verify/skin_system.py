@@ -11,7 +11,7 @@ from innervate.kernel import records
 from innervate.protocol import skin, skin_fields, skin_sink
 from innervate.protocol.skin_words import NONE, ONE, PORTS
 from innervate.topology import Graph
-from innervate.verify import skin_check, skin_moves, skin_row, skin_world
+from innervate.verify import skin_check, skin_dead, skin_moves, skin_row, skin_world
 from innervate.verify import skin_world as w
 from innervate.verify.errors import VerifyError
 from innervate.verify.graphs import symmetries
@@ -64,6 +64,8 @@ class SkinModel:
         capacity: most frames in flight per direction; states with more are left out, and counted.
             0 = what periodic cells can send within their budget, and ROOM of triggered ones.
         whole: leave no beacon out, though it changes nothing.
+        lean: forget what can no longer matter (see skin_dead.py), and follow no state of which a
+            known one differs only in that more may still happen.
     """
 
     graph: Graph
@@ -77,6 +79,7 @@ class SkinModel:
     symmetric: bool = True
     capacity: int = 0
     whole: bool = False
+    lean: bool = False
 
     @property
     def merges(self) -> bool:
@@ -124,7 +127,7 @@ def compiled_parts() -> System:
 
     door.register(arith, outbox, rng, invariants)
     door.register(skin_route, skin, skin_sink, hot=False)
-    door.register(skin_row, skin_check, hot=False)
+    door.register(skin_row, skin_dead, skin_check, hot=False)
     plain = [f for f in vars(skin_moves).values() if callable(f)]
     own = [f for f in plain if getattr(f, "__module__", "") == skin_moves.__name__]
     system = system_of()
@@ -280,8 +283,18 @@ class _Layout:
         at[w.BUDGET_AT], at[w.MERGE], at[w.PROMPT] = self.budget_at, model.merges, model.prompt
         at[w.FEASIBLE], at[w.KEEP] = model.rule == "feasible", model.keep
         at[w.WHOLE] = model.whole
+        at[w.LEAN] = model.lean and not model.prompt and not model.whole
         at[w.IMAGES], at[w.WIDTH] = len(self.images()) // self.width, self.width
         return [int(value) for value in at]
+
+    def body(self) -> list[int]:
+        """255 for every byte but those that say how much may still happen."""
+        mask = [255] * self.width
+        if self.model.lean:
+            tail = range(self.budget_at, self.budget_at + w.BUDGETS)
+            for at in [at + w.TICKS for at in self.cell_at] + [self.pc_at + w.PC_COUNTS, *tail]:
+                mask[at] = 0
+        return mask
 
     def moves(self) -> list[tuple[int, int]]:
         """All moves: kind and cell, direction or cable."""

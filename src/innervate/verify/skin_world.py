@@ -16,8 +16,8 @@ from innervate.protocol import plain, skin_fields
 
 # Places in `SkinWorld.at`.
 CELLS, LINKS, CAPACITY, DIRECTIONS, PC_AT, LINK_AT, BUDGET_AT = range(7)
-MERGE, PROMPT, FAIR, FEASIBLE, MAY_LOOP, KEEP, WHOLE, IMAGES, WIDTH = range(7, 16)
-SETTINGS = 16
+MERGE, PROMPT, FAIR, FEASIBLE, MAY_LOOP, KEEP, WHOLE, IMAGES, WIDTH, LEAN = range(7, 17)
+SETTINGS = 17
 
 # A cell's head; then PORT_BYTES for each cabled port.
 FLAGS, SQ_OWN, FD_SQ, FD_DIST, HOLD, SENT_DIST, SENT_SQ, WAIT, TICKS = range(9)

@@ -9,6 +9,7 @@ from typing import Any
 from innervate.verify import search as s
 from innervate.verify import skin_system
 from innervate.verify import skin_world as w
+from innervate.verify.explore import body_words
 
 
 @dataclass(slots=True)
@@ -34,7 +35,7 @@ class Twin:
         run = forms.longs(s.NUMBERS)
         run[s.WORDS], run[s.WIDTH] = self.lay.width // 8, self.lay.width
         run[s.IMAGES] = len(self.lay.images()) // self.lay.width
-        self.search = s.Search(run, None, None, None, None)
+        self.search = s.Search(run, None, None, None, body_words(self.lay.body(), True))
         self.put(bytes(skin_system.first_row(model, system)))
 
     def put(self, row: bytes) -> None:

@@ -1,0 +1,270 @@
+"""What of a skin's state can no longer matter, set to one value: fewer states, the same futures.
+
+Every rule here has its reason in docs/verify.md ("What is left out"); tests compare the routes
+that are reached with and without, and that a step and this can change places.
+"""
+
+from innervate.protocol.arith import later
+from innervate.protocol.skin_words import INFINITY, PORTS
+from innervate.verify.skin_row import (
+    FD_KNOWN,
+    IS_CHILD,
+    IS_PARENT,
+    IS_SOON,
+    LOADED,
+    NOTHING_SENT,
+    WAS_PARENT,
+    clear,
+    drop,
+    has_budget,
+    is_up,
+)
+from innervate.verify.skin_world import (
+    CELLS,
+    DIST,
+    FD_DIST,
+    FD_SQ,
+    FEASIBLE,
+    FLAGS,
+    FRAME_BYTES,
+    HEAL,
+    HOLD,
+    KEEP,
+    MERGE,
+    PC_AT,
+    PC_COUNTS,
+    PC_FLAGS,
+    PC_LISTEN,
+    PC_PERIODS,
+    PC_SQ,
+    RESTART,
+    SAYS,
+    SENT_DIST,
+    SENT_SQ,
+    SQ,
+    SQ_OWN,
+    TICKS,
+)
+
+# A port that never works again: no route, and a penalty of 2.
+GONE = 8
+PENALTY = 12  # the bits of SAYS that hold it
+
+
+def tidy(world):
+    """Forget what no future of the state in `world.work` depends on."""
+    for c in range(world.at[CELLS]):
+        if world.at[MERGE] and world.at[KEEP] == 0 and world.work[world.cell_at[c] + TICKS] == 0:
+            tidy_ended(world, c)
+        else:
+            tidy_cell(world, c)
+    tidy_sink(world)
+    first = PORTS * world.at[CELLS]
+    for p in range(world.pc.own[0].ports):
+        tidy_sink_queue(world, world.in_way[first + p])
+
+
+def tidy_ended(world, c):
+    """With MERGE a cell without ticks never looks at anything again (see skin_row.trim)."""
+    if world.at[FEASIBLE] == 0:
+        forget_feasible(world.work, world.cell_at[c])
+
+
+def forget_feasible(row, at):
+    """No other rule than `feasible` reads the feasible distance."""
+    row[at + FLAGS] &= ~FD_KNOWN
+    row[at + FD_SQ] = 0
+    row[at + FD_DIST] = 0
+
+
+def tidy_sink(world):
+    """A PC that never sends again."""
+    row = world.work
+    at = world.at[PC_AT]
+    if row[at + PC_COUNTS] == 0 and world.at[KEEP] == 0:
+        row[at + PC_SQ] = 0
+        row[at + PC_FLAGS] = 0
+        row[at + PC_PERIODS] = 0
+        row[at + PC_LISTEN] = 0
+
+
+def tidy_cell(world, c):
+    """A cell, and what is on its way to it."""
+    row = world.work
+    at = world.cell_at[c]
+    keeps_fd = holds_feasible(world, c)
+    row[at + SENT_SQ] = 0  # written before every beacon, and read by no rule of these updates
+    if keeps_fd:
+        row[at + HOLD] = 0
+    if world.at[FEASIBLE] == 0:
+        forget_feasible(row, at)
+    parent = -1
+    for p in range(PORTS):
+        slot = world.port_at[PORTS * c + p]
+        if slot >= 0:
+            if row[slot + SAYS] & IS_PARENT:
+                parent = slot
+            tidy_port(world, c, p, slot, keeps_fd)
+            tidy_queue(world, c, p, slot, keeps_fd)
+    tidy_news(row, at, parent)
+    if parent < 0 and keeps_fd and is_number_dead(world, c):
+        row[at + SQ_OWN] = 0
+
+
+def holds_feasible(world, c):
+    """1 if the cell cannot forget its feasible distance any more within its ticks."""
+    if world.at[KEEP]:
+        return False
+    at = world.cell_at[c]
+    return world.work[at + HOLD] + world.work[at + TICKS] < world.params[0].hold_periods
+
+
+def is_dead_route(world, c, sq, dist, keeps_fd):
+    """1 if a port that is not the parent and says this can never become the parent."""
+    row = world.work
+    at = world.cell_at[c]
+    if dist == INFINITY:
+        return True
+    if world.at[FEASIBLE] == 0 or not keeps_fd or (row[at + FLAGS] & FD_KNOWN) == 0:
+        return False
+    if later(sq, row[at + FD_SQ]):
+        return False
+    return sq != row[at + FD_SQ] or dist >= row[at + FD_DIST]
+
+
+def is_gone(world, c, p, slot):
+    """1 if a port never works again."""
+    row = world.work
+    penalty = (row[slot + SAYS] & PENALTY) >> 2
+    if world.at[KEEP] == 0 and penalty > row[world.cell_at[c] + TICKS]:
+        return True
+    link = world.way_link[world.in_way[PORTS * c + p]]
+    if is_up(world, link) or has_budget(world, HEAL):
+        return False
+    return penalty > 0 or row[slot + DIST] == INFINITY
+
+
+def tidy_port(world, c, p, slot, keeps_fd):
+    """What a port last heard."""
+    row = world.work
+    row[slot + SAYS] &= ~LOADED
+    if row[slot + SAYS] & IS_PARENT:
+        return
+    is_child = row[slot + SAYS] & IS_CHILD
+    if is_child or is_dead_route(world, c, row[slot + SQ], row[slot + DIST], keeps_fd):
+        row[slot + DIST] = INFINITY
+        row[slot + SQ] = 0
+        row[slot + SAYS] &= ~IS_CHILD
+    if is_gone(world, c, p, slot):
+        row[slot + DIST] = INFINITY
+        row[slot + SQ] = 0
+        row[slot + SAYS] = GONE | (row[slot + SAYS] & WAS_PARENT)
+        clear(world, world.in_way[PORTS * c + p])
+
+
+def tidy_queue(world, c, p, slot, keeps_fd):
+    """Frames that change nothing: the oldest while they repeat what the port last heard."""
+    row = world.work
+    way = world.in_way[PORTS * c + p]
+    at = world.queue_at[way]
+    for i in range(row[at]):
+        frame = at + 1 + FRAME_BYTES * i
+        row[frame + SAYS] &= ~LOADED
+        if row[frame + DIST] == INFINITY or row[frame + SAYS] & IS_CHILD:
+            row[frame + DIST] = INFINITY
+            row[frame + SQ] = 0
+            row[frame + SAYS] = 0
+    drop_repeated(world, way)
+    is_closed = row[slot + DIST] == INFINITY and (row[slot + SAYS] & IS_PARENT) == 0
+    while row[at] > 0:
+        dist, sq = row[at + 1 + DIST], row[at + 1 + SQ]
+        is_same = dist == row[slot + DIST] and sq == row[slot + SQ]
+        if not is_same and not (is_closed and is_dead_route(world, c, sq, dist, keeps_fd)):
+            break
+        drop(world, way)
+
+
+def drop_repeated(world, way):
+    """Of equal frames one after the other the first stays."""
+    row = world.work
+    at = world.queue_at[way]
+    i = 1
+    while i < row[at]:
+        here = at + 1 + FRAME_BYTES * i
+        if same_frame(row, here, here - FRAME_BYTES):
+            drop_one(row, at, i)
+        else:
+            i += 1
+
+
+def same_frame(row, a, b):
+    """1 if two frames say the same."""
+    return (
+        row[a + DIST] == row[b + DIST]
+        and row[a + SQ] == row[b + SQ]
+        and row[a + SAYS] == row[b + SAYS]
+    )
+
+
+def drop_one(row, at, i):
+    """Frame `i` of a queue is gone."""
+    last = at + 1 + FRAME_BYTES * (row[at] - 1)
+    for k in range(at + 1 + FRAME_BYTES * i, last):
+        row[k] = row[k + FRAME_BYTES]
+    for k in range(last, last + FRAME_BYTES):
+        row[k] = 0
+    row[at] -= 1
+
+
+def tidy_news(row, at, parent):
+    """A timer for news that are none any more: firing it would change nothing."""
+    if row[at + FLAGS] & IS_SOON == 0 or row[at + SENT_DIST] == NOTHING_SENT:
+        return
+    dist = INFINITY
+    if parent >= 0:
+        dist = min(row[parent + DIST] + 1, INFINITY)
+    if dist != row[at + SENT_DIST]:
+        return
+    if parent < 0 or row[parent + SAYS] & WAS_PARENT:
+        row[at + FLAGS] &= ~IS_SOON
+
+
+def is_number_dead(world, c):
+    """1 if the number of a cell without a route is of no use: only the PC would look at it."""
+    if world.at[FEASIBLE] == 0:
+        return False
+    row = world.work
+    first = PORTS * world.at[CELLS]
+    for p in range(PORTS):
+        way = world.out_way[PORTS * c + p]
+        if way >= 0 and world.way_end[way] >= first:
+            return is_known(world, row[world.cell_at[c] + SQ_OWN])
+    return True
+
+
+def is_known(world, sq):
+    """1 if a number tells the PC nothing, now or later."""
+    row = world.work
+    pc = world.at[PC_AT]
+    if row[pc + PC_COUNTS] == 0:
+        return True
+    return row[pc + PC_FLAGS] and row[pc + PC_SQ] >= sq and not has_budget(world, RESTART)
+
+
+def tidy_sink_queue(world, way):
+    """Frames to the PC that tell it no newer number; of the others the number stays."""
+    row = world.work
+    at = world.queue_at[way]
+    i = 0
+    while i < row[at]:
+        frame = at + 1 + FRAME_BYTES * i
+        row[frame + DIST] = 0
+        row[frame + SAYS] &= LOADED
+        if row[frame + SAYS] == 0 or (world.at[KEEP] == 0 and is_known(world, row[frame + SQ])):
+            drop_one(row, at, i)
+        else:
+            i += 1
+    drop_repeated(world, way)
+
+
+__all__ = ["tidy"]
