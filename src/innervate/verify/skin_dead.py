@@ -20,6 +20,7 @@ from innervate.verify.skin_row import (
     is_up,
 )
 from innervate.verify.skin_world import (
+    BUDGET_AT,
     CELLS,
     DIST,
     FD_DIST,
@@ -148,14 +149,16 @@ def tidy_port(world, c, p, slot, keeps_fd):
     """What a port last heard."""
     row = world.work
     row[slot + SAYS] &= ~LOADED
-    if row[slot + SAYS] & IS_PARENT:
-        return
-    is_child = row[slot + SAYS] & IS_CHILD
-    if is_child or is_dead_route(world, c, row[slot + SQ], row[slot + DIST], keeps_fd):
+    is_parent = row[slot + SAYS] & IS_PARENT
+    is_dead = row[slot + SAYS] & IS_CHILD or row[slot + DIST] == INFINITY
+    if not is_parent:
+        sq, dist = row[slot + SQ], row[slot + DIST]
+        is_dead = is_dead or is_dead_route(world, c, sq, dist, keeps_fd)
+    if is_dead:
         row[slot + DIST] = INFINITY
         row[slot + SQ] = 0
         row[slot + SAYS] &= ~IS_CHILD
-    if is_gone(world, c, p, slot):
+    if not is_parent and is_gone(world, c, p, slot):
         row[slot + DIST] = INFINITY
         row[slot + SQ] = 0
         row[slot + SAYS] = GONE | (row[slot + SAYS] & WAS_PARENT)
@@ -244,11 +247,16 @@ def is_number_dead(world, c):
 
 def is_known(world, sq):
     """1 if a number tells the PC nothing, now or later."""
-    row = world.work
     pc = world.at[PC_AT]
-    if row[pc + PC_COUNTS] == 0:
+    if world.work[pc + PC_COUNTS] == 0 and world.at[KEEP] == 0:
         return True
-    return row[pc + PC_FLAGS] and row[pc + PC_SQ] >= sq and not has_budget(world, RESTART)
+    return is_old(world, sq) and not has_budget(world, RESTART)
+
+
+def is_old(world, sq):
+    """1 if the PC has this number or a newer one."""
+    pc = world.at[PC_AT]
+    return world.work[pc + PC_FLAGS] and world.work[pc + PC_SQ] >= sq
 
 
 def tidy_sink_queue(world, way):
@@ -260,11 +268,19 @@ def tidy_sink_queue(world, way):
         frame = at + 1 + FRAME_BYTES * i
         row[frame + DIST] = 0
         row[frame + SAYS] &= LOADED
-        if row[frame + SAYS] == 0 or (world.at[KEEP] == 0 and is_known(world, row[frame + SQ])):
+        if row[frame + SAYS] == 0 or is_known(world, row[frame + SQ]):
+            drop_one(row, at, i)
+        elif i > 0 and same_frame(row, frame, frame - FRAME_BYTES) and is_once(world, row[frame + SQ]):
             drop_one(row, at, i)
         else:
             i += 1
-    drop_repeated(world, way)
+
+
+def is_once(world, sq):
+    """1 if of two equal frames to the PC one is enough: it has lost its memory at most once more,
+    and until then it knows what they say."""
+    restarts = world.work[world.at[BUDGET_AT] + RESTART]
+    return not has_budget(world, RESTART) or (restarts == 1 and is_old(world, sq))
 
 
 __all__ = ["tidy"]
