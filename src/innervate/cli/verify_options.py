@@ -54,6 +54,8 @@ class VerifyOptions:
         With --random the first network's number, with --walks the walks'.
     count
         With --random end after so many networks.
+    reduce
+        Forget what of a state can no longer matter, and leave out states that others cover.
     plain
         Without the compiler: slower by a hundred times, needs no preparation.
     """
@@ -73,6 +75,7 @@ class VerifyOptions:
     mutants: Flag = False
     seed: Seed = None
     count: int = 0
+    reduce: bool = True
     plain: Flag = False
 
 

@@ -149,6 +149,7 @@ def verify(system: str, options: VerifyOptions, as_json: bool, out: Path | None)
         states=options.states,
         memory=_bytes(options.memory),
         plain=options.plain,
+        lean=options.reduce,
     )
     return skin(wanted, as_json, out)
 

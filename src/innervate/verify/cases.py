@@ -88,6 +88,7 @@ class Wanted:
     states: int = 0
     memory: int = explore.MEMORY
     plain: bool = False
+    lean: bool = True
 
 
 def budget_of(text: str) -> system.Budget:
@@ -127,7 +128,7 @@ def models(wanted: Wanted) -> Iterator[system.SkinModel]:
             for updates in wanted.updates:
                 yield system.SkinModel(
                     graph, rule, updates, wanted.budget, prompt=wanted.prompt,
-                    keep=wanted.live and rule == "feasible",
+                    keep=wanted.live and rule == "feasible", lean=wanted.lean,
                 )  # fmt: skip
 
 
@@ -142,15 +143,12 @@ def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> Case:
         )  # fmt: skip
         told = story.tell(found) if found.broken else None
         return Case(model, cables, found.tally, story=told)
-    found = explore.explore(
-        model,
-        plain=wanted.plain,
-        memory=wanted.memory,
-        states=wanted.states,
-        progress=lambda tally: tell(name, tally),
-    )
+    found = _explore(model, wanted, name, tell)
     case = Case(model, cables, found.tally)
-    if found.broken:
+    if found.broken and model.lean:  # told of states with all that is in them
+        whole = _explore(model.changed(lean=False), wanted, name, tell)
+        case.story = story.tell(whole) if whole.broken else story.in_short(found)
+    elif found.broken:
         case.story = story.tell(found)
     elif wanted.live and model.rule == "feasible" and found.tally.ended != "interrupted":
         case.fair = fair.check(
@@ -161,3 +159,13 @@ def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> Case:
             progress=lambda _: tell(f"{name}: the fair schedule", found.tally),
         )
     return case
+
+
+def _explore(model: system.SkinModel, wanted: Wanted, name: str, tell: Tell) -> explore.Result:
+    return explore.explore(
+        model,
+        plain=wanted.plain,
+        memory=wanted.memory,
+        states=wanted.states,
+        progress=lambda tally: tell(name, tally),
+    )

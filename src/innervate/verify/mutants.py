@@ -132,7 +132,7 @@ def copy_of(mutant: Mutant) -> system.System:
     return system.system_of(cell, sink)
 
 
-def models() -> Iterator[system.SkinModel]:
+def models(lean: bool = False) -> Iterator[system.SkinModel]:
     """What each mutant is tried on, smallest first."""
     calm = system.Budget(loss=0, cut=1, heal=0, false=0, restart=0, faults=1)
     small = system.Budget(loss=0, cut=1, heal=1, false=1, restart=1, faults=1)
@@ -144,20 +144,22 @@ def models() -> Iterator[system.SkinModel]:
         ("triangle", "strict", "periodic", calm),
         ("pair", "feasible", "triggered", system.Budget(2, 2, 0, 1, 0, 0, 0, 1)),
     ):
-        yield system.SkinModel(graphs.parse(graph), rule, updates, budget, keep=rule == "feasible")
+        keep = rule == "feasible"
+        yield system.SkinModel(graphs.parse(graph), rule, updates, budget, keep=keep, lean=lean)
 
 
-def hunt(mutant: Mutant, starts: int = 12) -> Catch:
+def hunt(mutant: Mutant, starts: int = 12, lean: bool = False) -> Catch:
     """Try a mutant on all models until something is broken; liveness from `starts` states."""
     changed = copy_of(mutant)
     states = 0
-    for model in models():
+    for model in models(lean):
         where = f"{graphs.cables(model.graph)}, {model.rule}, {model.updates}"
         try:
             found = explore.explore(model, plain=True, system=changed, states=15_000)
             states += found.tally.states
             if found.broken:
-                return Catch(mutant, story.tell(found, changed).title, where, states)
+                by = story.TITLES[found.broken] if lean else story.tell(found, changed).title
+                return Catch(mutant, by, where, states)
             if model.keep:
                 settled = fair.check(found, plain=True, system=changed, starts=starts)
                 if settled.ended == "broken":

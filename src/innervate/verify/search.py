@@ -66,26 +66,31 @@ def compare(a, b, words):
 
 
 def choose_image(world, search):
-    """The smallest image of `world.work` into `world.best`."""
+    """The smallest image of `world.work`, by its body first, into `world.best`."""
     run = search.run
     words, width = run[WORDS], run[WIDTH]
     for i in range(words):
         world.best_words[i] = world.work_words[i]
     for g in range(1, run[IMAGES]):
-        for i in range(width):
-            world.trial[i] = world.work[world.image[g * width + i]]
-        if compare_bodies(world.trial_words, world.best_words, search.body, words):
+        if is_smaller_image(world, search, g * width):
             for i in range(words):
                 world.best_words[i] = world.trial_words[i]
 
 
-def compare_bodies(a, b, body, words):
-    """As `compare`, the bodies first."""
+def is_smaller_image(world, search, start):
+    """Make an image in `world.trial`, as long as it is not greater; 1 if it is smaller."""
+    words = search.run[WORDS]
+    is_open = True
     for i in range(words):
-        here, there = a[i] & body[i], b[i] & body[i]
-        if here != there:
-            return here < there
-    return compare(a, b, words)
+        for k in range(8 * i, 8 * i + 8):
+            world.trial[k] = world.work[world.image[start + k]]
+        if is_open:
+            here = world.trial_words[i] & search.body[i]
+            there = world.best_words[i] & search.body[i]
+            if here > there:
+                return False
+            is_open = here == there
+    return not is_open or compare(world.trial_words, world.best_words, words)
 
 
 def hash_of(table, start, body, words):

@@ -31,6 +31,7 @@ from innervate.verify.skin_world import (
     HEAL,
     HOLD,
     KEEP,
+    LOSS,
     MERGE,
     PC_AT,
     PC_COUNTS,
@@ -177,7 +178,8 @@ def tidy_queue(world, c, p, slot, keeps_fd):
             row[frame + DIST] = INFINITY
             row[frame + SQ] = 0
             row[frame + SAYS] = 0
-    drop_repeated(world, way)
+    if world.at[MERGE] or not has_budget(world, LOSS):  # or only one of two may be lost
+        drop_repeated(world, way)
     is_closed = row[slot + DIST] == INFINITY and (row[slot + SAYS] & IS_PARENT) == 0
     while row[at] > 0:
         dist, sq = row[at + 1 + DIST], row[at + 1 + SQ]

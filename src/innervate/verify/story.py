@@ -20,6 +20,14 @@ from innervate.verify.twin import Twin, find
 
 ROOM = 40  # frames in flight per direction
 
+TITLES = {
+    w.BROKEN_LOOP: "closed loop",
+    w.BROKEN_ORDER: "a feasible distance is not worse than that of the parent",
+    w.BROKEN_WORSE: "a feasible distance got worse without being forgotten",
+    w.BROKEN_RANGE: "a value is out of its declared range",
+    w.BROKEN_OUTBOX: "an outbox overflowed",
+}
+
 
 @dataclass(slots=True)
 class Story:
@@ -67,9 +75,16 @@ def tell(result: Result, system: Any = None) -> Story:
         teller.play(found, event)
         found.put(after)
     story.ring = _ring(real)
-    story.title = _title(real, result.broken, story.ring)
+    ring = [story.graph.label(node) for node in [*story.ring, *story.ring[:1]]]
+    story.title = f"closed loop {' -> '.join(ring)}" if ring else TITLES[result.broken]
     story.scenario = _scenario(result.model, story)
     return story
+
+
+def in_short(result: Result) -> Story:
+    """What is broken, where there was no room for the search that the story needs."""
+    events = len(result.path)
+    return Story(result.model.graph, f"{TITLES[result.broken]}, after {events} events or a few more")
 
 
 def _ring(twin: Twin) -> list[int]:
@@ -83,19 +98,6 @@ def _ring(twin: Twin) -> list[int]:
         if node == start:
             return path
     return []
-
-
-def _title(twin: Twin, broken: int, ring: list[int]) -> str:
-    label = twin.model.graph.label
-    if broken == w.BROKEN_LOOP and ring:
-        return f"closed loop {' -> '.join(label(node) for node in [*ring, ring[0]])}"
-    return {
-        w.BROKEN_LOOP: "closed loop",
-        w.BROKEN_ORDER: "a feasible distance is not worse than that of the parent",
-        w.BROKEN_WORSE: "a feasible distance got worse without being forgotten",
-        w.BROKEN_RANGE: "a value is out of its declared range",
-        w.BROKEN_OUTBOX: "an outbox overflowed",
-    }[broken]
 
 
 def _scenario(model: Any, story: Story) -> str:
