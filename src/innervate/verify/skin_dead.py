@@ -68,15 +68,17 @@ def tidy(world):
 
 def tidy_ended(world, c):
     """With MERGE a cell without ticks never looks at anything again (see skin_row.trim)."""
-    if world.at[FEASIBLE] == 0:
-        forget_feasible(world.work, world.cell_at[c])
+    tidy_feasible(world, c)
 
 
-def forget_feasible(row, at):
-    """No other rule than `feasible` reads the feasible distance."""
-    row[at + FLAGS] &= ~FD_KNOWN
-    row[at + FD_SQ] = 0
-    row[at + FD_DIST] = 0
+def tidy_feasible(world, c):
+    """No other rule than `feasible` reads the feasible distance, and it only one that is set."""
+    row = world.work
+    at = world.cell_at[c]
+    if world.at[FEASIBLE] == 0 or row[at + FLAGS] & FD_KNOWN == 0:
+        row[at + FLAGS] &= ~FD_KNOWN
+        row[at + FD_SQ] = 0
+        row[at + FD_DIST] = 0
 
 
 def tidy_sink(world):
@@ -98,8 +100,7 @@ def tidy_cell(world, c):
     row[at + SENT_SQ] = 0  # written before every beacon, and read by no rule of these updates
     if keeps_fd:
         row[at + HOLD] = 0
-    if world.at[FEASIBLE] == 0:
-        forget_feasible(row, at)
+    tidy_feasible(world, c)
     parent = -1
     for p in range(PORTS):
         slot = world.port_at[PORTS * c + p]

@@ -23,6 +23,7 @@ SETTLED_M = 3  # the fair schedule counts the PC's number every so many rounds
 # A frame takes 0.06 to 0.2 ms, and news keeps 0.5 ms from the last beacon: a tick's beacon and one
 # more can be in flight.
 ROOM = 2
+LEAN_ROOM = 10  # and as many as there can be where a search has room for it
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +63,8 @@ class SkinModel:
         keep: keep what only a later fair schedule would see.
         symmetric: take states that differ by a symmetry of the graph as one.
         capacity: most frames in flight per direction; states with more are left out, and counted.
-            0 = what periodic cells can send within their budget, and ROOM of triggered ones.
+            0 = what periodic cells can send within their budget; of triggered ones ROOM, or
+            LEAN_ROOM.
         whole: leave no beacon out, though it changes nothing.
         lean: forget what can no longer matter (see skin_dead.py), and follow no state of which a
             known one differs only in that more may still happen.
@@ -272,7 +274,9 @@ class _Layout:
         if self.model.prompt:
             return 2
         most = max(budget.ticks, budget.counts)
-        return most if self.model.updates == "periodic" else ROOM
+        if self.model.updates == "periodic":
+            return most
+        return LEAN_ROOM if self.model.lean else ROOM
 
     def settings(self) -> list[int]:
         """The numbers of `SkinWorld.at`."""

@@ -1,0 +1,95 @@
+"""Whether a reduced search leaves nothing out: every state of the whole one has to be covered."""
+
+from innervate.verify import explore, skin_dead, skin_row, skin_system
+from innervate.verify import skin_world as w
+from innervate.verify.twin import Twin
+
+
+class Cover:
+    """The reduced search of a model, beside the whole one."""
+
+    def __init__(self, model, plain=False):
+        self.lean = model.changed(lean=True, capacity=skin_system.layout(model).capacity)
+        self.whole_result = explore.explore(model, plain=plain)
+        self.lean_result = explore.explore(self.lean, plain=plain)
+        self.lay = skin_system.layout(self.lean)
+        self.twin = Twin(self.lean, skin_system.system_of())
+        body = self.lay.body()
+        self.same = [i for i, mask in enumerate(body) if mask]
+        self.more = [i for i, mask in enumerate(body) if not mask]
+        self.kept = self.rows(self.lean_result)
+        self.wanted = {self.tidied(row) for row in self.rows(self.whole_result)}
+
+    def rows(self, result):
+        """The states of a search as bytes."""
+        data, width = bytes(memoryview(result.rows).cast("B")), self.lay.width
+        return [data[at : at + width] for at in range(0, len(data), width)]
+
+    def tidied(self, row):
+        """A state as the reduced search would keep it."""
+        self.twin.put(row)
+        if self.lean.merges:
+            for c in range(self.lean.graph.cells):
+                skin_row.trim(self.twin.world, c)
+        skin_dead.tidy(self.twin.world)
+        return self.twin.image()
+
+    def may(self, row):
+        """How much may still happen in a state."""
+        return bytes(row[i] for i in self.more)
+
+    def missing(self):
+        """Tidied states of the whole search that nothing in the reduced one covers.
+
+        A kept state covers one if it allows as much of everything and, held to what that one
+        allows, is the same.
+        """
+        known = set(self.kept)
+        wanted = {}
+        for row in self.wanted - known:
+            wanted.setdefault(self.may(row), set()).add(row)
+        return [row for may, rows in wanted.items() for row in rows - self.held_to(may)]
+
+    def held_to(self, may):
+        """The kept states that allow at least this much, allowing just this much."""
+        images, width = self.lay.images(), self.lay.width
+        found = set()
+        for row in self.kept:
+            for start in range(0, len(images), width):
+                image = bytearray(row[i] for i in images[start : start + width])
+                pairs = list(zip(self.more, may, strict=True))
+                if all(image[i] >= least for i, least in pairs):
+                    for i, least in pairs:
+                        image[i] = least
+                    found.add(self.tidied(bytes(image)))
+        return found
+
+    def is_faithful(self):
+        """Whether both searches see the same; the reduced one more where the whole one, with
+        more in flight, had no room.
+        """
+        whole, lean = self.seen(self.wanted), self.seen(map(self.tidied, self.kept))
+        return whole == lean if self.whole_result.tally.left_out == 0 else whole <= lean
+
+    def seen(self, rows):
+        """Parents, feasible distances and cables of all states and their mirror images."""
+        images, width = self.lay.images(), self.lay.width
+        picked = [[images[g + i] for i in self._looked_at()] for g in range(0, len(images), width)]
+        parts = [(i, mask) for i, mask in self._masks().items()]
+        return {
+            tuple(row[place] & mask for place, (_, mask) in zip(places, parts, strict=True))
+            for row in rows
+            for places in picked
+        }
+
+    def _looked_at(self):
+        return list(self._masks())
+
+    def _masks(self):
+        lay, found = self.lay, {}
+        feasible = 255 if self.lean.rule == "feasible" else 0
+        for at in lay.cell_at:
+            found |= {at + w.FLAGS: feasible & skin_row.FD_KNOWN}
+            found |= {at + w.FD_SQ: feasible, at + w.FD_DIST: feasible}
+        found |= {at + w.SAYS: skin_row.IS_PARENT for at in lay.port_at if at >= 0}
+        return found | {at: 255 for at in range(lay.link_at, lay.budget_at)}
