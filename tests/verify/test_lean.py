@@ -49,7 +49,7 @@ def test_every_state_is_covered(name):
         ("pair", "triggered", {"budget": Budget(ticks=2, faults=1)}),
         ("triangle", "periodic", {"budget": Budget(faults=1)}),
         ("pair", "periodic", {"budget": Budget(), "keep": True}),
-        ("triangle", "periodic", {"budget": Budget(2, 2, faults=1), "merge": False}),
+        ("line", "periodic", {"budget": Budget(2, 2, faults=1), "merge": False}),
     ],
 )
 def test_every_state_of_larger_networks_is_covered(graph, updates, keys):

@@ -107,8 +107,10 @@ def covers(table, start, row, body, words):
         here, there, mask = table[start + i], row[i], body[i]
         if (here ^ there) & mask:
             return False
-        if here != there and (((here & ~mask) | HIGH_BITS) - (there & ~mask)) & HIGH_BITS != HIGH_BITS:
-            return False
+        if here != there:
+            ahead = ((here & ~mask) | HIGH_BITS) - (there & ~mask)  # each byte by itself
+            if ahead & HIGH_BITS != HIGH_BITS:
+                return False
     return True
 
 

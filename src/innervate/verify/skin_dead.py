@@ -271,19 +271,25 @@ def tidy_sink_queue(world, way):
         frame = at + 1 + FRAME_BYTES * i
         row[frame + DIST] = 0
         row[frame + SAYS] &= LOADED
-        if row[frame + SAYS] == 0 or is_known(world, row[frame + SQ]):
-            drop_one(row, at, i)
-        elif i > 0 and same_frame(row, frame, frame - FRAME_BYTES) and is_once(world, row[frame + SQ]):
+        is_idle = row[frame + SAYS] == 0 or is_known(world, row[frame + SQ])
+        if is_idle or (i > 0 and is_repeated(world, frame)):
             drop_one(row, at, i)
         else:
             i += 1
 
 
-def is_once(world, sq):
-    """1 if of two equal frames to the PC one is enough: it has lost its memory at most once more,
-    and until then it knows what they say."""
-    restarts = world.work[world.at[BUDGET_AT] + RESTART]
-    return not has_budget(world, RESTART) or (restarts == 1 and is_old(world, sq))
+def is_repeated(world, frame):
+    """1 if a frame to the PC says what the one before it says, and that one is enough.
+
+    It is if the PC loses its memory once at most and knows until then what they say, or if it
+    keeps its memory and neither can be lost.
+    """
+    row = world.work
+    if not same_frame(row, frame, frame - FRAME_BYTES):
+        return False
+    if has_budget(world, RESTART):
+        return row[world.at[BUDGET_AT] + RESTART] == 1 and is_old(world, row[frame + SQ])
+    return world.at[MERGE] or not has_budget(world, LOSS)
 
 
 __all__ = ["tidy"]

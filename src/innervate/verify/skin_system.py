@@ -202,6 +202,8 @@ def first_row(model: SkinModel, system: System) -> list[int]:
     for i, count in enumerate(given):
         world.work[lay.budget_at + i] = count if model.budget.faults else 0
     system.start(world)
+    if world.at[w.LEAN]:
+        skin_dead.tidy(world)
     return list(world.work)
 
 

@@ -84,7 +84,9 @@ def tell(result: Result, system: Any = None) -> Story:
 def in_short(result: Result) -> Story:
     """What is broken, where there was no room for the search that the story needs."""
     events = len(result.path)
-    return Story(result.model.graph, f"{TITLES[result.broken]}, after {events} events or a few more")
+    return Story(
+        result.model.graph, f"{TITLES[result.broken]}, after {events} events or a few more"
+    )
 
 
 def _ring(twin: Twin) -> list[int]:
