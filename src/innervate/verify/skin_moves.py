@@ -14,6 +14,7 @@ from innervate.protocol.skin_words import (
     MEMORY_LOST,
     NONE,
     ONE,
+    PERIODIC,
     PORTS,
     REPORT_FORGET,
 )
@@ -90,7 +91,7 @@ def may_break(world, c, p):
         return 0
     # Without a route there only what comes before the next tick is ignored: nothing, if it is
     # not looked at before that tick.
-    if world.work[slot + DIST] == INFINITY and world.at[MERGE]:
+    if world.work[slot + DIST] == INFINITY and world.params[0].updates == PERIODIC:
         return 0
     link = world.way_link[world.in_way[PORTS * c + p]]
     return 1 if not is_up(world, link) or rows.has_budget(world, FALSE) else 0
