@@ -14,6 +14,8 @@ def model(graph, updates, **keys):
     return SkinModel(graphs.parse(graph), updates=updates, **{"budget": ONE} | keys)
 
 
+# No "false": a port that is deaf for good is like one that nothing reaches, but no row says so.
+LOST = Budget(ticks=2, counts=2, false=0, faults=1)
 MODELS = {
     "two in a line": model("pc-1 1-2", "triggered", budget=Budget(ticks=2, counts=2, faults=1)),
     "pair": model("pair", "triggered", budget=Budget(ticks=1, counts=2, faults=1)),
@@ -25,7 +27,7 @@ MODELS = {
     "periodic": model("triangle", "periodic", budget=Budget(ticks=2, faults=1)),
     "periodic, kept": model("line", "periodic", budget=Budget(ticks=1, faults=2), keep=True),
     "forgetting": model("pc-1 1-2", "triggered", budget=Budget(ticks=3, faults=1), hold=2),
-    "every order": model("pc-1 1-2", "periodic", budget=Budget(2, 2, faults=1), merge=False),
+    "every order": model("pc-1 1-2", "periodic", budget=LOST, merge=False),
 }
 
 
@@ -49,7 +51,7 @@ def test_every_state_is_covered(name):
         ("pair", "triggered", {"budget": Budget(ticks=2, faults=1)}),
         ("triangle", "periodic", {"budget": Budget(faults=1)}),
         ("pair", "periodic", {"budget": Budget(), "keep": True}),
-        ("line", "periodic", {"budget": Budget(2, 2, faults=1), "merge": False}),
+        ("line", "periodic", {"budget": LOST, "merge": False}),
     ],
 )
 def test_every_state_of_larger_networks_is_covered(graph, updates, keys):
