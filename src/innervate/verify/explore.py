@@ -80,10 +80,10 @@ Progress = Callable[[Tally], bool]
 def compiled_engine() -> s.Engine:
     """The search of skins, compiled: `expand` and `insert` take a world and a search."""
     system = skin_system.compiled_parts()
-    helpers = (s.fetch_row, s.compare, s.is_smaller_image, s.choose_image, s.hash_of, s.covers)
-    helpers += (s.look_up, s.insert, s.refill)
+    images = (s.compare, s.is_smaller_image, s.choose_image)
+    known = (s.hash_of, s.covers, s.look_up, s.insert, s.refill)
     walking = (s.keep_words, s.fetch_words, s.append, s.room_left)
-    door.register_functions(*helpers, *walking, hot=True)
+    door.register_functions(s.fetch_row, *images, *known, *walking, hot=True)
     engine = s.build(system)
     door.register_functions(*engine.parts, system.variants, hot=False)
     expand = door.compiled(engine.expand)
