@@ -21,7 +21,7 @@ def test_states_can_be_explored_unreduced(sh):
     for words in ((), ("--no-reduce",)):
         assert sh("verify", *SMALL, *words, "--no-liveness", "--json") == 0
         counts.append(json.loads(sh.out)[0]["states"])
-    assert 2 * counts[0] < counts[1]
+    assert 50 < counts[0] < counts[1]
 
 
 def test_a_sample_is_called_one(sh):
