@@ -40,6 +40,7 @@ from innervate.verify.skin_world import (
     FLAGS,
     HEAL,
     HEAL_LINK,
+    KEEP,
     LEAN,
     LINK_AT,
     LOSE,
@@ -89,9 +90,10 @@ def may_break(world, c, p):
     slot = world.port_at[PORTS * c + p]
     if (world.work[slot + SAYS] >> 2) & 3:
         return 0
-    # Without a route there only what comes before the next tick is ignored: nothing, if it is
-    # not looked at before that tick.
-    if world.work[slot + DIST] == INFINITY and world.params[0].updates == PERIODIC:
+    # Periodic cells look at a port in ticks only: without a route there nobody can tell, except
+    # who counts the rounds until all is well again.
+    is_periodic = world.params[0].updates == PERIODIC
+    if is_periodic and world.at[KEEP] == 0 and world.work[slot + DIST] == INFINITY:
         return 0
     link = world.way_link[world.in_way[PORTS * c + p]]
     return 1 if not is_up(world, link) or rows.has_budget(world, FALSE) else 0
