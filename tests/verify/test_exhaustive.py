@@ -24,12 +24,16 @@ def fine(graph, rule, updates, budget=None, **keys):
 @pytest.mark.parametrize("graph", SMALL, ids=graphs.cables)
 @pytest.mark.parametrize("updates", ["periodic", "triggered"])
 def test_up_to_three_cells(graph, rule, updates):
-    fine(graph, rule, updates)
+    # Under `strict` less can be forgotten: all at once would be tens of millions of states.
+    is_large = rule == "strict" and updates == "triggered" and len(list(graph.links())) > 4
+    fine(graph, rule, updates, Budget(faults=1) if is_large else None)
 
 
-@pytest.mark.parametrize("rule", ["feasible", "strict"])
-@pytest.mark.parametrize("count", range(4, 11))
-def test_four_cells_with_a_failure_and_a_loss(count, rule):
+CABLES = [("feasible", n) for n in range(4, 11)] + [("strict", n) for n in range(4, 8)]
+
+
+@pytest.mark.parametrize(("rule", "count"), CABLES)
+def test_four_cells_with_a_failure_and_a_loss(rule, count):
     for graph in graphs.all_graphs(4):
         if len(list(graph.links())) == count:
             fine(graph, rule, "periodic", FAILURE_AND_LOSS)
