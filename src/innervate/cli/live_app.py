@@ -169,6 +169,22 @@ def live_capture(
     return command.capture(list(nodes), out, for_)
 
 
+@live_app.command(name="recovery")
+def live_recovery(capture: Path, /, *, json: Json = False) -> int:
+    """Say how a skin healed, from a capture of all its nodes: when routes and samples were back.
+
+    Parameters
+    ----------
+    capture
+        What `live capture --out` wrote; or `export --pcapng` of a run.
+    json
+        Print JSON.
+    """
+    from innervate.cli import live_recovery as command
+
+    return command.show(capture, json)
+
+
 @live_app.command(name="medium")
 def live_medium(
     address: str = "127.0.0.1:4600",

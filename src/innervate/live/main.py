@@ -124,14 +124,10 @@ class Process:
             await self._send(request, writer)
         elif what == "listen":
             await self._listen(request, writer)
-        elif what in ("cut", "restore"):
-            path = self.node.path_at(int(request["port"]))
-            path.cut, path.loss = what == "cut", 0.0
-            await writer.line({"path": path.name, "cut": path.cut})
-        elif what == "loose":
-            path = self.node.path_at(int(request["port"]))
-            path.cut, path.loss = False, float(request["loss"])
-            await writer.line({"path": path.name, "loss": path.loss})
+        elif what in ("cut", "restore", "loose"):
+            loss = float(request["loss"]) if what == "loose" else 0.0
+            path = self.node.change(int(request["port"]), what, loss)
+            await writer.line({"path": path.name, "cut": path.cut, "loss": path.loss})
         elif what == "locate":
             self._locate(request)
             await writer.line({"ok": True})
