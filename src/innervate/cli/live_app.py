@@ -11,6 +11,7 @@ from innervate.cli import errors
 from innervate.cli.seeds import Sets
 
 Json = Annotated[bool, Parameter(negative="")]
+Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 live_app = App(
     name="live",
     help="Nodes between real processes: UDP, serial ports.",
@@ -94,7 +95,7 @@ def live_status(*nodes: str, json: Json = False) -> int:
 def live_send(
     node: str,
     to: int,
-    text: str,
+    text: Text,
     /,
     *,
     priority: Json = False,

@@ -74,6 +74,12 @@ class Network:
             LiveError: something is missing, or a node does not come up; its own line is in it.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
+        for name in self.names:
+            if status.answers(self.socket(name)):
+                raise LiveError(
+                    f"{self.folder}: {name} of another network runs here; end it, or name "
+                    "another --folder"
+                )
         if self.cables == "netns":
             self.lab = Lab("iv", len(self.names), self.links)
             self.lab.up()
