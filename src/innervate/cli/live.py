@@ -48,11 +48,12 @@ def show(names: list[str], as_json: bool) -> int:
 
 def send(name: str, to: int, text: str, how: dict[str, bool], as_json: bool) -> int:
     """Send a message; 0 if it was delivered, or only accepted where no receipt is asked for."""
+    where = status.find(name)
     payload = sys.stdin.buffer.read() if text == "-" else text.encode()
     request = {"do": "send", "to": to, "payload": payload.hex(), **how,
                "wait": how["reliable"] and to != 255}  # fmt: skip
     state = "refused"
-    for answer in status.ask(status.find(name), request):
+    for answer in status.ask(where, request):
         state = answer["state"]
         reason = f": {answer['reason']}" if answer["reason"] else ""
         print(json.dumps(answer) if as_json else f"{state}{reason}", flush=True)
