@@ -32,6 +32,9 @@ def lines(told: dict[str, Any]) -> list[str]:
     names = [*sockets.values()] or [str(path["port"]) for path in told["paths"]]
     if told["kind"] == "mesh":
         found += _mesh_lines(told)
+    elif told["kind"] == "radio":
+        place = "none" if told["place"] is None else told["place"]
+        found.append(f"  place in the round: {place}, packets queued {told['queued']}")
     elif told["role"] == "cell":
         way = "no route"
         if told["parent"] is not None:

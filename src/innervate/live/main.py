@@ -186,8 +186,11 @@ class Process:
         node = self.node
         if isinstance(node, SinkNode):
             return [(node.receive_touch(), _touch_line)]
+        receive_packets = getattr(node, "receive_packets", None)
+        if receive_packets is not None:
+            return [(receive_packets(), _message_line)]
         if not isinstance(node, MeshNode):
-            raise ValueError("only mesh nodes and the PC of a skin can be listened to")
+            raise ValueError("a cell hears nothing for people; listen at the PC")
         messages = node.receive_messages(in_order=request.get("in_order"))
         streams: list[tuple[AsyncGenerator[Any, None], Form]] = [(messages, _message_line)]
         if request.get("alarms"):
