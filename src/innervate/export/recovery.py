@@ -56,7 +56,8 @@ class Healing:
     Attributes:
         at_s: when, from the capture's first frame.
         what: "cut c1.2 - pc.0", "c6 gone", "pc back", "restore ...", "loose ...".
-        cells: cells whose way to the PC it cut, and that still have cables to it.
+        cells: cells whose way to the PC it cut, and that still have cables to it; or that it
+            brought back.
         first_ms: the first of them said in a beacon that it has another parent, or none.
         wrong_ms: the last one's last beacon whose parent did not lead to the PC.
         routed_ms: all had said in beacons that their parents lead to the PC.
@@ -219,6 +220,7 @@ class Watcher:
         key: frozenset[End] | str = end.node if is_node else frozenset((end, other))
         word = what.removeprefix("node ")
         ways = {cell: self.net.way(cell) for cell in self.net.parent}
+        joined = self.net.joined()
         if is_node:
             (self.net.away.add if word == "gone" else self.net.away.discard)(end.node)
             if word == "gone" and end.node != PC:
@@ -240,11 +242,9 @@ class Watcher:
         self._close()
         names = [f"{e.node}.{e.port}" for e in sorted({end, other})]
         text = f"{end.node} {word}" if is_node else f"{word} {' - '.join(names)}"
-        cells = {cell for cell in self.net.joined() if self.net.way(cell) is None}
-        if text == "pc back":
-            cells = self.net.joined()
-        elif word not in ("back", "restore"):
-            cells = {cell for cell in cells if ways[cell] is not None}
+        cells = self.net.joined() - joined  # those that it brings back, or that lose their way
+        if word not in ("back", "restore"):
+            cells = {c for c in self.net.joined() if ways[c] and not self.net.way(c)}
         found = Healing(round((at_ns - self._first_ns) / 1e9, 4), text, len(cells))
         self._now = _Open(found, at_ns, key, cells)
 
@@ -272,7 +272,7 @@ class Watcher:
         now = self._now
         if now is None or not now.cells:
             return
-        after_ms = (at_ns - now.at_ns) / 1e6
+        after_ms = max(0, at_ns - now.at_ns) / 1e6
         if cell in now.cells and now.found.first_ms is None:
             now.found.first_ms = after_ms
         routed = all(self.net.way(cell) for cell in now.cells)
