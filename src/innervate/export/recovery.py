@@ -11,11 +11,11 @@ from collections import deque
 from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median
-from typing import NamedTuple
 
 from innervate.export import links, pcapng
 from innervate.export.errors import ExportError
 from innervate.export.reading import Capture, Packet
+from innervate.export.routes import PC, End, Network
 from innervate.protocol import skin_words
 from innervate.wire import skin
 from innervate.wire.bits import get
@@ -25,7 +25,6 @@ CUT = "cable cut"
 SAME_NS = 1_000_000_000  # within that time both ends of a cable say that it was cut
 RECENT_NS = 500_000_000  # a sample's number comes again after 256 periods
 ROUND_NS = 3_000_000  # beacons of one moment are told within that time
-PC = "pc"
 
 
 def _bit_of(fields: tuple[tuple[str, int, int, int], ...], name: str) -> int:
@@ -40,13 +39,6 @@ CELL_BITS, SEQ_BITS = 16, 8
 SEQS = 1 << SEQ_BITS
 LATE_MAX = 16  # samples that one that comes late may be behind
 END_NS = 2_000_000_000  # nodes that went away so shortly before the end were ended
-
-
-class End(NamedTuple):
-    """An end of a cable: a cell, or the PC, and its port."""
-
-    node: str
-    port: int
 
 
 @dataclass
@@ -86,70 +78,7 @@ class _Open:
     key: frozenset[End] | str
     cells: set[str]
     heard: dict[str, int] = field(default_factory=dict)
-
-
-class Network:
-    """Cables and nodes as they are at a moment of a capture, and the parents that cells name.
-
-    Attributes:
-        peer: the other end of a cable.
-        parent: port of every cell's parent, as its beacons said; None = it has none.
-        away: nodes that do not run.
-        cut: ends of cables that carry nothing.
-    """
-
-    def __init__(self) -> None:
-        self.peer: dict[End, End] = {}
-        self.parent: dict[str, int | None] = {}
-        self.away: set[str] = set()
-        self.cut: set[End] = set()
-        self._of_address: dict[str, End] = {}
-        self._far: dict[End, str] = {}
-
-    def cable(self, end: End, here: str, there: str) -> None:
-        """An end, with its own address and that of the other end."""
-        self._of_address[here] = end
-        self._far[end] = there
-        other = self._of_address.get(there)
-        if other is not None and self._far.get(other) == here:
-            self.peer[end], self.peer[other] = other, end
-        if end.node != PC:
-            self.parent.setdefault(end.node, None)
-
-    def carries(self, end: End) -> bool:
-        """True if what leaves here arrives."""
-        other = self.peer.get(end)
-        if other is None or self.cut & {end, other}:
-            return False
-        return not self.away & {end.node, other.node}
-
-    def way(self, cell: str) -> list[End] | None:
-        """The ends by which a cell's samples leave, up to the PC; None = they do not get there."""
-        ends: list[End] = []
-        seen = set()
-        while cell != PC:
-            port = self.parent.get(cell)
-            if cell in seen or port is None or not self.carries(End(cell, port)):
-                return None
-            seen.add(cell)
-            ends.append(End(cell, port))
-            cell = self.peer[ends[-1]].node
-        return ends
-
-    def joined(self) -> set[str]:
-        """Cells that have cables to the PC, over cells that run."""
-        found = {PC} - self.away
-        waiting = list(found)
-        near: dict[str, list[End]] = {}
-        for end in self.peer:
-            near.setdefault(end.node, []).append(end)
-        while waiting:
-            for end in near.get(waiting.pop(), ()):
-                other = self.peer[end].node
-                if other not in found and self.carries(end):
-                    found.add(other)
-                    waiting.append(other)
-        return found - {PC}
+    missing: set[tuple[str, int]] = field(default_factory=set)  # samples that were passed over
 
 
 class Watcher:
@@ -225,8 +154,8 @@ class Watcher:
             (self.net.away.add if word == "gone" else self.net.away.discard)(end.node)
             if word == "gone" and end.node != PC:
                 self.net.parent[end.node] = None
-            if word == "gone":  # a PC that comes back does not know what it missed
-                self._newest = {} if end.node == PC else {**self._newest, end.node: None}
+            # A PC that comes back does not know what it missed; a cell counts from 0 again.
+            self._newest = {} if end.node == PC else {**self._newest, end.node: None}
         elif word == "cut":
             self.net.cut.add(end)
         else:
@@ -300,7 +229,9 @@ class Watcher:
         now = self._now
         if now is None or cell not in now.cells:
             return
-        now.found.lost += -1 if is_late else missing
+        if is_late:
+            now.missing.discard((cell, seq))
+        now.missing |= {(cell, (seq - i) % SEQS) for i in range(1, 0 if is_late else missing + 1)}
         if cell not in now.heard and not _touched(now, ends):
             now.heard[cell] = packet.time_ns
 
@@ -309,6 +240,7 @@ class Watcher:
         now, self._now = self._now, None
         if now is None:
             return
+        now.found.lost = len(now.missing)
         times = sorted((at - now.at_ns) / 1e6 for at in now.heard.values())
         if times and len(times) == len(now.cells):
             now.found.heard_ms, now.found.heard_median_ms = times[-1], median(times)
