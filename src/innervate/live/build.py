@@ -56,7 +56,7 @@ def _link(table: Any, where: str, port: int) -> Link:
     if isinstance(table, SerialTable):
         from innervate.live.serial import SerialLink
 
-        return SerialLink(table.device, table.baud, port)
+        return SerialLink(table.device, table.baud, port, table.far)
     raise LiveError(f"{where}: this kind of node has no such link")
 
 

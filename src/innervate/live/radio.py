@@ -6,16 +6,19 @@ a channel made of a process (medium.py); a serial modem with such a line is anot
 
 from __future__ import annotations
 
+import asyncio
 import struct
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import AsyncGenerator, Callable
+from functools import partial
 from typing import Any, Protocol
 
 from innervate.live.engine import clock_us
 from innervate.live.errors import LiveError
 from innervate.live.node import LiveNode
 from innervate.live.receipts import DELIVERED, REFUSED, Receipt
+from innervate.live.streams import iterate
 from innervate.protocol import plain, radio_practical
 from innervate.protocol import radio_fields as fields
 from innervate.protocol.radio_words import PACKET, QUEUE, REPORT_DELIVERED
@@ -162,9 +165,15 @@ class RadioNode(LiveNode):
         self.radio.stop()
         await super().stop()
 
-    def receive_packets(self, callback: Callable[[int, bytes], None]) -> None:
-        """Call `callback` with sender and payload of every packet that is received."""
+    def receive_packets(
+        self, callback: Callable[[int, bytes], None] | None = None
+    ) -> AsyncGenerator[tuple[int, bytes], None]:
+        """Sender and payload of packets as they come: to a callback, and as an async iterator."""
+        queue: asyncio.Queue[tuple[int, bytes]] = asyncio.Queue()
+        if callback is None:
+            callback = partial(_put, queue)
         self._callbacks.append(callback)
+        return iterate(queue, self._callbacks, callback)
 
     def send_packet(self, payload: bytes) -> Receipt:
         """Send a packet to all; its receipt says "delivered" when another station proved it.
@@ -236,6 +245,10 @@ class RadioNode(LiveNode):
             for source, payload in inbox:
                 for callback in self._callbacks:
                     callback(source, payload)
+
+
+def _put(queue: asyncio.Queue[tuple[int, bytes]], source: int, payload: bytes) -> None:
+    queue.put_nowait((source, payload))
 
 
 # Between stations and the medium: how a message begins.
