@@ -14,6 +14,7 @@ export const DOING = [
 ];
 const SENDS = 1;
 const RING_PX = 15;
+const NAME_PX = 13; // from a station to its name: the ring round what is selected lies between
 const WORDS_PX = 55; // from this radius on there is room for words in the middle
 const TURNS_PX = 34; // from this distance on there is room for turns below names
 
@@ -96,10 +97,11 @@ export class RadioView {
     const lines = [short(this.network.nodes[i].label)];
     if (turn > 0 && apart >= TURNS_PX) lines.push(`turn ${turn}`);
     context.textAlign = dx > 0.3 ? "left" : dx < -0.3 ? "right" : "center";
-    const middle = y + dy * (radius + (lines.length > 1 ? 16 : 10));
+    const middle = y + dy * (radius + NAME_PX + (lines.length > 1 ? 8 : 2));
+    const beside = x + dx * (radius + NAME_PX);
     lines.forEach((text, n) => {
       const shift = 13 * (n - (lines.length - 1) / 2);
-      word(context, text, x + dx * (radius + 6), middle + shift, colours.soft, colours.ground);
+      word(context, text, beside, middle + shift, colours.soft, colours.ground);
     });
   }
 

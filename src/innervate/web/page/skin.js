@@ -189,7 +189,7 @@ export class SkinView {
       load: routed ? `${Math.round(100 * now.load[i])}` : "", touch: now.touch[i] || "",
     }[this.colour];
     context.font = `${Math.max(9, Math.min(13, 0.36 * stage.scale))}px system-ui, sans-serif`;
-    context.fillStyle = colours.ink;
+    context.fillStyle = colours.on[this.kinds[i]] ?? colours.ink;
     context.textAlign = "center";
     context.textBaseline = "middle";
     context.fillText(text, stage.x[i], stage.y[i] - 0.32 * stage.scale);
