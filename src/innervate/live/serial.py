@@ -24,12 +24,14 @@ class SerialLink(Link):
         device: like /dev/ttyUSB0.
         baud: bits per second, one the system knows: 115200 to 4000000.
         port: port number of the path.
+        far: what the other end is called, if it is known: paths of one cable name each other.
     """
 
-    def __init__(self, device: str, baud: int, port: int = 0) -> None:
+    def __init__(self, device: str, baud: int, port: int = 0, far: str = "") -> None:
         self.device = device
         self.baud = baud
-        self.path = SerialPath(self, f"serial {device}", port)
+        self.path = SerialPath(self, f"serial {far or device}", port)
+        self.path.own = f"serial {device}" if far else ""
         self.paths = [self.path]
         self.path.up = False
         self._fd = -1

@@ -201,8 +201,8 @@ class Network:
                     other = self.lab.address(k, ends[1 - side])
                     table = udp(f"{own}:{UDP_PORT}", f"{other}:{UDP_PORT}")
                 elif self.relay is not None:
-                    device = self.relay.devices[2 * k + side]
-                    table = {"kind": "serial", "device": device, "baud": 4_000_000}
+                    device, far = (self.relay.devices[2 * k + i] for i in (side, 1 - side))
+                    table = {"kind": "serial", "device": device, "far": far, "baud": 4_000_000}
                 else:
                     own, other = (f"127.0.0.1:{ports[2 * k + i]}" for i in (side, 1 - side))
                     table = udp(own, other)

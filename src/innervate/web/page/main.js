@@ -101,8 +101,10 @@ function showScene(scene) {
   options($("colour"), $("colour-box"), choices, view.colour);
   const { can } = network;
   const acts = can.has("cut") || can.has("kill");
-  const deed = !can.has("kill") ? "cuts or heals"
-    : can.has("cut") ? "cuts and kills, or heals" : "switches off or on";
+  const isLive = scene.source === "live";
+  const deed = isLive ? (can.has("cut") ? "cuts, or heals" : "cuts off or lets back")
+    : !can.has("kill") ? "cuts or heals"
+      : can.has("cut") ? "cuts and kills, or heals" : "switches off or on";
   options($("tool"), $("tool-box"), [
     ...(acts ? [["cut", deed]] : []),
     ...(can.has("touch") ? [["touch", "touches"]] : []),
@@ -111,8 +113,9 @@ function showScene(scene) {
   $("stage").classList.toggle("acts", acts);
   $("stage").setAttribute("aria-label", `Map of ${scene.name}: ${scene.nodes.length} nodes, `
     + `${scene.links.length} links`);
-  $("timeline").hidden = scene.kind !== "radio";
-  timeline.network = scene.kind === "radio" ? network : null;
+  const runs = scene.kind === "radio" && !isLive; // nobody tells who sent when
+  $("timeline").hidden = !runs;
+  timeline.network = runs ? network : null;
   controls.scene(network);
   plots = new Plots($("plots"), network);
   stage.show(view);

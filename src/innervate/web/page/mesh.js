@@ -5,7 +5,7 @@ import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
 import { arrow, boxRound, cross, diamond, flights, stroke, word } from "./shapes.js";
 import { symbol } from "./symbols.js";
-import { plural } from "./words.js";
+import { off, offWord, plural } from "./words.js";
 
 const GOOD = 0.9; // links of this quality are drawn whole, worse ones dashed, poor ones dotted
 const FAIR = 0.6;
@@ -74,7 +74,7 @@ export class MeshView {
   facts(i) {
     const { now, nodes } = this.network;
     const facts = [nodes[i].role];
-    if (!now.node_up[i]) return `${nodes[i].role}, switched off`;
+    if (!now.node_up[i]) return `${nodes[i].role}, ${off(this.network, i)}`;
     const next = this.network.parentOf(i);
     if (next >= 0) facts.push(`sends to the gateway through ${nodes[next].label}`);
     else if (nodes[i].role !== "gateway") facts.push("no way to the gateway");
@@ -94,7 +94,7 @@ export class MeshView {
       symbol(context, 13, 8, role === "monitor" ? 3.5 : 5, role, up);
     };
     const found = [...roles].map((role) => [shape(role), role]);
-    found.push([shape("node", 0), "switched off"]);
+    found.push([shape("node", 0), offWord(this.network)]);
     found.push([line("soft", 1.4, []), "good link"], [line("soft", 1.4, [5, 4]), "fair"],
       [line("soft", 1.4, [1.5, 4]), "poor"]);
     found.push([(context) => {

@@ -3,6 +3,7 @@ import { colours } from "./colours.js";
 import { LAYERS } from "./stage.js";
 import { cross, stroke, word } from "./shapes.js";
 import { boxSamples } from "./timeline.js";
+import { off, offWord } from "./words.js";
 
 /** What a station does: letter in its disc, words, colour. The numbers are those of a state. */
 export const DOING = [
@@ -12,7 +13,7 @@ export const DOING = [
   { sign: "X", words: "hears several at once", colour: () => colours.p[1] },
   { sign: "W", words: "waits its turn", colour: () => colours.p[7] },
 ];
-const SENDS = 1;
+const [SENDS, WAITS] = [1, 4];
 const RING_PX = 15;
 const NAME_PX = 13; // from a station to its name: the ring round what is selected lies between
 const WORDS_PX = 55; // from this radius on there is room for words in the middle
@@ -62,15 +63,17 @@ export class RadioView {
 
   facts(i) {
     const { now, radio } = this.network;
-    if (!now.node_up[i]) return "switched off";
+    if (!now.node_up[i]) return off(this.network, i);
     const turn = radio.turn[i] > 0 ? `, turn ${radio.turn[i]}` : "";
     return `${DOING[radio.now[i]].words}${turn}`;
   }
 
   legend() {
     const disc = (state, up = 1) => (context) => this.#disc(context, 13, 8, 7, state, up);
-    return [...DOING.map(({ words }, state) => [disc(state), words]),
-      [disc(0, 0), "switched off"], ...boxSamples()];
+    const isLive = this.network.scene.source === "live"; // what is asked now and then has no boxes
+    const known = isLive ? [0, SENDS, WAITS] : DOING.keys();
+    return [...[...known].map((state) => [disc(state), DOING[state].words]),
+      [disc(0, 0), offWord(this.network)], ...(isLive ? [] : boxSamples())];
   }
 
   draw(layer, context, stage) {
