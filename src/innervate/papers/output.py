@@ -20,8 +20,8 @@ from innervate.trace.provenance import checkout
 PACKAGES = ("numba", "numpy", "matplotlib")
 _LAYOUT = (
     "<style>figure img{display:block;max-width:100%;height:auto;background:#fff;border-radius:6px;"
-    "padding:8px;margin:.5em 0}figure{margin:1.6em 0}.claims td{min-width:6em}"
-    ".claims td:nth-child(2),.claims td:nth-child(3){min-width:14em}"
+    "padding:8px;margin:.5em 0}figure{margin:1.6em 0}.claims td{min-width:14em;white-space:normal}"
+    ".claims td:nth-child(3){min-width:7em}"
     ".good{color:var(--good)}.bad{color:var(--alarm)}</style>"
 )
 
