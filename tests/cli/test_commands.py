@@ -97,6 +97,32 @@ def test_new_keeps_what_is_there(sh):
     assert 'name = "four"' in Path("four.toml").read_text()
 
 
+def test_new_takes_a_measured_network(sh):
+    Path("sub").mkdir()
+    Path("links.txt").write_text("A B 0.9 0.8\nB C 0.7 0.9\nC D 0.2\n")
+    assert sh("new", "mesh", "sub/mine.toml", "--network", "links.txt", "--min-tq", "0.5") == 0
+    assert "nodes      3, gateway A" in sh.out
+    text = Path("sub/mine.toml").read_text()
+    assert 'file = "../links.txt"' in text
+    assert "min_tq = 0.5" in text
+    assert sh("check", "sub/mine.toml") == 0
+    assert sh("new", "mesh", "--network", "freifunk/leipzig", "--types", "wifi", "other") == 0
+    assert 'types = ["wifi", "other"]' in sh.out
+
+
+@pytest.mark.parametrize(("words", "what"), [
+    (("skin", "n.toml", "--network", "freifunk/ulm"), "--network is for a mesh"),
+    (("mesh", "n.toml", "--network", "none.json"), "none.json: cannot be read"),
+    (("mesh", "n.toml", "--network", "freifunk/ulm", "--min-tq", "2"), "must be at most 1"),
+    (("mesh", "n.toml", "--min-tq", "0.5"), "choose links of a --network"),
+    (("mesh", "n.toml", "--network", "topohub:nowhere"), "nowhere"),
+])  # fmt: skip
+def test_new_writes_nothing_of_a_network_that_is_none(sh, words, what):
+    assert sh("new", *words) == 2
+    assert what in sh.err
+    assert not Path("n.toml").exists()
+
+
 def test_check_takes_changes(sh):
     assert sh("check", "setup-1", "--set", "protocol.k=8", "--seed", "12") == 0
     assert "k = 8" in sh.out

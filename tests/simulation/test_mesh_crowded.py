@@ -2,16 +2,20 @@
 
 import pytest
 
+from innervate.protocol.mesh_kept import DESPAIR_MAX
 from innervate.protocol.mesh_near import DOUBT, SUSPECT
 from innervate.protocol.mesh_pace import HARD, STRAIN_MAX, is_held
-from innervate.protocol.mesh_queue import ALARMS, CONTROL, MESSAGES
-from innervate.protocol.mesh_seen import ANEW, accept
+from innervate.protocol.mesh_seen import ANEW, NO_WAY, accept, is_hopeless, mark_bad, unbad
+from innervate.protocol.mesh_send import most_tries
 from innervate.protocol.mesh_words import (
     ACK,
     ALARM,
+    ALARMS,
+    CONTROL,
     DATA,
     DETOURED,
     E2E_ACK,
+    MESSAGES,
     NO_ACK,
     NO_ROOM,
     REPORT_ARRIVED,
@@ -19,7 +23,11 @@ from innervate.protocol.mesh_words import (
     REPORT_FULL,
     REPORT_SUSPECT,
     REQUEST,
+    RESPONSE,
     TABLE,
+    TABLE_ACK,
+    TABLES,
+    WHOLE_GRAPH,
 )
 from tests.mesh_bench import Bench
 
@@ -112,6 +120,45 @@ def test_who_did_not_answer_and_was_not_heard_since_is_tried_once():
     bench.send(0, 1, flags=0)
     bench.run(bench.now + 1_000_000)
     assert len(data_of(bench, 0)) == 4
+
+
+def test_what_climbs_to_the_gateway_is_tried_in_full_whoever_was_silent():
+    bench = settled(3, LINE)
+    node = bench.nodes[1]
+    k = node.near.index(0)
+    node.suspect[k] = DOUBT
+    for kind in (RESPONSE, TABLE_ACK, TABLE):
+        assert most_tries_of(node, bench.params, k, kind) == 3
+    assert most_tries_of(node, bench.params, k, DATA) == 1
+    node.suspect[k] = 0
+    assert most_tries_of(node, bench.params, k, DATA) == 3
+
+
+def most_tries_of(node, params, k, kind):
+    node.q_kind[0] = kind
+    return most_tries(node, params, 0, k)
+
+
+@pytest.mark.parametrize(("mode", "left_out", "kept"), [(TABLES, 1, 1), (TABLES, 0, 0),
+                                                        (WHOLE_GRAPH, 1, 0)])  # fmt: skip
+def test_new_tables_give_hope_for_whom_they_know(mode, left_out, kept):
+    bench = settled(3, LINE, mode=mode)
+    node = bench.nodes[0]
+    node.next[node.bank * bench.params.width + 2] = 255 if left_out else 1
+    mark_bad(node, NO_WAY, 2)
+    unbad(node, bench.params)
+    assert is_hopeless(node, 2) == kept
+
+
+def test_despair_fades_once_there_is_nobody_to_despair_of():
+    bench = settled(4, [(0, 1), (1, 2), (1, 3)], told=1)
+    bench.dead = {3}
+    for _ in range(40):
+        bench.send(0, 3)
+        bench.run(bench.now + 2_000_000)
+    assert bench.nodes[0].despair == DESPAIR_MAX
+    bench.run(bench.now + 130_000_000)
+    assert bench.nodes[0].despair == 0
 
 
 def test_a_message_to_all_comes_once_however_many_are_on_their_way():

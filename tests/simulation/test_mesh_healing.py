@@ -1,5 +1,6 @@
 """What healing costs with the timers of live links: one detection, and retries that back off."""
 
+from collections import Counter
 from itertools import pairwise
 
 from innervate.live.profile import mesh_parameters
@@ -35,8 +36,12 @@ def test_a_dead_neighbour_is_found_out_once_for_all_that_waits():
             first.setdefault(bytes(frame.body[: frame.length]), at)
     assert len(first) == 20
     told = [row for row in bench.of(7) if row[0] > began and row[1] == 1 and row[3] == 2]
-    # Found out for all that waited; later ones ask once more before they go back.
-    assert 1 <= len(told) <= 4
+    # Found out by one packet for all that waited; those that came later asked once before they
+    # went back, with a single transmission each.
+    asked = [f.seq for at, i, f in bench.sent if at > began and i == 1 and f.link_dst == 2]
+    by_packet = Counter(asked).values()
+    assert max(by_packet) == params["transmissions"]
+    assert sorted(by_packet)[:-1] == [1] * (len(told) - 1)
     detection = params["transmissions"] * params["ack_us"]
     arrivals = sorted(first.values())
     gaps = [b - a for a, b in pairwise(arrivals)]

@@ -235,7 +235,7 @@ def papers(
     Parameters
     ----------
     paper
-        Which paper: skin or radio.
+        Which paper: skin, radio or mesh.
     only
         A figure by its name, like fig8a of the skin or fig12 of the radio; may be given again.
     quick
@@ -323,7 +323,15 @@ def scenarios() -> int:
 
 
 @app.command
-def new(kind: str, file: Path | None = None, /) -> int:
+def new(
+    kind: str,
+    file: Path | None = None,
+    /,
+    *,
+    network: str | None = None,
+    types: Annotated[list[str] | None, Parameter(consume_multiple=True)] = None,
+    min_tq: float | None = None,
+) -> int:
     """Write a commented scenario to start from.
 
     Parameters
@@ -332,10 +340,17 @@ def new(kind: str, file: Path | None = None, /) -> int:
         What it describes: skin, radio or mesh.
     file
         Where to write it; it is printed if left out.
+    network
+        Of a measured mesh: a JSON file as community meshes publish it, lines "A B 0.9 0.7",
+        freifunk/leipzig, or topohub:NAME.
+    types
+        Types of its links that count; wifi if left out, --empty-types for all.
+    min_tq
+        Worst quality of a link that counts, 0 to 1; 0.3 if left out.
     """
     from innervate.cli import files as command
 
-    return command.new(kind, file)
+    return command.new(kind, file, network, types, min_tq)
 
 
 @app.command

@@ -10,8 +10,8 @@ from innervate.protocol import mesh_fields as fields
 from innervate.protocol.mesh_kept import crowds, is_ahead
 from innervate.protocol.mesh_messages import resolve
 from innervate.protocol.mesh_near import FREE, SUSPECT
-from innervate.protocol.mesh_queue import OWN, has_room
-from innervate.protocol.mesh_words import ACK, ACK_WANTED, TIMERS
+from innervate.protocol.mesh_queue import has_room
+from innervate.protocol.mesh_words import ACK, ACK_WANTED, OWN, TIMERS
 from innervate.protocol.rng import seeded
 from innervate.wire import mesh as wire
 

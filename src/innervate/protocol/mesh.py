@@ -22,9 +22,8 @@ from innervate.protocol.mesh_kept import due_wait, try_again, wait_on
 from innervate.protocol.mesh_messages import on_message, take
 from innervate.protocol.mesh_near import forget_all, hear, hear_again, sweep
 from innervate.protocol.mesh_overheard import spare
-from innervate.protocol.mesh_pace import NO_PAUSE, is_pausing
+from innervate.protocol.mesh_pace import NO_PAUSE, end_pause
 from innervate.protocol.mesh_queue import (
-    CONTROL,
     acked,
     acknowledge,
     has_room,
@@ -47,6 +46,7 @@ from innervate.protocol.mesh_words import (
     ACTIVATE,
     ALARM,
     ALL,
+    CONTROL,
     DATA,
     DETOURED,
     E2E_ACK,
@@ -264,7 +264,7 @@ def on_tick(node, gate, params, now, out):
     node.tick_at = now
     set_timer(out, TICK, (now + params.tick_us) & MASK30)
     sweep(node, params, now)
-    is_pausing(node, now)
+    end_pause(node, now)
     age(node, params)
     if node.ticks % (HOPELESS_TICKS << node.despair) == 0:
         hope_again(node)

@@ -6,11 +6,12 @@ from innervate.protocol.mesh_fields import WAITING
 from innervate.protocol.mesh_frames import add8, add16, add_hop
 from innervate.protocol.mesh_kept import free_wait, keep
 from innervate.protocol.mesh_messages import first_flag, resolve, take
-from innervate.protocol.mesh_queue import ALARMS, compose, kick, take_over
+from innervate.protocol.mesh_queue import compose, kick, take_over
 from innervate.protocol.mesh_seen import FLOODED, is_flooded
 from innervate.protocol.mesh_send import send_on
 from innervate.protocol.mesh_words import (
     ALARM,
+    ALARMS,
     ALL,
     CROSS,
     DATA_MAX,

@@ -75,9 +75,9 @@ OWN = (
     ("quiet", 0, 0, 65535, "ticks", "since the newest request"),
     ("leading", 0, 0, 1, "flag", "we are the gateway now"),
     ("round_trip", 0, 0, 16777215, "us", "smoothed, of end-to-end acks; 0 unknown"),
-    ("strain", 0, 0, 44, "weight", "of acks that are missing; each that comes takes one off"),
+    ("strain", 0, 0, 44, "acks", "more that were missing than that came, of neighbours that live"),
     ("despair", 0, 0, 3, "doublings", "of how long nobody looks for whom there was no way to"),
-    ("pause", 0, -1, TIME, "us", "nothing but alarms goes out before; -1 none"),
+    ("pause", 0, -1, TIME, "us", "searches, at worst all messages, wait until then; -1 none"),
 )
 
 

@@ -12,9 +12,10 @@ from innervate.protocol.mesh_paths import (
     note_path,
     trusts_lists,
 )
-from innervate.protocol.mesh_queue import CONTROL, compose, kick
+from innervate.protocol.mesh_queue import compose, kick
 from innervate.protocol.mesh_words import (
     ALL,
+    CONTROL,
     REPORT_GATEWAY,
     REPORT_GRAPH,
     REPORT_ROUND,

@@ -3,9 +3,17 @@
 from innervate.protocol.arith import MASK30
 from innervate.protocol.mesh_frames import add8, add16, add_hop
 from innervate.protocol.mesh_paths import is_known
-from innervate.protocol.mesh_queue import CONTROL, compose
+from innervate.protocol.mesh_queue import compose
 from innervate.protocol.mesh_table import graph_bytes, part_bytes
-from innervate.protocol.mesh_words import ALL, GIVEN_UP, GRAPH, PARTS_MAX, TO_SEND, UNDER_WAY
+from innervate.protocol.mesh_words import (
+    ALL,
+    CONTROL,
+    GIVEN_UP,
+    GRAPH,
+    PARTS_MAX,
+    TO_SEND,
+    UNDER_WAY,
+)
 
 
 def pump_graph(node, gate, params, now, out):

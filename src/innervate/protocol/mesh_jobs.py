@@ -14,7 +14,7 @@ from innervate.protocol.mesh_paths import (
     make_table,
     mark_table,
 )
-from innervate.protocol.mesh_queue import CONTROL, compose, drop, free_places, kick
+from innervate.protocol.mesh_queue import compose, drop, free_places, kick
 from innervate.protocol.mesh_search import set_edge
 from innervate.protocol.mesh_send import pass_on
 from innervate.protocol.mesh_table import (
@@ -25,6 +25,7 @@ from innervate.protocol.mesh_table import (
 from innervate.protocol.mesh_words import (
     ACTIVATE,
     ALL,
+    CONTROL,
     CURRENT,
     GIVEN_UP,
     JOBS,

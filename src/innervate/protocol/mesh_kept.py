@@ -4,28 +4,23 @@ from innervate.protocol.arith import MASK16, MASK30, after, later
 from innervate.protocol.mesh_fields import QUEUE, WAITING
 from innervate.protocol.mesh_frames import add8, get16, inner
 from innervate.protocol.mesh_patience import LONGEST_US, learn_round_trip, life, shortest, timeout
-from innervate.protocol.mesh_queue import (
-    ALARMS,
-    CONTROL,
-    MESSAGES,
-    OWN,
-    compose,
-    drop,
-    has_room,
-    kick,
-)
+from innervate.protocol.mesh_queue import compose, drop, has_room, kick
 from innervate.protocol.mesh_search import BITS
 from innervate.protocol.mesh_seen import NO_WAY, is_hopeless, mark_bad, unskip
 from innervate.protocol.mesh_send import send_on
 from innervate.protocol.mesh_words import (
     ALARM,
+    ALARMS,
     ALL,
     BODY,
+    CONTROL,
     CROSS,
     DATA,
     DATA_MAX,
+    MESSAGES,
     NO_ACK,
     NO_ROUTE,
+    OWN,
     PARITY,
     PRIORITY,
     REPORT_ACCEPTED,

@@ -10,21 +10,15 @@ from innervate.protocol.mesh_kept import (
     launch,
     on_end_ack,
 )
-from innervate.protocol.mesh_queue import (
-    ALARMS,
-    CONTROL,
-    MESSAGES,
-    OWN,
-    compose,
-    kick,
-    make_room,
-)
+from innervate.protocol.mesh_queue import compose, kick, make_room
 from innervate.protocol.mesh_search import BITS
 from innervate.protocol.mesh_seen import accept, is_there
 from innervate.protocol.mesh_send import send_on
 from innervate.protocol.mesh_words import (
     ALARM,
+    ALARMS,
     ALL,
+    CONTROL,
     CRC_BYTES,
     DATA,
     DATA_MAX,
@@ -34,10 +28,12 @@ from innervate.protocol.mesh_words import (
     FIRST,
     FLOOD,
     HEADER_BYTES,
+    MESSAGES,
     MONITOR,
     NO_ROOM,
     NO_ROUTE,
     ORDERED,
+    OWN,
     PATH_MAX,
     PRIORITY,
     REPORT_ACCEPTED,

@@ -2,13 +2,13 @@
 
 A node that tries one neighbour after the other, each several times, makes for hundreds of
 transmissions a packet. Where all do so, acks collide, live neighbours are suspected, and that
-keeps the channel full for ever after its cause has gone. So transmissions in a row without an ack
-make for longer and longer pauses, as in any medium access; two dead neighbours cost none, and
-alarms never wait.
+keeps the channel full for ever after its cause has gone. So acks that are missing make for longer
+and longer pauses, as in any medium access, and acks that come for shorter ones. Neighbours that
+are silent do not count (they are dead, not drowned out), and alarms never wait.
 """
 
 from innervate.protocol.arith import MASK30, after
-from innervate.protocol.mesh_words import DATA, DETOURED, E2E_ACK, POSITION
+from innervate.protocol.mesh_words import ALARMS, DATA, DETOURED, E2E_ACK, POSITION
 from innervate.protocol.rng import draw
 
 EASY = 12  # more acks that are missing than acks that came: so many cost no pause
@@ -17,7 +17,6 @@ PER_DOUBLING = 4
 STRAIN_MAX = 44
 LONGEST_US = 65_536  # before it is doubled
 NO_PAUSE = -1
-ALARMS = 0  # rank in the queue
 
 
 def missed(node, params, now):
@@ -42,8 +41,7 @@ def is_held(node, i):
     return (node.q_flags[i] & DETOURED != 0 and kind != E2E_ACK) or node.strain > HARD
 
 
-def is_pausing(node, now):
-    """1 while frames are held."""
+def end_pause(node, now):
+    """Where its time is over."""
     if node.pause != NO_PAUSE and after(now, node.pause):
         node.pause = NO_PAUSE
-    return node.pause != NO_PAUSE

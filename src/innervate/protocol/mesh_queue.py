@@ -3,15 +3,17 @@
 from innervate.protocol.arith import MASK16, MASK30, after
 from innervate.protocol.mesh_fields import QUEUE
 from innervate.protocol.mesh_frames import load, store
-from innervate.protocol.mesh_pace import NO_PAUSE, answered, is_held, is_pausing
+from innervate.protocol.mesh_pace import NO_PAUSE, answered, end_pause, is_held
 from innervate.protocol.mesh_words import (
     ACK,
     ACK_WAIT,
     ACK_WANTED,
     ALARM,
+    ALARMS,
     ALL,
     DETOURED,
     END_TO_END,
+    MESSAGES,
     REPORT_DROPPED,
     REPORT_HOP,
     TTL,
@@ -27,12 +29,6 @@ UNACKED = 3
 
 NOBODY_GAVE = 255
 NO_OWNER = -1
-
-# Ranks.
-ALARMS = 0
-CONTROL = 1
-MESSAGES = 2
-OWN = 3  # messages begun here: what others began has been on its way for longer
 
 
 def free_places(node):
@@ -165,9 +161,9 @@ def is_before(node, i, j):
 def first_due(node, now):
     """Which frame goes next, or -1."""
     best = -1
-    pausing = is_pausing(node, now)
+    end_pause(node, now)
     for i in range(QUEUE):
-        if pausing and is_held(node, i):
+        if node.pause != NO_PAUSE and is_held(node, i):
             continue
         if node.q_state[i] == WAITS and after(now, node.q_due[i]):
             if best < 0 or is_before(node, i, best):

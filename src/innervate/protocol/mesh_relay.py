@@ -3,7 +3,7 @@
 from innervate.protocol.arith import MASK30
 from innervate.protocol.mesh_frames import in_path
 from innervate.protocol.mesh_messages import hand_up
-from innervate.protocol.mesh_queue import ALARMS, CONTROL, MESSAGES, kick, take_over
+from innervate.protocol.mesh_queue import kick, take_over
 from innervate.protocol.mesh_seen import (
     accept,
     is_flooded,
@@ -12,7 +12,7 @@ from innervate.protocol.mesh_seen import (
     mark_bad,
 )
 from innervate.protocol.mesh_send import send_on
-from innervate.protocol.mesh_words import ALARM, ALL, DATA, E2E_ACK
+from innervate.protocol.mesh_words import ALARM, ALARMS, ALL, CONTROL, DATA, E2E_ACK, MESSAGES
 from innervate.protocol.rng import draw
 
 

@@ -4,20 +4,13 @@ from innervate.protocol.arith import MASK30, later
 from innervate.protocol.mesh_fields import QUEUE
 from innervate.protocol.mesh_frames import add8, add16, add_hop, get16, store
 from innervate.protocol.mesh_near import FREE, UNHEARD, place_of
-from innervate.protocol.mesh_queue import (
-    CONTROL,
-    NOBODY_GAVE,
-    WAITS,
-    compose,
-    drop,
-    kick,
-    place,
-)
+from innervate.protocol.mesh_queue import NOBODY_GAVE, WAITS, compose, drop, kick, place
 from innervate.protocol.mesh_send import send_up
 from innervate.protocol.mesh_table import activate
 from innervate.protocol.mesh_upward import is_uplink, is_weak
 from innervate.protocol.mesh_words import (
     ALL,
+    CONTROL,
     CRC_BYTES,
     EACH,
     HEADER_BYTES,

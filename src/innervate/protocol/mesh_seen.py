@@ -2,7 +2,7 @@
 
 from innervate.protocol.arith import HALF16, MASK16
 from innervate.protocol.mesh_fields import FORWARDED, SKIPS, WINDOW_WORDS
-from innervate.protocol.mesh_words import ALL, PARITY
+from innervate.protocol.mesh_words import ALL, PARITY, TABLES
 
 NONE16 = 65536
 FLOODED = 20  # in done_kind: a flooded alarm, whose instances count apart
@@ -218,16 +218,22 @@ def is_there(node, dest):
 
 
 def hope_again(node):
-    """Whoever could not be reached may be there."""
+    """Whoever could not be reached may be there; if that is nobody, the wait gets shorter again."""
+    despaired = 0
     for k in range(SKIPS):
         if node.bad_near[k] == NO_WAY:
             node.bad_near[k] = ALL
+            despaired = 1
+    if not despaired:
+        node.despair = max(node.despair - 1, 0)
 
 
 def unbad(node, params):
     """New tables: whoever gave packets back may know a way now, but not to whom they leave out."""
     for k in range(SKIPS):
         dest = node.bad_dest[k]
-        listed = dest >= params.width or node.next[node.bank * params.width + dest] != ALL
-        if node.bad_near[k] != NO_WAY or listed:
+        left_out = params.mode == TABLES and dest < params.width
+        if left_out:
+            left_out = node.next[node.bank * params.width + dest] == ALL
+        if node.bad_near[k] != NO_WAY or not left_out:
             node.bad_near[k] = ALL

@@ -5,7 +5,7 @@ from innervate.protocol.mesh_fields import QUEUE
 from innervate.protocol.mesh_frames import add_hop, was_at
 from innervate.protocol.mesh_near import DOUBT, is_lively, place_of, suspect, trust
 from innervate.protocol.mesh_pace import missed
-from innervate.protocol.mesh_queue import ALARMS, UNACKED, WAITS, drop, kick
+from innervate.protocol.mesh_queue import UNACKED, WAITS, drop, kick
 from innervate.protocol.mesh_route import (
     advance_route,
     learn_failure,
@@ -17,6 +17,7 @@ from innervate.protocol.mesh_seen import skip, unskip
 from innervate.protocol.mesh_upward import uplink
 from innervate.protocol.mesh_words import (
     ACK_WANTED,
+    ALARMS,
     ALTERNATE,
     DATA,
     END_TO_END,
@@ -179,6 +180,18 @@ def turn_away(node, params, dead, out):
                 aim(node, params, i, out)
 
 
+def most_tries(node, params, i, who):
+    """How often the packet in place i is sent to the neighbour in place `who` of the table.
+
+    Once where another may be asked and this one was silent since it did not answer; tables and
+    what climbs to the gateway have few to choose from.
+    """
+    kind = node.q_kind[i]
+    if who >= 0 and node.suspect[who] & DOUBT and kind != TABLE and not is_upward(kind):
+        return 1
+    return params.transmissions
+
+
 def unanswered(node, params, now, out):
     """The hop's ack did not come in time."""
     i = node.busy
@@ -188,7 +201,7 @@ def unanswered(node, params, now, out):
     who = place_of(node, params, node.q_link_dst[i])
     if who < 0 or is_lively(node, who):
         missed(node, params, now)
-    if node.q_tries[i] < params.transmissions and not (who >= 0 and node.suspect[who] & DOUBT):
+    if node.q_tries[i] < most_tries(node, params, i, who):
         node.q_state[i] = WAITS
         node.q_due[i] = now
     else:

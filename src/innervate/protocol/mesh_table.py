@@ -2,13 +2,14 @@
 
 from innervate.protocol.arith import MASK30
 from innervate.protocol.mesh_frames import add8, add16, get16, is_route
-from innervate.protocol.mesh_queue import CONTROL, compose, kick, take_over
+from innervate.protocol.mesh_queue import compose, kick, take_over
 from innervate.protocol.mesh_search import set_edge
 from innervate.protocol.mesh_seen import is_flooded, unbad
 from innervate.protocol.mesh_send import enter, pass_on, send_up
 from innervate.protocol.mesh_words import (
     ACTIVATE,
     ALL,
+    CONTROL,
     CRC_BYTES,
     GRAPH,
     HEADER_BYTES,

@@ -4,9 +4,9 @@ from innervate.protocol.mesh_alarm import RAISED_OUT, sound
 from innervate.protocol.mesh_fence import OUTSIDE, margin
 from innervate.protocol.mesh_frames import add8, add16, add_hop, get16, inner, signed8, signed16
 from innervate.protocol.mesh_messages import first_flag, resolve
-from innervate.protocol.mesh_queue import MESSAGES, compose
+from innervate.protocol.mesh_queue import compose
 from innervate.protocol.mesh_send import send_on
-from innervate.protocol.mesh_words import ALL, CLEAR, CROSS, LOST, MONITOR, POSITION
+from innervate.protocol.mesh_words import ALL, CLEAR, CROSS, LOST, MESSAGES, MONITOR, POSITION
 
 POSITION_BYTES = 8
 NEVER = 255

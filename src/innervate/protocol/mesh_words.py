@@ -106,3 +106,9 @@ NO_ROUTE = 1  # nobody to send it to, or too long
 NO_ACK = 2
 PUT_OUT = 3  # an alarm needed its place
 NO_ROOM = 4  # too many wait already
+
+# Ranks in the queue.
+ALARMS = 0
+CONTROL = 1
+MESSAGES = 2
+OWN = 3  # messages begun here: what others began has been on its way for longer

@@ -22,6 +22,7 @@ from innervate.scenario.plan import (
 )
 from innervate.scenario.plan import plan as skin_planning
 from innervate.scenario.radio_plan import RadioFault, RadioPlan
+from innervate.scenario.templates import measured as measured_template
 from innervate.scenario.templates import template
 from innervate.scenario.touch import Touch
 
@@ -51,6 +52,7 @@ __all__ = [
     "json_schema",
     "load",
     "loads",
+    "measured_template",
     "plan",
     "read",
     "template",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from innervate.scenario.emit import inline
 from innervate.scenario.errors import ScenarioError
 from innervate.scenario.explain import nearest
 
@@ -165,6 +166,35 @@ action = "kill"               # kill | revive | restart | cut | restore | jam | 
 random = 8                    # so many bystanders; or node = 3, or link = ["n1", "n2"] (cut)
 """
 
+MEASURED = """\
+# A network as it was measured: everybody has something to tell the gateway.
+# Check it with `innervate check FILE`, run it with `innervate run FILE`.
+kind = "mesh"
+schema = 1
+name = {name}
+duration_s = 60.0             # simulated time
+seed = 1                      # same seed, same run
+# gateway = "..."             # a node by its name; the first one if left out
+
+[import]
+{network}
+types = {types}               # links of JSON files that count; [] = all
+min_tq = {min_tq:g}                  # worse in either direction: as if there were no link
+largest_component = true      # the others have no way to it
+
+[[flow]]                      # messages
+from = "all"                  # a node, "all" or "random"
+to = "gateway"
+every_s = 10.0
+jitter_s = 10.0
+
+# [[event]]
+# at_s = 30.0
+# action = "kill"             # kill | revive | restart | cut | restore | jam | quiet
+# random = 5                  # so many bystanders; or node = "..."
+"""
+
+TOPOHUB = "topohub:"
 _TEMPLATES = {"skin": SKIN, "radio": RADIO, "mesh": MESH}
 
 
@@ -178,3 +208,21 @@ def template(kind: str = "skin") -> str:
         return _TEMPLATES[kind]
     hint = nearest(kind, list(_TEMPLATES)).replace("it knows", "there is")
     raise ScenarioError(f'there is no kind "{kind[:40]}"{hint}')
+
+
+def measured(name: str, network: str, types: list[str], min_tq: float) -> str:
+    """A commented scenario of a network that was measured.
+
+    Args:
+        name: of the scenario.
+        network: a file as the scenario's folder sees it, a bundled one like "freifunk/leipzig", or
+            "topohub:" and a name.
+        types: of links that count; none = all.
+        min_tq: quality of a link that counts, 0 .. 1.
+    """
+    key, value = "file", network
+    if network.startswith(TOPOHUB):
+        key, value = "topohub", network.removeprefix(TOPOHUB)
+    return MEASURED.format(
+        name=inline(name), network=f"{key} = {inline(value)}", types=inline(types), min_tq=min_tq
+    )

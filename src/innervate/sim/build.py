@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -179,6 +180,27 @@ def hand_over(world: Any, tap: taps.Tap | None, now: int) -> None:
         count = int(get(world.run, 0, "taps"))
         tap(world.taps[:count], world.tapped[:count], now)
         put(world.run, 0, taps=0)
+
+
+def move_rows(
+    world: Any, parts: dict[str, list[Any]], fields: Mapping[str, tuple[str, ...]], wide: Any
+) -> None:
+    """Move filled rows out of the loop's tables, so that these can stay small.
+
+    Args:
+        world: of a run; its record counts what is in the table of each name.
+        parts: per table, the rows so far; these are added as one array each.
+        fields: of the rows, per table.
+        wide: fields of 64 bits.
+    """
+    for name, kept in parts.items():
+        count, table = int(get(world.run, 0, name)), getattr(world, name)
+        if isinstance(table, list):
+            rows = [tuple(getattr(row, f) for f in fields[name]) for row in table[:count]]
+            kept.append(np.array(rows, w.row_dtype(fields[name], wide)))
+        else:
+            kept.append(table[:count].copy())
+        put(world.run, 0, **{name: 0})
 
 
 def get(table: Any, place: int, name: str) -> Any:

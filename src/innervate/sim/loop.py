@@ -11,7 +11,7 @@ from innervate.kernel.bits import mix
 from innervate.kernel.tables import fetch
 from innervate.protocol.arith import MASK30
 from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER
-from innervate.sim import clocks, commands, touch, wires
+from innervate.sim import clocks, commands, rows, touch, wires
 from innervate.sim import wheel as queue
 from innervate.sim.observer import BROKEN_OUTBOX
 from innervate.sim.wheel import FRESH, LAST, NIL
@@ -161,14 +161,7 @@ def build(stack):
             check(world, node)
             if run.broken and run.broken_at < 0:
                 run.broken_at = time
-        if run.trail_limit > 0:
-            row = world.trail[run.trail]
-            run.trail += 1
-            row.time = time
-            row.node = node
-            row.handler = handler
-            row.port = port
-            row.fingerprint = run.fingerprint
+        rows.keep_step(world, node, time, handler, port)
 
     def switch_on(world, node, time, cause):
         """Start a node, and its source of samples if it has one."""

@@ -68,9 +68,9 @@ def _modules() -> list[ModuleType]:
 
 def _rare() -> list[ModuleType]:
     """What runs too seldom to be worth copying into every caller."""
-    from innervate.sim import commands, observer, touch
+    from innervate.sim import commands, observer, rows, touch
 
-    return [observer, commands, touch, taps]
+    return [observer, commands, touch, rows, taps]
 
 
 @functools.cache

@@ -271,7 +271,7 @@ class Locals:
         """The number of what the records are now."""
         self._drop_idle(node, gate, timers)
         if self.neat:
-            mesh_shape.tidy(node, self.model.nodes, self.params.e2e_adapt)
+            mesh_shape.tidy(node, self.model.nodes, self.params.e2e_adapt, now)
         value = self.shape.take(node, now)
         kept = None if gate is None else self.gate_shape.take(gate, now)
         return self.number_of(State(value, kept, tuple(timers), handed))

@@ -41,8 +41,7 @@ MUTANTS = tuple(
         ("a retry is never due", "        set_timer(out, RETRY, (now + soonest) & MASK30)\n",
          "        return\n"),
         ("a frame whose hop failed stays where it is",
-         "    node.busy = -1\n    if node.q_tries[i] < params.transmissions:\n",
-         "    if node.q_tries[i] < params.transmissions:\n"),
+         "UNACKED:\n        return\n    node.busy = -1\n", "UNACKED:\n        return\n"),
         ("frames behind the first are forgotten",
          "            wake(node, now, out)\n            return\n", "            return\n"),
     )

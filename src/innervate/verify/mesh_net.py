@@ -360,7 +360,7 @@ class Nets:
         return move._replace(script=part.script), after, part.broken
 
     def _deliver(self, got: int, node: int, number: int) -> tuple[int, int]:
-        """Note a delivery; broken if it is the second of the same packet."""
+        """Note a delivery; broken if the packet came before, or more of them than were offered."""
         packet = self.locals.packets[number]
         if packet.origin == node:
             return got, 0
@@ -368,7 +368,9 @@ class Nets:
         rows = self.sets[got]
         if row in rows:
             return got, local.BROKEN_TWICE
-        return self._set_of(rows | {row}), 0
+        came = sum(other[:2] == row[:2] and other[3] == words.DATA for other in rows | {row})
+        broken = packet.kind == words.DATA and came > self.model.offers.count((packet.origin, node))
+        return self._set_of(rows | {row}), local.BROKEN_TWICE if broken else 0
 
     def _set_of(self, rows: frozenset[tuple[int, int, int, int]]) -> int:
         number = self.set_numbers.get(rows)

@@ -1,8 +1,9 @@
 """A mesh node's record as a value that can be kept, compared, and come back to.
 
-Times are kept from the node's own present on, what is past as 0; what no handler looks at any more
-(the places of a queue that are free, scratch) is put to one value, so that states which differ in
-nothing else are one. A test plays the same walks with and without (`tidy`).
+Times are kept from the node's own present on, what is past as 0, or, where its age counts, as
+that; what no handler looks at any more (the places of a queue that are free, scratch) is put to
+one value, so that states which differ in nothing else are one. A test plays the same walks with
+and without (`tidy`).
 """
 
 from __future__ import annotations
@@ -18,11 +19,13 @@ from innervate.protocol.mesh_near import SUSPECT
 
 NOW = 1 << 28  # what a node's clock shows at every event
 FEW = 8  # draws out of so many or fewer are enumerated, others have one value a node
-TIMES = ("until", "tick_at", "wait_due", "wait_at", "q_due")
+TIMES = ("until", "tick_at", "wait_due", "q_due")
 GATE_TIMES = ("job_due",)
+AGES = ("q_born", "wait_at", "wait_sent")
+OLDEST_US = 5_000_000  # whatever is older is alike
 # Nothing but statistics of these: round trips count only where timeouts adapt to them.
 PLAIN = {"rng": 1, "choice": 0, "asked": 0, "round_trip": 0, "tick_at": 0}
-SCRATCH = ("far", "line", "wait_at")
+SCRATCH = ("far", "line")
 QUEUED = ("q_rank", "q_order", "q_due", "q_tries", "q_fails", "q_copies", "q_from", "q_owner",
           "q_kind", "q_flags", "q_link_dst", "q_origin", "q_dest", "q_seq", "q_ver", "q_ttl",
           "q_path_len", "q_length")  # fmt: skip
@@ -79,10 +82,8 @@ class Shape:
         for name, length, (low, high) in zip(self.names, self.lengths, self.bounds, strict=True):
             value = getattr(record, name)
             if name in self.times:
-                grain = self.grain
-                value = (
-                    [ahead(t, now, grain) for t in value] if length else ahead(value, now, grain)
-                )
+                kept, grain = age if name in AGES else ahead, self.grain
+                value = [kept(t, now, grain) for t in value] if length else kept(value, now, grain)
             if not length:
                 if not low <= value <= high:
                     raise OutOfRange(f"{name} = {value}")
@@ -100,7 +101,9 @@ class Shape:
     def put(self, record: Any, value: tuple[Any, ...]) -> None:
         """Make a record what it was; its present is NOW."""
         for name, length, kept in zip(self.names, self.lengths, value, strict=True):
-            if name in self.times:
+            if name in AGES:
+                kept = [NOW - t for t in kept]
+            elif name in self.times:
                 kept = [NOW + t for t in kept] if length else NOW + kept
             elif length:
                 kept = list(kept)
@@ -113,17 +116,22 @@ def ahead(time: int, now: int, grain: int = 1) -> int:
     return 0 if wait > MASK30 >> 1 else wait - wait % grain
 
 
-def tidy(node: Any, capacity: int, adapts: int) -> None:
+def age(time: int, now: int, grain: int = 1) -> int:
+    """How long a time is past, in whole grains."""
+    past = min((now - time) & MASK30, OLDEST_US)
+    return past - past % grain
+
+
+def tidy(node: Any, capacity: int, adapts: int, now: int) -> None:
     """Put to one value what no handler of this node looks at any more."""
     for name, value in PLAIN.items():
         if name != "round_trip" or not adapts:
             setattr(node, name, value)
     for name in SCRATCH:
-        if name != "wait_at" or not adapts:
-            values = getattr(node, name)
-            for k in range(len(values)):
-                values[k] = 0
-    _tidy_queue(node)
+        values = getattr(node, name)
+        for k in range(len(values)):
+            values[k] = 0
+    _tidy_queue(node, now)
     for w in range(fields.WAITING):
         used = 0
         if node.wait_kind[w]:
@@ -131,6 +139,9 @@ def tidy(node: Any, capacity: int, adapts: int) -> None:
         else:
             for name in KEPT:
                 getattr(node, name)[w] = 0
+            node.wait_sent[w] = now
+        if not (used and adapts):  # tries end long before a message is too old
+            node.wait_at[w] = now
         first = w * words.DATA_MAX
         node.wait_body[first + used : first + words.DATA_MAX] = [0] * (words.DATA_MAX - used)
     for k in range(fields.SKIPS):
@@ -143,11 +154,11 @@ def tidy(node: Any, capacity: int, adapts: int) -> None:
             for name in NEAR:
                 getattr(node, name)[k] = 0
         if not node.suspect[k] & SUSPECT:
-            node.until[k] = NOW
+            node.until[k] = now
     _sort_forwarded(node)
 
 
-def _tidy_queue(node: Any) -> None:
+def _tidy_queue(node: Any, now: int) -> None:
     """Free places are empty; the order of those in use is 0, 1, ..."""
     used = [i for i in range(fields.QUEUE) if node.q_state[i]]
     order = sorted(used, key=lambda i: (node.q_order[i] - node.q_next) & MASK30)
@@ -158,7 +169,8 @@ def _tidy_queue(node: Any) -> None:
         length, hops = (node.q_length[i], node.q_path_len[i]) if node.q_state[i] else (0, 0)
         if not node.q_state[i]:
             for name in QUEUED:
-                getattr(node, name)[i] = NOW if name == "q_due" else 0
+                getattr(node, name)[i] = 0
+            node.q_due[i] = node.q_born[i] = now
         first = i * words.BODY
         node.q_body[first + length : first + words.BODY] = [0] * (words.BODY - length)
         first = i * words.PATH_MAX
@@ -194,4 +206,6 @@ def classes(nodes: int, who: Callable[[int, int], int]) -> tuple[type, type, typ
 
 def shapes(nodes: int, grain: int) -> tuple[Shape, Shape]:
     """How nodes and gateways' records are kept; times in grains of so many us."""
-    return Shape(fields.node(nodes), TIMES, grain), Shape(fields.gate(nodes), GATE_TIMES, grain)
+    return Shape(fields.node(nodes), TIMES + AGES, grain), Shape(
+        fields.gate(nodes), GATE_TIMES, grain
+    )

@@ -25,19 +25,6 @@ def breaks(world, what, node):
         run.broken, run.broken_node = what, node
 
 
-def keep_row(world, time, node, code, a, b):
-    """A row of what nodes report."""
-    run = world.run[0]
-    if run.row_limit > 0:
-        row = world.rows[run.rows]
-        run.rows += 1
-        row.time = time
-        row.node = node
-        row.code = code
-        row.a = a
-        row.b = b
-
-
 def keep_sent(world, place, time, length, receivers):
     """A row of what was on the air until now, if it was."""
     if world.air[place].state == ON_AIR:
@@ -154,16 +141,3 @@ def keep_round(world, node, time):
     row.links = links
     row.good = run.good
     row.both = both
-
-
-def keep_step(world, node, time, handler, port):
-    """A row of the trail of all handler calls."""
-    run = world.run[0]
-    if run.trail_limit > 0:
-        row = world.trail[run.trail]
-        run.trail += 1
-        row.time = time
-        row.node = node
-        row.handler = handler
-        row.port = port
-        row.fingerprint = run.fingerprint

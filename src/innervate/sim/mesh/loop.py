@@ -6,6 +6,7 @@ from innervate.protocol.arith import MASK16, MASK30
 from innervate.protocol.mesh_words import MESSAGE, REPORT_GRAPH, SAMPLE, SENT
 from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.scenario.mesh_plan import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
+from innervate.sim import rows
 from innervate.sim.loop import (
     BROKEN,
     BUDGET,
@@ -85,7 +86,7 @@ def build(stack, layer):
             elif kind == SET_TIMER:
                 queue.set_timer(world, node, a, b, time, now)
             elif kind == REPORT:
-                books.keep_row(world, time, node, a, b, c)
+                rows.keep_row(world, time, node, a, b, c)
                 if a == REPORT_GRAPH:
                     books.keep_round(world, node, time)
             elif kind == DELIVER:
@@ -105,7 +106,7 @@ def build(stack, layer):
         if run.watchful:
             if run.checks and not is_sound(world, node):
                 books.breaks(world, books.BROKEN_RANGE, node)
-            books.keep_step(world, node, time, handler, port)
+            rows.keep_step(world, node, time, handler, port)
 
     def tell_sent(world, node, time, ok):
         """The router's frame has left the air, or could not."""

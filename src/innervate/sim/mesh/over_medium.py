@@ -8,7 +8,7 @@ from innervate.protocol import csma, mesh_words
 from innervate.protocol.arith import MASK30
 from innervate.protocol.mesh_words import ACK
 from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
-from innervate.sim import taps
+from innervate.sim import rows, taps
 from innervate.sim.loop import DONE, ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.sim.mesh import books, medium, queue
 from innervate.sim.mesh.books import MAC
@@ -89,7 +89,7 @@ def down(stack):
         if out.overflow[0]:
             books.breaks(world, books.BROKEN_OUTBOX, node)
         if run.watchful:
-            books.keep_step(world, node, time, handler, 0)
+            rows.keep_step(world, node, time, handler, 0)
         return handed_up
 
     def hand_down(world, node, frame, attempt, urgent, time, now):

@@ -15,8 +15,8 @@ from innervate.kernel.stop import Stop
 from innervate.kernel.wall import wall_s
 from innervate.protocol import mesh_fields
 from innervate.sim import loop as skin_loop
-from innervate.sim import taps
-from innervate.sim.build import get, hand_over, put
+from innervate.sim import rows, taps
+from innervate.sim.build import get, hand_over, move_rows
 from innervate.sim.mesh import (
     books,
     channel,
@@ -36,7 +36,6 @@ from innervate.sim.radio import loop as radio_loop
 from innervate.sim.radio import simulate as radio_simulate
 from innervate.sim.radio import stacks as radio_stacks
 from innervate.sim.simulate import InvariantBroken
-from innervate.sim.world import row_dtype
 
 SLICE_EVENTS = 200_000
 PLAIN_SLICE_EVENTS = 2_000
@@ -106,7 +105,7 @@ def _compiled(entry: ModuleType, access: radio_stacks.Protocol | None) -> Callab
     from innervate.protocol import arith, csma, outbox, rng
 
     door.register(arith, outbox, rng, heap)
-    door.register(*stacks.modules_of(entry), csma, medium, motion, books, taps, hot=False)
+    door.register(*stacks.modules_of(entry), csma, medium, motion, books, rows, taps, hot=False)
     door.register_functions(powers.strength, powers.chance, powers.loss)
     door.register_functions(loop.pressing, loop.wipe, queue.set_timer, hot=False)
     layer: Any = over_medium
@@ -182,7 +181,7 @@ def simulate(
                 world = channel.grown(world)
             if status == loop.SEEN_FULL:
                 world = builder.grow_seen(world)
-            _collect(world, parts)
+            move_rows(world, parts, NAMES, w.WIDE)
             hand_over(world, tap, int(get(world.run, 0, "now")))
             if progress is not None:
                 progress(int(get(world.run, 0, "now")), plan.duration_us)
@@ -218,19 +217,6 @@ def _plain_layer(mac: str) -> Any:
         return over_medium
     stack = radio_stacks.bind(radio_stacks.PROTOCOLS[mac].entry)
     return over_channel.layer(radio_loop.build(stack, over_channel))
-
-
-def _collect(world: w.World, parts: dict[str, list[Any]]) -> None:
-    """Move filled rows out of the loop's tables, so that these can stay small."""
-    for name, kept in parts.items():
-        count = int(get(world.run, 0, name))
-        table, fields = getattr(world, name), NAMES[name]
-        if isinstance(table, list):
-            rows = [tuple(getattr(row, f) for f in fields) for row in table[:count]]
-            kept.append(np.array(rows, row_dtype(fields, w.WIDE)))
-        else:
-            kept.append(table[:count].copy())
-        put(world.run, 0, **{name: 0})
 
 
 def story(plan: Any, world: w.World) -> str:

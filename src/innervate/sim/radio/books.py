@@ -4,22 +4,10 @@ from innervate.protocol.radio_station import copy_frame
 from innervate.protocol.radio_words import DATA
 from innervate.sim import taps
 from innervate.sim.radio.heap import AIR_BITS
+from innervate.sim.rows import keep_step
 
 BROKEN_RANGE = 4
 BROKEN_TURNS = 5
-
-
-def keep_row(world, time, node, code, a, b):
-    """A row of what stations report."""
-    run = world.run[0]
-    if run.row_limit > 0:
-        row = world.rows[run.rows]
-        run.rows += 1
-        row.time = time
-        row.node = node
-        row.code = code
-        row.a = a
-        row.b = b
 
 
 def keep_sent(world, node, frame, time):
@@ -72,11 +60,4 @@ def watch(world, node, time, handler, port):
         for i in range(len(world.low)):
             if words[i] < world.low[i] or words[i] > world.high[i]:
                 run.broken, run.broken_node = BROKEN_RANGE, node
-    if run.trail_limit > 0:
-        row = world.trail[run.trail]
-        run.trail += 1
-        row.time = time
-        row.node = node
-        row.handler = handler
-        row.port = port
-        row.fingerprint = run.fingerprint
+    keep_step(world, node, time, handler, port)

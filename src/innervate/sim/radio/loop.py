@@ -31,7 +31,7 @@ from innervate.sim.loop import (
 )
 from innervate.sim.radio import heap as queue
 from innervate.sim.radio import medium, traffic
-from innervate.sim.radio.books import keep_received, keep_row, keep_sent, watch
+from innervate.sim.radio.books import keep_received, keep_sent, watch
 from innervate.sim.radio.heap import (
     ENDS,
     OFFER,
@@ -46,6 +46,7 @@ from innervate.sim.radio.heap import (
 )
 from innervate.sim.radio.medium import NEVER
 from innervate.sim.radio.world import RING, TIMERS
+from innervate.sim.rows import keep_row
 
 ON_CARRIER = 4
 BROKEN_OUTBOX = 3

@@ -13,13 +13,12 @@ from innervate.kernel import door, tables
 from innervate.kernel.stop import Stop
 from innervate.kernel.wall import wall_s
 from innervate.sim import loop as skin_loop
-from innervate.sim import taps
-from innervate.sim.build import get, hand_over, put
+from innervate.sim import rows, taps
+from innervate.sim.build import get, hand_over, move_rows
 from innervate.sim.radio import books, heap, loop, medium, stacks, traffic
 from innervate.sim.radio import build as builder
 from innervate.sim.radio import world as w
 from innervate.sim.simulate import InvariantBroken
-from innervate.sim.world import row_dtype
 
 SLICE_EVENTS = 1_000_000
 
@@ -73,7 +72,7 @@ def registered(protocol: stacks.Protocol, packets: Any) -> loop.Handlers:
     """A protocol's loop, plain; what its parts call may be compiled."""
     from innervate.protocol import arith, outbox, rng
 
-    door.register(traffic, taps, hot=False)
+    door.register(traffic, rows, taps, hot=False)
     door.register(arith, outbox, rng, heap, medium)
     door.register(*protocol.modules, hot=False)
     door.register(books, hot=False)
@@ -120,7 +119,7 @@ def simulate(
                 raise InvariantBroken(story(plan, world))
             if status == skin_loop.POOL_FULL:
                 world = builder.grow_heap(world)
-            _collect(world, parts)
+            move_rows(world, parts, NAMES, w.WIDE)
             hand_over(world, tap, int(get(world.run, 0, "now")))
             if progress is not None:
                 progress(int(get(world.run, 0, "now")), plan.duration_us)
@@ -137,19 +136,6 @@ def simulate(
         interrupted=status != skin_loop.DONE,
         **found,
     )
-
-
-def _collect(world: w.World, parts: dict[str, list[Any]]) -> None:
-    """Move filled rows out of the loop's tables, so that these can stay small."""
-    for name, kept in parts.items():
-        count = int(get(world.run, 0, name))
-        table, fields = getattr(world, name), NAMES[name]
-        if isinstance(table, list):
-            rows = [tuple(getattr(row, f) for f in fields) for row in table[:count]]
-            kept.append(np.array(rows, row_dtype(fields, w.WIDE)))
-        else:
-            kept.append(table[:count].copy())
-        put(world.run, 0, **{name: 0})
 
 
 def story(plan: Any, world: w.World) -> str:
