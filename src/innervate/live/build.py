@@ -144,7 +144,7 @@ def _radio(loaded: Loaded) -> LiveNode:
     check_parameters(params)
     stack = StationStack(table.number, params, secrets.randbits(60))
     radio = MediumRadio(table.number, address(table.link[0].address, where))
-    return RadioNode(loaded.name, stack, radio)
+    return RadioNode(loaded.name, stack, radio, f"medium {table.link[0].address}")
 
 
 BUILDERS: dict[str, Callable[[Loaded], LiveNode]] = {
