@@ -70,7 +70,7 @@ class Side:
 
 class Innervate(Side):
     name = "innervate"
-    settle_s = 7.0  # three discovery rounds
+    settle_s = 5.0  # two discovery rounds
 
     def __init__(self, *args, settings=None):
         super().__init__(*args)
@@ -115,7 +115,7 @@ class Innervate(Side):
 
 class Babeld(Side):
     name = "babeld"
-    settle_s = 4.0
+    settle_s = 3.0
 
     def start(self):
         for node in range(self.shape.count):

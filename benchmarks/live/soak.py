@@ -24,7 +24,7 @@ from innervate.live import status
 from innervate.live.up import Network
 
 SENDERS = 2  # per node: each waits for its receipt
-PAUSE_S = 0.02  # between a sender's messages
+PAUSE_S = 0.1  # between a sender's messages: all nodes together take half a core
 HURT_S = (0.2, 1.5)  # a cable is cut, then whole, for a time between these
 ROTATE_S = 20.0
 GRACE_S = 2.0

@@ -8,15 +8,7 @@ import pytest
 
 from tests.browser_net import SKIN, WIDE, serving
 
-HERE = Path(__file__).parent
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
-
-
-def pytest_collection_modifyitems(items):
-    """On a busy machine a panel may move the map between a look and a click: then once more."""
-    for item in items:
-        if HERE in item.path.parents:
-            item.add_marker(pytest.mark.flaky(reruns=2))
 
 
 @pytest.fixture(scope="module")  # while it is open its event loop runs, in which no other may run

@@ -101,7 +101,7 @@ def test_new_takes_a_measured_network(sh):
     Path("sub").mkdir()
     Path("links.txt").write_text("A B 0.9 0.8\nB C 0.7 0.9\nC D 0.2\n")
     assert sh("new", "mesh", "sub/mine.toml", "--network", "links.txt", "--min-tq", "0.5") == 0
-    assert "nodes      3, gateway A" in sh.out
+    assert "nodes      3, gateway B" in sh.out
     text = Path("sub/mine.toml").read_text()
     assert 'file = "../links.txt"' in text
     assert "min_tq = 0.5" in text

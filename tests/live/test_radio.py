@@ -13,6 +13,7 @@ from innervate.wire import radio as wire
 from tests.live_net import until
 
 STATIONS = 5
+TRIES = 4  # a station that has no processor at its moment is late; no protocol mends that
 # Slow enough that a busy machine keeps up: a slot of 20 ms, 10 ms to turn round.
 SLOW = parameters(20, 10_000, (1, 8000), bit_us=2500)
 
@@ -42,7 +43,10 @@ def test_five_stations_that_collide_send_in_the_order_that_they_reserved():
         medium.close()
         return medium, heard
 
-    medium, heard = asyncio.run(main())
+    for _ in range(TRIES):
+        medium, heard = asyncio.run(main())
+        if not medium.late:
+            break
     assert medium.collisions >= STATIONS - 1  # all of them sent at once
     turns = []
     for start, end, station, data in medium.log:
@@ -64,3 +68,34 @@ def test_a_packet_that_is_too_long_is_refused():
     node = RadioNode("s", stack, MediumRadio(0, ("127.0.0.1", 9)))
     with pytest.raises(ValueError, match="a packet holds 18"):
         node.send_packet(bytes(19))
+
+
+def test_a_station_whose_aerial_is_out_neither_hears_nor_is_heard():
+    async def main():
+        medium = Medium(SLOW["slot_us"], SLOW["ta_us"])
+        where = medium.open(("127.0.0.1", 0))
+        params = radio_parameters({key: SLOW[key] for key in RADIO})
+        heard = []
+        nodes = [RadioNode(f"s{i}", StationStack(i, params, 97 + i), MediumRadio(i, where))
+                 for i in range(3)]  # fmt: skip
+        for i, node in enumerate(nodes):
+            await node.start()
+            node.receive_packets(lambda source, _payload, i=i: heard.append((i, source)))
+        await until(lambda: all(node.paths[0].heard_at for node in nodes), 10)
+        nodes[0].path_at(0).cut = True
+        others = nodes[1].send_packet(b"all")
+        await until(lambda: others.state == DELIVERED, 30)
+        alone = nodes[0].send_packet(b"nobody")
+        await until(lambda: nodes[0].outcomes["frames sent"] > 0, 30)
+        assert not nodes[0].status()["paths"][0]["up"]
+        assert set(heard) == {(2, 1)}
+        assert alone.state != DELIVERED
+        assert {station for *_, station, _ in medium.log} == {1, 2}
+        nodes[0].path_at(0).cut = False
+        await until(lambda: alone.state == DELIVERED, 60)
+        for node in nodes:
+            await node.stop()
+        medium.close()
+        return heard
+
+    assert {(1, 0), (2, 0)} <= set(asyncio.run(main()))

@@ -138,9 +138,11 @@ def test_a_radio_team_comes_up_and_stations_leave_and_join(tmp_path):
             await play.Player(network, plan, happening, lambda event: None).play()
             assert network.processes["s1"].poll() == 0
             request = {"do": "send", "payload": b"here".hex()}
+            listening = status.ask(network.socket("s0"), {"do": "listen"})
+            assert next(listening) == {"listening": "s0"}
             states = [answer["state"] for answer in _answers(network.socket("s2"), request)]
-            heard = ask(network, "s0")["counters"]
-            return states, heard
+            assert next(listening) == {"from": 2, "payload": b"here".hex()}
+            return states, ask(network, "s0")["counters"]
         finally:
             await network.down()
 

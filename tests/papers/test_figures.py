@@ -9,6 +9,7 @@ from matplotlib.text import Text
 from innervate.papers.experiment import FAILS, HOLDS, reading
 from innervate.papers.skin import FIGURES, experiment
 from innervate.plot import style
+from tests.self_contained import check_paper
 
 from .conftest import CHEAP
 
@@ -124,3 +125,11 @@ def test_the_users_settings_come_back():
 def test_verdicts_are_words():
     assert HOLDS == "holds"
     assert reading("E20", "E21") == "holds with reading E20, E21"
+
+
+def test_the_page_needs_nothing_else_and_can_be_had_again(made):
+    check_paper(
+        made,
+        "skin",
+        "innervate papers skin --quick " + " ".join(f"--only {name}" for name in CHEAP),
+    )

@@ -12,6 +12,7 @@ from innervate.papers.mesh import FIGURES, alarms, crossing, experiment, gateway
 from innervate.papers.mesh.bars import wire_bytes
 from innervate.papers.mesh.bed import GATEWAY, Bed, dying, kill, send_rounds
 from innervate.plot import style
+from tests.self_contained import check_paper
 
 from .conftest import read
 from .test_figures import overlapping
@@ -193,3 +194,7 @@ def test_what_was_asked_for_in_full(tmp_path):
     main("mesh", tmp_path, only=["bars"])
     (claims,) = read(tmp_path, False, ["bars"], mesh).claims.values()
     assert [claim for claim in claims if claim.verdict == FAILS] == []
+
+
+def test_the_page_needs_nothing_else_and_can_be_had_again(mesh_made):
+    check_paper(mesh_made, "mesh", "innervate papers mesh --quick")

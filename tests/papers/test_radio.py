@@ -11,6 +11,7 @@ from innervate.papers.radio import FIGURES, experiment
 from innervate.papers.radio.common import first_from, slope, spans
 from innervate.papers.radio.fairness import longest
 from innervate.plot import style
+from tests.self_contained import check_paper
 
 from .test_figures import overlapping
 
@@ -191,3 +192,7 @@ def test_what_holds_and_what_does_not_in_full(tmp_path):
             found = [claim for claim in whole.claims[name] if words in claim.claim]
             assert found, words
             assert all(claim.verdict.startswith(begins) for claim in found), words
+
+
+def test_the_page_needs_nothing_else_and_can_be_had_again(radio_made):
+    check_paper(radio_made, "radio", "innervate papers radio --quick")

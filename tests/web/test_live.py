@@ -59,7 +59,7 @@ def test_a_mesh_is_drawn_cut_and_mended():
                 scene = page.scene
                 assert (scene["kind"], scene["source"]) == ("mesh", "live")
                 assert scene["duration_s"] is None
-                assert scene["can"] == ["cut", "heal"]
+                assert scene["can"] == ["cut", "heal", "kill", "revive"]
                 assert [node["label"] for node in scene["nodes"]] == ["n0", "n1", "n2", "n3"]
                 assert scene["nodes"][0]["role"] == "gateway"
                 pairs = [(link["a"], link["b"]) for link in scene["links"]]
@@ -73,6 +73,7 @@ def test_a_mesh_is_drawn_cut_and_mended():
                 assert here.cut
                 assert there.cut
                 assert "n0 - n1 cut" in page.state["recovery"]["cause"]
+                cut_s = page.state["recovery"]["at_s"]
                 receipt = mesh.nodes[1].send_message(0, b"find another way")
                 assert await receipt.wait() == "delivered"
                 await page.until(lambda: page.state["parent"][1] == 2)
@@ -83,9 +84,20 @@ def test_a_mesh_is_drawn_cut_and_mended():
                 await page.until(lambda: page.state["link_up"] == [1, 1, 1, 1])
                 assert not here.cut
                 assert page.series["frames"]
-                for impossible in ({"do": "kill", "node": 1}, {"do": "seek", "t_s": 0}):
-                    answer = await page.ask(**impossible)
-                    assert "not possible" in answer["text"]
+                since_s = page.state["t_s"] - page.state["since_cut_s"]
+                assert since_s == pytest.approx(cut_s, abs=1e-6)  # one moment, however often told
+                await page.give("kill", node=2)  # all of its paths, at its own end
+                await page.until(lambda: page.state["node_up"] == [1, 1, 0, 1])
+                assert [path.cut for path in mesh.nodes[2].paths] == [True, True]
+                assert not any(path.cut for path in mesh.nodes[1].paths)
+                assert page.state["cut_off"] == [0, 0, 1, 0]
+                again = await page.ask("kill", node=2)
+                assert "already" in again["text"]
+                await page.give("revive", node=2)
+                await page.until(lambda: page.state["node_up"] == [1, 1, 1, 1])
+                assert not any(path.cut for path in mesh.nodes[2].paths)
+                answer = await page.ask("seek", t_s=0)
+                assert "not possible" in answer["text"]
 
     asyncio.run(main())
 
@@ -109,35 +121,109 @@ def test_a_node_that_stops_is_seen_and_comes_back():
     asyncio.run(main())
 
 
-@pytest.mark.slow
-def test_a_skin_of_processes_is_drawn_with_its_tree():
-    plan = scenario.plan(scenario.load("loop-three", ["protocol.rule=feasible"]))
+def with_processes(plan, cables, do):
+    """Have `do(network, page)` happen to a network of processes that a page looks at."""
 
     async def main(folder):
-        network = Network(plan, folder, "udp")
+        network = Network(plan, folder, cables)
         try:
             await network.up()
             paths = [network.socket(name) for name in network.names]
             source = await asyncio.to_thread(Live, paths)
             async with serving(source) as served, Page(served.address) as page:
-                await page.until(lambda: page.state.get("unconnected") == 0)
-                cells = plan.graph.cells
-                roles = [node["role"] for node in page.scene["nodes"]]
-                assert roles == ["cell"] * cells + ["port"] * plan.graph.interfaces
-                assert len(page.scene["links"]) == len(list(plan.graph.links()))
-                used = page.state["parent"][0]
-                link = next(link["id"] for link in page.scene["links"]
-                            if {link["a"], link["b"]} == {0, used})  # fmt: skip
-                await page.give("cut", link=link)
-                await page.until(lambda: page.state["link_up"][link] == 0)
-                await page.give("heal", link=link)
-                await page.until(lambda: page.state["link_up"][link] == 1)
-                await page.until(lambda: page.state["unconnected"] == 0)
+                await do(network, page)
         finally:
             await network.down()
 
     with tempfile.TemporaryDirectory(prefix="iv") as folder:
         asyncio.run(main(Path(folder)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("cables", ["udp", "pty"])
+def test_a_skin_of_processes_is_drawn_with_its_tree(cables):
+    plan = scenario.plan(scenario.load("loop-three", ["protocol.rule=feasible"]))
+
+    async def look(_network, page):
+        await page.until(lambda: page.state.get("unconnected") == 0)
+        cells = plan.graph.cells
+        roles = [node["role"] for node in page.scene["nodes"]]
+        assert roles == ["cell"] * cells + ["port"] * plan.graph.interfaces
+        assert len(page.scene["links"]) == len(list(plan.graph.links()))
+        used = page.state["parent"][0]
+        link = next(link["id"] for link in page.scene["links"]
+                    if {link["a"], link["b"]} == {0, used})  # fmt: skip
+        await page.give("cut", link=link)
+        await page.until(lambda: page.state["link_up"][link] == 0)
+        await page.give("heal", link=link)
+        await page.until(lambda: page.state["link_up"][link] == 1)
+        await page.until(lambda: page.state["unconnected"] == 0)
+
+    with_processes(plan, cables, look)
+
+
+def sent(path):
+    """Send a packet, and wait until it is delivered."""
+    lines = status.ask(path, {"do": "send", "payload": "00"})
+    return next(line for line in lines if line["state"] == "delivered")
+
+
+@pytest.mark.slow
+def test_a_station_of_processes_is_cut_off_and_let_back():
+    team = {"kind": "radio", "duration_s": 60, "stations": 4, "traffic": {"kind": "disaster"}}
+
+    async def look(network, page):
+        await page.until(lambda: page.state.get("node_up") == [1, 1, 1, 1])
+        assert page.scene["can"] == ["kill", "revive"]
+        await page.give("kill", node=1)
+        await page.until(lambda: page.state["node_up"] == [1, 0, 1, 1])
+        assert page.state["unconnected"] == 1
+        said = asyncio.create_task(asyncio.to_thread(sent, network.socket("s1")))
+        await page.until(lambda: page.state["radio"]["now"][1] in (1, 4))  # it tries
+        done, _ = await asyncio.wait([said], timeout=3)
+        assert not done  # and reaches nobody
+        await page.give("revive", node=1)
+        await page.until(lambda: page.state["node_up"] == [1, 1, 1, 1])
+        await asyncio.wait_for(said, 30)
+        await network.end_node("s3", gently=False)
+        await page.until(lambda: page.state["node_up"] == [1, 1, 1, 0])
+        assert page.state["cut_off"] == [0, 0, 0, 0]
+        refused = await page.ask("revive", node=3)
+        assert "does not answer" in refused["text"]
+        await network.begin_node("s3")
+        await page.until(lambda: page.state["node_up"] == [1, 1, 1, 1])
+
+    with_processes(scenario.plan(scenario.from_dict(team)), "udp", look)
+
+
+@pytest.mark.slow
+def test_a_mesh_of_processes_loses_a_node_and_has_it_again():
+    """SIGKILL, and the same node started once more."""
+    plan = scenario.plan(
+        scenario.from_dict(
+            {
+                "kind": "mesh", "duration_s": 60, "radio": {"profile": "ip"},
+                "link": [{"a": f"n{a}", "b": f"n{b}"} for a, b in RING],
+            }
+        )
+    )  # fmt: skip
+
+    async def look(network, page):
+        await page.until(lambda: page.state.get("unconnected") == 0)
+        links = page.scene["links"]
+        assert len(links) == len(RING)
+        await network.end_node("n2", gently=False)
+        await page.until(lambda: page.state["node_up"] == [1, 1, 0, 1])
+        await page.until(lambda: "n2 does not answer any more" in page.text())
+        assert page.state["unconnected"] == 0
+        await network.begin_node("n2")
+        await page.until(lambda: page.state["node_up"] == [1, 1, 1, 1])
+        await page.until(
+            lambda: page.state["parent"][2] in (1, 3) and not page.state["unconnected"]
+        )
+        await page.until(lambda: page.scene["links"] == links)
+
+    with_processes(plan, "udp", look)
 
 
 def cell(number, parent, paths):
@@ -257,5 +343,5 @@ def test_a_radio_team_is_a_ring_of_stations():
     fields = State(where, {i: told[i] for i in (0, 1)}).fields()
     assert fields["node_up"].tolist() == [1, 1, 0]
     assert fields["radio"] == {"now": [0, 4, 0], "turn": [4, -1, -1]}
-    assert fields["unconnected"] == 0
+    assert fields["unconnected"] == 1  # one that is off
     assert len({tuple(place) for place in where.spread().round(3).tolist()}) == 3

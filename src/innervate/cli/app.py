@@ -13,6 +13,7 @@ from cyclopts import App, Parameter
 import innervate
 from innervate.cli import errors
 from innervate.cli.export_app import export, fit
+from innervate.cli.files_app import check, compare, new, scenarios
 from innervate.cli.live_app import live_app
 from innervate.cli.seeds import Seed, Sets
 from innervate.cli.verify_options import VERIFY_DEFAULTS, VerifyOptions
@@ -314,79 +315,10 @@ def watch(
     return command.watch(what, list(nodes), settings, command.Place(host, port, open_))
 
 
-@app.command
-def scenarios() -> int:
-    """List the bundled scenarios."""
-    from innervate.cli import files as command
-
-    return command.scenarios()
-
-
-@app.command
-def new(
-    kind: str,
-    file: Path | None = None,
-    /,
-    *,
-    network: str | None = None,
-    types: Annotated[list[str] | None, Parameter(consume_multiple=True)] = None,
-    min_tq: float | None = None,
-) -> int:
-    """Write a commented scenario to start from.
-
-    Parameters
-    ----------
-    kind
-        What it describes: skin, radio or mesh.
-    file
-        Where to write it; it is printed if left out.
-    network
-        Of a measured mesh: a JSON file as community meshes publish it, lines "A B 0.9 0.7",
-        freifunk/leipzig, or topohub:NAME.
-    types
-        Types of its links that count; wifi if left out, --empty-types for all.
-    min_tq
-        Worst quality of a link that counts, 0 to 1; 0.3 if left out.
-    """
-    from innervate.cli import files as command
-
-    return command.new(kind, file, network, types, min_tq)
-
-
-@app.command
-def check(file: str, /, *, set_: Sets = None, seed: Seed = None) -> int:
-    """Check a scenario without running it; says what it holds.
-
-    Parameters
-    ----------
-    file
-        A scenario file, or the name of a bundled one.
-    set_
-        Change a key, as for run.
-    seed
-        Root seed in place of the scenario's.
-    """
-    from innervate.cli import files as command
-
-    return command.check(file, set_ or [], seed)
-
-
-@app.command
-def compare(first: Path, second: Path, /) -> int:
-    """Compare two run folders: scenario, summary, first event that differs.
-
-    Parameters
-    ----------
-    first
-        A run folder.
-    second
-        Another one.
-    """
-    from innervate.cli import comparing as command
-
-    return command.compare(first, second)
-
-
+app.command(scenarios)
+app.command(new)
+app.command(check)
+app.command(compare)
 app.command(export)
 app.command(fit)
 app.command(live_app)

@@ -19,7 +19,9 @@ from innervate.live import status
 
 # Nodes tell of their frames a little later, each when it gets to it: time to put them in order.
 HOLD_S = 0.25
+LOOK_S = 0.02  # so often it is looked whether a node that went away is back
 LINE_MAX = 1 << 22
+EVENT = "event: "  # what happened, without a frame
 
 
 def capture(names: list[str], out: Path | None, for_s: float) -> int:
@@ -51,8 +53,10 @@ class Recorder:
     def __init__(self, sockets: list[Path], file: BinaryIO) -> None:
         self.sockets = sockets
         self.file = file
-        self.frames = self.missed = self.interfaces = 0
+        self.frames = self.missed = 0
         self.silent = len(sockets)  # nodes that have not answered yet
+        self.here = 0  # nodes that are followed now
+        self.numbers: dict[tuple[str, str], int] = {}  # interfaces by name and description
         self.since_ns = 0
         self.waiting: list[tuple[int, int, bool, bytes, str]] = []
         self.sealed: list[str] = []
@@ -88,21 +92,39 @@ class Recorder:
         return 0
 
     async def _follow(self, path: Path) -> None:
-        """Take what a node tells, until it goes away."""
-        try:
-            reader, writer = await asyncio.open_unix_connection(path, limit=LINE_MAX)
-            with closing(writer):
-                writer.write(json.dumps({"do": "capture"}).encode() + b"\n")
-                await self._take(path.stem, reader)
-        except (OSError, ValueError) as error:
-            raise UserError(f"{path}: no node answers here: {error}") from None
+        """Take what a node tells, also when it comes back, until all are gone."""
+        again = False
+        while self.here or not again:
+            try:
+                reader, writer = await asyncio.open_unix_connection(path, limit=LINE_MAX)
+                with closing(writer):
+                    writer.write(json.dumps({"do": "capture"}).encode() + b"\n")
+                    await self._take(path.stem, reader, again)
+            except (OSError, ValueError) as error:
+                if not again:
+                    raise UserError(f"{path}: no node answers here: {error}") from None
+            again = True
+            await asyncio.sleep(LOOK_S)
 
-    async def _take(self, name: str, reader: asyncio.StreamReader) -> None:
+    async def _take(self, name: str, reader: asyncio.StreamReader, again: bool) -> None:
         about = json.loads(await reader.readline())
         if "error" in about:
             raise UserError(f"{name}: {about['error']}; start the node anew to capture it")
         numbers = self._announce(about)
-        while line := await reader.readline():
+        first = min(numbers.values())
+        self.here += 1
+        if again:
+            self.waiting.append((time.time_ns(), first, False, b"", EVENT + "node back"))
+        else:
+            self.silent -= 1
+            self.since_ns = time.time_ns()
+        with suppress(ConnectionResetError):  # killed
+            await self._take_frames(reader, numbers)
+        self.here -= 1
+        self.waiting.append((time.time_ns(), first, False, b"", EVENT + "node gone"))
+
+    async def _take_frames(self, reader: asyncio.StreamReader, numbers: dict[int, int]) -> None:
+        while (line := await reader.readline()).endswith(b"\n"):
             told = json.loads(line)
             self.missed += told["missed"]
             for at_ns, port, is_out, text, why in told["frames"]:
@@ -112,8 +134,8 @@ class Recorder:
                     self.waiting.append((at_ns, numbers[port], is_out, data, why))
 
     def _announce(self, about: dict[str, Any]) -> dict[int, int]:
-        """Write a node's interfaces; their numbers by port."""
-        if about["sealed"]:
+        """Write those of a node's interfaces that are new; their numbers by port."""
+        if about["sealed"] and about["capturing"] not in self.sealed:
             self.sealed.append(about["capturing"])
         what = {"mesh": "node", "radio": "station"}.get(about["kind"])
         if what is None:
@@ -124,12 +146,11 @@ class Recorder:
             name = about["capturing"] + (f" port {port}" if several else "")
             text = links.describe(what, about["number"], port, (here, there))
             link_type = links.LINK_TYPES[about["kind"]]
-            self.file.write(pcapng.interface(link_type, name, text))
-            numbers[path] = self.interfaces
-            self.interfaces += 1
+            if (name, text) not in self.numbers:
+                self.numbers[name, text] = len(self.numbers)
+                self.file.write(pcapng.interface(link_type, name, text))
+            numbers[path] = self.numbers[name, text]
         self.file.flush()
-        self.silent -= 1
-        self.since_ns = time.time_ns()
         return numbers
 
     async def _write_on(self) -> None:
@@ -145,8 +166,8 @@ class Recorder:
             count = sum(frame[0] <= until_ns for frame in self.waiting)
         for at_ns, number, is_out, data, why in self.waiting[:count]:
             flags = pcapng.OUTBOUND if is_out else pcapng.INBOUND
-            comment = f"dropped: {why}" if why else ""
+            comment = f"dropped: {why}" if why and not why.startswith(EVENT) else why
             self.file.write(pcapng.packet(number, at_ns, data, flags, comment.encode()))
-        self.frames += count
+            self.frames += bool(data)
         del self.waiting[:count]
         self.file.flush()

@@ -21,6 +21,7 @@ _EXTRAS = {
     "cryptography": "live",
     "starlette": "web", "uvicorn": "web", "websockets": "web",
     "mcap": "export",
+    "rerun": "rerun",
 }  # fmt: skip
 # Errors whose text is one line for the user: module and class, and whose mistake they are.
 _KNOWN = (

@@ -16,6 +16,7 @@ def export(
     *,
     pcapng: Path | None = None,
     mcap: Path | None = None,
+    rerun: Path | None = None,
     graph: Path | None = None,
     tables: Path | None = None,
     csv: Annotated[bool, Parameter(negative="")] = False,
@@ -36,6 +37,8 @@ def export(
         Capture of all frames, for Wireshark.
     mcap
         Recording of states, touch, routes and alarms, for Foxglove and PlotJuggler.
+    rerun
+        Recording in space, for the viewer of rerun.io.
     graph
         The network, a file ending in .graphml or .json (node-link).
     tables
@@ -56,7 +59,14 @@ def export(
     from innervate.cli import exporting as command
 
     wanted = command.Wanted(
-        pcapng=pcapng, mcap=mcap, graph=graph, tables=tables, csv=csv, from_s=from_, to_s=to
+        pcapng=pcapng,
+        mcap=mcap,
+        rerun=rerun,
+        graph=graph,
+        tables=tables,
+        csv=csv,
+        from_s=from_,
+        to_s=to,
     )
     return command.export(source, set_ or [], seed, wanted, dissector)
 

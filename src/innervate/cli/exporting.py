@@ -22,6 +22,7 @@ class Wanted:
 
     pcapng: Path | None = None
     mcap: Path | None = None
+    rerun: Path | None = None
     graph: Path | None = None
     tables: Path | None = None
     csv: bool = False
@@ -31,7 +32,7 @@ class Wanted:
     @property
     def anything(self) -> bool:
         """True if there is something to write."""
-        return any((self.pcapng, self.mcap, self.graph, self.tables))
+        return any((self.pcapng, self.mcap, self.rerun, self.graph, self.tables))
 
 
 def export(
@@ -45,7 +46,7 @@ def export(
         if not wanted.anything:
             return 0
     if not wanted.anything:
-        names = "--pcapng, --mcap, --graph, --tables or --dissector"
+        names = "--pcapng, --mcap, --rerun, --graph, --tables or --dissector"
         raise UserError(f"nothing to export; name one of {names}")
     if source is None:
         raise UserError("of what? name a run folder or a scenario; see: innervate export --help")
@@ -102,9 +103,14 @@ class _Source:
         if wanted.mcap is not None:
             from innervate.export import recording
 
-            frames = {name: table.collect() for name, table in self._tables().items()}
-            count = recording.write(plan, frames, wanted.mcap)
+            count = recording.write(plan, self._frames(), wanted.mcap)
             print(f"Written: {wanted.mcap}, {count} messages")
+        if wanted.rerun is not None:
+            from innervate.export import rrd
+
+            rrd.check(plan)  # before anything is simulated for it
+            count = rrd.write(plan, self._frames(), wanted.rerun)
+            print(f"Written: {wanted.rerun}, {count} rows; look at it with: rerun {wanted.rerun}")
 
     def _capture(self, wanted: Wanted) -> None:
         from innervate.export import capture
@@ -132,6 +138,9 @@ class _Source:
         if not 0 <= begin < end:
             raise UserError("nothing lies in that window; let --from be less than --to")
         return begin, end
+
+    def _frames(self) -> dict[str, Any]:
+        return {name: table.collect() for name, table in self._tables().items()}
 
     def _tables(self) -> dict[str, Any]:
         """The run's tables: from its folder, or of a run made now, once."""

@@ -6,9 +6,8 @@ import asyncio
 import json
 import sys
 from pathlib import Path
-from typing import Any
 
-from innervate.cli import errors
+from innervate.cli import errors, live_status
 from innervate.live import status
 
 
@@ -40,18 +39,21 @@ def show(names: list[str], as_json: bool) -> int:
         print(json.dumps(told if len(told) != 1 or not names else told[0]))
         return 0
     for one in told:
-        for line in _lines(one):
+        for line in live_status.lines(one):
             print(line)
+    for line in live_status.broken(told):
+        print(line)
     return 0
 
 
 def send(name: str, to: int, text: str, how: dict[str, bool], as_json: bool) -> int:
     """Send a message; 0 if it was delivered, or only accepted where no receipt is asked for."""
+    where = status.find(name)
     payload = sys.stdin.buffer.read() if text == "-" else text.encode()
     request = {"do": "send", "to": to, "payload": payload.hex(), **how,
                "wait": how["reliable"] and to != 255}  # fmt: skip
     state = "refused"
-    for answer in status.ask(status.find(name), request):
+    for answer in status.ask(where, request):
         state = answer["state"]
         reason = f": {answer['reason']}" if answer["reason"] else ""
         print(json.dumps(answer) if as_json else f"{state}{reason}", flush=True)
@@ -72,7 +74,7 @@ def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:
         else:
             text = str(answer.get("touch", ""))
             if "alarm" in answer:
-                text = f"alarm: {_alarm_text(answer['alarm'])}"
+                text = f"alarm: {live_status.alarm_text(answer['alarm'])}"
             if "payload" in answer:
                 text = bytes.fromhex(answer["payload"]).decode("utf-8", "backslashreplace")
             print(f"{answer['from']}: {text}", flush=True)
@@ -94,47 +96,3 @@ def medium(where: str, slot_us: int, turnaround_us: int) -> int:
 
     asyncio.run(room.run(where, slot_us, turnaround_us))
     return 0
-
-
-def _lines(told: dict[str, Any]) -> list[str]:
-    key = "sealed" if told["sealed"] else "no key"
-    if told["kind"] == "radio":
-        told["paths"] = []
-    lines = [f"{told['name']}: {told['kind']} {told['role']}, up {told['up_s']:g} s, {key}"]
-    if told["kind"] == "mesh":
-        lines += _mesh_lines(told)
-    elif told["role"] == "cell":
-        way = "no route" if told["parent"] is None else f"port {told['parent']}"
-        lines.append(f"  to the PC: {way}, {told['dist']} hops, load {told['load']}")
-    elif told["role"] == "sink":
-        lines.append(f"  cells per interface port: {told['cells']}")
-    for path in told["paths"]:
-        heard = "never" if path["heard_s"] is None else f"{path['heard_s']:.1f} s ago"
-        broken = "  BROKEN" if path["broken"] else ""
-        lines.append(f"  port {path['port']}: {path['name']}, heard {heard}{broken}")
-    counts = ", ".join(f"{what} {count}" for what, count in told["counters"].items())
-    return [*lines, f"  {counts}"]
-
-
-def _mesh_lines(told: dict[str, Any]) -> list[str]:
-    gateway = "none yet" if told["gateway"] is None else told["gateway"]
-    lines = [f"  gateway {gateway}, epoch {told['epoch']}, table {told['table']}"]
-    for near in told["neighbours"]:
-        quality = "-" if near["quality"] is None else f"{100 * near['quality']:.1f} %"
-        suspect = ", does not answer" if near["suspect"] else ""
-        lines.append(f"  neighbour {near['node']}: acknowledged {quality}{suspect}")
-    ways = [f"{dest} by {hop[0]}" for dest, hop in told["routes"].items()]
-    lines.append(f"  routes: {', '.join(ways) or 'none'}")
-    if "robot" in told:
-        at = told["robot"]["at_cm"]
-        place = "no position yet" if at is None else f"at {at[0] / 100:.2f}, {at[1] / 100:.2f} m"
-        lines.append(f"  robot: {place}, {told['robot']['fence']}")
-    for alarm in told.get("alarms", ()):
-        lines.append(f"  alarm {alarm['ago_s']:.1f} s ago: {_alarm_text(alarm)}")
-    return lines
-
-
-def _alarm_text(alarm: dict[str, Any]) -> str:
-    x, y, margin = (alarm[key] / 100 for key in ("x_cm", "y_cm", "margin_cm"))
-    where = "" if alarm["kind"] == "lost" else f" at {x:.2f}, {y:.2f} m, margin {margin:.2f} m"
-    return f"{alarm['kind']}, robot {alarm['robot']}{where} (from node {alarm['reporter']})"

@@ -11,6 +11,7 @@ from innervate.cli import errors
 from innervate.cli.seeds import Sets
 
 Json = Annotated[bool, Parameter(negative="")]
+Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 live_app = App(
     name="live",
     help="Nodes between real processes: UDP, serial ports.",
@@ -94,7 +95,7 @@ def live_status(*nodes: str, json: Json = False) -> int:
 def live_send(
     node: str,
     to: int,
-    text: str,
+    text: Text,
     /,
     *,
     priority: Json = False,
@@ -167,6 +168,22 @@ def live_capture(
     from innervate.cli import capturing as command
 
     return command.capture(list(nodes), out, for_)
+
+
+@live_app.command(name="recovery")
+def live_recovery(capture: Path, /, *, json: Json = False) -> int:
+    """Say how a skin healed, from a capture of all its nodes: when routes and samples were back.
+
+    Parameters
+    ----------
+    capture
+        What `live capture --out` wrote; or `export --pcapng` of a run.
+    json
+        Print JSON.
+    """
+    from innervate.cli import live_recovery as command
+
+    return command.show(capture, json)
 
 
 @live_app.command(name="medium")

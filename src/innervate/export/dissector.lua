@@ -2,8 +2,11 @@
 -- Any bytes will do: what does not fit is flagged and shown as far as it goes.
 
 local BAD_CRC, MALFORMED = "bad_crc", "malformed"
--- Lua 5.2 has bit32; later ones have the library that Wireshark brings.
-local bitop = rawget(_G, "bit32") or rawget(_G, "bit")
+-- Wireshark brings `bit`, with every Lua from 5.1 (Wireshark 4.2 and older) to 5.4 (4.4 and newer);
+-- from 5.3 on 7 / 1 is no whole number, and what has to be one is rounded down.
+local bitop = rawget(_G, "bit") or rawget(_G, "bit32")
+-- `wtap` is the older name.
+local encaps = rawget(_G, "wtap_encaps") or rawget(_G, "wtap")
 local protos = {}
 
 -- CRC-16/CCITT-FALSE of all bytes but the last two, by a table of every byte's remainder.
@@ -31,8 +34,8 @@ end
 local function number(tvb, at, bits, signed)
   local first = math.floor(at / 8)
   local range = tvb(first, math.floor((at + bits - 1) / 8) - first + 1)
-  local value = range:bitfield(at - 8 * first, bits)
-  if signed and value >= 2 ^ (bits - 1) then value = value - 2 ^ bits end
+  local value = math.floor(range:bitfield(at - 8 * first, bits)) -- 5.0 is given by some, too
+  if signed and value >= 2 ^ (bits - 1) then value = value - math.floor(2 ^ bits) end
   return value, range
 end
 
@@ -132,7 +135,7 @@ local function radio(self, tvb, tree)
   if number(tvb, 0, 4) ~= RADIO_VERSION then complain(self, tree, MALFORMED, "Malformed: version") end
   local name, behind = body(self, tvb, tree, kind, 8, 8 * size - 16)
   if behind and behind / 8 < size - 2 then
-    local first = behind / 8
+    local first = math.floor(behind / 8)
     tree:add(self.payload, tvb(first, size - 2 - first))
     if kind == RADIO_REPORT then complain(self, tree, MALFORMED, "Malformed: too long for its type") end
   end
@@ -199,11 +202,12 @@ local function mesh(self, tvb, tree)
       complain(self, tree, MALFORMED, "Malformed: too short")
     else
       mesh_flags(tree, found.flags)
-      local first = behind / 8 + found.path_len
+      local path = math.floor(behind / 8)
+      local first = path + found.path_len
       if found.path_len > MESH_PATH_MAX or first > last then
         complain(self, tree, MALFORMED, "Malformed: path")
       else
-        list(self.path, tvb, behind / 8, first, tree)
+        list(self.path, tvb, path, first, tree)
         if known then
           mesh_payload(self, tvb, tree, known, found.flags, first, last)
         else
@@ -214,7 +218,8 @@ local function mesh(self, tvb, tree)
   end
   show_crc(self, tvb, tree)
   if not found then return name end
-  return string.format("%s %d > %s", name, found.link_src, found.link_dst == 255 and "all" or found.link_dst)
+  local to = found.link_dst == 255 and "all" or string.format("%d", found.link_dst)
+  return string.format("%s %d > %s", name, found.link_src, to)
 end
 
 -- A sealed frame: only who holds the key can say more.
@@ -285,6 +290,6 @@ local function define(name, readable, encap, run, layouts)
   protos[name] = proto
 end
 
-define("skin", "skin", wtap.USER0, skin, SKIN)
-define("mesh", "mesh", wtap.USER1, mesh, MESH)
-define("radio", "radio", wtap.USER2, radio, RADIO)
+define("skin", "skin", encaps.USER0, skin, SKIN)
+define("mesh", "mesh", encaps.USER1, mesh, MESH)
+define("radio", "radio", encaps.USER2, radio, RADIO)

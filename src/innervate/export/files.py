@@ -19,14 +19,25 @@ def whole(path: Path) -> Iterator[BinaryIO]:
     Raises:
         ExportError: it cannot be written.
     """
+    with beside(path) as fresh, fresh.open("wb") as file:
+        yield file
+
+
+@contextmanager
+def beside(path: Path) -> Iterator[Path]:
+    """An empty file for others to write, which takes the place of `path` as whole() says.
+
+    Raises:
+        ExportError: it cannot be written.
+    """
     fresh: Path | None = None
     try:
         if path.is_dir():
             raise ExportError(f"{path} is a folder; name a file")
         handle, name = tempfile.mkstemp(prefix=f".{path.name[:40]}-", dir=path.parent)
         fresh = Path(name)
-        with os.fdopen(handle, "wb") as file:
-            yield file
+        os.close(handle)
+        yield fresh
         fresh.chmod(0o666 & ~_umask())
         fresh.replace(path)
     except OSError as error:

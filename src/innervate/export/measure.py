@@ -234,6 +234,8 @@ class _Mesh(_Reader):
             return
         sender = self.frame.link_src
         if packet.flags & pcapng.OUTBOUND:
+            if packet.comment:  # onto a cable that is cut
+                return
             self.depart((place.number, place.there), packet)
             self._look(packet)
         elif packet.comment == NOISE:

@@ -60,7 +60,7 @@ def channels(plan: Any, found: Mapping[str, Any]) -> list[Channel]:
             topic = TOPICS.get(table.name, f"/{table.name}")
             made.append(Channel(topic, schemas.of_table(table), rows))
     if plan.faults:
-        made.append(Channel("/log", schemas.LOG, _events(plan)))
+        made.append(Channel("/log", schemas.LOG, events(plan)))
     return made
 
 
@@ -83,7 +83,7 @@ def _rows(frame: Any) -> Iterator[Message]:
         yield row[moment], {"timestamp": stamp(row[moment]), **told}
 
 
-def _events(plan: Any) -> Iterator[Message]:
+def events(plan: Any) -> Iterator[Message]:
     """What the scenario did to the network."""
     told = plan.scenario.model.event
     for fault in plan.faults:
@@ -103,5 +103,5 @@ def _sentence(event: Any) -> str:
     keys = msgspec.to_builtins(event)
     what = keys.pop("action")
     keys.pop("at_s", None)
-    some = ", ".join(f"{key} {value}" for key, value in keys.items() if value is not None)
+    some = ", ".join(f"{key} {value}" for key, value in keys.items() if value not in (None, False))
     return f"{what} {some}" if some else str(what)

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 from innervate.analysis.fence import position_cm
 from innervate.export import schemas
+from innervate.export.states import Point, States
 
 STEP_US = 100_000  # between two states
-TOUCH_WINDOW_US = 100_000
 FORCE_MAX_MN = 3000
 GREY, BLUE, ORANGE, YELLOW, DARK = (
     (0.6, 0.6, 0.6), (0.0, 0.45, 0.7), (0.9, 0.4, 0.0), (0.95, 0.9, 0.25), (0.2, 0.2, 0.2),
@@ -20,7 +20,6 @@ GREY, BLUE, ORANGE, YELLOW, DARK = (
 LINE_STRIP, LINE_LOOP, LINE_PAIRS = 0, 1, 2
 
 Message = tuple[int, Any]  # us, content
-Point = tuple[float, float, float]
 
 
 class Channel(NamedTuple):
@@ -52,138 +51,57 @@ def channels(plan: Any, tables: Mapping[str, Any]) -> list[Channel]:
 
 
 def _skin(plan: Any, tables: Mapping[str, Any]) -> list[Channel]:
-    def states() -> Iterator[tuple[int, Any]]:
-        return _States(plan, tables).snapshots()
-
-    def told(make: Callable[[int, Any], Any]) -> Iterator[Message]:
-        return ((at, make(at, state)) for at, state in states())
+    def told(make: Callable[[int, States], Any]) -> Iterator[Message]:
+        states = States(plan, tables, STEP_US)
+        return ((at, make(at, now)) for at, now in states.snapshots())
 
     found = [
-        Channel("/cells", schemas.CELLS, told(lambda at, state: state.cells(at))),
-        Channel("/scene", schemas.SCENE, told(lambda at, state: state.scene(at))),
+        Channel("/cells", schemas.CELLS, told(_cells)),
+        Channel("/scene", schemas.SCENE, told(_balls)),
     ]
     if len(tables.get("received", ())):
-        found.append(Channel("/touch", schemas.TOUCH, told(lambda at, state: state.touch(at))))
+        found.append(Channel("/touch", schemas.TOUCH, told(_touch)))
     return found
 
 
-class _States:
-    """A skin as it was, step by step; its tables are read once, in order of time."""
+def _cells(at: int, now: States) -> Any:
+    """A message of all cells."""
+    return {
+        "timestamp": stamp(at),
+        "unrouted": now.unrouted,
+        "parent_port": list(now.parent),
+        "hops": now.hops,
+    }
 
-    def __init__(self, plan: Any, tables: Mapping[str, Any]) -> None:
-        self.plan, self.graph = plan, plan.graph
-        cells = self.graph.cells
-        self.parent = [-1] * cells
-        self.unrouted = 0
-        self.force, self.proximity = [0] * cells, [0] * cells
-        self.heard = [-TOUCH_WINDOW_US - 1] * cells
-        self.hops: list[int] = []
-        self.places: list[Point] = [(x / 1000, -y / 1000, 0.0) for x, y in self.graph.layout()]
-        if self.graph.positions:
-            flat = [value / 1000 for value in self.graph.positions]
-            self.places = [
-                (flat[i], flat[i + 1], flat[i + 2]) for i in range(0, len(flat), 3)
-            ]  # fmt: skip
-        self.routes = iter(tables["routes"].select("time_us", "cell", "new").iter_rows())
-        self.outages = iter(tables["outages"].iter_rows())
-        self.samples: Iterator[tuple[int, ...]] = iter(())
-        if "received" in tables:
-            forces = ("force_0", "force_1", "force_2")
-            some = tables["received"].select("time_us", "cell", "proximity", *forces)
-            self.samples = iter(some.iter_rows())
 
-    def snapshots(self) -> Iterator[tuple[int, _States]]:
-        """Itself as it was every STEP_US, and at the end."""
-        ways: Any = (
-            (self.routes, self._route),
-            (self.outages, self._outage),
-            (self.samples, self._feel),
-        )
-        waiting = [next(rows, None) for rows, _ in ways]
-        at = 0
-        while at < self.plan.duration_us:
-            at = min(at + STEP_US, self.plan.duration_us)
-            for i, (rows, take) in enumerate(ways):
-                row = waiting[i]
-                while row is not None and row[0] < at:
-                    take(*row)
-                    row = next(rows, None)
-                waiting[i] = row
-            self.hops = self._hops()
-            yield at, self
+def _touch(at: int, now: States) -> Any:
+    """A message of what the PC knew of the touch."""
+    known = now.known(at)
+    return {
+        "timestamp": stamp(at),
+        "force_mn": [f if k else 0 for f, k in zip(now.force, known, strict=True)],
+        "proximity": [p if k else 0 for p, k in zip(now.proximity, known, strict=True)],
+        "known": known,
+    }
 
-    def _route(self, _time: int, cell: int, new: int) -> None:
-        self.parent[cell] = new
 
-    def _outage(self, _time: int, unrouted: int) -> None:
-        self.unrouted = unrouted
-
-    def _feel(self, time: int, cell: int, proximity: int, *forces: int) -> None:
-        self.heard[cell], self.proximity[cell] = time, proximity
-        self.force[cell] = round(sum(forces) / 3)
-
-    def _above(self, cell: int) -> int:
-        """The parent of a cell, -1 none."""
-        port = self.parent[cell]
-        end = self.graph.peer[self.graph.end(cell, port)] if port >= 0 else -1
-        return -1 if end < 0 else int(self.graph.node_of(end))
-
-    def _hops(self) -> list[int]:
-        """Hops of every cell to the PC; -1 without a chain of parents that leads there."""
-        sink = self.graph.sink
-        hops = {sink: 0, -1: -1}
-        for cell in range(sink):
-            way = []
-            node = cell
-            while node not in hops:
-                way.append(node)
-                hops[node] = -1  # a ring leads nowhere
-                node = self._above(node)
-            count = hops[node]
-            for above in reversed(way):
-                count = count + 1 if count >= 0 else -1
-                hops[above] = count
-        return [hops[cell] for cell in range(sink)]
-
-    def cells(self, at: int) -> Any:
-        """A message of all cells."""
-        return {
-            "timestamp": stamp(at),
-            "unrouted": self.unrouted,
-            "parent_port": list(self.parent),
-            "hops": self.hops,
-        }
-
-    def touch(self, at: int) -> Any:
-        """A message of what the PC knew of the touch."""
-        known = self._known(at)
-        return {
-            "timestamp": stamp(at),
-            "force_mn": [f if k else 0 for f, k in zip(self.force, known, strict=True)],
-            "proximity": [p if k else 0 for p, k in zip(self.proximity, known, strict=True)],
-            "known": known,
-        }
-
-    def _known(self, at: int) -> list[bool]:
-        return [at - heard <= TOUCH_WINDOW_US for heard in self.heard]
-
-    def scene(self, at: int) -> Any:
-        """Cells as balls, and a line from each to its parent."""
-        known = self._known(at)
-        balls, ways = [], []
-        for cell, place in enumerate(self.places):
-            colour = BLUE if self.hops[cell] >= 0 else ORANGE
-            share = min(1.0, self.force[cell] / FORCE_MAX_MN) if known[cell] else 0.0
-            mixed = tuple((1 - share) * a + share * b for a, b in zip(colour, YELLOW, strict=True))
-            balls.append(_ball(place, 0.012, mixed))
-            above = self._above(cell)
-            if 0 <= above < self.graph.sink:
-                ways += [place, self.places[above]]
-        return {
-            "deletions": [],
-            "entities": [_entity(at, "cells", spheres=balls),
-                         _entity(at, "parents", lines=[_lines(LINE_PAIRS, 0.002, DARK, ways)])],
-        }  # fmt: skip
+def _balls(at: int, now: States) -> Any:
+    """Cells as balls, and a line from each to its parent."""
+    known = now.known(at)
+    balls, ways = [], []
+    for cell, place in enumerate(now.places):
+        colour = BLUE if now.hops[cell] >= 0 else ORANGE
+        share = min(1.0, now.force[cell] / FORCE_MAX_MN) if known[cell] else 0.0
+        mixed = tuple((1 - share) * a + share * b for a, b in zip(colour, YELLOW, strict=True))
+        balls.append(_ball(place, 0.012, mixed))
+        above = now.above(cell)
+        if 0 <= above < now.graph.sink:
+            ways += [place, now.places[above]]
+    return {
+        "deletions": [],
+        "entities": [_entity(at, "cells", spheres=balls),
+                     _entity(at, "parents", lines=[_lines(LINE_PAIRS, 0.002, DARK, ways)])],
+    }  # fmt: skip
 
 
 def _mesh(plan: Any) -> list[Channel]:

@@ -56,7 +56,7 @@ def _link(table: Any, where: str, port: int) -> Link:
     if isinstance(table, SerialTable):
         from innervate.live.serial import SerialLink
 
-        return SerialLink(table.device, table.baud, port)
+        return SerialLink(table.device, table.baud, port, table.far)
     raise LiveError(f"{where}: this kind of node has no such link")
 
 
@@ -144,7 +144,7 @@ def _radio(loaded: Loaded) -> LiveNode:
     check_parameters(params)
     stack = StationStack(table.number, params, secrets.randbits(60))
     radio = MediumRadio(table.number, address(table.link[0].address, where))
-    return RadioNode(loaded.name, stack, radio)
+    return RadioNode(loaded.name, stack, radio, f"medium {table.link[0].address}")
 
 
 BUILDERS: dict[str, Callable[[Loaded], LiveNode]] = {

@@ -16,6 +16,7 @@ class Path:
     Attributes:
         name: as shown to people: "udp 127.0.0.1:4701".
         own: the near end's name, where it has one of its own; the far end's path is called so.
+        ends: what captures call the near and the far end, as the other node does; "" not known.
         port: its place in the node's file, from 0; protocols with ports know it by that.
         up: False while its device is away.
         cut: True = it carries nothing, as if its plug had come out; for tests and experiments.
@@ -27,6 +28,7 @@ class Path:
     def __init__(self, name: str, port: int) -> None:
         self.name = name
         self.own = ""
+        self.ends = ("", "")
         self.port = port
         self.up = True
         self.cut = False

@@ -54,4 +54,5 @@ def pair(name: str, ports: tuple[int, int] = (0, 0)) -> tuple[LocalLink, LocalLi
     """Both ends of a cable, with their port numbers."""
     a, b = LocalLink(name, ports[0]), LocalLink(name, ports[1])
     a.path.other, b.path.other = b.path, a.path
+    a.path.ends, b.path.ends = (f"{name} a", f"{name} b"), (f"{name} b", f"{name} a")
     return a, b

@@ -124,14 +124,10 @@ class Process:
             await self._send(request, writer)
         elif what == "listen":
             await self._listen(request, writer)
-        elif what in ("cut", "restore"):
-            path = self.node.path_at(int(request["port"]))
-            path.cut, path.loss = what == "cut", 0.0
-            await writer.line({"path": path.name, "cut": path.cut})
-        elif what == "loose":
-            path = self.node.path_at(int(request["port"]))
-            path.cut, path.loss = False, float(request["loss"])
-            await writer.line({"path": path.name, "loss": path.loss})
+        elif what in ("cut", "restore", "loose"):
+            loss = float(request["loss"]) if what == "loose" else 0.0
+            path = self.node.change(int(request["port"]), what, loss)
+            await writer.line({"path": path.name, "cut": path.cut, "loss": path.loss})
         elif what == "locate":
             self._locate(request)
             await writer.line({"ok": True})
@@ -190,8 +186,11 @@ class Process:
         node = self.node
         if isinstance(node, SinkNode):
             return [(node.receive_touch(), _touch_line)]
+        receive_packets = getattr(node, "receive_packets", None)
+        if receive_packets is not None:
+            return [(receive_packets(), _message_line)]
         if not isinstance(node, MeshNode):
-            raise ValueError("only mesh nodes and the PC of a skin can be listened to")
+            raise ValueError("a cell hears nothing for people; listen at the PC")
         messages = node.receive_messages(in_order=request.get("in_order"))
         streams: list[tuple[AsyncGenerator[Any, None], Form]] = [(messages, _message_line)]
         if request.get("alarms"):

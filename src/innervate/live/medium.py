@@ -17,7 +17,7 @@ from typing import Any
 from innervate.live.engine import clock_us
 from innervate.live.errors import LiveError
 from innervate.live.nodefile import address
-from innervate.live.radio import HEARD, JOIN, SEND, Listener, read_heard
+from innervate.live.radio import HEARD, JOIN, PLUG, SEND, Listener, read_heard
 
 DATAGRAM_MAX = 2048
 JOIN_S = 1.0
@@ -50,12 +50,14 @@ class Ear:
 
     Attributes:
         where: its address.
+        plugged: False while its aerial is out: it hears nothing, and nobody hears it.
         deaf_until: it sends, or turns round, until then, us; 0 = it listens.
         candidate: the signal that it may receive, None = none or disturbed.
         told: the carrier as told last.
     """
 
     where: Any
+    plugged: bool = True
     deaf_until: int = 0
     candidate: Air | None = None
     told: tuple[bool, bool] = (False, False)
@@ -119,6 +121,10 @@ class Medium:
         """A station says that it joins, or sends; what is neither is dropped."""
         if data[:1] == b"J" and len(data) == JOIN.size:
             self._join(JOIN.unpack(data)[1], where)
+        elif data[:1] == b"P" and len(data) == PLUG.size:
+            _, station, plugged = PLUG.unpack(data)
+            if station in self._ears and self._ears[station].where == where:
+                self._plug(self._ears[station], bool(plugged))
         elif data[:1] == b"T" and len(data) > SEND.size:
             _, station, at, slots = SEND.unpack_from(data)
             if station in self._ears and self._ears[station].where == where:
@@ -129,11 +135,20 @@ class Medium:
         if known is not None and known.where == where:
             return  # it joins again and again, so that it is heard by a channel started later
         self._ears[station] = ear = Ear(where)
-        ear.told = self._carrier()
+        ear.told = self._carrier(ear)
         self._say(ear, b"R", clock_us(), b"")  # it may have sent when no channel was there
 
-    def _carrier(self) -> tuple[bool, bool]:
-        return bool(self._present), len(self._present) == 1
+    def _plug(self, ear: Ear, plugged: bool) -> None:
+        if plugged == ear.plugged:
+            return
+        ear.plugged, ear.candidate = plugged, None
+        if not ear.deaf_until:
+            ear.told = self._carrier(ear)
+            self._say(ear, b"C", clock_us(), b"")
+
+    def _carrier(self, ear: Ear) -> tuple[bool, bool]:
+        """What a station hears: somebody, just one."""
+        return ear.plugged and bool(self._present), ear.plugged and len(self._present) == 1
 
     def _transmit(self, station: int, at: int, slots: int, data: bytes) -> None:
         ear = self._ears[station]
@@ -145,9 +160,10 @@ class Medium:
         air = Air(station, start, start + slots * self.slot_us, data)
         ear.candidate = None
         ear.deaf_until = air.end + self.turnaround_us
-        self.log.append((air.start, air.end, station, data))
-        self._later(air.start + DELAY_US, self._begin, air)
-        self._later(air.end + DELAY_US, self._end, air)
+        if ear.plugged:
+            self.log.append((air.start, air.end, station, data))
+            self._later(air.start + DELAY_US, self._begin, air)
+            self._later(air.end + DELAY_US, self._end, air)
         self._later(ear.deaf_until, self._ready, station, ear.deaf_until)
 
     def _later(self, at: int, what: Any, *args: Any) -> None:
@@ -161,7 +177,8 @@ class Medium:
         alone = len(self._present) == 1
         for station, ear in self._ears.items():
             if station != air.station:
-                ear.candidate = air if alone and not ear.deaf_until else None
+                hears = alone and ear.plugged and not ear.deaf_until
+                ear.candidate = air if hears else None
         self._tell(air.start + DELAY_US, air.station)
 
     def _end(self, air: Air) -> None:
@@ -175,8 +192,8 @@ class Medium:
 
     def _tell(self, at: int, sender: int) -> None:
         """Who listens hears that the carrier has changed."""
-        carrier = self._carrier()
         for station, ear in self._ears.items():
+            carrier = self._carrier(ear)
             if station != sender and not ear.deaf_until and ear.told != carrier:
                 ear.told = carrier
                 self._say(ear, b"C", at, b"")
@@ -185,7 +202,7 @@ class Medium:
         ear = self._ears.get(station)
         if ear is not None and ear.deaf_until == at:
             ear.deaf_until = 0
-            ear.told = self._carrier()
+            ear.told = self._carrier(ear)
             self._say(ear, b"R", at, b"")
 
     def _say(self, ear: Ear, what: bytes, at: int, data: bytes) -> None:
@@ -209,6 +226,7 @@ class MediumRadio:
         self.number = number
         self.where = where
         self.mode = "off"
+        self.plugged = True
         self._socket: socket.socket | None = None
         self._listener: Listener | None = None
         self._again: asyncio.TimerHandle | None = None
@@ -229,6 +247,7 @@ class MediumRadio:
         assert self._socket is not None
         with suppress(OSError):  # no channel there yet
             self._socket.send(JOIN.pack(b"J", self.number))
+            self._socket.send(PLUG.pack(b"P", self.number, self.plugged))
         self._again = asyncio.get_running_loop().call_later(JOIN_S, self._join)
 
     def send(self, at: int, data: bytes, slots: int) -> None:
@@ -237,6 +256,13 @@ class MediumRadio:
         self.mode = "sending"
         with suppress(OSError):  # no channel there: it is lost
             self._socket.send(SEND.pack(b"T", self.number, at, slots) + data)
+
+    def plug(self, plugged: bool) -> None:
+        """Have the channel leave this station out, or take it in again."""
+        self.plugged = plugged
+        if self._socket is not None:
+            with suppress(OSError):
+                self._socket.send(PLUG.pack(b"P", self.number, plugged))
 
     def stop(self) -> None:
         """Leave the channel."""

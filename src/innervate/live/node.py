@@ -13,6 +13,8 @@ from innervate.live.links import Link, Path
 from innervate.live.state import State
 from innervate.live.tap import Tap
 
+CUT = "cable cut"  # as captures of simulations call it
+
 
 class LiveNode:
     """One running node. Subclasses know what its user says and hears.
@@ -94,8 +96,22 @@ class LiveNode:
             raise ValueError(f"no port {port}; this node has 0 to {len(self.paths) - 1}")
         return self.paths[port]
 
+    def change(self, port: int, what: str, loss: float = 0.0) -> Path:
+        """Cut, restore or loosen ("loose": `loss` of what comes in is lost) a path; the path.
+
+        Raises:
+            ValueError: there is no such path.
+        """
+        path = self.path_at(port)
+        path.cut, path.loss = what == "cut", loss
+        self._tell(time.time_ns(), port, False, b"", f"event: {what}")
+        return path
+
     def _receive(self, path: Path, data: bytes) -> None:
-        if path.cut or (path.loss and random.random() < path.loss):
+        if path.cut:
+            self._tell(time.time_ns() if self.taps else 0, path.port, False, data, CUT)
+            return
+        if path.loss and random.random() < path.loss:
             return
         path.counters["received"] += 1
         path.counters["received bytes"] += len(data)
@@ -118,10 +134,10 @@ class LiveNode:
             data = self.sealer.close(data)
         ports = self.stack.ports_of(port, frame, attempt)
         for path in self.paths if ports is None else [self.paths[i] for i in ports]:
+            at_ns = time.time_ns() if self.taps else 0  # before anybody can have received it
             if not path.cut:
-                at_ns = time.time_ns() if self.taps else 0  # before anybody can have received it
                 path.send(data)
-                self._tell(at_ns, path.port, True, bare, "")
+            self._tell(at_ns, path.port, True, bare, CUT if path.cut else "")
 
     def _tell(self, at_ns: int, port: int, out: bool, data: bytes, why: str) -> None:
         """Tell those who asked of a frame, in the clear."""

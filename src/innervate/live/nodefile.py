@@ -36,6 +36,7 @@ class SerialTable(Struct, frozen=True, forbid_unknown_fields=True, tag="serial",
     """[[link]] kind = "serial": a serial port, up to 4 Mbaud; a pty is one, too."""
 
     device: str
+    far: str = ""
     baud: Annotated[int, Meta(ge=1200, le=4_000_000)] = 115_200
 
 

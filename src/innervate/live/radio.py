@@ -6,16 +6,21 @@ a channel made of a process (medium.py); a serial modem with such a line is anot
 
 from __future__ import annotations
 
+import asyncio
+import random
 import struct
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import AsyncGenerator, Callable
+from functools import partial
 from typing import Any, Protocol
 
 from innervate.live.engine import clock_us
 from innervate.live.errors import LiveError
+from innervate.live.links import Path
 from innervate.live.node import LiveNode
 from innervate.live.receipts import DELIVERED, REFUSED, Receipt
+from innervate.live.streams import iterate
 from innervate.protocol import plain, radio_practical
 from innervate.protocol import radio_fields as fields
 from innervate.protocol.radio_words import PACKET, QUEUE, REPORT_DELIVERED
@@ -58,8 +63,31 @@ class Radio(Protocol):
     def send(self, at: int, data: bytes, slots: int) -> None:
         """Decide at `at` to send: a frame that lasts so many slots, after a turnaround."""
 
+    def plug(self, plugged: bool) -> None:
+        """Pull the aerial's plug, or push it in: without it nothing is heard, nor does it reach."""
+
     def stop(self) -> None:
         """Switch it off."""
+
+
+class Aerial(Path):
+    """The one path of a station; cut, it neither hears nor is heard."""
+
+    def __init__(self, radio: Radio, name: str) -> None:
+        self._radio = radio
+        self._is_cut = False
+        super().__init__(name, 0)
+
+    @property
+    def cut(self) -> bool:
+        """True = its plug is out."""
+        return self._is_cut
+
+    @cut.setter
+    def cut(self, cut: bool) -> None:
+        if cut != self._is_cut:
+            self._is_cut = cut
+            self._radio.plug(not cut)
 
 
 class StationStack:
@@ -136,13 +164,17 @@ class RadioNode(LiveNode):
         name: as shown to people.
         stack: the medium access protocol.
         radio: what it sends and hears with.
+        channel: what its path is called.
     """
 
     stack: StationStack
 
-    def __init__(self, name: str, stack: StationStack, radio: Radio) -> None:
+    def __init__(
+        self, name: str, stack: StationStack, radio: Radio, channel: str = "channel"
+    ) -> None:
         super().__init__(name, stack, [])
         self.radio = radio
+        self.paths = [Aerial(radio, channel)]
         self.outcomes: Counter[str] = Counter()
         self._packets: dict[int, tuple[bytes, Receipt]] = {}
         self._order: list[int] = []
@@ -162,9 +194,15 @@ class RadioNode(LiveNode):
         self.radio.stop()
         await super().stop()
 
-    def receive_packets(self, callback: Callable[[int, bytes], None]) -> None:
-        """Call `callback` with sender and payload of every packet that is received."""
+    def receive_packets(
+        self, callback: Callable[[int, bytes], None] | None = None
+    ) -> AsyncGenerator[tuple[int, bytes], None]:
+        """Sender and payload of packets as they come: to a callback, and as an async iterator."""
+        queue: asyncio.Queue[tuple[int, bytes]] = asyncio.Queue()
+        if callback is None:
+            callback = partial(_put, queue)
         self._callbacks.append(callback)
+        return iterate(queue, self._callbacks, callback)
 
     def send_packet(self, payload: bytes) -> Receipt:
         """Send a packet to all; its receipt says "delivered" when another station proved it.
@@ -193,16 +231,25 @@ class RadioNode(LiveNode):
     def on_carrier(self, at: int, cd: bool, voc: bool) -> None:
         """The radio's carrier came or went."""
         assert self.engine is not None
-        self._at = at
+        self._at = self.paths[0].heard_at = at
         self.engine.call(lambda now: self.stack.carrier(now, cd, voc), at)
 
     def on_frame(self, at: int, data: bytes) -> None:
         """The radio received a frame."""
+        path = self.paths[0]
+        if path.loss and random.random() < path.loss:
+            return
+        path.counters["received"] += 1
+        path.counters["received bytes"] += len(data)
         assert self.engine is not None
         self._at, self._bytes = at, data
         at_ns = time.time_ns() if self.taps else 0
         reason = self.engine.receive(0, data, at)
         self._tell(at_ns, 0, False, data, self.stack.reasons[reason] if reason else "")
+
+    def status(self) -> dict[str, Any]:
+        """What is known here, and what the radio does: "off", "listening" or "sending"."""
+        return {**super().status(), "radio": self.radio.mode}
 
     def counters(self) -> Counter[str]:
         """Handler calls, frames dropped by reason, packets by what became of them."""
@@ -216,6 +263,7 @@ class RadioNode(LiveNode):
         data = wire.encode(frame, payload)
         at_ns = time.time_ns() if self.taps else 0
         self.radio.send(self.engine.now, data, frame.slots)
+        self.paths[0].sent(data)
         self._tell(at_ns, 0, True, data, "")
         self.outcomes["frames sent"] += 1
 
@@ -238,9 +286,14 @@ class RadioNode(LiveNode):
                     callback(source, payload)
 
 
+def _put(queue: asyncio.Queue[tuple[int, bytes]], source: int, payload: bytes) -> None:
+    queue.put_nowait((source, payload))
+
+
 # Between stations and the medium: how a message begins.
 JOIN = struct.Struct(">cH")  # b"J", station
 SEND = struct.Struct(">cHQH")  # b"T", station, when decided (us), slots; then the frame
+PLUG = struct.Struct(">cHB")  # b"P", station, 0 or 1: whether its aerial is plugged in
 # b"C" carrier, b"R" the radio listens again, b"F" frame: when (us), cd, voc; b"F": the frame
 HEARD = struct.Struct(">cQBB")
 

@@ -24,12 +24,16 @@ class SerialLink(Link):
         device: like /dev/ttyUSB0.
         baud: bits per second, one the system knows: 115200 to 4000000.
         port: port number of the path.
+        far: the device at the other end, where both are on this machine; "" not known.
     """
 
-    def __init__(self, device: str, baud: int, port: int = 0) -> None:
+    def __init__(self, device: str, baud: int, port: int = 0, far: str = "") -> None:
         self.device = device
         self.baud = baud
         self.path = SerialPath(self, f"serial {device}", port)
+        if far:
+            self.path.name, self.path.own = f"serial {device} to {far}", f"serial {far} to {device}"
+            self.path.ends = (device, far)
         self.paths = [self.path]
         self.path.up = False
         self._fd = -1

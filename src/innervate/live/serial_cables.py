@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import asyncio
 import os
+import selectors
+import threading
 import tty
 from contextlib import suppress
 
@@ -28,6 +29,8 @@ class Cables:
         self._masters: list[int] = []
         self._slaves: list[int] = []
         self.devices: list[str] = []
+        self._end = os.pipe()
+        self._thread = threading.Thread(target=self._run, daemon=True)
         for _ in range(2 * count):
             master, slave = os.openpty()
             tty.setraw(slave)
@@ -37,18 +40,27 @@ class Cables:
             self.devices.append(os.ttyname(slave))
 
     def start(self) -> None:
-        """Carry bytes from now on."""
-        loop = asyncio.get_running_loop()
-        for end, master in enumerate(self._masters):
-            loop.add_reader(master, self._carry, end)
+        """Carry bytes from now on, in a thread: whoever starts processes would hold them up."""
+        self._thread.start()
 
     def stop(self) -> None:
         """Close all."""
-        loop = asyncio.get_running_loop()
-        for fd in self._masters:
-            loop.remove_reader(fd)
-        for fd in (*self._masters, *self._slaves):
+        os.write(self._end[1], b".")
+        if self._thread.is_alive():
+            self._thread.join()
+        for fd in (*self._masters, *self._slaves, *self._end):
             os.close(fd)
+
+    def _run(self) -> None:
+        with selectors.DefaultSelector() as selector:
+            selector.register(self._end[0], selectors.EVENT_READ)
+            for end, master in enumerate(self._masters):
+                selector.register(master, selectors.EVENT_READ, end)
+            while True:
+                for key, _ in selector.select():
+                    if key.data is None:
+                        return
+                    self._carry(key.data)
 
     def _carry(self, end: int) -> None:
         try:

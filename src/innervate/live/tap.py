@@ -9,13 +9,13 @@ import asyncio
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from innervate.live.links import Path
 from innervate.live.status import Writer
 
 if TYPE_CHECKING:
     from innervate.live.node import LiveNode
 
 # When (ns since 1970), which port, True = it left, its bytes, why it was dropped ("" = it was not).
+# Without bytes: what happened to the path, "event: cut".
 Tap = Callable[[int, int, bool, bytes, str], None]
 
 PENDING_MAX = 20_000  # frames that wait for a slow reader
@@ -62,7 +62,7 @@ def about(node: LiveNode) -> dict[str, Any]:
     told = node.stack.status(0)
     # A cell's ports are its sockets, of which only some have a path.
     ports = getattr(node.stack, "port_of_path", range(len(node.paths)))
-    paths = [(path.port, ports[path.port], *ends_of(path)) for path in node.paths]
+    paths = [(path.port, ports[path.port], *path.ends) for path in node.paths]
     return {
         "capturing": node.name,
         "kind": told["kind"],
@@ -71,12 +71,3 @@ def about(node: LiveNode) -> dict[str, Any]:
         "sealed": node.sealer is not None,
         "paths": paths or [(0, 0, "", "")],
     }
-
-
-def ends_of(path: Path) -> tuple[str, str]:
-    """Addresses of both ends of a path; "" where only one neighbour can be there, or many."""
-    link: Any = getattr(path, "link", None)
-    here, there = getattr(link, "bind", None), getattr(path, "address", None)
-    if here is None or there is None or not here[1]:
-        return "", ""
-    return f"{here[0]}:{here[1]}", f"{there[0]}:{there[1]}"

@@ -24,7 +24,10 @@ class UdpPath(Path):
 
     def __init__(self, link: UdpLink, address: Address, port: int) -> None:
         super().__init__(f"udp {address[0]}:{address[1]}", port)
-        self.own = f"udp {link.bind[0]}:{link.bind[1]}"
+        here = f"{link.bind[0]}:{link.bind[1]}"
+        self.own = f"udp {here}"
+        if link.bind[1]:
+            self.ends = (here, f"{address[0]}:{address[1]}")
         self.link = link
         self.address = address
 

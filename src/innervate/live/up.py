@@ -74,6 +74,12 @@ class Network:
             LiveError: something is missing, or a node does not come up; its own line is in it.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
+        for name in self.names:
+            if status.answers(self.socket(name)):
+                raise LiveError(
+                    f"{self.folder}: {name} of another network runs here; end it, or name "
+                    "another --folder"
+                )
         if self.cables == "netns":
             self.lab = Lab("iv", len(self.names), self.links)
             self.lab.up()
@@ -201,8 +207,8 @@ class Network:
                     other = self.lab.address(k, ends[1 - side])
                     table = udp(f"{own}:{UDP_PORT}", f"{other}:{UDP_PORT}")
                 elif self.relay is not None:
-                    device = self.relay.devices[2 * k + side]
-                    table = {"kind": "serial", "device": device, "baud": 4_000_000}
+                    own, other = (self.relay.devices[2 * k + i] for i in (side, 1 - side))
+                    table = {"kind": "serial", "device": own, "far": other, "baud": 4_000_000}
                 else:
                     own, other = (f"127.0.0.1:{ports[2 * k + i]}" for i in (side, 1 - side))
                     table = udp(own, other)

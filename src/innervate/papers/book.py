@@ -73,7 +73,8 @@ def main(
     if system not in PAPERS:
         raise PapersError(f'there is no paper "{system}"; choose from: {", ".join(PAPERS)}')
     paper = import_module(f"innervate.papers.{system}")
-    experiments = [paper.experiment(name) for name in _chosen(paper, only)]
+    names = _chosen(paper, only)
+    experiments = [paper.experiment(name) for name in names]
     folder = Path(out)
     _prepare(folder)
     mark = stamp()
@@ -82,7 +83,10 @@ def main(
     started = time.perf_counter()
     with style.house():
         book.work(experiments)
-    heading = output.Heading(system, paper.TITLE, paper.AUTHORS, quick, mark, redraw)
+    some = names if len(names) < len(paper.FIGURES) else []
+    words = ["innervate papers", system, *(["--quick"] if quick else [])]
+    command = " ".join([*words, *(f"--only {name}" for name in some)])
+    heading = output.Heading(system, paper.TITLE, paper.AUTHORS, quick, mark, redraw, command)
     return output.write(folder, heading, experiments, book.claims, time.perf_counter() - started)
 
 

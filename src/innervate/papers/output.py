@@ -20,8 +20,8 @@ from innervate.trace.provenance import checkout
 PACKAGES = ("numba", "numpy", "matplotlib")
 _LAYOUT = (
     "<style>figure img{display:block;max-width:100%;height:auto;background:#fff;border-radius:6px;"
-    "padding:8px;margin:.5em 0}figure{margin:1.6em 0}.claims td{min-width:6em}"
-    ".claims td:nth-child(2),.claims td:nth-child(3){min-width:14em}"
+    "padding:8px;margin:.5em 0}figure{margin:1.6em 0}.claims td{min-width:14em;white-space:normal}"
+    ".claims td:nth-child(3){min-width:7em}"
     ".good{color:var(--good)}.bad{color:var(--alarm)}</style>"
 )
 
@@ -33,6 +33,7 @@ class Heading:
     Attributes:
         stamp: hash of the sources the results depend on.
         redraw: results of other sources were allowed.
+        command: the line that does it again.
     """
 
     system: str
@@ -41,6 +42,7 @@ class Heading:
     quick: bool
     stamp: str
     redraw: bool
+    command: str
 
 
 def write(
@@ -99,6 +101,8 @@ def as_markdown(heading: Heading, rows: Sequence[Claim], origin: Mapping[str, st
         "|" + "---|" * len(names),
         *("| " + " | ".join(_cell(value) for value in astuple(row)) + " |" for row in rows),
         "",
+        f"    {heading.command}",
+        "",
         *(f"- {key}: {value}" for key, value in origin.items()),
     ]
     return "\n".join(lines) + "\n"
@@ -143,11 +147,20 @@ def as_page(
             + page.element("figcaption", experiment.caption)
             + "</figure>\n"
             + _table(claims[experiment.name])
+            + _simulated(experiment, heading.quick)
         )
         parts.append(page.section(experiment.title, inside))
     origin_rows = [[clean(key), clean(value)] for key, value in origin.items()]
-    parts.append(page.section("Where this comes from", page.table(("", ""), origin_rows)))
+    again = page.element("pre", heading.command, "command")
+    parts.append(page.section("Run it again", again + page.table(("", ""), origin_rows)))
     return page.page(f"innervate: papers {heading.system}", "\n".join(parts))
+
+
+def _simulated(experiment: Experiment, quick: bool) -> str:
+    """The scenarios of a figure: what each set of runs differs by, and its seeds."""
+    keys = [point.key for point in experiment.points(quick)]
+    head = f"What was simulated: {len(keys)} sets of runs, by their settings"
+    return page.details(head, page.element("pre", "\n".join(keys)))
 
 
 def _table(rows: Sequence[Claim]) -> str:

@@ -174,7 +174,7 @@ schema = 1
 name = {name}
 duration_s = 60.0             # simulated time
 seed = 1                      # same seed, same run
-# gateway = "..."             # a node by its name; the first one if left out
+# gateway = "..."             # a node by its name; the best connected one if left out
 
 [import]
 {network}

@@ -17,7 +17,7 @@ from pathlib import Path
 from innervate.topology.errors import TopologyError
 from innervate.topology.graph import Graph
 from innervate.topology.patch import NOTHING, PORTS
-from innervate.topology.urdf import Vector, find_urdf, read_positions
+from innervate.topology.urdf import Vector, find_urdf, read_links, read_positions
 
 CELLS_MAX = 5000
 Pair = tuple[float, int, int]
@@ -42,6 +42,21 @@ def cells_from_urdf(
         return read_positions(path, pattern)
     names, positions = _covered(path, path.stat().st_mtime_ns, pattern, pitch_mm)
     return list(names), list(positions)
+
+
+def normals_from_urdf(
+    urdf: str, pattern: str, folder: Path | None = None, pitch_mm: float | None = None
+) -> list[Vector]:
+    """Where the cells of a robot description face, vectors of length 1; see cells_from_urdf().
+
+    A cell that is a link faces along the z axis of that link's frame, as iCub's do.
+    """
+    path = find_urdf(urdf, folder or Path())
+    if pitch_mm is None:
+        return [(turn[0][2], turn[1][2], turn[2][2]) for _, _, turn, _ in read_links(path, pattern)]
+    from innervate.topology.cover import normals_on_surfaces
+
+    return normals_on_surfaces(path, pattern, pitch_mm)
 
 
 @cache

@@ -21,6 +21,7 @@ SUFFIXES = (".stl", ".obj", ".ply", ".off", ".glb")
 SEED = 1
 DRAWN = 25  # points a square of the pitch; with more, hardly any more are kept
 CELLS_MAX = 5000
+Cell = tuple[str, Vector, Vector]  # its name, place in mm, direction of its surface
 
 
 def has_surface(link: Link) -> bool:
@@ -41,22 +42,40 @@ def cells_on_surfaces(path: Path, pattern: str, pitch_mm: float) -> tuple[list[s
     Raises:
         TopologyError: no link matches, none has a shape that can be read, or too many cells.
     """
-    names: list[str] = []
-    positions: list[Vector] = []
+    found = _all_cells(path, pattern, pitch_mm)
+    return [name for name, _, _ in found], [place for _, place, _ in found]
+
+
+def normals_on_surfaces(path: Path, pattern: str, pitch_mm: float) -> list[Vector]:
+    """For each of these cells the direction in which the surface faces, of length 1; see above."""
+    return [normal for _, _, normal in _all_cells(path, pattern, pitch_mm)]
+
+
+def surfaces(path: Path, pattern: str) -> Iterator[Any]:
+    """Shapes (trimesh) of the links that match, mm, in the root's frame: those that can be read.
+
+    Raises:
+        TopologyError: no link matches, or a mesh is missing.
+    """
     for link in read_links(path, pattern):
-        for number, place in enumerate(_cells(path, link, pitch_mm)):
-            names.append(f"{link.name}_{number}")
-            positions.append(place)
-        if len(names) > CELLS_MAX:
+        yield from _meshes(path, link)
+
+
+def _all_cells(path: Path, pattern: str, pitch_mm: float) -> list[Cell]:
+    found: list[Cell] = []
+    for link in read_links(path, pattern):
+        for number, (place, normal) in enumerate(_cells(path, link, pitch_mm)):
+            found.append((f"{link.name}_{number}", place, normal))
+        if len(found) > CELLS_MAX:
             message = f"a pitch of {pitch_mm:g} mm makes more than {CELLS_MAX} cells; take a wider"
             raise TopologyError(message, "pitch_mm")
-    if not names:
+    if not found:
         message = f'no link of {path.name} that matches "{pattern}" has a surface to put cells on'
         raise TopologyError(message, "links")
-    return names, positions
+    return found
 
 
-def _cells(path: Path, link: Link, pitch_mm: float) -> Iterator[Vector]:
+def _cells(path: Path, link: Link, pitch_mm: float) -> Iterator[tuple[Vector, Vector]]:
     for mesh in _meshes(path, link):
         from trimesh.sample import sample_surface
 
@@ -64,8 +83,12 @@ def _cells(path: Path, link: Link, pitch_mm: float) -> Iterator[Vector]:
         if wanted > DRAWN * CELLS_MAX:
             message = f"a pitch of {pitch_mm:g} mm is too fine for link {link.name}; take a wider"
             raise TopologyError(message, "pitch_mm")
-        points, _ = sample_surface(mesh, wanted + 1, seed=SEED)
-        yield from thinned([(x, y, z) for x, y, z in points.round(3).tolist()], pitch_mm)
+        drawn, faces = sample_surface(mesh, wanted + 1, seed=SEED)
+        points = [(x, y, z) for x, y, z in drawn.round(3).tolist()]
+        face = dict(zip(points, faces.tolist(), strict=True))
+        for point in thinned(points, pitch_mm):
+            x, y, z = mesh.face_normals[face[point]].tolist()
+            yield point, (x, y, z)
 
 
 def thinned(points: list[Vector], pitch_mm: float) -> list[Vector]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections import Counter
 from pathlib import Path
@@ -14,7 +15,7 @@ from innervate.web.history import SERIES, Logbook
 from innervate.web.live_map import Map, Place, Status
 from innervate.web.live_poll import Poller
 from innervate.web.live_state import State
-from innervate.web.messages import Command, Cut, Heal, number
+from innervate.web.messages import Command, Cut, Heal, Kill, Revive, number
 from innervate.web.recovery import Recovery
 from innervate.web.source import Source
 
@@ -66,8 +67,9 @@ class Live(Source):
         if len(kinds) > 1:
             raise WatchError(f"{' and '.join(sorted(kinds))} nodes: name those of one network")
         self._map = Map(self._last)
+        self._off: set[Place] = set()  # cut off whole, from here
         self._state = State(self._map, self._told)
-        self.can = ("cut", "heal") if self._map.links else ()
+        self.can = self._possible()
 
     def scene(self) -> dict[str, Any]:
         """Who answered, and who is linked with whom as they say."""
@@ -87,8 +89,10 @@ class Live(Source):
             {"id": at, "a": numbers[link.a], "b": numbers[link.b]}
             for at, link in enumerate(self._map.links)
         ]
+        is_radio = self._map.kind == "radio"
+        lost = ("stations off", "") if is_radio else ("nodes without a way", "nodes")
         series = [
-            {"id": "unconnected", "label": "nodes without a way", "unit": "nodes"},
+            {"id": "unconnected", "label": lost[0], "unit": lost[1]},
             {"id": "frames", "label": "frames received, all nodes", "unit": "per s"},
             {"id": "dropped", "label": "frames dropped, all nodes", "unit": "per s"},
         ]
@@ -120,10 +124,11 @@ class Live(Source):
         fresh = Map(self._last, self._map)
         if (fresh.places, fresh.links) != (self._map.places, self._map.links):
             self._map = fresh
-            self.can = ("cut", "heal") if fresh.links else ()
+            self.can = self._possible()
             self.scenes += 1
         self._look()
         waits = self._recovery is not None and self._recovery.recovered_ms is None
+        waits = waits or self._map.kind == "radio"  # who sends is soon another
         self._next = now + (SOON_S if waits else POLL_S)
         return max(0.0, self._next - time.monotonic())
 
@@ -141,9 +146,9 @@ class Live(Source):
     def _look(self) -> None:
         """Take in what everybody said: who has a way again, a point of the plots."""
         at_us = self._now_us()
-        self._state = State(self._map, self._told)
+        self._state = State(self._map, self._told, self._off)
         lost, recovery = self._state.unconnected, self._recovery
-        if recovery is not None:
+        if recovery is not None and self._map.kind != "radio":
             after_ms = round((at_us - recovery.at_us) / 1e3, 1)
             if recovery.detected_ms is None and lost:
                 recovery.detected_ms = after_ms
@@ -174,21 +179,58 @@ class Live(Source):
 
     def fields(self) -> dict[str, Any]:
         """The state as it was told last."""
-        at_us, recovery = self._now_us(), self._recovery
+        recovery = self._recovery
+        t_s = math.ceil(self._now_us() / 1e5) / 10  # in steps, so that what is idle is told seldom
         return {
-            "t_s": round(at_us / 1e6, 1),
+            "t_s": t_s,
             "paused": False,
             "speed": 1.0,
             "at_end": False,
             **self._state.fields(),
-            "since_cut_s": None if recovery is None else round((at_us - recovery.at_us) / 1e6, 1),
+            "since_cut_s": None if recovery is None else round(t_s - recovery.at_us / 1e6, 6),
             "recovery": None if recovery is None else recovery.shown(),
         }
 
+    def _possible(self) -> tuple[str, ...]:
+        nodes = ("kill", "revive") if any(one.get("paths") for one in self._last.values()) else ()
+        return (*(("cut", "heal") if self._map.links else ()), *nodes)
+
     def do(self, command: Command) -> dict[str, Any] | None:
-        """Have both ends of a link drop what comes over it, or take it again."""
-        if not isinstance(command, Cut | Heal):
+        """Have drivers drop what comes over a link, or over all paths of a node; or take it again.
+
+        Nodes go on running: what is cut off is not killed, and comes back by the same way.
+        """
+        if isinstance(command, Kill | Revive):
+            place = self._map.places[number("node", command.node, len(self._map.places))]
+            self._plug(place, isinstance(command, Revive))
+        elif isinstance(command, Cut | Heal):
+            self._cable(command)
+        else:
             raise Refused("not possible here")
+        self._next = 0.0
+        return None
+
+    def _plug(self, place: Place, back: bool) -> None:
+        """Cut a node off, or let it back, by all of its paths; a port of the PC has one."""
+        label, at = self._label(place), self._map.number[place]
+        if place.node not in self._told:
+            raise Refused(f"{label} does not answer; start it again where it ran")
+        if bool(self._state.node_up[at]) == back:
+            raise Refused(f"{label} is not cut off" if back else f"{label} is cut off already")
+        paths = [int(path["port"]) for path in self._told[place.node]["paths"]]
+        for path in [place.port] if place.port >= 0 else paths:
+            request = {"do": "restore" if back else "cut", "port": path}
+            if not self._poller.ask({place.node: request}):
+                raise Refused(f"{label} could not be told; does it still run?")
+        (self._off.discard if back else self._off.add)(place)
+        self._note(f"{label} {'let back' if back else 'cut off'}", back)
+
+    def _note(self, cause: str, heals: bool) -> None:
+        if not heals:
+            self._recovery = Recovery(cause, self._now_us())
+        self._log.say(self._now_us(), cause)
+
+    def _cable(self, command: Cut | Heal) -> None:
         at = number("link", command.link, len(self._map.links))
         heal, link = isinstance(command, Heal), self._map.links[at]
         if bool(self._state.link_up[at]) == heal:
@@ -204,12 +246,7 @@ class Live(Source):
         if not told:
             raise Refused("neither end could be told; do they still run?")
         names = f"{self._label(link.a)} - {self._label(link.b)}"
-        cause = f"link {names} {'put back' if heal else 'cut'}"
-        if not heal:
-            self._recovery = Recovery(cause, self._now_us())
-        self._log.say(self._now_us(), cause)
-        self._next = 0.0
-        return None
+        self._note(f"link {names} {'put back' if heal else 'cut'}", heal)
 
     def _is_shared(self, place: Place, path: int) -> bool:
         """True if a path leads to several neighbours: a group, or the air."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from innervate.web.ways import NOWHERE, Numbers, follow
 
 LOAD_FULL = 66  # cells whose samples fill a link, at 250 Hz each
 QUEUE = 16
+IDLE, SENDS, WAITS = 0, 1, 4  # what a station does, as pages count it
 
 Told = Mapping[int, Status]
 
@@ -22,18 +23,24 @@ class State:
     Args:
         where: its map.
         told: what the nodes said that answer now.
+        off: places that were cut off whole; they count as off while nothing comes over any path.
 
     Attributes:
         node_up, link_up: 1 or 0.
+        cut_off: per place whether its node answers and carries nothing.
         hop: per place the next one on its way, NOWHERE without one.
         root, depth: where its chain leads over live links, and how far that is.
-        unconnected: how many that answer have no way.
+        unconnected: how many that answer have no way; of a radio team, how many are off.
     """
 
-    def __init__(self, where: Map, told: Told) -> None:
+    def __init__(self, where: Map, told: Told, off: Collection[Place] = ()) -> None:
         self._map = where
         self._told = told
-        self.node_up: Numbers = np.array([int(p.node in told) for p in where.places], np.int64)
+        # A station has nothing but its place on the channel: without it, it is off.
+        asked = where.places if where.kind == "radio" else off
+        self.cut_off = [place in asked and self._carries_nothing(place) for place in where.places]
+        up = [p.node in told and not off for p, off in zip(where.places, self.cut_off, strict=True)]
+        self.node_up: Numbers = np.array(up, np.int64)
         self.link_up: Numbers = np.array([self._is_up(link) for link in where.links], np.int64)
         self.hop = self._hops()
         nodes = np.arange(len(where.places))
@@ -42,11 +49,18 @@ class State:
         lost = (self.root == NOWHERE) & (self.node_up == 1)
         if where.kind == "skin" and not where.links:  # cables unknown: what cells say has to do
             lost = np.array([self._word(place, "parent", 0) is None for place in where.places])
+        if where.kind == "radio":  # everybody hears everybody, or nobody
+            lost = self.node_up == 0
         self.unconnected = int(np.count_nonzero(lost))
 
     def _word(self, place: Place, name: str, otherwise: Any) -> Any:
         """What a node says of itself."""
         return self._told.get(place.node, {}).get(name, otherwise)
+
+    def _carries_nothing(self, place: Place) -> bool:
+        paths = [path["up"] for path in self._word(place, "paths", ())
+                 if place.port in (-1, path["port"])]  # fmt: skip
+        return bool(paths) and not any(paths)
 
     def _is_up(self, link: Link) -> bool:
         """Both ends answer, and neither has been told to drop what comes over the link."""
@@ -102,6 +116,7 @@ class State:
         found: dict[str, Any] = {
             "node_up": self.node_up,
             "link_up": self.link_up,
+            "cut_off": [int(off) for off in self.cut_off],
             "unconnected": self.unconnected,
             "flights": [],
         }
@@ -110,7 +125,14 @@ class State:
             turn = [self._word(place, "place", None) for place in places]
             found["load"] = (np.array(queued) / QUEUE).round(3)
             found["radio"] = {
-                "now": [4 if count else 0 for count in queued],
+                "now": [
+                    SENDS
+                    if self._word(place, "radio", "") == "sending"
+                    else WAITS
+                    if count
+                    else IDLE
+                    for place, count in zip(places, queued, strict=True)
+                ],
                 "turn": [-1 if at is None else at for at in turn],
             }
             return found

@@ -72,7 +72,7 @@ class MeshView(View):
         """Nodes, links and what else stands still."""
         series = [
             {"id": "unconnected", "label": "nodes without a way", "unit": "nodes"},
-            {"id": "latency", "label": "of messages", "unit": "ms"},
+            {"id": "latency", "label": "latency of messages", "unit": "ms"},
             {"id": "airtime", "label": "time on the air, all nodes", "unit": "%"},
         ]
         return {**self.field.scene(), "series": series}

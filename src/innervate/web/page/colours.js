@@ -6,8 +6,11 @@ const dark = matchMedia("(prefers-color-scheme: dark)");
 const KEY = "innervate-colours";
 const CHOICES = ["auto", "light", "dark"];
 
-/** Colours by name; `p`, `d` and `h` are ports, depth and heat, eight of each. */
-export const colours = { p: [], d: [], h: [] };
+/**
+ * Colours by name; `p`, `d` and `h` are ports, depth and heat, eight of each, and `on` what is best
+ * written on each of them, as `on.h7`.
+ */
+export const colours = { p: [], d: [], h: [], on: {} };
 
 function read() {
   const style = getComputedStyle(document.documentElement);
@@ -15,12 +18,30 @@ function read() {
   for (const name of NAMES) colours[name] = of(name);
   for (const family of "pdh") {
     colours[family] = Array.from({ length: SHADES }, (_, i) => of(`${family}${i}`));
+    colours[family].forEach((fill, i) => (colours.on[`${family}${i}`] = readable(fill)));
   }
 }
 
 /** Which of the shades stands for a value of 0 .. most. */
 export function shade(value, most) {
   return most > 0 ? Math.max(0, Math.min(SHADES - 1, Math.floor((SHADES * value) / most))) : 0;
+}
+
+/** Ink or ground: what can be read better on a colour, a "#rrggbb". */
+function readable(fill) {
+  const on = light(fill);
+  const contrast = (other) => (Math.max(on, other) + 0.05) / (Math.min(on, other) + 0.05);
+  const isInk = contrast(light(colours.ink)) >= contrast(light(colours.ground));
+  return isInk ? colours.ink : colours.ground;
+}
+
+/** Relative luminance of a colour (WCAG 2). */
+function light(colour) {
+  const part = (at) => {
+    const share = parseInt(colour.slice(at, at + 2), 16) / 255;
+    return share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
+  };
+  return 0.2126 * part(1) + 0.7152 * part(3) + 0.0722 * part(5);
 }
 
 function stored() {

@@ -86,6 +86,7 @@ function onConnection(open, refused) {
 }
 
 function showScene(scene) {
+  const before = pointer.selected && nameOf(pointer.selected);
   network = new Network(scene);
   view = new VIEWS[scene.kind](network);
   pointer.forget();
@@ -101,8 +102,10 @@ function showScene(scene) {
   options($("colour"), $("colour-box"), choices, view.colour);
   const { can } = network;
   const acts = can.has("cut") || can.has("kill");
-  const deed = !can.has("kill") ? "cuts or heals"
-    : can.has("cut") ? "cuts and kills, or heals" : "switches off or on";
+  const isLive = scene.source === "live";
+  const deed = isLive ? (can.has("cut") ? "cuts, or heals" : "cuts off or lets back")
+    : !can.has("kill") ? "cuts or heals"
+      : can.has("cut") ? "cuts and kills, or heals" : "switches off or on";
   options($("tool"), $("tool-box"), [
     ...(acts ? [["cut", deed]] : []),
     ...(can.has("touch") ? [["touch", "touches"]] : []),
@@ -111,13 +114,27 @@ function showScene(scene) {
   $("stage").classList.toggle("acts", acts);
   $("stage").setAttribute("aria-label", `Map of ${scene.name}: ${scene.nodes.length} nodes, `
     + `${scene.links.length} links`);
-  $("timeline").hidden = scene.kind !== "radio";
-  timeline.network = scene.kind === "radio" ? network : null;
+  const runs = scene.kind === "radio" && !isLive; // nobody tells who sent when
+  $("timeline").hidden = !runs;
+  timeline.network = runs ? network : null;
   controls.scene(network);
   plots = new Plots($("plots"), network);
   stage.show(view);
   showLegend($("legend"), view);
   panelStale = true;
+  const again = before && whatIs(before); // there is a link more, or the server is back
+  if (again) pointer.select(again);
+}
+
+function nameOf({ node, link }) {
+  return node === undefined ? network.linkName(link) : network.nodes[node].label;
+}
+
+/** The node or link of a name, or null. */
+function whatIs(name) {
+  const node = network.nodes.findIndex(({ label }) => label === name);
+  const link = network.links.findIndex((_, i) => network.linkName(i) === name);
+  return node >= 0 ? { node } : link >= 0 ? { link } : null;
 }
 
 /** Fill a list of choices; one with a single choice is not shown. */
@@ -141,10 +158,9 @@ function takeIn(state) {
 
 function placeOf(name) {
   const { left, top } = stage.box.getBoundingClientRect();
-  const node = network.nodes.findIndex(({ label }) => label === name);
-  const link = network.links.findIndex((_, i) => network.linkName(i) === name);
-  if (node < 0 && link < 0) return null;
-  const [a, b] = node < 0 ? network.ends[link] : [node, node];
+  const what = whatIs(name);
+  if (!what) return null;
+  const [a, b] = what.node === undefined ? network.ends[what.link] : [what.node, what.node];
   return [left + (stage.x[a] + stage.x[b]) / 2, top + (stage.y[a] + stage.y[b]) / 2];
 }
 

@@ -3,12 +3,13 @@ import { colours } from "./colours.js";
 import { Labels } from "./labels.js";
 import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
-import { arrow, boxRound, cross, flights, stroke, word } from "./shapes.js";
+import { arrow, boxRound, cross, diamond, flights, stroke, word } from "./shapes.js";
 import { symbol } from "./symbols.js";
-import { plural } from "./words.js";
+import { off, offWord, plural } from "./words.js";
 
 const GOOD = 0.9; // links of this quality are drawn whole, worse ones dashed, poor ones dotted
 const FAIR = 0.6;
+const CROSS_PX = 7; // round the cross of a cut, where no name goes
 const LINK_PX = 7; // how near a click must be to a link
 const FONT = "12px system-ui, sans-serif";
 
@@ -73,7 +74,7 @@ export class MeshView {
   facts(i) {
     const { now, nodes } = this.network;
     const facts = [nodes[i].role];
-    if (!now.node_up[i]) return `${nodes[i].role}, switched off`;
+    if (!now.node_up[i]) return `${nodes[i].role}, ${off(this.network, i)}`;
     const next = this.network.parentOf(i);
     if (next >= 0) facts.push(`sends to the gateway through ${nodes[next].label}`);
     else if (nodes[i].role !== "gateway") facts.push("no way to the gateway");
@@ -93,7 +94,7 @@ export class MeshView {
       symbol(context, 13, 8, role === "monitor" ? 3.5 : 5, role, up);
     };
     const found = [...roles].map((role) => [shape(role), role]);
-    found.push([shape("node", 0), "switched off"]);
+    found.push([shape("node", 0), offWord(this.network)]);
     found.push([line("soft", 1.4, []), "good link"], [line("soft", 1.4, [5, 4]), "fair"],
       [line("soft", 1.4, [1.5, 4]), "poor"]);
     found.push([(context) => {
@@ -107,7 +108,14 @@ export class MeshView {
       arrow(path, 0, 8, 26, 8, 1);
       stroke(context, colours.accent, 2.4, path);
     }, "way to the gateway"]);
-    if (this.network.scene.fence) found.push([line("ink", 2, []), "fence"]);
+    if (!this.network.scene.fence) return found;
+    found.push([line("ink", 2, []), "fence"]);
+    found.push([(context) => {
+      const path = new Path2D();
+      diamond(path, 13, 8, 6);
+      context.fillStyle = colours.alarm;
+      context.fill(path);
+    }, "alarm on its way"]);
     return found;
   }
 
@@ -191,6 +199,11 @@ export class MeshView {
       names.block(x - dot - 2, y - dot - 2, x + dot + 2, y + dot + 2);
       if (now.alarm[i]) this.#ring(context, x, y, dot + 6, [], 3);
       else if (now.outside[i]) this.#ring(context, x, y, dot + 6, [4, 3], 2);
+    });
+    network.ends.forEach(([a, b], link) => {
+      if (!network.isCut(link)) return;
+      const [x, y] = [(stage.x[a] + stage.x[b]) / 2, (stage.y[a] + stage.y[b]) / 2];
+      names.block(x - CROSS_PX, y - CROSS_PX, x + CROSS_PX, y + CROSS_PX);
     });
     this.#names(context, stage, names, dot);
   }

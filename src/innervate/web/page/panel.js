@@ -1,5 +1,5 @@
 // Numbers, events and what is selected.
-import { ago, clock, duration, plural } from "./words.js";
+import { ago, clock, duration, offWord, plural } from "./words.js";
 
 const MARKS = { info: "·", good: "✓", bad: "✕" };
 const KEPT = 300;
@@ -27,7 +27,8 @@ export function showNumbers(network) {
     show("recovery", text, `${recovery.cause}: ${state}${noticed}`, isOpen ? "open" : "done");
   }
   const isRadio = network.kind === "radio"; // there everybody hears everybody
-  $("unconnected").querySelector(".label").textContent = isRadio ? "switched off" : "without a way";
+  const label = isRadio ? offWord(network) : "without a way";
+  $("unconnected").querySelector(".label").textContent = label;
   $("since").querySelector(".label").textContent = `since the last ${isRadio ? "failure" : "cut"}`;
   $("recovery").hidden = isRadio;
   const all = network.nodes.filter((node) => node.role !== "sink" && node.role !== "port").length;
@@ -132,7 +133,9 @@ export class Card {
   #label(network, { node, link }, from) {
     const command = commandFor(network, { node, link });
     if (!command) return "";
-    if (node !== undefined) return command.do === "kill" ? "Kill" : "Revive";
+    const isLive = network.scene.source === "live";
+    const verbs = isLive ? ["Cut off", "Let back"] : ["Kill", "Revive"];
+    if (node !== undefined) return verbs[command.do === "kill" ? 0 : 1];
     const verb = command.do === "cut" ? "Cut" : "Heal";
     if (from === undefined) return `${verb} this link`;
     return `${verb}: ${network.nodes[network.across(link, from)].label}`;
@@ -156,6 +159,8 @@ export function commandFor(network, { node, link }) {
     : [now.node_up[node] ? "kill" : "revive", { node: network.nodes[node].id }];
   if (link !== undefined && !now.link_up[link] && !network.isCut(link)) return null; // a dead end
   if (link !== undefined && !network.isThere(link)) return null;
+  const isGone = verb === "revive" && now.cut_off && !now.cut_off[node]; // its process has ended
+  if (isGone) return null;
   const fixed = node !== undefined && ["sink", "port"].includes(network.nodes[node].role);
   return can.has(verb) && !fixed ? { do: verb, ...of } : null;
 }

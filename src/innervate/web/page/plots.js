@@ -71,14 +71,33 @@ export class Plots {
     }
     context.lineJoin = "round";
     stroke(context, colours.accent, 1.8, curve);
-    this.#most(context, up(most), value(most, series.unit));
+    this.#most(context, width, up(most), value(most, series.unit), marks);
   }
 
-  /** What the upper line stands for; the lower one is 0. */
-  #most(context, y, text) {
+  /** What the upper line stands for; the lower one is 0. It stands where no curve is, if it can. */
+  #most(context, width, y, text, marks) {
+    const font = "10px system-ui, sans-serif";
+    context.font = font;
+    const wide = context.measureText(text).width + 8;
+    const places = [SIDE_PX, width / 2 - wide / 2, width - SIDE_PX - wide];
+    const high = (x) => Math.min(...heights(marks, x - 6, x + wide));
+    const free = places.find((x) => high(x) > y + 16) ?? SIDE_PX;
     context.textAlign = "left";
-    word(context, text, SIDE_PX, y + 8, colours.soft, colours.panel, "10px system-ui, sans-serif");
+    word(context, text, free, y + 8, colours.soft, colours.panel, font);
   }
+}
+
+/** How high a curve gets between two places, y in px: its points there and where it enters. */
+function heights(marks, left, right) {
+  const found = [Infinity];
+  marks.forEach(([x, y], i) => {
+    if (x >= left && x <= right) found.push(y);
+    const [x1, y1] = marks[i + 1] ?? [x, y];
+    for (const edge of [left, right]) {
+      if (x < edge && edge < x1) found.push(y + ((edge - x) / (x1 - x)) * (y1 - y));
+    }
+  });
+  return found;
 }
 
 /** The next round number at or above a value. */

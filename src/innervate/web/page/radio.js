@@ -3,6 +3,7 @@ import { colours } from "./colours.js";
 import { LAYERS } from "./stage.js";
 import { cross, stroke, word } from "./shapes.js";
 import { boxSamples } from "./timeline.js";
+import { off, offWord } from "./words.js";
 
 /** What a station does: letter in its disc, words, colour. The numbers are those of a state. */
 export const DOING = [
@@ -12,8 +13,9 @@ export const DOING = [
   { sign: "X", words: "hears several at once", colour: () => colours.p[1] },
   { sign: "W", words: "waits its turn", colour: () => colours.p[7] },
 ];
-const SENDS = 1;
+const [SENDS, WAITS] = [1, 4];
 const RING_PX = 15;
+const NAME_PX = 13; // from a station to its name: the ring round what is selected lies between
 const WORDS_PX = 55; // from this radius on there is room for words in the middle
 const TURNS_PX = 34; // from this distance on there is room for turns below names
 
@@ -61,15 +63,17 @@ export class RadioView {
 
   facts(i) {
     const { now, radio } = this.network;
-    if (!now.node_up[i]) return "switched off";
+    if (!now.node_up[i]) return off(this.network, i);
     const turn = radio.turn[i] > 0 ? `, turn ${radio.turn[i]}` : "";
     return `${DOING[radio.now[i]].words}${turn}`;
   }
 
   legend() {
     const disc = (state, up = 1) => (context) => this.#disc(context, 13, 8, 7, state, up);
-    return [...DOING.map(({ words }, state) => [disc(state), words]),
-      [disc(0, 0), "switched off"], ...boxSamples()];
+    const isLive = this.network.scene.source === "live"; // what is asked now and then has no boxes
+    const known = isLive ? [0, SENDS, WAITS] : DOING.keys();
+    return [...[...known].map((state) => [disc(state), DOING[state].words]),
+      [disc(0, 0), offWord(this.network)], ...(isLive ? [] : boxSamples())];
   }
 
   draw(layer, context, stage) {
@@ -96,10 +100,11 @@ export class RadioView {
     const lines = [short(this.network.nodes[i].label)];
     if (turn > 0 && apart >= TURNS_PX) lines.push(`turn ${turn}`);
     context.textAlign = dx > 0.3 ? "left" : dx < -0.3 ? "right" : "center";
-    const middle = y + dy * (radius + (lines.length > 1 ? 16 : 10));
+    const middle = y + dy * (radius + NAME_PX + (lines.length > 1 ? 8 : 2));
+    const beside = x + dx * (radius + NAME_PX);
     lines.forEach((text, n) => {
       const shift = 13 * (n - (lines.length - 1) / 2);
-      word(context, text, x + dx * (radius + 6), middle + shift, colours.soft, colours.ground);
+      word(context, text, beside, middle + shift, colours.soft, colours.ground);
     });
   }
 

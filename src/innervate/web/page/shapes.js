@@ -95,7 +95,7 @@ export function word(context, text, x, y, colour, rim, font = "12px system-ui, s
 
 /** The frames on their way, a shape for each kind; with less motion in the middle of their link. */
 export function flights(context, network, stage, size) {
-  const path = { dot: new Path2D(), square: new Path2D(), star: new Path2D() };
+  const path = { dot: new Path2D(), square: new Path2D(), diamond: new Path2D() };
   for (const { a, b, kind, p } of network.now.flights) {
     const from = network.index.get(a);
     const to = network.index.get(b);
@@ -103,7 +103,7 @@ export function flights(context, network, stage, size) {
     const share = CALM.matches ? 0.5 : p;
     const x = stage.x[from] + (stage.x[to] - stage.x[from]) * share;
     const y = stage.y[from] + (stage.y[to] - stage.y[from]) * share;
-    if (kind === "alarm") cross(path.star, x, y, size + 1);
+    if (kind === "alarm") diamond(path.diamond, x, y, size + 4);
     else if (kind === "beacon" || kind === "ack") {
       path.dot.moveTo(x + size, y);
       path.dot.arc(x, y, size, 0, 7);
@@ -111,10 +111,19 @@ export function flights(context, network, stage, size) {
   }
   context.lineWidth = 1;
   context.strokeStyle = colours.ground;
-  for (const [name, colour] of [["dot", colours.ink], ["square", colours.accent]]) {
-    context.fillStyle = colour;
+  const fills = [["dot", "ink"], ["square", "accent"], ["diamond", "alarm"]];
+  for (const [name, colour] of fills) {
+    context.fillStyle = colours[colour];
     context.fill(path[name]);
     context.stroke(path[name]);
   }
-  stroke(context, colours.alarm, 3, path.star);
+}
+
+/** Add a square on its corner: an alarm on its way. */
+export function diamond(path, x, y, size) {
+  path.moveTo(x, y - size);
+  path.lineTo(x + size, y);
+  path.lineTo(x, y + size);
+  path.lineTo(x - size, y);
+  path.closePath();
 }

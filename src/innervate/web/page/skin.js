@@ -3,7 +3,7 @@ import { colours, shade } from "./colours.js";
 import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
 import { boxRound, brick, cross, flights, hexagon, stroke, word } from "./shapes.js";
-import { plural } from "./words.js";
+import { off, offWord, plural } from "./words.js";
 
 const NEAR = 1.6; // cables up to this many pitches long are between neighbours
 const PORT_COLOURS = 8;
@@ -88,7 +88,7 @@ export class SkinView {
     const { now, nodes } = this.network;
     if (nodes[i].role === "port") return `interface ${nodes[i].port} of the PC`;
     if (!this.isCell[i]) return "the PC";
-    if (!now.node_up[i]) return "switched off";
+    if (!now.node_up[i]) return off(this.network, i);
     const touched = now.touch[i] ? `, touched ${now.touch[i]} of 255` : "";
     if (!this.#isRouted(i)) return `no way to the PC${touched}`;
     const hops = now.depth[i] >= 0 ? `${plural(now.depth[i], "hop")} to the PC, ` : "";
@@ -110,7 +110,7 @@ export class SkinView {
       stroke(context, colours[colour], width, new Path2D("M1 8h24"), dash);
     };
     const found = this.#scale().map(([kind, text]) => [cell(kind), text]);
-    found.push([cell("none"), "no way to the PC"], [cell("off"), "switched off"]);
+    found.push([cell("none"), "no way to the PC"], [cell("off"), offWord(this.network)]);
     found.push([line("link", 2, []), "sends through"]);
     found.push([(context) => {
       line("alarm", 2.4, [4, 3])(context);
@@ -189,7 +189,7 @@ export class SkinView {
       load: routed ? `${Math.round(100 * now.load[i])}` : "", touch: now.touch[i] || "",
     }[this.colour];
     context.font = `${Math.max(9, Math.min(13, 0.36 * stage.scale))}px system-ui, sans-serif`;
-    context.fillStyle = colours.ink;
+    context.fillStyle = colours.on[this.kinds[i]] ?? colours.ink;
     context.textAlign = "center";
     context.textBaseline = "middle";
     context.fillText(text, stage.x[i], stage.y[i] - 0.32 * stage.scale);

@@ -45,11 +45,12 @@ export class Timeline {
     this.context = prepared(this.canvas, width, height);
     const wanted = WALL_S * (speed || SPAN_S[1]);
     const span = Math.max(SPAN_S[0], Math.min(SPAN_S[1], wanted));
-    const across = (t) => LEFT + ((t - to + span) / span) * (width - LEFT - 12);
+    const from = Math.max(0, to - span);
+    const across = (t) => LEFT + ((t - from) / span) * (width - LEFT - 12);
     const lane = Math.min(LANE_PX, (height - TOP - BOTTOM) / network.nodes.length);
     this.#lanes(width, lane);
-    this.#ticks(to - span, to, across, TOP + lane * network.nodes.length);
-    this.#boxes(to - span, to, across, lane);
+    this.#ticks(from, from + span, across, TOP + lane * network.nodes.length);
+    this.#boxes(from, to, across, lane);
   }
 
   #lanes(width, lane) {

@@ -51,4 +51,15 @@ export function speedIndex(v) {
   return apart.indexOf(Math.min(...apart));
 }
 
+/** What a node is that is not there: live ones go on running while they are cut off. */
+export function off(network, i) {
+  if (network.scene.source !== "live") return "switched off";
+  return network.now.cut_off[i] ? "cut off" : "does not answer";
+}
+
+/** The same for a legend. */
+export function offWord(network) {
+  return network.scene.source === "live" ? "cut off, or silent" : "switched off";
+}
+
 export const plural = (n, one, many = `${one}s`) => `${n} ${n === 1 ? one : many}`;

@@ -1,0 +1,94 @@
+"""A run for Rerun's viewer (rerun.io): its network in space, coloured by what it did.
+
+Every entity has the timeline `sim_time`, the duration since the start of the simulation. What did
+not change has no row: the viewer shows the newest one before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from innervate.export import files, recording, rrd_mesh, rrd_skin
+from innervate.export.errors import ExportError
+from innervate.export.rrd_parts import Column, Parts
+
+TIMELINE = "sim_time"
+WARNING = recording.WARNING
+LOG = "events"
+
+
+def check(plan: Any) -> None:
+    """Say whether there is something to show.
+
+    Raises:
+        ExportError: the network has no places.
+        ModuleNotFoundError: Rerun's package is missing.
+    """
+    if plan.kind == "radio" or (plan.kind == "mesh" and not plan.positions_cm):
+        raise ExportError("--rerun shows where nodes are, and these have no places; try --mcap")
+    import rerun  # noqa: F401
+
+
+def write(plan: Any, found: Mapping[str, Any], path: Path) -> int:
+    """Write a recording; how many rows of time it has.
+
+    Args:
+        plan: of the run.
+        found: its tables by name, polars frames.
+        path: the file, "….rrd"; there whole or not at all.
+
+    Raises:
+        ExportError: as check() says, or the file cannot be written.
+    """
+    import rerun
+    import rerun.blueprint as views
+
+    check(plan)
+    made = (rrd_skin if plan.kind == "skin" else rrd_mesh).parts(rerun, plan, found)
+    told = [*recording.events(plan)]
+    log = sorted([*made.log, *((at, one["message"], one["level"]) for at, one in told)])
+    with files.beside(path) as fresh:
+        stream = rerun.RecordingStream("innervate")
+        stream.save(fresh, default_blueprint=_arranged(views, made))
+        stream.send_recording_name(f"{plan.scenario.name}, seed {plan.scenario.seed}")
+        for name, thing in made.still:
+            stream.log(name, thing, static=True)
+        count = sum(_send(rerun, stream, column) for column in made.columns)
+        if log:
+            levels = ["WARN" if level >= WARNING else "INFO" for _, _, level in log]
+            texts = rerun.TextLog.columns(text=[text for _, text, _ in log], level=levels)
+            stream.send_columns(LOG, [_times(rerun, [at for at, _, _ in log])], texts)
+        stream.disconnect()
+    return count + len(log)
+
+
+def _times(rerun: Any, times_us: Iterable[int]) -> Any:
+    moments = np.fromiter(times_us, np.int64) * 1000
+    return rerun.TimeColumn(TIMELINE, duration=moments.astype("timedelta64[ns]"))
+
+
+def _send(rerun: Any, stream: Any, column: Column) -> int:
+    if column.times_us:
+        stream.send_columns(column.name, [_times(rerun, column.times_us)], column.content)
+    return len(column.times_us)
+
+
+def _arranged(views: Any, made: Parts) -> Any:
+    """The views of the viewer: tabs in space above, curves and what happened below."""
+    space = [
+        views.Spatial3DView(name=name, origin="/", contents=_paths(entities))
+        for name, entities in made.views
+    ]
+    below = [views.TextLogView(name="Events", origin=f"/{LOG}")]
+    if made.curves:
+        below.insert(0, views.TimeSeriesView(name="Curves", contents=_paths(made.curves)))
+    whole = views.Vertical(views.Tabs(*space), views.Horizontal(*below), row_shares=[3, 1])
+    return views.Blueprint(whole)
+
+
+def _paths(entities: Sequence[str]) -> list[str]:
+    return [f"+ /{entity}" for entity in entities]

@@ -1,0 +1,125 @@
+"""The page over running nodes, as a user has it: `innervate live up` and `innervate watch live`."""
+
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+from contextlib import contextmanager
+
+import pytest
+
+from tests.browser_net import WAIT_MS, click, expect, serving
+
+pytestmark = pytest.mark.slow
+RADIO = """
+kind = "radio"
+duration_s = 60
+stations = 3
+[traffic]
+kind = "disaster"
+"""
+LINKS = "".join(
+    f'[[link]]\na = "n{a}"\nb = "n{b}"\n' for a, b in ((0, 1), (1, 2), (2, 3), (3, 0), (2, 4))
+)
+MESH = f'kind = "mesh"\nduration_s = 60\nradio = {{ profile = "ip" }}\n{LINKS}'
+SKIN = """
+kind = "skin"
+duration_s = 60
+[[patch]]
+columns = 3
+rows = 2
+[[interface]]
+row = 0
+column = 0
+"""
+
+
+@contextmanager
+def up(scenario, folder, monkeypatch, *options):
+    """A network of processes; gives the folder of their files."""
+    here = folder / "net"
+    (folder / "net.toml").write_text(scenario)
+    monkeypatch.setenv("INNERVATE_RUN", str(here))
+    command = [sys.executable, "-m", "innervate.cli", "live", "up", str(folder / "net.toml")]
+    process = subprocess.Popen(
+        [*command, "--folder", str(here), *options], stdout=subprocess.PIPE, text=True
+    )
+    try:
+        assert "up after" in process.stdout.readline()
+        yield here
+    finally:
+        process.send_signal(signal.SIGINT)
+        process.wait(timeout=30)
+        process.stdout.close()
+
+
+@pytest.fixture
+def short(tmp_path_factory):
+    """A folder whose name is short enough for sockets."""
+    return tmp_path_factory.mktemp("l")
+
+
+def test_a_station_is_cut_off_and_let_back(look, short, monkeypatch):
+    with up(RADIO, short, monkeypatch), serving("live") as address:
+        page, other = look(address), look(address, colours="dark")
+        expect(page.locator("#unconnected .more")).to_have_text("of 3 stations")
+        expect(page.locator("#timeline")).to_be_hidden()
+        click(page, "s1")
+        expect(page.locator("#selected-facts")).to_have_text("cut off")
+        expect(other.locator("#unconnected output")).to_have_text("1")
+        click(other, "s1")
+        expect(page.locator("#selected-facts")).to_have_text("idle")
+        expect(page.locator("#unconnected output")).to_have_text("0")
+
+
+def test_serial_cables_are_drawn_and_cut(look, short, monkeypatch):
+    with up(SKIN, short, monkeypatch, "--pty"), serving("live") as address:
+        page = look(address)
+        expect(page.locator("#unconnected output")).to_have_text("0")
+        click(page, "c0 - pc.0")
+        expect(page.locator("#selected-facts")).to_have_text("link, cut")
+        expect(page.locator("#unconnected output")).to_have_text("6")
+        click(page, "c0 - pc.0")
+        expect(page.locator("#selected-facts")).to_have_text("link, up")
+        expect(page.locator("#unconnected output")).to_have_text("0")
+
+
+def test_a_node_is_killed_and_started_and_the_page_finds_its_server_again(look, short, monkeypatch):
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    with up(MESH, short, monkeypatch) as here:
+        with serving("live", port=port) as address:
+            page = look(address)
+            expect(page.locator("#unconnected output")).to_have_text("0")
+            os.kill(pid_of("n3.toml", here), signal.SIGKILL)
+            expect(page.locator("#log")).to_contain_text("n3 does not answer any more")
+            click(page, "n3")  # nothing to be done about it from here
+            expect(page.locator("#selected-facts")).to_contain_text("does not answer")
+            expect(page.locator("#selected-do button", has_text="Let back")).to_have_count(0)
+        expect(page.locator("#lost")).to_contain_text("lost. Trying again")
+        again = [sys.executable, "-m", "innervate.cli", "live", "node", "n3.toml"]
+        node = subprocess.Popen(again, cwd=here, stderr=subprocess.DEVNULL)
+        try:
+            with serving("live", port=port):
+                expect(page.locator("#connection")).to_have_text("connected")
+                expect(page.locator("#selected-facts")).not_to_contain_text("does not answer")
+                click(page, "n2 - n4")
+                expect(page.locator("#unconnected output")).to_have_text("1")
+                expect(page.locator("#recovery .more")).to_contain_text("n2 - n4")
+                click(page, "n2 - n4")
+                expect(page.locator("#unconnected output")).to_have_text("0", timeout=3 * WAIT_MS)
+                expect(page.locator("#recovery output")).to_have_text(re.compile(r"\d+.* m?s$"))
+        finally:
+            node.terminate()
+            node.wait(timeout=20)
+
+
+def pid_of(file, folder):
+    """The process of a node by its file."""
+    found = subprocess.run(
+        ["pgrep", "-f", f"live node {file}"], capture_output=True, text=True, check=True
+    )
+    pids = [int(line) for line in found.stdout.split()]
+    return next(pid for pid in pids if os.readlink(f"/proc/{pid}/cwd") == str(folder))

@@ -1,0 +1,112 @@
+"""What a capture says of a skin's recovery is what happened to it."""
+
+import asyncio
+import json
+
+import pytest
+
+import innervate
+from innervate import scenario
+from innervate.cli import app, capturing
+from innervate.export import capture, links, pcapng
+from innervate.export.errors import ExportError
+from innervate.export.recovery import recoveries
+from innervate.live import status, tap
+from innervate.live.profile import SKIN
+from tests.live_net import Skin, until
+from tests.skin_runs import patch
+
+CUT = patch(
+    4, 4, (0, 0), (3, 3),
+    duration_s=1.0, seed=3, protocol={"beacon_hz": 250, "k": 5}, data={"rate_hz": 100},
+    event=[{"at_s": 0.5, "action": "cut", "interface": 1},
+           {"at_s": 0.8, "action": "restore", "interface": 1}],
+)  # fmt: skip
+PERIOD_MS = 4.0
+
+
+def test_a_simulations_capture_says_what_its_summary_says(tmp_path):
+    path = tmp_path / "run.pcapng"
+    capture.write(scenario.plan(scenario.from_dict(CUT)), path)
+    told = innervate.run(scenario.from_dict(CUT), out=None).summary["recoveries"][0]
+    cut, restored = recoveries(path)
+    after_ms = 1000 * (cut.at_s - 0.5)  # nobody sent anything just when it was cut
+    assert 0 <= after_ms < PERIOD_MS
+    assert cut.what.endswith(" - pc.1")
+    assert cut.cells == told["cut_cells"] > 3
+    assert after_ms + cut.routed_ms == pytest.approx(told["routed_ms"], abs=0.5)
+    assert cut.first_ms <= cut.wrong_ms + PERIOD_MS
+    assert cut.wrong_ms <= cut.routed_ms < cut.heard_ms < 50
+    assert cut.heard_median_ms <= cut.heard_ms
+    assert cut.lost > 0
+    assert restored.what.startswith("restore")
+    assert restored.cells == 0
+
+
+def test_a_live_skins_capture_says_what_happened_to_it(tmp_path, capsys):
+    path = tmp_path / "live.pcapng"
+
+    async def main():
+        async with Skin(3, 2, [(0, 2), (5, 3)]) as skin:
+            servers = {
+                node.name: status.Server(
+                    tmp_path / f"{node.name}.sock", lambda _, out, node=node: tap.serve(node, out)
+                )
+                for node in (*skin.cells, skin.pc)
+            }
+            for server in servers.values():
+                await server.start()
+            await until(skin.fresh())
+            await until(lambda: sum(skin.pc.status()["cells"]) == 6)
+            with path.open("wb") as file:
+                recorder = capturing.Recorder([s.path for s in servers.values()], file)
+                running = asyncio.create_task(recorder.run(0))
+                await until(lambda: recorder.frames > 200)  # all have sent beacons
+                skin.pc.change(0, "cut")
+                skin.cells[0].change(len(skin.cells[0].paths) - 1, "cut")
+                await until(skin.fresh())
+                await until(lambda: all(c.status()["parent"] is not None for c in skin.cells))
+                await skin.pc.stop()
+                await servers["pc"].stop()
+                await until(lambda: all(c.status()["parent"] is None for c in skin.cells))
+                await servers["pc"].start()
+                await until(lambda: recorder.here == 7)
+                await skin.pc.start()
+                await until(skin.fresh())
+                await until(lambda: all(c.status()["parent"] is not None for c in skin.cells))
+                await asyncio.sleep(2 * capturing.HOLD_S)
+                for server in servers.values():
+                    await server.stop()
+                assert await running == 0
+
+    asyncio.run(main())
+    cut, gone, back = recoveries(path)
+    detected_ms = SKIN["k"] * SKIN["beacon_us"] / 1000
+    assert cut.what == "cut c0.2 - pc.0"
+    assert 1 <= cut.cells <= 5
+    assert 0.5 * detected_ms < cut.wrong_ms <= cut.routed_ms < 3000
+    assert cut.heard_ms > 0.5 * detected_ms
+    assert (gone.what, gone.cells) == ("pc gone", 0)
+    assert (back.what, back.cells) == ("pc back", 6)
+    assert 0 < back.routed_ms < 3000
+    assert app.main(["live", "recovery", str(path), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert [one["what"] for one in told] == [cut.what, gone.what, back.what]
+    assert app.main(["live", "recovery", str(path)]) == 0
+    assert "pc back; 6 cells: first moved" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("kind", "description", "why"),
+    [
+        (links.MESH, "node 1", "no capture of a skin"),
+        (links.SKIN, "cell 1 port 0", "which cables join its interfaces"),
+    ],
+)
+def test_what_says_nothing_of_parents_is_told(kind, description, why, tmp_path):
+    path = tmp_path / "other.pcapng"
+    blocks = (pcapng.section(), pcapng.interface(kind, "x", description),
+              pcapng.packet(0, 1, b"x", pcapng.OUTBOUND))  # fmt: skip
+    path.write_bytes(b"".join(blocks))
+    with pytest.raises(ExportError, match=why):
+        recoveries(path)

@@ -1,0 +1,68 @@
+"""What `innervate live status` prints names the broken cable, and what is on either side of it."""
+
+import asyncio
+import socket
+
+import pytest
+
+from innervate import scenario as scenarios
+from innervate.cli import app, live_status
+from innervate.live import status
+from innervate.live.errors import LiveError
+from innervate.live.up import Network
+from tests.live_net import Skin, until
+
+
+def test_a_cells_ports_have_the_names_of_its_sockets_and_a_cut_is_shown():
+    async def main():
+        async with Skin(2, 2, [(0, 0)]) as skin:
+            await until(skin.fresh())
+            skin.cells[0].change(1, "cut")
+            assert "  CUT HERE" in live_status.lines(skin.cells[0].status())[3]
+            await until(lambda: skin.cells[1].status()["broken"])
+            return [node.status() for node in (*skin.cells, skin.pc)]
+
+    told = asyncio.run(main())
+    lines = live_status.lines(told[0])
+    assert lines[1].startswith("  to the PC: by port 2 (W), 1 hops, load ")
+    assert lines[2].startswith("  port 0 (E): local 0-1, heard ")
+    assert lines[3].startswith("  port 1 (down): local 0-2, heard ")
+    assert live_status.lines(told[-1])[1] == f"  cells per interface port: {told[-1]['cells']}"
+    assert {"broken: c0 port 1", "broken: c2 port 0"} & set(live_status.broken(told))
+
+
+def path(own, far, broken=True):
+    return {"own": own, "name": far, "broken": broken, "port": 0}
+
+
+def test_a_cable_is_named_once_by_both_its_ends():
+    told = [{"name": "n0", "paths": [path("udp a:1", "udp b:1")]},
+            {"name": "n1", "paths": [path("udp b:1", "udp a:1"), path("", "serial x")]},
+            {"name": "n2", "paths": [path("udp c:1", "udp d:1", broken=False)]}]  # fmt: skip
+    assert live_status.broken(told) == ["broken: n0 port 0 - n1 port 0", "broken: n1 port 0"]
+
+
+def test_nodes_are_in_order_of_their_numbers(tmp_path, monkeypatch):
+    monkeypatch.setenv("INNERVATE_RUN", str(tmp_path))
+    for name in ("n10", "pc", "n2", "n0"):
+        with socket.socket(socket.AF_UNIX) as sock:
+            sock.bind(str(tmp_path / f"{name}.sock"))
+    assert [found.stem for found in status.sockets()] == ["n0", "n2", "n10", "pc"]
+
+
+def test_a_message_from_standard_input_is_no_option(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("INNERVATE_RUN", str(tmp_path))
+    assert app.main(["live", "send", "n0", "2", "-"]) == 2
+    assert 'no node "n0" runs here' in capsys.readouterr().err
+
+
+def test_two_networks_do_not_share_a_folder(tmp_path):
+    links = [{"a": 0, "b": 1}]
+    told = {"kind": "mesh", "nodes": 2, "radio": {"profile": "ip"}, "link": links}
+    network = Network(scenarios.plan(scenarios.from_dict(told)), tmp_path, "udp")
+    with socket.socket(socket.AF_UNIX) as sock:
+        sock.bind(str(network.socket("n1")))
+        sock.listen()
+        with pytest.raises(LiveError, match="another network runs here"):
+            asyncio.run(network.up())
+    assert network.processes == {}
