@@ -19,7 +19,7 @@ def test_a_cells_ports_have_the_names_of_its_sockets_and_a_cut_is_shown():
             await until(skin.fresh())
             skin.cells[0].change(1, "cut")
             assert "  CUT HERE" in live_status.lines(skin.cells[0].status())[3]
-            await until(lambda: skin.cells[1].status()["broken"])
+            await until(lambda: skin.cells[2].status()["broken"])
             return [node.status() for node in (*skin.cells, skin.pc)]
 
     told = asyncio.run(main())
