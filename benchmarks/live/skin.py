@@ -52,6 +52,15 @@ def busiest(network):
     return max(names, key=lambda name: asked[name]["load"])
 
 
+async def begun(network, name):
+    """Start a node again; its start, a fifth of a second of work, does not hold up the others."""
+    policy, ours = os.sched_getscheduler(0), os.sched_getparam(0)
+    os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+    await network.begin_node(name)
+    for pid in (0, network.processes[name].pid):
+        os.sched_setscheduler(pid, policy, ours)
+
+
 async def hurt(network, runs):
     """Everything once a run, with time to heal before and after."""
     cable = network.links.index(INTERFACE)
@@ -65,7 +74,7 @@ async def hurt(network, runs):
             name = who(network)
             await network.end_node(name, gently=False)
             await asyncio.sleep(0 if name == "pc" else AFTER_S)
-            await network.begin_node(name)
+            await begun(network, name)
     await settled(network)
 
 
