@@ -41,7 +41,7 @@ def skin_scenario():
             "kind": "skin",
             "patch": [{"columns": 4, "rows": 5}],
             "interface": [{"row": 0, "column": 1}, {"row": 4, "column": 2}],
-            "protocol": {"beacon_hz": 50, "k": 15},  # 300 ms: twenty processes share few cores
+            "protocol": {"beacon_hz": 50, "k": 5},
             "data": {"rate_hz": 50},
         }
     )

@@ -13,7 +13,6 @@ from innervate.wire import radio as wire
 from tests.live_net import until
 
 STATIONS = 5
-TRIES = 4  # a station that has no processor at its moment is late; no protocol mends that
 # Slow enough that a busy machine keeps up: a slot of 20 ms, 10 ms to turn round.
 SLOW = parameters(20, 10_000, (1, 8000), bit_us=2500)
 
@@ -43,10 +42,7 @@ def test_five_stations_that_collide_send_in_the_order_that_they_reserved():
         medium.close()
         return medium, heard
 
-    for _ in range(TRIES):
-        medium, heard = asyncio.run(main())
-        if not medium.late:
-            break
+    medium, heard = asyncio.run(main())
     assert medium.collisions >= STATIONS - 1  # all of them sent at once
     turns = []
     for start, end, station, data in medium.log:

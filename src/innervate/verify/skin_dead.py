@@ -57,18 +57,13 @@ def tidy(world):
     """Forget what no future of the state in `world.work` depends on."""
     for c in range(world.at[CELLS]):
         if world.at[MERGE] and world.at[KEEP] == 0 and world.work[world.cell_at[c] + TICKS] == 0:
-            tidy_ended(world, c)
+            tidy_feasible(world, c)  # it never looks at anything again (see skin_row.trim)
         else:
             tidy_cell(world, c)
     tidy_sink(world)
     first = PORTS * world.at[CELLS]
     for p in range(world.pc.own[0].ports):
         tidy_sink_queue(world, world.in_way[first + p])
-
-
-def tidy_ended(world, c):
-    """With MERGE a cell without ticks never looks at anything again (see skin_row.trim)."""
-    tidy_feasible(world, c)
 
 
 def tidy_feasible(world, c):
