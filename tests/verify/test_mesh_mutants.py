@@ -5,6 +5,7 @@ import pytest
 from innervate.verify import mesh_mutants, mesh_search, mutants
 
 QUICK = (
+    "a hop's ack is ignored",
     "nobody waits for a hop's ack",
     "a packet that was delivered is delivered again",
     "a retry is never due",

@@ -17,6 +17,7 @@ MUTANTS = tuple(
     for texts in (
         ("nobody acknowledges a hop",
          "    if frame.flags & ACK_WANTED:\n        acknowledge(node, frame, out)\n", ""),
+        ("a hop's ack is ignored", "    drop(node, i)\n    return i\n", "    return -1\n"),
         ("a packet for us is taken for somebody else's",
          "    here = frame.dest == node.number\n", "    here = frame.dest == node.number + 1\n"),
         ("a message is kept under another number",

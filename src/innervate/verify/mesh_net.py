@@ -16,6 +16,7 @@ from itertools import combinations
 from typing import Any, NamedTuple
 
 from innervate.protocol import mesh_words as words
+from innervate.protocol.mesh_queue import UNACKED
 from innervate.verify import mesh_local as local
 from innervate.verify.mesh_local import NEVER, NONE
 from innervate.verify.mesh_model import MeshModel
@@ -293,7 +294,20 @@ class Nets:
         for v in self.near[sender]:
             if net.nodes[v] != DEAD and (v == to or self.model.overhear):
                 parts = self._apply(parts, v, (local.FRAME, ack))
-        return parts
+        return [
+            part._replace(broken=part.broken or local.BROKEN_ACKED)
+            if net.nodes[to] != DEAD and self._waits(part.nodes[to], ack)
+            else part
+            for part in parts
+        ]
+
+    def _waits(self, number: int, ack: int) -> bool:
+        """True if a node waits for this ack, which it has just heard, still."""
+        field, packet = self.locals.field, self.locals.packets[ack]
+        i = field(number, "busy")
+        names = ("q_state", "q_link_dst", "q_origin", "q_seq")
+        waiting = (UNACKED, packet.link_src, packet.origin, packet.seq)
+        return i >= 0 and tuple(field(number, name)[i] for name in names) == waiting
 
     def faults(self, net: Net) -> list[Successor]:
         """A node dies; one that is dead is switched on, its memory lost.

@@ -41,6 +41,7 @@ TITLES = {
     local.BROKEN_ENDLESS: "a packet stays for ever",
     local.BROKEN_GATEWAYS: "nodes do not agree on one gateway",
     local.BROKEN_CRASH: "a handler cannot go on",
+    local.BROKEN_ACKED: "a node waits for an ack that it has heard",
 }
 
 
@@ -108,7 +109,7 @@ def tell(found: Found) -> MeshStory:
             f"packets for node {story.dest} go to and fro between nodes {a} and {b}, for good: "
             "each has the other in its table"
         )
-    elif found.broken >= local.BROKEN_UNHEARD and found.broken != local.BROKEN_CRASH:
+    elif found.broken in (local.BROKEN_UNHEARD, local.BROKEN_ENDLESS, local.BROKEN_GATEWAYS):
         story.title += ", though nothing fails any more"
     return story
 
