@@ -32,8 +32,9 @@ def new(
     min_tq: float | None = None,
 ) -> int:
     """Write a commented scenario; never over a file that is there."""
+    found = ""
     if network is not None:
-        text = _of_network(kind, file, network, ["wifi"] if types is None else types,
+        text, found = _of_network(kind, file, network, ["wifi"] if types is None else types,
                            0.3 if min_tq is None else min_tq)  # fmt: skip
     elif types is not None or min_tq is not None:
         raise UserError("--types and --min-tq choose links of a --network; name one")
@@ -49,15 +50,17 @@ def new(
         raise UserError(f"{file} is there already; choose another name or move it away") from None
     except OSError as error:
         raise UserError(f"{file} cannot be written: {error.strerror}") from None
-    if network is not None:
-        print(scenario.check(file))
+    if found:
+        print(found)
     print(f"Written: {file}. Check it with `innervate check {file}`, run it with "
           f"`innervate run {file}`.")  # fmt: skip
     return 0
 
 
-def _of_network(kind: str, file: Path | None, network: str, types: list[str], min_tq: float) -> str:
-    """The text of a scenario of a measured network, which was read to see that it is one."""
+def _of_network(
+    kind: str, file: Path | None, network: str, types: list[str], min_tq: float
+) -> tuple[str, str]:
+    """The text of a scenario of a measured network, and what it holds."""
     if kind != "mesh":
         raise UserError(f"--network is for a mesh: innervate new mesh FILE --network {network}")
     folder = file.parent if file is not None else Path()
@@ -66,8 +69,7 @@ def _of_network(kind: str, file: Path | None, network: str, types: list[str], mi
         given = Path(os.path.relpath(network, folder)).as_posix()
     name = file.stem if file is not None else Path(network).stem
     text = scenario.measured_template(name, given, types, min_tq)
-    scenario.plan(scenario.loads(text, folder=str(folder)))
-    return text
+    return text, scenario.summary(scenario.loads(text, folder=str(folder)))
 
 
 def check(file: str, sets: list[str], seed: int | None) -> int:

@@ -4,7 +4,7 @@ from typing import Any
 
 from innervate.scenario import mesh_planning, radio_planning
 from innervate.scenario.bundled import bundled
-from innervate.scenario.check import check, describe
+from innervate.scenario.check import check, describe, summary
 from innervate.scenario.emit import dump, inline
 from innervate.scenario.errors import ScenarioError
 from innervate.scenario.load import Scenario, from_dict, load, loads, read
@@ -55,6 +55,7 @@ __all__ = [
     "measured_template",
     "plan",
     "read",
+    "summary",
     "template",
 ]
 

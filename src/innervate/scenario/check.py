@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable
 
 from innervate.scenario import mesh_planning, mesh_words, radio_planning, radio_words
-from innervate.scenario.load import load
+from innervate.scenario.load import Scenario, load
 from innervate.scenario.overrides import Override
 from innervate.scenario.plan import ACTIONS, LOSS_ONE, RULES, UPDATES, Fault, Plan, plan
 from innervate.topology import Graph
@@ -22,7 +22,15 @@ def check(
     Raises:
         ScenarioError: it cannot be run as written.
     """
-    loaded = load(path, overrides, seed)
+    return summary(load(path, overrides, seed))
+
+
+def summary(loaded: Scenario) -> str:
+    """What a scenario holds, several lines, without a newline at the end.
+
+    Raises:
+        ScenarioError: it cannot be run as written.
+    """
     if loaded.kind == "radio":
         return radio_words.describe(radio_planning.plan(loaded))
     if loaded.kind == "mesh":
