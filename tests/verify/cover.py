@@ -1,15 +1,23 @@
 """Whether a reduced search leaves nothing out: every state of the whole one has to be covered."""
 
-from innervate.verify import explore, skin_dead, skin_row, skin_system
+from dataclasses import replace
+from itertools import product
+
+from innervate.protocol.skin_words import INFINITY
+from innervate.verify import explore, fair, skin_check, skin_dead, skin_row, skin_system
 from innervate.verify import skin_world as w
 from innervate.verify.twin import Twin
 
 
 class Cover:
-    """The reduced search of a model, beside the whole one."""
+    """The reduced search of a model, beside the whole one; with `any_ticks` the reduced one lets
+    cells tick as often as it takes.
+    """
 
-    def __init__(self, model, plain=False):
+    def __init__(self, model, plain=False, any_ticks=False):
         self.lean = model.changed(lean=True, capacity=skin_system.layout(model).capacity)
+        if any_ticks:
+            self.lean = self.lean.changed(budget=replace(model.budget, ticks=skin_system.ANY))
         self.whole_result = explore.explore(model, plain=plain)
         self.lean_result = explore.explore(self.lean, plain=plain)
         self.lay = skin_system.layout(self.lean)
@@ -33,6 +41,41 @@ class Cover:
                 skin_row.trim(self.twin.world, c)
         skin_dead.tidy(self.twin.world)
         return self.twin.image()
+
+    def later(self, row, order):
+        """What follows a state when nothing fails any more: two rounds of ticks in this order.
+
+        States, and the periods that cells which cables connect to the PC had no route for.
+        """
+        world, system = self.twin.world, self.twin.system
+        world.at[w.FAIR] = 1
+        found = set()
+        for choice in range(fair.CHOICES):
+            self.twin.put(row)
+            fair.forget_budgets(world)
+            assert system.settle(world, choice)
+            for node in 2 * order:
+                assert system.turn(world, node, choice)
+            skin_check.measure_depths(world)
+            holds = [
+                world.work[at + w.HOLD] if world.depth[c] < INFINITY else 0
+                for c, at in enumerate(self.lay.cell_at)
+            ]
+            found.add((self.tidied(self.twin.row()), *holds))
+        world.at[w.FAIR] = 0
+        return found
+
+    def is_followed(self, order):
+        """Whether both searches lead to the same in two rounds, but for periods without a route:
+        the reduced one knows them to within those that there may have been before.
+        """
+        most = self.lay.settings()[w.HELD] - 1
+        follows = set()
+        for row in self.kept:
+            for state, *holds in self.later(row, order):
+                for more in product(*(range(1 + most * (hold > 0)) for hold in holds)):
+                    follows.add((state, *map(sum, zip(holds, more, strict=True))))
+        return all(self.later(row, order) <= follows for row in self.rows(self.whole_result))
 
     def may(self, row):
         """How much may still happen in a state."""

@@ -23,6 +23,9 @@ MODELS = {
     "a PC that restarts twice": model(
         "pc-1", "triggered", budget=Budget(restart=2, faults=2), keep=True
     ),
+    "strict, without restarts": model(
+        "pair", "triggered", rule="strict", budget=Budget(1, 1, restart=0, faults=1)
+    ),
     "strict": model("pc-1 1-2", "triggered", rule="strict", budget=Budget(ticks=2, faults=1)),
     "periodic": model("triangle", "periodic", budget=Budget(ticks=2, faults=1)),
     "periodic, kept": model("line", "periodic", budget=Budget(ticks=1, faults=2), keep=True),
@@ -106,6 +109,32 @@ def test_liveness_holds_from_the_states_that_are_kept():
     assert whole.ended == lean.ended == "complete"
     assert whole.rounds == lean.rounds
     assert lean.starts < whole.starts
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        model("pc-1", "triggered", budget=Budget(ticks=2, counts=1, faults=1), keep=True),
+        model("pc-1 1-2", "triggered", keep=True),
+        model("pc-1 1-2", "periodic", keep=True, hold=4, budget=Budget(ticks=1, faults=2)),
+        model("pair", "periodic", budget=Budget(ticks=1, counts=2, faults=1), keep=True),
+    ],
+    ids=["a cell", "two in a line", "two that forget soon", "pair"],
+)
+def test_what_follows_without_faults_is_the_same(made):
+    cover = Cover(made.changed(symmetric=False))
+    order = list(range(made.graph.nodes))
+    assert cover.is_followed(order)
+    assert cover.is_followed(order[::-1])
+
+
+@pytest.mark.parametrize("graph", ["pc-1 1-2", "pair"])
+@pytest.mark.parametrize("updates", ["periodic", "triggered"])
+def test_as_many_ticks_as_it_takes_cover_any_number(graph, updates):
+    made = model(graph, updates, budget=Budget(ticks=2, counts=1, faults=1))
+    cover = Cover(made, any_ticks=True)
+    assert cover.lean_result.tally.ended == "complete"
+    assert cover.missing() == []
 
 
 @pytest.mark.slow

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any
 
 from innervate.topology import Graph
@@ -92,7 +92,7 @@ class Wanted:
 
 
 def budget_of(text: str) -> system.Budget:
-    """Budgets from text like "ticks=3,loss=0,faults=1"; those left out keep their defaults.
+    """Budgets from text like "ticks=any,loss=0,faults=1"; those left out keep their defaults.
 
     Raises:
         VerifyError: no such budget, or no number.
@@ -101,10 +101,13 @@ def budget_of(text: str) -> system.Budget:
     names = [one.name for one in fields(system.Budget)]
     for part in filter(None, text.replace(" ", ",").split(",")):
         name, _, value = part.partition("=")
-        if name not in names or not (value.isascii() and value.isdigit() and int(value) <= 20):
-            message = f'--budget: "{part[:40]}" should be NAME=NUMBER, at most 20'
+        if part == "ticks=any":
+            given["ticks"] = system.ANY
+        elif name in names and value.isascii() and value.isdigit() and int(value) <= 20:
+            given[name] = int(value)
+        else:
+            message = f'--budget: "{part[:40]}" should be NAME=NUMBER, at most 20, or ticks=any'
             raise VerifyError(f"{message}; the names are {', '.join(names)}")
-        given[name] = int(value)
     return system.Budget(**given)
 
 
@@ -146,19 +149,35 @@ def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> Case:
     found = _explore(model, wanted, name, tell)
     case = Case(model, cables, found.tally)
     if found.broken and model.lean:  # told of states with all that is in them
-        whole = _explore(model.changed(lean=False), wanted, name, tell)
+        whole = _explore(_whole(found), wanted, name, tell)
         case.story = story.tell(whole) if whole.broken else story.in_short(found)
     elif found.broken:
         case.story = story.tell(found)
     elif wanted.live and model.rule == "feasible" and found.tally.ended != "interrupted":
-        case.fair = fair.check(
-            found,
-            plain=wanted.plain,
-            starts=wanted.starts,
-            memory=wanted.memory,
-            progress=lambda _: tell(f"{name}: the fair schedule", found.tally),
-        )
+        case.fair = _settle(found, wanted, name, tell)
+        if case.fair.ended == "broken" and model.lean:  # or nobody can come to where it began
+            whole = _explore(_whole(found), wanted, name, tell)
+            again = _settle(whole, wanted, name, tell)
+            if again.ended == "broken" or whole.tally.ended == "complete":
+                case.fair = again
     return case
+
+
+def _settle(found: explore.Result, wanted: Wanted, name: str, tell: Tell) -> fair.Fair:
+    return fair.check(
+        found,
+        plain=wanted.plain,
+        starts=wanted.starts,
+        memory=wanted.memory,
+        progress=lambda _: tell(f"{name}: the fair schedule", found.tally),
+    )
+
+
+def _whole(found: explore.Result) -> system.SkinModel:
+    """The same with nothing forgotten, and no more ticks than it took."""
+    model = found.model
+    ticks = min(model.budget.ticks, found.tally.depth + 1)
+    return model.changed(lean=False, budget=replace(model.budget, ticks=ticks))
 
 
 def _explore(model: system.SkinModel, wanted: Wanted, name: str, tell: Tell) -> explore.Result:

@@ -17,13 +17,18 @@ import numpy as np
 
 from innervate.kernel import door, tables
 from innervate.kernel.wall import wall_s
+from innervate.protocol.skin_words import INFINITY, NONE
 from innervate.verify import explore as ex
 from innervate.verify import search as s
 from innervate.verify import skin_system
 from innervate.verify import skin_world as w
+from innervate.verify.skin_check import measure_depths, parent_port
 
 CHUNK = 2_000
 PLAIN_CHUNK = 50
+# What is played, if not a round of so many nodes: what comes before the first one; what comes
+# before one in which cells may forget.
+CALM, EXPIRY = 0, -1
 CHOICES = 2  # what every draw of a round returns, if it was out of so many
 
 
@@ -94,21 +99,50 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
                 break
 
     def play(world, source, target, orders, nodes, begin, end):
-        """A round from each state; only what comes before the first one if `nodes` is 0."""
+        """A round from each state, or CALM or EXPIRY."""
         run = target.run
         for index in range(begin, end):
-            if nodes == 0:
+            run[s.STATUS] = s.room_left(run)
+            if run[s.STATUS] == s.GROW or run[s.STATUS] == s.FULL:
+                run[s.NEXT] = -index  # how far it came, out of the way of `room_left`
+                return
+            if nodes == CALM:
                 calm(world, source, target, index)
+            elif nodes == EXPIRY:
+                insert_expiring(world, source, target, index)
             else:
                 for order in range(0, len(orders), nodes):
                     round_of(world, source, target, index, orders, order, nodes)
-            run[s.STATUS] = s.room_left(run)
-            if run[s.STATUS] == s.GROW or run[s.STATUS] == s.FULL:
-                run[s.NEXT] = -1 - index  # how far it came, out of the way of `room_left`
-                return
         run[s.NEXT] = -end
 
     return calm, round_of, play
+
+
+def insert_expiring(world, source, target, index):  # type: ignore[no-untyped-def]
+    """Keep a state, with every choice of cells that forget their feasible distance in the next
+    round: where the search has forgotten how long a cell had no route, it may be one of them.
+    """
+    for chosen in range(1 << world.at[w.CELLS]):
+        s.fetch_row(world, source, index)
+        measure_depths(world)
+        is_possible = True
+        for c in range(world.at[w.CELLS]):
+            if (chosen >> c) & 1:
+                is_possible = is_possible and may_expire(world, c)
+                world.work[world.cell_at[c] + w.HOLD] = world.params[0].hold_periods - 1
+        if is_possible:
+            s.insert(world, target, index)
+
+
+def may_expire(world, c):  # type: ignore[no-untyped-def]
+    """1 if a cell may have had no route for FD_HOLD after the next period, by what is known.
+
+    Where no cable leads to the PC it is no matter.
+    """
+    if world.depth[c] == INFINITY or parent_port(world, c) != NONE:
+        return False
+    most = world.work[world.cell_at[c] + w.HOLD] + world.at[w.HELD] - 1
+    return most + 1 >= world.params[0].hold_periods
 
 
 def forget_budgets(world):  # type: ignore[no-untyped-def]
@@ -126,7 +160,8 @@ def _compiled() -> Callable[..., None]:
     engine = ex.compiled_engine()
     system = skin_system.compiled_parts()
     parts = build(system)
-    door.register_functions(forget_budgets, *engine.parts, *parts[:-1], hot=False)
+    own = (may_expire, insert_expiring, forget_budgets)
+    door.register_functions(*own, *engine.parts, *parts[:-1], hot=False)
     return door.compiled(parts[-1])
 
 
@@ -160,8 +195,7 @@ def check(
     chain = []
     for turn in range(fair.bound + 1):
         target = _Rows(model, plain, rows[:0], words, memory)
-        in_round = nodes if turn else 0
-        if not _round(play, given, source, target, in_round, fair, progress, begun):
+        if not _round(play, given, source, target, nodes if turn else CALM, fair, progress, begun):
             return fair
         chain.append(source)
         if turn:
@@ -175,6 +209,11 @@ def check(
         if target.count == 0:
             fair.ended = "complete"
             return fair
+        if turn + int(world.at[w.HELD]) >= skin_system.hold_periods(model):
+            source = _Rows(model, plain, rows[:0], words, memory)
+            chain.append(target)
+            if not _round(play, given, target, source, EXPIRY, fair, progress, begun):
+                return fair
     fair.ended = "broken"
     index = 0
     for place in [source, *reversed(chain)]:

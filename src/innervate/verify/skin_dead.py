@@ -5,14 +5,16 @@ that are reached with and without, and that a step and this can change places.
 """
 
 from innervate.protocol.arith import later
-from innervate.protocol.skin_words import INFINITY, PORTS
+from innervate.protocol.skin_words import INFINITY, PERIODIC, PORTS
 from innervate.verify.skin_row import (
     FD_KNOWN,
+    HAS_TICKED,
     IS_CHILD,
     IS_PARENT,
     IS_SOON,
     LOADED,
     NOTHING_SENT,
+    SQ_KNOWN,
     WAS_PARENT,
     clear,
     drop,
@@ -20,6 +22,7 @@ from innervate.verify.skin_row import (
     is_up,
 )
 from innervate.verify.skin_world import (
+    ANY,
     BUDGET_AT,
     CELLS,
     DIST,
@@ -29,9 +32,9 @@ from innervate.verify.skin_world import (
     FLAGS,
     FRAME_BYTES,
     HEAL,
+    HELD,
     HOLD,
     KEEP,
-    LOSS,
     MERGE,
     PC_AT,
     PC_COUNTS,
@@ -40,6 +43,7 @@ from innervate.verify.skin_world import (
     PC_PERIODS,
     PC_SQ,
     RESTART,
+    RISING,
     SAYS,
     SENT_DIST,
     SENT_SQ,
@@ -93,6 +97,8 @@ def tidy_cell(world, c):
     at = world.cell_at[c]
     keeps_fd = holds_feasible(world, c)
     row[at + SENT_SQ] = 0  # written before every beacon, and read by no rule of these updates
+    if world.at[FEASIBLE] or world.params[0].updates == PERIODIC:
+        row[at + FLAGS] &= ~HAS_TICKED  # asks once for a choice that is up to date already
     if keeps_fd:
         row[at + HOLD] = 0
     tidy_feasible(world, c)
@@ -110,11 +116,15 @@ def tidy_cell(world, c):
 
 
 def holds_feasible(world, c):
-    """1 if the cell cannot forget its feasible distance any more within its ticks."""
+    """1 if the cell cannot forget its feasible distance any more within its ticks.
+
+    The fair schedule tries every number of periods that may have passed (fair.py).
+    """
     if world.at[KEEP]:
-        return False
+        return world.at[HELD] > 0
     at = world.cell_at[c]
-    return world.work[at + HOLD] + world.work[at + TICKS] < world.params[0].hold_periods
+    ticks = world.work[at + TICKS]
+    return ticks == ANY or world.work[at + HOLD] + ticks < world.params[0].hold_periods
 
 
 def is_dead_route(world, c, sq, dist, keeps_fd):
@@ -123,7 +133,11 @@ def is_dead_route(world, c, sq, dist, keeps_fd):
     at = world.cell_at[c]
     if dist == INFINITY:
         return True
-    if world.at[FEASIBLE] == 0 or not keeps_fd or (row[at + FLAGS] & FD_KNOWN) == 0:
+    if not keeps_fd:
+        return False
+    if world.at[RISING] and row[at + FLAGS] & SQ_KNOWN:
+        return not later(sq, row[at + SQ_OWN])
+    if world.at[FEASIBLE] == 0 or (row[at + FLAGS] & FD_KNOWN) == 0:
         return False
     if later(sq, row[at + FD_SQ]):
         return False
@@ -174,8 +188,7 @@ def tidy_queue(world, c, p, slot, keeps_fd):
             row[frame + DIST] = INFINITY
             row[frame + SQ] = 0
             row[frame + SAYS] = 0
-    if world.at[MERGE] or not has_budget(world, LOSS):  # or only one of two may be lost
-        drop_repeated(world, way)
+    drop_repeated(world, way)
     is_closed = row[slot + DIST] == INFINITY and (row[slot + SAYS] & IS_PARENT) == 0
     while row[at] > 0:
         dist, sq = row[at + 1 + DIST], row[at + 1 + SQ]
@@ -186,7 +199,7 @@ def tidy_queue(world, c, p, slot, keeps_fd):
 
 
 def drop_repeated(world, way):
-    """Of equal frames one after the other the first stays."""
+    """Of equal frames one after the other the first stays: it may be lost where they may, too."""
     row = world.work
     at = world.queue_at[way]
     i = 1
@@ -276,15 +289,14 @@ def tidy_sink_queue(world, way):
 def is_repeated(world, frame):
     """1 if a frame to the PC says what the one before it says, and that one is enough.
 
-    It is if the PC loses its memory once at most and knows until then what they say, or if it
-    keeps its memory and neither can be lost.
+    It is if the PC keeps its memory, or loses it once at most and knows until then what they say.
     """
     row = world.work
     if not same_frame(row, frame, frame - FRAME_BYTES):
         return False
     if has_budget(world, RESTART):
         return row[world.at[BUDGET_AT] + RESTART] == 1 and is_old(world, row[frame + SQ])
-    return world.at[MERGE] or not has_budget(world, LOSS)
+    return True
 
 
 __all__ = ["tidy"]

@@ -24,6 +24,7 @@ from innervate.verify import skin_row as rows
 from innervate.verify.skin_dead import tidy
 from innervate.verify.skin_row import is_up, load_cell, save_cell
 from innervate.verify.skin_world import (
+    ANY,
     BROKEN_OUTBOX,
     BROKEN_RANGE,
     BROKEN_WORSE,
@@ -287,7 +288,7 @@ def bind(skin, skin_sink):
         known, sq, dist = cell.fd_known, cell.fd_sq, cell.fd_dist
         if not attend(world, c, variant):
             return REFUSED
-        if world.at[FAIR] == 0:
+        if world.at[FAIR] == 0 and world.work[world.cell_at[c] + TICKS] != ANY:
             world.work[world.cell_at[c] + TICKS] -= 1
         cell.choice = choice
         skin.on_timer(cell, world.params[world.at[FAIR]], 0, TICK_TIMER, world.out)

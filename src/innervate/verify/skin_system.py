@@ -18,6 +18,7 @@ from innervate.verify.graphs import symmetries
 
 RULES = ("feasible", "strict", "paper")
 UPDATES = ("periodic", "triggered")
+ANY = w.ANY
 FAULTS = ("loss", "cut", "heal", "false", "restart")
 SETTLED_M = 3  # the fair schedule counts the PC's number every so many rounds
 # A frame takes 0.06 to 0.2 ms, and news keeps 0.5 ms from the last beacon: a tick's beacon and one
@@ -31,7 +32,8 @@ class Budget:
     """How often what may happen.
 
     Attributes:
-        ticks: periods of every cell.
+        ticks: periods of every cell; ANY as many as it takes, but no cell without a route for as
+            many as FD_HOLD.
         counts: beacons of the PC, each with a new number.
         loss, cut, heal, false, restart: lost frames, cut and mended cables, ports found broken
             without a reason, restarts of the PC.
@@ -276,7 +278,7 @@ class _Layout:
         if self.model.prompt:
             return 2
         most = max(budget.ticks, budget.counts)
-        if self.model.updates == "periodic":
+        if self.model.updates == "periodic" and most < w.ANY:
             return most
         return LEAN_ROOM if self.model.lean else ROOM
 
@@ -290,8 +292,20 @@ class _Layout:
         at[w.FEASIBLE], at[w.KEEP] = model.rule == "feasible", model.keep
         at[w.WHOLE] = model.whole
         at[w.LEAN] = model.lean and not model.prompt and not model.whole
+        at[w.HELD] = self._held()
+        at[w.RISING] = model.rule == "strict" and model.budget.restart == 0
         at[w.IMAGES], at[w.WIDTH] = len(self.images()) // self.width, self.width
         return [int(value) for value in at]
+
+    def _held(self) -> int:
+        """For the fair schedule: how many values a time without a route can have, if it is
+        forgotten. It may be where no feasible distance is before everybody has sent once more,
+        which a restarted PC does in the second round.
+        """
+        model, most = self.model, hold_periods(self.model) - 3
+        if model.budget.ticks < w.ANY:
+            most = model.budget.ticks if model.budget.ticks <= most else -1
+        return most + 1 if model.keep and model.lean else 0
 
     def body(self) -> list[int]:
         """255 for every byte but those that say how much may still happen."""
