@@ -26,6 +26,9 @@ MODELS = {
     "strict, without restarts": model(
         "pair", "triggered", rule="strict", budget=Budget(1, 1, restart=0, faults=1)
     ),
+    "strict, periodic": model(
+        "pair", "periodic", rule="strict", budget=Budget(ticks=2, restart=0, faults=2)
+    ),
     "strict": model("pc-1 1-2", "triggered", rule="strict", budget=Budget(ticks=2, faults=1)),
     "periodic": model("triangle", "periodic", budget=Budget(ticks=2, faults=1)),
     "periodic, kept": model("line", "periodic", budget=Budget(ticks=1, faults=2), keep=True),
@@ -102,8 +105,11 @@ def test_a_story_is_told_of_whole_states():
     assert "[script]" in case.story.scenario
 
 
-def test_liveness_holds_from_the_states_that_are_kept():
-    made = model("pair", "periodic", budget=Budget(ticks=2, counts=2, faults=2), keep=True)
+@pytest.mark.parametrize(
+    ("graph", "updates"), [("pair", "periodic"), ("pc-1 1-2", "triggered"), ("pc-1", "triggered")]
+)
+def test_liveness_holds_from_the_states_that_are_kept(graph, updates):
+    made = model(graph, updates, budget=Budget(ticks=2, counts=2, faults=2), keep=True)
     results = [explore.explore(made.changed(lean=flag)) for flag in (False, True)]
     whole, lean = map(fair.check, results)
     assert whole.ended == lean.ended == "complete"
