@@ -4,7 +4,7 @@ from dataclasses import replace
 from itertools import product
 
 from innervate.protocol.skin_words import INFINITY
-from innervate.verify import explore, fair, skin_check, skin_dead, skin_row, skin_system
+from innervate.verify import explore, fair, skin_calm, skin_check, skin_dead, skin_row, skin_system
 from innervate.verify import skin_world as w
 from innervate.verify.twin import Twin
 
@@ -52,7 +52,7 @@ class Cover:
         found = set()
         for choice in range(fair.CHOICES):
             self.twin.put(row)
-            fair.forget_budgets(world)
+            skin_calm.forget_budgets(world)
             assert system.settle(world, choice)
             for node in 2 * order:
                 assert system.turn(world, node, choice)

@@ -144,6 +144,18 @@ def test_as_many_ticks_as_it_takes_cover_any_number(graph, updates):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("graph", ["pair", "triangle"])
+def test_liveness_holds_in_larger_networks_that_forget_soon(graph):
+    budget = Budget(ticks=1, faults=1)
+    made = model(graph, "triggered", budget=budget, keep=True, hold=4, capacity=4)
+    results = [explore.explore(made.changed(lean=flag)) for flag in (False, True)]
+    whole, lean = map(fair.check, results)
+    assert whole.ended == lean.ended == "complete"
+    assert whole.rounds == lean.rounds
+    assert 50 * lean.starts < whole.starts
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("mutant", mutants.MUTANTS, ids=lambda mutant: mutant.name)
 def test_every_mutant_is_caught_by_the_reduced_search(mutant):
     assert mutants.hunt(mutant, starts=40, lean=True).by

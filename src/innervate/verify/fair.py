@@ -17,12 +17,10 @@ import numpy as np
 
 from innervate.kernel import door, tables
 from innervate.kernel.wall import wall_s
-from innervate.protocol.skin_words import INFINITY, NONE
 from innervate.verify import explore as ex
 from innervate.verify import search as s
-from innervate.verify import skin_system
+from innervate.verify import skin_calm, skin_system
 from innervate.verify import skin_world as w
-from innervate.verify.skin_check import measure_depths, parent_port
 
 CHUNK = 2_000
 PLAIN_CHUNK = 50
@@ -70,7 +68,7 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
         """No more faults, and what is in flight arrives, before the first round."""
         for choice in range(CHOICES):
             s.fetch_row(world, source, index)
-            forget_budgets(world)
+            skin_calm.forget_budgets(world)
             world.found[1] = 0
             world.found[0] = 0
             if not settle(world, choice):
@@ -109,7 +107,7 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
             if nodes == CALM:
                 calm(world, source, target, index)
             elif nodes == EXPIRY:
-                insert_expiring(world, source, target, index)
+                skin_calm.insert_expiring(world, source, target, index)
             else:
                 for order in range(0, len(orders), nodes):
                     round_of(world, source, target, index, orders, order, nodes)
@@ -118,50 +116,13 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
     return calm, round_of, play
 
 
-def insert_expiring(world, source, target, index):  # type: ignore[no-untyped-def]
-    """Keep a state, with every choice of cells that forget their feasible distance in the next
-    round: where the search has forgotten how long a cell had no route, it may be one of them.
-    """
-    for chosen in range(1 << world.at[w.CELLS]):
-        s.fetch_row(world, source, index)
-        measure_depths(world)
-        is_possible = True
-        for c in range(world.at[w.CELLS]):
-            if (chosen >> c) & 1:
-                is_possible = is_possible and may_expire(world, c)
-                world.work[world.cell_at[c] + w.HOLD] = world.params[0].hold_periods - 1
-        if is_possible:
-            s.insert(world, target, index)
-
-
-def may_expire(world, c):  # type: ignore[no-untyped-def]
-    """1 if a cell may have had no route for FD_HOLD after the next period, by what is known.
-
-    Where no cable leads to the PC it is no matter.
-    """
-    if world.depth[c] == INFINITY or parent_port(world, c) != NONE:
-        return False
-    most = world.work[world.cell_at[c] + w.HOLD] + world.at[w.HELD] - 1
-    return most + 1 >= world.params[0].hold_periods
-
-
-def forget_budgets(world):  # type: ignore[no-untyped-def]
-    """Nothing more happens to the network; nobody stops."""
-    row = world.work
-    for c in range(world.at[w.CELLS]):
-        row[world.cell_at[c] + w.TICKS] = 1
-    row[world.at[w.PC_AT] + w.PC_COUNTS] = 1
-    for i in range(w.BUDGETS):
-        row[world.at[w.BUDGET_AT] + i] = 0
-
-
 @functools.cache
 def _compiled() -> Callable[..., None]:
     engine = ex.compiled_engine()
     system = skin_system.compiled_parts()
     parts = build(system)
-    own = (may_expire, insert_expiring, forget_budgets)
-    door.register_functions(*own, *engine.parts, *parts[:-1], hot=False)
+    door.register(skin_calm, hot=False)
+    door.register_functions(*engine.parts, *parts[:-1], hot=False)
     return door.compiled(parts[-1])
 
 

@@ -1,0 +1,52 @@
+"""A skin without further faults: what a fair schedule starts from, and what it has to guess."""
+
+from innervate.protocol.skin_words import INFINITY, NONE
+from innervate.verify import search
+from innervate.verify.skin_check import measure_depths, parent_port
+from innervate.verify.skin_world import (
+    BUDGET_AT,
+    BUDGETS,
+    CELLS,
+    HELD,
+    HOLD,
+    PC_AT,
+    PC_COUNTS,
+    TICKS,
+)
+
+
+def forget_budgets(world):
+    """Nothing more happens to the network; nobody stops."""
+    row = world.work
+    for c in range(world.at[CELLS]):
+        row[world.cell_at[c] + TICKS] = 1
+    row[world.at[PC_AT] + PC_COUNTS] = 1
+    for i in range(BUDGETS):
+        row[world.at[BUDGET_AT] + i] = 0
+
+
+def insert_expiring(world, source, target, index):
+    """Keep a state, with every choice of cells that forget their feasible distance in the next
+    round: where the search has forgotten how long a cell had no route, it may be one of them.
+    """
+    for chosen in range(1 << world.at[CELLS]):
+        search.fetch_row(world, source, index)
+        measure_depths(world)
+        is_possible = True
+        for c in range(world.at[CELLS]):
+            if (chosen >> c) & 1:
+                is_possible = is_possible and may_expire(world, c)
+                world.work[world.cell_at[c] + HOLD] = world.params[0].hold_periods - 1
+        if is_possible:
+            search.insert(world, target, index)
+
+
+def may_expire(world, c):
+    """1 if a cell may have had no route for FD_HOLD after the next period, by what is known.
+
+    Where no cable leads to the PC it is no matter.
+    """
+    if world.depth[c] == INFINITY or parent_port(world, c) != NONE:
+        return False
+    most = world.work[world.cell_at[c] + HOLD] + world.at[HELD] - 1
+    return most + 1 >= world.params[0].hold_periods
