@@ -1,5 +1,7 @@
 """Liveness: routes become shortest in time once faults have ended, and the check can fail."""
 
+from dataclasses import replace
+
 import pytest
 
 from innervate.verify import explore, fair, graphs, mutants
@@ -21,7 +23,7 @@ def test_every_state_settles(graph, updates):
     found = fair.check(result)
     assert (found.ended, found.starts, found.left_out) == ("complete", result.tally.states, 0)
     assert 0 < found.rounds <= found.bound
-    assert found.left == sorted(found.left, reverse=True)
+    assert found.left[-1] == 0 < found.left[0]
 
 
 def test_plain_and_compiled_agree():
@@ -47,4 +49,15 @@ def test_too_small_a_bound_is_broken(monkeypatch):
     monkeypatch.setattr(fair, "bound_of", lambda _: 1)
     found = fair.check(explore.explore(model("pair")))
     assert found.ended == "broken"
-    assert len(found.path) == 3  # the state, before the first round, after it
+    assert len(found.path) == 4  # the state, a beacon lost, before the first round, after it
+
+
+def test_a_beacon_that_was_lost_at_last_is_not_delivered_by_the_fair_schedule():
+    budget = Budget(ticks=2, loss=1, cut=1, heal=0, false=0, restart=0, faults=2)
+    made = model("pc-1 1-2", budget=budget, symmetric=False, capacity=3)
+    merged, apart = (
+        fair.check(explore.explore(made.changed(merge=flag))) for flag in (True, False)
+    )
+    assert merged.left == apart.left
+    unlost = made.changed(budget=replace(budget, loss=0))
+    assert fair.check(explore.explore(unlost)).left[0] < merged.left[0]

@@ -6,9 +6,9 @@ import pytest
 
 from innervate import scenario
 from innervate.plot import counterexample
-from innervate.sim.simulate import simulate
-from innervate.verify import explore, graphs, story
-from innervate.verify.skin_system import Budget, SkinModel
+from innervate.sim.simulate import InvariantBroken, simulate
+from innervate.verify import explore, graphs, retrace, story
+from innervate.verify.skin_system import ANY, Budget, SkinModel
 from innervate.verify.skin_world import BROKEN_LOOP
 
 # Every frame arrives before anything else happens, or is lost where the budget says so: these are
@@ -68,11 +68,58 @@ def test_a_loss_is_needed_where_the_story_has_one():
     ],
 )
 def test_a_counterexample_is_a_scenario_that_closes_the_same_loop(graph, keys):
-    made = SkinModel(graphs.parse(graph), **{"rule": "paper"} | keys)
-    result = explore.explore(made)
-    if not result.broken:
-        pytest.fail("nothing to tell")
-    told = story.tell(result)
+    result = explore.explore(SkinModel(graphs.parse(graph), **{"rule": "paper"} | keys))
+    assert result.broken
+    check_played(story.tell(result))
+
+
+@pytest.mark.parametrize(
+    ("graph", "keys"),
+    [
+        ("triangle", {"prompt": True}),
+        ("triangle", {"updates": "triggered"}),
+        ("ring", {"updates": "triggered"}),
+    ],
+)
+def test_what_a_reduced_search_finds_is_told_of_whole_states(graph, keys):
+    made = SkinModel(graphs.parse(graph), lean=True, **{"rule": "paper"} | keys)
+    found = explore.explore(made)
+    whole = retrace.retrace(found)
+    assert not whole.model.lean
+    assert len(whole.path) == len(found.path)
+    check_played(story.tell(whole))
+
+
+@pytest.mark.parametrize("lean", [False, True])
+def test_the_strict_rule_closes_a_loop_when_a_restarted_pc_counts_from_anew(lean):
+    budget = Budget(counts=3, loss=0, heal=0, false=0)
+    made = SkinModel(graphs.parse("triangle"), "strict", "periodic", budget, lean=lean)
+    found = explore.explore(made)
+    assert found.broken == BROKEN_LOOP
+    told = story.tell(retrace.retrace(found) if lean else found)
+    assert len(told.sentences) == 11
+    assert "The PC has listened for a period." in told.sentences
+    with pytest.raises(InvariantBroken, match="forwarding loop"):
+        simulate(scenario.plan(scenario.loads(told.scenario)))
+
+
+def test_a_beacon_that_is_late_by_more_than_fd_hold_closes_a_loop():
+    made = SkinModel(graphs.parse("pair"), budget=Budget(ticks=11), lean=True)
+    told = story.tell(retrace.retrace(explore.explore(made)))
+    assert told.title == "closed loop n1 -> n2 -> n1"
+    assert "forgotten after 9 periods" in told.scenario
+
+
+@pytest.mark.parametrize("ticks", [20, ANY], ids=["20 ticks", "any ticks"])
+def test_what_a_reduced_walk_finds_is_told_of_whole_states(ticks):
+    budget = Budget(ticks=ticks, counts=8, faults=4)
+    made = SkinModel(graphs.parse("ring"), "paper", "triggered", budget, lean=True)
+    found = explore.wander(made, 200_000)
+    check_played(story.tell(retrace.retrace(found)))
+
+
+def check_played(told):
+    """The scenario of a story ends with its loop."""
     assert tomllib.loads(told.scenario)["script"]["keepalive"] is True
     plan = scenario.plan(scenario.loads(told.scenario))
     played = simulate(plan)

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any
 
 from innervate.topology import Graph
-from innervate.verify import explore, fair, graphs, story
+from innervate.verify import explore, fair, graphs, retrace, story
 from innervate.verify import skin_system as system
 from innervate.verify.errors import VerifyError
 
@@ -125,7 +125,13 @@ def graphs_of(text: str, cells: int) -> tuple[Graph, ...]:
 
 
 def models(wanted: Wanted) -> Iterator[system.SkinModel]:
-    """Everything that is asked for, in order."""
+    """Everything that is asked for, in order.
+
+    Raises:
+        VerifyError: things that do not go together.
+    """
+    if wanted.budget.ticks == system.ANY and (wanted.prompt or not wanted.lean):
+        raise VerifyError("ticks=any goes neither with --no-reduce nor with --prompt")
     for graph in wanted.graphs:
         for rule in wanted.rules:
             for updates in wanted.updates:
@@ -144,13 +150,15 @@ def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> Case:
             model, wanted.walks, seed=wanted.seed, plain=wanted.plain,
             progress=lambda tally: tell(name, tally),
         )  # fmt: skip
-        told = story.tell(found) if found.broken else None
-        return Case(model, cables, found.tally, story=told)
+        case = Case(model, cables, found.tally)
+        if found.broken:
+            whole = retrace.retrace(found) if model.lean else found
+            case.story = story.tell(whole) if whole is not None else story.in_short(found)
+        return case
     found = _explore(model, wanted, name, tell)
     case = Case(model, cables, found.tally)
-    if found.broken and model.lean:  # told of states with all that is in them
-        whole = _explore(_whole(found), wanted, name, tell)
-        case.story = story.tell(whole) if whole.broken else story.in_short(found)
+    if found.broken and model.lean:
+        case.story = _tell(found, wanted, name, tell)
     elif found.broken:
         case.story = story.tell(found)
     elif wanted.live and model.rule == "feasible" and found.tally.ended != "interrupted":
@@ -158,9 +166,20 @@ def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> Case:
         if case.fair.ended == "broken" and model.lean:  # or nobody can come to where it began
             whole = _explore(_whole(found), wanted, name, tell)
             again = _settle(whole, wanted, name, tell)
-            if again.ended == "broken" or whole.tally.ended == "complete":
+            is_all = whole.tally.ended == "complete" and again.starts == again.of
+            is_all = is_all and whole.tally.left_out + again.left_out == 0
+            if again.ended == "broken" or (again.ended == "complete" and is_all):
                 case.fair = again
     return case
+
+
+def _tell(found: explore.Result, wanted: Wanted, name: str, tell: Tell) -> story.Story:
+    """The shortest story, told of states with all that is in them."""
+    whole = retrace.retrace(found)
+    if whole is None or len(whole.path) > len(found.path):
+        shorter = _explore(_whole(found), wanted, name, tell)
+        whole = shorter if shorter.broken else whole
+    return story.tell(whole) if whole is not None else story.in_short(found)
 
 
 def _settle(found: explore.Result, wanted: Wanted, name: str, tell: Tell) -> fair.Fair:

@@ -25,8 +25,8 @@ from innervate.verify import skin_world as w
 CHUNK = 2_000
 PLAIN_CHUNK = 50
 # What is played, if not a round of so many nodes: what comes before the first one; what comes
-# before one in which cells may forget.
-CALM, EXPIRY = 0, -1
+# before that, where beacons may have been lost; what comes before one in which cells may forget.
+CALM, LOST, EXPIRY = 0, -1, -2
 CHOICES = 2  # what every draw of a round returns, if it was out of so many
 
 
@@ -97,7 +97,7 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
                 break
 
     def play(world, source, target, orders, nodes, begin, end):
-        """A round from each state, or CALM or EXPIRY."""
+        """A round from each state, or CALM, LOST, or EXPIRY."""
         run = target.run
         for index in range(begin, end):
             run[s.STATUS] = s.room_left(run)
@@ -106,6 +106,8 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
                 return
             if nodes == CALM:
                 calm(world, source, target, index)
+            elif nodes == LOST:
+                skin_calm.insert_lost(world, source, target, index)
             elif nodes == EXPIRY:
                 skin_calm.insert_expiring(world, source, target, index)
             else:
@@ -154,6 +156,12 @@ def check(
     given = [world, orders] if plain else [tables.borrowed(world), tables.borrowed(orders)]
     source = _Rows(model, plain, rows, words, memory)
     chain = []
+    for _ in range(model.budget.loss if model.merges else 0):
+        target = _Rows(model, plain, rows[:0], words, memory)
+        if not _round(play, given, source, target, LOST, fair, progress, begun):
+            return fair
+        chain.append(source)
+        source = target
     for turn in range(fair.bound + 1):
         target = _Rows(model, plain, rows[:0], words, memory)
         if not _round(play, given, source, target, nodes if turn else CALM, fair, progress, begun):

@@ -3,12 +3,16 @@
 from innervate.protocol.skin_words import INFINITY, NONE
 from innervate.verify import search
 from innervate.verify.skin_check import measure_depths, parent_port
+from innervate.verify.skin_dead import drop_one
+from innervate.verify.skin_row import spend
 from innervate.verify.skin_world import (
     BUDGET_AT,
     BUDGETS,
     CELLS,
+    DIRECTIONS,
     HELD,
     HOLD,
+    LOSS,
     PC_AT,
     PC_COUNTS,
     TICKS,
@@ -23,6 +27,22 @@ def forget_budgets(world):
     row[world.at[PC_AT] + PC_COUNTS] = 1
     for i in range(BUDGETS):
         row[world.at[BUDGET_AT] + i] = 0
+
+
+def insert_lost(world, source, target, index):
+    """Keep a state, and those in which the last beacon on a direction was lost, if one may be.
+
+    A search in which ticks take beacons in leaves a lost one under way (skin_moves.py); the fair
+    schedule would deliver it.
+    """
+    for way in range(-1, world.at[DIRECTIONS]):
+        search.fetch_row(world, source, index)
+        if way >= 0:
+            at = world.queue_at[way]
+            if world.work[at] == 0 or not spend(world, LOSS):
+                continue
+            drop_one(world.work, at, world.work[at] - 1)
+        search.insert(world, target, index)
 
 
 def insert_expiring(world, source, target, index):

@@ -77,13 +77,27 @@ def measure_depths(world):
 
 
 def is_settled(world):
-    """1 if every cell that cables connect to the PC has a shortest route."""
+    """1 if every cell that cables connect to the PC has a shortest route, and knows how far all its
+    neighbours are: without faults it stays so.
+    """
     measure_depths(world)
     for c in range(world.at[CELLS]):
-        if world.depth[c] < INFINITY:
-            p = parent_port(world, c)
-            if p == NONE or next_hop(world, c) == NONE:
-                return False
-            if world.work[world.port_at[PORTS * c + p] + DIST] + 1 != world.depth[c]:
+        if world.depth[c] < INFINITY and not is_cell_settled(world, c):
+            return False
+    return True
+
+
+def is_cell_settled(world, c):
+    """1 if a cell has a shortest route and knows how far its neighbours are."""
+    p = parent_port(world, c)
+    if p == NONE or next_hop(world, c) == NONE:
+        return False
+    if world.work[world.port_at[PORTS * c + p] + DIST] + 1 != world.depth[c]:
+        return False
+    for q in range(PORTS):
+        way = world.in_way[PORTS * c + q]
+        if way != NONE and is_up(world, world.way_link[way]):
+            there = min(world.way_end[way ^ 1] // PORTS, world.at[CELLS])
+            if world.work[world.port_at[PORTS * c + q] + DIST] != world.depth[there]:
                 return False
     return True

@@ -49,6 +49,7 @@ from innervate.verify.skin_world import (
     SENT_SQ,
     SQ,
     SQ_OWN,
+    STEADY,
     TICKS,
 )
 
@@ -153,7 +154,7 @@ def is_gone(world, c, p, slot):
     link = world.way_link[world.in_way[PORTS * c + p]]
     if is_up(world, link) or has_budget(world, HEAL):
         return False
-    return penalty > 0 or row[slot + DIST] == INFINITY
+    return penalty > 0 or (world.at[STEADY] and row[slot + DIST] == INFINITY)
 
 
 def tidy_port(world, c, p, slot, keeps_fd):
@@ -188,11 +189,12 @@ def tidy_queue(world, c, p, slot, keeps_fd):
             row[frame + DIST] = INFINITY
             row[frame + SQ] = 0
             row[frame + SAYS] = 0
-    drop_repeated(world, way)
+    if world.at[STEADY]:
+        drop_repeated(world, way)
     is_closed = row[slot + DIST] == INFINITY and (row[slot + SAYS] & IS_PARENT) == 0
     while row[at] > 0:
         dist, sq = row[at + 1 + DIST], row[at + 1 + SQ]
-        is_same = dist == row[slot + DIST] and sq == row[slot + SQ]
+        is_same = world.at[STEADY] and dist == row[slot + DIST] and sq == row[slot + SQ]
         if not is_same and not (is_closed and is_dead_route(world, c, sq, dist, keeps_fd)):
             break
         drop(world, way)

@@ -152,8 +152,8 @@ def variants(world, move):
         return 1 if is_up(world, arg) and rows.has_budget(world, CUT) else 0
     if kind == HEAL_LINK:
         return 1 if not is_up(world, arg) and rows.has_budget(world, HEAL) else 0
-    # A PC that never sends again is as dead as before.
-    sends = world.work[world.at[PC_AT] + PC_COUNTS] > 0
+    # A PC that never sends again is as dead as before; in the fair schedule it does.
+    sends = world.at[KEEP] or world.work[world.at[PC_AT] + PC_COUNTS] > 0
     return 1 if sends and rows.has_budget(world, RESTART) else 0
 
 

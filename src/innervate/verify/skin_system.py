@@ -291,11 +291,17 @@ class _Layout:
         at[w.BUDGET_AT], at[w.MERGE], at[w.PROMPT] = self.budget_at, model.merges, model.prompt
         at[w.FEASIBLE], at[w.KEEP] = model.rule == "feasible", model.keep
         at[w.WHOLE] = model.whole
-        at[w.LEAN] = model.lean and not model.prompt and not model.whole
+        at[w.LEAN] = self._is_lean
         at[w.HELD] = self._held()
         at[w.RISING] = model.rule == "strict" and model.budget.restart == 0
+        # Looking at the same ports again changes nothing, or nobody does before the next tick.
+        at[w.STEADY] = at[w.FEASIBLE] or at[w.RISING] or model.updates == "periodic"
         at[w.IMAGES], at[w.WIDTH] = len(self.images()) // self.width, self.width
         return [int(value) for value in at]
+
+    @property
+    def _is_lean(self) -> bool:
+        return self.model.lean and not self.model.prompt and not self.model.whole
 
     def _held(self) -> int:
         """For the fair schedule: how many values a time without a route can have, if it is
@@ -305,7 +311,7 @@ class _Layout:
         model, most = self.model, hold_periods(self.model) - 3
         if model.budget.ticks < w.ANY:
             most = model.budget.ticks if model.budget.ticks <= most else -1
-        return most + 1 if model.keep and model.lean else 0
+        return most + 1 if model.keep and self._is_lean else 0
 
     def body(self) -> list[int]:
         """255 for every byte but those that say how much may still happen."""

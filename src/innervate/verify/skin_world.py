@@ -16,10 +16,9 @@ from innervate.protocol import plain, skin_fields
 
 # Places in `SkinWorld.at`.
 CELLS, LINKS, CAPACITY, DIRECTIONS, PC_AT, LINK_AT, BUDGET_AT = range(7)
-MERGE, PROMPT, FAIR, FEASIBLE, MAY_LOOP, KEEP, WHOLE, IMAGES, WIDTH, LEAN, HELD, RISING = range(
-    7, 19
-)
-SETTINGS = 19
+MERGE, PROMPT, FAIR, FEASIBLE, MAY_LOOP, KEEP, WHOLE, IMAGES, WIDTH, LEAN = range(7, 17)
+HELD, RISING, STEADY = range(17, 20)
+SETTINGS = 20
 
 # A cell's head; then PORT_BYTES for each cabled port.
 FLAGS, SQ_OWN, FD_SQ, FD_DIST, HOLD, SENT_DIST, SENT_SQ, WAIT, TICKS = range(9)

@@ -106,6 +106,10 @@ def _scenario(model: Any, story: Story) -> str:
     """A scenario file that plays the story with `innervate run`."""
     graph = model.graph
     lines = [f"# {line}" for line in story.lines()]
+    hold = skin_system.hold_periods(model)
+    if model.budget.ticks >= hold:
+        lines.append(f"# Found with feasible distances that are forgotten after {hold} periods")
+        lines.append("# without a route; a run keeps them for 129 or more, and may end otherwise.")
     lines += ['kind = "skin"', 'name = "counterexample"', "duration_s = 1.0", ""]
     for a, b in graph.links():
         ends = [f"{graph.label(graph.node_of(end))}.{graph.port_of(end)}" for end in (a, b)]

@@ -94,6 +94,7 @@ class Teller:
             elif found.model.merges and chosen:
                 heard.append(self._hear(found, way, chosen))
             factor *= 1 + real_can
+        listens = self.real.world.work[self.real.lay.pc_at + w.PC_LISTEN]
         if is_cell:
             self._step(w.TICK, node, breaks, event.choice, event.asked)
         else:
@@ -102,6 +103,8 @@ class Teller:
         if is_cell:
             words = ", ".join([*heard, "ticks"])
             return f"{self.name(node)} {words} and says {self._says(node)}"
+        if listens:
+            return f"the PC {', '.join([*heard, 'has listened for a period'])}"
         own = self.real.world.work[self.real.lay.pc_at + w.PC_SQ]
         return f"the PC sends its beacon with number {own}"
 
