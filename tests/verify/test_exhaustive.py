@@ -9,6 +9,7 @@ GIB = 1 << 30
 FAILURE_AND_LOSS = Budget(ticks=ANY, loss=1, cut=1, heal=0, false=0, restart=0, faults=2)
 SMALL = [graph for cells in (1, 2, 3) for graph in graphs.all_graphs(cells)]
 FOUR = list(graphs.all_graphs(4))
+FEW = [graph for graph in FOUR if len(list(graph.links())) < 7]
 TICKS = pytest.mark.parametrize("ticks", [3, ANY], ids=["three ticks", "any ticks"])
 BOTH = pytest.mark.parametrize("updates", ["periodic", "triggered"])
 
@@ -38,7 +39,7 @@ def test_up_to_three_cells(graph, updates, ticks):
 @BOTH
 @pytest.mark.parametrize("graph", SMALL, ids=graphs.cables)
 def test_up_to_three_cells_under_the_strict_rule(graph, updates):
-    fine(graph, "strict", updates, Budget(ticks=ANY))
+    fine(graph, "strict", updates, Budget(ticks=ANY, restart=0))
 
 
 @BOTH
@@ -48,7 +49,7 @@ def test_four_cells_with_a_failure_and_a_loss(graph, updates):
 
 
 @BOTH
-@pytest.mark.parametrize("graph", FOUR, ids=graphs.cables)
+@pytest.mark.parametrize("graph", FEW, ids=graphs.cables)
 def test_four_cells_under_the_strict_rule(graph, updates):
     fine(graph, "strict", updates, FAILURE_AND_LOSS)
 
