@@ -24,6 +24,16 @@ def test_states_can_be_explored_unreduced(sh):
     assert 50 < counts[0] < counts[1]
 
 
+def test_ticks_may_be_as_many_as_it_takes(sh):
+    words = ("verify", "--plain", "--graph", "pc-1", "--budget", "ticks=any,faults=1")
+    assert sh(*words, "--json") == 0
+    cases = json.loads(sh.out)
+    assert [case["budget"]["ticks"] for case in cases] == ["any", "any"]
+    assert [case["fair"]["ended"] for case in cases] == ["complete", "complete"]
+    assert sh(*words, "--no-reduce") == 2
+    assert "--no-reduce" in sh.err
+
+
 def test_a_sample_is_called_one(sh):
     assert sh("verify", *SMALL, "--states", "50", "--no-liveness") == 0
     assert "as asked" in sh.out

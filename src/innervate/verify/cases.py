@@ -50,11 +50,14 @@ class Case:
 
     def as_dict(self) -> dict[str, Any]:
         """For --json."""
+        budget = asdict(self.model.budget)
+        if budget["ticks"] == system.ANY:
+            budget["ticks"] = "any"
         found = {
             "graph": self.cables,
             "rule": self.model.rule,
             "updates": self.model.updates,
-            "budget": asdict(self.model.budget),
+            "budget": budget,
             **{name: getattr(self.tally, name) for name in ("states", "expanded", "generated")},
             "depth": self.tally.depth,
             "wall_s": round(self.tally.wall_s, 3),
