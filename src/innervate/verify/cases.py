@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any
 
 from innervate.topology import Graph
-from innervate.verify import explore, fair, graphs, retrace, story
+from innervate.verify import explore, fair, graphs, promises, retrace, story
 from innervate.verify import skin_system as system
 from innervate.verify.errors import VerifyError
 
@@ -145,7 +145,14 @@ def models(wanted: Wanted) -> Iterator[system.SkinModel]:
 
 
 def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> Case:
-    """Explore one model; then, under the recommended rule, play the fair schedule."""
+    """Explore one model; then, under the recommended rule, play the fair schedule.
+
+    Raises:
+        VerifyError: the protocol does not keep what the reductions rest on.
+    """
+    taken = promises.broken(model) if model.lean else ""
+    if taken:
+        raise VerifyError(f"{taken}; --no-reduce explores it without resting on the rule")
     cables = graphs.cables(model.graph)
     name = f"{cables}, {model.rule}, {model.updates}"
     if wanted.walks:

@@ -16,7 +16,7 @@ from pathlib import Path
 from types import ModuleType
 
 from innervate import protocol as protocol_room
-from innervate.verify import explore, fair, graphs, story
+from innervate.verify import explore, fair, graphs, promises, story
 from innervate.verify import skin_system as system
 
 ROOM = Path(protocol_room.__file__).parent
@@ -155,6 +155,9 @@ def hunt(mutant: Mutant, starts: int = 12, lean: bool = False) -> Catch:
     for model in models(lean):
         where = f"{graphs.cables(model.graph)}, {model.rule}, {model.updates}"
         try:
+            taken = promises.broken(model, changed) if lean else ""
+            if taken:
+                return Catch(mutant, f"a promise that reductions rest on: {taken}", where, states)
             found = explore.explore(model, plain=True, system=changed, states=15_000)
             states += found.tally.states
             if found.broken:

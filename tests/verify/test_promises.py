@@ -1,0 +1,43 @@
+"""The rule itself is tried before a reduced search forgets what the rule refuses."""
+
+import pytest
+
+from innervate.verify import cases, graphs, mutants, promises
+from innervate.verify.errors import VerifyError
+from innervate.verify.skin_system import RULES, UPDATES, Budget, SkinModel
+
+
+def model(rule, updates):
+    return SkinModel(graphs.parse("pair"), rule, updates, Budget(restart=0), lean=True)
+
+
+@pytest.mark.parametrize("updates", UPDATES)
+@pytest.mark.parametrize("rule", RULES)
+def test_the_shipped_rule_keeps_them(rule, updates):
+    assert promises.broken(model(rule, updates)) == ""
+
+
+HIDING = {
+    "farther is nearer": ("feasible", "periodic"),
+    "the feasible distance is forgotten at once": ("feasible", "periodic"),
+    "an equal number is newer": ("feasible", "triggered"),
+    "an equal feasible distance is good enough": ("feasible", "triggered"),
+    "any route of the same number is feasible": ("feasible", "periodic"),
+    "hearing does not ask the rule": ("feasible", "triggered"),
+    "strict takes an equal number": ("strict", "triggered"),
+}
+
+
+@pytest.mark.parametrize("name", HIDING)
+def test_mistakes_that_could_hide_behind_it_are_found(name):
+    mutant = next(one for one in mutants.MUTANTS if one.name == name)
+    assert "is taken beside" in promises.broken(model(*HIDING[name]), mutants.copy_of(mutant))
+
+
+def test_a_reduced_search_does_not_start_without_them(monkeypatch):
+    monkeypatch.setattr(promises, "broken", lambda _: "a route is taken")
+    wanted = cases.Wanted(live=False, states=50, plain=True)
+    with pytest.raises(VerifyError, match="a route is taken; --no-reduce"):
+        cases.run(model("feasible", "periodic"), wanted, lambda *_: False)
+    whole = model("feasible", "periodic").changed(lean=False)
+    assert cases.run(whole, wanted, lambda *_: False).tally.ended == "limit"
