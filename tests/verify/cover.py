@@ -4,7 +4,7 @@ from dataclasses import replace
 from itertools import product
 
 from innervate.protocol.skin_words import INFINITY
-from innervate.verify import explore, fair, skin_calm, skin_check, skin_dead, skin_row, skin_system
+from innervate.verify import explore, fair, retrace, skin_calm, skin_check, skin_row, skin_system
 from innervate.verify import skin_world as w
 from innervate.verify.twin import Twin
 
@@ -35,12 +35,7 @@ class Cover:
 
     def tidied(self, row):
         """A state as the reduced search would keep it."""
-        self.twin.put(row)
-        if self.lean.merges:
-            for c in range(self.lean.graph.cells):
-                skin_row.trim(self.twin.world, c)
-        skin_dead.tidy(self.twin.world)
-        return self.twin.image()
+        return retrace.reduced(self.twin, row)
 
     def later(self, row, order):
         """What follows a state when nothing fails any more: two rounds of ticks in this order.

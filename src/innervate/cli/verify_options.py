@@ -32,7 +32,7 @@ class VerifyOptions:
     budget
         How often what may happen, like "ticks=3,counts=2,loss=1,cut=1,heal=1,false=1,restart=1,
         faults=2"; these are the defaults, and faults counts all five kinds together; "ticks=any"
-        sets no bound on them. Mesh:
+        lets cells tick as often as it takes. Mesh:
         "deaths=1,revivals=0,frames=0,acks=1,ticks=0".
     prompt
         Every frame arrives or is lost before anything else happens.

@@ -14,6 +14,7 @@ from innervate.verify.errors import VerifyError
 RULES = system.RULES
 UPDATES = system.UPDATES
 CELLS_MAX = 4
+PLAYED = ("complete", "memory", "limit")  # ends of a search that a fair schedule goes on from
 PROPERTIES = "no closed loop, feasible distances in order, no value out of range"
 
 
@@ -160,36 +161,42 @@ def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> Case:
             model, wanted.walks, seed=wanted.seed, plain=wanted.plain,
             progress=lambda tally: tell(name, tally),
         )  # fmt: skip
-        case = Case(model, cables, found.tally)
-        if found.broken:
-            whole = retrace.retrace(found) if model.lean else found
-            case.story = story.tell(whole) if whole is not None else story.in_short(found)
-        return case
+        return Case(model, cables, found.tally, story=_tell(found, wanted, name, tell))
     found = _explore(model, wanted, name, tell)
-    case = Case(model, cables, found.tally)
-    if found.broken and model.lean:
-        case.story = _tell(found, wanted, name, tell)
-    elif found.broken:
-        case.story = story.tell(found)
-    elif wanted.live and model.rule == "feasible" and found.tally.ended != "interrupted":
+    case = Case(model, cables, found.tally, story=_tell(found, wanted, name, tell))
+    if wanted.live and model.rule == "feasible" and found.tally.ended in PLAYED:
         case.fair = _settle(found, wanted, name, tell)
-        if case.fair.ended == "broken" and model.lean:  # or nobody can come to where it began
-            whole = _explore(_whole(found), wanted, name, tell)
-            again = _settle(whole, wanted, name, tell)
-            is_all = whole.tally.ended == "complete" and again.starts == again.of
-            is_all = is_all and whole.tally.left_out + again.left_out == 0
-            if again.ended == "broken" or (again.ended == "complete" and is_all):
-                case.fair = again
+        if case.fair.ended == "broken" and model.lean:
+            case.fair = _settle_whole(case.fair, found, wanted, name, tell)
     return case
 
 
-def _tell(found: explore.Result, wanted: Wanted, name: str, tell: Tell) -> story.Story:
-    """The shortest story, told of states with all that is in them."""
-    whole = retrace.retrace(found)
-    if whole is None or len(whole.path) > len(found.path):
+def _tell(found: explore.Result, wanted: Wanted, name: str, tell: Tell) -> story.Story | None:
+    """The story, told of states with all that is in them; of a search the shortest one."""
+    if not found.broken:
+        return None
+    whole = retrace.retrace(found) if found.model.lean else found
+    if not wanted.walks and (whole is None or len(whole.path) > len(found.path)):
         shorter = _explore(_whole(found), wanted, name, tell)
         whole = shorter if shorter.broken else whole
     return story.tell(whole) if whole is not None else story.in_short(found)
+
+
+def _settle_whole(
+    broken: fair.Fair, found: explore.Result, wanted: Wanted, name: str, tell: Tell
+) -> fair.Fair:
+    """What the unreduced search says of a schedule that ends badly: a reduced one starts from
+    more than can happen. Unless it says all there is to say, the finding stands.
+    """
+    whole = _explore(_whole(found), wanted, name, tell)
+    again = _settle(whole, wanted, name, tell)
+    is_all = (
+        whole.model.budget == found.model.budget
+        and whole.tally.ended == again.ended == "complete"
+        and again.starts == again.of
+        and whole.tally.left_out + again.left_out == 0
+    )
+    return again if again.ended == "broken" or is_all else broken
 
 
 def _settle(found: explore.Result, wanted: Wanted, name: str, tell: Tell) -> fair.Fair:

@@ -36,14 +36,14 @@ def retrace(found: Result) -> Result | None:
         for state in here:  # grows by these
             if len(there) >= ENOUGH:
                 break
-            for move, after, reduced, is_broken in _successors(whole, lean, state, found.broken):
+            for move, after, kept, is_broken in _successors(whole, lean, state, found.broken):
                 if following is None and is_broken:
                     return _result(found, whole, before, state)
                 if after in known:
                     continue
-                if reduced == following:
+                if kept == following:
                     there.append(after)
-                elif reduced == target and again.get(state, move) == move:
+                elif kept == target and again.get(state, move) == move:
                     again[after] = move
                     here.append(after)
                 else:
@@ -73,10 +73,10 @@ def _successors(
     whole.put(state)
     for move, *_ in whole.successors():
         code = whole.world.found[0] or whole.system.check(whole.world)
-        yield move, whole.image(), _reduced(lean, whole.row()), code == broken
+        yield move, whole.image(), reduced(lean, whole.row()), code == broken
 
 
-def _reduced(lean: Twin, row: bytes) -> bytes:
+def reduced(lean: Twin, row: bytes) -> bytes:
     """A whole state as the reduced search keeps it."""
     lean.put(row)
     if lean.model.merges:

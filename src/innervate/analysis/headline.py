@@ -1,0 +1,33 @@
+"""What a person reads first of a network: is all well, and if not, what is wrong.
+
+Every network works out its headline in one function, from facts that a finished run, a simulation
+that is under way and running nodes all have. Summary, report, terminal, live page, `compare` and
+sweeps show what that function says; none of them judges by itself.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+OK, DEGRADED, DOWN, NO_DATA = "ok", "degraded", "down", "no data"
+LEVELS = (OK, DEGRADED, DOWN, NO_DATA)  # from well to worst; no data: nobody answers
+
+
+class Headline(NamedTuple):
+    """The state of a network in a word and a sentence.
+
+    Attributes:
+        level: one of LEVELS. ok: nothing is lost and everybody has a way; degraded: something is
+            lost, late or cut off, the rest works; down: nothing gets through; no data: nothing is
+            known, as nobody answers.
+        text: one sentence with a full stop, worst news first, counts included.
+        nodes: indices of the nodes it is about, to be marked on a map; none if all is well.
+    """
+
+    level: str
+    text: str
+    nodes: tuple[int, ...] = ()
+
+    def as_summary(self) -> dict[str, Any]:
+        """The entry `headline` of a summary."""
+        return {"level": self.level, "text": self.text}
