@@ -11,10 +11,10 @@ import sys
 import time
 
 from innervate import scenario
-from innervate.sim.build import build, get, grow_pool, put
-from innervate.sim.loop import DONE, POOL_FULL
-from innervate.sim.simulate import compiled_loop
-from innervate.sim.wires import ARRIVED, URGENT_BLOCK
+from innervate.sim.cables.build import build, get, grow_pool, put
+from innervate.sim.cables.loop import DONE, POOL_FULL
+from innervate.sim.cables.simulate import compiled_loop
+from innervate.sim.cables.wires import ARRIVED, URGENT_BLOCK
 
 SIZES = (99, 204, 1_000, 10_000, 100_000, 1_000_000)
 SLICES = 5

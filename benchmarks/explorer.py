@@ -4,8 +4,9 @@ PC and triangle under `feasible`, periodic updates, all states within the budget
 best of a few runs counts, because other work on the machine only ever slows one down.
 """
 
-from innervate.verify import explore, graphs
-from innervate.verify.skin_system import SkinModel
+from innervate.networks.skin.verify import graphs
+from innervate.networks.skin.verify.system import SkinModel
+from innervate.verify import explore
 
 RUNS = 3
 

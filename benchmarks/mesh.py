@@ -9,7 +9,7 @@ import time
 
 from innervate import scenario
 from innervate.run import run
-from innervate.sim.mesh.simulate import simulate
+from innervate.sim.field.simulate import simulate
 
 NODES = (30, 100, 254)
 DURATION_S = 60.0

@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from innervate.protocol import csma_fields, mesh_fields, mesh_words, radio_fields, skin_fields
-from innervate.protocol.radio_words import CRR
-from innervate.wire import mesh, radio, skin
+from innervate.networks.mesh import frames as mesh
+from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import csma_fields
+from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.radio import frames as radio
+from innervate.networks.radio.protocol import fields as radio_fields
+from innervate.networks.radio.protocol.constants import CRR
+from innervate.networks.skin import frames as skin
+from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.wire.layout import SPARE
 
 MESH_CLASS = 32  # nodes: the smallest capacity class

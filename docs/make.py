@@ -11,10 +11,18 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from innervate.protocol import mesh_fields, radio_fields, skin_fields
-from innervate.trace import mesh_tables, radio_tables, tables
-from innervate.wire import layout, mesh, mesh_payloads, radio, skin
-from innervate.wire.meanings import MEANINGS
+from innervate.networks.mesh import frames as mesh
+from innervate.networks.mesh import payloads as mesh_payloads
+from innervate.networks.mesh import tables as mesh_tables
+from innervate.networks.mesh.meanings import MEANINGS
+from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.radio import frames as radio
+from innervate.networks.radio import tables as radio_tables
+from innervate.networks.radio.protocol import fields as radio_fields
+from innervate.networks.skin import frames as skin
+from innervate.networks.skin.protocol import fields as skin_fields
+from innervate.trace import tables
+from innervate.wire import layout
 
 FOLDER = Path(__file__).resolve().parent
 PICTURE = FOLDER / "images" / "recovery.svg"
@@ -143,9 +151,10 @@ def pages() -> dict[Path, str]:
 def draw() -> None:
     """The README's picture: four moments of the bundled scenario `demo`."""
     import innervate
-    from innervate.plot import skinmap, svg, theme
-    from innervate.plot.skin_report import legend
-    from innervate.plot.story import Story
+    from innervate.networks.skin.plot import map as skinmap
+    from innervate.networks.skin.plot.report import legend
+    from innervate.networks.skin.plot.story import Story
+    from innervate.plot import svg, theme
 
     done = innervate.run("demo")
     story = Story(done.result, done.summary)
@@ -172,7 +181,8 @@ def draw() -> None:
 def draw_radio() -> None:
     """The radio page's picture: a disaster of four stations, from the collision to the end."""
     import innervate
-    from innervate.plot import radio_timeline, theme
+    from innervate.networks.radio.plot import timeline as radio_timeline
+    from innervate.plot import theme
 
     done = innervate.run("radio-disaster", overrides={"stations": 4, "packet_slots": 12})
     radio_timeline.timeline(done.result).save(RADIO_PICTURE, theme.drawing_style())
@@ -181,11 +191,12 @@ def draw_radio() -> None:
 def draw_mesh() -> None:
     """The mesh page's picture: an alarm on its way round dead nodes."""
     import innervate
-    from innervate.analysis.mesh_alarms import all_crossings
-    from innervate.analysis.mesh_way import copies, way
-    from innervate.plot import mesh_map, theme
-    from innervate.plot.mesh_report import shown_crossing
-    from innervate.plot.mesh_sheet import Sheet
+    from innervate.networks.mesh.analysis.alarms import all_crossings
+    from innervate.networks.mesh.analysis.way import copies, way
+    from innervate.networks.mesh.plot import map as mesh_map
+    from innervate.networks.mesh.plot.report import shown_crossing
+    from innervate.networks.mesh.plot.sheet import Sheet
+    from innervate.plot import theme
 
     result = innervate.run(MESH_SCENARIO).result
     crossings = all_crossings(result)

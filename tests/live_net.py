@@ -4,10 +4,10 @@ import asyncio
 import time
 
 from innervate.live import local
-from innervate.live.mesh import MeshStack
-from innervate.live.messages import MeshNode
 from innervate.live.profile import mesh_parameters, skin_parameters
-from innervate.live.skin import CellNode, CellStack, SinkNode, SinkStack
+from innervate.networks.mesh.live.messages import MeshNode
+from innervate.networks.mesh.live.stack import MeshStack
+from innervate.networks.skin.live import CellNode, CellStack, SinkNode, SinkStack
 
 WAIT_S = 20.0
 

@@ -2,13 +2,14 @@
 
 import heapq
 
-from innervate.protocol import mesh, plain
-from innervate.protocol import mesh_fields as fields
-from innervate.protocol.arith import MASK30
-from innervate.protocol.mesh_frames import copy_frame
-from innervate.protocol.mesh_words import ACK, MESSAGE, SENT
-from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
-from innervate.protocol.rng import seeded
+from innervate.dialect import plain
+from innervate.dialect.arith import MASK30
+from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
+from innervate.dialect.rng import seeded
+from innervate.networks.mesh.protocol import fields as fields
+from innervate.networks.mesh.protocol import node as mesh
+from innervate.networks.mesh.protocol.constants import ACK, MESSAGE, SENT
+from innervate.networks.mesh.protocol.frames import copy_frame
 
 WIDTH = 32
 FRAME_US = 1000

@@ -1,9 +1,9 @@
 """Teams of nodes that all hear each other, for tests: a mesh over a channel that all share."""
 
-from innervate.scenario.mesh_access import DELAY_US
-from innervate.scenario.mesh_plan import HEADER_SLOTS
-from innervate.scenario.radio_baselines import NUMBERS, baseline
-from innervate.scenario.radio_plan import parameters
+from innervate.networks.mesh.scenario.access import DELAY_US
+from innervate.networks.mesh.scenario.plan import HEADER_SLOTS
+from innervate.networks.radio.scenario.baselines import NUMBERS, baseline
+from innervate.networks.radio.scenario.plan import parameters
 from tests.mesh_runs import mesh_plan, radio
 
 SLOT_US = 208  # a byte at 38.4 kbit/s

@@ -4,10 +4,10 @@ import copy
 import math
 import random
 
-from innervate.protocol import mesh
-from innervate.protocol.arith import MASK30
-from innervate.protocol.mesh_words import SAMPLE
-from innervate.protocol.rng import seeded
+from innervate.dialect.arith import MASK30
+from innervate.dialect.rng import seeded
+from innervate.networks.mesh.protocol import node as mesh
+from innervate.networks.mesh.protocol.constants import SAMPLE
 from tests.mesh_bench import Bench, Item
 
 LOUD = -60

@@ -4,9 +4,10 @@ Messages go out once; whoever receives one for itself acknowledges it. Floods ar
 Every tick a node broadcasts its position, if `params.period` says so.
 """
 
-from innervate.protocol.arith import MASK30, later
-from innervate.protocol.mesh_frames import copy_frame as copy
-from innervate.protocol.mesh_words import (
+from innervate.dialect.arith import MASK30, later
+from innervate.dialect.outbox import URGENT, deliver, report, send, set_timer
+from innervate.dialect.rng import draw
+from innervate.networks.mesh.protocol.constants import (
     ACK,
     ACK_WANTED,
     ALL,
@@ -22,8 +23,7 @@ from innervate.protocol.mesh_words import (
     SENT,
     TICK,
 )
-from innervate.protocol.outbox import URGENT, deliver, report, send, set_timer
-from innervate.protocol.rng import draw
+from innervate.networks.mesh.protocol.frames import copy_frame as copy
 
 REPORT_SENT = 20
 REPORT_HEARD = 21

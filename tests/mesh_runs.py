@@ -1,8 +1,8 @@
 """Mesh plans for tests, without a scenario file."""
 
-from innervate.protocol import mesh_fields
-from innervate.scenario.mesh_plan import ONE, UNHEARD, MeshPlan, MeshRadio, Offer
-from innervate.sim.mesh.simulate import simulate
+from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.mesh.scenario.plan import ONE, UNHEARD, MeshPlan, MeshRadio, Offer
+from innervate.sim.field.simulate import simulate
 from tests import mesh_pinger
 
 LOUD = -6_000  # 0.01 dBm: received for certain

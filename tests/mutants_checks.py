@@ -2,7 +2,7 @@
 
 import random
 
-from innervate.protocol.arith import MASK30
+from innervate.dialect.arith import MASK30
 from tests.skin_bench import Box, OneCell, new_cell
 from tests.skin_checks import (
     RULES,

@@ -1,9 +1,11 @@
 """A bench for one station of CSMA/CD-R as published: the test is its channel and its clock."""
 
-from innervate.protocol import plain, radio_fields, radio_paper
-from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER
-from innervate.protocol.radio_words import CRR, DATA, PACKET
-from innervate.scenario.radio_plan import parameters
+from innervate.dialect import plain
+from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
+from innervate.networks.radio.protocol import fields as radio_fields
+from innervate.networks.radio.protocol import paper as radio_paper
+from innervate.networks.radio.protocol.constants import CRR, DATA, PACKET
+from innervate.networks.radio.scenario.plan import parameters
 
 TAU, SLOT, BIT, T = 104, 208, 26, 25
 LONG = T * SLOT

@@ -2,9 +2,9 @@
 
 from itertools import pairwise
 
-from innervate.protocol.radio_words import DATA
-from innervate.scenario.radio_plan import RadioFault
-from innervate.sim.radio.simulate import simulate
+from innervate.networks.radio.protocol.constants import DATA
+from innervate.networks.radio.scenario.plan import RadioFault
+from innervate.sim.channel.simulate import simulate
 from tests.radio_runs import START_US, radio_plan
 
 TAU, SLOT, BIT = 104, 208, 26

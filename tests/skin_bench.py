@@ -13,10 +13,10 @@ import types
 from pathlib import Path
 from types import SimpleNamespace
 
-from innervate import protocol as protocol_room
-from innervate.scenario.model import ProtocolTable
-from innervate.scenario.plan import parameters
-from innervate.sim import skin_stack
+from innervate import dialect as protocol_room
+from innervate.networks.skin.scenario.model import ProtocolTable
+from innervate.networks.skin.scenario.plan import parameters
+from innervate.networks.skin.sim import stack as skin_stack
 
 ROOM = Path(protocol_room.__file__).parent
 STACKS = Path(skin_stack.__file__).parent
@@ -62,7 +62,7 @@ def changed_protocol(*changes):
         home.mkdir()
         for name, text in sources.items():
             text = text.replace("innervate.protocol", package)
-            text = text.replace("innervate.sim.skin_stack", f"{package}.skin_stack")
+            text = text.replace("innervate.networks.skin.sim.stack", f"{package}.skin_stack")
             (home / name).write_text(text)
         sys.path.insert(0, folder)
         importlib.invalidate_caches()

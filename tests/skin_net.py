@@ -1,7 +1,7 @@
 """A network of plain nodes on the bench, stepped by hand (see skin_bench.py)."""
 
-from innervate.protocol.arith import after, later
-from innervate.protocol.skin_words import NONE, PORTS
+from innervate.dialect.arith import after, later
+from innervate.networks.skin.protocol.constants import NONE, PORTS
 from innervate.topology import free_graph
 from tests.skin_bench import REAL, Box, clone, new_cell, out_of_range, params_of, sink_state
 

@@ -7,11 +7,11 @@ from unittest import mock
 import numpy as np
 
 from innervate import scenario
-from innervate.protocol.skin_words import NONE, REPORT_BROKEN, REPORT_PARENT
-from innervate.sim import loop
-from innervate.sim import simulate as simulator
-from innervate.sim.observer import CUT_OFF, LOOP_OPEN, UNROUTED
-from innervate.sim.simulate import simulate
+from innervate.networks.skin.protocol.constants import NONE, REPORT_BROKEN, REPORT_PARENT
+from innervate.networks.skin.sim.observer import CUT_OFF, LOOP_OPEN, UNROUTED
+from innervate.sim.cables import loop
+from innervate.sim.cables import simulate as simulator
+from innervate.sim.cables.simulate import simulate
 
 PERIOD_US = 4000  # at 250 beacons per second
 EVERYTHING = ["cut", "restore", "kill", "revive", "loose", "lose", "restart", "restart pc",

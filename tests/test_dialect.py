@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-import innervate.protocol
+import innervate.dialect
 
 ROOM = Path(innervate.protocol.__file__).parent
 PACKAGE = "innervate.protocol"

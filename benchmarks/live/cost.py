@@ -13,10 +13,12 @@ import time
 from pathlib import Path
 
 from benchmarks.live.sides import cpu_s, memory_mib
+from innervate.dialect import plain
 from innervate.live.keys import Sealer
 from innervate.live.state import State
-from innervate.protocol import mesh_fields, mesh_words, plain
-from innervate.wire import mesh
+from innervate.networks.mesh import frames as mesh
+from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import fields as mesh_fields
 
 REPEATS = 5
 PAYLOAD = 90

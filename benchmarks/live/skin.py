@@ -15,9 +15,9 @@ import tempfile
 from pathlib import Path
 
 from innervate import scenario as scenarios
-from innervate.export.recovery import recoveries
 from innervate.live import status
 from innervate.live.up import Network
+from innervate.networks.skin.export.recovery import recoveries
 
 AFTER_S = 2.5
 CELLS = 20

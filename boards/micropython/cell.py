@@ -10,7 +10,8 @@ import node
 import records
 from outbox import Outbox
 
-from innervate.wire import cobs, skin
+from innervate.networks.skin import frames as skin
+from innervate.wire import cobs
 
 MASK30 = (1 << 30) - 1  # the protocol's clock; ticks_us wraps there, or at a multiple of it
 HALF30 = 1 << 29

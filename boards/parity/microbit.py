@@ -22,7 +22,7 @@ from boards.errors import BoardFailed, BoardMissing
 from boards.parity.record import HANDLERS, Transcript, flat, layout_of, names_of
 from boards.parity.replay import SEND, START, TIMER, fold_out, fold_state
 from boards.roles import Declaration, Role
-from innervate.protocol.skin_words import BEACON
+from innervate.networks.skin.protocol.constants import BEACON
 
 FIRMWARE = Path("/usr/share/firmware-microbit-micropython/firmware.hex")
 QEMU = "qemu-system-arm"

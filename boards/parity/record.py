@@ -12,11 +12,15 @@ from unittest import mock
 from boards.parity import replay
 from boards.roles import COUNTED, ROLES, Declaration, Role
 from innervate import scenario
-from innervate.protocol import csma, mesh, plain, radio_practical, skin
-from innervate.sim import simulate as skin_simulate
-from innervate.sim import skin_stack
-from innervate.sim.mesh import simulate as mesh_simulate
-from innervate.sim.radio import simulate as radio_simulate
+from innervate.dialect import plain
+from innervate.networks.mesh.protocol import csma
+from innervate.networks.mesh.protocol import node as mesh
+from innervate.networks.radio.protocol import practical as radio_practical
+from innervate.networks.skin.protocol import cell as skin
+from innervate.networks.skin.sim import stack as skin_stack
+from innervate.sim.cables import simulate as skin_simulate
+from innervate.sim.channel import simulate as radio_simulate
+from innervate.sim.field import simulate as mesh_simulate
 
 HERE = Path(__file__).resolve().parent
 # Handlers in order of their number, and how many arguments stand between clock and outbox.

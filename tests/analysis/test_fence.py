@@ -8,8 +8,8 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.analysis import fence
-from innervate.scenario.mesh_plan import Walk
+from innervate.networks.mesh.analysis import fence
+from innervate.networks.mesh.scenario.plan import Walk
 
 SQUARE = [(0, 0), (1000, 0), (1000, 1000), (0, 1000)]
 HOLE = [(400, 400), (400, 600), (600, 600), (600, 400)]

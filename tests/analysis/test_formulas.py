@@ -1,6 +1,6 @@
 import pytest
 
-from innervate.analysis import formulas
+from innervate.networks.skin.analysis import formulas
 
 
 def test_eq_3():

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from innervate import scenario
-from innervate.analysis import frames, load
-from innervate.analysis.frames import FramesLost, check_conserved
-from innervate.sim import wires
+from innervate.networks.skin.analysis import frames, load
+from innervate.networks.skin.analysis.frames import FramesLost, check_conserved
+from innervate.sim.cables import wires
 
 
 def random_skin(seed):

@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from innervate.analysis.load import balance_factor, interface_of, port_loads
+from innervate.networks.skin.analysis.load import balance_factor, interface_of, port_loads
 from innervate.topology import from_patches
 
 W, E, UP, DOWN, NONE = 0, 1, 2, 3, -1

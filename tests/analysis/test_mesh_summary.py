@@ -3,9 +3,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from innervate.analysis import mesh, mesh_alarms, mesh_messages, mesh_network, mesh_way
-from innervate.analysis.mesh_paths import UNREACHABLE, Ground, distances
-from innervate.protocol.mesh_words import (
+from innervate.networks.mesh.analysis import alarms as mesh_alarms
+from innervate.networks.mesh.analysis import messages as mesh_messages
+from innervate.networks.mesh.analysis import network as mesh_network
+from innervate.networks.mesh.analysis import summary as mesh
+from innervate.networks.mesh.analysis import way as mesh_way
+from innervate.networks.mesh.analysis.paths import UNREACHABLE, Ground, distances
+from innervate.networks.mesh.protocol.constants import (
     ACK,
     ALARM,
     ALL,
@@ -28,8 +32,8 @@ from innervate.protocol.mesh_words import (
     REQUEST,
     RESPONSE,
 )
-from innervate.scenario.mesh_plan import CUT, KILL, RESTORE, REVIVE, MeshFault, Offer, Walk
-from innervate.sim.mesh import world as w
+from innervate.networks.mesh.scenario.plan import CUT, KILL, RESTORE, REVIVE, MeshFault, Offer, Walk
+from innervate.sim.field import world as w
 
 S = 1_000_000
 

@@ -3,12 +3,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from innervate.analysis import radio, radio_air
-from innervate.protocol.radio_words import CRR, DATA, OPEN, REPORT_BOUNDS, REPORT_LEFT
-from innervate.scenario.radio_plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
-from innervate.sim.radio import world as w
-from innervate.sim.radio.loop import ON_CARRIER
-from innervate.sim.radio.simulate import COUNTS
+from innervate.networks.radio.analysis import air as radio_air
+from innervate.networks.radio.analysis import summary as radio
+from innervate.networks.radio.protocol.constants import CRR, DATA, OPEN, REPORT_BOUNDS, REPORT_LEFT
+from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
+from innervate.sim.channel import world as w
+from innervate.sim.channel.loop import ON_CARRIER
+from innervate.sim.channel.simulate import COUNTS
 from tests.radio_runs import radio_plan, run
 
 SLOT = 208

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from innervate.analysis import rows
-from innervate.analysis.skin import loops
-from innervate.sim.observer import LOOP_CLOSED, LOOP_OPEN
-from innervate.sim.world import ROW, row_dtype
+from innervate.networks.skin.analysis import rows
+from innervate.networks.skin.analysis.summary import loops
+from innervate.networks.skin.sim.observer import LOOP_CLOSED, LOOP_OPEN
+from innervate.sim.cables.world import ROW, row_dtype
 
 
 class Recorded:

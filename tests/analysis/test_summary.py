@@ -2,7 +2,7 @@ import json
 
 import pytest
 
-from innervate.analysis.skin import broken_ports, summarize
+from innervate.networks.skin.analysis.summary import broken_ports, summarize
 
 KEYS = {
     "kind", "name", "seed", "duration_s", "events", "events_per_s", "wall_s", "fingerprint",

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from innervate.analysis.touch import felt_image, received_image
+from innervate.networks.skin.analysis.touch import felt_image, received_image
 
 
 @pytest.fixture(scope="module")

@@ -6,14 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from innervate.protocol import mesh_words as words
-from innervate.protocol import plain
-from innervate.protocol.mesh_fields import FRAME
-from innervate.wire import mesh as wire
-from innervate.wire import mesh_payloads as payloads
+from innervate.dialect import plain
+from innervate.networks.mesh import frames as wire
+from innervate.networks.mesh import payloads as payloads
+from innervate.networks.mesh.meanings import MEANINGS
+from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.protocol.fields import FRAME
 from innervate.wire.bits import put
 from innervate.wire.layout import BROKEN, REST, read
-from innervate.wire.meanings import MEANINGS
 
 Frame = plain.make("Frame", FRAME)
 RANGES = {name: (length, low, high) for name, length, low, high, _unit, _meaning in FRAME}

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from innervate.protocol import plain
-from innervate.protocol.radio_fields import FRAME
-from innervate.protocol.radio_words import CRR, DATA, OPEN, REPORT
-from innervate.wire import radio as wire
+from innervate.dialect import plain
+from innervate.networks.radio import frames as wire
+from innervate.networks.radio.protocol.constants import CRR, DATA, OPEN, REPORT
+from innervate.networks.radio.protocol.fields import FRAME
 
 Frame = plain.make("Frame", FRAME)
 RANGES = {name: (length, low, high) for name, length, low, high, _unit, _meaning in FRAME}

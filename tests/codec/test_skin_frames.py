@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from innervate.protocol import plain
-from innervate.protocol.skin_fields import FRAME
-from innervate.protocol.skin_words import BEACON, DATA, RESTART
-from innervate.wire import skin as wire
+from innervate.dialect import plain
+from innervate.networks.skin import frames as wire
+from innervate.networks.skin.protocol.constants import BEACON, DATA, RESTART
+from innervate.networks.skin.protocol.fields import FRAME
 
 Frame = plain.make("Frame", FRAME)
 RANGES = {name: (length, low, high) for name, length, low, high, _unit, _meaning in FRAME}

@@ -12,7 +12,7 @@ import pytest
 from innervate import scenario
 from innervate.cli.app import app
 from innervate.live import nodefile
-from innervate.scenario import model
+from innervate.networks.skin.scenario import model
 from innervate.sweep import make_plan, planfile
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -6,8 +6,9 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from innervate.protocol import mesh_fields
-from innervate.scenario import mesh_model, mesh_settings
+from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.mesh.scenario import model as mesh_model
+from innervate.networks.mesh.scenario import settings as mesh_settings
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "scenarios.md"
 TABLES = {

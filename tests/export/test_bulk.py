@@ -3,10 +3,16 @@
 import numpy as np
 import pytest
 
+from innervate.dialect import plain
 from innervate.export import bulk
 from innervate.kernel import records
-from innervate.protocol import mesh_fields, plain, radio_fields, radio_words, skin_fields
-from innervate.wire import mesh, radio, skin
+from innervate.networks.mesh import frames as mesh
+from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.radio import frames as radio
+from innervate.networks.radio.protocol import constants as radio_words
+from innervate.networks.radio.protocol import fields as radio_fields
+from innervate.networks.skin import frames as skin
+from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.wire.layout import SPARE
 
 RNG = np.random.default_rng(3)

@@ -7,12 +7,15 @@ import pytest
 from pcapng.blocks import EnhancedPacket
 
 from innervate import scenario
+from innervate.dialect import plain
 from innervate.export import capture, links
 from innervate.export.errors import ExportError
 from innervate.export.reading import Capture
-from innervate.protocol import plain, skin_fields
-from innervate.sim import wires
-from innervate.wire import mesh, radio, skin
+from innervate.networks.mesh import frames as mesh
+from innervate.networks.radio import frames as radio
+from innervate.networks.skin import frames as skin
+from innervate.networks.skin.protocol import fields as skin_fields
+from innervate.sim.cables import wires
 from tests.skin_runs import patch
 from tests.tshark_runs import fields_of, tshark
 

@@ -4,16 +4,18 @@ import random
 
 import pytest
 
+from innervate.dialect import plain
 from innervate.export import dissector, links, pcapng
-from innervate.protocol import (
-    mesh_fields,
-    mesh_words,
-    plain,
-    radio_fields,
-    radio_words,
-    skin_fields,
-)
-from innervate.wire import crc, mesh, mesh_payloads, radio, seal, skin
+from innervate.networks.mesh import frames as mesh
+from innervate.networks.mesh import payloads as mesh_payloads
+from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.radio import frames as radio
+from innervate.networks.radio.protocol import constants as radio_words
+from innervate.networks.radio.protocol import fields as radio_fields
+from innervate.networks.skin import frames as skin
+from innervate.networks.skin.protocol import fields as skin_fields
+from innervate.wire import crc, seal
 from innervate.wire.bits import put
 from innervate.wire.layout import REST, SPARE
 from tests.tshark_runs import fields_of, tshark

@@ -8,9 +8,10 @@ import pytest
 
 from innervate import scenario
 from innervate.cli import app, capturing
-from innervate.export import capture, fitting, measure, pcapng, statuslog
+from innervate.export import capture, fitting, measure, pcapng
 from innervate.export.errors import ExportError
 from innervate.live import status, tap
+from innervate.networks.mesh.export import statuslog
 from tests.live_net import Mesh, until
 from tests.skin_runs import patch
 

@@ -4,10 +4,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from innervate.dialect import plain
 from innervate.export import fitting, links, measure, pcapng
 from innervate.export.errors import ExportError
-from innervate.protocol import mesh_fields, mesh_words, plain, skin_fields, skin_words
-from innervate.wire import mesh, skin
+from innervate.networks.mesh import frames as mesh
+from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.skin import frames as skin
+from innervate.networks.skin.protocol import constants as skin_words
+from innervate.networks.skin.protocol import fields as skin_fields
 
 MS = 1_000_000
 

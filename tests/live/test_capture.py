@@ -10,8 +10,8 @@ from innervate.export.reading import Capture
 from innervate.live import status, tap
 from innervate.live.keys import Sealer
 from innervate.live.state import State
-from innervate.protocol.mesh_words import DATA
-from innervate.wire import mesh
+from innervate.networks.mesh import frames as mesh
+from innervate.networks.mesh.protocol.constants import DATA
 from tests.live_net import Mesh, Skin, until
 
 OUT, IN = 2, 1

@@ -3,7 +3,7 @@ from collections import Counter
 
 import pytest
 
-from innervate.live.messages import BACKLOG, DELIVERED, EXPIRED, HOP_ACKED, REFUSED
+from innervate.networks.mesh.live.messages import BACKLOG, DELIVERED, EXPIRED, HOP_ACKED, REFUSED
 from tests.live_net import Mesh, until
 
 LINE = [(0, 1), (1, 2), (2, 3)]

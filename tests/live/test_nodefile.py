@@ -4,8 +4,8 @@ from innervate.live.build import build
 from innervate.live.errors import LiveError
 from innervate.live.nodefile import load
 from innervate.live.profile import IP, mesh_parameters
-from innervate.protocol.mesh_fields import PARAMS
-from innervate.scenario.mesh_profiles import IP as SCENARIOS_IP
+from innervate.networks.mesh.protocol.fields import PARAMS
+from innervate.networks.mesh.scenario.profiles import IP as SCENARIOS_IP
 
 GOOD = """
 kind = "mesh"

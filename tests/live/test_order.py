@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.live.messages import DELIVERED
-from innervate.live.order import Message, Order, Orderly
-from innervate.protocol import mesh_queue
-from innervate.protocol.arith import MASK16
-from innervate.protocol.mesh_words import DATA
+from innervate.dialect.arith import MASK16
+from innervate.networks.mesh.live.messages import DELIVERED
+from innervate.networks.mesh.live.order import Message, Order, Orderly
+from innervate.networks.mesh.protocol import queue as mesh_queue
+from innervate.networks.mesh.protocol.constants import DATA
 from tests.live_net import Mesh, until
 
 LINE = [(0, 1), (1, 2)]

@@ -3,13 +3,13 @@ from itertools import pairwise
 
 import pytest
 
-from innervate.live.medium import SLOT_US, Medium, MediumRadio
-from innervate.live.messages import DELIVERED
 from innervate.live.profile import RADIO, radio_parameters
-from innervate.live.radio import Frame, RadioNode, StationStack
-from innervate.protocol.radio_words import DATA
-from innervate.scenario.radio_plan import parameters
-from innervate.wire import radio as wire
+from innervate.networks.mesh.live.messages import DELIVERED
+from innervate.networks.radio import frames as wire
+from innervate.networks.radio.live.medium import SLOT_US, Medium, MediumRadio
+from innervate.networks.radio.live.station import Frame, RadioNode, StationStack
+from innervate.networks.radio.protocol.constants import DATA
+from innervate.networks.radio.scenario.plan import parameters
 from tests.live_net import until
 
 STATIONS = 5

@@ -10,9 +10,9 @@ from innervate import scenario
 from innervate.cli import app, capturing
 from innervate.export import capture, links, pcapng
 from innervate.export.errors import ExportError
-from innervate.export.recovery import recoveries
 from innervate.live import status, tap
 from innervate.live.profile import SKIN
+from innervate.networks.skin.export.recovery import recoveries
 from tests.live_net import Skin, until
 from tests.skin_runs import patch
 

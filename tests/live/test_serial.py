@@ -5,11 +5,11 @@ import tty
 import pytest
 
 from innervate.live.errors import LiveError
-from innervate.live.mesh import MeshStack
-from innervate.live.messages import DELIVERED, MeshNode
 from innervate.live.profile import mesh_parameters
 from innervate.live.serial import SerialLink
 from innervate.live.serial_cables import Cables
+from innervate.networks.mesh.live.messages import DELIVERED, MeshNode
+from innervate.networks.mesh.live.stack import MeshStack
 from tests.live_net import until
 
 PARAMS = mesh_parameters(2, {"ack_us": 30_000, "e2e_us": 300_000})

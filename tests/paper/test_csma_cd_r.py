@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from innervate.protocol.radio_words import (
+from innervate.networks.radio.protocol.constants import (
     CRR,
     DATA,
     LAST,

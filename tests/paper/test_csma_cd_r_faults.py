@@ -2,15 +2,15 @@
 
 import pytest
 
-from innervate.protocol.radio_words import (
+from innervate.networks.radio.protocol.constants import (
     CRR,
     DATA,
     OUTSIDER,
     REPORT_COLLISION,
     REPORT_ROLE,
 )
-from innervate.scenario.radio_plan import FADE, GARBLE, JOIN, KILL, RadioFault
-from innervate.sim.radio.simulate import simulate
+from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL, RadioFault
+from innervate.sim.channel.simulate import simulate
 from tests.radio_paper_runs import (
     BIT,
     R1,

@@ -7,8 +7,8 @@ words do not hold, the test says what does.
 import numpy as np
 import pytest
 
-from innervate.analysis import radio_formulas as forms
-from innervate.sim.slotted import slotted
+from innervate.networks.radio.analysis import formulas as forms
+from innervate.networks.radio.slotted.model import slotted
 
 CONTENDING = ("csma-cd-d1", "csma-cd-d2", "csma-cd-d2p")
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from innervate.protocol.mesh_words import (
+from innervate.networks.mesh.protocol.constants import (
     ACK_WANTED,
     DATA,
     EACH,

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import pytest
 
-from innervate.analysis.load import balance_factor
+from innervate.networks.skin.analysis.load import balance_factor
 from tests.skin_net import Net
 from tests.skin_runs import (
     FIGURE_5,

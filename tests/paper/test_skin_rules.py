@@ -4,7 +4,13 @@ from fractions import Fraction
 
 import pytest
 
-from innervate.protocol.skin_words import NONE, ONE, REPORT_BALANCE, REPORT_BROKEN, REPORT_PARENT
+from innervate.networks.skin.protocol.constants import (
+    NONE,
+    ONE,
+    REPORT_BALANCE,
+    REPORT_BROKEN,
+    REPORT_PARENT,
+)
 from tests.skin_bench import REAL, OneCell, params_of
 
 W, E, UP, DOWN = range(4)

@@ -2,7 +2,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from innervate.papers import main, mesh, radio, skin
+from innervate.networks.mesh import papers as mesh
+from innervate.networks.radio import papers as radio
+from innervate.networks.skin import papers as skin
+from innervate.papers import main
 from innervate.papers.book import RESULTS
 from innervate.papers.store import Store, stamp
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from innervate.networks.skin.papers import arm, eq7, fig8a, fig10, modes, steady
+from innervate.networks.skin.papers.common import Case, measure_recoveries, seeds_of
 from innervate.papers.experiment import FAILS, HOLDS
-from innervate.papers.skin import arm, eq7, fig8a, fig10, modes, steady
-from innervate.papers.skin.common import Case, measure_recoveries, seeds_of
 
 
 def verdicts(made, name):
@@ -60,8 +60,8 @@ def test_the_printed_rule_loops_and_the_others_do_not(made):
 
 
 def test_the_drawn_ring_is_a_ring(made):
-    from innervate.analysis.recovery import next_hops
-    from innervate.papers.skin import loop
+    from innervate.networks.skin.analysis.recovery import next_hops
+    from innervate.networks.skin.papers import loop
 
     shown = made.values[f"loop picture seed {loop.SHOWN_SEED}"]
     graph = loop.SHOWN.plan(loop.SHOWN_SEED).graph

@@ -6,8 +6,8 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.text import Text
 
+from innervate.networks.skin.papers import FIGURES, experiment
 from innervate.papers.experiment import FAILS, HOLDS, reading
-from innervate.papers.skin import FIGURES, experiment
 from innervate.plot import style
 from tests.self_contained import check_paper
 

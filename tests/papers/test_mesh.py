@@ -6,11 +6,20 @@ import matplotlib.image
 import numpy as np
 import pytest
 
-from innervate.papers import main, mesh
+from innervate.networks.mesh import papers as mesh
+from innervate.networks.mesh.papers import (
+    FIGURES,
+    alarms,
+    crossing,
+    experiment,
+    gateway,
+    scale,
+    stretch,
+)
+from innervate.networks.mesh.papers.bars import wire_bytes
+from innervate.networks.mesh.papers.testbed import GATEWAY, Bed, dying, kill, send_rounds
+from innervate.papers import main
 from innervate.papers.experiment import FAILS, HOLDS
-from innervate.papers.mesh import FIGURES, alarms, crossing, experiment, gateway, scale, stretch
-from innervate.papers.mesh.bars import wire_bytes
-from innervate.papers.mesh.bed import GATEWAY, Bed, dying, kill, send_rounds
 from innervate.plot import style
 from tests.self_contained import check_paper
 

@@ -5,11 +5,11 @@ import re
 import matplotlib.image
 import pytest
 
+from innervate.networks.radio.papers import FIGURES, experiment
+from innervate.networks.radio.papers.common import first_from, slope, spans
+from innervate.networks.radio.papers.fairness import longest
 from innervate.papers import main
 from innervate.papers.experiment import FAILS, HOLDS
-from innervate.papers.radio import FIGURES, experiment
-from innervate.papers.radio.common import first_from, slope, spans
-from innervate.papers.radio.fairness import longest
 from innervate.plot import style
 from tests.self_contained import check_paper
 
@@ -181,7 +181,7 @@ def test_who_waited_longest(order, share):
 
 @pytest.mark.slow
 def test_what_holds_and_what_does_not_in_full(tmp_path):
-    from innervate.papers import radio
+    from innervate.networks.radio import papers as radio
 
     from .conftest import read
 

@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from innervate.dialect import arith, rng
 from innervate.kernel import bits, door
-from innervate.protocol import arith, rng, skin
+from innervate.networks.skin.protocol import cell as skin
 
 SIGNED = st.integers(-(2**63), 2**63 - 1)
 HALF = st.integers(0, 2**30 - 1)

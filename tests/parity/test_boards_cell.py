@@ -13,12 +13,13 @@ import pytest
 from boards import __main__ as build
 from boards.errors import BoardMissing
 from boards.parity import nodejs, replay
+from innervate.dialect import outbox, rng
 from innervate.live import nodefile
 from innervate.live.profile import skin_parameters
 from innervate.live.serial import SerialLink
 from innervate.live.serial_cables import Cables
-from innervate.live.skin import SinkNode, SinkStack
-from innervate.protocol import outbox, rng, skin_words
+from innervate.networks.skin.live import SinkNode, SinkStack
+from innervate.networks.skin.protocol import constants as skin_words
 from tests.live_net import until
 
 FAR_SAMPLES = 5

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from innervate.protocol import mesh_fields
-from innervate.scenario.mesh_plan import (
+from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.mesh.scenario.plan import (
     CUT,
     JAM,
     KILL,
@@ -20,7 +20,7 @@ from innervate.scenario.mesh_plan import (
     Offer,
     Walk,
 )
-from innervate.sim.build import uniform
+from innervate.sim.cables.build import uniform
 from tests.mesh_runs import mesh_plan, radio, run
 
 QUIET_RUN = settings(deadline=None, suppress_health_check=list(HealthCheck))

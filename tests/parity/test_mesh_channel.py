@@ -5,10 +5,11 @@ import dataclasses
 import numpy as np
 import pytest
 
-from innervate.protocol import radio_fields
-from innervate.scenario import load, plan
-from innervate.scenario.mesh_plan import ONE
-from innervate.sim.mesh.simulate import simulate
+from innervate.networks.mesh.scenario.plan import ONE
+from innervate.networks.radio.protocol import fields as radio_fields
+from innervate.networks.skin.scenario import plan
+from innervate.scenario import load
+from innervate.sim.field.simulate import simulate
 from tests.parity.test_mesh import TABLES, states
 
 EVENTS = (

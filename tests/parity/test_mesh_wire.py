@@ -2,9 +2,10 @@
 
 import pytest
 
-from innervate.protocol import mesh
-from innervate.protocol.arith import MASK30
-from innervate.protocol.mesh_words import (
+from innervate.dialect.arith import MASK30
+from innervate.networks.mesh import frames as wire
+from innervate.networks.mesh.protocol import node as mesh
+from innervate.networks.mesh.protocol.constants import (
     ACK,
     ALARM,
     DATA,
@@ -14,7 +15,6 @@ from innervate.protocol.mesh_words import (
     SAMPLE,
     TABLE,
 )
-from innervate.wire import mesh as wire
 from tests.mesh_bench import Bench, Frame, Item
 
 GRID = [(a, a + 1) for a in range(11) if a % 4 != 3] + [(a, a + 4) for a in range(8)]

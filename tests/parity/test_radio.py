@@ -4,11 +4,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from innervate.protocol import radio_fields
-from innervate.scenario.radio_plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
-from innervate.sim.radio.simulate import simulate
-from innervate.sim.radio.stacks import PROTOCOLS
-from innervate.sim.simulate import InvariantBroken
+from innervate.networks.radio.protocol import fields as radio_fields
+from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
+from innervate.networks.radio.sim.stacks import PROTOCOLS
+from innervate.sim.cables.simulate import InvariantBroken
+from innervate.sim.channel.simulate import simulate
 from tests.parity.test_skin_parity import assert_same
 from tests.radio_runs import START_US, radio_plan
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.scenario.radio_baselines import NUMBERS, baseline
+from innervate.networks.radio.scenario.baselines import NUMBERS, baseline
 from tests.parity.test_radio import PRACTICAL, QUIET, check, plans
 
 

@@ -7,10 +7,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from innervate.protocol import skin_fields
-from innervate.sim import skin_stack, static_stack
-from innervate.sim.simulate import InvariantBroken, simulate
-from innervate.wire import skin as wire
+from innervate.networks.skin import frames as wire
+from innervate.networks.skin.protocol import fields as skin_fields
+from innervate.networks.skin.sim import stack as skin_stack
+from innervate.networks.skin.sim import static_stack
+from innervate.sim.cables.simulate import InvariantBroken, simulate
 from tests.skin_runs import EVERYTHING, free, keys_of, patch, plain_stack, plan_of, random_events
 
 RULES = ["feasible", "strict", "paper", "static"]

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from innervate.kernel import door
-from innervate.sim import slotted_draws as draws
-from innervate.sim.slotted import slotted
-from innervate.sim.slotted_drive import BIANCHI_BASIC, BY_CHANCE, MACS, loop
+from innervate.networks.radio.slotted import draws as draws
+from innervate.networks.radio.slotted.drive import BIANCHI_BASIC, BY_CHANCE, MACS, loop
+from innervate.networks.radio.slotted.model import slotted
 
 OPTIONS = {
     "csma-cd-r": [{}, {"reading": "B"}, {"window": 2}, {"turnaround_slots": 2000 / 208}],

@@ -5,7 +5,8 @@ from importlib import import_module
 import pytest
 
 from innervate import scenario
-from innervate.wire import radio, skin
+from innervate.networks.radio import frames as radio
+from innervate.networks.skin import frames as skin
 from tests.export.test_captures import RADIO, SKIN
 
 FIELDS = ("time", "start", "at", "sender", "out", "why")

@@ -1,7 +1,7 @@
 import numpy as np
 
-from innervate.analysis import load
-from innervate.plot.history import History, hops_of
+from innervate.networks.skin.analysis import load
+from innervate.networks.skin.plot.history import History, hops_of
 
 
 def connected(graph, moment):

@@ -5,9 +5,13 @@ import matplotlib.image
 import pytest
 
 from innervate import run
-from innervate.analysis.mesh_alarms import all_crossings
-from innervate.plot import mesh_figures, mesh_film, mesh_map, mesh_report, style
-from innervate.plot.mesh_sheet import Labels, Sheet
+from innervate.networks.mesh.analysis.alarms import all_crossings
+from innervate.networks.mesh.plot import figures as mesh_figures
+from innervate.networks.mesh.plot import film as mesh_film
+from innervate.networks.mesh.plot import map as mesh_map
+from innervate.networks.mesh.plot import report as mesh_report
+from innervate.networks.mesh.plot.sheet import Labels, Sheet
+from innervate.plot import style
 from tests.mesh_tables_runs import mesh_tables, without_fence
 
 

@@ -4,7 +4,8 @@ import matplotlib.image
 import pytest
 
 from innervate import run
-from innervate.plot import figures, style
+from innervate.networks.skin.plot import figures
+from innervate.plot import style
 
 TABLES = {
     "kind": "skin",

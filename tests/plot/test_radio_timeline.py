@@ -3,10 +3,13 @@ from types import SimpleNamespace
 import matplotlib.image
 import pytest
 
-from innervate.analysis import radio
-from innervate.plot import page, radio_figures, radio_report, radio_scene, radio_timeline, style
-from innervate.plot import radio_words as words
-from innervate.protocol.radio_words import (
+from innervate.networks.radio.analysis import summary as radio
+from innervate.networks.radio.plot import figures as radio_figures
+from innervate.networks.radio.plot import report as radio_report
+from innervate.networks.radio.plot import scene as radio_scene
+from innervate.networks.radio.plot import timeline as radio_timeline
+from innervate.networks.radio.plot import words as words
+from innervate.networks.radio.protocol.constants import (
     CRR,
     DATA,
     NO_PROOF,
@@ -16,7 +19,8 @@ from innervate.protocol.radio_words import (
     REPORT_FAILED,
     REPORT_TURN,
 )
-from innervate.scenario.radio_plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
+from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
+from innervate.plot import page, style
 from tests.plot.test_report import read
 from tests.radio_runs import START_US, run
 

@@ -7,8 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from innervate import scenario
-from innervate.protocol.arith import HALF30, MASK30
-from innervate.sim import build, clocks
+from innervate.dialect.arith import HALF30, MASK30
+from innervate.sim import clocks
+from innervate.sim.cables import build
 
 CELLS = 63
 TIME = st.integers(0, 10**11)

@@ -7,9 +7,10 @@ import shapely
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from innervate.protocol import mesh_fence, plain
-from innervate.protocol.mesh_fields import PARAMS
-from innervate.protocol.mesh_words import CLEAR, CROSS, PREDICT
+from innervate.dialect import plain
+from innervate.networks.mesh.protocol import fence as mesh_fence
+from innervate.networks.mesh.protocol.constants import CLEAR, CROSS, PREDICT
+from innervate.networks.mesh.protocol.fields import PARAMS
 
 Params = plain.make("Params", PARAMS)
 EXTENT = 23_000

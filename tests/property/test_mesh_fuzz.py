@@ -5,10 +5,10 @@ import random
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.protocol import mesh
-from innervate.protocol.arith import MASK30
-from innervate.protocol.mesh_fields import BODY
-from innervate.protocol.mesh_words import SOURCE_ROUTE
+from innervate.dialect.arith import MASK30
+from innervate.networks.mesh.protocol import node as mesh
+from innervate.networks.mesh.protocol.constants import SOURCE_ROUTE
+from innervate.networks.mesh.protocol.fields import BODY
 from tests.mesh_bench import Frame
 from tests.mesh_net import Net, geometric
 

@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 
 from innervate import scenario
+from innervate.networks.skin.run import trail
 from innervate.run import RunError, compare, run
 from innervate.run.compare import differences
-from innervate.run.skin import trail
 from innervate.run.trail import FIELDS, first_difference
-from innervate.sim.simulate import simulate
-from innervate.sim.world import TRAIL, row_dtype
+from innervate.sim.cables.simulate import simulate
+from innervate.sim.cables.world import TRAIL, row_dtype
 
 
 @pytest.fixture

@@ -8,7 +8,8 @@ import pytest
 import innervate
 import innervate.run as room
 from innervate import scenario
-from innervate.run import Run, RunError, run, skin
+from innervate.networks.skin import run as skin
+from innervate.run import Run, RunError, run
 from innervate.scenario import ScenarioError
 
 
@@ -121,7 +122,7 @@ def test_default_folder(four, tmp_path, page, monkeypatch):
 
 
 def test_an_interrupted_run_keeps_what_was_done(four, tmp_path, page, monkeypatch):
-    from innervate.sim import simulate as simulation
+    from innervate.sim.cables import simulate as simulation
 
     loop = simulation.compiled_loop(False)
 

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from innervate.scenario import ScenarioError, from_dict, load, loads, plan
+from innervate.networks.skin.scenario import plan
+from innervate.scenario import ScenarioError, from_dict, load, loads
 
 # what to replace, by what, the message
 WRONG = [

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.scenario import ScenarioError, from_dict, json_schema, load, loads, plan
+from innervate.networks.skin.scenario import plan
+from innervate.scenario import ScenarioError, from_dict, json_schema, load, loads
 
 SMALL = """\
 kind = "mesh"

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from innervate.protocol import skin_fields
-from innervate.scenario import (
+from innervate.networks.skin.protocol import fields as skin_fields
+from innervate.networks.skin.scenario import plan
+from innervate.networks.skin.scenario.plan import (
     CUT,
     KILL,
     LOOSE,
@@ -14,12 +15,9 @@ from innervate.scenario import (
     RESTORE,
     REVIVE,
     Plan,
-    ScenarioError,
-    load,
-    loads,
-    plan,
 )
-from innervate.scenario.script import DELIVER, DETECT, DRAW, STEP_LOSE, TICK
+from innervate.networks.skin.scenario.script import DELIVER, DETECT, DRAW, STEP_LOSE, TICK
+from innervate.scenario import ScenarioError, load, loads
 
 
 def test_parameters_are_those_of_the_protocol(small: str) -> None:

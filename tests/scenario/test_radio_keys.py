@@ -6,9 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.scenario import ScenarioError, check, dump, from_dict, load, loads, plan, template
-from innervate.scenario.radio_plan import JOIN, KILL
-from innervate.scenario.radio_traffic import exponential
+from innervate.networks.radio.scenario.plan import JOIN, KILL
+from innervate.networks.radio.scenario.traffic import exponential
+from innervate.networks.skin.scenario import plan
+from innervate.scenario import ScenarioError, check, dump, from_dict, load, loads, template
 from innervate.trace.streams import stream
 
 SMALL = """\

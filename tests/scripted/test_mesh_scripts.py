@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from innervate.protocol import mesh_words as words
+from innervate.networks.mesh.protocol import constants as words
 from tests.mesh_net import Net
 
 REWRITE = os.environ.get("INNERVATE_REWRITE", "") not in ("", "0")

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from innervate.sim import wheel, wires
+from innervate.sim import wheel
+from innervate.sim.cables import wires
 from tests.skin_runs import busy, patch, run, setup_1
 
 LOST = (wires.LOST_CUT, wires.LOST_NOISE, wires.LOST_OFF, wires.LOST_QUEUE, wires.LOST_BROKEN)

@@ -6,15 +6,16 @@ import numpy as np
 import pytest
 
 from innervate import run as run_scenario
-from innervate.protocol.mesh_words import ACK, ALARM, DATA, REPORT_HOP
-from innervate.protocol.radio_words import QUEUE
-from innervate.scenario import load, plan
-from innervate.scenario.mesh_plan import KILL, RESTART, REVIVE, MeshFault, Offer
-from innervate.scenario.radio_baselines import NUMBERS
-from innervate.sim.mesh import channel, over_channel
-from innervate.sim.mesh.simulate import simulate
-from innervate.sim.radio import build
-from innervate.sim.simulate import InvariantBroken
+from innervate.networks.mesh.protocol.constants import ACK, ALARM, DATA, REPORT_HOP
+from innervate.networks.mesh.scenario.plan import KILL, RESTART, REVIVE, MeshFault, Offer
+from innervate.networks.mesh.sim import channel, over_channel
+from innervate.networks.radio.protocol.constants import QUEUE
+from innervate.networks.radio.scenario.baselines import NUMBERS
+from innervate.networks.skin.scenario import plan
+from innervate.scenario import load
+from innervate.sim.cables.simulate import InvariantBroken
+from innervate.sim.channel import build
+from innervate.sim.field.simulate import simulate
 from tests.mesh_channel_runs import SLOT_US, TURN_US, slots, team
 from tests.mesh_pinger import REPORT_HEARD, REPORT_SENT
 from tests.mesh_runs import run
@@ -117,7 +118,7 @@ def test_who_returns_has_forgotten_its_frame_and_sends_the_next(back):
 
 
 def test_a_broken_channel_stops_the_run(monkeypatch):
-    monkeypatch.setattr("innervate.sim.radio.build.OUTBOX", 1)
+    monkeypatch.setattr("innervate.sim.channel.build.OUTBOX", 1)
     with pytest.raises(InvariantBroken, match="outbox of station"):
         run(team(5, [(AT, i, NOONE, 9) for i in range(5)]))
 

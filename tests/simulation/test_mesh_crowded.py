@@ -2,12 +2,8 @@
 
 import pytest
 
-from innervate.protocol.mesh_kept import DESPAIR_MAX
-from innervate.protocol.mesh_near import DOUBT, SUSPECT
-from innervate.protocol.mesh_pace import HARD, STRAIN_MAX, is_held
-from innervate.protocol.mesh_seen import ANEW, NO_WAY, accept, is_hopeless, mark_bad, unbad
-from innervate.protocol.mesh_send import most_tries
-from innervate.protocol.mesh_words import (
+from innervate.networks.mesh.protocol.backoff import HARD, STRAIN_MAX, is_held
+from innervate.networks.mesh.protocol.constants import (
     ACK,
     ALARM,
     ALARMS,
@@ -29,6 +25,17 @@ from innervate.protocol.mesh_words import (
     TABLES,
     WHOLE_GRAPH,
 )
+from innervate.networks.mesh.protocol.duplicates import (
+    ANEW,
+    NO_WAY,
+    accept,
+    is_hopeless,
+    mark_bad,
+    unbad,
+)
+from innervate.networks.mesh.protocol.neighbours import DOUBT, SUSPECT
+from innervate.networks.mesh.protocol.retransmission import DESPAIR_MAX
+from innervate.networks.mesh.protocol.send import most_tries
 from tests.mesh_bench import Bench
 
 SETTLED = 5_000_000

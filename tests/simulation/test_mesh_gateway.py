@@ -4,7 +4,7 @@ import itertools
 
 import pytest
 
-from innervate.protocol.mesh_words import (
+from innervate.networks.mesh.protocol.constants import (
     DATA,
     GRAPH,
     REPORT_ARRIVED,

@@ -4,7 +4,7 @@ from collections import Counter
 from itertools import pairwise
 
 from innervate.live.profile import mesh_parameters
-from innervate.protocol.mesh_words import DATA
+from innervate.networks.mesh.protocol.constants import DATA
 from tests.mesh_bench import Bench
 
 READY = 8_000_000

@@ -1,7 +1,7 @@
 """A router over a layer that says what was received: hops do not acknowledge."""
 
-from innervate.protocol import mesh
-from innervate.protocol.mesh_words import (
+from innervate.networks.mesh.protocol import node as mesh
+from innervate.networks.mesh.protocol.constants import (
     ACK,
     DATA,
     REPORT_ARRIVED,

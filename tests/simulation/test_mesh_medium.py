@@ -2,9 +2,18 @@
 
 import pytest
 
-from innervate.scenario.mesh_plan import CUT, JAM, KILL, ONE, QUIET, RESTART, RESTORE, REVIVE
-from innervate.scenario.mesh_plan import MeshFault as Fault
-from innervate.sim.mesh.books import MAC
+from innervate.networks.mesh.scenario.plan import (
+    CUT,
+    JAM,
+    KILL,
+    ONE,
+    QUIET,
+    RESTART,
+    RESTORE,
+    REVIVE,
+)
+from innervate.networks.mesh.scenario.plan import MeshFault as Fault
+from innervate.networks.mesh.sim.recorder import MAC
 from tests.mesh_pinger import REPORT_HEARD, REPORT_SENT, REPORT_TICK
 from tests.mesh_runs import LOUD, TURN_US, both_ways, mesh_plan, radio, run
 

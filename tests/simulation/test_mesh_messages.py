@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.protocol.mesh_words import (
+from innervate.networks.mesh.protocol.constants import (
     DATA,
     FIRST,
     PARITY,

@@ -5,12 +5,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from innervate.protocol.mesh_frames import copy_frame
-from innervate.protocol.outbox import deliver, report, send
-from innervate.sim.mesh import simulate as simulation
-from innervate.sim.mesh.books import place_of
-from innervate.sim.mesh.build import build, grow_seen
-from innervate.sim.simulate import InvariantBroken
+from innervate.dialect.outbox import deliver, report, send
+from innervate.networks.mesh.protocol.frames import copy_frame
+from innervate.networks.mesh.sim.recorder import place_of
+from innervate.sim.cables.simulate import InvariantBroken
+from innervate.sim.field import simulate as simulation
+from innervate.sim.field.build import build, grow_seen
 from tests import mesh_pinger
 from tests.mesh_runs import mesh_plan, run
 
@@ -48,7 +48,7 @@ def test_without_rows_the_run_is_the_same():
 
 def test_rows_are_kept_when_their_tables_are_full(monkeypatch):
     whole = run(busy_plan())
-    monkeypatch.setattr("innervate.sim.mesh.build.PLAIN_ROWS", 40)
+    monkeypatch.setattr("innervate.sim.field.build.PLAIN_ROWS", 40)
     seen = []
     assert same(whole, run(busy_plan(), progress=lambda now, end: seen.append((now, end))))
     assert len(seen) > 3

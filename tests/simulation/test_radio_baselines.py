@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from innervate.analysis import radio as analysis
-from innervate.analysis import radio_formulas as forms
-from innervate.protocol.radio_words import REPORT_COLLISION, REPORT_STOPPED
-from innervate.scenario.radio_baselines import NUMBERS
-from innervate.scenario.radio_plan import JOIN, KILL, LEAVE, RadioFault
-from innervate.sim.build import uniform
-from innervate.sim.radio.simulate import simulate
-from innervate.sim.slotted import slotted
+from innervate.networks.radio.analysis import formulas as forms
+from innervate.networks.radio.analysis import summary as analysis
+from innervate.networks.radio.protocol.constants import REPORT_COLLISION, REPORT_STOPPED
+from innervate.networks.radio.scenario.baselines import NUMBERS
+from innervate.networks.radio.scenario.plan import JOIN, KILL, LEAVE, RadioFault
+from innervate.networks.radio.slotted.model import slotted
+from innervate.sim.cables.build import uniform
+from innervate.sim.channel.simulate import simulate
 from tests.radio_baseline_runs import SLOT_US, TAU_US, baseline_plan, run_baseline, saturate
 from tests.radio_runs import START_US
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from innervate.protocol.radio_words import DATA, REPORT_BOUNDS
-from innervate.scenario.radio_plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
-from innervate.sim.build import uniform
+from innervate.networks.radio.protocol.constants import DATA, REPORT_BOUNDS
+from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
+from innervate.sim.cables.build import uniform
 from tests.radio_runs import START_US, run
 
 SIZES = (2, 3, 5, 10, 20, 50, 100)

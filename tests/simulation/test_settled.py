@@ -2,7 +2,7 @@
 
 import pytest
 
-from innervate.protocol.skin_words import REPORT_BALANCE, REPORT_PARENT
+from innervate.networks.skin.protocol.constants import REPORT_BALANCE, REPORT_PARENT
 from tests.skin_runs import (
     cells_at_end,
     distances,

@@ -6,8 +6,8 @@ import pytest
 
 from innervate import scenario
 from innervate.cli import main
+from innervate.networks.skin.sizing import Question, answer_lines, parse_ports, size
 from innervate.sweep import SweepError
-from innervate.sweep.sizing import Question, answer_lines, parse_ports, size
 
 pytest.importorskip("icub_models")
 ICUB = "package:icub-models/iCubGenova02"

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import innervate
-from innervate.sweep import conduct
+from innervate.sweep import scheduler as conduct
 from innervate.sweep.engines import Here
 from tests.sweep.conftest import TIMEOUT_S, start, until
 

@@ -4,8 +4,9 @@ from collections import Counter
 
 import pytest
 
-from innervate.protocol import csma, csma_fields, plain, rng
-from innervate.protocol.outbox import REPORT, SEND, SET_TIMER, URGENT
+from innervate.dialect import plain, rng
+from innervate.dialect.outbox import REPORT, SEND, SET_TIMER, URGENT
+from innervate.networks.mesh.protocol import csma, csma_fields
 
 STATION = plain.make("Station", csma_fields.STATION)
 ITEM = plain.make("Item", csma_fields.ITEM)

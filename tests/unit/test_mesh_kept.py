@@ -2,9 +2,8 @@
 
 from itertools import pairwise
 
-from innervate.protocol import mesh_queue
-from innervate.protocol.mesh_kept import OLDEST
-from innervate.protocol.mesh_words import (
+from innervate.networks.mesh.protocol import queue as mesh_queue
+from innervate.networks.mesh.protocol.constants import (
     DATA,
     E2E_ACK,
     NO_ROOM,
@@ -12,6 +11,7 @@ from innervate.protocol.mesh_words import (
     REPORT_EXPIRED,
     REPORT_FULL,
 )
+from innervate.networks.mesh.protocol.retransmission import OLDEST
 from tests.mesh_net import Net, line
 
 READY = 4_000_000

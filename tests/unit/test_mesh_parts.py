@@ -4,9 +4,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.protocol import mesh_near, mesh_queue, mesh_seen
-from innervate.protocol.mesh_fields import FORWARDED, QUEUE
-from innervate.protocol.mesh_words import NOBODY, PARITY, REPORT_DROPPED
+from innervate.networks.mesh.protocol import duplicates as mesh_seen
+from innervate.networks.mesh.protocol import neighbours as mesh_near
+from innervate.networks.mesh.protocol import queue as mesh_queue
+from innervate.networks.mesh.protocol.constants import NOBODY, PARITY, REPORT_DROPPED
+from innervate.networks.mesh.protocol.fields import FORWARDED, QUEUE
 from tests.mesh_bench import DEFAULTS, Frame, Node, Params
 from tests.mesh_net import Net, line
 

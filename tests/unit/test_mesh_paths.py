@@ -5,10 +5,14 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from innervate.protocol import mesh_fields, mesh_pack, mesh_paths, mesh_table, plain
-from innervate.protocol.mesh_fields import NEIGHBOURS
-from innervate.protocol.mesh_graph_jobs import fill_graph
-from innervate.protocol.mesh_search import is_edge
+from innervate.dialect import plain
+from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.mesh.protocol import pack as mesh_pack
+from innervate.networks.mesh.protocol import paths as mesh_paths
+from innervate.networks.mesh.protocol import table as mesh_table
+from innervate.networks.mesh.protocol.fields import NEIGHBOURS
+from innervate.networks.mesh.protocol.graph_jobs import fill_graph
+from innervate.networks.mesh.protocol.search import is_edge
 from tests.mesh_bench import DEFAULTS, Frame, Params
 
 FAR = NONE = 255

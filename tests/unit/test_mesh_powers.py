@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from innervate.sim.mesh import powers
+from innervate.sim.field import powers
 
 STRENGTHS = powers.strength_table()
 CHANCES = powers.chance_table()

@@ -4,7 +4,7 @@ from math import comb, e, exp, factorial, isclose, log
 
 import pytest
 
-from innervate.analysis import radio_formulas as forms
+from innervate.networks.radio.analysis import formulas as forms
 
 
 def test_reserved_round_of_five():

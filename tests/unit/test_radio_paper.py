@@ -2,7 +2,7 @@
 
 import pytest
 
-from innervate.protocol.radio_words import (
+from innervate.networks.radio.protocol.constants import (
     CRR,
     DATA,
     FORCE,

@@ -2,8 +2,8 @@
 
 import pytest
 
-from innervate.protocol import radio_paper
-from innervate.protocol.radio_words import (
+from innervate.networks.radio.protocol import paper as radio_paper
+from innervate.networks.radio.protocol.constants import (
     ACT,
     CRR,
     DATA,

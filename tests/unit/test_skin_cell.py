@@ -2,9 +2,9 @@
 
 import pytest
 
-from innervate.protocol.arith import MASK30
-from innervate.protocol.outbox import DELIVER, FLUSH, REPORT, SEND, SET_TIMER, URGENT
-from innervate.protocol.skin_words import (
+from innervate.dialect.arith import MASK30
+from innervate.dialect.outbox import DELIVER, FLUSH, REPORT, SEND, SET_TIMER, URGENT
+from innervate.networks.skin.protocol.constants import (
     DATA,
     DROP_LOOP,
     DROP_NO_ROUTE,

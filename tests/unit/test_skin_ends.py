@@ -2,9 +2,9 @@
 
 import pytest
 
-from innervate.protocol.arith import MASK30
-from innervate.protocol.outbox import DELIVER, SEND, SET_TIMER
-from innervate.protocol.skin_words import DATA, MEMORY_LOST, NONE, RESTART, SOON, TICK
+from innervate.dialect.arith import MASK30
+from innervate.dialect.outbox import DELIVER, SEND, SET_TIMER
+from innervate.networks.skin.protocol.constants import DATA, MEMORY_LOST, NONE, RESTART, SOON, TICK
 from tests.skin_bench import REAL, Box, OneCell, beacon, params_of, sink_state
 from tests.skin_net import Net
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from innervate.analysis import radio_formulas as forms
-from innervate.sim import slotted_draws as draws
-from innervate.sim.slotted import jain, slotted
-from innervate.sim.slotted_drive import BIANCHI_BASIC, BIANCHI_RTS, MACS, dcf_here
+from innervate.networks.radio.analysis import formulas as forms
+from innervate.networks.radio.slotted import draws as draws
+from innervate.networks.radio.slotted.drive import BIANCHI_BASIC, BIANCHI_RTS, MACS, dcf_here
+from innervate.networks.radio.slotted.model import jain, slotted
 
 WITHIN = 0.02
 

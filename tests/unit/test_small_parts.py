@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from innervate.protocol import arith, outbox, plain, rng, skin_fields
-from innervate.protocol.arith import HALF30, MASK30
+from innervate.dialect import arith, outbox, plain, rng
+from innervate.dialect.arith import HALF30, MASK30
+from innervate.networks.skin.protocol import fields as skin_fields
 
 CLOCK = st.integers(0, MASK30)
 NUMBER = st.integers(0, 65_535)

@@ -1,6 +1,7 @@
 """What tests of the explorer share."""
 
-from innervate.verify import skin_check, skin_system
+from innervate.networks.skin.verify import check as skin_check
+from innervate.networks.skin.verify import system as skin_system
 
 
 def parents_of(model, rows):

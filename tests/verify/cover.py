@@ -3,9 +3,14 @@
 from dataclasses import replace
 from itertools import product
 
-from innervate.protocol.skin_words import INFINITY
-from innervate.verify import explore, fair, retrace, skin_calm, skin_check, skin_row, skin_system
-from innervate.verify import skin_world as w
+from innervate.networks.skin.protocol.constants import INFINITY
+from innervate.networks.skin.verify import calm as skin_calm
+from innervate.networks.skin.verify import check as skin_check
+from innervate.networks.skin.verify import fair, retrace
+from innervate.networks.skin.verify import row as skin_row
+from innervate.networks.skin.verify import system as skin_system
+from innervate.networks.skin.verify import world as w
+from innervate.verify import explore
 from innervate.verify.twin import Twin
 
 

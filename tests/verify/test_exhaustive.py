@@ -2,8 +2,9 @@
 
 import pytest
 
-from innervate.verify import explore, fair, graphs
-from innervate.verify.skin_system import ANY, Budget, SkinModel
+from innervate.networks.skin.verify import fair, graphs
+from innervate.networks.skin.verify.system import ANY, Budget, SkinModel
+from innervate.verify import explore
 
 GIB = 1 << 30
 FAILURE_AND_LOSS = Budget(ticks=ANY, loss=1, cut=1, heal=0, false=0, restart=0, faults=2)

@@ -1,9 +1,10 @@
 import pytest
 
-from innervate.verify import explore, graphs
-from innervate.verify.cases import budget_of
+from innervate.networks.skin.verify import graphs
+from innervate.networks.skin.verify.cases import budget_of
+from innervate.networks.skin.verify.system import Budget, SkinModel, first_row, layout, system_of
+from innervate.verify import explore
 from innervate.verify.errors import VerifyError
-from innervate.verify.skin_system import Budget, SkinModel, first_row, layout, system_of
 from tests.verify.bench import parents_of
 
 SMALL = Budget(ticks=2, counts=2, faults=1)

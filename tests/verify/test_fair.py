@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from innervate.verify import cases, explore, fair, graphs, mutants
-from innervate.verify.skin_system import ANY, Budget, SkinModel
+from innervate.networks.skin.verify import cases, fair, graphs, mutants
+from innervate.networks.skin.verify.system import ANY, Budget, SkinModel
+from innervate.verify import explore
 
 FAULTY = Budget(ticks=2, counts=2, faults=2)
 

@@ -5,11 +5,12 @@ import tomllib
 import pytest
 
 from innervate import scenario
-from innervate.plot import counterexample
-from innervate.sim.simulate import InvariantBroken, simulate
-from innervate.verify import explore, graphs, retrace, story
-from innervate.verify.skin_system import ANY, Budget, SkinModel
-from innervate.verify.skin_world import BROKEN_LOOP
+from innervate.networks.skin.plot import counterexample
+from innervate.networks.skin.verify import graphs, retrace, story
+from innervate.networks.skin.verify.system import ANY, Budget, SkinModel
+from innervate.networks.skin.verify.world import BROKEN_LOOP
+from innervate.sim.cables.simulate import InvariantBroken, simulate
+from innervate.verify import explore
 
 # Every frame arrives before anything else happens, or is lost where the budget says so: these are
 # the smallest histories that [skin E25] prints.

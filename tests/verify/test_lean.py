@@ -2,9 +2,11 @@
 
 import pytest
 
-from innervate.verify import cases, explore, fair, graphs, mutants, skin_dead
-from innervate.verify.skin_system import Budget, SkinModel
-from innervate.verify.skin_world import BROKEN_LOOP
+from innervate.networks.skin.verify import cases, fair, graphs, mutants
+from innervate.networks.skin.verify import reduction as skin_dead
+from innervate.networks.skin.verify.system import Budget, SkinModel
+from innervate.networks.skin.verify.world import BROKEN_LOOP
+from innervate.verify import explore
 from tests.verify.cover import Cover
 
 ONE = Budget(ticks=1, counts=1, faults=1)

@@ -2,9 +2,10 @@
 
 import pytest
 
-from innervate.verify import mesh_model, mesh_search
-from innervate.verify.mesh_cases import DEATH_AND_ACK, QUICK, SHORT
-from innervate.verify.mesh_model import MeshBudget, MeshModel
+from innervate.networks.mesh.verify import model as mesh_model
+from innervate.networks.mesh.verify import search as mesh_search
+from innervate.networks.mesh.verify.cases import DEATH_AND_ACK, QUICK, SHORT
+from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
 
 TWICE = (("e2e_tries", 1), ("transmissions", 2))
 DEATH, CALM = MeshBudget(1, 0, 0, 0), MeshBudget(0, 0, 0, 0)

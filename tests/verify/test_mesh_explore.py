@@ -5,15 +5,20 @@ import random
 import pytest
 
 from innervate import scenario
-from innervate.plot import mesh_counterexample
-from innervate.protocol import mesh_words as words
-from innervate.run import mesh_replay
-from innervate.sim.mesh.simulate import simulate
-from innervate.verify import mesh_cases, mesh_fair, mesh_local, mesh_model, mesh_net, mesh_search
-from innervate.verify import mesh_story as story
+from innervate.networks.mesh.plot import counterexample as mesh_counterexample
+from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.verify import cases as mesh_cases
+from innervate.networks.mesh.verify import fair as mesh_fair
+from innervate.networks.mesh.verify import local as mesh_local
+from innervate.networks.mesh.verify import model as mesh_model
+from innervate.networks.mesh.verify import net as mesh_net
+from innervate.networks.mesh.verify import replay as mesh_replay
+from innervate.networks.mesh.verify import search as mesh_search
+from innervate.networks.mesh.verify import story as story
+from innervate.networks.mesh.verify.cases import SHORT
+from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
+from innervate.sim.field.simulate import simulate
 from innervate.verify.errors import VerifyError
-from innervate.verify.mesh_cases import SHORT
-from innervate.verify.mesh_model import MeshBudget, MeshModel
 
 NOTHING = MeshBudget(0, 0, 0, 0)
 LOST_ACK = MeshBudget(deaths=0, frames=0, acks=1)

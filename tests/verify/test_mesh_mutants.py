@@ -2,7 +2,9 @@
 
 import pytest
 
-from innervate.verify import mesh_mutants, mesh_search, mutants
+from innervate.networks.mesh.verify import mutants as mesh_mutants
+from innervate.networks.mesh.verify import search as mesh_search
+from innervate.networks.skin.verify import mutants
 
 QUICK = (
     "a hop's ack is ignored",

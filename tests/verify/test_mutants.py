@@ -2,7 +2,7 @@
 
 import pytest
 
-from innervate.verify import mutants
+from innervate.networks.skin.verify import mutants
 
 QUICK = (
     "the feasible distance is set once only",

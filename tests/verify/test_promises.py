@@ -2,9 +2,10 @@
 
 import pytest
 
-from innervate.verify import cases, graphs, mutants, promises
+from innervate.networks.skin.verify import assumptions as promises
+from innervate.networks.skin.verify import cases, graphs, mutants
+from innervate.networks.skin.verify.system import RULES, UPDATES, Budget, SkinModel
 from innervate.verify.errors import VerifyError
-from innervate.verify.skin_system import RULES, UPDATES, Budget, SkinModel
 
 
 def model(rule, updates):

@@ -2,11 +2,11 @@
 
 import pytest
 
-from innervate.run import radio_grid as grid
-from innervate.run import radio_mutants
-from innervate.run import radio_tree as tree
+from innervate.networks.radio.verify import grid as grid
+from innervate.networks.radio.verify import mutants as radio_mutants
+from innervate.networks.radio.verify import tree as tree
+from innervate.networks.skin.verify import mutants
 from innervate.run.errors import RunError
-from innervate.verify import mutants
 
 
 def test_a_grid_has_all_its_points():
@@ -16,7 +16,7 @@ def test_a_grid_has_all_its_points():
 
 def test_draws_fall_where_they_should():
     made = grid.Grid(stations=4, draws=2, parts=3)
-    from innervate.protocol import rng
+    from innervate.dialect import rng
 
     for parts, states in grid.seeds_of(made).items():
         assert len(set(states)) == 4

@@ -1,8 +1,11 @@
 """A skin that is settled stays so: a route may be right by a distance that is out of date."""
 
-from innervate.verify import graphs, skin_calm, skin_check, skin_system
-from innervate.verify import skin_world as w
-from innervate.verify.skin_system import Budget, SkinModel
+from innervate.networks.skin.verify import calm as skin_calm
+from innervate.networks.skin.verify import check as skin_check
+from innervate.networks.skin.verify import graphs
+from innervate.networks.skin.verify import system as skin_system
+from innervate.networks.skin.verify import world as w
+from innervate.networks.skin.verify.system import Budget, SkinModel
 from innervate.verify.twin import Twin
 
 X, Y, Q, C, PC = range(5)  # X and Y at the PC; X joined with Y, Q and C, and C with Q

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from innervate import scenario
+from innervate.networks.skin.view.scene import places
 from innervate.run import run
 from innervate.web import messages
 from innervate.web.errors import Refused, WatchError
 from innervate.web.history import LOG, SERIES, TIMELINE
 from innervate.web.simulated import Simulated
-from innervate.web.skin_scene import places
 from innervate.web.snapshot import Part, Snapshot, Teller
 from tests.web_runs import KINDS, MESH, RADIO, SKIN, go_to, simulated
 

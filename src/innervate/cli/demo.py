@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 
 from innervate.cli import errors, show
 from innervate.cli.running import simulate
-from innervate.plot import mesh_words, words
+from innervate.networks.mesh.plot import words as mesh_words
+from innervate.plot import words
 
 if TYPE_CHECKING:
-    from innervate.analysis.mesh_alarms import Crossing
+    from innervate.networks.mesh.analysis.alarms import Crossing
     from innervate.run import Run
 
 
@@ -149,8 +150,8 @@ def _mesh(seed: int | None, out: Path | None) -> Told:
 
 def _mesh_steps(run: Run) -> list[tuple[str, str]]:
     """What happened in the field, in order of time; after a crossing counted from it."""
-    from innervate.analysis.mesh_alarms import all_crossings
-    from innervate.analysis.mesh_messages import NEVER
+    from innervate.networks.mesh.analysis.alarms import all_crossings
+    from innervate.networks.mesh.analysis.messages import NEVER
 
     summary, plan = run.summary, run.plan
     steps: list[tuple[float, str, str]] = []

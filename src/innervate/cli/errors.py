@@ -33,8 +33,8 @@ _KNOWN = (
     ("innervate.web.errors", "WatchError", USERS),
     ("innervate.export.errors", "ExportError", USERS),
     ("cyclopts", "CycloptsError", USERS),
-    ("innervate.sim.simulate", "InvariantBroken", OURS),
-    ("innervate.analysis.frames", "FramesLost", OURS),
+    ("innervate.sim.cables.simulate", "InvariantBroken", OURS),
+    ("innervate.networks.skin.analysis.frames", "FramesLost", OURS),
 )
 
 

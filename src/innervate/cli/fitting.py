@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from innervate.cli.errors import say
-from innervate.export import files, fitting, measure, statuslog
+from innervate.export import files, fitting, measure
+from innervate.networks.mesh.export import statuslog
 
 
 def fit(capture: Path, out: Path | None) -> int:

@@ -92,7 +92,7 @@ def change(name: str, port: int, what: str) -> int:
 
 def medium(where: str, slot_us: int, turnaround_us: int) -> int:
     """Run a shared channel."""
-    from innervate.live import medium as room
+    from innervate.networks.radio.live import medium as room
 
     asyncio.run(room.run(where, slot_us, turnaround_us))
     return 0

@@ -6,7 +6,7 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 
-from innervate.export.recovery import Healing, recoveries
+from innervate.networks.skin.export.recovery import Healing, recoveries
 
 
 def show(path: Path, as_json: bool) -> int:

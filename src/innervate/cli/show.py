@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from innervate.cli import show_mesh, show_radio
+from innervate.networks.mesh import show as show_mesh
+from innervate.networks.radio import show as show_radio
 from innervate.plot import words
 
 if TYPE_CHECKING:

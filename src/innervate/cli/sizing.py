@@ -9,12 +9,12 @@ from innervate.cli import errors
 from innervate.cli.live_table import LiveTable
 
 if TYPE_CHECKING:
-    from innervate.sweep.sizing import Answer
+    from innervate.networks.skin.sizing import Answer
 
 
 def size(question: dict[str, Any], how: dict[str, Any]) -> int:
     """Answer how many interface ports a robot's skin needs, with a table and a picture."""
-    from innervate.sweep import sizing
+    from innervate.networks.skin import sizing
 
     ports = sizing.parse_ports(question.pop("ports"))
     asked = sizing.Question(ports=ports, **question)
@@ -36,7 +36,7 @@ def size(question: dict[str, Any], how: dict[str, Any]) -> int:
 def draw(answer: Answer, folder: Path) -> Path:
     """The picture in the sweep's folder, with the ports that the hardest rate needs."""
     from innervate import scenario as scenarios
-    from innervate.plot import sizing as figure
+    from innervate.networks.skin.plot import sizing as figure
     from innervate.plot import style
     from innervate.plot.words import number_of
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from innervate.cli.verify_options import VerifyOptions
-    from innervate.verify.cases import Case, Wanted
+    from innervate.networks.skin.verify.cases import Case, Wanted
 
 COMPILING = "compiling the explorer, once on this machine: about half a minute"
 
@@ -22,7 +22,7 @@ def skin(wanted: Wanted, as_json: bool, out: Path | None) -> int:
     """Explore what is wanted; 1 if something is broken."""
     from innervate.kernel import door
     from innervate.kernel.stop import Stop
-    from innervate.verify import cases
+    from innervate.networks.skin.verify import cases
 
     done: list[Case] = []
     with Display(as_json) as display, Stop() as stop:
@@ -100,7 +100,7 @@ def _verdict(done: list[Case]) -> str:
 
 def _write(case: Case, out: Path, number: int, quiet: bool) -> None:
     """Scenario, story and picture of a counterexample."""
-    from innervate.plot import counterexample
+    from innervate.networks.skin.plot import counterexample
 
     assert case.story is not None
     out.mkdir(parents=True, exist_ok=True)
@@ -134,7 +134,7 @@ def verify(system: str, options: VerifyOptions, as_json: bool, out: Path | None)
 
         wanted_mesh = verifying_mesh.wanted_of(options, _bytes(options.memory))
         return verifying_mesh.search(wanted_mesh, as_json, out)
-    from innervate.verify import cases
+    from innervate.networks.skin.verify import cases
 
     wanted = cases.Wanted(
         rules=_choices("rule", options.rule or "feasible", cases.RULES),
@@ -156,8 +156,9 @@ def verify(system: str, options: VerifyOptions, as_json: bool, out: Path | None)
 
 def _hunts(system: str) -> list[tuple[Any, Callable[[Any], Any]]]:
     """All mutants of a protocol, or of all three where none was named, and what hunts each."""
-    from innervate.run import radio_mutants
-    from innervate.verify import mesh_mutants, mutants
+    from innervate.networks.mesh.verify import mutants as mesh_mutants
+    from innervate.networks.radio.verify import mutants as radio_mutants
+    from innervate.networks.skin.verify import mutants
 
     rooms = {"skin": mutants, "mesh": mesh_mutants, "radio": radio_mutants}
     wanted = rooms if system == "skin" else {system: rooms[system]}

@@ -11,12 +11,13 @@ from innervate.cli.progress import Display
 
 if TYPE_CHECKING:
     from innervate.cli.verify_options import VerifyOptions
-    from innervate.verify.mesh_cases import MeshCase, MeshWanted
+    from innervate.networks.mesh.verify.cases import MeshCase, MeshWanted
 
 
 def wanted_of(options: VerifyOptions, memory: int) -> MeshWanted:
     """What the options of the command line ask for."""
-    from innervate.verify import mesh_cases, mesh_model
+    from innervate.networks.mesh.verify import cases as mesh_cases
+    from innervate.networks.mesh.verify import model as mesh_model
 
     known = mesh_model.FAILOVERS
     rule = options.rule
@@ -43,7 +44,7 @@ def wanted_of(options: VerifyOptions, memory: int) -> MeshWanted:
 def search(wanted: MeshWanted, as_json: bool, out: Path | None) -> int:
     """Explore what is wanted; 1 if something is broken."""
     from innervate.kernel.stop import Stop
-    from innervate.verify import mesh_cases
+    from innervate.networks.mesh.verify import cases as mesh_cases
 
     done: list[MeshCase] = []
     with Display(as_json) as display, Stop() as stop:
@@ -74,7 +75,7 @@ def search(wanted: MeshWanted, as_json: bool, out: Path | None) -> int:
 
 def case_lines(case: MeshCase) -> list[str]:
     """What came of one exploration."""
-    from innervate.verify.mesh_cases import text_of
+    from innervate.networks.mesh.verify.cases import text_of
 
     found, tally = case.found, case.found.tally
     cables = text_of(found.model.links)
@@ -115,8 +116,8 @@ def _verdict(done: list[MeshCase], broken: int) -> str:
 
 def _write(case: MeshCase, out: Path, number: int, quiet: bool) -> None:
     """Scenario, story and picture of a counterexample."""
-    from innervate.plot import mesh_counterexample
-    from innervate.run import mesh_replay
+    from innervate.networks.mesh.plot import counterexample as mesh_counterexample
+    from innervate.networks.mesh.verify import replay as mesh_replay
 
     assert case.story is not None
     out.mkdir(parents=True, exist_ok=True)

@@ -9,7 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from innervate.wire import crc, mesh, radio, skin
+from innervate.networks.mesh import frames as mesh
+from innervate.networks.radio import frames as radio
+from innervate.networks.skin import frames as skin
+from innervate.wire import crc
 from innervate.wire.layout import SPARE
 
 CRC_BYTES = 2

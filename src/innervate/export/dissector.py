@@ -10,10 +10,17 @@ from typing import Any
 import innervate
 from innervate.export import files
 from innervate.export.errors import ExportError
-from innervate.protocol import mesh_fields, mesh_words, radio_fields, skin_fields
-from innervate.protocol.radio_words import CRR, REPORT
-from innervate.wire import layout, mesh, mesh_payloads, radio, seal, skin
-from innervate.wire.meanings import MEANINGS
+from innervate.networks.mesh import frames as mesh
+from innervate.networks.mesh import payloads as mesh_payloads
+from innervate.networks.mesh.meanings import MEANINGS
+from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.radio import frames as radio
+from innervate.networks.radio.protocol import fields as radio_fields
+from innervate.networks.radio.protocol.constants import CRR, REPORT
+from innervate.networks.skin import frames as skin
+from innervate.networks.skin.protocol import fields as skin_fields
+from innervate.wire import layout, seal
 
 FILE = "innervate.lua"
 FLAGS = (

@@ -11,8 +11,8 @@ from innervate.export import capture
 from innervate.export.errors import ExportError
 from innervate.export.measure import measure
 from innervate.export.measured import Measured, Way
+from innervate.networks.mesh.scenario.profiles import PROFILES
 from innervate.scenario.emit import to_toml
-from innervate.scenario.mesh_profiles import PROFILES
 
 LATENCY_US_MAX = 100_000  # as scenarios have it
 DATA_MAX = 90

@@ -14,15 +14,19 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+from innervate.dialect import plain
 from innervate.export import links, pcapng
 from innervate.export.capture import DROPPED, WORDS
 from innervate.export.errors import ExportError
 from innervate.export.links import Place
 from innervate.export.measured import Flow, Measured, Way
 from innervate.export.reading import Capture, Packet
-from innervate.protocol import mesh_fields, mesh_words, plain, skin_words
+from innervate.networks.mesh import frames as mesh
+from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.skin import frames as skin
+from innervate.networks.skin.protocol import constants as skin_words
 from innervate.sim import taps
-from innervate.wire import mesh, skin
 from innervate.wire.bits import get
 from innervate.wire.layout import width
 

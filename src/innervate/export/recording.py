@@ -11,7 +11,9 @@ from typing import Any
 import innervate
 from innervate.export import files, scenes, schemas
 from innervate.export.scenes import Channel, Message, stamp
-from innervate.trace import mesh_tables, radio_tables, tables
+from innervate.networks.mesh import tables as mesh_tables
+from innervate.networks.radio import tables as radio_tables
+from innervate.trace import tables
 
 TABLES = {"skin": tables.TABLES, "mesh": mesh_tables.TABLES, "radio": radio_tables.TABLES}
 TOPICS = {"received": "/samples", "crossings": "/alarms"}  # others are called as their table

@@ -12,9 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from innervate.export import files, recording, rrd_mesh, rrd_skin
+from innervate.export import files, recording
 from innervate.export.errors import ExportError
 from innervate.export.rrd_parts import Column, Parts
+from innervate.networks.mesh.export import rrd as rrd_mesh
+from innervate.networks.skin.export import rrd as rrd_skin
 
 TIMELINE = "sim_time"
 WARNING = recording.WARNING

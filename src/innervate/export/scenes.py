@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from innervate.analysis.fence import position_cm
 from innervate.export import schemas
-from innervate.export.states import Point, States
+from innervate.networks.mesh.analysis.fence import position_cm
+from innervate.networks.skin.export.states import Point, States
 
 STEP_US = 100_000  # between two states
 FORCE_MAX_MN = 3000

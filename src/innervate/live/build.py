@@ -89,10 +89,10 @@ def keys_of(table: KeysTable, loaded: Loaded) -> dict[int, bytes]:
 
 
 def _mesh(loaded: Loaded) -> LiveNode:
-    from innervate.live.mesh import MeshStack
-    from innervate.live.messages import MeshNode
-    from innervate.live.order import Orderly
     from innervate.live.profile import fence_parameters, mesh_parameters
+    from innervate.networks.mesh.live.messages import MeshNode
+    from innervate.networks.mesh.live.order import Orderly
+    from innervate.networks.mesh.live.stack import MeshStack
 
     table = loaded.table
     assert table.nodes is not None
@@ -112,7 +112,7 @@ def _mesh(loaded: Loaded) -> LiveNode:
 
 def _skin(loaded: Loaded) -> LiveNode:
     from innervate.live.profile import skin_parameters
-    from innervate.live.skin import CellNode, CellStack, SinkNode, SinkStack
+    from innervate.networks.skin.live import CellNode, CellStack, SinkNode, SinkStack
 
     table, links, state = loaded.table, links_of(loaded), state_of(loaded)
     params = skin_parameters(dict(table.protocol), f"{loaded.path}")
@@ -131,9 +131,9 @@ def _skin(loaded: Loaded) -> LiveNode:
 
 
 def _radio(loaded: Loaded) -> LiveNode:
-    from innervate.live.medium import MediumRadio
     from innervate.live.profile import radio_parameters
-    from innervate.live.radio import RadioNode, StationStack, check_parameters
+    from innervate.networks.radio.live.medium import MediumRadio
+    from innervate.networks.radio.live.station import RadioNode, StationStack, check_parameters
 
     table, where = loaded.table, f"{loaded.path}"
     if len(table.link) != 1 or not isinstance(table.link[0], MediumTable):

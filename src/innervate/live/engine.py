@@ -8,8 +8,8 @@ from collections import Counter
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from innervate.protocol.arith import HALF30, MASK30
-from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER
+from innervate.dialect.arith import HALF30, MASK30
+from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
 
 OUTBOX = 32
 

@@ -12,13 +12,13 @@ from typing import Any
 from innervate.live import status, tap
 from innervate.live.build import build, keys_of
 from innervate.live.errors import LiveError
-from innervate.live.messages import MeshNode
 from innervate.live.metrics import MetricsPage
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import Loaded, address, load
-from innervate.live.receipts import FINAL
 from innervate.live.rotation import Rotation
-from innervate.live.skin import SinkNode
+from innervate.networks.mesh.live.messages import MeshNode
+from innervate.networks.mesh.live.receipts import FINAL
+from innervate.networks.skin.live import SinkNode
 
 # Makes the line that a listener gets of what came.
 Form = Callable[[Any], dict[str, Any]]

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from innervate.live.errors import LiveError
-from innervate.live.mesh import CLASSES
-from innervate.protocol import radio_fields, skin_fields
-from innervate.protocol.mesh_fields import NEIGHBOURS, PARAMS, POINTS, words
-from innervate.protocol.mesh_words import LIST, MONITOR, SEARCH, TABLES
-from innervate.protocol.skin_words import RULE_FEASIBLE, WAVE
+from innervate.networks.mesh.live.stack import CLASSES
+from innervate.networks.mesh.protocol.constants import LIST, MONITOR, SEARCH, TABLES
+from innervate.networks.mesh.protocol.fields import NEIGHBOURS, PARAMS, POINTS, words
+from innervate.networks.radio.protocol import fields as radio_fields
+from innervate.networks.skin.protocol import fields as skin_fields
+from innervate.networks.skin.protocol.constants import RULE_FEASIBLE, WAVE
 
 IP: dict[str, int] = {
     "mtu": 127, "mode": TABLES, "discovery": LIST, "failover": SEARCH, "avoid_origin": 0,

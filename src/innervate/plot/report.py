@@ -7,7 +7,9 @@ from html import escape
 from typing import Any, Protocol
 
 from innervate import scenario as scenarios
-from innervate.plot import mesh_report, radio_report, skin_report
+from innervate.networks.mesh.plot import report as mesh_report
+from innervate.networks.radio.plot import report as radio_report
+from innervate.networks.skin.plot import report as skin_report
 from innervate.plot.page import details, element, page, section, table
 
 

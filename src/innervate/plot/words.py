@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from innervate.protocol.skin_words import PORTS
-from innervate.scenario.plan import (
+from innervate.networks.skin.protocol.constants import PORTS
+from innervate.networks.skin.scenario.plan import (
     CUT,
     KILL,
     LOOSE,

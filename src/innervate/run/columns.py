@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from innervate.analysis import rows
-from innervate.protocol.skin_words import PORTS
+from innervate.networks.skin.analysis import rows
+from innervate.networks.skin.protocol.constants import PORTS
 from innervate.trace.tables import LINKS, LOOPS, OUTAGES, RECEIVED, ROUTES, Table
 
 Columns = dict[str, Any]

@@ -13,8 +13,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from innervate.networks.mesh import tables as mesh_tables
+from innervate.networks.radio import tables as radio_tables
 from innervate.run.errors import RunError
-from innervate.trace import mesh_tables, radio_tables, tables
+from innervate.trace import tables
 
 SCENARIO = "scenario.toml"
 SUMMARY = "summary.json"

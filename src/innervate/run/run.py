@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from innervate import scenario as scenarios
-from innervate.analysis.touch import WINDOW_S, Image, received_image
+from innervate.networks.skin.analysis.touch import WINDOW_S, Image, received_image
 from innervate.run import folder as folders
 from innervate.run.rooms import room_of
 from innervate.scenario import Scenario

@@ -2,14 +2,11 @@
 
 from typing import Any
 
-from innervate.scenario import mesh_planning, radio_planning
-from innervate.scenario.bundled import bundled
-from innervate.scenario.check import check, describe, summary
-from innervate.scenario.emit import dump, inline
-from innervate.scenario.errors import ScenarioError
-from innervate.scenario.load import Scenario, from_dict, load, loads, read
-from innervate.scenario.mesh_plan import MeshFault, MeshPlan
-from innervate.scenario.plan import (
+from innervate.networks.mesh.scenario import planning as mesh_planning
+from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan
+from innervate.networks.radio.scenario import planning as radio_planning
+from innervate.networks.radio.scenario.plan import RadioFault, RadioPlan
+from innervate.networks.skin.scenario.plan import (
     CUT,
     KILL,
     LOOSE,
@@ -20,11 +17,15 @@ from innervate.scenario.plan import (
     Fault,
     Plan,
 )
-from innervate.scenario.plan import plan as skin_planning
-from innervate.scenario.radio_plan import RadioFault, RadioPlan
+from innervate.networks.skin.scenario.plan import plan as skin_planning
+from innervate.networks.skin.scenario.touch import Touch
+from innervate.scenario.bundled import bundled
+from innervate.scenario.check import check, describe, summary
+from innervate.scenario.emit import dump, inline
+from innervate.scenario.errors import ScenarioError
+from innervate.scenario.load import Scenario, from_dict, load, loads, read
 from innervate.scenario.templates import measured as measured_template
 from innervate.scenario.templates import template
-from innervate.scenario.touch import Touch
 
 __all__ = [
     "CUT",

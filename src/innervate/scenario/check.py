@@ -5,10 +5,21 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 
-from innervate.scenario import mesh_planning, mesh_words, radio_planning, radio_words
+from innervate.networks.mesh.scenario import planning as mesh_planning
+from innervate.networks.mesh.scenario import words as mesh_words
+from innervate.networks.radio.scenario import planning as radio_planning
+from innervate.networks.radio.scenario import words as radio_words
+from innervate.networks.skin.scenario.plan import (
+    ACTIONS,
+    LOSS_ONE,
+    RULES,
+    UPDATES,
+    Fault,
+    Plan,
+    plan,
+)
 from innervate.scenario.load import Scenario, load
 from innervate.scenario.overrides import Override
-from innervate.scenario.plan import ACTIONS, LOSS_ONE, RULES, UPDATES, Fault, Plan, plan
 from innervate.topology import Graph
 
 EVENTS_SHOWN = 12

@@ -9,9 +9,9 @@ from typing import Any
 
 import msgspec
 
+from innervate.networks.mesh.scenario.nodes import import_path
 from innervate.scenario.bundled import FOLDER
 from innervate.scenario.load import Scenario
-from innervate.scenario.mesh_nodes import import_path
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 

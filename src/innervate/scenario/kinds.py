@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from innervate.scenario import mesh_rules, radio_rules, rules
-from innervate.scenario.mesh_model import MeshScenario
-from innervate.scenario.model import SkinScenario
-from innervate.scenario.radio_model import RadioScenario
+from innervate.networks.mesh.scenario import rules as mesh_rules
+from innervate.networks.mesh.scenario.model import MeshScenario
+from innervate.networks.radio.scenario import rules as radio_rules
+from innervate.networks.radio.scenario.model import RadioScenario
+from innervate.networks.skin.scenario import rules
+from innervate.networks.skin.scenario.model import SkinScenario
 from innervate.scenario.source import Source
 
 Model = SkinScenario | RadioScenario | MeshScenario

@@ -10,14 +10,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from innervate.networks.skin.scenario.model import SCHEMA
+from innervate.networks.skin.scenario.rules import check_kind
 from innervate.scenario.bundled import bundled
 from innervate.scenario.errors import ScenarioError
 from innervate.scenario.explain import convert, nearest
 from innervate.scenario.kinds import KINDS
 from innervate.scenario.lines import key_lines
-from innervate.scenario.model import SCHEMA
 from innervate.scenario.overrides import Override, apply
-from innervate.scenario.rules import check_kind
 from innervate.scenario.source import Source, check_plain, shown
 
 SIZE_MAX = 64 * 1024 * 1024

@@ -4,7 +4,7 @@ A node's clock reads `time + (time * rate >> 30) + offset` at true time `time` (
 drift in 2^-30 and `inverse` 2^60 / (2^30 + rate). Protocols see that reading modulo 2^30.
 """
 
-from innervate.protocol.arith import HALF30, MASK30
+from innervate.dialect.arith import HALF30, MASK30
 
 
 def timer_slot(world, node, timer):

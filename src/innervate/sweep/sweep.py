@@ -14,13 +14,13 @@ from innervate import scenario as scenarios
 from innervate.scenario import Scenario, ScenarioError
 from innervate.sweep import planfile, tables
 from innervate.sweep.base import PLAN_FILE, Source, base_of
-from innervate.sweep.conduct import Conductor
 from innervate.sweep.derive import Formula
 from innervate.sweep.engines import engine
 from innervate.sweep.errors import SweepError
 from innervate.sweep.jobs import FILE, Jobs
 from innervate.sweep.plan import REPEAT_MAX, SweepPlan
 from innervate.sweep.result import Sweep
+from innervate.sweep.scheduler import Conductor
 from innervate.sweep.until import parse as parse_until
 from innervate.sweep.vary import Axis, axis, parse
 from innervate.trace.provenance import checkout

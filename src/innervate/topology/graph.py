@@ -13,15 +13,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from innervate.topology.errors import TopologyError
-from innervate.topology.patch import (
-    CELLS_MAX,
-    NOTHING,
-    PORT_NAMES,
-    PORTS,
-    Patch,
-    port_number,
-    wire,
-)
+from innervate.topology.patch import CELLS_MAX, NOTHING, PORT_NAMES, PORTS, Patch, port_number, wire
 
 UNREACHABLE = -1
 

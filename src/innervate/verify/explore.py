@@ -11,8 +11,8 @@ import numpy as np
 
 from innervate.kernel import door, tables
 from innervate.kernel.wall import wall_s
+from innervate.networks.skin.verify import system as skin_system
 from innervate.verify import search as s
-from innervate.verify import skin_system
 from innervate.verify.errors import VerifyError
 
 MEMORY = 2 << 30

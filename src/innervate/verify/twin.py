@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from innervate.networks.skin.verify import system as skin_system
+from innervate.networks.skin.verify import world as w
 from innervate.verify import search as s
-from innervate.verify import skin_system
-from innervate.verify import skin_world as w
 from innervate.verify.explore import body_words
 
 

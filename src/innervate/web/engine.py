@@ -10,9 +10,9 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from innervate.kernel import door
-from innervate.sim import loop
-from innervate.sim.build import get, put
-from innervate.sim.simulate import InvariantBroken
+from innervate.sim.cables import loop
+from innervate.sim.cables.build import get, put
+from innervate.sim.cables.simulate import InvariantBroken
 
 Rows = dict[str, Any]
 

@@ -7,24 +7,24 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from innervate.scenario import LOSE
-from innervate.scenario.radio_plan import KILL, LEAVE
-from innervate.sim import build as skin_build
-from innervate.sim import loop as skin_loop
-from innervate.sim import simulate as skin
+from innervate.networks.mesh.sim import channel, stacks
+from innervate.networks.radio.scenario.plan import KILL, LEAVE
+from innervate.networks.skin.scenario.plan import LOSE
+from innervate.networks.skin.view.touching import Finger
 from innervate.sim import wheel
-from innervate.sim.build import get, put
-from innervate.sim.mesh import build as mesh_build
-from innervate.sim.mesh import channel, stacks
-from innervate.sim.mesh import loop as mesh_loop
-from innervate.sim.mesh import queue as mesh_queue
-from innervate.sim.mesh import simulate as mesh
-from innervate.sim.radio import build as radio_build
-from innervate.sim.radio import heap
-from innervate.sim.radio import simulate as radio
+from innervate.sim.cables import build as skin_build
+from innervate.sim.cables import loop as skin_loop
+from innervate.sim.cables import simulate as skin
+from innervate.sim.cables.build import get, put
+from innervate.sim.channel import build as radio_build
+from innervate.sim.channel import heap
+from innervate.sim.channel import simulate as radio
+from innervate.sim.field import build as mesh_build
+from innervate.sim.field import loop as mesh_loop
+from innervate.sim.field import queue as mesh_queue
+from innervate.sim.field import simulate as mesh
 from innervate.web.engine import Engine, Mark
 from innervate.web.errors import WatchError
-from innervate.web.touching import Finger
 
 CELLS_MAX = 20_000
 

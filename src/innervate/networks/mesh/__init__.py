@@ -1,0 +1,1 @@
+"""The mesh of robots and posts: routed messages, and a virtual fence on top."""

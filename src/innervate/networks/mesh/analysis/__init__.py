@@ -1,0 +1,1 @@
+"""What a run of a mesh comes to, in numbers."""

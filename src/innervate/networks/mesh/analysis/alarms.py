@@ -1,0 +1,150 @@
+"""Crossings of a mesh's fence: who noticed, when the monitor knew, how far the robot got."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from innervate.networks.mesh.analysis.fence import (
+    Edge,
+    crossings,
+    edges_of,
+    margin_cm,
+    overrun_cm,
+    position_cm,
+)
+from innervate.networks.mesh.analysis.messages import NEVER, patience_us, percentiles
+from innervate.networks.mesh.protocol.constants import ALARM, CROSS, FLOOD, PREDICT, REPORT_ALARM
+
+
+class Crossing(NamedTuple):
+    """A robot leaves the fence.
+
+    Attributes:
+        robot: its node.
+        crossed_us: when it truly did.
+        back_us: when it came back inside; the run's end if it did not.
+        raised_us: the sample at which somebody raised the alarm, NEVER if nobody did.
+        raised_by: who that was: the robot, or a witness of its beacon.
+        accepted_us: when the monitor's user had the first alarm of it, NEVER if it did not.
+        row: that delivery, in `result.delivered`; NEVER.
+        flooded: it came by the flood, not by the routed copy.
+        hops: transmissions on its way.
+        warned_us: when the monitor had been told that the robot was about to cross, NEVER.
+        overrun_m: greatest distance outside until the alarm was accepted, else until the robot
+            was back or the run ended.
+        open: not accepted, but too shortly before the run's end to say that it was lost.
+    """
+
+    robot: int
+    crossed_us: int
+    back_us: int
+    raised_us: int
+    raised_by: int
+    accepted_us: int
+    row: int
+    flooded: bool
+    hops: int
+    warned_us: int
+    overrun_m: float
+    open: bool
+
+
+def all_crossings(result: Any) -> list[Crossing]:
+    """Every crossing of a run, in order of time; none without a fence."""
+    plan = result.plan
+    edges = edges_of(plan)
+    if not edges:
+        return []
+    rows = result.rows[result.rows["code"] == REPORT_ALARM]
+    alarms = np.flatnonzero(result.delivered["kind"] == ALARM)
+    found = []
+    for walk in plan.walks:
+        told = alarms[result.delivered["body0"][alarms] == walk.node]
+        raised = rows[(rows["b"] == walk.node) & (rows["a"] == CROSS)]
+        episodes = _episodes(plan, edges, walk, result.ended_us)
+        for i, (out_us, back_us) in enumerate(episodes):
+            before = episodes[i - 1][1] if i else 0
+            until = episodes[i + 1][0] if i + 1 < len(episodes) else result.ended_us
+            spans = (before, out_us, back_us, until)
+            found.append(_crossing(result, edges, walk, spans, raised, told))
+    return sorted(found, key=lambda crossing: (crossing.crossed_us, crossing.robot))
+
+
+def _episodes(plan: Any, edges: list[Edge], walk: Any, until_us: int) -> list[tuple[int, int]]:
+    """(out, back) of every stay outside; what is out again before it was well inside is one stay.
+
+    The protocol calls a robot inside again from `clear_margin` on, so only then it can cross anew.
+    """
+    found: list[tuple[int, int]] = []
+    clear_cm = plan.params["clear_margin"] * plan.params["unit_cm"]
+    for crossing in crossings(edges, walk, until_us):
+        at = round(crossing.time_us)
+        if not crossing.outward:
+            if found:
+                found[-1] = (found[-1][0], at)
+        elif found and not _well_inside(plan, edges, walk, found[-1][1], at, clear_cm):
+            found[-1] = (found[-1][0], until_us)
+        else:
+            found.append((at, until_us))
+    return found
+
+
+def _well_inside(
+    plan: Any, edges: list[Edge], walk: Any, since_us: int, until_us: int, clear_cm: float
+) -> bool:
+    """True if at some sample in between the robot was inside by more than so much."""
+    return any(
+        margin_cm(edges, position_cm(walk, at)) > clear_cm
+        for at in range(since_us, until_us, plan.sample_us)
+    )
+
+
+def _crossing(
+    result: Any, edges: list[Edge], walk: Any, spans: tuple[int, int, int, int], raised: Any,
+    told: Any,
+) -> Crossing:  # fmt: skip
+    """One crossing; `spans`: end of the stay before, out, back, begin of the next stay."""
+    before, out_us, back_us, until = spans
+    first = raised[(raised["time"] >= out_us) & (raised["time"] < until)][:1]
+    rows = result.delivered
+    times, kinds = rows["time"][told], rows["body3"][told]
+    came = told[(kinds == CROSS) & (times >= out_us) & (times < until)][:1]
+    warned = told[(kinds == PREDICT) & (times >= before) & (times < out_us)][-1:]
+    accepted = int(rows["time"][came[0]]) if len(came) else NEVER
+    known = accepted if len(came) else min(back_us, result.ended_us)
+    return Crossing(
+        robot=walk.node,
+        crossed_us=out_us,
+        back_us=back_us,
+        raised_us=int(first["time"][0]) if len(first) else NEVER,
+        raised_by=int(first["node"][0]) if len(first) else NEVER,
+        accepted_us=accepted,
+        row=int(came[0]) if len(came) else NEVER,
+        flooded=bool(len(came) and rows["flags"][came[0]] & FLOOD),
+        hops=int(rows["path_len"][came[0]]) if len(came) else NEVER,
+        warned_us=int(rows["time"][warned[0]]) if len(warned) else NEVER,
+        overrun_m=overrun_cm(edges, walk, out_us, known) / 100,
+        open=not len(came) and out_us + patience_us(result.plan) > result.ended_us,
+    )
+
+
+def alarms(found: list[Crossing]) -> dict[str, Any]:
+    """The summary's part on alarms; a crossing that nobody noticed counts as not delivered."""
+    decided = [crossing for crossing in found if not crossing.open]
+    came = [crossing for crossing in decided if crossing.accepted_us != NEVER]
+    warned = [c for c in decided if c.warned_us != NEVER]
+    # One that was accepted was raised: nothing else makes a packet of it.
+    waited = [c.accepted_us - c.raised_us for c in came if c.raised_us != NEVER]
+    return {
+        "sent": len(decided),
+        "delivered": len(came),
+        "latency_ms": percentiles(waited, 1e-3),
+        "overrun_m": percentiles([crossing.overrun_m for crossing in decided]),
+        "noticed": sum(crossing.raised_us != NEVER for crossing in decided),
+        "by_witness": sum(c.raised_by not in (NEVER, c.robot) for c in decided),
+        "by_flood": sum(crossing.flooded for crossing in came),
+        "warned": len(warned),
+        "warning_ms": percentiles([c.crossed_us - c.warned_us for c in warned], 1e-3),
+    }

@@ -1,0 +1,278 @@
+"""What became of every message of a mesh run: offered, on its way, delivered, given up.
+
+An *offer* is a message handed to a node by its user; a broadcast is one too, but is not delivered
+to one node alone and therefore left out of ratios and latencies.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from innervate.networks.mesh.protocol.constants import (
+    ALL,
+    DATA,
+    NO_ACK,
+    NO_ROOM,
+    NO_ROUTE,
+    PUT_OUT,
+    REPORT_ACCEPTED,
+    REPORT_EXPIRED,
+    REPORT_FULL,
+)
+from innervate.networks.mesh.scenario.plan import KILL, RESTART, REVIVE
+
+Numbers = np.ndarray[Any, np.dtype[np.int64]]
+Flags = np.ndarray[Any, np.dtype[np.bool_]]
+
+NEVER = -1
+SETTLE_US = 1_000_000  # an unreliable message takes no longer
+SAME_US = 60_000_000  # the same number this much later is another packet
+HANDLES = 1 << 16
+REASONS = {NO_ROUTE: "no_route", NO_ACK: "no_ack", PUT_OUT: "put_out", NO_ROOM: "no_room"}
+
+# States of a message.
+DELIVERED, IN_FLIGHT, LOST, REFUSED, UNASKED = range(5)
+STATE_NAMES = ("delivered", "in flight", "lost", "refused", "sender off")
+
+
+class Messages(NamedTuple):
+    """Every offer of a run, in order of time, one entry each.
+
+    Attributes:
+        offered_us: when it was handed down.
+        node, dest: who sends, and to whom: 255 all, 254 the monitor.
+        flow: which [[flow]] of the scenario it belongs to.
+        seq: the number of its packet, NEVER if the node took none.
+        delivered_us: when it first came to its recipient's user, NEVER if it did not.
+        receiver: who that was.
+        hops: transmissions on the way of the copy that came first.
+        detoured: that copy met a node twice on its way.
+        state: DELIVERED, IN_FLIGHT (nobody gave it up when the run ended), LOST, REFUSED (the
+            node had no room or nobody to send it to), UNASKED (the node was switched off).
+        broadcast: to all.
+        young: offered so late that it could still be on its way when the run ended.
+    """
+
+    offered_us: Numbers
+    node: Numbers
+    dest: Numbers
+    flow: Numbers
+    seq: Numbers
+    delivered_us: Numbers
+    receiver: Numbers
+    hops: Numbers
+    detoured: Flags
+    state: Numbers
+    broadcast: Flags
+    young: Flags
+
+    def only(self, which: Any) -> Messages:
+        """Those of them that `which` chooses."""
+        return Messages(*(column[which] for column in self))
+
+
+def messages(result: Any) -> Messages:
+    """Every message that a run's users offered until its end."""
+    offers = [offer for offer in result.plan.offers if offer.at_us < result.ended_us]
+    at, node, dest, flow = (
+        np.array([getattr(offer, name) for offer in offers], np.int64)
+        for name in ("at_us", "node", "dest", "flow")
+    )
+    seq, answer = _accepted(result, at, node)
+    first = _first_deliveries(result, at, node, seq)
+    rows = result.delivered[np.maximum(first, 0)] if len(result.delivered) else None
+    came = first >= 0
+
+    def of_first(name: str) -> Numbers:
+        if rows is None:
+            return np.full(len(at), NEVER, np.int64)
+        found: Numbers = np.where(came, rows[name].astype(np.int64), NEVER)
+        return found
+
+    state = _states(result, at, came, answer)
+    return Messages(
+        offered_us=at,
+        node=node,
+        dest=dest,
+        flow=flow,
+        seq=seq,
+        delivered_us=of_first("time"),
+        receiver=of_first("node"),
+        hops=of_first("path_len"),
+        detoured=of_first("looped") == 1,
+        state=state,
+        broadcast=dest == ALL,
+        young=at + patience_us(result.plan) > result.ended_us,
+    )
+
+
+def _accepted(result: Any, at: Numbers, node: Numbers) -> tuple[Numbers, Numbers]:
+    """Per offer the seq it went out as, and the code of the node's answer (0: none)."""
+    rows = result.rows
+    answers = rows[(rows["code"] == REPORT_ACCEPTED) | (rows["code"] == REPORT_FULL)]
+    # A node answers in the handler call that hands the message down: at the very same time.
+    key = _key(answers["time"], answers["node"], answers["a"])
+    order = np.argsort(key, kind="stable")
+    wanted = _key(at, node, np.arange(len(at)) % HANDLES)
+    place = np.searchsorted(key[order], wanted)
+    seq, answer = np.full(len(at), NEVER, np.int64), np.zeros(len(at), np.int64)
+    if len(answers):
+        found = order[np.minimum(place, len(order) - 1)]
+        mine = key[found] == wanted
+        answer[mine] = answers["code"][found[mine]]
+        taken = mine & (answer == REPORT_ACCEPTED)
+        seq[taken] = answers["b"][found[taken]]
+    return seq, answer
+
+
+def _key(time: Any, node: Any, handle: Any) -> Numbers:
+    """One number of up to 2^37 us, 2^8 nodes and 2^16 handles."""
+    key: Numbers = np.asarray(time, np.int64) << 24
+    key = key | np.asarray(node, np.int64) << 16 | np.asarray(handle, np.int64)
+    return key
+
+
+def _first_deliveries(result: Any, at: Numbers, node: Numbers, seq: Numbers) -> Numbers:
+    """Per offer the row of its first delivery, NEVER if there is none."""
+    found = np.full(len(at), NEVER, np.int64)
+    rows = np.flatnonzero(result.delivered["kind"] == DATA)
+    given = result.delivered[rows]
+    offered = np.flatnonzero(seq >= 0)
+    if len(offered):
+        # The newest offer of that number which was there before it: numbers come round again.
+        name = node[offered] << 16 | seq[offered]
+        order = offered[np.lexsort((at[offered], name))]
+        names = node[order] << 16 | seq[order]
+        mine = given["origin"].astype(np.int64) << 16 | given["seq"]
+        last = _rank(names, at[order], mine, given["time"].astype(np.int64)) - 1
+        fits = last >= 0
+        fits[fits] = names[last[fits]] == mine[fits]
+        which = order[last[fits]]
+        # Backwards, so that the first of several is written last.
+        found[which[::-1]] = rows[fits][::-1]
+    # What a node sends to itself is handed back at once and has no number of its own.
+    own = {
+        (int(row["time"]), int(row["node"])): int(i)
+        for i, row in zip(rows, given, strict=True)
+        if row["node"] == row["origin"]
+    }
+    for i in np.flatnonzero(seq < 0).tolist() if own else ():
+        found[i] = own.get((int(at[i]), int(node[i])), NEVER)
+    return found
+
+
+def _rank(names: Numbers, times: Numbers, name: Numbers, time: Numbers) -> Numbers:
+    """How many of the pairs (name, time), sorted, are not behind each of the others."""
+    # Both halves of a key fit into 63 bits: 24 of a name, 37 of a time.
+    rank: Numbers = np.searchsorted(names << 37 | times, name << 37 | time, "right")
+    return rank
+
+
+def _states(result: Any, at: Numbers, came: Flags, answer: Numbers) -> Numbers:
+    state = np.full(len(at), LOST, np.int64)
+    state[at + patience_us(result.plan) > result.ended_us] = IN_FLIGHT
+    rows = result.rows[result.rows["code"] == REPORT_EXPIRED]
+    for row in rows:
+        # The offer of that handle which was there last.
+        newest = int(np.searchsorted(at, row["time"], "right")) - 1
+        given_up = newest - (newest - int(row["a"])) % HANDLES
+        if given_up >= 0:
+            state[given_up] = LOST
+    state[answer == REPORT_FULL] = REFUSED
+    state[answer == 0] = UNASKED
+    state[came] = DELIVERED
+    return state
+
+
+def patience_us(plan: Any) -> int:
+    """How long a message can be on its way before its sender gives it up, us."""
+    params = plan.params
+    again = params["e2e_us"] * (params["e2e_tries"] + 1) if params["reliable"] else 0
+    return max(SETTLE_US, int(again))
+
+
+def duplicates(result: Any) -> int:
+    """Deliveries of the same packet to the same user beyond the first.
+
+    The same: receiver, origin, type and number, while the origin was not switched on again.
+    """
+    rows = result.delivered
+    if len(rows) == 0:
+        return 0
+    boots = {node: [0] for node in range(result.plan.nodes)}
+    for fault in result.plan.faults:
+        if fault.action in (REVIVE, RESTART):
+            boots[fault.node].append(fault.at_us)
+    boot = np.zeros(len(rows), np.int64)
+    for node, starts in boots.items():
+        mine = rows["origin"] == node
+        boot[mine] = np.searchsorted(np.array(starts), rows["time"][mine], "right")
+    fields = [rows[name] for name in ("node", "origin", "kind", "seq")]
+    order = np.lexsort((rows["time"], boot, *fields))
+    same = np.ones(len(rows) - 1, np.bool_)
+    for column in (*fields, boot):
+        same &= column[order][1:] == column[order][:-1]
+    same &= np.diff(rows["time"][order]) < SAME_US
+    return int(np.count_nonzero(same))
+
+
+def give_ups(result: Any) -> dict[str, int]:
+    """How many messages their senders gave up or refused, by reason."""
+    rows = result.rows
+    found = dict.fromkeys(REASONS.values(), 0)
+    for code in (REPORT_EXPIRED, REPORT_FULL):
+        for reason in rows["b"][rows["code"] == code].tolist():
+            name = REASONS.get(reason, f"reason_{reason}")
+            found[name] = found.get(name, 0) + 1
+    return found
+
+
+def percentiles(values: Any, scale: float = 1.0) -> dict[str, float | None]:
+    """Median, 99th percentile and maximum; None where there is nothing."""
+    found = np.asarray(values, np.float64)
+    if len(found) == 0:
+        return {"p50": None, "p99": None, "max": None}
+    p50, p99 = (scale * np.percentile(found, (50, 99))).tolist()
+    return {"p50": p50, "p99": p99, "max": scale * float(found.max())}
+
+
+def ratio(part: int, whole: int) -> float | None:
+    """A share; None of nothing."""
+    return part / whole if whole else None
+
+
+def counted(found: Messages) -> Messages:
+    """What a delivery ratio is made of: to one node, by a node that was on, and decided.
+
+    If some are still on their way at the end, all that are as young are left out: only the fast
+    ones among them would count.
+    """
+    asked = found.only(~found.broadcast & (found.state != UNASKED))
+    undecided = bool((asked.state == IN_FLIGHT).any())
+    return asked.only(~asked.young) if undecided else asked
+
+
+def delivery_ratio(found: Messages) -> float | None:
+    """The share of messages that were delivered, see counted()."""
+    decided = counted(found)
+    return ratio(int(np.count_nonzero(decided.state == DELIVERED)), len(decided.state))
+
+
+def latencies_us(found: Messages) -> Numbers:
+    """From offer to first delivery, us, of every message to one node that was delivered."""
+    which = (found.state == DELIVERED) & ~found.broadcast
+    waited: Numbers = found.delivered_us[which] - found.offered_us[which]
+    return waited
+
+
+def first_after(found: Messages, since_us: int) -> Messages:
+    """The first message of every sender from a time on."""
+    late = counted(found.only(found.offered_us >= since_us))
+    return late.only(np.sort(np.unique(late.node, return_index=True)[1]))
+
+
+def deaths_us(plan: Any) -> list[int]:
+    """When nodes were switched off, in order."""
+    return [fault.at_us for fault in plan.faults if fault.action == KILL]

@@ -1,0 +1,184 @@
+"""How a mesh came to know itself: discovery rounds, tables, gateways; what it cost on the air."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from innervate.networks.mesh.analysis.paths import Ground
+from innervate.networks.mesh.protocol.constants import (
+    ACK,
+    ACTIVATE,
+    ALARM,
+    DATA,
+    E2E_ACK,
+    GRAPH,
+    POSITION,
+    REPORT_GATEWAY,
+    REPORT_GRAPH,
+    REPORT_ROUND,
+    REPORT_SUSPECT,
+    REPORT_TABLE,
+    REQUEST,
+    RESPONSE,
+    TABLE,
+    TABLE_ACK,
+    TABLE_FREE,
+)
+from innervate.networks.mesh.scenario.plan import KILL, RESTART
+
+Numbers = np.ndarray[Any, np.dtype[np.int64]]
+
+FINDING = (REQUEST, RESPONSE)
+TABLING = (TABLE, TABLE_ACK, ACTIVATE, GRAPH)
+CONTROL = (*FINDING, *TABLING)
+# What airtime is spent on; an ack of a hop belongs to the packet that it acknowledges.
+USES = {
+    "discovery": FINDING,
+    "tables": TABLING,
+    "messages": (DATA, E2E_ACK),
+    "alarms": (ALARM,),
+    "beacons": (POSITION,),
+}
+
+
+def acked_kinds(sent: Any) -> Numbers:
+    """Per transmission its type; of an ack the type of the packet that it acknowledges.
+
+    An ack names its packet by origin and number; one of nothing that was sent stays an ACK.
+    """
+    kinds: Numbers = sent["kind"].astype(np.int64)
+    name = sent["origin"].astype(np.int64) << 16 | sent["seq"]
+    packets = np.flatnonzero(kinds != ACK)
+    acks = np.flatnonzero(kinds == ACK)
+    if len(packets) == 0 or len(acks) == 0:
+        return kinds
+    order = packets[np.lexsort((sent["end"][packets], name[packets]))]
+    key = name[order] << 37 | sent["end"][order]
+    # The newest packet of that name on the air before: numbers come round again.
+    last = np.searchsorted(key, name[acks] << 37 | sent["time"][acks], "right") - 1
+    fits = last >= 0
+    fits[fits] = name[order[last[fits]]] == name[acks[fits]]
+    kinds[acks[fits]] = kinds[order[last[fits]]]
+    return kinds
+
+
+def airtime_us(sent: Any) -> Numbers:
+    """How long each transmission was on the air."""
+    found: Numbers = sent["end"] - sent["time"]
+    return found
+
+
+def discovery(result: Any, kinds: Numbers) -> dict[str, Any]:
+    """The summary's part on the first discovery round; `kinds` as acked_kinds() has them."""
+    rows = result.rows
+    begun = rows["time"][rows["code"] == REPORT_ROUND]
+    if len(begun) == 0:
+        return dict.fromkeys(
+            ("recall", "complete_s", "tables_s", "airtime_s", "rounds", "responses_s",
+             "tables_airtime_s", "with_tables"),
+        )  # fmt: skip
+    first, ended = int(begun[0]), int(begun[1]) if len(begun) > 1 else result.ended_us
+    graphs = rows["time"][rows["code"] == REPORT_GRAPH]
+    sent, spent = result.sent, airtime_us(result.sent)
+    round_ = (sent["time"] >= first) & (sent["time"] < ended)
+    answers = sent["end"][round_ & (sent["kind"] == RESPONSE) & (sent["receivers"] > 0)]
+    collected = int(graphs[0]) if len(graphs) else None
+    in_time = answers[answers <= collected] if collected is not None else answers
+    known = result.rounds[:1]
+    tabled, done_us = tables(result, first)
+    return {
+        "recall": float(known["both"][0] / known["good"][0])
+        if len(known) and known["good"][0]
+        else None,
+        "complete_s": (collected - first) / 1e6 if collected is not None else None,
+        "tables_s": (done_us - first) / 1e6 if done_us is not None else None,
+        "airtime_s": float(spent[round_ & np.isin(kinds, FINDING)].sum() / 1e6),
+        "rounds": len(begun),
+        "responses_s": (int(in_time.max()) - first) / 1e6 if len(in_time) else None,
+        "tables_airtime_s": float(spent[round_ & np.isin(kinds, TABLING)].sum() / 1e6),
+        "with_tables": tabled,
+    }
+
+
+def tables(result: Any, since_us: int) -> tuple[int | None, int | None]:
+    """(nodes that got a whole table from a time on, when the last of them did).
+
+    The second is None if one that was on all the time never got one; both without tables.
+    """
+    plan, rows = result.plan, result.rows
+    if plan.params["mode"] == TABLE_FREE:
+        return None, None
+    made = rows[(rows["code"] == REPORT_TABLE) & (rows["time"] >= since_us)]
+    nodes, first = np.unique(made["node"], return_index=True)
+    leads = set(rows["node"][rows["code"] == REPORT_ROUND].tolist())
+    off = {fault.node for fault in plan.faults if fault.action in (KILL, RESTART)}
+    off |= {node for node in range(plan.nodes) if plan.absent[node]}
+    missing = set(range(plan.nodes)) - set(nodes.tolist()) - off - leads
+    if missing or not len(nodes):
+        return len(nodes), None
+    return len(nodes), int(made["time"][first].max())
+
+
+def gateways(result: Any) -> list[dict[str, Any]]:
+    """Who became gateway, when; and how long later the last node had tables of its epoch."""
+    rows = result.rows
+    led = rows[(rows["code"] == REPORT_GATEWAY) & (rows["a"] == rows["node"])]
+    made = rows[rows["code"] == REPORT_TABLE]
+    ground = Ground(result.plan)
+    found = []
+    for row in led:
+        at, epoch = int(row["time"]), int(row["b"])
+        mine = made[(made["b"] == epoch) & (made["time"] >= at)]
+        on = {node for node, there in enumerate(ground.on_at(at)) if there} - {int(row["node"])}
+        nodes, first = np.unique(mine["node"], return_index=True)
+        served = on <= set(nodes.tolist()) and len(nodes)
+        found.append({
+            "node": int(row["node"]),
+            "at_s": at / 1e6,
+            "epoch": epoch,
+            "tables_s": (int(mine["time"][first].max()) - at) / 1e6 if served else None,
+        })  # fmt: skip
+    return found
+
+
+def takeover_s(result: Any, led: list[dict[str, Any]]) -> float | None:
+    """From the first death of a gateway to complete tables of its successor; None without."""
+    for fault in result.plan.faults:
+        before = [gateway for gateway in led if gateway["at_s"] * 1e6 <= fault.at_us]
+        after = [gateway for gateway in led if gateway["at_s"] * 1e6 > fault.at_us]
+        leading = before and before[-1]["node"] == fault.node
+        if fault.action == KILL and leading and after and after[0]["tables_s"] is not None:
+            return float(after[0]["at_s"] + after[0]["tables_s"] - fault.at_us / 1e6)
+    return None
+
+
+def airtime(result: Any, kinds: Numbers) -> dict[str, Any]:
+    """Seconds on the air by use, and the busiest node's share of the run."""
+    sent, spent = result.sent, airtime_us(result.sent)
+    found: dict[str, Any] = {
+        f"{use}_s": float(spent[np.isin(kinds, members)].sum() / 1e6)
+        for use, members in USES.items()
+    }
+    each = np.bincount(sent["node"], spent, result.plan.nodes)
+    found["busiest"] = int(each.argmax())
+    found["busiest_share"] = float(each.max() / result.ended_us)
+    return found
+
+
+def control_bytes(result: Any, kinds: Numbers) -> int:
+    """Bytes of discovery and tables on the air, acks of hops included, without PHY bytes."""
+    return int(result.sent["bytes"][np.isin(kinds, CONTROL)].sum())
+
+
+def suspects(result: Any) -> dict[str, int]:
+    """How often nodes gave up on a neighbour; `wrong`: one that was switched on."""
+    rows = result.rows[result.rows["code"] == REPORT_SUSPECT]
+    ground = Ground(result.plan)
+    wrong = 0
+    for low, high in zip(ground.times, [*ground.times[1:], 1 << 62], strict=True):
+        on = np.array(ground.on_at(low), np.bool_)
+        part = rows[(rows["time"] >= low) & (rows["time"] < high)]
+        wrong += int(np.count_nonzero(on[part["a"]]))
+    return {"raised": len(rows), "wrong": wrong}

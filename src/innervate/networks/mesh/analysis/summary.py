@@ -1,0 +1,219 @@
+"""The summary of a mesh run: what a person wants to know of it, as plain numbers and words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from innervate.networks.mesh.analysis import network as network
+from innervate.networks.mesh.analysis.alarms import alarms, all_crossings
+from innervate.networks.mesh.analysis.messages import (
+    DELIVERED,
+    IN_FLIGHT,
+    LOST,
+    NEVER,
+    REFUSED,
+    STATE_NAMES,
+    Messages,
+    counted,
+    deaths_us,
+    delivery_ratio,
+    duplicates,
+    first_after,
+    give_ups,
+    latencies_us,
+    messages,
+    percentiles,
+    ratio,
+)
+from innervate.networks.mesh.analysis.paths import UNREACHABLE, Ground
+from innervate.networks.mesh.protocol.constants import ALARM, ALL, DATA, FLOOD, MONITOR, PARITY
+from innervate.sim.cables.build import get
+
+__all__ = ["alternates", "connected", "flows", "looped", "stretch", "summarize"]
+
+NONE = 255  # no next hop, no alternate
+
+
+def summarize(result: Any) -> dict[str, Any]:
+    """The summary of a run; what never happened is None.
+
+    Args:
+        result: of `sim.mesh.simulate`, with its rows kept.
+    """
+    plan, counts = result.plan, result.counts
+    events = counts["handled"] + counts["arrived"]
+    found = messages(result)
+    kinds = network.acked_kinds(result.sent)
+    led = network.gateways(result)
+    ground = Ground(plan)
+    summary = {
+        "kind": plan.kind,
+        "name": plan.scenario.name,
+        "seed": plan.seed,
+        "duration_s": plan.duration_us / 1e6,
+        "events": events,
+        "events_per_s": round(events / result.wall_s) if result.wall_s > 0 else None,
+        "wall_s": round(result.wall_s, 6),
+        "fingerprint": result.fingerprint,
+        "nodes": plan.nodes,
+        "links": len(plan.good),
+        "discovery": network.discovery(result, kinds),
+        "delivery_ratio": delivery_ratio(found),
+        "latency_ms": percentiles(latencies_us(found), 1e-3),
+        "alarms": alarms(all_crossings(result)),
+        "duplicates": duplicates(result),
+        "looped": looped(result),
+        "control_bytes": network.control_bytes(result, kinds),
+        "messages": _counts(found),
+        "connected": connected(found, ground),
+        "after_deaths": _after_deaths(found, ground),
+        "flows": flows(found, plan),
+        "stretch": stretch(found, ground),
+        "alternates": alternates(result),
+        "gateways": led,
+        "takeover_s": network.takeover_s(result, led),
+        "airtime": network.airtime(result, kinds),
+        "give_ups": give_ups(result),
+        "suspects": network.suspects(result),
+    }
+    if result.interrupted:
+        summary["interrupted_at_s"] = result.ended_us / 1e6
+    return summary
+
+
+def _counts(found: Messages) -> dict[str, int]:
+    """Messages to one node by what became of them; broadcasts apart."""
+    single = found.only(~found.broadcast)
+    counts = np.bincount(single.state, minlength=len(STATE_NAMES)).tolist()
+    return {
+        "offered": len(single.state),
+        "delivered": counts[DELIVERED],
+        "in_flight": counts[IN_FLIGHT],
+        "lost": counts[LOST],
+        "refused": counts[REFUSED],
+        "sender_off": counts[-1],
+        "counted": len(counted(found).state),
+        "broadcasts": int(np.count_nonzero(found.broadcast)),
+    }
+
+
+def _is_connected(found: Messages, ground: Ground) -> Any:
+    """Per message, whether good links joined its sender to its recipient when it was offered."""
+    plan = ground.plan
+    monitor = plan.params["monitor"]
+    monitor = plan.ranks.index(0) if monitor == MONITOR else monitor
+    ends = zip(
+        found.node.tolist(), found.dest.tolist(), found.receiver.tolist(),
+        found.offered_us.tolist(), strict=True,
+    )  # fmt: skip
+    return np.array(
+        [
+            ground.hops(node, _recipient(dest, receiver, monitor), at) != UNREACHABLE
+            for node, dest, receiver, at in ends
+        ],
+        np.bool_,
+    )
+
+
+def _recipient(dest: int, receiver: int, monitor: int) -> int:
+    if dest != MONITOR:
+        return dest
+    return monitor if receiver == NEVER else receiver
+
+
+def connected(found: Messages, ground: Ground) -> dict[str, Any]:
+    """Messages whose sender and recipient were joined by good links of nodes that were on."""
+    decided = counted(found)
+    joined = decided.only(_is_connected(decided, ground))
+    came = int(np.count_nonzero(joined.state == DELIVERED))
+    return {
+        "sent": len(joined.state),
+        "delivered": came,
+        "delivery_ratio": ratio(came, len(joined.state)),
+    }
+
+
+def _after_deaths(found: Messages, ground: Ground) -> dict[str, Any] | None:
+    """The first message of every connected sender after the last death; None without deaths."""
+    died = deaths_us(ground.plan)
+    if not died:
+        return None
+    first = connected(first_after(found, died[-1]), ground)
+    later = connected(found.only(found.offered_us >= died[-1]), ground)
+    return {"first": first, "all": later}
+
+
+def flows(found: Messages, plan: Any) -> list[dict[str, Any]]:
+    """Per [[flow]] of the scenario: how many messages, delivered, how fast."""
+    rows = []
+    for flow in sorted({offer.flow for offer in plan.offers}):
+        mine = found.only(found.flow == flow)
+        rows.append({
+            "flow": flow,
+            **_counts(mine),
+            "delivery_ratio": delivery_ratio(mine),
+            "latency_ms": percentiles(latencies_us(mine), 1e-3),
+        })  # fmt: skip
+    return rows
+
+
+def looped(result: Any) -> int:
+    """Packets that visited a node twice on their way, whether they came or not.
+
+    A node has a packet again if it passes it on with another length of its path. A retry of its
+    origin comes by later, or with the other parity.
+    """
+    sent = result.sent
+    routed = np.isin(sent["kind"], (DATA, ALARM)) & (sent["flags"] & FLOOD == 0)
+    sent = sent[routed & (sent["link_dst"] != ALL)]
+    parity = sent["flags"] & PARITY
+    fields = [sent[name] for name in ("origin", "seq", "kind", "node")] + [parity]
+    order = np.lexsort((sent["time"], *fields))
+    again = np.ones(max(len(sent) - 1, 0), np.bool_)
+    for column in fields:
+        again &= column[order][1:] == column[order][:-1]
+    again &= np.diff(sent["path_len"][order].astype(np.int64)) != 0
+    again &= np.diff(sent["time"][order]) < result.plan.params["e2e_us"]
+    met = sent[order][1:][again] if len(sent) else sent
+    told = result.delivered[result.delivered["looped"] == 1]
+    return len({
+        (int(row["origin"]), int(row["kind"]), int(row["seq"]))
+        for rows in (met, told)
+        for row in rows
+    })  # fmt: skip
+
+
+def stretch(found: Messages, ground: Ground) -> dict[str, float | None]:
+    """Hops taken over hops of the shortest path there was, of the messages delivered."""
+    came = found.only((found.state == DELIVERED) & ~found.broadcast & (found.hops > 0))
+    shares = []
+    for node, receiver, at, hops in zip(
+        came.node.tolist(), came.receiver.tolist(), came.offered_us.tolist(), came.hops.tolist(),
+        strict=True,
+    ):  # fmt: skip
+        least = ground.hops(node, receiver, at)
+        if least > 0:
+            shares.append(hops / least)
+    mean = float(np.mean(shares)) if shares else None
+    hops = float(came.hops.mean()) if len(came.hops) else None
+    return {"mean": mean, "p99": percentiles(shares)["p99"], "hops_mean": hops}
+
+
+def alternates(result: Any) -> float | None:
+    """Share of the destinations in tables that have an alternate next hop, at the end."""
+    plan, world = result.plan, result.world
+    width = plan.params["width"]
+    ways = spare = 0
+    for node in range(plan.nodes):
+        if get(world.nodes, node, "version") == 0:
+            continue
+        bank = int(get(world.nodes, node, "bank")) * width
+        near, alt = (
+            np.asarray(get(world.nodes, node, name))[bank : bank + plan.nodes]
+            for name in ("next", "alt")
+        )
+        ways += int(np.count_nonzero(near != NONE))
+        spare += int(np.count_nonzero((near != NONE) & (alt != NONE)))
+    return ratio(spare, ways)

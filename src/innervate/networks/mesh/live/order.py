@@ -1,0 +1,203 @@
+"""Messages in the order in which they were sent: held back until those before them are here.
+
+A message of a sender that wants order names the one before it to the same recipient. Numbers are
+the router's, of 16 bits; those between them went to others.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import Counter
+from collections.abc import Callable
+from typing import NamedTuple
+
+from innervate.dialect.arith import MASK16, later
+from innervate.live.engine import clock_us
+
+WAIT_US = 10_000_000  # a message is rarely tried longer; at most 26 s
+BUFFER = 256
+BEFORE_BYTES = 2  # in front of the payload: the number of the message before
+
+# Takes the sender's number and the payload.
+Callback = Callable[[int, bytes], None]
+
+
+class Message(NamedTuple):
+    """A message that was received.
+
+    Attributes:
+        sender: who sent it.
+        seq: its number.
+        before: the number of the one before it, `seq` = there is none; None = order is no matter.
+        payload: what it says.
+    """
+
+    sender: int
+    seq: int
+    before: int | None
+    payload: bytes
+
+
+class Held(NamedTuple):
+    """A message that waits for one before it.
+
+    Attributes:
+        seq: its number.
+        before: the number of the one before it.
+        due: when it waits no longer, us.
+        payload: what it says.
+    """
+
+    seq: int
+    before: int
+    due: int
+    payload: bytes
+
+
+class Order:
+    """Puts the messages of one sender in order.
+
+    Args:
+        last: the newest one that was handed up already, None = nothing was heard of this sender.
+        wait_us: how long a message waits for one before it.
+        buffer: how many may wait.
+
+    Attributes:
+        late: messages that came when those behind them had been handed up: they are dropped.
+    """
+
+    def __init__(self, last: int | None, wait_us: int = WAIT_US, buffer: int = BUFFER) -> None:
+        self.last = last
+        self.wait_us = wait_us
+        self.buffer = buffer
+        self.late = 0
+        self.held: list[Held] = []
+
+    def take(self, seq: int, before: int, payload: bytes, now: int) -> list[bytes]:
+        """A message came; what may be handed up now. `before == seq`: its sender begins anew."""
+        ready: list[bytes] = []
+        if before == seq:
+            old = [one for one in self.held if self._is_before(one.seq, seq)]
+            self.held = [one for one in self.held if one not in old]
+            ready += [one.payload for one in _in_turn(old, old[0].seq)] if old else []
+        elif before != self.last:
+            if self.last is not None and not later(seq, self.last):
+                self.late += 1
+                return ready
+            self.held.append(Held(seq, before, now + self.wait_us, payload))
+            return self._skip() if len(self.held) > self.buffer else ready
+        self.last = seq
+        ready.append(payload)
+        return ready + self._follow()
+
+    def release(self, now: int) -> list[bytes]:
+        """What has waited long enough, with all that can follow it."""
+        ready: list[bytes] = []
+        while self.held and self.due() <= now:
+            ready += self._skip()
+        return ready
+
+    def due(self) -> int:
+        """When somebody has waited long enough, us; only while messages are held."""
+        return min(one.due for one in self.held)
+
+    def _is_before(self, seq: int, anew: int) -> bool:
+        """True if a message is of the time before its sender began anew with number `anew`."""
+        if self.last is None:
+            return bool(later(seq, anew) == 0)
+        ahead, ahead_anew = ((seq - number) & MASK16 for number in (self.last, anew))
+        return bool(ahead < ahead_anew)
+
+    def _skip(self) -> list[bytes]:
+        """Whatever is missing is not waited for any longer: the oldest one that waits goes up."""
+        first = _in_turn(self.held, self.held[0].seq)[0]
+        self.held.remove(first)
+        self.last = first.seq
+        return [first.payload, *self._follow()]
+
+    def _follow(self) -> list[bytes]:
+        """What has waited for the one that was handed up last."""
+        ready = []
+        while found := [one for one in self.held if one.before == self.last]:
+            self.held.remove(found[0])
+            self.last = found[0].seq
+            ready.append(found[0].payload)
+        return ready
+
+
+class Orderly:
+    """Hands messages up in order, sender by sender.
+
+    Args:
+        wait_us: how long a message waits for one before it.
+        buffer: how many may wait, per sender.
+
+    Attributes:
+        callbacks: who is handed them.
+    """
+
+    def __init__(self, wait_us: int = WAIT_US, buffer: int = BUFFER) -> None:
+        self.wait_us = wait_us
+        self.buffer = buffer
+        self.callbacks: list[Callback] = []
+        self._orders: dict[int, Order] = {}
+        self._newest: dict[int, int] = {}
+        self._again: asyncio.TimerHandle | None = None
+
+    def take(self, message: Message) -> None:
+        """A message came; callbacks are called for whatever it sets free."""
+        sender, seq, before, payload = message
+        if before is None:
+            self._hand_up(sender, [payload])
+            return
+        if not self.callbacks:  # nobody wants order yet
+            self._orders.pop(sender, None)
+            self._newest[sender] = seq
+            return
+        order = self._orders.get(sender)
+        if order is None:
+            last = self._newest.get(sender)
+            order = self._orders[sender] = Order(last, self.wait_us, self.buffer)
+        self._hand_up(sender, order.take(seq, before, payload, clock_us()))
+        self._arm()
+
+    def stop(self) -> None:
+        """Nothing is waited for any more."""
+        if self._again is not None:
+            self._again.cancel()
+            self._again = None
+        for sender, order in self._orders.items():
+            self._hand_up(sender, order.release(clock_us() + self.wait_us))
+
+    def held(self) -> int:
+        """Messages that wait for one before them."""
+        return sum(len(order.held) for order in self._orders.values())
+
+    def counters(self) -> Counter[str]:
+        """Messages that came after their turn."""
+        late = sum(order.late for order in self._orders.values())
+        return Counter({"dropped: after its turn": late} if late else {})
+
+    def _arm(self) -> None:
+        if self._again is not None:
+            return
+        due = [order.due() for order in self._orders.values() if order.held]
+        if due:
+            wait_s = max(0, min(due) - clock_us()) / 1e6
+            self._again = asyncio.get_running_loop().call_later(wait_s, self._release)
+
+    def _release(self) -> None:
+        self._again = None
+        for sender, order in list(self._orders.items()):
+            self._hand_up(sender, order.release(clock_us()))
+        self._arm()
+
+    def _hand_up(self, sender: int, payloads: list[bytes]) -> None:
+        for payload in payloads:
+            for callback in self.callbacks:
+                callback(sender, payload)
+
+
+def _in_turn(held: list[Held], near: int) -> list[Held]:
+    """Held messages by number, which may run over 65535; `near` is one that is not far off."""
+    return sorted(held, key=lambda one: (one.seq - near + 32_768) & MASK16)

@@ -1,0 +1,167 @@
+"""The mesh on live links: a node's records bound to the router's functions."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Any
+
+from innervate.dialect import plain
+from innervate.dialect.rng import seeded
+from innervate.networks.mesh import frames as wire
+from innervate.networks.mesh.protocol import fields as fields
+from innervate.networks.mesh.protocol import node as mesh
+from innervate.networks.mesh.protocol.constants import ACK, ACK_WANTED, OWN, TIMERS
+from innervate.networks.mesh.protocol.messages import resolve
+from innervate.networks.mesh.protocol.neighbours import FREE, SUSPECT
+from innervate.networks.mesh.protocol.queue import has_room
+from innervate.networks.mesh.protocol.retransmission import crowds, is_ahead
+
+CLASSES = (32, 64, 254)
+OUTBOX = 32
+RSSI = -50  # of every frame that comes over a cable, dBm
+
+FENCE_WORDS = ("inside", "about to cross", "outside")
+
+Frame = plain.make("Frame", fields.FRAME)
+Item = plain.make("Item", fields.ITEM)
+Params = plain.make("Params", fields.PARAMS)
+
+
+class MeshStack:
+    """One node of a mesh.
+
+    Args:
+        number: its id, 0 .. nodes - 1.
+        rank: 0 gateway, 1.. standby, -1 neither.
+        params: the protocol's parameters by name (`mesh_fields.PARAMS`).
+        seed: any whole number; nodes must have different ones.
+        robot: True = it moves, has a fence and tells where it is.
+    """
+
+    timers = TIMERS
+    reasons: tuple[str, ...] = wire.REASONS
+
+    def __init__(
+        self, number: int, rank: int, params: dict[str, Any], seed: int, robot: bool = False
+    ) -> None:
+        self.params = Params()
+        for name, value in params.items():
+            setattr(self.params, name, value)
+        width = self.params.width
+        # Every node sends in every round: three without a word are no accident.
+        self.silent_us = 3 * self.params.period_max * self.params.tick_us + self.params.tick_us
+        self.node = plain.make("Node", fields.node(width))()
+        self.gate = plain.make("Gate", fields.gate(width))() if rank >= 0 else None
+        self.node.number, self.node.rank, self.node.robot = number, rank, int(robot)
+        self.node.rng, self.node.choice = seeded(seed), -1
+        self.out = plain.Outbox(Frame, OUTBOX)
+        self.inbox = Frame()
+        self.epoch = 0  # newest one that was followed before a restart
+        self.places: dict[int, list[int]] = {}  # neighbour: ports, the newest first
+        self.asked: Counter[int] = Counter()  # neighbour: frames that it should acknowledge
+        self.acked: Counter[int] = Counter()
+
+    def start(self, now: int, cause: int) -> None:
+        """Switch on; after a restart with the epoch that was followed before.
+
+        A gateway's requests are heeded only if their epoch, or their round, is newer than before.
+        """
+        mesh.on_start(self.node, self.gate, self.params, now, cause, self.out)
+        if cause != 0 and self.epoch:
+            self.node.known, self.node.epoch = 1, self.epoch
+
+    def frame(self, now: int, port: int) -> None:
+        """The frame in the inbox was received."""
+        self._place(self.inbox.link_src, port)
+        if self.inbox.kind != ACK:  # acks tell how loud the frame was that they are for
+            self.inbox.rssi = RSSI
+        elif self.inbox.link_dst == self.node.number:
+            self.acked[self.inbox.link_src] += 1
+        mesh.on_frame(self.node, self.gate, self.params, now, 0, self.inbox, self.out)
+
+    def _place(self, who: int, port: int) -> None:
+        known = self.places.setdefault(who, [port])
+        if known[0] != port:
+            if port in known:
+                known.remove(port)
+            known.insert(0, port)
+
+    def timer(self, now: int, timer: int) -> None:
+        """A timer fires."""
+        mesh.on_timer(self.node, self.gate, self.params, now, timer, self.out)
+
+    def input(self, now: int, kind: int, item: Any) -> None:
+        """A message to send, or where a robot is."""
+        mesh.on_input(self.node, self.gate, self.params, now, kind, item, self.out)
+
+    def encode(self, frame: Any) -> bytes:
+        """The bytes of a frame."""
+        return wire.encode(frame)
+
+    def decode(self, data: bytes) -> int:
+        """Read bytes into the inbox; 0, or why not."""
+        return wire.decode(data, self.inbox)
+
+    def may_send(self, recipient: int) -> bool:
+        """True if the router takes a message of ours, besides what others send through it."""
+        if not has_room(self.node, OWN) or 0 not in self.node.wait_kind:
+            return False
+        dest = resolve(self.node, self.params, recipient)
+        return not is_ahead(self.node, dest) and not crowds(self.node, dest)
+
+    def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
+        """Where a frame leaves: on the path its receiver was heard on last; None = on all.
+
+        Tried again, it leaves wherever its receiver was ever heard.
+        """
+        if frame.flags & ACK_WANTED:
+            self.asked[frame.link_dst] += 1
+        known = self.places.get(frame.link_dst)
+        if known is None:
+            return None
+        return known if attempt else known[:1]
+
+    def status(self, now: int) -> dict[str, Any]:
+        """Neighbours with the share of frames they acknowledged, routes, whom we follow."""
+        node, params = self.node, self.params
+        neighbours = []
+        for k in range(params.places):
+            who = node.near[k]
+            if who != FREE:
+                asked = self.asked[who]
+                neighbours.append(
+                    {
+                        "node": who,
+                        "quality": round(min(1.0, self.acked[who] / asked), 4) if asked else None,
+                        "suspect": bool(node.suspect[k] & SUSPECT),
+                        "ports": self.places.get(who, []),
+                    }
+                )
+        base = node.bank * params.width
+        routes = {
+            str(dest): [node.next[base + dest], node.alt[base + dest]]
+            for dest in range(params.nodes)
+            if node.next[base + dest] != FREE and dest != node.number
+        }
+        return {
+            "kind": "mesh",
+            "number": node.number,
+            **self._robot_status(),
+            "role": "gateway" if node.leading else "standby" if node.rank >= 0 else "node",
+            "gateway": node.gateway if node.known else None,
+            "epoch": node.epoch,
+            "round": node.round,
+            "table": node.version,
+            "neighbours": neighbours,
+            "routes": routes,
+            "queue": sum(state != 0 for state in node.q_state),
+            "round_trip_ms": round(node.round_trip / 1000, 3),
+        }
+
+    def _robot_status(self) -> dict[str, Any]:
+        """Where a robot is, from the fence's origin; nothing of other nodes."""
+        node, unit_cm = self.node, self.params.unit_cm
+        if not node.robot:
+            return {}
+        place = [node.x * unit_cm, node.y * unit_cm] if node.placed else None
+        return {"robot": {"at_cm": place, "fence": FENCE_WORDS[node.outside]}}

@@ -1,0 +1,34 @@
+"""The mesh's document: centrally computed routing tables, and a virtual fence on top of them."""
+
+from importlib import import_module
+
+from innervate.papers.experiment import Experiment
+
+TITLE = "Routing tables from a gateway, and a virtual fence"
+AUTHORS = "The routing part of a design of a virtual fence for robots"
+# One module each: what was asked for, then the document's statements in its order.
+FIGURES = (
+    "bars",
+    "recall",
+    "stretch",
+    "failures",
+    "lossy",
+    "alarms",
+    "gateway",
+    "scale",
+    "versions",
+)
+
+
+def experiment(name: str) -> Experiment:
+    """The experiment of a figure, loaded when it is asked for."""
+    found = import_module(f"innervate.networks.mesh.papers.{name}").EXPERIMENT
+    assert isinstance(found, Experiment)
+    return found
+
+
+def warm_up() -> None:
+    """Compile the loop for the smallest class of networks; larger ones when they are met."""
+    from innervate.networks.mesh.papers.testbed import Bed
+
+    Bed(nodes=4, degree=3, duration_s=0.1).run(1)

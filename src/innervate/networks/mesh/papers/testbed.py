@@ -1,0 +1,124 @@
+"""The test bed of the mesh's figures [mesh 6]: networks, who dies and when, who sends to whom."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from innervate import scenario as scenarios
+from innervate.networks.mesh.protocol.constants import END_TO_END
+from innervate.networks.mesh.scenario.plan import KILL, MeshFault, MeshPlan, Offer
+from innervate.papers.experiment import Point
+from innervate.sim.field.simulate import MeshResult, simulate
+from innervate.trace.streams import stream
+
+Options = tuple[tuple[str, Any], ...]
+GATEWAY = 0
+BYTES = 16  # of a message
+# The document to the letter: one transmission, another neighbour for the next packet, no second
+# try from end to end.
+LITERAL: Options = (
+    ("failover", "random"), ("retry", False), ("reliable", False), ("transmissions", 1),
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Bed:
+    """Networks of nodes anywhere in a square of 100 m, node 0 the gateway.
+
+    Attributes:
+        nodes, degree: how many, and good links of a node in the mean.
+        profile: of the radio.
+        protocol: keys of [protocol].
+        duration_s: of a run.
+        more: other tables of the scenario, as (name, content).
+    """
+
+    nodes: int = 30
+    degree: float = 8
+    profile: str = "250k"
+    protocol: Options = ()
+    duration_s: float = 6.0
+    more: Options = ()
+
+    @property
+    def key(self) -> str:
+        """All of it in words."""
+        words = [f"mesh n={self.nodes} degree={self.degree:g} {self.profile} {self.duration_s:g} s"]
+        words += [f"{name}={value}" for name, value in (*self.protocol, *self.more)]
+        return " ".join(words)
+
+    def plan(self, seed: int) -> MeshPlan:
+        """The plan of one network; nobody sends, nobody dies."""
+        tables = {
+            "kind": "mesh",
+            "name": "papers",
+            "seed": seed,
+            "nodes": self.nodes,
+            "gateway": GATEWAY,
+            "duration_s": self.duration_s,
+            "radio": {"profile": self.profile, "mean_degree": self.degree},
+            "protocol": dict(self.protocol),
+            **dict(self.more),
+        }
+        plan = scenarios.plan(scenarios.from_dict(tables))
+        assert isinstance(plan, MeshPlan)
+        return plan
+
+    def run(self, seed: int) -> MeshResult:
+        """One run."""
+        return simulate(self.plan(seed))
+
+    def point(
+        self, what: str, seeds: Sequence[int], measure: Callable[..., Any], *args: Any
+    ) -> Point:
+        """The point that measures every seed with `measure(bed, seed, *args)`.
+
+        Its key says `what` is measured with which arguments.
+        """
+        cost = (0.01 + 2e-4 * self.nodes * self.duration_s) * len(seeds)
+        return Point.of(self.key_of(what, seeds), cost, each, measure, self, seeds, *args)
+
+    def key_of(self, what: str, seeds: Sequence[int]) -> str:
+        """The key of that point."""
+        return f"{what}: {self.key} seeds {seeds[0]}-{seeds[-1]}"
+
+
+def each(measure: Callable[..., Any], bed: Bed, seeds: Sequence[int], *args: Any) -> list[Any]:
+    """What is measured of every seed."""
+    return [measure(bed, seed, *args) for seed in seeds]
+
+
+def dying(plan: MeshPlan, count: int, spared: Sequence[int] = (GATEWAY,)) -> list[int]:
+    """Who dies: with one more death the same nodes and one more."""
+    draw = stream(plan.seed, "papers/dying")
+    free = [node for node in range(plan.nodes) if node not in spared]
+    return [free.pop(draw.draw(len(free))) for _ in range(count)]
+
+
+def kill(plan: MeshPlan, nodes: Sequence[int], at_us: int) -> None:
+    """Have them die at that time."""
+    plan.faults += [MeshFault(at_us, KILL, node, 0, 0, i) for i, node in enumerate(nodes)]
+    plan.faults.sort(key=lambda fault: fault.at_us)
+
+
+def send_rounds(
+    plan: MeshPlan, nodes: Sequence[int], rounds: int, since_us: int, every_us: int
+) -> None:
+    """Every node sends to one other node of them, again in each round; rounds are flows.
+
+    Sources follow each other in an order that is drawn, over three quarters of a round.
+    """
+    draw = stream(plan.seed, "papers/senders")
+    left = list(nodes)
+    order = [left.pop(draw.draw(len(left))) for _ in nodes]
+    to = {node: [one for one in nodes if one != node][draw.draw(len(nodes) - 1)] for node in order}
+    flags = END_TO_END if plan.params["reliable"] else 0
+    gap_us = every_us * 3 // (4 * len(order))
+    plan.offers += [
+        Offer(since_us + k * every_us + i * gap_us, node, to[node], flags, BYTES, k)
+        for k in range(rounds)
+        for i, node in enumerate(order)
+    ]
+    plan.offers.sort(key=lambda offer: offer.at_us)

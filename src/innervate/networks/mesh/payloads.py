@@ -1,0 +1,131 @@
+"""Payloads of the mesh's packets [mesh 2], by type, and what forwarding puts around them."""
+
+from innervate.networks.mesh.protocol.constants import (
+    ACTIVATE,
+    ALARM,
+    DATA,
+    DETOURED,
+    E2E_ACK,
+    GRAPH,
+    POSITION,
+    REQUEST,
+    RESPONSE,
+    SOURCE_ROUTE,
+    TABLE,
+    TABLE_ACK,
+)
+from innervate.wire.layout import PAIRS, REST, is_fixed, read, width
+
+NEIGHBOUR = (("id", 0, 8, 0), ("rssi", 0, 8, 1))
+GROUP = (
+    ("next", 0, 8, 0),
+    ("alt", 0, 8, 0),
+    ("count", 0, 8, 0),
+    ("dests", "count", 8, 0),
+)
+MOVING = (("x", 0, 16, 1), ("y", 0, 16, 1), ("vx", 0, 8, 1), ("vy", 0, 8, 1))
+PART = (
+    ("epoch", 0, 8, 0),
+    ("table_version", 0, 16, 0),
+    ("fragment", 0, 4, 0),
+    ("fragments", 0, 4, 0),
+)
+ROUTE = (("route_len", 0, 8, 0), ("route", "route_len", 8, 0))
+
+# A payload: value of the type, name, fields (see layout.py).
+LAYOUTS = (
+    (
+        REQUEST,
+        "request",
+        (
+            ("gateway", 0, 8, 0),
+            ("epoch", 0, 8, 0),
+            ("round", 0, 16, 0),
+            ("active", 0, 16, 0),
+            ("jitter", 0, 8, 0),
+        ),
+    ),
+    (
+        RESPONSE,
+        "response",
+        (
+            ("epoch", 0, 8, 0),
+            ("round", 0, 16, 0),
+            ("mode", 0, 4, 0),
+            ("count", 0, 4, 0),
+            ("neighbours", "count", NEIGHBOUR, 0),
+        ),
+    ),
+    (TABLE, "table", ROUTE + PART + (("groups", REST, GROUP, 0),)),
+    (
+        TABLE_ACK,
+        "table ack",
+        (("epoch", 0, 8, 0), ("table_version", 0, 16, 0), ("parts", 0, 16, 0)),
+    ),
+    (ACTIVATE, "activate", (("epoch", 0, 8, 0), ("table_version", 0, 16, 0))),
+    (DATA, "data", (("data", REST, 8, 0),)),
+    (E2E_ACK, "end-to-end ack", (("acked", 0, 16, 0),)),
+    (
+        ALARM,
+        "alarm",
+        (("robot", 0, 8, 0), ("fence", 0, 8, 0), ("number", 0, 8, 0), ("alarm", 0, 8, 0))
+        + MOVING
+        + (("time", 0, 32, 0), ("margin", 0, 16, 1)),
+    ),
+    (POSITION, "position", (("robot", 0, 8, 0),) + MOVING + (("said", 0, 8, 0),)),
+    (GRAPH, "graph", PART + (("part", REST, 8, 0),)),
+)
+# What the parts of a graph are when put together: the links of every pair a < b, row by row.
+WHOLE_GRAPH = (("nodes", 0, 8, 0), ("ids", "nodes", 8, 0), ("links", PAIRS, 1, 0))
+
+NAMES = {kind: name for kind, name, _fields in LAYOUTS}
+FIELDS = {kind: fields for kind, _name, fields in LAYOUTS}
+# Bytes of payloads of fixed length; the others are read to the end.
+SIZES = {kind: (width(fields) + 7) // 8 for kind, _name, fields in LAYOUTS if is_fixed(fields)}
+
+
+def begin_of(flags: int, data: bytes | bytearray | memoryview, at: int, end: int) -> int:
+    """Where the origin's own payload begins: behind a source route [mesh 8]."""
+    return at + 1 + data[at] if flags & SOURCE_ROUTE and at < end else at
+
+
+def end_of(kind: int, flags: int, data: bytes | bytearray | memoryview, at: int, end: int) -> int:
+    """Where it ends: in front of the failed nodes and their number, if there are any [mesh 8].
+
+    With tables DETOURED is a mark and nothing else. No frame says whether there are tables: where
+    both can be, we take the last bytes for failed nodes.
+    """
+    if flags & DETOURED and at < end and data[end - 1] > 0:
+        stop = end - 1 - data[end - 1]
+        if is_whole(kind, data, at, stop):
+            return stop
+    return end
+
+
+def is_whole(kind: int, data: bytes | bytearray | memoryview, at: int, end: int) -> bool:
+    """True if bytes `at` to `end` are exactly a payload of this kind."""
+    if kind in SIZES:
+        return end - at == SIZES[kind]
+    return at <= end and read(FIELDS[kind], data, 8 * at, 8 * end, []) == 8 * end
+
+
+def fits(kind: int, flags: int, data: bytes | bytearray | memoryview, at: int, end: int) -> bool:
+    """True if bytes `at` to `end` are a payload of this kind and what forwarding puts around."""
+    begin = begin_of(flags, data, at, end)
+    return is_whole(kind, data, begin, end_of(kind, flags, data, begin, end))
+
+
+def describe(kind: int, flags: int, data: bytes) -> list:  # type: ignore[type-arg]
+    """A payload as (name, value) pairs; one that does not fit as ("payload", its bytes)."""
+    end = len(data)
+    if kind not in FIELDS or not fits(kind, flags, data, 0, end):
+        return [("payload", list(data))]
+    begin = begin_of(flags, data, 0, end)
+    stop = end_of(kind, flags, data, begin, end)
+    found = []
+    if flags & SOURCE_ROUTE:
+        found.append(("source_route", list(data[1:begin])))
+    read(FIELDS[kind], data, 8 * begin, 8 * stop, found)
+    if stop < end:
+        found.append(("failed", list(data[stop : end - 1])))
+    return found

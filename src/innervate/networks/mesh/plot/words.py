@@ -1,0 +1,162 @@
+"""Packets, reports and events of a mesh in plain words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from innervate.networks.mesh.protocol import constants as w
+from innervate.networks.mesh.scenario.plan import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
+from innervate.plot.words import ms_words, number_of, share_words
+
+PACKETS = {
+    w.REQUEST: "a discovery request",
+    w.RESPONSE: "a discovery response",
+    w.TABLE: "a part of a table",
+    w.TABLE_ACK: "an ack of a table",
+    w.ACTIVATE: "an activation",
+    w.DATA: "a message",
+    w.E2E_ACK: "an end-to-end ack",
+    w.ALARM: "an alarm",
+    w.POSITION: "a robot's beacon",
+    w.GRAPH: "a part of the graph",
+    w.ACK: "an ack of a hop",
+}
+TIMERS = {
+    w.TX: "a frame is due",
+    w.ACK_WAIT: "a hop did not acknowledge",
+    w.ROUND: "next step of its discovery round",
+    w.TICK: "tick",
+    w.RETRY: "an end-to-end timeout",
+    w.JOBS: "a table was not acknowledged",
+}
+HANDED = {
+    w.MESSAGE: "was offered a message",
+    w.SENT: "its frame has left",
+    w.SAMPLE: "learned where it is",
+}
+REPORTS = {
+    w.REPORT_ACCEPTED: "message accepted",
+    w.REPORT_HOP: "message taken by its first hop",
+    w.REPORT_ARRIVED: "message acknowledged end to end",
+    w.REPORT_EXPIRED: "message given up",
+    w.REPORT_FULL: "message refused",
+    w.REPORT_DROPPED: "packet dropped on its way",
+    w.REPORT_SUSPECT: "neighbour does not answer",
+    w.REPORT_ROUND: "discovery round begun",
+    w.REPORT_GRAPH: "graph made of a round",
+    w.REPORT_TABLE: "table in force",
+    w.REPORT_TABLES: "all tables of a version acknowledged",
+    w.REPORT_GATEWAY: "gateway followed",
+    w.REPORT_ALARM: "alarm raised",
+    w.REPORT_MARGIN: "margin of an alarm",
+    w.REPORT_UNKEYED: "message of an unknown type",
+    w.REPORT_SILENCED: "alarm flooded again",
+}
+ALARMS = {w.PREDICT: "about to cross", w.CROSS: "crossed", w.LOST: "lost", w.CLEAR: "inside again"}
+
+
+def fault_words(plan: Any, fault: Any) -> str:
+    """An event of the scenario: "node n3 switched off"."""
+    name = plan.names[fault.node]
+    if fault.action in (CUT, RESTORE):
+        verb = "cut" if fault.action == CUT else "restored"
+        return f"link {name} - {plan.names[fault.other]} {verb}"
+    return {
+        KILL: f"node {name} switched off",
+        REVIVE: f"node {name} switched on",
+        RESTART: f"node {name} restarted",
+        JAM: f"noise of {fault.value / 100:g} dBm at node {name}",
+        QUIET: f"no noise at node {name} any more",
+    }[fault.action]
+
+
+def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
+    """What happened, for somebody who knows nothing of it; alarms first, they matter most."""
+    found = [
+        *_alarms(summary["alarms"]),
+        *_messages(summary),
+        *_discovery(summary["discovery"], summary["nodes"]),
+        *_gateways(result.plan, summary),
+        _trouble(summary),
+    ]
+    if "interrupted_at_s" in summary:
+        found.append(f"Interrupted at {summary['interrupted_at_s']:.3f} s of simulated time.")
+    return found
+
+
+def _alarms(alarms: Mapping[str, Any]) -> list[str]:
+    sent, came = alarms["sent"], alarms["delivered"]
+    if not sent:
+        return []
+    crossings = number_of(sent, "crossing")
+    if not came:
+        return [f"{crossings} of the fence, and the monitor learned of none."]
+    latency, overrun = ms_words(alarms["latency_ms"]["max"]), alarms["overrun_m"]["max"]
+    slowest = "the alarm took" if came == 1 else "the slowest alarm took"
+    if came < sent:
+        return [
+            f"{crossings} of the fence, and the monitor learned of {came:,}; {slowest} {latency}, "
+            f"a robot got {overrun:.2g} m out."
+        ]
+    many = "of it" if sent == 1 else "of all"
+    return [
+        f"{crossings} of the fence, and the monitor learned {many}: {slowest} {latency}, "
+        f"no robot got farther out than {overrun:.2g} m by then."
+    ]
+
+
+def _messages(summary: Mapping[str, Any]) -> list[str]:
+    decided, latency = summary["messages"]["counted"], summary["latency_ms"]
+    ratio = summary["delivery_ratio"]
+    if ratio is None:
+        return []
+    came = round(ratio * decided)
+    missing = decided - came
+    begin = f"{number_of(decided, 'message')}: "
+    if not missing:
+        begin += "every one was delivered"
+    else:
+        begin += f"{came:,} delivered ({share_words(ratio)})"
+    if latency["p50"] is not None:
+        begin += f", half within {ms_words(latency['p50'])}, 99 % within {ms_words(latency['p99'])}"
+    found = [begin + "."]
+    joined = summary["connected"]
+    if missing and joined["sent"] < decided:
+        apart = decided - joined["sent"]
+        found.append(
+            f"Of those, {apart:,} had no chance: sender and recipient were not connected, or off; "
+            f"of the others {share_words(joined['delivery_ratio'] or 0.0)} were delivered."
+        )
+    return found
+
+
+def _discovery(found: Mapping[str, Any], nodes: int) -> list[str]:
+    if found["recall"] is None:
+        return ["No discovery round was completed."]
+    line = (
+        f"The first round found {share_words(found['recall'])} of the good links "
+        f"within {found['complete_s']:.3g} s"
+    )
+    if found["tables_s"] is not None:
+        line += f"; every node had its table {found['tables_s']:.3g} s after the first request"
+    elif found["with_tables"] is not None:
+        line += f"; {found['with_tables']:,} of {nodes:,} nodes got a table"
+    return [line + "."]
+
+
+def _gateways(plan: Any, summary: Mapping[str, Any]) -> list[str]:
+    led = summary["gateways"]
+    if len(led) < 2:
+        return []
+    last, took = led[-1], summary["takeover_s"]
+    line = f"Node {plan.names[last['node']]} became gateway at {last['at_s']:.3f} s"
+    after = f"; its tables were everywhere {took:.3g} s after the old one died" if took else ""
+    return [f"{line}{after}."]
+
+
+def _trouble(summary: Mapping[str, Any]) -> str:
+    doubled, looped = summary["duplicates"], summary["looped"]
+    first = f"{number_of(doubled, 'message')} came twice" if doubled else "No message came twice"
+    second = f"{looped:,}" if looped else "none"
+    return f"{first}; {second} met a node twice on the way."

@@ -1,0 +1,1 @@
+"""The protocol of a mesh: its state machines and what they declare."""

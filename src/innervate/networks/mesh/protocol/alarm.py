@@ -1,0 +1,225 @@
+"""The virtual fence: robots, monitor and witnesses raise alarms that get through [mesh 4 ALARM]."""
+
+from innervate.dialect.arith import MASK30
+from innervate.dialect.outbox import deliver, report
+from innervate.dialect.rng import draw
+from innervate.networks.mesh.protocol.constants import (
+    ALARM,
+    ALARMS,
+    ALL,
+    CROSS,
+    DATA_MAX,
+    END_TO_END,
+    FLOOD,
+    MONITOR,
+    PRIORITY,
+    PUT_OUT,
+    REPORT_ALARM,
+    REPORT_EXPIRED,
+    REPORT_MARGIN,
+)
+from innervate.networks.mesh.protocol.duplicates import FLOODED, is_flooded
+from innervate.networks.mesh.protocol.fence import OUTSIDE, judge, margin
+from innervate.networks.mesh.protocol.fields import WAITING
+from innervate.networks.mesh.protocol.frames import add8, add16, add_hop
+from innervate.networks.mesh.protocol.messages import first_flag, resolve, take
+from innervate.networks.mesh.protocol.queue import compose, kick, take_over
+from innervate.networks.mesh.protocol.retransmission import free_wait, keep
+from innervate.networks.mesh.protocol.send import send_on
+
+ALARM_BYTES = 16
+RAISED_OUT = 2
+
+
+def on_sample(node, params, now, item, out):
+    """A robot learns where it is; the fence is judged at every sample."""
+    node.x = item.x
+    node.y = item.y
+    node.vx = item.vx
+    node.vy = item.vy
+    node.placed = 1
+    if params.points == 0:
+        return
+    kind = judge(node, params)
+    if kind == CROSS:
+        node.heard_out = 0
+    if kind >= 0:
+        sound_own(node, params, now, kind, out)
+
+
+def sound_own(node, params, now, kind, out):
+    """A robot raises an alarm for itself."""
+    sound(node, params, now, kind, node.number, node.x, node.y, node.vx, node.vy, out)
+
+
+def insist(node, params, now, out):
+    """Every tick of a robot: outside, and nobody knows nor is being told? Once more, then.
+
+    So it is while no gateway is known, when all tries failed, and after a change of the monitor.
+    """
+    if node.outside == OUTSIDE and not node.heard_out and not is_telling(node):
+        sound_own(node, params, now, CROSS, out)
+
+
+def sound(node, params, now, kind, robot, x, y, vx, vy, out):
+    """Raise an alarm for a robot: on its way to the monitor, flooded besides if it must be.
+
+    0 if it cannot be: nobody to tell, or no place.
+    """
+    gap = margin(params, x, y)
+    monitor = resolve(node, params, MONITOR)
+    if monitor == node.number:
+        note_alarm(node, kind, robot, gap, out)
+        tell_monitor(node, params, now, kind, robot, x, y, vx, vy, gap, out)
+        return 1
+    if monitor == ALL:
+        return 0
+    flags = END_TO_END | PRIORITY | first_flag(node, monitor)
+    i = compose(node, now, ALARMS, ALARM, monitor, flags, out)
+    if i < 0:
+        return 0
+    note_alarm(node, kind, robot, gap, out)
+    write_alarm(node, params, now, i, kind, robot, x, y, vx, vy, gap)
+    w = wait_for_alarm(node, out)
+    keep(node, params, now, w, i, robot, out)
+    node.q_owner[i] = w
+    if params.flood == 2 or (params.flood == 1 and kind == CROSS):
+        flood(node, params, now, w, 1, out)
+    send_on(node, params, now, i, out)
+    kick(node, params, now, out)
+    return 1
+
+
+def note_alarm(node, kind, robot, gap, out):
+    """An alarm gets its number, and is reported."""
+    node.alarm = (node.alarm + 1) & 255
+    report(out, REPORT_ALARM, kind, robot)
+    report(out, REPORT_MARGIN, gap, node.alarm)
+
+
+def write_alarm(node, params, now, i, kind, robot, x, y, vx, vy, gap):
+    """The 16 bytes of an alarm [mesh 2 FENCE_ALARM]."""
+    tick_ms = max(1, params.tick_us // 1000)
+    at_ms = node.ticks * tick_ms + ((now - node.tick_at) & MASK30) // 1000
+    add8(node, i, robot)
+    add8(node, i, params.fence)
+    add8(node, i, node.alarm)
+    add8(node, i, kind)
+    add16(node, i, x)
+    add16(node, i, y)
+    add8(node, i, vx)
+    add8(node, i, vy)
+    add16(node, i, at_ms >> 16)
+    add16(node, i, at_ms & 65_535)
+    add16(node, i, max(-32_768, min(32_767, gap)))
+
+
+def wait_for_alarm(node, out):
+    """A place among the kept messages; an alarm puts out another message if it must."""
+    w = free_wait(node)
+    if w >= 0:
+        return w
+    w = 0
+    for k in range(WAITING):
+        if node.wait_kind[k] != ALARM:
+            w = k
+    report(out, REPORT_EXPIRED, node.wait_handle[w], PUT_OUT)
+    return w
+
+
+def flood(node, params, now, w, instance, out):
+    """Flood the kept alarm w: with the same number, so that the monitor takes one of all copies."""
+    flags = node.wait_flags[w] | FLOOD
+    i = compose(node, now, ALARMS, ALARM, node.wait_dest[w], flags, out)
+    if i < 0:
+        return
+    node.seq = (node.seq - 1) & 65_535
+    node.q_seq[i] = node.wait_seq[w]
+    node.q_ttl[i] = instance
+    node.q_copies[i] = 2
+    for k in range(node.wait_length[w]):
+        add8(node, i, node.wait_body[w * DATA_MAX + k])
+    add_hop(node, i)
+    is_flooded(node, node.number, node.wait_seq[w], FLOODED, instance)
+
+
+def flood_again(node, params, now, w, out):
+    """The kept alarm w was not acknowledged in time: another instance of the flood."""
+    instance = node.wait_tries[w] - 1 + (params.flood == 2)
+    body = w * DATA_MAX
+    if params.flood == 1 and node.wait_body[body + 3] == CROSS:
+        instance = instance + 1
+    if params.flood and 0 < instance <= params.instances:
+        flood(node, params, now, w, instance, out)
+        kick(node, params, now, out)
+
+
+def on_flood(node, params, now, frame, out):
+    """A flooded alarm: the monitor takes it, everyone passes it on once per instance."""
+    if is_flooded(node, frame.origin, frame.seq, FLOODED, min(frame.ttl, 3)):
+        return
+    if frame.dest == node.number:
+        take_alarm(node, params, now, frame, out)
+        kick(node, params, now, out)
+        return
+    i = take_over(node, now, ALARMS, frame, out)
+    if i >= 0:
+        node.q_link_dst[i] = ALL
+        node.q_copies[i] = 2
+        node.q_due[i] = (now + draw(node, params.flood_us + 1)) & MASK30
+        if not add_hop(node, i):
+            node.q_state[i] = 0
+    kick(node, params, now, out)
+
+
+def take_alarm(node, params, now, frame, out):
+    """An alarm has reached the monitor."""
+    if frame.length >= ALARM_BYTES:
+        take(node, params, now, frame, out)
+
+
+def tell_monitor(node, params, now, kind, robot, x, y, vx, vy, gap, out):
+    """We are the monitor, and saw it ourselves."""
+    if robot == node.number and kind == CROSS:
+        node.heard_out = 1
+    frame = out.frame[deliver(out, ALARM)]
+    frame.kind = ALARM
+    frame.flags = 0
+    frame.link_src = node.number
+    frame.link_dst = node.number
+    frame.origin = node.number
+    frame.dest = node.number
+    frame.seq = node.alarm
+    frame.table_ver = 0
+    frame.ttl = 0
+    frame.path_len = 0
+    frame.rssi = 0
+    frame.length = ALARM_BYTES
+    for k in range(ALARM_BYTES):
+        frame.body[k] = 0
+    frame.body[0] = robot
+    frame.body[1] = params.fence
+    frame.body[2] = node.alarm
+    frame.body[3] = kind
+    frame.body[4] = x >> 8 & 255
+    frame.body[5] = x & 255
+    frame.body[6] = y >> 8 & 255
+    frame.body[7] = y & 255
+    frame.body[8] = vx & 255
+    frame.body[9] = vy & 255
+    frame.body[14] = gap >> 8 & 255
+    frame.body[15] = gap & 255
+
+
+def is_telling(node):
+    """1 if an alarm of ours, about ourselves, still waits for the monitor."""
+    for w in range(WAITING):
+        if node.wait_kind[w] == ALARM and node.wait_body[w * DATA_MAX] == node.number:
+            return 1
+    return 0
+
+
+def unheard(node, w):
+    """The alarm that was kept in place w was given up: a witness raises it anew if it must."""
+    robot = node.wait_body[w * DATA_MAX]
+    node.raised[robot] = node.raised[robot] & ~RAISED_OUT

@@ -1,0 +1,47 @@
+"""Who is not acknowledged again and again sends less: then it is the channel, not the neighbours.
+
+A node that tries one neighbour after the other, each several times, makes for hundreds of
+transmissions a packet. Where all do so, acks collide, live neighbours are suspected, and that
+keeps the channel full for ever after its cause has gone. So acks that are missing make for longer
+and longer pauses, as in any medium access, and acks that come for shorter ones. Neighbours that
+are silent do not count (they are dead, not drowned out), and alarms never wait.
+"""
+
+from innervate.dialect.arith import MASK30, after
+from innervate.dialect.rng import draw
+from innervate.networks.mesh.protocol.constants import ALARMS, DATA, DETOURED, E2E_ACK, POSITION
+
+EASY = 12  # more acks that are missing than acks that came: so many cost no pause
+HARD = 28  # from here on messages that know their way pause, too
+PER_DOUBLING = 4
+STRAIN_MAX = 44
+LONGEST_US = 65_536  # before it is doubled
+NO_PAUSE = -1
+
+
+def missed(node, params, now):
+    """A transmission was not acknowledged: pause, the longer the more of them there were."""
+    node.strain = min(node.strain + 1, STRAIN_MAX)
+    if node.strain > EASY:
+        span = min(params.ack_us, LONGEST_US) << ((node.strain - EASY) // PER_DOUBLING)
+        node.pause = (now + draw(node, span) + 1) & MASK30
+
+
+def answered(node):
+    """A transmission was acknowledged: the channel has room."""
+    node.strain = max(node.strain - 1, 0)
+    node.pause = NO_PAUSE
+
+
+def is_held(node, i):
+    """1 if the frame in place i does not go out in a pause: detours, and at worst all messages."""
+    kind = node.q_kind[i]
+    if node.q_rank[i] == ALARMS or (kind != DATA and kind != E2E_ACK and kind != POSITION):
+        return 0
+    return (node.q_flags[i] & DETOURED != 0 and kind != E2E_ACK) or node.strain > HARD
+
+
+def end_pause(node, now):
+    """Where its time is over."""
+    if node.pause != NO_PAUSE and after(now, node.pause):
+        node.pause = NO_PAUSE

@@ -1,0 +1,155 @@
+"""The gateway: discovery rounds, the graph, who leads when it dies [mesh 4, 8.1]."""
+
+from innervate.dialect.arith import MASK16, MASK30
+from innervate.dialect.outbox import report, set_timer
+from innervate.dialect.rng import draw
+from innervate.networks.mesh.protocol.constants import (
+    ALL,
+    CONTROL,
+    REPORT_GATEWAY,
+    REPORT_GRAPH,
+    REPORT_ROUND,
+    REQUEST,
+    ROUND,
+    TABLE_FREE,
+)
+from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16
+from innervate.networks.mesh.protocol.jobs import give_jobs, has_none, install_own, pump
+from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
+from innervate.networks.mesh.protocol.paths import (
+    build_graph,
+    heard,
+    measure_all,
+    note_list,
+    note_path,
+    trusts_lists,
+)
+from innervate.networks.mesh.protocol.queue import compose, kick
+
+IDLE = 0
+COLLECTING = 1
+JITTER_UNIT_US = 10_000
+
+
+def reset(gate, params):
+    """A gateway that knows nothing."""
+    for k in range(params.width * params.width):
+        gate.reported[k] = 0
+    for k in range(params.width):
+        gate.mark_a[k] = 0
+        gate.mark_b[k] = 0
+        gate.job[k] = 0
+        gate.degree[k] = 0
+    gate.step = IDLE
+    gate.wait = 0
+    gate.period = params.period
+    gate.links = 0
+    gate.version = 0
+    gate.open = 0
+    gate.sum_a = 0
+
+
+def lead(node, gate, params, now, out):
+    """Be the gateway from now on, with an epoch that nobody has had.
+
+    Who knows of none draws it, and the version of its tables: it may have been gateway before, and
+    a table of the same epoch and version would be taken for the one that is there.
+    """
+    reset(gate, params)
+    node.epoch = (node.epoch + 1) & 255 if node.known else draw(node, 256)
+    node.known = 1
+    node.leading = 1
+    node.gateway = node.number
+    node.depth = 1
+    node.parent = ALL
+    gate.version = node.version if node.version else draw(node, 65_536)
+    node.quiet = 0
+    report(out, REPORT_GATEWAY, node.number, node.epoch)
+    start_round(node, gate, params, now, out)
+
+
+def start_round(node, gate, params, now, out):
+    """Broadcast a discovery request, and collect what comes back."""
+    node.round = (node.round + 1) & MASK16
+    node.depth = 1
+    for k in range(params.places):
+        node.round_depth[k] = UNHEARD
+    gate.wait = gate.period
+    gate.step = COLLECTING
+    report(out, REPORT_ROUND, node.round, node.epoch)
+    i = compose(node, now, CONTROL, REQUEST, ALL, 0, out)
+    if i >= 0:
+        add_hop(node, i)
+        add8(node, i, node.number)
+        add8(node, i, node.epoch)
+        add16(node, i, node.round)
+        add16(node, i, node.active)
+        add8(node, i, params.jitter_us // JITTER_UNIT_US)
+        node.q_copies[i] = params.copies
+    set_timer(out, ROUND, (now + params.collect_us) & MASK30)
+    kick(node, params, now, out)
+
+
+def on_response(node, gate, params, frame, out):
+    """A discovery response has reached us."""
+    if frame.length < 4 or frame.body[0] != node.epoch:
+        return
+    round = get16(frame, 1)
+    if round != node.round:
+        return
+    if frame.table_ver == 0:
+        has_none(gate, frame.origin)
+    note_path(gate, params, frame, node.number, round)
+    if trusts_lists(params):
+        note_list(gate, params, frame, 4, frame.body[3] & 15)
+
+
+def collect(node, gate, params, now, out):
+    """The ROUND timer of a gateway: the graph, the paths, the tables."""
+    if gate.step != COLLECTING:
+        return
+    gate.step = IDLE
+    for k in range(params.places):
+        if node.near[k] != FREE and node.round_depth[k] != UNHEARD and trusts_lists(params):
+            if node.round_rssi[k] >= params.min_rssi:
+                heard(gate, params, node.near[k], node.number, node.round)
+    mark = build_graph(gate, params, node.round)
+    changed = mark != gate.sum_a
+    gate.sum_a = mark
+    report(out, REPORT_GRAPH, gate.links, changed)
+    stretch(gate, params, changed)
+    if changed:
+        measure_all(gate, params)
+        gate.version = next_version(gate.version)
+        install_own(node, gate, params, out)
+    if params.mode != TABLE_FREE:
+        give_jobs(node, gate, params, changed, out)
+        pump(node, gate, params, now, out)
+
+
+def next_version(version):
+    """The version after this one: its low byte is not 0, which says in a header: no table."""
+    version = (version + 1) & MASK16
+    return version if version & 255 else version + 1
+
+
+def stretch(gate, params, changed):
+    """The period doubles while nothing changes, but not where a standby waits for requests."""
+    gone = gate.period - gate.wait  # ticks since the round began
+    if changed or params.standby:
+        gate.period = params.period
+    else:
+        gate.period = min(2 * gate.period, params.period_max)
+    gate.wait = max(1, gate.period - gone)
+
+
+def tick(node, gate, params, now, out):
+    """Every tick of a gateway or standby."""
+    if node.leading:
+        if gate.wait > 0:
+            gate.wait = gate.wait - 1
+        if gate.wait == 0:
+            start_round(node, gate, params, now, out)
+        return
+    if node.quiet >= params.dead + max(0, node.rank - 1) * params.dead_step:
+        lead(node, gate, params, now, out)

@@ -1,0 +1,99 @@
+"""The gateway floods the whole graph, and what is missing somewhere once more [mesh 2, 8.1]."""
+
+from innervate.dialect.arith import MASK30
+from innervate.networks.mesh.protocol.constants import (
+    ALL,
+    CONTROL,
+    GIVEN_UP,
+    GRAPH,
+    PARTS_MAX,
+    TO_SEND,
+    UNDER_WAY,
+)
+from innervate.networks.mesh.protocol.frames import add8, add16, add_hop
+from innervate.networks.mesh.protocol.paths import is_known
+from innervate.networks.mesh.protocol.queue import compose
+from innervate.networks.mesh.protocol.table import graph_bytes, part_bytes
+
+
+def pump_graph(node, gate, params, now, out):
+    """Flood the parts of the graph, and once more those that some node misses."""
+    count = (graph_bytes(params) + part_bytes(params) - 1) // part_bytes(params)
+    fresh = 0
+    for s in range(params.nodes):
+        if gate.job[s] == TO_SEND:
+            gate.job[s] = UNDER_WAY if count <= PARTS_MAX else GIVEN_UP
+            gate.job_count[s] = min(count, PARTS_MAX)
+            gate.job_next[s] = 0
+            gate.job_due[s] = graph_due(params, now, count, 0)
+            fresh = 1
+    if fresh:
+        gate.part = 0
+    again = 0
+    for s in range(params.nodes):
+        if gate.job[s] == UNDER_WAY and gate.job_next[s] == 0:
+            again = 1
+    if again:
+        flood_graph(node, gate, params, now, count, out)
+
+
+def graph_due(params, now, count, tries):
+    """When a flood of the graph is over at the latest, and its acks are in."""
+    wait = params.job_us * (1 + tries) + params.jitter_us * (count + 4) + params.spread_us
+    return (now + wait) & MASK30
+
+
+def flood_graph(node, gate, params, now, count, out):
+    """Queue all parts that somebody misses; those who wait for them are asked no sooner."""
+    due = now
+    for index in range(min(count, PARTS_MAX)):
+        missing = 0
+        for s in range(params.nodes):
+            if gate.job[s] == UNDER_WAY and gate.job_parts[s] >> index & 1 == 0:
+                missing = 1
+        if missing:
+            i = compose(node, now, CONTROL, GRAPH, ALL, 0, out)
+            if i < 0:
+                return
+            fill_graph(node, gate, params, i, index, count)
+            node.q_due[i] = due & MASK30
+            due = due + (params.jitter_us >> 1)
+    for s in range(params.nodes):
+        if gate.job[s] == UNDER_WAY and gate.job_next[s] == 0:
+            gate.job_next[s] = 1
+            gate.job_due[s] = graph_due(params, now, count, gate.job_tries[s])
+
+
+def fill_graph(node, gate, params, i, index, count):
+    """Part `index` of the graph into place i."""
+    add_hop(node, i)
+    add8(node, i, node.epoch)
+    add16(node, i, gate.version)
+    add8(node, i, index << 4 | count)
+    first = index * part_bytes(params)
+    last = min(graph_bytes(params), first + part_bytes(params))
+    pairs = params.nodes * (params.nodes - 1) // 2
+    for at in range(first, last):
+        byte = 0
+        if at == 0:
+            byte = params.nodes
+        elif at <= params.nodes:
+            byte = at - 1
+        else:
+            for bit in range(8):
+                pair = (at - 1 - params.nodes) * 8 + bit
+                if pair < pairs and is_pair(gate, params, pair):
+                    byte = byte | 128 >> bit
+        add8(node, i, byte)
+
+
+def is_pair(gate, params, pair):
+    """1 if the graph has the link that is the pair-th of (0, 1), (0, 2) .. (n - 2, n - 1)."""
+    a = 0
+    for _ in range(params.nodes):
+        row = params.nodes - 1 - a
+        if pair < row:
+            return is_known(gate, params, a, a + 1 + pair)
+        pair = pair - row
+        a = a + 1
+    return 0

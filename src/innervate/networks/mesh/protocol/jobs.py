@@ -1,0 +1,264 @@
+"""The gateway hands out what it computed: tables to each node, or the graph to all [mesh 4]."""
+
+from innervate.dialect.arith import MASK30, after
+from innervate.dialect.outbox import report, set_timer
+from innervate.networks.mesh.protocol.constants import (
+    ACTIVATE,
+    ALL,
+    CONTROL,
+    CURRENT,
+    GIVEN_UP,
+    JOBS,
+    PARTS_MAX,
+    PATH_MAX,
+    REPORT_TABLES,
+    TABLE,
+    TABLES,
+    TO_SEND,
+    UNDER_WAY,
+    WHOLE_GRAPH,
+)
+from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16
+from innervate.networks.mesh.protocol.graph_jobs import pump_graph
+from innervate.networks.mesh.protocol.neighbours import is_suspect
+from innervate.networks.mesh.protocol.pack import depth_of, pack, room_at
+from innervate.networks.mesh.protocol.paths import (
+    FAR,
+    NONE,
+    first_hop,
+    hops,
+    is_known,
+    make_table,
+    mark_table,
+)
+from innervate.networks.mesh.protocol.queue import compose, drop, free_places, kick
+from innervate.networks.mesh.protocol.search import set_edge
+from innervate.networks.mesh.protocol.send import pass_on
+from innervate.networks.mesh.protocol.table import GROUP_BYTES, all_parts, in_force
+
+PLACES_KEPT = 3  # of the queue, for what others send through us
+
+
+def install_own(node, gate, params, out):
+    """The gateway's own table, or graph."""
+    if params.mode != TABLES:
+        for a in range(params.nodes):
+            for b in range(a + 1, params.nodes):
+                set_edge(node, params, a, b, is_known(gate, params, a, b))
+    else:
+        make_table(gate, params, node.number)
+        node.bank = 1 - node.bank
+        for d in range(params.nodes):
+            node.next[node.bank * params.width + d] = gate.next[d]
+            node.alt[node.bank * params.width + d] = gate.alt[d]
+    in_force(node, params, node.epoch, gate.version, out)
+    if not params.activation:
+        node.active = gate.version
+
+
+def give_jobs(node, gate, params, changed, out):
+    """Who needs something new: a changed table, or one that was given up before."""
+    for s in range(params.nodes):
+        if s == node.number or hops(gate, params, node.number, s) == FAR:
+            gate.job[s] = CURRENT
+        elif changed or gate.job[s] == GIVEN_UP:
+            give_job(gate, params, s)
+            if gate.job[s] == TO_SEND:
+                gate.open = 1
+
+
+def has_none(gate, s):
+    """Node s says that it has no table: should it have acknowledged one, it has lost it since."""
+    if gate.job[s] == CURRENT:
+        gate.mark_a[s] = 0
+        gate.mark_b[s] = 0
+        gate.job[s] = GIVEN_UP
+
+
+def give_job(gate, params, s):
+    """Node s needs its table, unless it has acknowledged the same."""
+    if params.mode == WHOLE_GRAPH:
+        a = gate.version
+        b = gate.sum_a
+    else:
+        make_table(gate, params, s)
+        a = mark_table(gate, params, 1)
+        b = mark_table(gate, params, 2)
+    if a == gate.mark_a[s] and b == gate.mark_b[s]:
+        gate.job[s] = CURRENT
+        return
+    gate.job_a[s] = a
+    gate.job_b[s] = b
+    gate.job[s] = TO_SEND
+    gate.job_tries[s] = 0
+    gate.job_parts[s] = 0
+
+
+def next_job(node, gate, params):
+    """The nearest node that waits for its table, or -1."""
+    best = -1
+    for s in range(params.nodes):
+        if gate.job[s] == TO_SEND:
+            if best < 0 or depth_of(node, gate, params, s) < depth_of(node, gate, params, best):
+                best = s
+    return best
+
+
+def count_jobs(gate, params, state):
+    """How many nodes' jobs are in this state."""
+    count = 0
+    for s in range(params.nodes):
+        if gate.job[s] == state:
+            count = count + 1
+    return count
+
+
+def pump(node, gate, params, now, out):
+    """Start as many jobs as may be under way, queue their parts, and wait for acks."""
+    if params.mode == WHOLE_GRAPH:
+        pump_graph(node, gate, params, now, out)
+    else:
+        for _ in range(params.nodes):
+            s = next_job(node, gate, params)
+            if s >= 0 and count_jobs(gate, params, UNDER_WAY) < params.jobs:
+                start_job(node, gate, params, now, s)
+        for s in range(params.nodes):
+            if gate.job[s] == UNDER_WAY:
+                queue_parts(node, gate, params, now, s, out)
+    kick(node, params, now, out)
+    if gate.open and not count_jobs(gate, params, UNDER_WAY):
+        if not count_jobs(gate, params, TO_SEND):
+            finish(node, gate, params, now, out)
+    wait_for_acks(gate, params, now, out)
+
+
+def start_job(node, gate, params, now, s):
+    """Node s is next; its table is divided into parts."""
+    make_table(gate, params, s)
+    room = room_at(node, gate, params, s)
+    count = pack(node, gate, params, s, room, -1, -1)
+    gate.job_next[s] = 0
+    gate.job_count[s] = min(count, PARTS_MAX)
+    gate.job[s] = UNDER_WAY
+    if count > PARTS_MAX or room <= GROUP_BYTES or depth_of(node, gate, params, s) > PATH_MAX:
+        gate.job[s] = GIVEN_UP
+    gate.job_due[s] = job_due(node, gate, params, now, s)
+
+
+def job_due(node, gate, params, now, s):
+    """When the parts for s are sent again: later at every try, and the more there is to do."""
+    load = 8 + gate.job_count[s] * depth_of(node, gate, params, s)
+    wait = params.job_us * (1 + gate.job_tries[s]) // 8 * load
+    return (now + wait) & MASK30
+
+
+def queue_parts(node, gate, params, now, s, out):
+    """Queue those parts for node s that are still missing there, as far as there is room."""
+    for _ in range(PARTS_MAX):
+        index = gate.job_next[s]
+        if index >= gate.job_count[s]:
+            return
+        if gate.job_parts[s] >> index & 1 == 0:
+            if free_places(node) <= PLACES_KEPT:
+                return
+            queue_part(node, gate, params, now, s, index, out)
+            gate.job_due[s] = job_due(node, gate, params, now, s)
+        gate.job_next[s] = index + 1
+
+
+def queue_part(node, gate, params, now, s, index, out):
+    """One part of the table of s, with its route [mesh 2 ROUTE_TABLE]."""
+    i = compose(node, now, CONTROL, TABLE, s, 0, out)
+    if i < 0:
+        return
+    far = depth_of(node, gate, params, s)
+    add8(node, i, far + 1)
+    at = node.number
+    add8(node, i, at)
+    first = NONE
+    for hop in range(far):
+        at = route_step(node, gate, params, at, s, hop)
+        add8(node, i, at)
+        if hop == 0:
+            first = at
+    add8(node, i, node.epoch)
+    add16(node, i, gate.version)
+    add8(node, i, index << 4 | gate.job_count[s])
+    make_table(gate, params, s)
+    pack(node, gate, params, s, room_at(node, gate, params, s), index, i)
+    if first == NONE:
+        drop(node, i)
+        return
+    add_hop(node, i)
+    pass_on(node, params, i, first)
+
+
+def route_step(node, gate, params, at, s, hop):
+    """The next node on the way to s: another shortest path at every try, around suspects."""
+    pick = gate.job_tries[s]
+    who = first_hop(gate, params, at, s, pick)
+    if hop == 0:
+        for more in range(4):
+            if is_suspect(node, params, who):
+                who = first_hop(gate, params, at, s, pick + more + 1)
+    return who
+
+
+def on_ack(node, gate, params, now, frame, out):
+    """A node says which parts it has."""
+    s = frame.origin
+    if frame.length < 5 or frame.body[0] != node.epoch or s >= params.nodes:
+        return
+    if get16(frame, 1) != gate.version or gate.job[s] == CURRENT:
+        return
+    gate.job_parts[s] = gate.job_parts[s] | get16(frame, 3)
+    if gate.job_count[s] and gate.job_parts[s] & all_parts(gate.job_count[s]) == all_parts(
+        gate.job_count[s]
+    ):
+        gate.job[s] = CURRENT
+        gate.mark_a[s] = gate.job_a[s]
+        gate.mark_b[s] = gate.job_b[s]
+    elif gate.job[s] == UNDER_WAY:
+        gate.job_next[s] = 0
+    pump(node, gate, params, now, out)
+
+
+def retry_jobs(node, gate, params, now, out):
+    """The JOBS timer: what was not acknowledged in time is sent again, or given up."""
+    for s in range(params.nodes):
+        if gate.job[s] == UNDER_WAY and after(now, gate.job_due[s]):
+            gate.job_tries[s] = gate.job_tries[s] + 1
+            gate.job_next[s] = 0
+            gate.job_due[s] = job_due(node, gate, params, now, s)
+            if gate.job_tries[s] > params.job_tries:
+                gate.job[s] = GIVEN_UP
+    pump(node, gate, params, now, out)
+
+
+def wait_for_acks(gate, params, now, out):
+    """Set the JOBS timer to the first deadline."""
+    soonest = -1
+    for s in range(params.nodes):
+        if gate.job[s] == UNDER_WAY:
+            wait = (gate.job_due[s] - now) & MASK30
+            if wait > MASK30 >> 1:
+                wait = 0
+            if soonest < 0 or wait < soonest:
+                soonest = wait
+    if soonest >= 0:
+        set_timer(out, JOBS, (now + soonest) & MASK30)
+
+
+def finish(node, gate, params, now, out):
+    """Nothing of this version is under way any more."""
+    gate.open = 0
+    report(out, REPORT_TABLES, gate.version, count_jobs(gate, params, GIVEN_UP))
+    if params.activation:
+        node.active = gate.version
+        i = compose(node, now, CONTROL, ACTIVATE, ALL, 0, out)
+        if i >= 0:
+            add_hop(node, i)
+            add8(node, i, node.epoch)
+            add16(node, i, gate.version)
+            node.q_copies[i] = params.copies
+        kick(node, params, now, out)

@@ -1,0 +1,185 @@
+"""send_message and receive_messages: receipts, end-to-end acks and retries [mesh 1, RELIABLE]."""
+
+from innervate.dialect.outbox import deliver, report
+from innervate.networks.mesh.protocol.constants import (
+    ALARM,
+    ALARMS,
+    ALL,
+    CONTROL,
+    CRC_BYTES,
+    DATA,
+    DATA_MAX,
+    DETOURED,
+    E2E_ACK,
+    END_TO_END,
+    FIRST,
+    FLOOD,
+    HEADER_BYTES,
+    MESSAGES,
+    MONITOR,
+    NO_ROOM,
+    NO_ROUTE,
+    ORDERED,
+    OWN,
+    PATH_MAX,
+    PRIORITY,
+    REPORT_ACCEPTED,
+    REPORT_FULL,
+    TABLES,
+)
+from innervate.networks.mesh.protocol.duplicates import accept, is_there
+from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, copy_frame, inner
+from innervate.networks.mesh.protocol.queue import compose, kick, make_room
+from innervate.networks.mesh.protocol.retransmission import (
+    crowds,
+    free_wait,
+    is_ahead,
+    keep,
+    keep_for_later,
+    launch,
+    on_end_ack,
+)
+from innervate.networks.mesh.protocol.search import BITS
+from innervate.networks.mesh.protocol.send import send_on
+
+
+def resolve(node, params, dest):
+    """Who an address stands for; 255 if nobody yet."""
+    if dest != MONITOR:
+        return dest
+    if params.monitor != MONITOR:
+        return params.monitor
+    return node.gateway
+
+
+def payload_limit(params):
+    """Most bytes of a message [mesh 1]."""
+    return min(DATA_MAX, params.mtu - HEADER_BYTES - CRC_BYTES - PATH_MAX)
+
+
+def first_flag(node, dest):
+    """FIRST until `dest` has acknowledged something since we switched on: a lost one is no use."""
+    if dest >= ALL or node.met[dest // BITS] >> (dest % BITS) & 1:
+        return 0
+    return FIRST
+
+
+def on_message(node, params, now, item, out):
+    """Send a message: never waits; what becomes of it is reported by its handle."""
+    dest = resolve(node, params, item.dest)
+    nobody = dest >= params.nodes and (dest != ALL or item.dest == MONITOR)
+    if item.length > payload_limit(params) or nobody:
+        report(out, REPORT_FULL, item.handle, NO_ROUTE)
+        return
+    flags = item.flags & (PRIORITY | ORDERED)
+    if params.reliable:
+        flags = item.flags & (END_TO_END | PRIORITY | ORDERED)
+    if dest == node.number:
+        hand_up_own(node, item, out)
+        return
+    if is_ahead(node, dest):
+        report(out, REPORT_FULL, item.handle, NO_ROOM)
+        return
+    owner = -1
+    if flags & END_TO_END and dest != ALL:
+        owner = free_wait(node)
+        if owner < 0 or crowds(node, dest):
+            report(out, REPORT_FULL, item.handle, NO_ROOM)
+            return
+    i = -1
+    if flags & PRIORITY:
+        i = compose(node, now, CONTROL, DATA, dest, flags, out)
+    elif make_room(node, OWN if owner >= 0 else MESSAGES, out):
+        i = compose(node, now, MESSAGES, DATA, dest, flags, out)
+    if i < 0 and owner >= 0:
+        keep_for_later(node, params, now, owner, item, dest, flags | first_flag(node, dest), out)
+        return
+    if i < 0:
+        report(out, REPORT_FULL, item.handle, NO_ROOM)
+        return
+    node.q_flags[i] = node.q_flags[i] | first_flag(node, dest)
+    for k in range(item.length):
+        add8(node, i, item.body[k])
+    report(out, REPORT_ACCEPTED, item.handle, node.seq)
+    if dest == ALL:
+        flood_own(node, params, now, i, out)
+        return
+    if owner >= 0:
+        keep(node, params, now, owner, i, item.handle, out)
+    launch(node, params, now, i, owner, item.handle, out)
+
+
+def hand_up_own(node, item, out):
+    """A message to ourselves."""
+    frame = out.frame[deliver(out, DATA)]
+    frame.kind = DATA
+    frame.flags = 0
+    frame.link_src = node.number
+    frame.link_dst = node.number
+    frame.origin = node.number
+    frame.dest = node.number
+    frame.seq = item.handle
+    frame.table_ver = 0
+    frame.ttl = 0
+    frame.path_len = 0
+    frame.length = item.length
+    frame.rssi = 0
+    for k in range(item.length):
+        frame.body[k] = item.body[k]
+
+
+def flood_own(node, params, now, i, out):
+    """A message to all: every node passes it on once."""
+    node.q_flags[i] = node.q_flags[i] | FLOOD
+    node.q_copies[i] = params.copies
+    add_hop(node, i)
+    kick(node, params, now, out)
+
+
+def acknowledge_end(node, params, now, frame, out):
+    """Tell the origin that its message is here."""
+    if frame.flags & END_TO_END == 0 or frame.origin == node.number:
+        return
+    rank = ALARMS if frame.kind == ALARM else CONTROL
+    flags = first_flag(node, frame.origin)
+    i = compose(node, now, rank, E2E_ACK, frame.origin, flags, out)
+    if i >= 0:
+        add16(node, i, frame.seq)
+        send_on(node, params, now, i, out)
+
+
+def hand_up(params, frame, out):
+    """Deliver a packet: its payload without what forwarding has put into it."""
+    up = out.frame[deliver(out, frame.kind)]
+    copy_frame(up, frame)
+    if params.mode == TABLES:
+        return
+    route = inner(up)
+    for k in range(up.length - route):
+        up.body[k] = up.body[k + route]
+    up.length = up.length - route
+    if up.flags & DETOURED and up.length > 0:
+        up.length = max(0, up.length - 1 - up.body[up.length - 1])
+
+
+def take(node, params, now, frame, out):
+    """A packet for us: deliver it once, acknowledge it always.
+
+    An end-to-end ack may come twice, but does not move the window: else acks would shut out
+    messages that are still tried.
+    """
+    first = frame.flags & FIRST
+    is_there(node, frame.origin)
+    if frame.kind == E2E_ACK:
+        on_end_ack(node, params, frame, now, out)
+        return
+    if accept(node, params, frame.origin, frame.seq, first):
+        hand_up(params, frame, out)
+        acknowledge_end(node, params, now, frame, out)
+    elif is_within(node, frame.origin, frame.seq):
+        acknowledge_end(node, params, now, frame, out)
+
+
+def is_within(node, origin, seq):
+    """1 if the window tells that this packet was delivered; of older ones nothing is known."""
+    return ((node.newest[origin] - seq) & 65_535) <= 64

@@ -1,0 +1,140 @@
+"""Neighbours: who was heard, how loud, and who does not answer."""
+
+from innervate.dialect.arith import MASK30, after
+from innervate.dialect.outbox import report
+from innervate.networks.mesh.protocol.constants import NOBODY, REPORT_SUSPECT
+
+FREE = 255
+UNHEARD = 255
+LIVELY_TICKS = 2
+
+# In `suspect`.
+SUSPECT = 1  # avoided for a while
+DOUBT = 2  # not heard since: one transmission is enough to ask
+
+
+def forget_all(node, params):
+    """No neighbours."""
+    for k in range(params.places):
+        node.near[k] = FREE
+        node.suspect[k] = 0
+        node.round_depth[k] = UNHEARD
+
+
+def place_of(node, params, who):
+    """Where a neighbour is in the table, or -1."""
+    for k in range(params.places):
+        if node.near[k] == who:
+            return k
+    return -1
+
+
+def hear(node, params, who, rssi):
+    """A frame of `who` was received: it is there, and whatever was suspected, it lives.
+
+    Of more neighbours than there are places the loudest are kept.
+    """
+    k = place_of(node, params, who)
+    if k >= 0:
+        node.rssi[k] = node.rssi[k] + ((4 * rssi - node.rssi[k]) >> 2)
+        node.heard[k] = node.ticks
+        node.suspect[k] = 0
+        return k
+    faintest = 0
+    for j in range(params.places):
+        if node.near[j] == FREE:
+            faintest = j
+            break
+        if node.rssi[j] < node.rssi[faintest]:
+            faintest = j
+    k = faintest
+    if node.near[k] != FREE and node.rssi[k] >= 4 * rssi:
+        return -1
+    node.near[k] = who
+    node.rssi[k] = 4 * rssi
+    node.heard[k] = node.ticks
+    node.suspect[k] = 0
+    node.round_depth[k] = UNHEARD
+    return k
+
+
+def hear_again(node, params, who):
+    """An ack for somebody else, whose rssi is not ours: `who` lives, no more than that."""
+    k = place_of(node, params, who)
+    if k >= 0:
+        node.heard[k] = node.ticks
+        node.suspect[k] = 0
+
+
+def is_lively(node, k):
+    """1 if the neighbour in place k was heard within the last two ticks."""
+    return ((node.ticks - node.heard[k]) & 65_535) <= LIVELY_TICKS
+
+
+def suspect(node, params, now, who, planned, out):
+    """`who` did not acknowledge: avoid it for a while, or until it is heard."""
+    k = place_of(node, params, who)
+    if k >= 0:
+        node.suspect[k] = SUSPECT | DOUBT
+        node.until[k] = (now + params.suspect_us) & MASK30
+        report(out, REPORT_SUSPECT, who, planned)
+
+
+def is_suspect(node, params, who):
+    """1 if `who` is a neighbour that did not answer."""
+    k = place_of(node, params, who)
+    return k >= 0 and node.suspect[k] & SUSPECT
+
+
+def trust(node, params):
+    """No suspicion any more."""
+    for k in range(params.places):
+        node.suspect[k] = node.suspect[k] & DOUBT
+
+
+def sweep(node, params, now):
+    """Every tick: suspicions end; neighbours that were silent for too long are forgotten."""
+    most = 3 * params.period_max + 2
+    for k in range(params.places):
+        if node.near[k] != FREE:
+            if node.suspect[k] & SUSPECT and after(now, node.until[k]):
+                node.suspect[k] = DOUBT
+            if ((node.ticks - node.heard[k]) & 65535) > most:
+                node.near[k] = FREE
+
+
+def is_strong(node, params, k):
+    """1 if the neighbour in place k is loud enough to be relied on."""
+    return k >= 0 and node.rssi[k] >= 4 * params.min_rssi
+
+
+def random_neighbour(node, params, not_this, nor_this, pick):
+    """The pick-th neighbour that is neither of two; NOBODY beyond the last."""
+    for k in range(params.places):
+        who = node.near[k]
+        if who != FREE and who != not_this and who != nor_this:
+            if pick == 0:
+                return who
+            pick = pick - 1
+    return NOBODY
+
+
+def count_neighbours(node, params, not_this, nor_this):
+    """How many neighbours are neither of two."""
+    count = 0
+    for k in range(params.places):
+        if node.near[k] != FREE and node.near[k] != not_this and node.near[k] != nor_this:
+            count = count + 1
+    return count
+
+
+def loudest(node, params, not_this, nor_this):
+    """The loudest neighbour that is neither of two, or NOBODY."""
+    best = -1
+    for k in range(params.places):
+        if node.near[k] != FREE and node.near[k] != not_this and node.near[k] != nor_this:
+            if best < 0 or node.rssi[k] > node.rssi[best]:
+                best = k
+    if best < 0:
+        return NOBODY
+    return node.near[best]

@@ -1,0 +1,293 @@
+"""The mesh: routed messages between any two nodes, tables made by a gateway, a virtual fence.
+
+The router's five functions [mesh 4]. `gate` is the record that only a gateway or standby has.
+Rounds stand in mesh_round.py (nodes) and mesh_gateway.py, tables in mesh_table.py and mesh_jobs.py,
+the choice of a hop in mesh_route.py, messages in mesh_messages.py, the fence in mesh_alarm.py.
+"""
+
+from innervate.dialect.arith import MASK30
+from innervate.dialect.outbox import report, set_timer
+from innervate.dialect.rng import draw
+from innervate.networks.mesh.protocol.alarm import (
+    flood_again,
+    insist,
+    on_flood,
+    on_sample,
+    take_alarm,
+    unheard,
+)
+from innervate.networks.mesh.protocol.backoff import NO_PAUSE, end_pause
+from innervate.networks.mesh.protocol.constants import (
+    ACK,
+    ACK_WAIT,
+    ACK_WANTED,
+    ACTIVATE,
+    ALARM,
+    ALL,
+    CONTROL,
+    DATA,
+    DETOURED,
+    E2E_ACK,
+    FLOOD,
+    GRAPH,
+    JOBS,
+    MESSAGE,
+    POSITION,
+    REPORT_UNKEYED,
+    REQUEST,
+    RESPONSE,
+    RETRY,
+    ROUND,
+    SAMPLE,
+    SENT,
+    TABLE,
+    TABLE_ACK,
+    TICK,
+    TX,
+)
+from innervate.networks.mesh.protocol.duplicates import age, forget, hope_again, is_repeated
+from innervate.networks.mesh.protocol.fields import WAITING
+from innervate.networks.mesh.protocol.frames import clear_queue, is_sound
+from innervate.networks.mesh.protocol.gateway import collect, lead, on_response, reset, tick
+from innervate.networks.mesh.protocol.jobs import on_ack, retry_jobs
+from innervate.networks.mesh.protocol.messages import on_message, take
+from innervate.networks.mesh.protocol.neighbours import forget_all, hear, hear_again, sweep
+from innervate.networks.mesh.protocol.overheard import spare
+from innervate.networks.mesh.protocol.queue import (
+    acked,
+    acknowledge,
+    has_room,
+    kick,
+    left,
+    make_room,
+    take_over,
+    tell_hop,
+)
+from innervate.networks.mesh.protocol.relay import flood_data, rank_of, relay
+from innervate.networks.mesh.protocol.retransmission import due_wait, try_again, wait_on
+from innervate.networks.mesh.protocol.round import on_request, step
+from innervate.networks.mesh.protocol.send import is_upward, send_up, unanswered
+from innervate.networks.mesh.protocol.table import on_activate, on_graph, on_table
+from innervate.networks.mesh.protocol.watch import NEVER, beacon, on_position, watch
+
+NONE = 255
+HOPELESS_TICKS = 4  # whoever could not be reached is tried again after at most so long
+RETRIES = 4  # of kept messages in one go: the outbox has to hold them
+
+
+def on_start(node, gate, params, now, cause, out):
+    """Switch on: nothing known. A gateway begins at once, one that had been on waits first."""
+    node.seq = draw(node, 65_536)
+    node.ticks = 0
+    node.tick_at = now
+    node.epoch = 0
+    node.round = 0
+    node.known = 0
+    node.gateway = ALL
+    node.active = 0
+    node.depth = NONE
+    node.parent = ALL
+    node.due = 0
+    node.quiet = 0
+    node.leading = 0
+    node.round_trip = 0
+    node.strain = 0
+    node.despair = 0
+    node.pause = NO_PAUSE
+    node.version = 0
+    node.table_epoch = 0
+    node.new_version = 0
+    node.new_epoch = 0
+    node.part_count = 0
+    node.ready = 0
+    node.placed = 0
+    node.outside = 0
+    node.heard_out = 0
+    forget_all(node, params)
+    forget(node, params)
+    clear_queue(node)
+    clear_arrays(node, params)
+    set_timer(out, TICK, (now + draw(node, params.tick_us) + 1) & MASK30)
+    if node.rank >= 0:
+        reset(gate, params)
+        if node.rank == 0 and cause == 0:
+            lead(node, gate, params, now, out)
+
+
+def clear_arrays(node, params):
+    """No tables, no graph, no message kept, no robot known."""
+    for k in range(2 * params.width):
+        node.next[k] = NONE
+        node.alt[k] = NONE
+    for k in range(params.width * params.row):
+        node.edges[k] = 0
+    for k in range(params.row):
+        node.met[k] = 0
+    for w in range(WAITING):
+        node.wait_kind[w] = 0
+    for k in range(params.width):
+        node.missed[k] = NEVER
+        node.raised[k] = 0
+
+
+def on_frame(node, gate, params, now, port, frame, out):
+    """A frame was received, perhaps for somebody else [mesh 4]."""
+    if frame.link_src >= params.nodes or frame.link_src == node.number:
+        return
+    if not is_sound(params, frame):
+        return
+    if frame.kind == ACK and frame.link_dst != node.number:
+        hear_again(node, params, frame.link_src)
+        return
+    k = hear(node, params, frame.link_src, frame.rssi)
+    if frame.kind == ACK:
+        on_hop_ack(node, params, now, frame, out)
+    elif frame.link_dst == ALL:
+        on_broadcast(node, params, now, frame, k, out)
+    else:
+        spare(node, frame, out)
+        if frame.link_dst == node.number:
+            on_unicast(node, gate, params, now, frame, out)
+        else:
+            kick(node, params, now, out)
+
+
+def on_hop_ack(node, params, now, frame, out):
+    """A hop has taken over what we sent."""
+    i = acked(node, frame)
+    if i >= 0:
+        tell_hop(node, i, out)
+        kick(node, params, now, out)
+
+
+def on_broadcast(node, params, now, frame, k, out):
+    """A frame for everyone in reach."""
+    kind = frame.kind
+    if kind == REQUEST:
+        if frame.length >= 7 and frame.body[0] < params.nodes:
+            on_request(node, params, now, frame, k, out)
+    elif kind == ALARM:
+        if frame.flags & FLOOD:
+            on_flood(node, params, now, frame, out)
+    elif kind == POSITION:
+        on_position(node, params, now, frame, out)
+    elif kind == GRAPH:
+        on_graph(node, params, now, frame, out)
+    elif kind == ACTIVATE:
+        if frame.length >= 3:
+            on_activate(node, params, now, frame, out)
+    elif kind == DATA:
+        if frame.flags & FLOOD:
+            flood_data(node, params, now, frame, out)
+    else:
+        report(out, REPORT_UNKEYED, kind, 0)
+
+
+def on_unicast(node, gate, params, now, frame, out):
+    """A frame for us: acknowledge it if we can take it over, then handle it."""
+    here = frame.dest == node.number
+    rank = rank_of(frame)
+    if is_upward(frame.kind) or frame.kind == TABLE:
+        rank = CONTROL
+    if not here and not has_room(node, rank):
+        if frame.flags & DETOURED or not make_room(node, rank, out):
+            return
+    if frame.flags & ACK_WANTED:
+        acknowledge(node, frame, out)
+    kind = frame.kind
+    if is_upward(kind):
+        on_upward(node, gate, params, now, frame, out)
+    elif kind == TABLE:
+        if not is_repeated(node, frame):
+            on_table(node, params, now, frame, out)
+    elif kind == ALARM and here:
+        take_alarm(node, params, now, frame, out)
+    elif kind == POSITION and here:
+        on_position(node, params, now, frame, out)
+    elif kind == DATA or kind == E2E_ACK or kind == ALARM or kind == POSITION:
+        if here:
+            take(node, params, now, frame, out)
+        else:
+            relay(node, params, now, frame, out)
+    else:
+        report(out, REPORT_UNKEYED, kind, 0)
+    kick(node, params, now, out)
+
+
+def on_upward(node, gate, params, now, frame, out):
+    """A response or a table's ack: for us if we are the gateway, else it climbs on."""
+    if is_repeated(node, frame):
+        return
+    if not node.leading:
+        i = take_over(node, now, CONTROL, frame, out)
+        if i >= 0:
+            send_up(node, params, now, i, out)
+    elif frame.kind == RESPONSE:
+        on_response(node, gate, params, frame, out)
+    elif frame.kind == TABLE_ACK:
+        on_ack(node, gate, params, now, frame, out)
+
+
+def on_input(node, gate, params, now, kind, item, out):
+    """MESSAGE: send it. SENT: the frame below has left. SAMPLE: where a robot is."""
+    if kind == SENT:
+        left(node, params, now, item.ok, out)
+    elif kind == MESSAGE:
+        on_message(node, params, now, item, out)
+    elif kind == SAMPLE:
+        on_sample(node, params, now, item, out)
+
+
+def on_timer(node, gate, params, now, timer, out):
+    """One of six waits is over."""
+    if timer == TX:
+        kick(node, params, now, out)
+    elif timer == ACK_WAIT:
+        unanswered(node, params, now, out)
+    elif timer == ROUND:
+        if node.leading:
+            collect(node, gate, params, now, out)
+        else:
+            step(node, params, now, out)
+    elif timer == TICK:
+        on_tick(node, gate, params, now, out)
+    elif timer == RETRY:
+        on_retry(node, params, now, out)
+    elif timer == JOBS:
+        if node.leading:
+            retry_jobs(node, gate, params, now, out)
+
+
+def on_tick(node, gate, params, now, out):
+    """The beat of all slow things."""
+    node.ticks = (node.ticks + 1) & 65_535
+    node.tick_at = now
+    set_timer(out, TICK, (now + params.tick_us) & MASK30)
+    sweep(node, params, now)
+    end_pause(node, now)
+    age(node, params)
+    if node.ticks % (HOPELESS_TICKS << node.despair) == 0:
+        hope_again(node)
+    watch(node, params, now, out)
+    if node.robot and node.placed:
+        insist(node, params, now, out)
+        beacon(node, params, now, out)
+    if not node.leading:
+        node.quiet = min(node.quiet + 1, 65_535)
+    if node.rank >= 0:
+        tick(node, gate, params, now, out)
+    kick(node, params, now, out)
+
+
+def on_retry(node, params, now, out):
+    """An end-to-end ack is overdue: once more, for alarms as a flood besides."""
+    for _ in range(RETRIES):
+        w = due_wait(node, now)
+        if w >= 0:
+            alarm = node.wait_kind[w] == ALARM
+            if not try_again(node, params, now, w, out):
+                if alarm:
+                    unheard(node, w)
+            elif alarm:
+                flood_again(node, params, now, w, out)
+    wait_on(node, now, out)

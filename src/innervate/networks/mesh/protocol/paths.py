@@ -1,0 +1,231 @@
+"""The gateway's arithmetic: links, distances, next hops, alternates, tables as bytes [mesh 4].
+
+Dijkstra's algorithm over hop counts is a breadth-first search; among equals the lowest id wins.
+"""
+
+from innervate.dialect.arith import MASK16, MASK30
+from innervate.networks.mesh.protocol.constants import LIST, TABLE_FREE
+from innervate.networks.mesh.protocol.fields import NEIGHBOURS
+
+FAR = 255
+NONE = 255
+BITS = 15
+ROUNDS_KEPT = 3
+
+
+def heard(gate, params, who, by, round):
+    """`by` heard `who` in this round."""
+    gate.reported[who * params.width + by] = (round + 1) & MASK16
+
+
+def is_reported(gate, params, who, by, round):
+    """1 if `by` heard `who` in one of the last rounds."""
+    said = gate.reported[who * params.width + by]
+    return said != 0 and ((round + 1 - said) & MASK16) < ROUNDS_KEPT
+
+
+def is_link(gate, params, a, b, round):
+    """1 if packets can go between a and b, both ways."""
+    there = is_reported(gate, params, a, b, round)
+    back = is_reported(gate, params, b, a, round)
+    if params.mode == TABLE_FREE:
+        return there or back
+    return there and back
+
+
+def is_known(gate, params, a, b):
+    """1 if the newest graph has the link a-b."""
+    return gate.known[a * params.row + b // BITS] >> (b % BITS) & 1
+
+
+def build_graph(gate, params, round):
+    """Links from reports; how many, and a mark that tells graphs apart in gate.sum_a."""
+    links = 0
+    mark = 1
+    for a in range(params.nodes):
+        gate.degree[a] = 0
+        for b in range(params.nodes):
+            if not is_reported(gate, params, a, b, round):
+                gate.reported[a * params.width + b] = 0
+        for word in range(params.row):
+            gate.known[a * params.row + word] = 0
+    for a in range(params.nodes):
+        for b in range(params.nodes):
+            if a != b and is_link(gate, params, a, b, round) and gate.degree[a] < NEIGHBOURS:
+                at = a * params.row + b // BITS
+                gate.known[at] = gate.known[at] | 1 << (b % BITS)
+                gate.list[a * NEIGHBOURS + gate.degree[a]] = b
+                gate.degree[a] = gate.degree[a] + 1
+                if a < b:
+                    links = links + 1
+                mark = fold(mark, a * 256 + b)
+    gate.links = links
+    return mark
+
+
+def fold(mark, value):
+    """A mark of a sequence of numbers, below 2^30."""
+    x = (mark ^ value) & MASK30
+    x = (x * 25_173 + 13_849) & MASK30
+    return x ^ (x >> 13)
+
+
+def measure(gate, params, source, without):
+    """Hops from `source` to everyone into gate.far, not through `without` (255: all may be)."""
+    for k in range(params.nodes):
+        gate.far[k] = FAR
+    gate.far[source] = 0
+    gate.line[0] = source
+    last = 1
+    at = 0
+    for _ in range(params.nodes):
+        if at >= last:
+            return
+        a = gate.line[at]
+        at = at + 1
+        for k in range(gate.degree[a]):
+            b = gate.list[a * NEIGHBOURS + k]
+            if gate.far[b] == FAR and b != without:
+                gate.far[b] = gate.far[a] + 1
+                gate.line[last] = b
+                last = last + 1
+
+
+def measure_all(gate, params):
+    """Hops from everyone to everyone."""
+    for a in range(params.nodes):
+        measure(gate, params, a, NONE)
+        for b in range(params.nodes):
+            gate.dist[a * params.width + b] = gate.far[b]
+
+
+def hops(gate, params, a, b):
+    """Hops from a to b, 255 if there is no way."""
+    return gate.dist[a * params.width + b]
+
+
+def first_hop(gate, params, s, d, pick):
+    """A first hop of a shortest path from s to d: of several the pick-th, from the lowest id on."""
+    count = 0
+    for k in range(gate.degree[s]):
+        if hops(gate, params, gate.list[s * NEIGHBOURS + k], d) + 1 == hops(gate, params, s, d):
+            count = count + 1
+    if count == 0:
+        return NONE
+    left = pick % count
+    for k in range(gate.degree[s]):
+        who = gate.list[s * NEIGHBOURS + k]
+        if hops(gate, params, who, d) + 1 == hops(gate, params, s, d):
+            if left == 0:
+                return who
+            left = left - 1
+    return NONE
+
+
+def alternate_of(gate, params, s, d, main):
+    """A neighbour of s that leads to d without coming back [RFC 5286], around `main` if it can.
+
+    None such: NONE; `around` may find the first hop of a longer way then.
+    """
+    best = NONE
+    best_protects = 0
+    for k in range(gate.degree[s]):
+        who = gate.list[s * NEIGHBOURS + k]
+        far = hops(gate, params, who, d)
+        if (
+            who != main
+            and far != FAR
+            and far < hops(gate, params, who, s) + hops(gate, params, s, d)
+        ):
+            through = hops(gate, params, who, main) + hops(gate, params, main, d)
+            protects = main == d or far < through
+            if best == NONE or protects > best_protects:
+                best = who
+                best_protects = protects
+            elif protects == best_protects and far < hops(gate, params, best, d):
+                best = who
+    return best
+
+
+def around(gate, params, s, main):
+    """For recipients without alternate: first hops of the shortest paths that avoid `main`.
+
+    Safe only because packets carry their path.
+    """
+    missing = 0
+    for d in range(params.nodes):
+        if gate.next[d] == main and gate.alt[d] == NONE and d != main:
+            missing = 1
+    if not missing:
+        return
+    measure(gate, params, s, main)
+    for d in range(params.nodes):
+        if gate.next[d] == main and gate.alt[d] == NONE and d != main and gate.far[d] != FAR:
+            gate.alt[d] = walk_back(gate, params, s, d, main)
+
+
+def walk_back(gate, params, s, d, without):
+    """The neighbour of s through which the path of gate.far leads to d."""
+    at = d
+    for _ in range(params.nodes):
+        if gate.far[at] == 1:
+            return at
+        best = NONE
+        for k in range(gate.degree[at]):
+            who = gate.list[at * NEIGHBOURS + k]
+            if (
+                who != without
+                and gate.far[who] + 1 == gate.far[at]
+                and (best == NONE or who < best)
+            ):
+                best = who
+        if best == NONE:
+            return NONE
+        at = best
+    return NONE
+
+
+def make_table(gate, params, s):
+    """Next hops and alternates of node s into gate.next and gate.alt."""
+    for d in range(params.nodes):
+        gate.next[d] = NONE
+        gate.alt[d] = NONE
+        if d != s and hops(gate, params, s, d) != FAR:
+            gate.next[d] = first_hop(gate, params, s, d, 0)
+            gate.alt[d] = alternate_of(gate, params, s, d, gate.next[d])
+    for k in range(gate.degree[s]):
+        around(gate, params, s, gate.list[s * NEIGHBOURS + k])
+
+
+def mark_table(gate, params, start):
+    """A mark that tells tables apart; two with different starts make a pair that does."""
+    mark = start
+    for d in range(params.nodes):
+        mark = fold(mark, gate.next[d] * 256 + gate.alt[d])
+    return mark
+
+
+def note_path(gate, params, frame, me, round):
+    """What a packet that climbed with acknowledgements proves: links both ways."""
+    for k in range(frame.path_len):
+        a = frame.path[k]
+        b = me
+        if k + 1 < frame.path_len:
+            b = frame.path[k + 1]
+        if a < params.nodes and b < params.nodes and a != b:
+            heard(gate, params, a, b, round)
+            heard(gate, params, b, a, round)
+
+
+def note_list(gate, params, frame, at, count):
+    """The neighbours that a response lists, from byte `at` on."""
+    round = frame.body[1] << 8 | frame.body[2]
+    for k in range(count):
+        who = frame.body[at + 2 * k]
+        if who < params.nodes and at + 2 * k + 1 < frame.length:
+            heard(gate, params, who, frame.origin, round)
+
+
+def trusts_lists(params):
+    """1 if responses list who was heard; else only the path that they took counts."""
+    return params.discovery == LIST

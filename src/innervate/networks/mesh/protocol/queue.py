@@ -1,0 +1,286 @@
+"""Frames that wait: one is under way at a time; alarms go before control, control before data."""
+
+from innervate.dialect.arith import MASK16, MASK30, after
+from innervate.dialect.outbox import URGENT, report, send, set_timer
+from innervate.dialect.rng import draw
+from innervate.networks.mesh.protocol.backoff import NO_PAUSE, answered, end_pause, is_held
+from innervate.networks.mesh.protocol.constants import (
+    ACK,
+    ACK_WAIT,
+    ACK_WANTED,
+    ALARM,
+    ALARMS,
+    ALL,
+    DETOURED,
+    END_TO_END,
+    MESSAGES,
+    REPORT_DROPPED,
+    REPORT_HOP,
+    TTL,
+    TX,
+)
+from innervate.networks.mesh.protocol.fields import QUEUE
+from innervate.networks.mesh.protocol.frames import load, store
+
+FREE = 0
+WAITS = 1
+DOWN = 2
+UNACKED = 3
+
+NOBODY_GAVE = 255
+NO_OWNER = -1
+
+
+def free_places(node):
+    """How many more frames fit."""
+    count = 0
+    for i in range(QUEUE):
+        if node.q_state[i] == FREE:
+            count = count + 1
+    return count
+
+
+def has_room(node, rank):
+    """1 if a frame of this rank may still be taken over: the last places are for better ones.
+
+    An alarm may take the place of a frame that is less urgent and not under way.
+    """
+    if free_places(node) > rank:
+        return 1
+    if rank == ALARMS:
+        for i in range(QUEUE):
+            if node.q_state[i] == WAITS and node.q_rank[i] > ALARMS:
+                return 1
+    return 0
+
+
+def make_room(node, rank, out):
+    """As has_room; what looks for a way, and will be sent again, makes room for what knows its."""
+    if has_room(node, rank):
+        return 1
+    newest = -1
+    for i in range(QUEUE):
+        if node.q_state[i] == WAITS and node.q_rank[i] == MESSAGES and is_searching(node, i):
+            if newest < 0 or (node.q_order[i] - node.q_order[newest]) & MASK30 < MASK30 >> 1:
+                newest = i
+    if newest < 0 or free_places(node) < rank:
+        return 0
+    report(out, REPORT_DROPPED, node.q_origin[newest], node.q_seq[newest])
+    node.q_state[newest] = FREE
+    return 1
+
+
+def is_searching(node, i):
+    """1 if the message in place i looks for a way, and its origin sends it again."""
+    return node.q_flags[i] & DETOURED and node.q_flags[i] & END_TO_END
+
+
+def take_place(node, rank, out):
+    """A place for a frame, or -1. An alarm puts out the newest of what is less urgent."""
+    worst = -1
+    for i in range(QUEUE):
+        if node.q_state[i] == FREE:
+            return i
+        if node.q_state[i] == WAITS and node.q_rank[i] > rank:
+            if worst < 0 or node.q_rank[i] > node.q_rank[worst]:
+                worst = i
+            elif node.q_rank[i] == node.q_rank[worst]:
+                if (node.q_order[i] - node.q_order[worst]) & MASK30 < (MASK30 >> 1):
+                    worst = i
+    if rank > ALARMS or worst < 0:
+        return -1
+    report(out, REPORT_DROPPED, node.q_origin[worst], node.q_seq[worst])
+    node.q_state[worst] = FREE
+    return worst
+
+
+def place(node, now, rank, giver, out):
+    """A place in the queue, due at once, as yet without frame; -1 if there is none."""
+    i = take_place(node, rank, out)
+    if i >= 0:
+        node.q_state[i] = WAITS
+        node.q_rank[i] = rank
+        node.q_order[i] = node.q_next
+        node.q_next = (node.q_next + 1) & MASK30
+        node.q_due[i] = now
+        node.q_born[i] = now
+        node.q_tries[i] = 0
+        node.q_fails[i] = 0
+        node.q_copies[i] = 1
+        node.q_from[i] = giver
+        node.q_owner[i] = NO_OWNER
+    return i
+
+
+def compose(node, now, rank, kind, dest, flags, out):
+    """A packet of our own, empty, its path still to be begun; -1 if there is no place."""
+    i = place(node, now, rank, NOBODY_GAVE, out)
+    if i >= 0:
+        node.seq = (node.seq + 1) & MASK16
+        node.q_kind[i] = kind
+        node.q_flags[i] = flags
+        node.q_link_dst[i] = ALL
+        node.q_origin[i] = node.number
+        node.q_dest[i] = dest
+        node.q_seq[i] = node.seq
+        node.q_ver[i] = node.version & 255
+        node.q_ttl[i] = TTL
+        node.q_path_len[i] = 0
+        node.q_length[i] = 0
+    return i
+
+
+def take_over(node, now, rank, frame, out):
+    """A received packet that is to go on; -1 if there is no place."""
+    i = place(node, now, rank, frame.link_src, out)
+    if i >= 0:
+        store(node, i, frame)
+    return i
+
+
+def drop(node, i):
+    """Forget the frame in place i."""
+    node.q_state[i] = FREE
+    if node.busy == i:
+        node.busy = -1
+
+
+def is_before(node, i, j):
+    """1 if the frame in place i goes before that in place j.
+
+    Of alarms the flooded ones go first: they take one transmission, whoever is dead, and need not
+    wait until a hop has failed three times and the next three times more.
+    """
+    if node.q_rank[i] != node.q_rank[j]:
+        return node.q_rank[i] < node.q_rank[j]
+    if node.q_rank[i] == ALARMS and (node.q_link_dst[i] == ALL) != (node.q_link_dst[j] == ALL):
+        return node.q_link_dst[i] == ALL
+    return (node.q_order[j] - node.q_order[i]) & MASK30 < (MASK30 >> 1)
+
+
+def first_due(node, now):
+    """Which frame goes next, or -1."""
+    best = -1
+    end_pause(node, now)
+    for i in range(QUEUE):
+        if node.pause != NO_PAUSE and is_held(node, i):
+            continue
+        if node.q_state[i] == WAITS and after(now, node.q_due[i]):
+            if best < 0 or is_before(node, i, best):
+                best = i
+    return best
+
+
+def wake(node, now, out):
+    """Nothing is due: come back when something is."""
+    soonest = -1
+    for i in range(QUEUE):
+        if node.q_state[i] == WAITS:
+            wait = (node.q_due[i] - now) & MASK30
+            if after(now, node.q_due[i]):
+                wait = 0
+            if node.pause != NO_PAUSE and is_held(node, i):
+                wait = max(wait, (node.pause - now) & MASK30)
+            if soonest < 0 or wait < soonest:
+                soonest = wait
+    if soonest >= 0:
+        set_timer(out, TX, (now + soonest) & MASK30)
+
+
+def settle(node, params, now, sent, out):
+    """The frame under way has left, or could not (sent = 0)."""
+    i = node.busy
+    if node.q_link_dst[i] == ALL:
+        node.busy = -1
+        node.q_copies[i] = node.q_copies[i] - 1
+        if node.q_copies[i] > 0:
+            span = params.jitter_us
+            if node.q_kind[i] == ALARM:
+                span = params.flood_us
+            node.q_state[i] = WAITS
+            node.q_due[i] = (now + draw(node, span + 1)) & MASK30
+        else:
+            node.q_state[i] = FREE
+    elif node.q_flags[i] & ACK_WANTED or not sent:
+        node.q_state[i] = UNACKED
+        node.q_tries[i] = node.q_tries[i] + 1
+        wait = params.ack_us if sent else 0
+        set_timer(out, ACK_WAIT, (now + wait) & MASK30)
+    else:
+        node.q_state[i] = FREE
+        node.busy = -1
+        tell_hop(node, i, out)
+
+
+def kick(node, params, now, out):
+    """Send what is due, if nothing is under way."""
+    for _ in range(QUEUE + 1):
+        if node.busy != -1:
+            return
+        i = first_due(node, now)
+        if i < 0:
+            wake(node, now, out)
+            return
+        node.busy = i
+        node.q_state[i] = DOWN
+        load(node, i, out.frame[send(out, 0, attempt(node, i), 0)])
+        if not params.told:
+            settle(node, params, now, 1, out)
+
+
+def attempt(node, i):
+    """How much the frame in place i yields to others' frames: as after so many attempts.
+
+    Packets that look for a way yield to those that know theirs.
+    """
+    if node.q_flags[i] & DETOURED and node.q_rank[i] == MESSAGES:
+        return node.q_tries[i] + 2
+    return node.q_tries[i]
+
+
+def left(node, params, now, sent, out):
+    """The layer below says that the frame has left."""
+    if node.busy >= 0 and node.q_state[node.busy] == DOWN:
+        settle(node, params, now, sent, out)
+        kick(node, params, now, out)
+
+
+def acknowledge(node, frame, out):
+    """Send the hop's ack for a received frame at once [mesh 1]."""
+    ack = out.frame[send(out, 0, 0, URGENT)]
+    ack.kind = ACK
+    ack.flags = 0
+    ack.link_src = node.number
+    ack.link_dst = frame.link_src
+    ack.origin = frame.origin
+    ack.dest = frame.link_src
+    ack.seq = frame.seq
+    ack.table_ver = 0
+    ack.ttl = 0
+    ack.path_len = 0
+    ack.length = 0
+    ack.rssi = frame.rssi
+
+
+def acked(node, frame):
+    """The place of the frame that this ack is for, which is free then; -1 if for none."""
+    i = node.busy
+    if i < 0 or node.q_state[i] != UNACKED:
+        return -1
+    if node.q_origin[i] != frame.origin or node.q_seq[i] != frame.seq:
+        return -1
+    if node.q_link_dst[i] != frame.link_src:
+        return -1
+    answered(node)
+    drop(node, i)
+    return i
+
+
+def tell_hop(node, i, out):
+    """The owner of a message hears, once, that its first hop has it."""
+    owner = node.q_owner[i]
+    if owner == NO_OWNER or node.wait_hop[owner]:
+        return
+    if node.wait_kind[owner] and node.wait_seq[owner] == node.q_seq[i]:
+        node.wait_hop[owner] = 1
+        report(out, REPORT_HOP, node.wait_handle[owner], 0)

@@ -1,0 +1,64 @@
+"""Packets for others: taken over, passed on, or given back [mesh 4 ROUTED]."""
+
+from innervate.dialect.arith import MASK30
+from innervate.dialect.rng import draw
+from innervate.networks.mesh.protocol.constants import (
+    ALARM,
+    ALARMS,
+    ALL,
+    CONTROL,
+    DATA,
+    E2E_ACK,
+    MESSAGES,
+)
+from innervate.networks.mesh.protocol.duplicates import (
+    accept,
+    is_flooded,
+    is_repeated,
+    is_returned_again,
+    mark_bad,
+)
+from innervate.networks.mesh.protocol.frames import in_path
+from innervate.networks.mesh.protocol.messages import hand_up
+from innervate.networks.mesh.protocol.queue import kick, take_over
+from innervate.networks.mesh.protocol.send import send_on
+
+
+def rank_of(frame):
+    """How urgent a packet is."""
+    if frame.kind == ALARM:
+        return ALARMS
+    if frame.kind == E2E_ACK:
+        return CONTROL
+    return MESSAGES
+
+
+def relay(node, params, now, frame, out):
+    """A routed packet for somebody else."""
+    returned = in_path(frame, node.number)
+    if not returned and is_repeated(node, frame):
+        return
+    if returned and is_returned_again(node, frame):
+        return
+    if returned:
+        mark_bad(node, frame.link_src, frame.dest)
+    i = take_over(node, now, rank_of(frame), frame, out)
+    if i < 0:
+        return
+    send_on(node, params, now, i, out)
+    kick(node, params, now, out)
+
+
+def flood_data(node, params, now, frame, out):
+    """A message to all: deliver it, pass it on once."""
+    if frame.origin == node.number or is_flooded(node, frame.origin, frame.seq, DATA, 0):
+        return
+    if not accept(node, params, frame.origin, frame.seq, 1):
+        return  # passed on so long ago that it is forgotten
+    hand_up(params, frame, out)
+    i = take_over(node, now, MESSAGES, frame, out)
+    if i >= 0:
+        node.q_link_dst[i] = ALL
+        node.q_copies[i] = params.copies
+        node.q_due[i] = (now + draw(node, params.flood_us + 1)) & MASK30
+    kick(node, params, now, out)

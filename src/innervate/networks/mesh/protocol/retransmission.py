@@ -1,0 +1,256 @@
+"""Messages that are kept until their recipient acknowledges them [mesh RELIABLE]."""
+
+from innervate.dialect.arith import MASK16, MASK30, after, later
+from innervate.dialect.outbox import report, set_timer
+from innervate.networks.mesh.protocol.constants import (
+    ALARM,
+    ALARMS,
+    ALL,
+    BODY,
+    CONTROL,
+    CROSS,
+    DATA,
+    DATA_MAX,
+    MESSAGES,
+    NO_ACK,
+    NO_ROUTE,
+    OWN,
+    PARITY,
+    PRIORITY,
+    REPORT_ACCEPTED,
+    REPORT_ARRIVED,
+    REPORT_EXPIRED,
+    RETRY,
+)
+from innervate.networks.mesh.protocol.duplicates import NO_WAY, is_hopeless, mark_bad, unskip
+from innervate.networks.mesh.protocol.fields import QUEUE, WAITING
+from innervate.networks.mesh.protocol.frames import add8, get16, inner
+from innervate.networks.mesh.protocol.queue import compose, drop, has_room, kick
+from innervate.networks.mesh.protocol.search import BITS
+from innervate.networks.mesh.protocol.send import send_on
+from innervate.networks.mesh.protocol.timeout import (
+    LONGEST_US,
+    learn_round_trip,
+    life,
+    shortest,
+    timeout,
+)
+
+FREE = 0
+SURE_AFTER = 2  # tries; after fewer in vain nothing is concluded
+DESPAIR_MAX = 3
+PATIENCE = 48  # first waits: all tries of a message take 32
+OLDEST = 64  # numbers: a packet older than that its recipient could not tell from one it had
+
+
+def free_wait(node):
+    """A place for a message that is kept, or -1."""
+    for w in range(WAITING):
+        if node.wait_kind[w] == FREE:
+            return w
+    return -1
+
+
+def keep(node, params, now, w, i, handle, out):
+    """Keep the packet in place i of the queue until its recipient acknowledges it."""
+    node.wait_kind[w] = node.q_kind[i]
+    node.wait_seq[w] = node.q_seq[i]
+    node.wait_dest[w] = node.q_dest[i]
+    node.wait_flags[w] = node.q_flags[i]
+    node.wait_tries[w] = 1
+    node.wait_hop[w] = 0
+    node.wait_at[w] = now
+    node.wait_sent[w] = now
+    node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
+    node.wait_handle[w] = handle
+    node.wait_length[w] = node.q_length[i]
+    for k in range(node.q_length[i]):
+        node.wait_body[w * DATA_MAX + k] = node.q_body[i * BODY + k]
+    wait_on(node, now, out)
+
+
+def keep_for_later(node, params, now, w, item, dest, flags, out):
+    """Keep a message that finds no room in the queue: its first try comes soon."""
+    node.seq = (node.seq + 1) & MASK16
+    node.wait_kind[w] = DATA
+    node.wait_seq[w] = node.seq
+    node.wait_dest[w] = dest
+    node.wait_flags[w] = flags
+    node.wait_tries[w] = 0
+    node.wait_hop[w] = 0
+    node.wait_at[w] = now
+    node.wait_sent[w] = now
+    node.wait_due[w] = (now + (params.e2e_us >> 2)) & MASK30
+    node.wait_handle[w] = item.handle
+    node.wait_length[w] = item.length
+    for k in range(item.length):
+        node.wait_body[w * DATA_MAX + k] = item.body[k]
+    report(out, REPORT_ACCEPTED, item.handle, node.seq)
+    wait_on(node, now, out)
+
+
+def is_ahead(node, dest):
+    """1 if a new packet to `dest` would be too far ahead of one that is kept for it.
+
+    Its recipient's window would move past the older one, which could then not come any more.
+    """
+    for w in range(WAITING):
+        if node.wait_kind[w] != FREE and (node.wait_dest[w] == dest or dest == ALL):
+            if (node.seq + 1 - node.wait_seq[w]) & MASK16 > OLDEST:
+                return 1
+    return 0
+
+
+def wait_on(node, now, out):
+    """Set the RETRY timer to the first end-to-end timeout."""
+    soonest = -1
+    for w in range(WAITING):
+        if node.wait_kind[w] != FREE:
+            wait = (node.wait_due[w] - now) & MASK30
+            if wait > MASK30 >> 1:
+                wait = 0
+            if soonest < 0 or wait < soonest:
+                soonest = wait
+    if soonest >= 0:
+        set_timer(out, RETRY, (now + soonest) & MASK30)
+
+
+def due_wait(node, now):
+    """A kept message whose time is over, or -1."""
+    for w in range(WAITING):
+        if node.wait_kind[w] != FREE and after(now, node.wait_due[w]):
+            return w
+    return -1
+
+
+def is_behind(node, dest, seq):
+    """1 if an older message to the same recipient is looking for a way: one at a time does."""
+    for w in range(WAITING):
+        if node.wait_kind[w] == DATA and node.wait_dest[w] == dest:
+            if node.wait_tries[w] > SURE_AFTER and later(seq, node.wait_seq[w]):
+                return 1
+    return 0
+
+
+def is_in_vain(node, dest, seq):
+    """1 if no way is known to the recipient, or an older message to it is looking for one."""
+    return is_hopeless(node, dest) or is_behind(node, dest, seq)
+
+
+def launch(node, params, now, i, owner, handle, out):
+    """A packet of ours goes out; without a way, only one that is kept may come to one later."""
+    node.q_owner[i] = owner
+    sent = 0
+    if node.q_kind[i] != ALARM and is_in_vain(node, node.q_dest[i], node.q_seq[i]):
+        drop(node, i)
+    else:
+        sent = send_on(node, params, now, i, out)
+    if not sent and owner < 0:
+        report(out, REPORT_EXPIRED, handle, NO_ROUTE)
+    kick(node, params, now, out)
+
+
+def is_old(node, params, now, w):
+    """1 if the message in place w is sent no more, however often it was: its place is wanted."""
+    most = life(params)
+    if not params.e2e_adapt:
+        most = min(most, PATIENCE * min(params.e2e_us, LONGEST_US // PATIENCE))
+    return (now - node.wait_at[w]) & MASK30 > most
+
+
+def crowds(node, dest):
+    """1 if so many messages wait for a way to this recipient that another would leave no place."""
+    if not is_in_vain(node, dest, (node.seq + 1) & MASK16):
+        return 0
+    count = 0
+    for w in range(WAITING):
+        if node.wait_kind[w] == DATA and node.wait_dest[w] == dest:
+            count = count + 1
+    return count >= WAITING // 2
+
+
+def is_queued(node, seq):
+    """1 if a copy of a message of ours has not left us yet: another would only be in its way.
+
+    Where several are under way, one that is late can make a node take a new one for it.
+    """
+    for i in range(QUEUE):
+        if node.q_state[i] != FREE and node.q_seq[i] == seq and node.q_kind[i] == DATA:
+            if node.q_origin[i] == node.number:
+                return 1
+    return 0
+
+
+def try_again(node, params, now, w, out):
+    """Send a kept message once more, or give it up: 1 if it was sent."""
+    if node.wait_tries[w] > params.e2e_tries or is_old(node, params, now, w):
+        report(out, REPORT_EXPIRED, node.wait_handle[w], NO_ACK)
+        if node.wait_kind[w] == DATA and node.wait_tries[w] > SURE_AFTER:
+            mark_bad(node, NO_WAY, node.wait_dest[w])
+            node.despair = min(node.despair + 1, DESPAIR_MAX)
+        node.wait_kind[w] = FREE
+        return 0
+    if node.wait_kind[w] == DATA and is_behind(node, node.wait_dest[w], node.wait_seq[w]):
+        node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
+        return 0
+    if node.wait_kind[w] == DATA and (is_queued(node, node.wait_seq[w]) or not has_room(node, OWN)):
+        node.wait_due[w] = (now + shortest(node, params)) & MASK30
+        return 0
+    node.wait_tries[w] = node.wait_tries[w] + 1
+    node.wait_sent[w] = now
+    node.wait_flags[w] = node.wait_flags[w] ^ PARITY
+    node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
+    unskip(node, node.number, node.wait_seq[w])
+    rank = CONTROL if node.wait_flags[w] & PRIORITY else MESSAGES
+    if node.wait_kind[w] == ALARM:
+        rank = ALARMS
+    i = compose(node, now, rank, node.wait_kind[w], node.wait_dest[w], node.wait_flags[w], out)
+    if i >= 0:
+        node.seq = (node.seq - 1) & 65_535  # it keeps its number
+        node.q_seq[i] = node.wait_seq[w]
+        for k in range(node.wait_length[w]):
+            add8(node, i, node.wait_body[w * DATA_MAX + k])
+        launch(node, params, now, i, w, node.wait_handle[w], out)
+    return 1
+
+
+def on_end_ack(node, params, frame, now, out):
+    """The recipient has our message."""
+    at = inner(frame)
+    if frame.length < at + 2:
+        return
+    word = frame.origin // BITS
+    node.met[word] = node.met[word] | 1 << (frame.origin % BITS)
+    for w in range(WAITING):
+        if node.wait_kind[w] != FREE and node.wait_seq[w] == get16(frame, at):
+            if node.wait_dest[w] == frame.origin or node.wait_kind[w] == ALARM:
+                learn_round_trip(node, params, w, now)
+                if is_own_crossing(node, w):
+                    node.heard_out = 1
+                report(out, REPORT_ARRIVED, node.wait_handle[w], node.wait_seq[w])
+                node.wait_kind[w] = FREE
+    hurry(node, params, now, frame.origin, out)
+
+
+def hurry(node, params, now, dest, out):
+    """`dest` is there: what was tried in vain is sent again as soon as its ack is overdue.
+
+    Who acknowledges much would else use up all tries before the first of them can arrive.
+    """
+    pause = shortest(node, params)
+    for w in range(WAITING):
+        if node.wait_kind[w] == DATA and node.wait_dest[w] == dest and node.wait_tries[w] > 1:
+            due = (node.wait_sent[w] + pause) & MASK30
+            if after(now, due):
+                due = now
+            if after(node.wait_due[w], due):
+                node.wait_due[w] = due
+    wait_on(node, now, out)
+
+
+def is_own_crossing(node, w):
+    """1 if the message kept in place w is our alarm that we are outside ourselves."""
+    body = w * DATA_MAX
+    if node.wait_kind[w] != ALARM or node.wait_body[body] != node.number:
+        return 0
+    return node.wait_body[body + 3] == CROSS

@@ -1,0 +1,252 @@
+"""Discovery at a node: requests are heard and passed on, who was heard is reported [mesh 4]."""
+
+from innervate.dialect.arith import MASK30, later
+from innervate.dialect.outbox import report, set_timer
+from innervate.dialect.rng import draw
+from innervate.networks.mesh.protocol.constants import (
+    ALL,
+    CONTROL,
+    CRC_BYTES,
+    EACH,
+    HEADER_BYTES,
+    LIST,
+    PATH_MAX,
+    REPORT_GATEWAY,
+    REQUEST,
+    RESPONSE,
+    ROUND,
+    TABLE_FREE,
+    TREE,
+)
+from innervate.networks.mesh.protocol.fields import QUEUE
+from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16, store
+from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD, place_of
+from innervate.networks.mesh.protocol.queue import NOBODY_GAVE, WAITS, compose, drop, kick, place
+from innervate.networks.mesh.protocol.send import send_up
+from innervate.networks.mesh.protocol.table import activate
+from innervate.networks.mesh.protocol.upward import is_uplink, is_weak
+
+NOTHING = 0
+LOOK_AGAIN = 1
+RESPOND = 2
+LISTED_MAX = 15
+SLACK = 2  # ticks: nodes count them from different moments
+UPLINKS_TOLD = 3  # table-free: a node tells the gateway no more than that
+
+
+def newer_epoch(a, b):
+    """1 if epoch a is newer than b (8 bits, RFC 1982)."""
+    ahead = (a - b) & 255
+    return ahead != 0 and ahead < 128
+
+
+def is_newer(node, params, gateway, epoch, round):
+    """1 if a round comes after the one we know: higher epoch, then lower id, then round.
+
+    Who has heard nothing for about as long as a gateway waits that switches on again takes any: it
+    has forgotten which epochs and rounds there were. Nothing old is in the air by then.
+    """
+    if not node.known:
+        return 1
+    if node.quiet > 0 and node.quiet + SLACK >= params.dead:
+        return 1
+    if epoch != node.epoch and (epoch - node.epoch) & 255 != 128:
+        return newer_epoch(epoch, node.epoch)
+    if gateway != node.gateway:
+        return gateway < node.gateway
+    return later(round, node.round)
+
+
+def begin(node, params, gateway, epoch, round, out):
+    """A round that is new to us."""
+    if not node.known or node.gateway != gateway or node.epoch != epoch:
+        report(out, REPORT_GATEWAY, gateway, epoch)
+    node.known = 1
+    node.gateway = gateway
+    node.epoch = epoch
+    node.round = round
+    node.depth = UNHEARD
+    node.parent = ALL
+    node.quiet = 0
+    node.due = NOTHING
+    if gateway != node.number:
+        node.leading = 0
+    for k in range(params.places):
+        node.round_depth[k] = UNHEARD
+
+
+def on_request(node, params, now, frame, k, out):
+    """A discovery request was heard from the neighbour in place k (-1: no room to note it)."""
+    gateway = frame.body[0]
+    epoch = frame.body[1]
+    round = get16(frame, 2)
+    if is_newer(node, params, gateway, epoch, round):
+        begin(node, params, gateway, epoch, round, out)
+        node.active = get16(frame, 4)
+        activate(node, params, epoch, node.active, out)  # should the flood have passed us by
+        node.jitter = frame.body[6]
+    elif gateway != node.gateway or epoch != node.epoch or round != node.round:
+        return
+    fresh = k < 0 or node.round_depth[k] == UNHEARD
+    note(node, frame, k)
+    if node.leading:
+        return
+    if node.depth == UNHEARD:
+        if frame.rssi < params.min_rssi + 1 and params.discovery == LIST:
+            hesitate(node, params, now, frame, out)
+        else:
+            node.parent = frame.link_src
+            hold(node, params, now, frame, 0, out)
+            join(node, params, now, frame.path_len + 1, out)
+    if params.discovery == EACH and fresh:  # not to every copy
+        respond_to(node, params, now, frame.link_src, out)
+    kick(node, params, now, out)
+
+
+def note(node, frame, k):
+    """Who was heard in this round, how loud, and at which depth."""
+    if k >= 0:
+        node.round_rssi[k] = frame.rssi
+        node.round_depth[k] = frame.path_len
+
+
+def held(node):
+    """Where the request that we are to pass on waits in the queue, or -1."""
+    for i in range(QUEUE):
+        if node.q_state[i] == WAITS and node.q_kind[i] == REQUEST:
+            return i
+    return -1
+
+
+def hold(node, params, now, frame, wait, out):
+    """Pass the request on after `wait` us and some more; it takes the place of one that waits."""
+    i = held(node)
+    if i < 0:
+        i = place(node, now, CONTROL, NOBODY_GAVE, out)
+    if i >= 0:
+        store(node, i, frame)
+        node.q_link_dst[i] = ALL
+        node.q_copies[i] = params.copies
+        node.q_due[i] = (now + wait + draw(node, params.jitter_us + 1)) & MASK30
+        if not add_hop(node, i):
+            drop(node, i)
+
+
+def hesitate(node, params, now, frame, out):
+    """A weak, perhaps one-way, link must not win: wait whether a better request comes."""
+    best = place_of(node, params, node.parent)
+    if node.due != LOOK_AGAIN:
+        node.due = LOOK_AGAIN
+        set_timer(out, ROUND, (now + 2 * params.jitter_us) & MASK30)
+    elif best >= 0 and node.round_rssi[best] >= frame.rssi:
+        return
+    node.parent = frame.link_src
+    hold(node, params, now, frame, 2 * params.jitter_us, out)
+
+
+def join(node, params, now, depth, out):
+    """We know our depth in this round: respond later."""
+    node.depth = depth
+    if params.discovery != EACH:
+        node.due = RESPOND
+        wait = params.listen_us + draw(node, params.spread_us + 1)
+        set_timer(out, ROUND, (now + wait) & MASK30)
+
+
+def look_again(node, params, now, out):
+    """Nothing but weak requests came: the best of them has to do."""
+    best = place_of(node, params, node.parent)
+    if best >= 0 and node.round_depth[best] != UNHEARD:
+        join(node, params, now, node.round_depth[best] + 1, out)
+
+
+def step(node, params, now, out):
+    """The ROUND timer of a node that is not the gateway."""
+    due = node.due
+    node.due = NOTHING
+    if due == LOOK_AGAIN and node.depth == UNHEARD:
+        look_again(node, params, now, out)
+    elif due == RESPOND:
+        respond(node, params, now, out)
+
+
+def listed(node, params, k):
+    """1 if the neighbour in place k goes into our response."""
+    if node.near[k] == FREE or node.round_depth[k] == UNHEARD:
+        return 0
+    if params.mode == TABLE_FREE and not is_uplink(node, k):
+        return 0
+    return not is_weak(node, params, k)
+
+
+def count_listed(node, params):
+    """How many neighbours go into our responses."""
+    count = 0
+    for k in range(params.places):
+        count = count + listed(node, params, k)
+    if params.mode == TABLE_FREE:
+        count = min(count, UPLINKS_TOLD)
+    return count
+
+
+def open_response(node, params, now, count, out):
+    """A response with room for `count` neighbours to be filled in; -1 if there is no place."""
+    i = compose(node, now, CONTROL, RESPONSE, node.gateway, 0, out)
+    if i >= 0:
+        add8(node, i, node.epoch)
+        add16(node, i, node.round)
+        add8(node, i, params.discovery << 4 | count)
+    return i
+
+
+def respond(node, params, now, out):
+    """Report to the gateway who was heard in this round; several packets if they are many."""
+    if params.discovery == TREE:
+        i = open_response(node, params, now, 0, out)
+        if i >= 0:
+            send_up(node, params, now, i, out)
+        kick(node, params, now, out)
+        return
+    left = count_listed(node, params)
+    most = min(LISTED_MAX, (params.mtu - HEADER_BYTES - CRC_BYTES - PATH_MAX - 4) >> 1)
+    if left == 0:
+        respond_faintly(node, params, now, out)
+    at = 0
+    for _ in range((left + most - 1) // most):
+        here = min(left, most)
+        left = left - here
+        i = open_response(node, params, now, here, out)
+        for k in range(at, params.places):
+            if here > 0 and listed(node, params, k):
+                here = here - 1
+                at = k + 1
+                if i >= 0:
+                    add8(node, i, node.near[k])
+                    add8(node, i, node.round_rssi[k])
+        if i >= 0:
+            send_up(node, params, now, i, out)
+    kick(node, params, now, out)
+
+
+def respond_faintly(node, params, now, out):
+    """Nobody was heard well: report the best."""
+    best = place_of(node, params, node.parent)
+    if best < 0:
+        return
+    i = open_response(node, params, now, 1, out)
+    if i >= 0:
+        add8(node, i, node.near[best])
+        add8(node, i, node.round_rssi[best])
+        send_up(node, params, now, i, out)
+
+
+def respond_to(node, params, now, who, out):
+    """Reading "each": a response to every request that is heard, by way of its transmitter."""
+    i = open_response(node, params, now, 0, out)
+    if i >= 0:
+        node.q_due[i] = (now + draw(node, params.spread_us + 1)) & MASK30
+        if add_hop(node, i):
+            node.q_link_dst[i] = who
+            node.q_flags[i] = node.q_flags[i] | 1
+            node.q_ttl[i] = node.q_ttl[i] - 1
+    kick(node, params, now, out)

@@ -1,0 +1,303 @@
+"""Where a packet goes next, and what happens when its hop does not answer [mesh 4 NEXT]."""
+
+from innervate.dialect.rng import draw
+from innervate.networks.mesh.protocol.constants import (
+    ALTERNATE,
+    BODY,
+    CRC_BYTES,
+    DETOURED,
+    HEADER_BYTES,
+    LOUDEST,
+    NOBODY,
+    PARITY,
+    PATH_MAX,
+    RANDOM,
+    SEARCH,
+    SOURCE_ROUTE,
+    TABLE_FREE,
+    WHOLE_GRAPH,
+)
+from innervate.networks.mesh.protocol.duplicates import forwarded_at, is_bad, is_skipped, skip
+from innervate.networks.mesh.protocol.frames import was_at
+from innervate.networks.mesh.protocol.neighbours import (
+    FREE,
+    count_neighbours,
+    is_strong,
+    is_suspect,
+    loudest,
+    place_of,
+    random_neighbour,
+)
+from innervate.networks.mesh.protocol.search import add_failed, distances, is_edge, towards
+from innervate.networks.mesh.protocol.upward import uplink
+
+NONE = 255
+
+
+def planned(node, params, dest):
+    """The next hop in the table, 255 none."""
+    return node.next[node.bank * params.width + dest]
+
+
+def alternate(node, params, dest):
+    """The alternate in the table, 255 none."""
+    return node.alt[node.bank * params.width + dest]
+
+
+def usable(node, params, i, who):
+    """1 if the packet in place i may go to `who`."""
+    if who == NONE or was_at(node, i, who) or is_suspect(node, params, who):
+        return 0
+    return not is_skipped(node, node.q_origin[i], node.q_seq[i], who)
+
+
+def fit(node, params, i, who, bad):
+    """1 if `who` may be next, and gave back packets for this recipient before as `bad` says."""
+    return usable(node, params, i, who) and is_bad(node, who, node.q_dest[i]) == bad
+
+
+def loudest_fit(node, params, i, bad):
+    """The loudest of the neighbours that may be next, or NOBODY."""
+    best = -1
+    for k in range(params.places):
+        if node.near[k] != FREE and (best < 0 or node.rssi[k] > node.rssi[best]):
+            if fit(node, params, i, node.near[k], bad):
+                best = k
+    if best < 0:
+        return NOBODY
+    return node.near[best]
+
+
+def search(node, params, i, bad):
+    """Recipient, table, alternate, uplink, any other neighbour: the first that may be next."""
+    dest = node.q_dest[i]
+    if is_strong(node, params, place_of(node, params, dest)) and fit(node, params, i, dest, bad):
+        return dest
+    who = planned(node, params, dest)
+    if fit(node, params, i, who, bad):
+        return who
+    who = alternate(node, params, dest)
+    if fit(node, params, i, who, bad):
+        return who
+    if dest == node.gateway:
+        who = uplink(node, params, i)
+        if who != NOBODY and fit(node, params, i, who, bad):
+            return who
+    if params.failover != SEARCH:
+        return NOBODY
+    return loudest_fit(node, params, i, bad)
+
+
+def giver(node, i):
+    """Who had the packet in place i before it came here first, or NOBODY at its origin.
+
+    Its path says so where we have forgotten it, unless that had come back to somebody before.
+    """
+    if node.q_origin[i] == node.number:
+        return NOBODY
+    kind = node.q_kind[i] | ((node.q_flags[i] & PARITY) >> 1)
+    at = forwarded_at(node, node.q_origin[i], node.q_seq[i], kind)
+    if at >= 0 and node.done_kind[at] == kind and node.done_from[at] != NONE:
+        return node.done_from[at]
+    for k in range(node.q_path_len[i]):
+        if node.q_path[i * PATH_MAX + k] == node.number:
+            if k == 0:
+                return NOBODY
+            return node.q_path[i * PATH_MAX + k - 1]
+    return NOBODY
+
+
+def is_untried(node, i, who):
+    """1 if the packet in place i was not at `who`, nor failed there, whatever we suspect."""
+    if who == NONE or was_at(node, i, who):
+        return 0
+    return not is_skipped(node, node.q_origin[i], node.q_seq[i], who)
+
+
+def named(node, params, i):
+    """Before the packet goes back: recipient, or next in the table, that did not answer before.
+
+    Three lost frames would else shut out whoever is behind a bridge until the suspicion ends.
+    """
+    dest = node.q_dest[i]
+    if place_of(node, params, dest) >= 0 and is_untried(node, i, dest):
+        return dest
+    who = planned(node, params, dest)
+    if place_of(node, params, who) >= 0 and is_untried(node, i, who):
+        return who
+    return NOBODY
+
+
+def last_resort(node, params, i):
+    """At the origin, before the packet is dropped: a neighbour that did not answer some other one.
+
+    Three lost frames would keep who has but one neighbour silent until the suspicion ends.
+    """
+    best = -1
+    for k in range(params.places):
+        if node.near[k] != FREE and is_untried(node, i, node.near[k]):
+            if node.near[k] == planned(node, params, node.q_dest[i]):
+                return node.near[k]
+            if best < 0 or node.rssi[k] > node.rssi[best]:
+                best = k
+    if best < 0:
+        return NOBODY
+    return node.near[best]
+
+
+def seek(node, params, i):
+    """Whoever leads on by what we know, or else anybody; back where it came from if nobody."""
+    who = search(node, params, i, 0)
+    if who == NOBODY:
+        who = search(node, params, i, 1)
+    if who == NOBODY and params.failover == SEARCH:
+        who = named(node, params, i)
+    if who == NOBODY and params.failover == SEARCH:
+        who = giver(node, i)
+        if who != NOBODY and is_skipped(node, node.q_origin[i], node.q_seq[i], who):
+            who = node.q_from[i]
+            if who == NONE or is_skipped(node, node.q_origin[i], node.q_seq[i], who):
+                who = NOBODY
+    if who == NOBODY and params.failover == SEARCH and node.q_origin[i] == node.number:
+        who = last_resort(node, params, i)
+    return who
+
+
+def by_search(node, params, i):
+    """The next hop by table, alternates and path-trace search."""
+    who = seek(node, params, i)
+    if who != NOBODY and who != planned(node, params, node.q_dest[i]):
+        node.q_flags[i] = node.q_flags[i] | DETOURED
+    return who
+
+
+def room_of(node, params, i):
+    """How long the payload of the packet in place i may be."""
+    return params.mtu - HEADER_BYTES - CRC_BYTES - node.q_path_len[i]
+
+
+def by_graph(node, params, i):
+    """The next hop on a shortest path around all that failed and all that had the packet.
+
+    Where the graph knows none, links may have come that it does not have: search.
+    """
+    dest = node.q_dest[i]
+    near = is_strong(node, params, place_of(node, params, dest))
+    if near and not is_suspect(node, params, dest):
+        return dest
+    if node.version:
+        who = towards(node, params, i, dest, room_of(node, params, i), 1)
+        if who != NONE:
+            return who
+    return seek(node, params, i)
+
+
+def along_route(node, params, i):
+    """Table-free: the next of the source route, the recipient if near, else the gateway.
+
+    The gateway itself writes the route.
+    """
+    dest = node.q_dest[i]
+    if not node.q_flags[i] & SOURCE_ROUTE:
+        near = is_strong(node, params, place_of(node, params, dest))
+        if near and not is_suspect(node, params, dest):
+            return dest
+        if not node.leading:
+            return uplink(node, params, i)
+        plan_route(node, params, i)
+    if node.q_flags[i] & SOURCE_ROUTE and node.q_body[i * BODY] > 0:
+        return node.q_body[i * BODY + 1]
+    return NOBODY
+
+
+def plan_route(node, params, i):
+    """The gateway puts the way to the recipient in front of the payload in place i."""
+    dest = node.q_dest[i]
+    if dest >= params.nodes:
+        return
+    first = towards(node, params, i, dest, room_of(node, params, i), 0)
+    if first == NONE:
+        return
+    distances(node, params, i, dest, node.number, 0)
+    count = node.far[first] + 1
+    length = node.q_length[i]
+    if length + count + 1 > room_of(node, params, i):
+        return
+    for k in range(length):
+        at = i * BODY + length - 1 - k
+        node.q_body[at + count + 1] = node.q_body[at]
+    node.q_body[i * BODY] = count
+    at = first
+    for k in range(count):
+        node.q_body[i * BODY + 1 + k] = at
+        at = downhill(node, params, at)
+    node.q_length[i] = length + count + 1
+    node.q_flags[i] = node.q_flags[i] | SOURCE_ROUTE
+
+
+def downhill(node, params, at):
+    """A neighbour of `at` in the graph that is one hop nearer, by the distances just measured."""
+    for c in range(params.nodes):
+        if node.far[c] + 1 == node.far[at] and is_edge(node, params, at, c):
+            return c
+    return at
+
+
+def next_hop(node, params, i):
+    """Where the packet in place i goes next; NOBODY: nowhere."""
+    if params.mode == WHOLE_GRAPH:
+        return by_graph(node, params, i)
+    if params.mode == TABLE_FREE:
+        return along_route(node, params, i)
+    if params.failover >= ALTERNATE:
+        return by_search(node, params, i)
+    who = planned(node, params, node.q_dest[i])
+    if who == NONE and node.q_dest[i] == node.gateway:
+        return uplink(node, params, i)
+    if who == NONE:
+        return NOBODY
+    return who
+
+
+def rewrite(node, params, i, dead):
+    """The document's failover: another neighbour takes the dead one's place in the table."""
+    spared = node.q_origin[i] if params.avoid_origin else node.q_from[i]
+    who = NOBODY
+    if params.failover == RANDOM:
+        count = count_neighbours(node, params, dead, spared)
+        if count > 0:
+            who = random_neighbour(node, params, dead, spared, draw(node, count))
+    elif params.failover == LOUDEST:
+        who = loudest(node, params, dead, spared)
+    node.next[node.bank * params.width + node.q_dest[i]] = NONE if who == NOBODY else who
+
+
+def strip_route(node, i):
+    """Take the source route out of the packet in place i."""
+    if node.q_flags[i] & SOURCE_ROUTE:
+        count = node.q_body[i * BODY] + 1
+        for k in range(node.q_length[i] - count):
+            node.q_body[i * BODY + k] = node.q_body[i * BODY + k + count]
+        node.q_length[i] = node.q_length[i] - count
+        node.q_flags[i] = node.q_flags[i] & ~SOURCE_ROUTE
+
+
+def advance_route(node, i):
+    """The first node of the source route is the next hop: it is no longer in it."""
+    if node.q_flags[i] & SOURCE_ROUTE and node.q_body[i * BODY] > 0:
+        count = node.q_body[i * BODY]
+        node.q_body[i * BODY] = count - 1
+        for k in range(1, node.q_length[i] - 1):
+            node.q_body[i * BODY + k] = node.q_body[i * BODY + k + 1]
+        node.q_length[i] = node.q_length[i] - 1
+
+
+def learn_failure(node, params, i, dead):
+    """Neighbour `dead` failed for the packet in place i."""
+    skip(node, node.q_origin[i], node.q_seq[i], dead)
+    if params.mode == TABLE_FREE:
+        strip_route(node, i)
+    if params.mode != 0:
+        add_failed(node, i, dead, room_of(node, params, i))
+    elif params.failover < ALTERNATE:
+        rewrite(node, params, i, dead)

@@ -1,0 +1,211 @@
+"""A packet goes on: its next hop is chosen, and another when that does not answer."""
+
+from innervate.dialect.arith import MASK30
+from innervate.dialect.outbox import report
+from innervate.dialect.rng import draw
+from innervate.networks.mesh.protocol.backoff import missed
+from innervate.networks.mesh.protocol.constants import (
+    ACK_WANTED,
+    ALARMS,
+    ALTERNATE,
+    DATA,
+    END_TO_END,
+    NOBODY,
+    REPORT_DROPPED,
+    RESPONSE,
+    SEARCH,
+    TABLE,
+    TABLE_ACK,
+    TABLE_FREE,
+)
+from innervate.networks.mesh.protocol.duplicates import skip, unskip
+from innervate.networks.mesh.protocol.fields import QUEUE
+from innervate.networks.mesh.protocol.frames import add_hop, was_at
+from innervate.networks.mesh.protocol.neighbours import DOUBT, is_lively, place_of, suspect, trust
+from innervate.networks.mesh.protocol.queue import UNACKED, WAITS, drop, kick
+from innervate.networks.mesh.protocol.route import (
+    advance_route,
+    learn_failure,
+    next_hop,
+    planned,
+    room_of,
+)
+from innervate.networks.mesh.protocol.upward import uplink
+
+FAILURES_MAX = 6
+HOPS_MAX = 40  # failures of a routed packet at a node: every neighbour once, and some to spare
+
+
+def give_up(node, i, out):
+    """Nobody can take the packet in place i."""
+    report(out, REPORT_DROPPED, node.q_origin[i], node.q_seq[i])
+    drop(node, i)
+
+
+def pass_on(node, params, i, who):
+    """The packet in place i goes to `who` next."""
+    node.q_link_dst[i] = who
+    if params.hop_acks:
+        node.q_flags[i] = node.q_flags[i] | ACK_WANTED
+    node.q_tries[i] = 0
+
+
+def enter(node, params, i, out):
+    """We are the next transmitter of the packet in place i: 0 if it is too old or too long."""
+    if node.q_ttl[i] > 0 and room_of(node, params, i) > node.q_length[i] and add_hop(node, i):
+        node.q_ttl[i] = node.q_ttl[i] - 1
+        return 1
+    give_up(node, i, out)
+    return 0
+
+
+def aim(node, params, i, out):
+    """Choose the next hop of the routed packet in place i; 0 if there is none."""
+    who = next_hop(node, params, i)
+    if who == NOBODY:
+        return 0
+    advance_route(node, i)
+    pass_on(node, params, i, who)
+    return 1
+
+
+def goes_back(node, params, i):
+    """1 if we search on for a packet that came back: its path has us already, and room for others.
+
+    24 nodes can be searched so, not 24 hops; dead ends cost no room.
+    """
+    if params.mode == TABLE_FREE or params.failover != SEARCH or node.q_ttl[i] == 0:
+        return 0
+    if not was_at(node, i, node.number):
+        return 0
+    node.q_ttl[i] = node.q_ttl[i] - 1
+    return 1
+
+
+def send_on(node, params, now, i, out):
+    """The packet in place i, ours or taken over, goes to its recipient; 0 if it cannot."""
+    if not goes_back(node, params, i) and not enter(node, params, i, out):
+        return 0
+    if not aim(node, params, i, out):
+        give_up(node, i, out)
+        return 0
+    return 1
+
+
+def send_up(node, params, now, i, out):
+    """The packet in place i, ours or taken over, climbs to the gateway."""
+    if enter(node, params, i, out):
+        climb(node, params, now, i, out)
+
+
+def climb(node, params, now, i, out):
+    """Choose an uplink; while all are suspect, wait and try them again."""
+    who = uplink(node, params, i)
+    if who == NOBODY:
+        node.q_fails[i] = node.q_fails[i] + 1
+        if node.q_fails[i] > FAILURES_MAX:
+            give_up(node, i, out)
+            return
+        trust(node, params)
+        unskip(node, node.q_origin[i], node.q_seq[i])
+        who = uplink(node, params, i)
+        wait = (params.jitter_us >> 1) + draw(node, params.jitter_us + 1)
+        node.q_due[i] = (now + wait) & MASK30
+        if who == NOBODY:
+            give_up(node, i, out)
+            return
+    pass_on(node, params, i, who)
+
+
+def is_upward(kind):
+    """1 for packets that climb to the gateway."""
+    return kind == RESPONSE or kind == TABLE_ACK
+
+
+def hop_failed(node, params, now, i, out):
+    """The next hop of the packet in place i did not answer: try another."""
+    dead = node.q_link_dst[i]
+    kind = node.q_kind[i]
+    node.q_state[i] = WAITS
+    node.q_due[i] = now
+    node.q_fails[i] = node.q_fails[i] + 1
+    if kind == TABLE:
+        suspect(node, params, now, dead, 0, out)
+        give_up(node, i, out)
+    elif is_upward(kind):
+        suspect(node, params, now, dead, 0, out)
+        skip(node, node.q_origin[i], node.q_seq[i], dead)
+        if node.q_fails[i] > FAILURES_MAX:
+            give_up(node, i, out)
+        else:
+            climb(node, params, now, i, out)
+    else:
+        suspect(node, params, now, dead, planned(node, params, node.q_dest[i]) == dead, out)
+        learn_failure(node, params, i, dead)
+        if not params.retry or node.q_fails[i] > HOPS_MAX or is_stale(node, params, now, i):
+            give_up(node, i, out)
+        elif not aim(node, params, i, out):
+            give_up(node, i, out)
+
+
+def is_stale(node, params, now, i):
+    """1 if the message in place i waits here for so long that others need its place more.
+
+    Queues full of what has to go to others with full queues would not move on for ever. What its
+    origin sends again goes soon.
+    """
+    if node.q_rank[i] == ALARMS:
+        return 0
+    limit = max(4 * params.e2e_us, params.tick_us)
+    if node.q_kind[i] == DATA and node.q_flags[i] & END_TO_END == 0:
+        limit = 4 * limit
+    return (now - node.q_born[i]) & MASK30 > limit
+
+
+def turn_away(node, params, dead, out):
+    """What else waits to go to a neighbour that does not answer goes another way, if there is one.
+
+    Else every packet in the queue would have to find out for itself, one after the other.
+    """
+    if not params.retry or params.failover < ALTERNATE or params.mode == TABLE_FREE:
+        return
+    for i in range(QUEUE):
+        waits = node.q_state[i] == WAITS and node.q_flags[i] & ACK_WANTED
+        if waits and node.q_link_dst[i] == dead and node.q_kind[i] != TABLE:
+            if is_upward(node.q_kind[i]):
+                who = uplink(node, params, i)
+                if who != NOBODY:
+                    pass_on(node, params, i, who)
+            else:
+                aim(node, params, i, out)
+
+
+def most_tries(node, params, i, who):
+    """How often the packet in place i is sent to the neighbour in place `who` of the table.
+
+    Once where another may be asked and this one was silent since it did not answer; tables and
+    what climbs to the gateway have few to choose from.
+    """
+    kind = node.q_kind[i]
+    if who >= 0 and node.suspect[who] & DOUBT and kind != TABLE and not is_upward(kind):
+        return 1
+    return params.transmissions
+
+
+def unanswered(node, params, now, out):
+    """The hop's ack did not come in time."""
+    i = node.busy
+    if i < 0 or node.q_state[i] != UNACKED:
+        return
+    node.busy = -1
+    who = place_of(node, params, node.q_link_dst[i])
+    if who < 0 or is_lively(node, who):
+        missed(node, params, now)
+    if node.q_tries[i] < most_tries(node, params, i, who):
+        node.q_state[i] = WAITS
+        node.q_due[i] = now
+    else:
+        dead = node.q_link_dst[i]
+        hop_failed(node, params, now, i, out)
+        turn_away(node, params, dead, out)
+    kick(node, params, now, out)

@@ -1,0 +1,44 @@
+"""Towards the gateway without tables: over those who advertised less depth [mesh 4 UPWARD]."""
+
+from innervate.networks.mesh.protocol.constants import LIST, NOBODY
+from innervate.networks.mesh.protocol.duplicates import is_skipped
+from innervate.networks.mesh.protocol.neighbours import FREE, SUSPECT, UNHEARD
+
+
+def is_weak(node, params, k):
+    """1 if the request of the neighbour in place k came in too faint to rely on."""
+    return node.round_rssi[k] < params.min_rssi
+
+
+def is_better(node, params, a, b):
+    """1 if the uplink in place a is better than that in place b: strong, near, loud."""
+    weak_a = is_weak(node, params, a)
+    weak_b = is_weak(node, params, b)
+    if weak_a != weak_b:
+        return weak_b
+    if node.round_depth[a] != node.round_depth[b]:
+        return node.round_depth[a] < node.round_depth[b]
+    return node.round_rssi[a] > node.round_rssi[b]
+
+
+def is_uplink(node, k):
+    """1 if the neighbour in place k advertised less depth than ours in this round."""
+    return (
+        node.near[k] != FREE and node.round_depth[k] != UNHEARD and node.round_depth[k] < node.depth
+    )
+
+
+def uplink(node, params, i):
+    """The best uplink for the packet in place i that has not failed, or NOBODY."""
+    best = -1
+    for k in range(params.places):
+        if is_uplink(node, k) and not node.suspect[k] & SUSPECT:
+            who = node.near[k]
+            if not is_skipped(node, node.q_origin[i], node.q_seq[i], who):
+                if params.discovery != LIST and who == node.parent:
+                    return who
+                if best < 0 or is_better(node, params, k, best):
+                    best = k
+    if best < 0:
+        return NOBODY
+    return node.near[best]

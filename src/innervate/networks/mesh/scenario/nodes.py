@@ -1,0 +1,145 @@
+"""The nodes of a mesh: their names and numbers, and links or places that are given."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from innervate.networks.mesh.scenario.model import MeshScenario
+from innervate.scenario.bundled import FOLDER
+from innervate.scenario.explain import nearest
+from innervate.scenario.lines import Key
+from innervate.scenario.source import Source, dotted, shown
+from innervate.topology import measured
+from innervate.topology.errors import TopologyError
+from innervate.topology.placement import Point
+
+NODES_MAX = 254
+RESERVED = ("all", "random", "monitor", "gateway")
+BUNDLED_IMPORTS = "freifunk/"
+
+
+@dataclass(slots=True)
+class Nodes:
+    """Who is there.
+
+    Attributes:
+        source: for error messages.
+        names: per node, all different.
+        points: per node (x, y) in cm; empty where none are given.
+        links: (a, b) with a < b -> quality a to b and b to a, if links are given.
+    """
+
+    source: Source
+    names: list[str]
+    points: list[Point] = field(default_factory=list)
+    links: dict[tuple[int, int], tuple[float, float]] = field(default_factory=dict)
+    _numbers: dict[str, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._numbers = {name: number for number, name in enumerate(self.names)}
+
+    def number(self, key: Key, given: int | str) -> int:
+        """The number of a node given by number or name.
+
+        Raises:
+            ScenarioError: there is no such node.
+        """
+        if isinstance(given, int):
+            if 0 <= given < len(self.names):
+                return given
+            last = len(self.names) - 1
+            message = f"{dotted(key)}: there is no node {given}; they are numbered 0 to {last}"
+            raise self.source.error(key, message)
+        if given in self._numbers:
+            return self._numbers[given]
+        hint = nearest(given, self.names) if len(self.names) <= 12 else ""
+        hint = hint.replace("it knows", "there are") or (
+            f"; there are {self.names[0]} to {self.names[-1]}"
+        )
+        raise self.source.error(key, f"{dotted(key)}: there is no node {shown(given)}{hint}")
+
+
+def too_many(count: int) -> str:
+    """Why a network of that many nodes cannot be: the reason is the same in every mode."""
+    return (
+        f"{count} nodes are too many: an address is one byte, so a mesh has at most {NODES_MAX} "
+        "of them, in the table-free mode (protocol.tables = false) too"
+    )
+
+
+def listed(names: list[str], most: int = 4) -> str:
+    """Names in a row, a few of them."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more
+
+
+def nodes_of(model: MeshScenario, source: Source) -> Nodes:
+    """The nodes of a scenario.
+
+    Raises:
+        ScenarioError: a name twice, links to nobody, or a file that cannot be imported.
+    """
+    if model.import_ is not None:
+        return _imported(model, source)
+    if model.node:
+        names = [table.name or f"n{i}" for i, table in enumerate(model.node)]
+        for i, name in enumerate(names):
+            if name in names[:i]:
+                raise source.error(("node", i), f"there are two nodes {shown(name)}; rename one")
+        points = [(round(100 * table.x_m), round(100 * table.y_m)) for table in model.node
+                  if table.x_m is not None and table.y_m is not None]  # fmt: skip
+        found = Nodes(source, names, points if len(points) == len(names) else [])
+    elif model.nodes is not None:
+        found = Nodes(source, [f"n{i}" for i in range(model.nodes)])
+    else:
+        ends = [end for table in model.link for end in (table.a, table.b)]
+        found = Nodes(source, list(dict.fromkeys(str(end) for end in ends)))
+    for i, table in enumerate(model.link):
+        a, b = (_end(model, found, (*("link", i), side), end)
+                for side, end in (("a", table.a), ("b", table.b)))  # fmt: skip
+        if a == b:
+            raise source.error(("link", i), f"link.{i} joins {found.names[a]} with itself")
+        if (min(a, b), max(a, b)) in found.links:
+            both = f"{found.names[a]} and {found.names[b]}"
+            raise source.error(("link", i), f"link.{i} joins {both} a second time; leave one out")
+        there, back = (
+            table.quality if isinstance(table.quality, tuple) else (table.quality, table.quality)
+        )
+        found.links[min(a, b), max(a, b)] = (there, back) if a < b else (back, there)
+    if len(found.names) > NODES_MAX:
+        raise source.error(("link",), too_many(len(found.names)))
+    return found
+
+
+def _end(model: MeshScenario, nodes: Nodes, key: Key, end: int | str) -> int:
+    free = model.nodes is None and not model.node  # links name whom they like
+    return nodes.number(key, str(end) if free else end)
+
+
+def _imported(model: MeshScenario, source: Source) -> Nodes:
+    table = model.import_
+    assert table is not None
+    key = "file" if table.file is not None else "topohub"
+    try:
+        if table.file is not None:
+            found = measured.read(import_path(table.file, source), table.types)
+        else:
+            found = measured.from_topohub(table.topohub or "")
+        found = found.kept(table.min_tq)
+        if table.largest_component:
+            found = found.largest()
+    except TopologyError as error:
+        raise source.error(("import", error.subject or key), str(error)) from None
+    if len(found.names) > NODES_MAX:
+        raise source.error(("import",), too_many(len(found.names)) + "; raise import.min_tq")
+    return Nodes(source, found.names, found.points, dict(found.links))
+
+
+def import_path(name: str, source: Source) -> Path:
+    """The file of an import: bundled ones by name, others from the scenario's folder."""
+    if name.startswith(BUNDLED_IMPORTS):
+        bundled = FOLDER / f"{name.removesuffix('.json')}.json"
+        if bundled.is_file():
+            return bundled
+    return Path(source.folder) / name

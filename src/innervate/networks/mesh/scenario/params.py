@@ -1,0 +1,161 @@
+"""The protocol's parameters of a mesh scenario (`mesh_fields.PARAMS`) [mesh 5]."""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import Any
+
+from innervate.networks.mesh.protocol.constants import (
+    ALTERNATE,
+    EACH,
+    LIST,
+    LOUDEST,
+    MONITOR,
+    RANDOM,
+    SEARCH,
+    TABLE_FREE,
+    TABLES,
+    TREE,
+    WHOLE_GRAPH,
+)
+from innervate.networks.mesh.protocol.fields import NEIGHBOURS, PARAMS, POINTS, words
+from innervate.networks.mesh.scenario.plan import CLASSES
+from innervate.networks.mesh.scenario.profiles import REPORT_CDB, Profile
+
+DISCOVERY = {"list": LIST, "tree": TREE, "each": EACH}
+FAILOVER = {"random": RANDOM, "rssi": LOUDEST, "alternate": ALTERNATE, "search": SEARCH,
+            "graph": SEARCH}  # fmt: skip
+STANDBY_PERIODS = 2.5  # without a request, until the first standby takes over
+FORGET_S = 30.0
+FORGET_TICKS_MAX = 255
+NO_FENCE: dict[str, Any] = {
+    "watch": 0, "lost": 3, "flood": 1, "instances": 3, "clear_margin": 0, "predict_ms": 0,
+    "unit_cm": 1, "points": 0, "px": [0] * POINTS, "py": [0] * POINTS, "after": [0] * POINTS,
+    "fence": 0,
+}  # fmt: skip
+# Keys of [protocol] whose parameter is called something else.
+KEYS = {"tick": "beacon_s", "jobs": "table_window", "job": "table_retry_s",
+        "job_tries": "table_tries", "min_rssi": "min_rssi_dbm"}  # fmt: skip
+IN_TICKS = ("period", "period_max", "dead", "dead_step", "forget")
+
+
+class _Chosen:
+    """What a scenario says, and where it says nothing, the profile."""
+
+    def __init__(self, settings: Any, beacon_s: float) -> None:
+        self.settings = settings
+        self.tick_us = self.micros("beacon_s", beacon_s)
+
+    def value(self, key: str, default: Any) -> Any:
+        value = getattr(self.settings, key)
+        return default if value is None else value
+
+    def micros(self, key: str, default_s: float) -> int:
+        return round(float(self.value(key, default_s)) * 1_000_000)
+
+    def ticks(self, key: str, default_s: float) -> int:
+        return max(1, ceil(self.micros(key, default_s) / self.tick_us))
+
+
+def parameters(
+    profile: Profile,
+    settings: Any,
+    nodes: int,
+    *,
+    standbys: int = 0,
+    monitor: int = MONITOR,
+    min_rssi_dbm: int | None = None,
+) -> dict[str, Any]:
+    """The protocol's parameters without a fence.
+
+    Args:
+        profile: the radio's.
+        settings: a MeshProtocolTable; what it leaves out comes from the profile.
+        nodes: 1 .. 254.
+        standbys: how many are configured.
+        monitor: its number, 254 = whoever is gateway.
+        min_rssi_dbm: weakest link that is reported; None = 2 dB above the 50 % point.
+
+    Raises:
+        ValueError: a parameter leaves its range; the message is "key:what is wrong".
+    """
+    width: int = next(size for size in CLASSES if nodes <= size)
+    chosen = _Chosen(settings, profile.beacon)
+    graph = settings.failover == "graph"
+    if min_rssi_dbm is None:
+        min_rssi_dbm = round((profile.rssi50_cdb + REPORT_CDB) / 100)
+    params: dict[str, Any] = {
+        "nodes": nodes,
+        "row": words(width),
+        "places": min(width, NEIGHBOURS),
+        "width": width,
+        "mtu": chosen.value("mtu", profile.mtu),
+        "mode": WHOLE_GRAPH if graph else TABLES if settings.tables else TABLE_FREE,
+        "discovery": DISCOVERY[settings.discovery],
+        "failover": FAILOVER[settings.failover],
+        "avoid_origin": int(settings.avoid == "origin"),
+        "retry": int(settings.retry),
+        "reliable": int(settings.reliable),
+        "activation": int(settings.activation),
+        "told": int(profile.collisions),
+        "transmissions": chosen.value("transmissions", profile.transmissions),
+        "hop_acks": int(chosen.value("hop_acks", profile.hop_acks)),
+        "ack_us": chosen.value("ack_us", profile.ack_us),
+        "suspect_us": chosen.micros("suspect_s", profile.suspect),
+        "min_rssi": chosen.value("min_rssi_dbm", min_rssi_dbm),
+        "e2e_us": chosen.micros("e2e_s", profile.e2e),
+        "e2e_adapt": int(chosen.value("e2e_adapt", profile.e2e_adapt)),
+        "e2e_tries": chosen.value("e2e_tries", profile.e2e_tries),
+        "monitor": monitor,
+        **_rounds(profile, chosen),
+        "standby": int(standbys > 0),
+        "jobs": chosen.value("table_window", profile.jobs),
+        "job_us": chosen.micros("table_retry_s", profile.job),
+        "job_tries": chosen.value("table_tries", 3),
+        **NO_FENCE,
+    }
+    _check(params)
+    return params
+
+
+def _rounds(profile: Profile, chosen: _Chosen) -> dict[str, int]:
+    """Discovery rounds, and everything that is counted in ticks."""
+    period_s = chosen.value("period_s", profile.period)
+    listen_us = chosen.micros("listen_s", profile.listen)
+    spread_us = chosen.micros("spread_s", profile.spread)
+    rest_s = profile.collect - profile.listen - profile.spread
+    return {
+        "jitter_us": chosen.micros("jitter_s", profile.jitter),
+        "flood_us": chosen.micros("flood_s", profile.jitter / 8),
+        "copies": chosen.value("copies", profile.copies),
+        "listen_us": listen_us,
+        "spread_us": spread_us,
+        "collect_us": chosen.micros("collect_s", (listen_us + spread_us) / 1e6 + rest_s),
+        "tick_us": chosen.tick_us,
+        "period": chosen.ticks("period_s", period_s),
+        "period_max": chosen.ticks("period_max_s", max(profile.period_max, period_s)),
+        "dead": chosen.ticks("dead_s", STANDBY_PERIODS * period_s),
+        "dead_step": chosen.ticks("dead_step_s", profile.dead_step),
+        "forget": min(FORGET_TICKS_MAX, chosen.ticks("forget_s", FORGET_S)),
+    }
+
+
+def _check(params: dict[str, Any]) -> None:
+    for name, length, low, high, unit, _ in PARAMS:
+        if length == 0 and not low <= params[name] <= high:
+            stem = name.removesuffix("_us")
+            key = KEYS.get(stem, f"{stem}_s" if stem != name or name in IN_TICKS else name)
+            most = f"{low} to {high} {unit}"
+            if name in IN_TICKS:
+                most = f"at most {high * params['tick_us'] / 1e6:g} s at this protocol.beacon_s"
+            raise ValueError(f"{key}:protocol.{key} is out of range; it can be {most}")
+    if params["period_max"] < params["period"]:
+        raise ValueError(
+            "period_max_s:protocol.period_max_s is below period_s; make it as long or longer"
+        )
+    if params["collect_us"] <= params["listen_us"] and params["discovery"] != EACH:
+        listen_s = params["listen_us"] / 1e6
+        raise ValueError(
+            f"collect_s:protocol.collect_s must be more than listen_s, {listen_s:g} s: before that "
+            "nobody responds"
+        )

@@ -1,0 +1,149 @@
+"""From a mesh scenario to the plan of its run."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from innervate.networks.mesh.protocol.constants import ALL, MONITOR, WHOLE_GRAPH
+from innervate.networks.mesh.scenario import events as mesh_events
+from innervate.networks.mesh.scenario import fence as mesh_fence
+from innervate.networks.mesh.scenario import robots as mesh_robots
+from innervate.networks.mesh.scenario import traffic as mesh_traffic
+from innervate.networks.mesh.scenario.access import access, suited
+from innervate.networks.mesh.scenario.model import MeshScenario
+from innervate.networks.mesh.scenario.network import Network, linked, placed
+from innervate.networks.mesh.scenario.nodes import Nodes, nodes_of
+from innervate.networks.mesh.scenario.params import parameters
+from innervate.networks.mesh.scenario.plan import MeshPlan
+from innervate.networks.mesh.scenario.profiles import Profile, profile_of
+from innervate.topology.placement import neighbours
+from innervate.trace.streams import stream
+
+START_US = 100_000  # nodes are switched on within this time, the gateway right after it
+GRAPH_NODES_MAX = {64: 85, 127: 145}  # a flooded graph has 15 fragments [mesh 8.1]
+
+
+def plan(scenario: Any) -> MeshPlan:
+    """The plan of a mesh scenario: same scenario and seed, same plan, on any machine.
+
+    Raises:
+        ScenarioError: it cannot be run as written.
+    """
+    model: MeshScenario = scenario.model
+    source = scenario.source
+    duration_us = max(1, round(model.duration_s * 1e6))
+    nodes = nodes_of(model, source)
+    profile = profile_of(model.radio.profile, len(nodes.names))
+    profile = suited(model, profile, len(nodes.names))
+    network = _network(model, nodes, profile)
+    ranks = _ranks(model, network)
+    gateway = ranks.index(0)
+    monitor = MONITOR if model.monitor == "gateway" else nodes.number(("monitor",), model.monitor)
+    roles = {"gateway": gateway, "monitor": gateway if monitor == MONITOR else monitor}
+    params = _parameters(model, network, profile, monitor)
+    walks = mesh_robots.walks(model, nodes, network.points, duration_us)
+    if model.fence is not None:
+        visited = [(x, y) for walk in walks for _, x, y in walk.points]
+        params |= mesh_fence.parameters(source, model.fence, visited, len(walks))
+    flows = mesh_traffic.pairs(model, nodes, gateway, monitor)
+    robots = {walk.node for walk in walks}
+    spared = {*roles.values(), *robots}
+    for flow, ends in zip(model.flow, flows, strict=True):
+        spared.update(a for a, _ in ends if flow.from_ != "all")
+        spared.update(b for _, b in ends if b not in (MONITOR, ALL))
+    mac, mac_params = access(model, network, profile, params["mtu"], walks)
+    return MeshPlan(
+        scenario=scenario,
+        kind="mesh",
+        seed=scenario.seed,
+        duration_us=duration_us,
+        nodes=len(nodes.names),
+        capacity=params["width"],
+        names=nodes.names,
+        params=params,
+        ranks=ranks,
+        robots=[int(node in robots) for node in range(len(nodes.names))],
+        absent=mesh_events.absent(model, nodes, roles),
+        starts_us=_starts(model, ranks),
+        mac=mac,
+        mac_params=mac_params,
+        radio=network.radio,
+        positions_cm=network.points,
+        good=network.good,
+        walks=walks,
+        sample_us=round(1e6 / model.fence.sample_hz) if model.fence is not None else 20_000,
+        origin_cm=mesh_fence.origin_of(mesh_fence.rings_cm(model.fence)) if model.fence else (0, 0),
+        offers=mesh_traffic.offers(
+            model, nodes, flows, profile.settled, duration_us, params["mtu"]
+        ),
+        faults=mesh_events.faults(model, nodes, network.good, spared, roles, profile.rssi50_cdb),
+    )
+
+
+def _network(model: MeshScenario, nodes: Nodes, profile: Profile) -> Network:
+    starts = mesh_robots.starts(model, nodes)
+    if not nodes.links:
+        return placed(model, nodes, profile, starts)
+    found = linked(model, nodes, profile)
+    for node, start in starts.items() if found.points else ():
+        found.points[node] = start
+    return found
+
+
+def _ranks(model: MeshScenario, network: Network) -> list[int]:
+    """Per node 0 gateway, 1.. standby, -1 neither.
+
+    Left out, the gateway is node 0; of a network that was measured, the best connected node.
+    """
+    nodes = network.nodes
+    if model.gateway is not None:
+        gateway = nodes.number(("gateway",), model.gateway)
+    elif model.import_ is not None:
+        degrees = [len(near) for near in neighbours(len(nodes.names), network.good)]
+        gateway = degrees.index(max(degrees))
+    else:
+        gateway = 0
+    found = [-1] * len(nodes.names)
+    found[gateway] = 0
+    for rank, given in enumerate(model.standby, 1):
+        key = ("standby", rank - 1)
+        node = nodes.number(key, given)
+        if found[node] >= 0:
+            what = "the gateway" if found[node] == 0 else "a standby already"
+            message = f"standby.{rank - 1}: {nodes.names[node]} is {what}; name another node"
+            raise nodes.source.error(key, message)
+        found[node] = rank
+    return found
+
+
+def _starts(model: MeshScenario, ranks: list[int]) -> list[int]:
+    draw = stream(model.seed, "starts")
+    drawn = [draw.draw(START_US) for _ in ranks]
+    return [START_US if rank == 0 else at for rank, at in zip(ranks, drawn, strict=True)]
+
+
+def _parameters(
+    model: MeshScenario, network: Network, profile: Profile, monitor: int
+) -> dict[str, Any]:
+    source, count = network.nodes.source, len(network.nodes.names)
+    weakest = network.weakest_cdb
+    try:
+        params = parameters(
+            profile,
+            model.protocol,
+            count,
+            standbys=len(model.standby),
+            monitor=monitor,
+            min_rssi_dbm=None if weakest is None else round(weakest / 100),
+        )
+    except ValueError as error:
+        key, _, message = str(error).partition(":")
+        raise source.error(("protocol", key), message) from None
+    most = GRAPH_NODES_MAX[params["mtu"]]
+    if params["mode"] == WHOLE_GRAPH and count > most:
+        raise source.error(
+            ("protocol", "failover"),
+            f'failover = "graph" floods the whole graph in 15 frames, which hold {most} nodes at '
+            f'an MTU of {params["mtu"]}, not {count}; use "search", or protocol.tables = false',
+        )
+    return params

@@ -1,0 +1,101 @@
+"""What radios and their timers are like, by profile [mesh 5, 6]."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from innervate.networks.mesh.protocol.constants import ACK_BYTES
+
+GOOD_CDB = 300  # a good link is so much above the 50 % point, both ways
+REPORT_CDB = 200  # one that is reported to the gateway, so much
+SMALL = 15  # up to so many nodes a slow radio can afford twice the rounds
+LARGE = 20  # above so many, it can only afford half the beacons
+
+
+class Profile(NamedTuple):
+    """A radio and the timers that suit it; times in seconds where not said otherwise.
+
+    Attributes:
+        byte_ns: airtime of a byte, ns.
+        phy_bytes: preamble and the like.
+        turnaround_us: from deciding to send to being on the air.
+        backoff_us: unit of the random wait before a frame; 0 = no carrier sense.
+        rssi50_cdb: 0.01 dBm at which half the frames are received.
+        loss_1m_cdb: path loss at 1 m in free space, 0.01 dB.
+        ack_us: wait for a hop's ack.
+        dead_step: more for every standby behind the first.
+        settled: messages start then if nothing is said: the first tables are there.
+        hop_acks: hops acknowledge; False where the medium access says what was received.
+    """
+
+    byte_ns: int
+    phy_bytes: int
+    turnaround_us: int
+    backoff_us: int
+    rssi50_cdb: int
+    loss_1m_cdb: int
+    mtu: int
+    collisions: bool
+    period: float
+    period_max: float
+    jitter: float
+    copies: int
+    listen: float
+    spread: float
+    collect: float
+    transmissions: int
+    ack_us: int
+    suspect: float
+    e2e: float
+    e2e_adapt: bool
+    e2e_tries: int
+    jobs: int
+    job: float
+    beacon: float
+    dead_step: float
+    settled: float
+    hop_acks: bool = True
+
+
+def _ack_us(turnaround_us: int, phy_bytes: int, byte_ns: int, backoff_us: int) -> int:
+    """Turnaround, the ack, and two units [mesh 5]."""
+    return turnaround_us + (phy_bytes + int(ACK_BYTES)) * byte_ns // 1000 + 2 * backoff_us
+
+
+FAST = Profile(
+    byte_ns=32_000, phy_bytes=6, turnaround_us=192, backoff_us=320, rssi50_cdb=-9500,
+    loss_1m_cdb=4000, mtu=127, collisions=True, period=10, period_max=60, jitter=0.1, copies=2,
+    listen=0.3, spread=0.4, collect=1.5, transmissions=3, ack_us=_ack_us(192, 6, 32_000, 320),
+    suspect=10, e2e=0.25, e2e_adapt=False, e2e_tries=5,
+    jobs=4, job=0.35, beacon=1, dead_step=5, settled=8,
+)  # fmt: skip
+SLOW = Profile(
+    byte_ns=208_333, phy_bytes=7, turnaround_us=2000, backoff_us=2000, rssi50_cdb=-10_500,
+    loss_1m_cdb=3100, mtu=64, collisions=True, period=60, period_max=300, jitter=1.0, copies=2,
+    listen=3, spread=4, collect=13, transmissions=3, ack_us=_ack_us(2000, 7, 208_333, 2000),
+    suspect=10, e2e=1.5, e2e_adapt=False, e2e_tries=5,
+    jobs=2, job=3, beacon=1, dead_step=5, settled=45,
+)  # fmt: skip
+# Nobody tells when a frame has left, so the wait begins when it is handed down: a whole frame more.
+IDEAL = FAST._replace(
+    collisions=False, backoff_us=0, ack_us=_ack_us(2 * 192, 12 + 127, 32_000, 320)
+)
+# Ethernet at 100 Mbit/s with UDP's headers; the turnaround stands for the operating system.
+IP = Profile(
+    byte_ns=80, phy_bytes=66, turnaround_us=200, backoff_us=0, rssi50_cdb=-9500, loss_1m_cdb=4000,
+    mtu=127, collisions=False, period=2, period_max=2, jitter=0.005, copies=2, listen=0.05,
+    spread=0.05, collect=0.2, transmissions=3, ack_us=5000, suspect=2, e2e=0.03, e2e_adapt=True,
+    e2e_tries=8,
+    jobs=4, job=0.1, beacon=0.25, dead_step=1, settled=1,
+)  # fmt: skip
+PROFILES = {"250k": FAST, "38k4": SLOW, "ideal": IDEAL, "ip": IP}
+
+
+def profile_of(name: str, nodes: int) -> Profile:
+    """A profile as it suits so many nodes."""
+    found = PROFILES[name]
+    if name == "38k4" and nodes <= SMALL:
+        found = found._replace(period=30)
+    if name == "38k4" and nodes > LARGE:
+        found = found._replace(beacon=2)
+    return found

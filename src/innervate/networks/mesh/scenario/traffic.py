@@ -1,0 +1,136 @@
+"""The messages of a mesh: from [[flow]] tables to what is handed to whom, and when."""
+
+from __future__ import annotations
+
+from innervate.networks.mesh.protocol.constants import ALL, END_TO_END, MONITOR, PRIORITY
+from innervate.networks.mesh.scenario.model import FlowTable, MeshScenario
+from innervate.networks.mesh.scenario.nodes import Nodes
+from innervate.networks.mesh.scenario.plan import Offer
+from innervate.networks.radio.scenario.traffic import exponential
+from innervate.trace.streams import Stream, stream
+
+OFFERS_MAX = 500_000
+DATA_MAX = {64: 27, 127: 90}
+
+Pair = tuple[int, int]
+
+
+def pairs(model: MeshScenario, nodes: Nodes, gateway: int, monitor: int) -> list[list[Pair]]:
+    """Per flow, who sends to whom; recipients may be 254 (the monitor) and 255 (all).
+
+    Raises:
+        ScenarioError: a node that is not there, or too few to draw from.
+    """
+    return [_pairs(model, nodes, i, flow, gateway, monitor) for i, flow in enumerate(model.flow)]
+
+
+def _pairs(
+    model: MeshScenario, nodes: Nodes, index: int, flow: FlowTable, gateway: int, monitor: int
+) -> list[Pair]:
+    draw = stream(model.seed, f"flow/{index}")
+    key = ("flow", index)
+    everyone = range(len(nodes.names))
+    real = -1  # who receives in the end
+    if flow.to == "all":
+        dest = ALL
+    elif flow.to == "monitor":
+        dest, real = MONITOR, gateway if monitor == MONITOR else monitor
+    elif flow.to == "gateway":
+        dest = real = gateway
+    elif flow.to == "random":
+        dest = -1
+    else:
+        dest = real = nodes.number((*key, "to"), flow.to)
+    if flow.from_ == "all":
+        sources = [node for node in everyone if node != real]
+    elif flow.from_ == "random":
+        free = [node for node in everyone if node != real]
+        if flow.pairs > len(free):
+            message = f"flow.{index}.pairs = {flow.pairs}, but only {len(free)} nodes can be drawn"
+            raise nodes.source.error((*key, "pairs"), message)
+        sources = [free.pop(draw.draw(len(free))) for _ in range(flow.pairs)]
+    else:
+        sources = [gateway if flow.from_ == "gateway" else
+                   nodes.number((*key, "from"), flow.from_)] * flow.pairs  # fmt: skip
+    found = []
+    for source in sources:
+        other = dest
+        if dest < 0:
+            if len(everyone) < 2:
+                raise nodes.source.error(key, f"flow.{index} has nobody to send to; add nodes")
+            other = draw.draw(len(everyone) - 1)
+            other += other >= source
+        if source == real:
+            name = nodes.names[source]
+            raise nodes.source.error(
+                key, f"flow.{index} goes from {name} to {name}; name two nodes"
+            )
+        found.append((source, other))
+    return found
+
+
+def offers(
+    model: MeshScenario,
+    nodes: Nodes,
+    flows: list[list[Pair]],
+    settled_s: float,
+    duration_us: int,
+    mtu: int,
+) -> list[Offer]:
+    """Every message, in order of time.
+
+    Args:
+        model: the scenario.
+        nodes: their names.
+        flows: what pairs() found.
+        settled_s: flows that do not say when start then.
+        duration_us: the run's length; nothing is offered later.
+        mtu: 64 or 127 bytes.
+
+    Raises:
+        ScenarioError: longer than a frame, or more than can be kept.
+    """
+    found: list[tuple[int, int, int, Offer]] = []
+    for index, flow in enumerate(model.flow):
+        if flow.bytes > DATA_MAX[mtu]:
+            message = f"flow.{index}.bytes = {flow.bytes}, but at an MTU of {mtu} it is at most"
+            raise nodes.source.error(("flow", index, "bytes"), f"{message} {DATA_MAX[mtu]}")
+        for place, (node, dest) in enumerate(flows[index]):
+            draw = stream(model.seed, f"flow/{index}/{place}")
+            flags = _flags(model, flow, dest)
+            for at in _times(flow, settled_s, duration_us, draw):
+                found.append((at, index, place, Offer(at, node, dest, flags, flow.bytes, index)))
+                if len(found) > OFFERS_MAX:
+                    raise nodes.source.error(
+                        ("flow", index),
+                        f"more than {OFFERS_MAX:,} messages would be offered; shorten duration_s "
+                        f"or raise flow.{index}.every_s",
+                    )
+    return [offer for *_, offer in sorted(found, key=lambda item: item[:3])]
+
+
+def _flags(model: MeshScenario, flow: FlowTable, dest: int) -> int:
+    reliable = model.protocol.reliable if flow.reliable is None else flow.reliable
+    flags = END_TO_END if reliable and dest != ALL else 0
+    return flags | (PRIORITY if flow.priority else 0)
+
+
+def _times(flow: FlowTable, settled_s: float, duration_us: int, draw: Stream) -> list[int]:
+    """When one sender's messages are offered, us, ascending."""
+    at = round((settled_s if flow.start_s is None else flow.start_s) * 1e6)
+    stop = duration_us if flow.stop_s is None else min(duration_us, round(flow.stop_s * 1e6))
+    jitter_us = round(flow.jitter_s * 1e6)
+    periodic = flow.every_s is not None or flow.rate_hz is not None
+    most = flow.count or (OFFERS_MAX + 1 if periodic else 1)
+    mean_us = max(1, round(1e6 / flow.rate_hz)) if flow.rate_hz is not None else 0
+    every_us = round((1.0 if flow.every_s is None else flow.every_s) * 1e6)
+    found: list[int] = []
+    at += exponential(draw, mean_us) if mean_us else 0
+    for _ in range(most):
+        if at >= stop:
+            break
+        late = draw.uniform(0, jitter_us) if jitter_us else 0
+        if at + late < stop:
+            found.append(at + late)
+        at += max(1, exponential(draw, mean_us)) if mean_us else every_us
+    return sorted(found)

@@ -1,0 +1,127 @@
+"""A mesh scenario in a few lines, without running it; and what somebody should know before."""
+
+from __future__ import annotations
+
+from innervate.networks.mesh.protocol.constants import MONITOR, PATH_MAX, TABLE_FREE, TABLES
+from innervate.networks.mesh.scenario.model import MeshScenario
+from innervate.networks.mesh.scenario.nodes import listed
+from innervate.networks.mesh.scenario.plan import JAM, MeshFault, MeshPlan
+from innervate.topology.placement import distances, neighbours
+
+EVENTS_SHOWN = 12
+NEIGHBOURS_MIN, GATEWAY_MIN = 3, 5  # rules for planning WirelessHART networks [mesh 9]
+STAR = 2 / 3  # share of nodes with a single link
+TABLES_MAX = {"38k4": 70, "250k": 150}  # [mesh 8.2]
+SOURCE_ROUTE_MAX = 19  # hops; at an MTU of 64 tables do not fit beside longer routes [mesh 2]
+
+
+def describe(made: MeshPlan) -> str:
+    """A plan in words, several lines, without a newline at the end."""
+    model: MeshScenario = made.scenario.model
+    params, gateway = made.params, made.ranks.index(0)
+    names = [made.names[made.ranks.index(rank)] for rank in range(1, max(made.ranks) + 1)]
+    standby = f", standby {listed(names)}" if names else ""
+    monitor = "the gateway" if params["monitor"] == MONITOR else made.names[params["monitor"]]
+    hops = [far for far in hops_from(made, gateway) if far >= 0]
+    degree = 2 * len(made.good) / made.nodes
+    forwarding = {TABLES: model.protocol.failover, TABLE_FREE: "table-free"}
+    lines = [
+        f"{made.scenario.name}: a mesh scenario of {made.duration_us / 1e6:g} s, seed {made.seed}",
+        f"  nodes      {made.nodes}, gateway {made.names[gateway]}{standby}, monitor {monitor}",
+        f"  radio      {model.radio.profile}, {made.mac}, {len(made.good)} good links, "
+        f"{degree:.1f} a node, at most {max(hops)} hops from the gateway",
+        f"  protocol   discovery {model.protocol.discovery}, "
+        f"failover {forwarding.get(params['mode'], 'graph')}, MTU {params['mtu']}, "
+        f"a round every {params['period'] * params['tick_us'] / 1e6:g} s",
+    ]
+    if made.offers:
+        lines.append(f"  messages   {len(made.offers):,} in {_count(len(model.flow), 'flow')}")
+    if model.fence is not None:
+        holes = _count(len(model.fence.holes), "hole")
+        lines.append(
+            f"  fence      {_count(params['points'], 'corner')}, {holes}, {params['unit_cm']} cm, "
+            f"robots sampled at {1e6 / made.sample_us:g} Hz"
+        )
+    if made.walks:
+        lines.append(f"  robots     {listed([made.names[walk.node] for walk in made.walks], 8)}")
+    lines += [f"  {'event' if i == 0 else '':10} {fault_words(made, fault)}"
+              for i, fault in enumerate(made.faults[:EVENTS_SHOWN])]  # fmt: skip
+    if len(made.faults) > EVENTS_SHOWN:
+        lines.append(f"  {'':10} and {len(made.faults) - EVENTS_SHOWN} more")
+    lines += [f"  warning    {text}" for text in warnings(made)]
+    return "\n".join(lines)
+
+
+def warnings(made: MeshPlan) -> list[str]:
+    """What makes a mesh weaker than it looks; one line each, none if all is well."""
+    model: MeshScenario = made.scenario.model
+    found = []
+    near = neighbours(made.nodes, made.good)
+    gateway = made.ranks.index(0)
+    leaves = sum(len(around) == 1 for around in near)
+    if made.nodes > NEIGHBOURS_MIN and leaves >= STAR * made.nodes:
+        found.append(
+            f"nearly a star: {leaves} of {made.nodes} nodes have a single link, so nothing can be "
+            "routed around anybody"
+        )
+    else:
+        found += _thin(made, near, gateway)
+    hops = hops_from(made, gateway)
+    if max(hops) > PATH_MAX:
+        far = [made.names[node] for node, count in enumerate(hops) if count > PATH_MAX]
+        found.append(f"{listed(far)}: more than {PATH_MAX} hops, the longest path, to the gateway")
+    elif max(hops) > SOURCE_ROUTE_MAX and made.params["mtu"] == 64:
+        far = [made.names[node] for node, count in enumerate(hops) if count > SOURCE_ROUTE_MAX]
+        found.append(f"{listed(far)}: too far for tables at an MTU of 64; set protocol.mtu = 127")
+    most = TABLES_MAX.get(model.radio.profile, made.nodes)
+    if made.params["mode"] == TABLES and made.nodes > most:
+        found.append(
+            f"tables for more than {most} nodes fill a {model.radio.profile} channel; "
+            "protocol.tables = false does without"
+        )
+    if model.fence is not None and not made.walks:
+        found.append("a fence but no [[robot]]: nobody can cross it")
+    offered = {offer.flow for offer in made.offers}
+    found += [
+        f"flow.{index} sends nothing: it begins after the end; set start_s or a later duration_s"
+        for index in range(len(model.flow))
+        if index not in offered
+    ]
+    return found
+
+
+def _thin(made: MeshPlan, near: list[list[int]], gateway: int) -> list[str]:
+    found = []
+    few = [
+        made.names[node]
+        for node, around in enumerate(near)
+        if len(around) < NEIGHBOURS_MIN and node != gateway and not made.robots[node]
+    ]
+    if few:
+        found.append(f"fewer than {NEIGHBOURS_MIN} neighbours: {listed(few)}")
+    if len(near[gateway]) < GATEWAY_MIN:
+        name = made.names[gateway]
+        found.append(
+            f"the gateway {name} has {_count(len(near[gateway]), 'neighbour')}; "
+            f"{GATEWAY_MIN} keep it reachable when some fail"
+        )
+    return found
+
+
+def hops_from(made: MeshPlan, node: int) -> list[int]:
+    """Hops over good links from a node to every other; -1 = none lead there."""
+    return distances(neighbours(made.nodes, made.good), node)
+
+
+def fault_words(made: MeshPlan, fault: MeshFault) -> str:
+    """A fault in words: "at 2 s kill n3", "at 3 s cut n1 - n2"."""
+    event = made.scenario.model.event[fault.index]
+    what = made.names[fault.node]
+    if event.action in ("cut", "restore"):
+        what += f" - {made.names[fault.other]}"
+    more = f" with {fault.value / 100:g} dBm" if fault.action == JAM else ""
+    return f"at {fault.at_us / 1e6:g} s {event.action} {what}{more}"
+
+
+def _count(number: int, word: str) -> str:
+    return f"{number or 'no'} {word}{'s' if number != 1 else ''}"

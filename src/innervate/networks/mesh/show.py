@@ -1,0 +1,26 @@
+"""A mesh run's summary for a terminal, in plain words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from innervate.networks.mesh.plot import words as mesh_words
+from innervate.plot import words
+
+if TYPE_CHECKING:
+    from innervate.run import Run
+
+
+def summary_lines(run: Run) -> list[str]:
+    """What a person wants to know first."""
+    return [_first(run), *mesh_words.sentences(run.result, run.summary)]
+
+
+def _first(run: Run) -> str:
+    summary = run.summary
+    return (
+        f"{summary['name']}: {words.number_of(summary['nodes'], 'node')}, "
+        f"{words.number_of(summary['links'], 'good link')}; "
+        f"{run.result.ended_us / 1e6:.4g} s simulated in {summary['wall_s']:.2f} s, "
+        f"seed {summary['seed']}"
+    )

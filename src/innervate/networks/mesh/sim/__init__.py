@@ -1,0 +1,1 @@
+"""What the simulator has to know of a mesh."""

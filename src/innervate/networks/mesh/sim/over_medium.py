@@ -1,0 +1,208 @@
+"""Below the router: CSMA, or nothing, on a medium in which not everybody hears everybody."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from innervate.dialect.arith import MASK30
+from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
+from innervate.kernel.bits import mix
+from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import csma
+from innervate.networks.mesh.protocol.constants import ACK
+from innervate.networks.mesh.sim import recorder as books
+from innervate.networks.mesh.sim.recorder import MAC
+from innervate.sim import rows, taps
+from innervate.sim.cables.loop import DONE, ON_FRAME, ON_INPUT, ON_START, ON_TIMER
+from innervate.sim.field import medium, queue
+from innervate.sim.field.medium import NONE
+from innervate.sim.field.world import COMMITTED, FREE, HELD, ON_AIR
+
+NEVER = -1
+
+
+class Down(NamedTuple):
+    """What a router asks of the layer below, bound to a stack."""
+
+    drain_mac: Callable[..., int]
+    hand_down: Callable[..., int]
+    switch_on: Callable[..., None]
+    switch_off: Callable[..., None]
+    expire: Callable[..., None]
+
+
+class Up(NamedTuple):
+    """What the layer below does by itself and tells the router."""
+
+    arrive: Callable[..., None]
+    end: Callable[..., None]
+    dispatch: Callable[..., None]
+
+
+def give_up(world, node, time):
+    """The medium access returns the node's frame."""
+    run, radio = world.run[0], world.radios[node]
+    run.gave_up += 1
+    if radio.held != NONE:
+        medium.release(world, radio.held)
+        radio.held = NONE
+    radio.tell_at = time
+    queue.push(world.heap, queue.key_of(time, queue.TELL, node, 0))
+
+
+def short(_world):
+    """Why the layer below has to stop before the next event: it never has."""
+    return DONE
+
+
+def due(_world):
+    """When the layer below has something to do that is not in the mesh's own queue: never."""
+    return queue.TIME_MAX
+
+
+def step(_world, _time):
+    """Do it."""
+
+
+def down(stack):
+    """What the router calls."""
+    mac_start, mac_fire, mac_give = stack.mac_start, stack.mac_fire, stack.mac_give
+    mac_carrier, digest, copy_frame = stack.mac_carrier, stack.digest, stack.copy_frame
+    frame_bytes = stack.frame_bytes
+
+    def drain_mac(world, node, time, now, handler):
+        """Carry out what the medium access wants: True if it hands up the frame it was given."""
+        run, out, radio = world.run[0], world.mac_out, world.radios[node]
+        mark = mix(run.fingerprint, (time << 26) ^ (node << 6) ^ handler)
+        handed_up = False
+        for i in range(out.count[0]):
+            act = out.action[i]
+            kind, a, b, c = act.kind, act.a, act.b, act.c
+            mark = mix(mark, kind ^ (a << 3) ^ (b << 20) ^ (c << 50))
+            if kind == SEND:
+                medium.commit(world, radio.hot if c & URGENT else radio.held, time)
+            elif kind == SET_TIMER:
+                queue.set_timer(world, node, mesh_words.TIMERS + a, b, time, now)
+            elif kind == REPORT and a == csma.REPORT_GAVE_UP:
+                give_up(world, node, time)
+            elif kind == DELIVER:
+                handed_up = True
+        out.count[0] = 0
+        run.fingerprint = mark
+        if out.overflow[0]:
+            books.breaks(world, books.BROKEN_OUTBOX, node)
+        if run.watchful:
+            rows.keep_step(world, node, time, handler, 0)
+        return handed_up
+
+    def hand_down(world, node, frame, attempt, urgent, time, now):
+        """The router sends a frame: put it where frames under way are; returns its digest."""
+        run, radio, item = world.run[0], world.radios[node], world.mac_item[0]
+        if radio.held != NONE and not urgent:
+            books.breaks(world, books.BROKEN_HELD, node)
+            return 0
+        if radio.deaf and (urgent or not run.mac):
+            run.blocked += 1
+            if not urgent:
+                give_up(world, node, time)
+            return 0
+        place = medium.reserve(world, node, HELD)
+        if place == NONE:
+            return 0
+        kept = world.frames[place]
+        copy_frame(kept, frame)
+        mark = digest(kept)
+        world.air[place].digest = mark
+        if not urgent and (run.mac or run.told):
+            radio.held = place
+        if not run.mac:
+            medium.commit(world, place, time)
+            return mark
+        radio.hot = place
+        item.us = medium.airtime(world, frame_bytes(kept))
+        item.urgent = 1 if urgent else 0
+        item.attempt = attempt
+        mac_give(world, node, now & MASK30, csma.PACKET)
+        drain_mac(world, node, time, now, MAC + ON_INPUT)
+        return mark
+
+    def switch_on(world, node, time, now, cause):
+        """A node starts; its router does right after this."""
+        medium.miss(world, node, time)
+        world.radios[node].told = 0
+        if world.run[0].mac:
+            mac_start(world, node, now & MASK30, cause)
+            drain_mac(world, node, time, now, MAC + ON_START)
+
+    def switch_off(world, node, time):
+        """A node stops, in mid-frame too."""
+        for place in range(len(world.air)):
+            air = world.air[place]
+            if air.node == node and air.state != FREE:
+                length = frame_bytes(world.frames[place])
+                books.keep_sent(world, place, time, length, 0)
+                medium.abandon(world, place)
+
+    def expire(world, node, timer, time, now):
+        """A timer of the medium access is due; before that it learns what the radio hears."""
+        run, radio = world.run[0], world.radios[node]
+        run.handled += 1
+        carrier = 1 if medium.senses(world, node) else 0
+        if carrier != radio.told:
+            radio.told = carrier
+            mac_carrier(world, node, now & MASK30, carrier, 0)
+        mac_fire(world, node, now & MASK30, timer - mesh_words.TIMERS)
+        drain_mac(world, node, time, now, MAC + ON_TIMER)
+
+    return Down(drain_mac, hand_down, switch_on, switch_off, expire)
+
+
+def up(stack, below, take, tell_sent):
+    """What happens below: `take` hands a frame to a router, `tell_sent` its own one's fate."""
+    mac_hear, digest, frame_bytes = stack.mac_hear, stack.digest, stack.frame_bytes
+    drain_mac = below.drain_mac
+
+    def arrive(world, node, place, time):
+        """A node has received the frame at `place`."""
+        run, frame = world.run[0], world.frames[place]
+        now = time + world.radios[node].offset
+        if frame.kind != ACK:
+            frame.rssi = medium.rssi_dbm(world, world.air[place].node, node)
+        run.arrived += 1
+        books.tap(world, place, node, time, 0, taps.FINE)
+        if run.mac:
+            mac_hear(world, node, now & MASK30, frame)
+            if not drain_mac(world, node, time, now, MAC + ON_FRAME):
+                return
+        take(world, node, frame, time)
+
+    def end(world, place, time):
+        """A frame has left the air: receivers first, then its sender is told."""
+        run, air = world.run[0], world.air[place]
+        frame, node, is_whole = world.frames[place], air.node, air.state == ON_AIR
+        if is_whole:
+            medium.leave(world, place)
+            count = medium.receivers(world, place)
+            books.keep_sent(world, place, time, frame_bytes(frame), count)
+            for i in range(count):
+                arrive(world, world.got[i], place, time)
+            if run.checks and digest(frame) != air.digest:
+                books.breaks(world, books.BROKEN_FRAME, node)
+        medium.release(world, place)
+        if is_whole and world.radios[node].held == place:
+            world.radios[node].held = NONE
+            tell_sent(world, node, time, 1)
+
+    def dispatch(world, rank, node, what, time):
+        """An event of the medium, or of the medium access."""
+        if rank == queue.ENDS:
+            end(world, what, time)
+        elif rank == queue.STARTS:
+            if world.air[what].state == COMMITTED:
+                medium.start(world, what, time, frame_bytes(world.frames[what]))
+            else:
+                medium.release(world, what)
+        elif world.radios[node].tell_at == time:
+            world.radios[node].tell_at = NEVER
+            tell_sent(world, node, time, 0)
+
+    return Up(arrive, end, dispatch)

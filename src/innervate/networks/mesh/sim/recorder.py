@@ -1,0 +1,143 @@
+"""What a run leaves behind: rows, and what is checked on the way."""
+
+from innervate.kernel.bits import mix
+from innervate.networks.mesh.protocol.frames import copy_frame
+from innervate.sim import taps
+from innervate.sim.field.world import ON_AIR
+
+BROKEN_OUTBOX = 2
+BROKEN_RANGE = 3
+BROKEN_TWICE = 4  # a packet was delivered twice
+BROKEN_HELD = 5  # a frame was handed down while another was under way
+BROKEN_FRAME = 6  # a receiver changed the frame that it was handed
+BROKEN_BELOW = 7  # the channel below says what
+
+MAC = 8  # in trails: a handler of the medium access
+
+WORD_BITS = 15
+SEEN_HASH = 0x5EE
+
+
+def breaks(world, what, node):
+    """Something happened that must not; the first is told."""
+    run = world.run[0]
+    if run.broken == 0:
+        run.broken, run.broken_node = what, node
+
+
+def keep_sent(world, place, time, length, receivers):
+    """A row of what was on the air until now, if it was."""
+    if world.air[place].state == ON_AIR:
+        keep_transmission(world, place, time, length, receivers)
+
+
+def keep_transmission(world, place, time, length, receivers):
+    """A row of what was on the air until now."""
+    run, air, frame = world.run[0], world.air[place], world.frames[place]
+    if run.sent_limit > 0:
+        row = world.sent[run.sent]
+        run.sent += 1
+        row.time = air.start
+        row.end = time
+        row.node = air.node
+        row.kind = frame.kind
+        row.flags = frame.flags
+        row.link_dst = frame.link_dst
+        row.origin = frame.origin
+        row.dest = frame.dest
+        row.seq = frame.seq
+        row.path_len = frame.path_len
+        row.bytes = length
+        row.receivers = receivers
+
+
+def tap(world, place, at, time, out, why):
+    """Keep a copy of the frame at `place`, as at node `at`, if a capture is wanted."""
+    if world.run[0].tap_limit > 0:
+        air = world.air[place]
+        frame = world.frames[place]
+        taps.keep(world, time, air.start, at, air.node, out, why, frame, copy_frame)
+
+
+def keep_delivered(world, node, frame, time):
+    """A row of what a node's user was given, and: never the same twice."""
+    run = world.run[0]
+    if run.checks and frame.origin < run.nodes:
+        check_once(world, node, frame, time)
+    if run.delivered_limit > 0:
+        row = world.delivered[run.delivered]
+        run.delivered += 1
+        row.time = time
+        row.node = node
+        row.kind = frame.kind
+        row.flags = frame.flags
+        row.origin = frame.origin
+        row.dest = frame.dest
+        row.seq = frame.seq
+        row.path_len = frame.path_len
+        row.looped = is_looped(frame)
+        row.body0 = frame.body[0] if frame.length > 0 else 0
+        row.body1 = frame.body[1] if frame.length > 1 else 0
+        row.body2 = frame.body[2] if frame.length > 2 else 0
+        row.body3 = frame.body[3] if frame.length > 3 else 0
+
+
+def is_looped(frame):
+    """1 if a node transmitted the packet twice."""
+    for i in range(1, frame.path_len):
+        for k in range(i):
+            if frame.path[i] == frame.path[k]:
+                return 1
+    return 0
+
+
+def check_once(world, node, frame, time):
+    """At most one delivery per receiver, origin, seq, and since each of them was switched on.
+
+    Receivers may forget silent origins after some time, so only that long.
+    """
+    run = world.run[0]
+    key = 1 | node << 1 | frame.origin << 9 | frame.seq << 17
+    key |= (world.radios[node].boots & 1023) << 33
+    key |= (world.radios[frame.origin].boots & 1023) << 43
+    at = place_of(world.seen_key, key)
+    if world.seen_key[at] == key:
+        if time - world.seen_at[at] < run.forget:
+            breaks(world, BROKEN_TWICE, node)
+    else:
+        world.seen_key[at] = key
+        run.seen += 1
+    world.seen_at[at] = time
+
+
+def place_of(keys, key):
+    """Where a key is, or belongs, in a hash table whose length is a power of two."""
+    mask = len(keys) - 1
+    at = mix(SEEN_HASH, key) & mask
+    for _ in range(mask):
+        if keys[at] == 0 or keys[at] == key:
+            break
+        at = (at + 1) & mask
+    return at
+
+
+def keep_round(world, node, time):
+    """A row of what a gateway knows after a round, against the links that are good."""
+    run = world.run[0]
+    if run.round_limit == 0:
+        return
+    gate = world.gates[world.radios[node].gate]
+    links = both = 0
+    for a in range(run.nodes):
+        for b in range(a + 1, run.nodes):
+            bit = gate.known[a * run.row + b // WORD_BITS] >> (b % WORD_BITS) & 1
+            links += bit
+            both += bit & world.good[a * run.nodes + b]
+    row = world.rounds[run.rounds]
+    run.rounds += 1
+    row.time = time
+    row.node = node
+    row.round = world.nodes[node].round
+    row.links = links
+    row.good = run.good
+    row.both = both

@@ -1,0 +1,1 @@
+"""What is explored of a mesh, and what must hold."""

@@ -1,0 +1,305 @@
+"""What single nodes do, by the protocol's own five functions: every call is made once and kept.
+
+A node's state is a number; its record is brought to life only for a call that was not made before.
+A state has, besides the record, when its timers fire and the frame that it has handed down.
+"""
+
+from __future__ import annotations
+
+from types import ModuleType
+from typing import Any, NamedTuple
+
+from innervate.dialect import plain
+from innervate.dialect.arith import MASK30
+from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
+from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.mesh.protocol import node as mesh
+from innervate.networks.mesh.verify import model as mesh_model
+from innervate.networks.mesh.verify import shape as mesh_shape
+from innervate.networks.mesh.verify.shape import NOW
+
+NONE = -1
+NEVER = -1
+RSSI = -60  # dBm: of every frame that is heard; far above any threshold
+OUTBOX = 40
+GRAIN_US = 50_000  # untimed: shorter waits are over as soon as they begin
+TIMERS = range(words.TIMERS)
+COLLECTING = 1
+
+# What a call breaks.
+BROKEN_TWICE, BROKEN_ROUND, BROKEN_RANGE, BROKEN_OUTBOX, BROKEN_HELD = range(1, 6)
+BROKEN_UNHEARD, BROKEN_ENDLESS, BROKEN_GATEWAYS, BROKEN_CRASH, BROKEN_ACKED = range(6, 11)
+
+# Events of a node: (what, ...).
+FRAME, SENT, TIMER, MESSAGE, SAMPLE, START, PASS = range(7)
+
+
+class Packet(NamedTuple):
+    """A frame as a value."""
+
+    kind: int
+    flags: int
+    link_src: int
+    link_dst: int
+    origin: int
+    dest: int
+    seq: int
+    table_ver: int
+    ttl: int
+    rssi: int
+    path: bytes
+    body: bytes
+
+
+class Outcome(NamedTuple):
+    """What a call leaves.
+
+    Attributes:
+        state: the node's next one.
+        acks: numbers of frames that went out at once.
+        delivered: frames handed to the node's user.
+        reports: (code, a, b).
+        broken: what must not be, 0 nothing.
+        script: what its draws gave.
+    """
+
+    state: int
+    acks: tuple[int, ...]
+    delivered: tuple[int, ...]
+    reports: tuple[tuple[int, int, int], ...]
+    broken: int
+    script: tuple[int, ...]
+
+
+class State(NamedTuple):
+    """A node's state: its records, its timers (us from now, -1 never), the frame handed down."""
+
+    node: tuple[Any, ...]
+    gate: tuple[Any, ...] | None
+    timers: tuple[int, ...]
+    handed: int
+
+
+class Locals:
+    """All node states of a network found so far, and what calls make of them."""
+
+    def __init__(self, model: mesh_model.MeshModel, entry: ModuleType = mesh, neat: bool = True):
+        self.model, self.entry, self.neat = model, entry, neat
+        self.boots = 0
+        node, gate, self.frame_class, item = mesh_shape.classes(model.nodes, self._who)
+        self.node, self.gate, self.item = node(), gate(), item()
+        self.blank_node, self.blank_gate = node, gate
+        self.shape, self.gate_shape = mesh_shape.shapes(model.nodes, 1)
+        self.params = plain.make("Params", mesh_fields.PARAMS)()
+        for name, value in mesh_model.parameters(model).items():
+            setattr(self.params, name, value)
+        self.ranks = mesh_model.ranks(model)
+        self.out = plain.Outbox(self.frame_class, OUTBOX)
+        self.states: list[State] = []
+        self.numbers: dict[State, int] = {}
+        self.packets: list[Packet] = []
+        self.packet_numbers: dict[Packet, int] = {}
+        self.frames: list[Any] = []
+        self.memo: dict[tuple[int, tuple[int, ...], int], tuple[Outcome, ...]] = {}
+        self.calls = 0
+
+    def coarsen(self) -> None:
+        """From here on a node's clock goes in steps of GRAIN_US."""
+        self.shape.grain = self.gate_shape.grain = GRAIN_US
+
+    # States and frames by number.
+
+    def number_of(self, state: State) -> int:
+        """The number of a state."""
+        found = self.numbers.get(state)
+        if found is None:
+            found = self.numbers[state] = len(self.states)
+            self.states.append(state)
+        return found
+
+    def packet_of(self, frame: Any) -> int:
+        """The number of a frame."""
+        packet = Packet(
+            frame.kind, frame.flags, frame.link_src, frame.link_dst, frame.origin, frame.dest,
+            frame.seq, frame.table_ver, frame.ttl, frame.rssi if frame.kind == words.ACK else RSSI,
+            bytes(frame.path[: frame.path_len]), bytes(frame.body[: frame.length]),
+        )  # fmt: skip
+        found = self.packet_numbers.get(packet)
+        if found is None:
+            found = self.packet_numbers[packet] = len(self.packets)
+            self.packets.append(packet)
+            self.frames.append(self._frame(packet))
+        return found
+
+    def _frame(self, packet: Packet) -> Any:
+        frame = self.frame_class()
+        for name in Packet._fields[:-2]:
+            setattr(frame, name, getattr(packet, name))
+        frame.path_len, frame.length = len(packet.path), len(packet.body)
+        frame.path[: frame.path_len] = packet.path
+        frame.body[: frame.length] = packet.body
+        return frame
+
+    def field(self, number: int, name: str) -> Any:
+        """A field of a node's record."""
+        return self.states[number].node[self.shape.place[name]]
+
+    def handed(self, number: int) -> int:
+        """The frame that a node has handed down, -1 none."""
+        return self.states[number].handed
+
+    # Calls.
+
+    def start(self, who: int, boots: int) -> int:
+        """The state of a node that is switched on; `boots` = how often it was before."""
+        for record, shape in (
+            (self.blank_node(), self.shape),
+            (self.blank_gate(), self.gate_shape),
+        ):
+            if shape is self.shape:
+                record.number, record.rank = who, self.ranks[who]
+                record.robot = int(who == self.model.robot)
+                record.rng, record.near = 1, [words.ALL] * self.model.nodes
+                node = tuple(self._value(record, name) for name in shape.names)
+            else:
+                gate = tuple(self._value(record, name) for name in shape.names)
+        timers = (NEVER,) * words.TIMERS
+        blank = State(node, gate if self.ranks[who] >= 0 else None, timers, NONE)
+        number = self.number_of(blank)
+        return self.call(number, (START, int(boots > 0), boots), 0)[0].state
+
+    @staticmethod
+    def _value(record: Any, name: str) -> Any:
+        value = getattr(record, name)
+        return tuple(value) if isinstance(value, list) else value
+
+    def call(self, number: int, event: tuple[int, ...], elapsed: int) -> tuple[Outcome, ...]:
+        """Everything an event `elapsed` us after a node's last one can make of it."""
+        key = (number, event, elapsed)
+        found = self.memo.get(key)
+        if found is None:
+            found = self.memo[key] = tuple(self._outcomes(number, event, elapsed))
+        return found
+
+    def _outcomes(self, number: int, event: tuple[int, ...], elapsed: int) -> list[Outcome]:
+        """One outcome for every combination of the draws that are enumerated."""
+        outcomes: list[Outcome] = []
+        todo: list[tuple[int, ...]] = [()]
+        while todo:
+            script = todo.pop()
+            outcomes.append(self._make(number, event, elapsed, script))
+            drawn = self.node.drawn
+            for at in range(len(script), len(drawn)):
+                zeros = script + (0,) * (at - len(script))
+                todo += [(*zeros, value) for value in range(1, drawn[at])]
+        return outcomes
+
+    def _make(
+        self, number: int, event: tuple[int, ...], elapsed: int, script: tuple[int, ...]
+    ) -> Outcome:
+        """Bring a state to life, make a call, and keep what it leaves."""
+        before, node, now = self.states[number], self.node, NOW + elapsed
+        self.calls += 1
+        self.shape.put(node, before.node)
+        gate = None
+        if before.gate is not None:
+            gate = self.gate
+            self.gate_shape.put(gate, before.gate)
+        node.script, node.drawn = script, []
+        self.boots = event[2] if event[0] == START else 0
+        self.out.count[0] = 0
+        self.out.overflow[0] = 0
+        crashed = False
+        try:
+            self._handle(node, gate, now, event)
+        except (IndexError, ValueError, ZeroDivisionError):
+            crashed = True  # a mutant; what the others leave is in range
+        return self._leave(before, event, elapsed, gate, script, crashed)
+
+    def _handle(self, node: Any, gate: Any, now: int, event: tuple[int, ...]) -> None:
+        entry, params, out, what = self.entry, self.params, self.out, event[0]
+        if what == FRAME:
+            entry.on_frame(node, gate, params, now, 0, self.frames[event[1]], out)
+        elif what == TIMER:
+            entry.on_timer(node, gate, params, now, event[1], out)
+        elif what == SENT:
+            self.item.ok = 1
+            entry.on_input(node, gate, params, now, words.SENT, self.item, out)
+        elif what == MESSAGE:
+            item = self.item
+            item.dest, item.flags, item.handle = event[1], words.END_TO_END, event[2]
+            item.length, item.body[0] = 1, event[2]
+            entry.on_input(node, gate, params, now, words.MESSAGE, item, out)
+        elif what == SAMPLE:
+            self.item.x, self.item.y, self.item.vx, self.item.vy = -100, 500, -50, 0
+            entry.on_input(node, gate, params, now, words.SAMPLE, self.item, out)
+        elif what == START:
+            entry.on_start(node, gate, params, now, event[1], out)
+
+    def _leave(
+        self, before: State, event: Any, elapsed: int, gate: Any, script: Any, crashed: bool
+    ) -> Outcome:
+        """What a call has left in the records and the outbox."""
+        node, out, now = self.node, self.out, NOW + elapsed
+        timers = [max(0, due - elapsed) if due >= 0 else NEVER for due in before.timers]
+        if event[0] == TIMER:
+            timers[event[1]] = NEVER
+        handed = NONE if event[0] in (SENT, START) else before.handed
+        acks, delivered, reports = [], [], []
+        broken = BROKEN_CRASH if crashed else BROKEN_OUTBOX if out.overflow[0] else 0
+        for k in range(out.count[0]):
+            act = out.action[k]
+            if act.kind == SEND and act.c & URGENT:
+                acks.append(self.packet_of(out.frame[k]))
+            elif act.kind == SEND:
+                broken = broken or (BROKEN_HELD if handed != NONE else 0)
+                handed = self.packet_of(out.frame[k])
+                broken = broken or goes_round(self.packets[handed])
+            elif act.kind == SET_TIMER:
+                timers[act.a] = mesh_shape.ahead(act.b, now & MASK30, self.shape.grain)
+            elif act.kind == DELIVER:
+                delivered.append(self.packet_of(out.frame[k]))
+            elif act.kind == REPORT:
+                reports.append((act.a, act.b, act.c))
+        number = self.number_of(before)
+        if not crashed:
+            try:
+                number = self._keep(node, gate, now, timers, handed)
+            except mesh_shape.OutOfRange:
+                broken = broken or BROKEN_RANGE
+        return Outcome(number, tuple(acks), tuple(delivered), tuple(reports), broken, tuple(script))
+
+    def _keep(self, node: Any, gate: Any, now: int, timers: list[int], handed: int) -> int:
+        """The number of what the records are now."""
+        self._drop_idle(node, gate, timers)
+        if self.neat:
+            mesh_shape.tidy(node, self.model.nodes, self.params.e2e_adapt, now)
+        value = self.shape.take(node, now)
+        kept = None if gate is None else self.gate_shape.take(gate, now)
+        return self.number_of(State(value, kept, tuple(timers), handed))
+
+    def _drop_idle(self, node: Any, gate: Any, timers: list[int]) -> None:
+        """Timers that find nothing to do: setting replaces, never cancels."""
+        states = node.q_state
+        if node.busy != -1 or 1 not in states:
+            timers[words.TX] = NEVER  # whatever ends the frame under way looks again
+        if node.busy == -1 or states[node.busy] != 3:
+            timers[words.ACK_WAIT] = NEVER
+        if not any(node.wait_kind):
+            timers[words.RETRY] = NEVER
+        if not node.due and not (node.leading and gate is not None and gate.step == COLLECTING):
+            timers[words.ROUND] = NEVER
+        if not node.leading:
+            timers[words.JOBS] = NEVER
+
+    def _who(self, number: int, count: int) -> int:
+        """What a draw out of many gives: another value for every node, and after every start."""
+        share = count * (number + 1) // (self.model.nodes + 2)
+        return (share + 7919 * self.boots) % count
+
+
+def goes_round(packet: Packet) -> int:
+    """Broken if a packet's path has two hops that are the same."""
+    hops = list(zip(packet.path, packet.path[1:], strict=False))
+    return BROKEN_ROUND if len(set(hops)) < len(hops) else 0

@@ -1,0 +1,170 @@
+"""What is explored of a mesh: a small network, its settings, what is offered, what may fail."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from innervate import scenario as scenarios
+from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.verify.errors import VerifyError
+
+NODES_MAX = 6
+FAILOVERS = ("search", "graph", "alternate", "random")
+NAMED = {
+    "line": "0-1 1-2",
+    "triangle": "0-1 0-2 1-2",
+    "square": "0-1 0-2 1-3 2-3",
+    "kite": "0-1 0-2 1-2 1-3 2-3",
+    "house": "0-1 0-2 1-2 1-3 2-4 3-4",
+    "spare": "0-1 0-2 1-3 2-3 3-4",
+    "prism": "0-1 0-2 1-2 1-3 2-4 0-5 3-4 3-5 4-5",
+}
+# Times that suit nodes whose frames take no time; what is not here is the radio profile's.
+BRISK = {"jitter_s": 0.02, "listen_s": 0.1, "spread_s": 0.1, "collect_s": 0.4, "copies": 1}
+FENCE = {
+    "points": 4,
+    "px": [0, 1000, 1000, 0] + [0] * (mesh_fields.POINTS - 4),
+    "py": [0, 0, 1000, 1000] + [0] * (mesh_fields.POINTS - 4),
+    "after": [1, 2, 3, 0] + [0] * (mesh_fields.POINTS - 4),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class MeshBudget:
+    """How often what may fail.
+
+    Attributes:
+        deaths: nodes that die, with what they remember.
+        revivals: dead nodes that are switched on again.
+        frames: receptions that fail: of a frame by whom it is for, of a broadcast by one node.
+        acks: hop acks that are lost.
+        ticks: beats of every node, untimed only; a timed search counts them by its `beats`.
+    """
+
+    deaths: int = 1
+    revivals: int = 0
+    frames: int = 1
+    acks: int = 1
+    ticks: int = 0
+
+
+@dataclass(frozen=True)
+class MeshModel:
+    """What is explored.
+
+    Attributes:
+        links: who hears whom, both ways; nodes are numbered from 0, the gateway.
+        failover: as in a scenario; "random" takes the document's other reading, too: no retry.
+        offers: messages (from, to), offered in this order, at any moment.
+        robot: a node that finds itself outside the fence once, at any moment; -1 none.
+        standby: nodes that take over from a dead gateway, in order.
+        budget: how often what may fail.
+        settings: further keys of [protocol].
+        reliable: messages are kept until acknowledged.
+        overhear: frames for others are heard, too.
+        beats: 0 = untimed: any order. Else every node's clock runs alike, for so many seconds.
+    """
+
+    links: tuple[tuple[int, int], ...]
+    failover: str = "search"
+    offers: tuple[tuple[int, int], ...] = ()
+    robot: int = -1
+    standby: tuple[int, ...] = ()
+    budget: MeshBudget = field(default_factory=MeshBudget)
+    settings: tuple[tuple[str, Any], ...] = ()
+    reliable: bool = True
+    overhear: bool = True
+    beats: int = 0
+
+    @property
+    def nodes(self) -> int:
+        """How many."""
+        return 1 + max(max(link) for link in self.links)
+
+    def changed(self, **keys: Any) -> MeshModel:
+        """The same with some things different."""
+        return replace(self, **keys)
+
+    @property
+    def protocol(self) -> dict[str, Any]:
+        """The keys of [protocol]."""
+        document = {"retry": False} if self.failover == "random" else {}
+        return {**BRISK, "failover": self.failover, **document, **dict(self.settings)}
+
+
+def parse(text: str) -> tuple[tuple[int, int], ...]:
+    """Links from a name, or from text like "0-1 1-2".
+
+    Raises:
+        VerifyError: the text names no network, or one that is not connected or too large.
+    """
+    links = set()
+    for word in NAMED.get(text, text).replace(",", " ").split():
+        ends = word.split("-")
+        if len(ends) != 2 or not all(x.isascii() and x.isdigit() for x in ends):
+            known = ", ".join(NAMED)
+            raise VerifyError(f'"{word[:40]}" is no link; write "0-1 1-2" or take one of: {known}')
+        a, b = sorted(map(int, ends))
+        links.add((a, b))
+    nodes = 1 + max((b for _, b in links), default=0)
+    loops = any(a == b for a, b in links)
+    if loops or not 3 <= nodes <= NODES_MAX or reach(nodes, links, 0) != set(range(nodes)):
+        raise VerifyError(
+            f'"{text[:60]}": a mesh joins the nodes 0, 1, ... by links: 3 to {NODES_MAX} of them'
+        )
+    return tuple(sorted(links))
+
+
+def reach(nodes: int, links: Any, start: int, dead: Any = ()) -> set[int]:
+    """Who is connected to a live node over live nodes."""
+    found, todo = {start}, [start]
+    while todo:
+        here = todo.pop()
+        for a, b in links:
+            there = b if a == here else a if b == here else here
+            if there not in found and there not in dead:
+                found.add(there)
+                todo.append(there)
+    return found if nodes else set()
+
+
+def scenario_text(model: MeshModel, name: str, duration_s: float, seed: int = 1) -> str:
+    """The network and its settings as the head of a scenario file."""
+    lines = ['kind = "mesh"', f'name = "{name}"', f"duration_s = {duration_s}", f"seed = {seed}"]
+    lines += [f"nodes = {model.nodes}", "gateway = 0"]
+    if model.standby:
+        lines.append(f"standby = {list(model.standby)}")
+    lines += ["", "[protocol]"]
+    for key, value in model.protocol.items():
+        word = str(value).lower() if isinstance(value, bool) else value
+        lines.append(f'{key} = "{word}"' if isinstance(value, str) else f"{key} = {word}")
+    for a, b in model.links:
+        lines += ["", "[[link]]", f"a = {a}", f"b = {b}"]
+    return "\n".join([*lines, ""])
+
+
+def parameters(model: MeshModel) -> dict[str, Any]:
+    """The protocol's parameters as a scenario of this network has them, in a class of its size.
+
+    Raises:
+        VerifyError: a setting cannot be.
+    """
+    if model.failover not in FAILOVERS:
+        raise VerifyError(f"failover is one of {', '.join(FAILOVERS)}")
+    try:
+        plan = scenarios.plan(scenarios.loads(scenario_text(model, "explored", 10.0)))
+    except scenarios.ScenarioError as error:
+        raise VerifyError(str(error)) from error
+    n = model.nodes
+    own = {"width": n, "row": mesh_fields.words(n), "places": n, "reliable": int(model.reliable)}
+    fence = FENCE | {"watch": 0} if model.robot >= 0 else {}
+    return {**plan.params, **own, **fence}
+
+
+def ranks(model: MeshModel) -> list[int]:
+    """0 the gateway, 1.. standbys in order, -1 the others."""
+    found = [0] + [-1] * (model.nodes - 1)
+    for place, node in enumerate(model.standby, 1):
+        found[node] = place
+    return found

@@ -1,0 +1,85 @@
+"""The mesh's explorer can fail: copies of the router with a small mistake in each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from innervate.networks.mesh.verify import local as mesh_local
+from innervate.networks.mesh.verify import model as mesh_model
+from innervate.networks.mesh.verify import search as mesh_search
+from innervate.networks.mesh.verify import story as mesh_story
+from innervate.networks.mesh.verify.cases import QUICK, SHORT
+from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
+from innervate.networks.mesh.verify.net import Nets
+from innervate.networks.skin.verify.mutants import Catch, Mutant, copies
+
+STATES = 5_000
+
+MUTANTS = tuple(
+    Mutant(*texts)
+    for texts in (
+        ("nobody acknowledges a hop",
+         "    if frame.flags & ACK_WANTED:\n        acknowledge(node, frame, out)\n", ""),
+        ("a hop's ack is ignored", "    drop(node, i)\n    return i\n", "    return -1\n"),
+        ("a packet for us is taken for somebody else's",
+         "    here = frame.dest == node.number\n", "    here = frame.dest == node.number + 1\n"),
+        ("a message is kept under another number",
+         "    node.wait_seq[w] = node.q_seq[i]\n", "    node.wait_seq[w] = node.q_seq[i] ^ 1\n"),
+        ("what is due waits", "WAITS and after(now, node.q_due[i]):",
+         "WAITS and not after(now, node.q_due[i]):"),
+        ("nobody waits for a hop's ack",
+         "        set_timer(out, ACK_WAIT, (now + wait) & MASK30)\n", ""),
+        ("a packet that was delivered is delivered again",
+         "    if ahead == 0:\n        return 0\n", "    if ahead == 0:\n        return 1\n"),
+        ("the window begins anew with every packet",
+         "    if node.idle[origin] == 0:\n", "    if node.idle[origin] >= 0:\n"),
+        ("what is behind the newest is new",
+         "    if node.window[word] & bit:\n        return 0\n", ""),
+        ("a flood is passed on each time",
+         "    note_forwarded(node, origin, seq, kind | (instance << 6), ALL, 0)\n", ""),
+        ("a standby never takes over",
+         "if node.quiet >= params.dead + max(0, node.rank - 1) * params.dead_step:",
+         "if node.quiet >= 60_000:"),
+        ("who follows another leads on",
+         "    if gateway != node.number:\n        node.leading = 0\n", ""),
+        ("a retry is never due", "        set_timer(out, RETRY, (now + soonest) & MASK30)\n",
+         "        return\n"),
+        ("a frame whose hop failed stays where it is",
+         "UNACKED:\n        return\n    node.busy = -1\n", "UNACKED:\n        return\n"),
+        ("frames behind the first are forgotten",
+         "            wake(node, now, out)\n            return\n", "            return\n"),
+    )
+)  # fmt: skip
+
+
+def models() -> Iterator[MeshModel]:
+    """What each mutant is tried on, smallest first."""
+    line, square = mesh_model.parse("line"), mesh_model.parse("square")
+    calm, death = MeshBudget(0, 0, 0, 0), MeshBudget(1, 0, 0, 0)
+    ack, frame = MeshBudget(0, 0, 0, 1), MeshBudget(0, 0, 1, 0)
+    twice = (("e2e_tries", 1), ("transmissions", 2))
+    yield MeshModel(line, offers=((2, 0),), budget=ack, settings=SHORT)
+    yield MeshModel(line, offers=((2, 0),), budget=frame, settings=twice)
+    yield MeshModel(square, offers=((3, 0),), budget=death, settings=SHORT)
+    yield MeshModel(line, robot=2, budget=calm, settings=SHORT)
+    yield MeshModel(line, offers=((2, 0), (2, 0)), budget=calm, settings=twice)
+    yield MeshModel(line, standby=(2,), beats=4, budget=MeshBudget(1, 1, 0, 0), settings=QUICK)
+
+
+def hunt(mutant: Mutant) -> Catch:
+    """Try a mutant on all models until something is broken."""
+    (entry,) = copies(mutant, "mesh")
+    states = 0
+    for model in models():
+        what = "gateways" if model.beats else "an alarm" if model.robot >= 0 else "messages"
+        links = " ".join(f"{a}-{b}" for a, b in model.links)
+        where = f"{links}, {model.failover}, {what}"
+        try:
+            nets = Nets(model, mesh_local.Locals(model, entry))
+            found = mesh_search.explore(model, nets=nets, states=STATES)
+        except AssertionError as error:
+            return Catch(mutant, f"the first round breaks: {error}", where, states)
+        states += found.tally.states
+        if found.broken:
+            return Catch(mutant, mesh_story.tell(found).title, where, states)
+    return Catch(mutant, "", "", states)

@@ -1,0 +1,211 @@
+"""A mesh node's record as a value that can be kept, compared, and come back to.
+
+Times are kept from the node's own present on, what is past as 0, or, where its age counts, as
+that; what no handler looks at any more (the places of a queue that are free, scratch) is put to
+one value, so that states which differ in nothing else are one. A test plays the same walks with
+and without (`tidy`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from innervate.dialect import plain
+from innervate.dialect.arith import MASK30
+from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.protocol import fields as fields
+from innervate.networks.mesh.protocol.neighbours import SUSPECT
+
+NOW = 1 << 28  # what a node's clock shows at every event
+FEW = 8  # draws out of so many or fewer are enumerated, others have one value a node
+TIMES = ("until", "tick_at", "wait_due", "q_due")
+GATE_TIMES = ("job_due",)
+AGES = ("q_born", "wait_at", "wait_sent")
+OLDEST_US = 5_000_000  # whatever is older is alike
+# Nothing but statistics of these: round trips count only where timeouts adapt to them.
+PLAIN = {"rng": 1, "choice": 0, "asked": 0, "round_trip": 0, "tick_at": 0}
+SCRATCH = ("far", "line")
+QUEUED = ("q_rank", "q_order", "q_due", "q_tries", "q_fails", "q_copies", "q_from", "q_owner",
+          "q_kind", "q_flags", "q_link_dst", "q_origin", "q_dest", "q_seq", "q_ver", "q_ttl",
+          "q_path_len", "q_length")  # fmt: skip
+KEPT = ("wait_seq", "wait_dest", "wait_flags", "wait_tries", "wait_due", "wait_handle", "wait_hop",
+        "wait_length")  # fmt: skip
+DONE = ("done_origin", "done_seq", "done_kind", "done_from", "done_hops")
+NEAR = ("heard", "rssi", "suspect", "until", "round_rssi", "round_depth")
+
+
+class OutOfRange(ArithmeticError):
+    """A field has left its declared range."""
+
+
+def drawing(base: type, who: Callable[[int, int], int]) -> type:
+    """A node whose draws are answered by its `script`, or by `who`, and noted in `drawn`."""
+
+    def ask(self: Any, count: int) -> None:
+        if count == 0:
+            return  # a record is put back
+        if count > FEW:
+            self.answer = who(self.number, count)
+            return
+        place = len(self.drawn)
+        self.drawn.append(count)
+        self.answer = min(self.script[place], count - 1) if place < len(self.script) else 0
+
+    def ignore(self: Any, value: int) -> None:
+        pass
+
+    members = {
+        "answer": 0,
+        "script": (),
+        "choice": property(lambda self: self.answer, ignore),
+        "asked": property(lambda self: 0, ask),
+    }
+    return type("Node", (base,), members)
+
+
+class Shape:
+    """The fields of one kind of record, and how they are kept."""
+
+    def __init__(self, declared: Any, times: tuple[str, ...], grain: int) -> None:
+        self.grain = grain
+        self.names = [field[0] for field in declared]
+        self.place = {name: i for i, name in enumerate(self.names)}
+        self.lengths = [field[1] for field in declared]
+        self.bounds = [(field[2], field[3]) for field in declared]
+        self.times = frozenset(times)
+        self.pool: dict[Any, Any] = {}
+
+    def take(self, record: Any, now: int) -> tuple[Any, ...]:
+        """The record's value; arrays that many states share are kept once."""
+        found = []
+        for name, length, (low, high) in zip(self.names, self.lengths, self.bounds, strict=True):
+            value = getattr(record, name)
+            if name in self.times:
+                kept, grain = age if name in AGES else ahead, self.grain
+                value = [kept(t, now, grain) for t in value] if length else kept(value, now, grain)
+            if not length:
+                if not low <= value <= high:
+                    raise OutOfRange(f"{name} = {value}")
+            elif low >= 0 and high <= 255:
+                value = bytes(value)
+                if max(value) > high:
+                    raise OutOfRange(f"{name} = {max(value)}")
+            else:
+                value = tuple(value)
+                if min(value) < low or max(value) > high:
+                    raise OutOfRange(f"{name} = {value}")
+            found.append(self.pool.setdefault(value, value) if length else value)
+        return tuple(found)
+
+    def put(self, record: Any, value: tuple[Any, ...]) -> None:
+        """Make a record what it was; its present is NOW."""
+        for name, length, kept in zip(self.names, self.lengths, value, strict=True):
+            if name in AGES:
+                kept = [NOW - t for t in kept]
+            elif name in self.times:
+                kept = [NOW + t for t in kept] if length else NOW + kept
+            elif length:
+                kept = list(kept)
+            setattr(record, name, kept)
+
+
+def ahead(time: int, now: int, grain: int = 1) -> int:
+    """How far a time lies ahead, in whole grains; 0 = it is past, or less than a grain."""
+    wait = (time - now) & MASK30
+    return 0 if wait > MASK30 >> 1 else wait - wait % grain
+
+
+def age(time: int, now: int, grain: int = 1) -> int:
+    """How long a time is past, in whole grains."""
+    past = min((now - time) & MASK30, OLDEST_US)
+    return past - past % grain
+
+
+def tidy(node: Any, capacity: int, adapts: int, now: int) -> None:
+    """Put to one value what no handler of this node looks at any more."""
+    for name, value in PLAIN.items():
+        if name != "round_trip" or not adapts:
+            setattr(node, name, value)
+    for name in SCRATCH:
+        values = getattr(node, name)
+        for k in range(len(values)):
+            values[k] = 0
+    _tidy_queue(node, now)
+    for w in range(fields.WAITING):
+        used = 0
+        if node.wait_kind[w]:
+            used = node.wait_length[w]
+        else:
+            for name in KEPT:
+                getattr(node, name)[w] = 0
+            node.wait_sent[w] = now
+        if not (used and adapts):  # tries end long before a message is too old
+            node.wait_at[w] = now
+        first = w * words.DATA_MAX
+        node.wait_body[first + used : first + words.DATA_MAX] = [0] * (words.DATA_MAX - used)
+    for k in range(fields.SKIPS):
+        if node.skip_origin[k] == words.ALL:
+            node.skip_seq[k] = node.skip_near[k] = 0
+        if node.bad_near[k] == words.ALL:
+            node.bad_dest[k] = 0
+    for k in range(len(node.near)):
+        if node.near[k] == words.ALL:
+            for name in NEAR:
+                getattr(node, name)[k] = 0
+        if not node.suspect[k] & SUSPECT:
+            node.until[k] = now
+    _sort_forwarded(node)
+
+
+def _tidy_queue(node: Any, now: int) -> None:
+    """Free places are empty; the order of those in use is 0, 1, ..."""
+    used = [i for i in range(fields.QUEUE) if node.q_state[i]]
+    order = sorted(used, key=lambda i: (node.q_order[i] - node.q_next) & MASK30)
+    for place, i in enumerate(order):
+        node.q_order[i] = place
+    node.q_next = len(used)
+    for i in range(fields.QUEUE):
+        length, hops = (node.q_length[i], node.q_path_len[i]) if node.q_state[i] else (0, 0)
+        if not node.q_state[i]:
+            for name in QUEUED:
+                getattr(node, name)[i] = 0
+            node.q_due[i] = node.q_born[i] = now
+        first = i * words.BODY
+        node.q_body[first + length : first + words.BODY] = [0] * (words.BODY - length)
+        first = i * words.PATH_MAX
+        node.q_path[first + hops : first + words.PATH_MAX] = [0] * (words.PATH_MAX - hops)
+
+
+def _sort_forwarded(node: Any) -> None:
+    """As long as none was overwritten, the order of what was forwarded says nothing."""
+    rows = [
+        tuple(getattr(node, name)[k] for name in DONE)
+        for k in range(fields.FORWARDED)
+        if node.done_origin[k] != words.ALL
+    ]
+    if len(rows) >= fields.FORWARDED:
+        return
+    rows.sort()
+    node.done_at = len(rows)
+    for k in range(fields.FORWARDED):
+        row = rows[k] if k < len(rows) else (words.ALL, 0, 0, 0, 0)
+        for name, value in zip(DONE, row, strict=True):
+            getattr(node, name)[k] = value
+
+
+def classes(nodes: int, who: Callable[[int, int], int]) -> tuple[type, type, type, type]:
+    """Classes of a node (its draws scripted), a gateway's record, frames and items."""
+    return (
+        drawing(plain.make("Node", fields.node(nodes)), who),
+        plain.make("Gate", fields.gate(nodes)),
+        plain.make("Frame", fields.FRAME),
+        plain.make("Item", fields.ITEM),
+    )
+
+
+def shapes(nodes: int, grain: int) -> tuple[Shape, Shape]:
+    """How nodes and gateways' records are kept; times in grains of so many us."""
+    return Shape(fields.node(nodes), TIMES + AGES, grain), Shape(
+        fields.gate(nodes), GATE_TIMES, grain
+    )

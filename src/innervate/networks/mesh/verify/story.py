@@ -1,0 +1,211 @@
+"""How a mesh breaks, in plain sentences, and the network after each event."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.verify import local as local
+from innervate.networks.mesh.verify import net as mesh_net
+from innervate.networks.mesh.verify.local import NONE
+from innervate.networks.mesh.verify.net import DEAD, Move, Net, Nets
+from innervate.networks.mesh.verify.search import Found
+
+KINDS = {
+    words.REQUEST: "a discovery request",
+    words.RESPONSE: "a discovery response",
+    words.TABLE: "a table",
+    words.TABLE_ACK: "a table's acknowledgement",
+    words.DATA: "message",
+    words.E2E_ACK: "an end-to-end ack",
+    words.ALARM: "the alarm",
+    words.POSITION: "its position",
+    words.GRAPH: "the graph",
+}
+TIMERS = {
+    words.TX: "a wait is over",
+    words.ACK_WAIT: "hears no ack",
+    words.ROUND: "goes on with the discovery round",
+    words.TICK: "has its beat",
+    words.RETRY: "has heard of no arrival and tries again",
+    words.JOBS: "has no answer to a table",
+}
+TITLES = {
+    local.BROKEN_TWICE: "a packet is delivered twice",
+    local.BROKEN_ROUND: "a packet goes round",
+    local.BROKEN_RANGE: "a value is out of its declared range",
+    local.BROKEN_OUTBOX: "an outbox overflows",
+    local.BROKEN_HELD: "a frame is handed down while another is under way",
+    local.BROKEN_UNHEARD: "a message is not delivered though its recipient is connected",
+    local.BROKEN_ENDLESS: "a packet stays for ever",
+    local.BROKEN_GATEWAYS: "nodes do not agree on one gateway",
+    local.BROKEN_CRASH: "a handler cannot go on",
+    local.BROKEN_ACKED: "a node waits for an ack that it has heard",
+}
+
+
+@dataclass(slots=True)
+class Scene:
+    """The network after an event.
+
+    Attributes:
+        hops: each node's next hop to the story's recipient in its table, -1 none.
+        dead: nodes that are.
+        actor: whose event it was.
+        sent: (from, to) of a frame that was received, or ().
+        lost: (from, to) of a frame or ack that was not, or ().
+    """
+
+    hops: list[int]
+    dead: list[int]
+    actor: int
+    sent: tuple[int, ...] = ()
+    lost: tuple[int, ...] = ()
+
+
+@dataclass(slots=True)
+class MeshStory:
+    """How something breaks.
+
+    Attributes:
+        found: the search that found it.
+        title: what is broken, in one line.
+        dest: the recipient that the pictures are about.
+        sentences: one for each event.
+        scenes: the network after each.
+        ring: two nodes that are each other's next hop to `dest`, if there are.
+        scenario: the text of a scenario that plays it; "" none.
+    """
+
+    found: Found
+    title: str
+    dest: int
+    sentences: list[str] = field(default_factory=list)
+    scenes: list[Scene] = field(default_factory=list)
+    ring: list[int] = field(default_factory=list)
+    scenario: str = ""
+
+    def lines(self) -> list[str]:
+        """The story as numbered lines."""
+        told = [f"{i}. {text}" for i, text in enumerate(self.sentences, 1)]
+        return [*told, f"So: {self.title}"]
+
+
+def tell(found: Found) -> MeshStory:
+    """The story of what a search found broken."""
+    assert found.start is not None
+    story = MeshStory(found, TITLES[found.broken], _dest(found))
+    before = found.start
+    for move, after, _ in found.path:
+        text = _sentence(found.nets, move, before, after)
+        story.sentences.append(f"{text[0].upper()}{text[1:]}.")
+        story.scenes.append(_scene(found.nets, story.dest, move, after))
+        before = after
+    story.ring = ring(story.scenes[-1].hops if story.scenes else [])
+    if found.broken == local.BROKEN_ROUND and story.ring:
+        a, b = story.ring
+        story.title = (
+            f"packets for node {story.dest} go to and fro between nodes {a} and {b}, for good: "
+            "each has the other in its table"
+        )
+    elif found.broken in (local.BROKEN_UNHEARD, local.BROKEN_ENDLESS, local.BROKEN_GATEWAYS):
+        story.title += ", though nothing fails any more"
+    return story
+
+
+def ring(hops: list[int]) -> list[int]:
+    """Two nodes that are each other's next hop, or nothing."""
+    for node, hop in enumerate(hops):
+        if 0 <= hop < len(hops) and hops[hop] == node and hop != node:
+            return [node, hop]
+    return []
+
+
+def next_hops(nets: Nets, net: Net, dest: int) -> list[int]:
+    """Every node's next hop to a recipient in its table, -1 none."""
+    found = []
+    for number in net.nodes:
+        hop = 255
+        if number != DEAD:
+            bank = nets.locals.field(number, "bank")
+            hop = nets.locals.field(number, "next")[bank * nets.n + dest]
+        found.append(NONE if hop == 255 else hop)
+    return found
+
+
+def _dest(found: Found) -> int:
+    """The recipient of the packet that goes round, or of what was offered first."""
+    model, last = found.model, found.path[-1] if found.path else None
+    if found.broken == local.BROKEN_ROUND and last is not None:
+        for number in last[1].nodes:
+            handed = NONE if number == DEAD else found.nets.locals.handed(number)
+            if handed != NONE and local.goes_round(found.nets.locals.packets[handed]):
+                dest = found.nets.locals.packets[handed].dest
+                return dest if dest < model.nodes else 0
+    return model.offers[0][1] if model.offers else 0
+
+
+def _sentence(nets: Nets, move: Move, before: Net, after: Net) -> str:
+    who = f"node {move.node}"
+    if move.kind == mesh_net.DIE:
+        return f"{who} dies"
+    if move.kind == mesh_net.REVIVE:
+        return f"{who} is switched on again, its memory lost"
+    if move.kind == mesh_net.OUTSIDE:
+        return f"{who} finds itself outside the fence"
+    if move.kind == mesh_net.OFFER:
+        dest = nets.model.offers[move.frame][1]
+        return f"{who} is given message {move.frame + 1} for node {dest}"
+    if move.kind == mesh_net.FIRE:
+        text = f"{who} {TIMERS[move.frame]}"
+    else:
+        text = f"{who} {_air(nets, move, before)}"
+    return text + _changes(nets, before, after)
+
+
+def _air(nets: Nets, move: Move, before: Net) -> str:
+    """What goes out, to whom, and what comes of it."""
+    packet = nets.locals.packets[move.frame]
+    what = KINDS.get(packet.kind, "a packet")
+    if packet.kind == words.DATA:
+        what += f" {packet.body[-1] + 1}" if packet.body else ""
+    if packet.link_dst == words.ALL:
+        lost = ", ".join(f"node {v}" for v in move.missed)
+        return f"sends {what} to all" + (f"; {lost} does not receive it" if lost else "")
+    to = f"node {packet.link_dst}"
+    path = "-".join(map(str, packet.path))
+    text = f"sends {what} to {to} (path {path})"
+    if move.missed:
+        return f"{text}, but it is lost"
+    if before.nodes[packet.link_dst] == DEAD:
+        return f"{text}, which is dead"
+    return f"{text}, which receives it, but the ack is lost" if move.deaf else text
+
+
+def _changes(nets: Nets, before: Net, after: Net) -> str:
+    """What tables say now that they did not before."""
+    told = []
+    for dest in range(nets.n):
+        pairs = zip(next_hops(nets, before, dest), next_hops(nets, after, dest), strict=True)
+        for node, (old, new) in enumerate(pairs):
+            alive = before.nodes[node] != DEAD and after.nodes[node] != DEAD
+            if old != new and alive:
+                hop = "nobody" if new == NONE else f"node {new}"
+                told.append(f"node {node} has {hop} in its table for node {dest} now")
+    return "".join(f"; {text}" for text in told)
+
+
+def _scene(nets: Nets, dest: int, move: Move, net: Net) -> Scene:
+    dead = [node for node, number in enumerate(net.nodes) if number == DEAD]
+    scene = Scene(next_hops(nets, net, dest), dead, move.node)
+    if move.kind == mesh_net.AIR:
+        to: Any = nets.locals.packets[move.frame].link_dst
+        if to != words.ALL:
+            pair = (move.node, to)
+            if move.missed or to in dead:
+                scene.lost = pair
+            else:
+                scene.sent = pair
+                scene.lost = pair[::-1] if move.deaf else ()
+    return scene

@@ -1,0 +1,85 @@
+"""The field of a mesh: who is where, which links there are, the fence. Metres, y down."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from innervate.networks.mesh.plot.map import monitor_of
+from innervate.networks.mesh.plot.sheet import WIDTH, is_to_scale, laid_out
+from innervate.networks.mesh.scenario.plan import ONE
+from innervate.networks.mesh.scenario.profiles import GOOD_CDB
+from innervate.sim.field.world import ALIVE
+
+UP, DOWN, AWAY = 1, 0, 2  # of links; AWAY: out of range for now
+
+Numbers = np.ndarray[Any, np.dtype[np.int64]]
+
+
+class Field:
+    """A plan's field.
+
+    Attributes:
+        pairs: the links: good at the start, and between a robot that moves and anybody.
+        walks: somebody moves.
+    """
+
+    def __init__(self, plan: Any) -> None:
+        self.plan = plan
+        self.walks = bool(plan.walks) and is_to_scale(plan, WIDTH)
+        moving = {walk.node for walk in plan.walks} if self.walks else set()
+        always = {pair for pair in plan.good if not moving & set(pair)}
+        never = {(min(i, j), max(i, j)) for i in moving for j in range(plan.nodes) if i != j}
+        self.pairs: list[tuple[int, int]] = sorted(always | never)
+        self._ends = np.array(self.pairs, np.int64).reshape(-1, 2)
+        self._wanders = np.array([bool(moving & set(pair)) for pair in self.pairs], np.bool_)
+        true_places = is_to_scale(plan, WIDTH)
+        places = plan.positions_cm if true_places else laid_out(plan)
+        self._places = np.array(places, np.float64).reshape(-1, 2) * (0.01, -0.01)
+
+    def scene(self) -> dict[str, Any]:
+        """Nodes, links and fence of a scene."""
+        plan = self.plan
+        chance = np.array(plan.radio.prob_q15).reshape(plan.nodes, plan.nodes) / ONE
+        places = self._places.round(3).tolist()
+        nodes = [
+            {"id": i, "label": plan.names[i], "x": x, "y": y, "role": self._role(i)}
+            for i, (x, y) in enumerate(places)
+        ]
+        links = [
+            {"id": i, "a": a, "b": b, "quality": round(float(min(chance[a, b], chance[b, a])), 3)}
+            for i, (a, b) in enumerate(self.pairs)
+        ]
+        return {"nodes": nodes, "links": links, "fence": self._fence()}
+
+    def _role(self, node: int) -> str:
+        plan = self.plan
+        if plan.robots[node]:
+            return "robot"
+        if plan.ranks[node] >= 0:
+            return "standby" if plan.ranks[node] else "gateway"
+        watched = bool(plan.walks or plan.params["points"])
+        return "monitor" if watched and monitor_of(plan) == node else "node"
+
+    def _fence(self) -> list[list[list[float]]] | None:
+        table = self.plan.scenario.model.fence
+        if table is None:
+            return None
+        return [[[x, -y] for x, y in ring] for ring in (table.polygon, *table.holes)]
+
+    def link_up(self, world: Any) -> Numbers:
+        """UP, DOWN or AWAY for every link."""
+        count = self.plan.nodes
+        a, b = self._ends.T
+        alive = world.radios["state"] == ALIVE
+        there = alive[a] & alive[b] & (world.cut[a * count + b] == 0)
+        least = self.plan.radio.rssi50_cdb + GOOD_CDB
+        near = np.minimum(world.rssi[a * count + b], world.rssi[b * count + a]) >= least
+        found = np.where(self._wanders & ~near, AWAY, np.where(there, UP, DOWN))
+        return found.astype(np.int64)
+
+    def positions(self, world: Any) -> Any:
+        """Where everybody is now."""
+        radios = world.radios
+        return (np.stack([radios["x"], -radios["y"]], axis=1) / 100).round(2)

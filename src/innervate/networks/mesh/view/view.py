@@ -1,0 +1,271 @@
+"""What a simulated mesh looks like: the map, routes, alarms, robots and fence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from innervate.networks.mesh.plot.words import fault_words
+from innervate.networks.mesh.protocol import constants as w
+from innervate.networks.mesh.scenario.plan import CUT, KILL, ONE, QUIET, RESTORE, REVIVE, MeshFault
+from innervate.networks.mesh.view.scene import Field
+from innervate.networks.mesh.view.ways import hops
+from innervate.sim.field.build import MACS
+from innervate.sim.field.world import ALIVE, DEAD, ON_AIR
+from innervate.web.engine import Engine, Rows
+from innervate.web.errors import Refused
+from innervate.web.history import History
+from innervate.web.messages import number
+from innervate.web.view import Memory, View
+from innervate.web.ways import NOWHERE, follow, reach
+
+KINDS = {
+    w.REQUEST: "request", w.RESPONSE: "response", w.TABLE: "table", w.TABLE_ACK: "ack",
+    w.ACTIVATE: "table", w.GRAPH: "table", w.DATA: "data", w.E2E_ACK: "ack", w.ACK: "ack",
+    w.ALARM: "alarm", w.POSITION: "beacon",
+}  # fmt: skip
+ALARMS = {w.PREDICT: "is about to cross", w.CROSS: "has crossed the fence", w.LOST: "is lost",
+          w.CLEAR: "is inside again"}  # fmt: skip
+SMOOTH = 0.3  # share of a new value in a load
+MESSAGES_MAX = 4_096
+FLIGHTS_MAX = 2_000
+HALF = ONE // 2  # a link counts if half the frames come through
+
+
+@dataclass(slots=True)
+class MeshMemory(Memory):
+    """Besides: airtime and latencies since the last point, messages and alarms under way."""
+
+    air_us: Any = None
+    load: Any = None
+    since_us: int = 0
+    latency_us: list[int] = field(default_factory=list)
+    messages: dict[tuple[int, int], int] = field(default_factory=dict)
+    alarms: dict[tuple[int, int], int] = field(default_factory=dict)
+    heard: set[int] = field(default_factory=set)  # who got a message through since the fault
+
+
+class MeshView(View):
+    """Nodes where they are; links are those that were good at the start, and robots' to all."""
+
+    speed: ClassVar[float] = 1.0
+    slow: ClassVar[float] = 0.2
+    can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
+    check_us: ClassVar[int] = 10_000
+
+    def __init__(self, engine: Engine, history: History) -> None:
+        super().__init__(engine, history)
+        self.field = Field(self.plan)
+        count = self.plan.nodes
+        self.memory = MeshMemory(air_us=np.zeros(count), load=np.zeros(count))
+        near: list[list[int]] = [[] for _ in range(count)]
+        for a, b in self.plan.good:
+            near[a].append(b)
+            near[b].append(a)
+        self.near = near
+        if self.plan.mac not in MACS:  # a channel on which everybody hears everybody
+            self.can = ("kill", "revive")
+
+    def scene(self) -> dict[str, Any]:
+        """Nodes, links and what else stands still."""
+        series = [
+            {"id": "unconnected", "label": "nodes without a way", "unit": "nodes"},
+            {"id": "latency", "label": "latency of messages", "unit": "ms"},
+            {"id": "airtime", "label": "time on the air, all nodes", "unit": "%"},
+        ]
+        return {**self.field.scene(), "series": series}
+
+    def note(self, rows: Rows) -> None:
+        """Take in what happened since the last call."""
+        memory, sent = self.memory, rows["sent"]
+        np.add.at(memory.air_us, sent["node"], sent["end"] - sent["time"])
+        if self.tell_faults():
+            memory.heard.clear()
+            self.check()
+        for at, node, code, a, b in rows["rows"].tolist():
+            self._report(at, node, code, a, b)
+        came = rows["delivered"]
+        for row in came[(came["kind"] == w.DATA) & (came["dest"] != w.ALL)]:
+            accepted = memory.messages.pop((int(row["origin"]), int(row["seq"])), None)
+            if accepted is not None:
+                memory.latency_us.append(int(row["time"]) - accepted)
+                if memory.fault is not None and accepted > memory.fault.at_us:
+                    memory.heard.add(int(row["origin"]))
+        for row in came[came["kind"] == w.ALARM]:
+            self._alarm_came(int(row["time"]), int(row["body0"]), int(row["body3"]))
+
+    def _report(self, at: int, node: int, code: int, a: int, b: int) -> None:
+        memory, log, name = self.memory, self.log, self.plan.names
+        if code == w.REPORT_ACCEPTED:
+            memory.messages[node, b] = at
+            if len(memory.messages) > MESSAGES_MAX:
+                del memory.messages[next(iter(memory.messages))]
+        elif code == w.REPORT_SUSPECT:
+            self._suspect(at, node, a)
+        elif code == w.REPORT_GATEWAY and a == node:
+            log.say(at, f"{name[node]} leads as gateway")
+        elif code == w.REPORT_TABLES:
+            missing = f", but {b} nodes have none" if b else ""
+            log.say(at, f"tables are out{missing}", "bad" if b else "info")
+        elif code == w.REPORT_EXPIRED:
+            log.often("expired", at, f"{name[node]} gave a message up", "bad")
+        elif code == w.REPORT_ALARM:
+            memory.alarms.setdefault((b, a), at)
+            who = "" if node == b else f", says {name[node]}"
+            log.often("alarm", at, f"robot {name[b]} {ALARMS.get(a, 'raised an alarm')}{who}",
+                      "good" if a == w.CLEAR else "bad")  # fmt: skip
+
+    def _suspect(self, at_us: int, node: int, near: int) -> None:
+        recovery, fault = self.memory.recovery, self.memory.fault
+        name = self.plan.names
+        if recovery is not None and recovery.detected_ms is None and at_us >= recovery.at_us:
+            pair = {fault.node, fault.other} if fault.action == CUT else {fault.node}
+            hit = pair == {node, near} if fault.action == CUT else near in pair
+            if hit and fault.action in (CUT, KILL):
+                recovery.detected_ms = (at_us - fault.at_us) / 1e3
+        self.log.often("suspect", at_us, f"{name[near]} does not answer {name[node]}")
+
+    def _alarm_came(self, at_us: int, robot: int, kind: int) -> None:
+        raised = self.memory.alarms.pop((robot, kind), None)
+        if raised is not None and kind != w.CLEAR:
+            text = f"alarm of robot {self.plan.names[robot]} at the monitor after"
+            self.log.say(at_us, f"{text} {(at_us - raised) / 1e3:.1f} ms", "good")
+
+    def check(self) -> None:
+        """Look whether the network has got over the newest fault."""
+        recovery = self.memory.recovery
+        if recovery is None or recovery.recovered_ms is not None or self._lacking():
+            return
+        after_us = self.engine.now_us - recovery.at_us
+        kept = after_us <= 1
+        recovery.recovered_ms = 0.0 if kept else after_us / 1e3
+        if not kept:
+            text = f"all nodes have a way to the gateway again after {after_us / 1e3:.0f} ms"
+            self.log.say(self.engine.now_us, text, "good")
+
+    def _live(self) -> Any:
+        """Who hears whom now: a matrix of flags, sender by receiver."""
+        world, count = self.engine.world, self.plan.nodes
+        alive = world.radios["state"] == ALIVE
+        heard = (world.prob.reshape(count, count) >= HALF) & (world.cut.reshape(count, count) == 0)
+        both: Any = heard & heard.T & alive[:, None] & alive[None, :]
+        return both
+
+    def _roots(self) -> Any:
+        """Who leads now."""
+        world, count = self.engine.world, self.plan.nodes
+        return (world.nodes["leading"][:count] == 1) & (world.radios["state"] == ALIVE)
+
+    def _ways(self, live: Any) -> tuple[Any, Any, Any]:
+        """Per node: next hop to the gateway; root and length of the chain over live links."""
+        hop = hops(self.engine.world, self.plan)
+        nodes = np.arange(self.plan.nodes)
+        over = np.where((hop != NOWHERE) & live[nodes, np.maximum(hop, 0)], hop, NOWHERE)
+        return hop, *follow(over, self._roots())
+
+    def _lacking(self) -> int:
+        """Nodes that could reach a gateway, and neither do their next hops lead to one, nor has
+        anything that they sent since the fault come through; all while there is no gateway.
+        """
+        live = self._live()
+        if not self._roots().any():
+            return int(self.plan.nodes)
+        _hop, root, _depth = self._ways(live)
+        lacking = reach(live, self._roots()) & (root == NOWHERE)
+        lacking[list(self.memory.heard)] = False
+        return int(np.count_nonzero(lacking))
+
+    def points(self) -> dict[str, float | None]:
+        """A point of every plot, for now."""
+        memory, now = self.memory, self.engine.now_us
+        took = max(1, now - memory.since_us)
+        share = memory.air_us / took
+        memory.load = (1 - SMOOTH) * memory.load + SMOOTH * share
+        waited = memory.latency_us
+        _hop, root, _depth = self._ways(self._live())
+        alive = self.engine.world.radios["state"] == ALIVE
+        found = {
+            "unconnected": float(np.count_nonzero(alive & (root == NOWHERE))),
+            "latency": round(sum(waited) / len(waited) / 1e3, 2) if waited else None,
+            "airtime": round(100 * float(share.sum()), 2),
+        }
+        memory.air_us = np.zeros(self.plan.nodes)
+        memory.latency_us, memory.since_us = [], now
+        return found
+
+    def arrays(self, flights: bool) -> dict[str, Any]:
+        """The state's fields for nodes and links."""
+        world, live = self.engine.world, self._live()
+        hop, root, depth = self._ways(live)
+        state = world.radios["state"]
+        fields = {
+            "node_up": (state != DEAD).astype(np.int64),
+            "link_up": self.field.link_up(world),
+            "parent": np.where(self._roots() | (state != ALIVE), NOWHERE, hop),
+            "depth": depth,
+            "load": np.minimum(self.memory.load, 1.0).round(3),
+            "unconnected": int(np.count_nonzero((state == ALIVE) & (root == NOWHERE))),
+            "flights": self._flights() if flights else [],
+        }
+        if self.field.walks:
+            fields["position"] = self.field.positions(world)
+        if any(self.plan.robots):
+            monitor = self.plan.params["monitor"]
+            roots = np.flatnonzero(self._roots())
+            who = roots if monitor == w.MONITOR else [monitor]
+            raised = world.nodes["raised"][who][:, : self.plan.nodes]
+            robots = np.array(self.plan.robots, np.bool_)
+            outside = world.nodes["outside"][: self.plan.nodes] == 2
+            fields["alarm"] = (raised.any(axis=0) & robots).astype(np.int64)
+            fields["outside"] = (outside & robots).astype(np.int64)
+        return fields
+
+    def _flights(self) -> list[dict[str, Any]]:
+        """Frames on the air, to whom they are for, or to all who are linked with the sender."""
+        world, now = self.engine.world, self.engine.now_us
+        found: list[dict[str, Any]] = []
+        for place in np.flatnonzero(world.air["state"] == ON_AIR).tolist():
+            air, frame = world.air[place], world.frames[place]
+            start, end = int(air["start"]), int(air["end"])
+            part = round(min(1.0, max(0.0, (now - start) / max(1, end - start))), 3)
+            a, to = int(air["node"]), int(frame["link_dst"])
+            kind = KINDS.get(int(frame["kind"]), "frame")
+            for b in self.near[a] if to == w.ALL else [to]:
+                found.append({"a": a, "b": b, "kind": kind, "p": part})
+        return found[:FLIGHTS_MAX]
+
+    def words(self, fault: Any) -> str:
+        """A fault in words."""
+        return fault_words(self.plan, fault)
+
+    def takes(self, fault: Any) -> bool:
+        """True if a fault takes something away, false if it gives it back."""
+        return fault.action not in (RESTORE, REVIVE, QUIET)
+
+    def cut(self, link: int, heal: bool) -> dict[str, int]:
+        """The fault that cuts a link, or puts it back."""
+        a, b = self.field.pairs[number("link", link, len(self.field.pairs))]
+        if bool(self.engine.world.cut[a * self.plan.nodes + b]) != heal:
+            raise Refused("this link is not cut" if heal else "this link is cut already")
+        return {"action": RESTORE if heal else CUT, "node": a, "other": b}
+
+    def kill(self, node: int, revive: bool) -> dict[str, int]:
+        """The fault that switches a node off, or on."""
+        state = int(self.engine.world.radios["state"][number("node", node, self.plan.nodes)])
+        if revive and (state == ALIVE or not (state == DEAD or self.plan.absent[node])):
+            raise Refused("this node is on" if state == ALIVE else "this node starts by itself")
+        if not revive and state != ALIVE:
+            raise Refused("this node is not on")
+        return {"action": REVIVE if revive else KILL, "node": node, "other": 0}
+
+    def make(self, at_us: int, index: int, fields: dict[str, int]) -> MeshFault:
+        """A fault of the kind's own type."""
+        return MeshFault(at_us=at_us, value=0, index=index, **fields)
+
+    def event(self, fault: Any) -> dict[str, Any]:
+        """The [[event]] table of a fault, without its time."""
+        if fault.action in (CUT, RESTORE):
+            return {"link": [fault.node, fault.other]}
+        return {"node": fault.node}

@@ -1,0 +1,1 @@
+"""The radio channel of a robot team: medium access without a central station."""

@@ -1,0 +1,1 @@
+"""What a run of a radio team comes to, in numbers."""

@@ -1,0 +1,1 @@
+"""A radio team on real links."""

@@ -1,0 +1,34 @@
+"""The radio paper: Kim and Kim, CSMA/CD-R for a wireless multi-robot communication."""
+
+from importlib import import_module
+
+from innervate.papers.experiment import Experiment
+
+TITLE = "CSMA/CD-R for a wireless multi-robot communication"
+AUTHORS = "D.-H. Kim, J.-H. Kim"
+# One module each: figures in the order of the paper, what was found about them, and the last two
+# beyond it.
+FIGURES = (
+    "fig1", "fig4_5", "limits", "fig6_7", "quadratic", "fig12", "ties", "silent", "capture",
+    "fairness", "practical", "turnaround",
+)  # fmt: skip
+
+
+def experiment(name: str) -> Experiment:
+    """The experiment of a figure, loaded when it is asked for."""
+    found = import_module(f"innervate.networks.radio.papers.{name}").EXPERIMENT
+    assert isinstance(found, Experiment)
+    return found
+
+
+def warm_up() -> None:
+    """Compile the loops that the figures need."""
+    from innervate.networks.radio.papers.common import MACS
+    from innervate.networks.radio.papers.medium import Channel
+    from innervate.networks.radio.slotted.model import slotted
+
+    for mac in MACS:
+        for traffic in ("saturated", "disaster"):
+            slotted(mac, 2, 5, traffic, packets=2)
+    for mode in ("paper", "practical"):
+        Channel(mode, 2, 5).run(1)

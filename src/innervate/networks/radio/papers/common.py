@@ -1,0 +1,171 @@
+"""What the figures of the radio paper share: runs of the slotted level, words, looks of curves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from innervate.networks.radio.slotted.drive import SLOT
+from innervate.networks.radio.slotted.model import slotted
+from innervate.papers.experiment import Point, Results
+from innervate.plot import style
+
+TAU_US = 104
+TURNAROUND_US = 2000  # "It takes 2ms to change a mode" (section 4)
+TURNAROUND = TURNAROUND_US / SLOT
+SIZES = (5, 25)  # T of Figs. 4 to 7
+RESERVED = "csma-cd-r"
+CONTENDING = ("csma-cd-d1", "csma-cd-d2", "csma-cd-d2p")
+MACS = (RESERVED, *CONTENDING, "p-persistent", "slotted-aloha", "dcf", "tree", "tdma")
+WHOLE = tuple(range(2, 101))
+FEW = (2, 3, 4, 5, 7, 10, 15, 20, 30, 50, 70, 100)
+
+Options = tuple[tuple[str, Any], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """A protocol of the slotted level over the number of stations.
+
+    Attributes:
+        ns: numbers of stations.
+        seeds: runs each, with seeds 1 and following.
+        successes: of a saturated run, about; at least 20 a station.
+        options: of `sim.slotted.slotted`.
+    """
+
+    mac: str
+    packet_slots: int
+    traffic: str
+    ns: tuple[int, ...]
+    seeds: int
+    successes: int = 10_000
+    options: Options = ()
+
+    @property
+    def key(self) -> str:
+        """All of it in words."""
+        words = "".join(f" {name}={value}" for name, value in self.options)
+        if self.traffic == "saturated":
+            words += f" {self.successes} successes"
+        return (
+            f"slotted {self.mac} T={self.packet_slots} {self.traffic}{words} "
+            f"n={spans(self.ns)} seeds 1-{self.seeds}"
+        )
+
+    def measure(self) -> dict[str, list[list[float]]]:
+        """Of every n, the numbers of each seed."""
+        found: dict[str, list[list[float]]] = {}
+        for n in self.ns:
+            runs = [self._run(n, seed) for seed in range(1, self.seeds + 1)]
+            for name in runs[0]:
+                found.setdefault(name, []).append([run[name] for run in runs])
+        return found
+
+    def _run(self, n: int, seed: int) -> dict[str, float]:
+        packets = max(20, self.successes // n // 10 * 10)  # so that the warm-up ends with a round
+        run = slotted(
+            self.mac, n, self.packet_slots, self.traffic, packets=packets, seed=seed,
+            **dict(self.options),
+        )  # fmt: skip
+        if self.traffic == "disaster":
+            return {"duration": run.duration_slots}
+        return {"throughput": run.throughput, "jain": run.jain, "jain_round": run.jain_round}
+
+    def point(self) -> Point:
+        """The point that measures it."""
+        cost = 5e-5 if self.traffic == "disaster" else 1e-6 * self.successes
+        return Point.of(self.key, cost * len(self.ns) * self.seeds, self.measure)
+
+    def all(self, results: Results, name: str) -> Any:
+        """A number of every n and seed."""
+        return np.array(results[self.key][name])
+
+    def mean(self, results: Results, name: str) -> Any:
+        """Its mean over the seeds, of every n."""
+        return self.all(results, name).mean(axis=1)
+
+
+def spans(numbers: Sequence[int]) -> str:
+    """Numbers in words: "2-45,50,70"."""
+    parts: list[list[int]] = []
+    for n in numbers:
+        if parts and parts[-1][-1] == n - 1:
+            parts[-1].append(n)
+        else:
+            parts.append([n])
+    return ",".join(str(p[0]) if len(p) == 1 else f"{p[0]}-{p[-1]}" for p in parts)
+
+
+def first_from(ns: Iterable[int], holds: Iterable[bool]) -> int | None:
+    """The least n from which on it holds for all."""
+    found = None
+    for n, good in zip(ns, holds, strict=True):
+        found = (n if found is None else found) if good else None
+    return found
+
+
+def slope(x: Any, y: Any) -> tuple[float, float, float]:
+    """Fitted line: slope, value at 0, and R^2."""
+    x, y = np.asarray(x, np.float64), np.asarray(y, np.float64)
+    rise, start = np.polyfit(x, y, 1)
+    left = ((y - rise * x - start) ** 2).sum()
+    return float(rise), float(start), float(1 - left / ((y - y.mean()) ** 2).sum())
+
+
+def percent(share: float, digits: int = 0) -> str:
+    """A share in words."""
+    return f"{100 * share:.{digits}f} %"
+
+
+def joined(words: Iterable[Any], between: str = ", ") -> str:
+    """A list in words."""
+    return between.join(str(word) for word in words)
+
+
+class Look(NamedTuple):
+    """How a curve is called and drawn."""
+
+    name: str
+    colour: str
+    dash: Any
+    marker: str
+
+
+_LONG, _DOT, _MIXED = style.DASHES[1:]
+LOOKS = {
+    "csma-cd-r": Look("CSMA/CD-R", style.BLUE, "-", "o"),
+    "csma-cd-r B": Look("CSMA/CD-R, reading B", style.SKY, _LONG, ""),
+    "csma-cd-d1": Look("CSMA/CD D1 (wired)", style.GREEN, _LONG, "^"),
+    "csma-cd-d2": Look("CSMA/CD D2", style.VERMILION, "-", "s"),
+    "csma-cd-d2p": Look("CSMA/CD D2'", style.ORANGE, _MIXED, "D"),
+    "dcf": Look("802.11 DCF", style.PURPLE, "-", "v"),
+    "p-persistent": Look("CSMA, p = 1/n", style.PURPLE, _DOT, "P"),
+    "tree": Look("tree splitting", style.SOFT, _MIXED, "X"),
+    "slotted-aloha": Look("slotted ALOHA", style.SOFT, "-", "*"),
+    "tdma": Look("bound: TDMA", style.BLACK, _DOT, ""),
+    "practical": Look("practical mode, event level", style.BLACK, "-", "o"),
+}
+MARKED = (2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100)
+
+
+def line(ax: Axes, look: Look, x: Sequence[float], y: Any, marks: Iterable[float] = MARKED) -> None:
+    """A curve with markers at some of its places."""
+    chosen = set(marks)
+    where = [i for i, n in enumerate(x) if n in chosen]
+    ax.plot(
+        x, y, color=look.colour, ls=look.dash, marker=look.marker or None, markevery=where,
+        label=look.name, ms=3, lw=1.1,
+    )  # fmt: skip
+
+
+def stations_axis(ax: Axes, ticks: Sequence[int] = (2, 5, 10, 20, 50, 100)) -> None:
+    """The number of stations, logarithmic."""
+    ax.set_xscale("log")
+    ax.set_xticks(ticks, [f"{n:,}" for n in ticks])
+    ax.minorticks_off()
+    ax.set_xlabel("stations n")

@@ -1,0 +1,184 @@
+"""Runs of CSMA/CD-R on the event level: frames of microseconds, half-duplex radios [radio 3]."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from innervate.networks.radio.analysis import summary as radio
+from innervate.networks.radio.papers.common import TAU_US, Options
+from innervate.networks.radio.protocol.constants import DATA
+from innervate.networks.radio.scenario.plan import RadioPlan, parameters
+from innervate.papers.experiment import Point
+from innervate.sim.cables.build import uniform
+from innervate.sim.channel.simulate import RadioResult, simulate
+
+START_US = 100_000
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """Stations on a shared medium.
+
+    Attributes:
+        mode: "paper": as worded plus the rules that make it run, one delay for all pairs;
+            "practical": delays of pairs drawn from 52..104 us.
+        traffic: "disaster", "saturated" or "poisson".
+        spread_us: starts of a disaster are drawn from 0..spread.
+        starts_us: given starts, whatever the carrier says; instead of drawn ones.
+        packets: a station, of a saturated run.
+        load: Poisson: packets offered per packet time by all stations together.
+        options: of `scenario.radio_plan.parameters`.
+    """
+
+    mode: str
+    n: int
+    packet_slots: int = 25
+    ta_us: int = 0
+    traffic: str = "disaster"
+    spread_us: int = 0
+    starts_us: tuple[int, ...] = ()
+    packets: int = 1
+    load: float = 0.0
+    options: Options = ()
+
+    @property
+    def key(self) -> str:
+        """All of it in words."""
+        words = [f"event {self.mode} n={self.n} T={self.packet_slots} ta={self.ta_us} us"]
+        words.append(self.traffic)
+        if self.traffic == "saturated":
+            words.append(f"{self.packets} packets")
+        elif self.traffic == "poisson":
+            words.append(f"load {self.load:g}, {self.packets} packets")
+        elif self.starts_us:
+            words.append(f"starts {'+'.join(map(str, self.starts_us))}")
+        else:
+            words.append(f"spread {self.spread_us} us")
+        words += [f"{name}={value}" for name, value in self.options]
+        return " ".join(words)
+
+    def plan(self, seed: int) -> RadioPlan:
+        """The plan of one run."""
+        real = (TAU_US, TAU_US) if self.mode == "paper" else (TAU_US // 2, TAU_US)
+        params = parameters(self.packet_slots, self.ta_us, real, **dict(self.options))
+        arrivals = self._arrivals(seed, params["slot_us"])
+        packets = sum(map(len, arrivals)) if arrivals[0] else self.packets * self.n
+        return RadioPlan(
+            scenario=None,
+            kind="radio",
+            seed=seed,
+            duration_us=200_000_000 + 400_000 * packets,
+            protocol=f"csma-cd-r/{self.mode}",
+            stations=self.n,
+            params=params,
+            delays_us=_delays(self.n, seed, *real),
+            saturated=self.traffic == "saturated",
+            wanted=packets,
+            arrivals=arrivals,
+            sizes=[[self.packet_slots] for _ in range(self.n)],
+            absent=[0] * self.n,
+            forced=bool(self.starts_us),
+        )
+
+    def _arrivals(self, seed: int, slot_us: int) -> list[list[int]]:
+        if self.traffic == "saturated":
+            return [[] for _ in range(self.n)]
+        if self.traffic == "poisson":
+            mean = self.n * self.packet_slots * slot_us / self.load
+            found = []
+            for node in range(self.n):
+                drawn = 1 + uniform(seed, f"poisson {node}", self.packets, 1 << 30)
+                gaps = -mean * np.log(drawn / (1 << 30))
+                found.append((START_US + np.cumsum(gaps).astype(np.int64)).tolist())
+            return found
+        drawn = uniform(seed, "spread", self.n, self.spread_us + 1).tolist()
+        return [[START_US + start] for start in self.starts_us or drawn]
+
+    def run(self, seed: int) -> RadioResult:
+        """One run."""
+        return simulate(self.plan(seed))
+
+    def measure(self, seeds: Sequence[int]) -> dict[str, list[Any]]:
+        """One number a seed of all that is counted."""
+        found: dict[str, list[Any]] = {}
+        for seed in seeds:
+            for name, value in measured(self.run(seed)).items():
+                found.setdefault(name, []).append(value)
+        return found
+
+    def key_of(self, seeds: Sequence[int]) -> str:
+        """The key of its point."""
+        return f"{self.key} seeds {seeds[0]}-{seeds[-1]}"
+
+    def point(self, seeds: Sequence[int]) -> Point:
+        """The point that measures it."""
+        cost = 0.004 + 8e-5 * self.n * self.packets
+        return Point.of(self.key_of(seeds), cost * len(seeds), self.measure, seeds)
+
+
+def _delays(n: int, seed: int, low: int, high: int) -> list[list[int]]:
+    """Symmetric delays of the pairs."""
+    drawn = (low + uniform(seed, "delay", n * n, high - low + 1)).tolist()
+    return [[0 if i == j else drawn[min(i, j) * n + max(i, j)] for j in range(n)] for i in range(n)]
+
+
+def measured(result: RadioResult) -> dict[str, Any]:
+    """What the figures need of a run."""
+    length, slot = radio.duration_us(result), result.plan.params["slot_us"]
+    spent = np.bincount(radio.settled(result)["node"], minlength=result.plan.stations)
+    return {
+        "throughput": radio.throughput(result),
+        "duration": None if length is None else length / slot,
+        "jain": radio.jain(spent),
+        "jain_round": radio.jain_round(result),
+        "fifo": radio.fifo(result),
+        "ordered": is_ordered(result) if radio.traffic_of(result.plan) == "disaster" else None,
+        "collisions": int(np.count_nonzero(radio.groups(result).collision)),
+        "open": sum(len(times) for times in result.plan.arrivals) - result.counts["completed"]
+        if not result.plan.saturated
+        else result.plan.wanted - min(result.plan.wanted, result.counts["completed"]),
+        "delay": radio.delay_slots(result),
+        "waits": waits(result) if result.plan.saturated else None,
+        **{name: result.counts[name] for name in ("completed", "silent", "partial")},
+    }
+
+
+def waits(result: Any) -> list[float]:
+    """Slots between two packets of a station that got through: 50, 95, 99 % and the longest."""
+    found = radio.settled(result)
+    slot = result.plan.params["slot_us"]
+    gaps = [
+        np.diff(found["end"][found["node"] == node]) / slot for node in range(result.plan.stations)
+    ]
+    together = np.concatenate(gaps)
+    percentiles: list[float] = np.percentile(together, (50, 95, 99, 100)).tolist()
+    return percentiles
+
+
+def aired(result: Any, kind: int) -> list[tuple[int, int, int]]:
+    """(station, start, end) of what was sent, us from the first start."""
+    rows = result.sent[result.sent["kind"] == kind]
+    return [(int(r["node"]), int(r["time"]) - START_US, int(r["end"]) - START_US) for r in rows]
+
+
+def said(result: Any, code: int) -> dict[int, list[tuple[int, int]]]:
+    """Per station (a, b) of its reports of a kind."""
+    found: dict[int, list[tuple[int, int]]] = {}
+    for row in result.rows[result.rows["code"] == code]:
+        found.setdefault(int(row["node"]), []).append((int(row["a"]), int(row["b"])))
+    return found
+
+
+def is_ordered(result: Any) -> bool:
+    """One collision, one resolution, turns in the order of the ends, and no packet more."""
+    n = result.plan.stations
+    frames = aired(result, DATA)
+    first = [node for node, _start, end in sorted(frames[:n], key=lambda frame: frame[2])]
+    turns = frames[n:]
+    apart = all(one[2] <= other[1] for one, other in pairwise(turns))
+    return [frame[0] for frame in turns] == first and apart

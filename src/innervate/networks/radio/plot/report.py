@@ -1,0 +1,302 @@
+"""The part of a report that is about radio."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from innervate.networks.radio.analysis import summary as radio
+from innervate.networks.radio.plot import scene as radio_scene
+from innervate.networks.radio.plot import slotted_report as radio_slotted_report
+from innervate.networks.radio.plot import timeline as radio_timeline
+from innervate.networks.radio.plot.words import (
+    fault_words,
+    protocol_words,
+    report_kind,
+    report_words,
+    robots,
+    slots_words,
+    time_words,
+)
+from innervate.plot import charts, svg, words
+from innervate.plot.page import details, element, figure, pictures, section, table, tiles
+
+ROWS_MAX = 200
+MARKS_MAX = 8
+BINS = 60
+STEPS_MAX = 2000  # of a cumulative curve
+
+
+def body(result: Any, summary: Mapping[str, Any]) -> str:
+    """Headline, status, numbers and pictures of a radio run, as HTML."""
+    if summary.get("level") == "slotted":
+        return radio_slotted_report.body(result, summary)
+    return "\n".join(
+        part
+        for part in (
+            _top(result, summary),
+            _timelines(result),
+            _charts(result, summary),
+            _events(result),
+            _reports(result, summary),
+        )
+        if part
+    )
+
+
+def _top(result: Any, summary: Mapping[str, Any]) -> str:
+    params = result.plan.params
+    switch = f"in {words.ms_words(params['ta_us'] / 1e3)}" if params["ta_us"] else "at once"
+    over = (
+        f"{summary['name']}: {words.number_of(summary['stations'], 'station')} on one radio "
+        f"channel, {protocol_words(summary['protocol'])}, packets of "
+        f"{params['packet_slots']} slots of {params['slot_us']} us, radios that switch {switch}; "
+        f"seed {summary['seed']}"
+    )
+    first, *others = sentences(result, summary)
+    parts = [element("p", over, "over"), element("h1", first)]
+    parts += [element("p", sentence) for sentence in others]
+    if "interrupted_at_s" in summary:
+        early = f"Ended early, at {summary['interrupted_at_s']:.3f} s of simulated time."
+        parts.append(element("p", early, "status bad"))
+    parts += [_status(summary), tiles(_figures(result, summary))]
+    return "<header>\n" + "".join(parts) + "</header>"
+
+
+def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
+    """What happened, for somebody who knows nothing of it; the first is the headline."""
+    telling = {"saturated": _saturated, "disaster": _disaster}.get(summary["traffic"], _arrivals)
+    return [telling(result, summary), *_collisions(result, summary)]
+
+
+def _disaster(result: Any, summary: Mapping[str, Any]) -> str:
+    plan, offered = result.plan, summary["offered"]
+    starts = [times[0] for times in plan.arrivals if len(times)]
+    spread_us = max(starts, default=0) - min(starts, default=0)
+    how = f"within {words.ms_words(spread_us / 1e3)}" if spread_us else "at once"
+    begin = f"{robots(offered)} started {how}" if offered > 1 else "1 robot started"
+    if summary["duration_slots"] is None:
+        return f"{begin}; no packet was delivered in {summary['duration_s']:g} s."
+    took = time_words(summary["duration_slots"], plan.params["slot_us"])
+    if summary["delivered"] == offered:
+        return f"{begin}; every packet was delivered {took} later."
+    missing = offered - summary["delivered"]
+    end = f"{missing:,} {'was' if missing == 1 else 'were'} not by the end of the run"
+    return f"{begin}; {summary['delivered']:,} packets were delivered within {took}, {end}."
+
+
+def _saturated(result: Any, summary: Mapping[str, Any]) -> str:
+    begin = f"{robots(summary['stations'])} always had something to send"
+    if summary["throughput"] is None:
+        return f"{begin}; no packet was delivered in {result.ended_us / 1e6:g} s."
+    index = summary["jain"]
+    split = "shared evenly" if index > 0.99 else "shared unevenly" if index < 0.9 else "shared"
+    filled = f"delivered packets filled {100 * summary['throughput']:.1f} % of the time"
+    return f"{begin}; {filled}, {split} (Jain's index {index:.3f})."
+
+
+def _arrivals(result: Any, summary: Mapping[str, Any]) -> str:
+    begin = f"{robots(summary['stations'])} had {summary['offered']:,} packets to send"
+    if not summary["delivered"]:
+        return f"{begin}; none was delivered."
+    half = time_words(summary["delay_slots"]["p50"], result.plan.params["slot_us"])
+    share = words.share_words(summary["delivered"] / summary["offered"])
+    return f"{begin}; {share} of them were delivered, half within {half}."
+
+
+def _collisions(result: Any, summary: Mapping[str, Any]) -> list[str]:
+    """What collisions there were."""
+    count = summary["collisions"]
+    if not count:
+        return ["No packet collided with another one."]
+    found = radio.groups(result)
+    struck = found.collision
+    most = int(found.members[struck].max())
+    if count == 1:
+        return [f"There was one collision, of {most} frames."]
+    return [f"There were {count:,} collisions, of up to {most} frames at once."]
+
+
+def _status(summary: Mapping[str, Any]) -> str:
+    silent = summary["lost_silently"]
+    if silent:
+        who = words.number_of(silent, "packet")
+        line = f"Lost silently: {who} that nobody received, taken for delivered by the sender."
+        return element("p", line, "status bad")
+    return element("p", "No packet was lost silently.", "status")
+
+
+def _figures(result: Any, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    slot, found = result.plan.params["slot_us"], []
+    if summary["throughput"] is not None:
+        share = f"{100 * summary['throughput']:.1f} %"
+        found.append((share, "of the time filled with delivered packets"))
+    delay = summary["delay_slots"]
+    if delay["p50"] is not None:
+        found.append((slots_words(delay["p50"]),
+                      f"median delay, {words.ms_words(delay['p50'] * slot / 1e3)}"))  # fmt: skip
+        found.append((slots_words(delay["p99"]), "99 % were delivered within that"))
+    if summary["jain"] is not None:
+        found.append((f"{summary['jain']:.3f}", "Jain's index of fairness, 1 is even"))
+    found.append((f"{summary['collisions']:,}", "collisions"))
+    took = f"{summary['wall_s']:.2g} s" if summary["wall_s"] >= 0.01 else "10 ms"
+    count = words.count_words(summary["events"])
+    found.append((took, f"to simulate {result.ended_us / 1e6:.4g} s, {count} events"))
+    return found
+
+
+def _timelines(result: Any) -> str:
+    whole = radio_scene.resolution(result)
+    shown = radio_scene.scene(result, *whole)
+    if not shown.boxes:
+        return ""
+    first = "collision" if any(box.collided for box in shown.boxes) else "transmissions"
+    text = "A lane for each station; slots count from the first of these frames."
+    if shown.cut:
+        text += f" Shown are {len(shown.stations)} stations, {len(shown.boxes):,} transmissions."
+    head = f"The first {first}, and what followed"
+    parts = [_wide(radio_timeline.draw(shown), head, text)]
+    begin = radio_scene.beginning(result, whole)
+    if begin is not None:
+        parts.append(_wide(radio_timeline.timeline(result, *begin), "The beginning, enlarged", ""))
+    listing = details("The same, event by event", _listing(result, shown))
+    return section("On the air", "".join(parts) + listing)
+
+
+def _wide(drawing: svg.Drawing, head: str, text: str) -> str:
+    """A figure that a narrow screen scrolls rather than shrinks."""
+    return f'<div class="wide">{figure(drawing, head, text)}</div>\n'
+
+
+def _listing(result: Any, shown: radio_scene.Scene) -> str:
+    """Every start and end of a frame and every report in a scene, as a table."""
+    low, high, origin = shown.window
+    lines: list[tuple[int, int, str]] = []
+    for box in shown.boxes:
+        what = f"{box.words.name}{' (collides)' if box.collided else ''}"
+        lines += [(box.start_us, box.station, f"{what} begins")]
+        lines += [(box.end_us, box.station, f"{what} ends")]
+    rows = result.rows[(result.rows["time"] >= low) & (result.rows["time"] < high)]
+    protocol = result.plan.protocol
+    for row in rows[:ROWS_MAX]:
+        what = report_words(protocol, int(row["code"]), int(row["a"]), int(row["b"]))
+        lines.append((int(row["time"]), int(row["node"]), what))
+    lines.sort(key=lambda line: line[:2])
+    slot = shown.slot_us
+    cells = [
+        (f"{(at - origin) / 1e3:.3f}", f"{(at - origin) / slot:.2f}", str(node), svg.clean(what))
+        for at, node, what in lines[:ROWS_MAX]
+    ]
+    more = len(lines) - len(cells)
+    note = element("p", f"And {more:,} more.", "note") if more > 0 else ""
+    return table(("ms", "slots", "station", "what"), cells) + note
+
+
+def _charts(result: Any, summary: Mapping[str, Any]) -> str:
+    if not summary["delivered"]:
+        return ""
+    figures = [_over_time(result, summary), _delays(result, summary), _fairness(result, summary)]
+    return section("How well it went", pictures(figures, "two"))
+
+
+def _over_time(result: Any, summary: Mapping[str, Any]) -> str:
+    """Throughput over time; in a disaster the packets delivered."""
+    slot = result.plan.params["slot_us"]
+    begin = radio.first_offer_us(result)
+    if summary["traffic"] == "disaster":
+        ends = (radio.successes(result)["end"] - begin) / slot
+        head = "Packets delivered over time"
+        x = charts.Axis(0.0, 1.02 * float(ends[-1]), "slots after the first start")
+        y = charts.Axis(0.0, 1.08 * len(ends))
+        times, counts = np.append(0.0, ends), np.arange(len(ends) + 1)
+        return figure(charts.step_chart(times, counts, x, y, (), head), head)
+    steps = radio.airtime_steps(result, BINS)
+    seconds = steps.time_us / 1e6
+    width = float(seconds[1] - seconds[0])
+    head = "The channel, filled with delivered packets"
+    share = 100.0 * steps.values
+    x = charts.Axis(float(seconds[0]), float(seconds[-1]) + width, "seconds")
+    y = charts.Axis(0.0, 1.08 * max(100.0, float(share.max())))
+    marks = [
+        charts.Mark(fault.at_us / 1e6, fault_words(fault))
+        for fault in result.plan.faults[:MARKS_MAX]
+        if x.low <= fault.at_us / 1e6 <= x.high
+    ]
+    text = f"In % of the time, in steps of {words.ms_words(1e3 * width)}."
+    return figure(charts.step_chart(seconds, share, x, y, marks, head), head, text)
+
+
+def _delays(result: Any, summary: Mapping[str, Any]) -> str:
+    """How many packets were delivered within which delay."""
+    found = np.sort(radio.delays(result))
+    shares = 100.0 * np.arange(1, len(found) + 1) / len(found)
+    every = max(1, len(found) // STEPS_MAX)
+    at = np.concatenate([[0.0], found[::every], found[-1:]])
+    shares = np.concatenate([[0.0], shares[::every], shares[-1:]])
+    delay = summary["delay_slots"]
+    marks = [
+        charts.Mark(delay[key], name)
+        for key, name in (("p50", "half"), ("p95", "95 %"), ("p99", "99 %"))
+    ]
+    # Quantiles that coincide get one mark: two labels would name the same line.
+    marks = [mark for i, mark in enumerate(marks) if i == 0 or mark.at > 1.001 * marks[i - 1].at]
+    x = charts.Axis(0.0, 1.15 * max(float(found[-1]), 1.0), "slots from offer to end of frame")
+    head = "Packets delivered within a delay, in %"
+    half, most, nearly = (slots_words(delay[key]) for key in ("p50", "p95", "p99"))
+    text = f"Half of them within {half}, 95 % within {most}, 99 % within {nearly}."
+    drawing = charts.step_chart(at, shares, x, charts.Axis(0.0, 105.0), marks, head)
+    return figure(drawing, head, text)
+
+
+def _fairness(result: Any, summary: Mapping[str, Any]) -> str:
+    """What each station got: packets, or in a disaster when it was served."""
+    steady, n = radio.settled(result), result.plan.stations
+    if summary["traffic"] == "disaster":
+        head = "When each station's packet was delivered"
+        waits = dict(zip(steady["node"].tolist(), radio.delays(result).tolist(), strict=True))
+        bars = [
+            charts.Bar(f"station {i}", waits.get(i, 0.0),
+                       slots_words(waits[i]) if i in waits else "never")
+            for i in range(n)
+        ]  # fmt: skip
+        text = "Slots from the offer to the end of the frame."
+        return figure(charts.bar_chart(bars, head), head, text)
+    head = "Packets delivered, station by station"
+    counts = np.bincount(steady["node"], minlength=n).tolist()
+    bars = [charts.Bar(f"station {i}", count, f"{count:,}") for i, count in enumerate(counts)]
+    drawing = charts.bar_chart(bars, head, sum(counts) / n if n > 1 else None)
+    text = f"Jain's index {summary['jain']:.4f}; 1 is even."
+    if summary["jain_round"] is not None:
+        text += f" Over one round of {n} turns: {summary['jain_round']:.3f}."
+    return figure(drawing, head, text)
+
+
+def _events(result: Any) -> str:
+    """Events of the scenario."""
+    faults = result.plan.faults
+    rows = [(f"{f.at_us / 1e6:.3f} s", svg.clean(fault_words(f))) for f in faults[:ROWS_MAX]]
+    if not rows:
+        return ""
+    more = len(faults) - len(rows)
+    note = element("p", f"And {more:,} more.", "note") if more > 0 else ""
+    return section("Events", table(("at", "what"), rows) + note)
+
+
+def _reports(result: Any, summary: Mapping[str, Any]) -> str:
+    """How often stations reported what, and what became of frames and packets."""
+    rows = result.rows
+    kinds = Counter(
+        report_kind(code, b)
+        for code, b in zip(rows["code"].tolist(), rows["b"].tolist(), strict=True)
+    )
+    for key, what in (
+        ("frame_errors", "frame unreadable at one receiver"),
+        ("partial", "packet delivered, but not to everybody"),
+        ("duplicates", "packet received a second time"),
+    ):
+        kinds[what] += summary[key]
+    cells = [(svg.clean(name), f"{count:,}") for name, count in kinds.most_common() if count]
+    return section("What the stations reported", table(("what", "times"), cells) if cells else "")

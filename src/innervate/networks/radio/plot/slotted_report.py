@@ -1,0 +1,65 @@
+"""The part of a report that is about a radio run on the slotted level."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from innervate.networks.radio.plot.words import robots
+from innervate.plot import charts, words
+from innervate.plot.page import element, figure, pictures, section, tiles
+
+STEPS_MAX = 2000
+
+
+def body(result: Any, summary: Mapping[str, Any]) -> str:
+    """Headline, numbers and pictures, as HTML."""
+    return _top(result, summary) + "\n" + section("How well it went", _charts(result, summary))
+
+
+def _top(result: Any, summary: Mapping[str, Any]) -> str:
+    model = result.plan.scenario.model
+    over = (
+        f"{summary['name']}: the slotted level, a reference model that counts slots; "
+        f"{model.protocol.mac}, packets of {result.plan.params['packet_slots']} slots; "
+        f"seed {summary['seed']}"
+    )
+    if model.traffic.kind == "disaster":
+        head = (
+            f"{robots(summary['stations'])} started at once; every packet was delivered "
+            f"{summary['duration_slots']:.4g} slots later."
+        )
+    else:
+        share = words.share_words(summary["throughput"])
+        head = f"{robots(summary['stations'])}: packets filled {share} of the time."
+    found = [
+        (words.share_words(summary["throughput"]), "of the time is packets"),
+        (f"{summary['jain']:.3f}", "fairness (Jain), 1 is even"),
+        (f"{summary['collisions']:,}", "collisions"),
+    ]
+    parts = [element("p", over, "over"), element("h1", head), tiles(found)]
+    return "<header>\n" + "".join(parts) + "</header>"
+
+
+def _charts(result: Any, summary: Mapping[str, Any]) -> str:
+    figures = []
+    delays = np.sort(result.found.delay_slots)
+    if len(delays):
+        every = max(1, len(delays) // STEPS_MAX)
+        at = np.concatenate([[0.0], delays[::every], delays[-1:]])
+        shares = np.concatenate([[0.0], 100.0 * np.arange(len(delays))[::every] / len(delays)])
+        shares = np.append(shares, 100.0)
+        x = charts.Axis(0.0, 1.02 * float(max(delays[-1], 1.0)), "slots from offer to end")
+        head = "Delay: packets delivered within, %"
+        figures.append(
+            figure(charts.step_chart(at, shares, x, charts.Axis(0.0, 108.0), (), head), head)
+        )
+    head = "Packets delivered by each station"
+    bars = [
+        charts.Bar(f"station {i}", count, f"{count:,}")
+        for i, count in enumerate(result.found.successes)
+    ]
+    figures.append(figure(charts.bar_chart(bars, head), head))
+    return pictures(figures, "two")

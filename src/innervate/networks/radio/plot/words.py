@@ -1,0 +1,162 @@
+"""A radio run in plain words: frames, what stations report, traffic; by protocol where they differ.
+
+A protocol whose frames or reports mean something else than the others' adds an entry to a table.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from innervate.networks.radio.protocol.constants import (
+    CRR,
+    DATA,
+    HEARD_TAIL,
+    NO_PROOF,
+    NOT_HEARD,
+    OPEN,
+    REPORT,
+    REPORT_BOUNDS,
+    REPORT_COLLISION,
+    REPORT_DELIVERED,
+    REPORT_DROPPED,
+    REPORT_FAILED,
+    REPORT_LEFT,
+    REPORT_ROLE,
+    REPORT_SKIPPED,
+    REPORT_STOPPED,
+    REPORT_TURN,
+)
+from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL, LEAVE
+from innervate.plot.words import ms_words, number_of
+
+
+class FrameWords(NamedTuple):
+    """How a kind of frame is drawn and called.
+
+    Attributes:
+        letter, name: on its box, as there is room.
+        kind: class of its fill.
+        height: of its box, 1 = the highest.
+        meaning: in the legend.
+    """
+
+    letter: str
+    name: str
+    kind: str
+    height: float
+    meaning: str
+
+
+_FRAMES = {
+    DATA: FrameWords("D", "data", "p0", 1.0, "data: packets"),
+    OPEN: FrameWords("O", "open", "p2 outlined", 1.0, "opening of a sequence"),
+    CRR: FrameWords("C", "CR-R", "p1", 0.45, "CR-R: collision report with reservation"),
+    REPORT: FrameWords("R", "report", "p3", 0.72, "report: who was heard, what follows"),
+}
+_UNKNOWN = FrameWords("?", "frame", "p7", 0.6, "another frame")
+
+# Kinds of frames that a protocol uses otherwise: (protocol, kind).
+_FRAMES_OF: dict[tuple[str, int], FrameWords] = {
+    ("csma-cd-r/practical", CRR): _FRAMES[CRR]._replace(
+        meaning='CR-R: "I want a turn", or a pulse: "heard"'
+    ),
+}
+
+PROTOCOLS = {
+    "csma-cd-r/practical": "CSMA/CD-R (practical)",
+    "csma-cd-r/paper": "CSMA/CD-R (as in the paper)",
+    "csma-cd-d1": "CSMA/CD (D1, wired)",
+    "csma-cd-d2": "CSMA/CD (D2)",
+    "csma-cd-d2p": "CSMA/CD (D2', the winner draws too)",
+    "slotted-aloha": "slotted ALOHA",
+    "nonpersistent": "nonpersistent CSMA",
+    "p-persistent": "p-persistent CSMA",
+    "dcf": "802.11 DCF",
+    "tree": "binary tree splitting",
+    "tdma": "TDMA",
+}
+
+# What the numbers of a turn mean (a and b of REPORT_TURN).
+_TURNS = {"csma-cd-r/practical": "place {a} of the round", "csma-cd-r/paper": "turn {a} of {b}"}
+
+REPORTS = {
+    REPORT_DELIVERED: "packet delivered",
+    REPORT_FAILED: "packet not delivered, stays in the queue",
+    REPORT_COLLISION: "own collision noticed",
+    REPORT_TURN: "own turn begins",
+    REPORT_ROLE: "role after a collision",
+    REPORT_BOUNDS: "pair delay outside the configured bounds",
+    REPORT_DROPPED: "packet refused, the queue is full",
+    REPORT_LEFT: "left",
+    REPORT_SKIPPED: "own place in the round passed over",
+    REPORT_STOPPED: "own transmission broken off",
+}
+_REASONS = {
+    NO_PROOF: "nobody confirmed it",
+    HEARD_TAIL: "others were still sending",
+    NOT_HEARD: "nobody answered",
+}
+_ACTIONS = {
+    JOIN: "switched on",
+    KILL: "switched off without warning",
+    LEAVE: "told to leave",
+    GARBLE: "next {value} CR-Rs garbled",
+    FADE: "next {value} CR-Rs not heard by anybody",
+}
+
+
+def frame_words(protocol: str, kind: int) -> FrameWords:
+    """How a frame of a protocol is drawn and called."""
+    return _FRAMES_OF.get((protocol, kind)) or _FRAMES.get(kind, _UNKNOWN)
+
+
+def protocol_words(protocol: str) -> str:
+    """A protocol's name for people."""
+    return PROTOCOLS.get(protocol, protocol)
+
+
+def turn_words(protocol: str, a: int, b: int) -> str:
+    """A turn: "place 3 of the round", "turn 2 of 4"."""
+    return _TURNS.get(protocol, "turn {a}").format(a=a, b=b)
+
+
+def report_kind(code: int, b: int) -> str:
+    """What kind of report this is; those of a kind are counted together."""
+    words = REPORTS.get(code, f"report {code}")
+    return f"{words}: {_REASONS.get(b, f'reason {b}')}" if code == REPORT_FAILED else words
+
+
+def report_words(protocol: str, code: int, a: int, b: int) -> str:
+    """What a station reports, in words."""
+    words = report_kind(code, b)
+    if code == REPORT_TURN:
+        return f"{words}: {turn_words(protocol, a, b)}"
+    if code == REPORT_DELIVERED and b > 1:
+        return f"{b} packets delivered"
+    if code == REPORT_ROLE:
+        return f"{words}: {a}"
+    return words
+
+
+def fault_words(fault: Any) -> str:
+    """An event of the scenario."""
+    what = _ACTIONS.get(fault.action, "something happened").format(value=fault.value)
+    return f"station {fault.node}: {what}"
+
+
+def slots_words(slots: float) -> str:
+    """A time in slots: "8.5 slots", "131 slots", "12,340 slots"."""
+    if slots >= 100:
+        return f"{round(slots):,} slots"
+    text = f"{slots:.3g}"
+    return f"{text} slot{'' if text == '1' else 's'}"
+
+
+def time_words(slots: float, slot_us: int) -> str:
+    """A time in both units: "131 slots (27.2 ms)"."""
+    return f"{slots_words(slots)} ({ms_words(slots * slot_us / 1e3)})"
+
+
+def robots(count: int) -> str:
+    """Stations as a stranger knows them: "10 robots"."""
+    return number_of(count, "robot")

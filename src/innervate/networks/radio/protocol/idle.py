@@ -1,0 +1,132 @@
+"""Practical CSMA/CD-R outside a sequence: when to open one, and again after a collision."""
+
+from innervate.dialect.arith import MASK30, after
+from innervate.dialect.outbox import report
+from innervate.dialect.rng import draw
+from innervate.networks.radio.protocol.constants import (
+    HEARD_TAIL,
+    NONE,
+    NOT_HEARD,
+    OPEN,
+    REPORT_BOUNDS,
+    REPORT_COLLISION,
+)
+from innervate.networks.radio.protocol.modes import IDLE, SEND_OPEN, arm, clear_round, disprove
+from innervate.networks.radio.protocol.station import blank, load_packets
+
+LONELY_FREE = 3  # openings into silence before the wait grows
+LONELY_MOST = 5  # doublings
+
+
+def boot(station, params, now, cause, out):
+    """Begin outside any sequence. On switching on, listen as long as one can be silent."""
+    wait = 0
+    station.lonely = 0
+    station.fails = 0
+    station.opener = 0
+    station.slot = NONE
+    if cause:
+        wait = params.join_us
+    rest(station, now, wait)
+    schedule(station, now, out)
+
+
+def rest(station, now, wait_us):
+    """Leave the sequence; a new one may be opened `wait_us` from now."""
+    clear_round(station)
+    station.mode = IDLE
+    station.pending = 0
+    station.act = 0
+    station.armed = 0
+    station.tail = 0
+    station.collided = 0
+    station.last_ok = 0
+    station.at = (now + wait_us) & MASK30
+
+
+def schedule(station, now, out):
+    """Set the timer of an opening; it runs without packets, too.
+
+    `at` is a reading of a clock that wraps: it means something only while the timer runs.
+    """
+    if not station.cd:
+        wait = 0
+        if after(station.at, now):
+            wait = (station.at - now) & MASK30
+        arm(station, now, wait, out)
+
+
+def offered(station, params, now, out):
+    """A packet came; in an idle channel it goes out at once."""
+    if station.mode == IDLE and not station.armed:
+        station.at = now
+        schedule(station, now, out)
+
+
+def open_now(station, params, now, out):
+    """Send an opening: our packets, or after a collision a short probe."""
+    if station.queued == 0 or station.cd:
+        return
+    frame = blank(out)
+    probe_slots = (params.probe_us + params.slot_us - 1) // params.slot_us
+    count = 0
+    frame.slots = probe_slots
+    if not station.collided:
+        count = load_packets(station, frame, params.per_turn)
+        frame.slots = max(frame.slots, probe_slots)
+    frame.kind = OPEN
+    frame.pos = 0
+    frame.more = 1 if station.queued > count else 0
+    station.pending = count
+    station.named = NONE
+    clear_round(station)
+    station.live[0] = frame.more
+    if frame.more:
+        station.pos = 0
+        station.cur = 0
+    station.last_ok = 0
+    station.end = (now + params.ta_us + frame.slots * params.slot_us) & MASK30
+    station.mode = SEND_OPEN
+
+
+def retry(station, params, now, tail, out):
+    """Our opening collided: with `tail` wait for the others' end, else draw the wait now."""
+    report(out, REPORT_COLLISION, 0, 0)
+    disprove(station, HEARD_TAIL if tail else NOT_HEARD, out)
+    rest(station, now, 0)
+    station.collided = 1
+    station.tail = tail
+    if not tail:
+        station.lonely = min(station.lonely + 1, 31)
+        wait_again(station, params, now, out)
+
+
+def wait_again(station, params, now, out):
+    """Those who collided go first: their set shrinks with every try."""
+    bound = params.retry_us
+    for _ in range(min(max(station.lonely - LONELY_FREE, 0), LONELY_MOST)):
+        bound = bound * 2
+    station.at = (now + params.ta_us + params.dmax_us + draw(station, bound)) & MASK30
+    schedule(station, now, out)
+
+
+def notice_late_answer(station, params, out):
+    """Nobody answered our opening in its window, but somebody does right behind it."""
+    close = station.end + params.ta_us + 2 * params.dmin_us + 2 * params.minislot_us
+    late = (station.rise - close) & MASK30
+    if station.lonely >= 2 and late < 2 * params.minislot_us:
+        report(out, REPORT_BOUNDS, params.dmax_us + late // 2, 3)
+
+
+def heard_noise(station, params, now, length, out):
+    """A burst has ended: the rest of our own collision, or others' trouble that we leave alone."""
+    if station.tail:
+        station.tail = 0
+        wait_again(station, params, now, out)
+        return
+    if length >= 2 * params.slot_us:
+        station.collided = 1
+    else:
+        notice_late_answer(station, params, out)
+    station.at = (now + params.join_us + draw(station, params.retry_us)) & MASK30
+    schedule(station, now, out)

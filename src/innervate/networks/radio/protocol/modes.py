@@ -1,0 +1,76 @@
+"""Modes of a station in practical CSMA/CD-R, its timers, and its places in the round."""
+
+from innervate.dialect.arith import MASK30
+from innervate.dialect.outbox import report, set_timer
+from innervate.networks.radio.protocol.constants import ACT, MAIN, NONE, POSITIONS, REPORT_FAILED
+from innervate.networks.radio.protocol.station import delivered
+
+# Listening.
+IDLE = 0  # not in a sequence; opens one when it has a packet and may
+LEAD = 1  # reporter: listens to the window behind its own frame
+WINDOW = 2  # a window of somebody else
+TURN = 3  # waits for the frame of the station whose turn it is
+LOST = 4  # a report was garbled: waits for a clean frame
+CARRIERS = LOST  # up to here the radio listens
+# Deaf, until the radio listens again.
+SEND_OPEN = 5
+SEND_DATA = 6
+SEND_REPORT = 7
+SEND_SLOT = 8
+
+
+def arm(station, now, delay_us, out):
+    """Set the main timer."""
+    station.armed = 1
+    set_timer(out, MAIN, (now + delay_us) & MASK30)
+
+
+def arm_act(station, now, delay_us, out):
+    """Set the timer of our minislot."""
+    station.act = 1
+    set_timer(out, ACT, (now + delay_us) & MASK30)
+
+
+def clear_round(station):
+    """Nobody has a place."""
+    for i in range(POSITIONS):
+        station.live[i] = 0
+    station.pos = NONE
+    station.cur = NONE
+    station.turns = 0
+
+
+def following(station, pos):
+    """The next taken place after `pos`, round the circle, `pos` itself last; NONE if none is."""
+    for step in range(1, POSITIONS + 1):
+        place = pos + step
+        if place >= POSITIONS:
+            place = place - POSITIONS
+        if station.live[place]:
+            return place
+    return NONE
+
+
+def is_over(first, last, place):
+    """1 if going round from `first` to `last` passes over `place`, both ends left out."""
+    if first < last:
+        return first < place < last
+    return place > first or place < last
+
+
+def prove(station, out):
+    """Somebody has received what we sent last."""
+    count = station.pending
+    station.pending = 0
+    station.fails = 0
+    station.lonely = 0
+    if count:
+        delivered(station, count, out)
+
+
+def disprove(station, reason, out):
+    """Nobody will say that our packets were received: they stay at the head of the queue."""
+    if station.pending:
+        station.pending = 0
+        station.fails = min(station.fails + 1, 255)
+        report(out, REPORT_FAILED, station.handle[station.head], reason)

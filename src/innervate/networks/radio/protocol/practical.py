@@ -1,0 +1,175 @@
+"""CSMA/CD-R for radios as they are: any number of stations, unequal delays, slow turnaround.
+
+A reservation as in [radio 2.2] orders the turns, but three things differ from the paper:
+who heads it listens through all of it (the *reporter*), the order comes from minislots instead
+of transmission ends, and a packet counts as delivered only when somebody who received it says so.
+Windows stand in radio_reporter.py and radio_window.py, turns in radio_turn.py and
+radio_follow.py, openings in radio_idle.py.
+"""
+
+from innervate.dialect.arith import MASK30
+from innervate.networks.radio.protocol.constants import CRR, DATA, LEAVE, MAIN, OPEN, PACKET, REPORT
+from innervate.networks.radio.protocol.follow import (
+    garbled_turn,
+    hear_data,
+    hear_open,
+    sent_data,
+    silent_turn,
+)
+from innervate.networks.radio.protocol.idle import (
+    boot,
+    heard_noise,
+    offered,
+    open_now,
+    retry,
+    schedule,
+)
+from innervate.networks.radio.protocol.modes import (
+    CARRIERS,
+    IDLE,
+    LEAD,
+    LOST,
+    SEND_DATA,
+    SEND_OPEN,
+    SEND_REPORT,
+    SEND_SLOT,
+    TURN,
+    WINDOW,
+    arm,
+)
+from innervate.networks.radio.protocol.reporter import (
+    burst,
+    end_of_window,
+    hear_slot,
+    opened,
+    sent_report,
+)
+from innervate.networks.radio.protocol.station import enqueue, hand_up, leave, reset
+from innervate.networks.radio.protocol.turn import enter_turn
+from innervate.networks.radio.protocol.window import hear_report, next_deadline, use_slot
+
+
+def on_start(station, params, now, cause, out):
+    """Switch on and listen first: a sequence may be under way."""
+    reset(station)
+    boot(station, params, now, cause, out)
+
+
+def on_input(station, params, now, kind, item, out):
+    """PACKET: one more to send. LEAVE: send what is there, then no more."""
+    if kind == PACKET:
+        if enqueue(station, item, out):
+            offered(station, params, now, out)
+    elif kind == LEAVE:
+        leave(station, out)
+
+
+def on_frame(station, params, now, port, frame, out):
+    """A frame was received whole; the carrier's end is reported after it."""
+    station.decoded = 1
+    if frame.kind == CRR:
+        hear_slot(station, params, now, out)
+    elif frame.kind == DATA:
+        hand_up(frame, out)
+        hear_data(station, params, now, frame, out)
+    elif frame.kind == OPEN:
+        if frame.count:
+            hand_up(frame, out)
+        hear_open(station, params, now, frame, out)
+    elif frame.kind == REPORT:
+        hear_report(station, params, now, frame, out)
+
+
+def on_carrier(station, params, now, cd, voc, out):
+    """The carrier came or went, or our radio listens again after sending."""
+    mode = station.mode
+    if mode <= CARRIERS:
+        came = cd and not station.cd
+        went = station.cd and not cd
+        station.cd = cd
+        if came:
+            station.rise = now
+            station.decoded = 0
+            carrier_came(station, now)
+        elif went:
+            station.fall = now
+            carrier_went(station, params, now, (now - station.rise) & MASK30, out)
+        return
+    station.cd = cd
+    station.rise = now
+    station.decoded = 0
+    if not cd:
+        station.fall = now
+    if mode == SEND_OPEN:
+        if cd:
+            retry(station, params, now, 1, out)
+        else:
+            opened(station, params, now, out)
+    elif mode == SEND_DATA:
+        sent_data(station, params, now, out)
+    elif mode == SEND_REPORT:
+        sent_report(station, params, now, out)
+    elif mode == SEND_SLOT:
+        station.mode = WINDOW
+
+
+def carrier_came(station, now):
+    """Somebody sends: what silence would have meant does not hold."""
+    mode = station.mode
+    if mode == IDLE:
+        station.armed = 0
+        station.tail = 0
+    elif mode == WINDOW:
+        station.heard = max(station.heard, 1)
+    elif mode == LEAD:
+        station.heard = 1
+    else:
+        station.armed = 0
+
+
+def carrier_went(station, params, now, length, out):
+    """A burst is over; a frame in it was handled by on_frame."""
+    mode = station.mode
+    noise = not station.decoded
+    if mode == IDLE:
+        if noise:
+            heard_noise(station, params, now, length, out)
+        else:
+            schedule(station, now, out)
+    elif mode == LEAD:
+        burst(station, params, now, length, noise, out)
+    elif mode == WINDOW:
+        if noise and length >= 3 * params.slot_us:
+            station.mode = LOST
+            arm(station, now, params.join_us, out)
+        elif not station.armed:
+            enter_turn(station, params, now, station.cur, out)
+    elif mode == TURN:
+        if noise and length >= 3 * params.slot_us:
+            garbled_turn(station, params, now, out)
+        else:
+            arm(station, now, params.dead_us, out)
+    elif mode == LOST:
+        arm(station, now, params.join_us, out)
+
+
+def on_timer(station, params, now, timer, out):
+    """MAIN: a wait or deadline of the present mode. ACT: our minislot."""
+    mode = station.mode
+    if timer == MAIN:
+        if not station.armed:
+            return
+        station.armed = 0
+        if mode == IDLE:
+            open_now(station, params, now, out)
+        elif mode == LEAD:
+            end_of_window(station, params, now, out)
+        elif mode == WINDOW:
+            next_deadline(station, params, now, out)
+        elif mode == TURN:
+            silent_turn(station, params, now, out)
+        elif mode == LOST:
+            boot(station, params, now, 0, out)
+    elif station.act and mode == WINDOW:
+        station.act = 0
+        use_slot(station, params, out)

@@ -1,0 +1,95 @@
+"""Practical CSMA/CD-R, windows of somebody else: ask for a place in a minislot, read the report."""
+
+from innervate.dialect.rng import draw
+from innervate.networks.radio.protocol.constants import MINISLOTS, NO_PROOF, NONE, POSITIONS
+from innervate.networks.radio.protocol.modes import SEND_SLOT, WINDOW, arm, arm_act, disprove
+from innervate.networks.radio.protocol.reporter import bit
+from innervate.networks.radio.protocol.station import send_crr
+from innervate.networks.radio.protocol.turn import enter_turn
+
+
+def enter_window(station, params, now, window, fresh, span, ack, out):
+    """A frame announced a window; if we want a place, take a minislot, else pulse if asked to.
+
+    `span` is what to draw from for its last minislots; what is before them is for those that
+    collided, who have chosen already.
+    """
+    station.mode = WINDOW
+    station.window = window
+    station.ack = ack
+    station.ref = now
+    station.heard = 0
+    station.act = 0
+    wants = station.queued and station.pos == NONE and station.pending == 0
+    if wants and span > 0 and station.slot == NONE:
+        place = draw(station, span)
+        if place < fresh:
+            station.slot = window - fresh + place
+    if station.slot != NONE and wants:
+        arm_act(station, now, (station.slot + ack) * params.minislot_us, out)
+    elif ack:
+        arm_act(station, now, 0, out)
+    last = (window + ack - 1) * params.minislot_us
+    arm(station, now, params.ta_us + last + 2 * params.dmax_us - params.dmin_us + 1, out)
+
+
+def use_slot(station, params, out):
+    """Send our CR-R or pulse; deaf meanwhile, we only wait for the report."""
+    expect_report(station, params, out)
+    station.mode = SEND_SLOT
+    send_crr(out)
+
+
+def expect_report(station, params, out):
+    """Set the second deadline: a report, if there is one, has begun by then."""
+    station.heard = 2
+    length = 2 * params.ta_us + (station.window + station.ack) * params.minislot_us
+    arm(station, station.ref, length + 2 * params.dmax_us + params.bit_us, out)
+
+
+def next_deadline(station, params, now, out):
+    """Nobody was heard, so the turns go on; else a report must come, or they go on too.
+
+    With a carrier at the second deadline the end of that decides (see carrier_went).
+    """
+    if station.heard == 1:
+        expect_report(station, params, out)
+    elif not station.cd:
+        enter_turn(station, params, now, station.cur, out)
+
+
+def hear_report(station, params, now, frame, out):
+    """Which minislots are turns now, and what follows."""
+    if station.pending:
+        disprove(station, NO_PROOF, out)
+    mine = station.slot
+    station.slot = NONE
+    places = 0
+    groups = 0
+    for i in range(MINISLOTS):
+        if bit(frame.good, i):
+            if frame.base + places < POSITIONS:
+                place = frame.base + places
+                station.live[place] = 1
+                if place == station.pos:
+                    station.pos = NONE
+                if i == mine and station.mode == WINDOW:
+                    station.pos = place
+            places = places + 1
+        elif bit(frame.bad, i):
+            if i == mine and station.mode == WINDOW and frame.split:
+                station.slot = 2 * groups + draw(station, 2)
+            groups = groups + 1
+    station.turns = 0
+    station.last_ok = 0
+    station.collided = 0
+    station.cur = frame.pos
+    if frame.pos >= POSITIONS:
+        station.cur = NONE
+    if frame.window:
+        fresh = frame.window
+        if frame.split:
+            fresh = fresh - 2 * groups
+        enter_window(station, params, now, frame.window, fresh, frame.span, 0, out)
+    else:
+        enter_turn(station, params, now, station.cur, out)

@@ -1,0 +1,125 @@
+"""The plan of a radio run: whole numbers only. Floats end here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from innervate.networks.radio.scenario.baselines import NONE
+
+BEGIN, JOIN, KILL, LEAVE, GARBLE, FADE = range(6)
+
+
+@dataclass(frozen=True, slots=True)
+class RadioFault:
+    """One event of a radio run.
+
+    Attributes:
+        at_us: when, true time, us.
+        action: JOIN, KILL, LEAVE, GARBLE or FADE.
+        node: the station it happens to.
+        value: for GARBLE and FADE how many of its next CR-Rs.
+        index: the event's place in the scenario file.
+    """
+
+    at_us: int
+    action: int
+    node: int
+    value: int
+    index: int
+
+
+@dataclass(slots=True)
+class RadioPlan:
+    """Everything a radio run needs, as whole numbers.
+
+    Attributes:
+        protocol: the medium access protocol by its simulator name, like "csma-cd-r/practical".
+        stations: how many, 1 .. 1023.
+        params: the protocol's parameters (see `protocol/radio_fields.py`, PARAMS).
+        delays_us: per sender and receiver, us; -1 = hidden from each other. Zero on the diagonal.
+        loss_q15: share of frames that a receiver cannot read, in 1/32768.
+        saturated: a new packet whenever one was delivered.
+        wanted: the run ends after so many delivered packets; 0 = runs its time.
+        arrivals: per station, ascending moments at which a packet is offered, us.
+        sizes: per station, lengths in slots of its packets in turn; at most 1,024, repeated.
+        absent: per station, 1 = switched off until it joins.
+        faults: events in order of time.
+        forced: packets go out when offered, whatever the carrier says (paper mode's tests).
+    """
+
+    scenario: Any
+    kind: str
+    seed: int
+    duration_us: int
+    protocol: str
+    stations: int
+    params: dict[str, int]
+    delays_us: list[list[int]]
+    loss_q15: int = 0
+    saturated: bool = False
+    wanted: int = 0
+    arrivals: list[list[int]] = field(default_factory=list)
+    sizes: list[list[int]] = field(default_factory=list)
+    absent: list[int] = field(default_factory=list)
+    faults: list[RadioFault] = field(default_factory=list)
+    forced: bool = False
+
+
+def parameters(
+    packet_slots: int,
+    turnaround_us: int = 0,
+    delay_us: tuple[int, int] = (52, 104),
+    *,
+    bit_us: int = 26,
+    turns: int = 20,
+    per_turn: int = 1,
+    wait_us: int = 0,
+    tail_rule: bool = True,
+    overlap_rule: bool = True,
+    window_slots: int = 0,
+    dilate: int = 1,
+) -> dict[str, int]:
+    """Derived times of CSMA/CD-R; names and reasons in docs/radio.md [radio 4, radio-practical 2].
+
+    What baselines need besides comes from `radio_baselines.baseline`.
+
+    Args:
+        packet_slots: T, length of the longest packet, 3 .. 4095.
+        turnaround_us: ta, from deciding to send to being on the air, and back.
+        delay_us: least and greatest delay between two stations, as the stations believe.
+        bit_us: time of a bit; a slot is 8.
+        turns: turns of a round between two open windows.
+        per_turn: most packets in one turn, 1 .. 7.
+        wait_us: W, bound of the random wait (paper); 0 = two packets.
+        tail_rule: T1, without which the last and the second to last both report (paper).
+        overlap_rule: T4, without which CR-Rs that overlap count as one (paper).
+        window_slots: window for CR-Rs in slots; 0 = T - Tc0 (paper).
+        dilate: factor on Tc, so that CR-Rs spread over the window; 2 T - 6 fills it (paper).
+    """
+    slot_us = 8 * bit_us
+    least, most = delay_us
+    minislot = slot_us + 2 * (most - least) + bit_us
+    retry = 6 * (turnaround_us + most) + slot_us
+    return {
+        "slot_us": slot_us,
+        "bit_us": bit_us,
+        "ta_us": turnaround_us,
+        "dmin_us": least,
+        "dmax_us": most,
+        "packet_slots": packet_slots,
+        "minislot_us": minislot,
+        # Two openings must overlap at every station, whatever their delays.
+        "probe_us": turnaround_us + max(2 * slot_us, 2 * most - least + slot_us),
+        "retry_us": retry,
+        "join_us": 2 * turnaround_us + max(retry + 2 * minislot, 33 * minislot) + 3 * slot_us,
+        "dead_us": 2 * turnaround_us + 3 * most + minislot,
+        "turns": turns,
+        "per_turn": per_turn,
+        "wait_us": wait_us or 2 * packet_slots * slot_us,
+        "tail_rule": int(tail_rule),
+        "overlap_rule": int(overlap_rule),
+        "window_slots": window_slots,
+        "dilate": dilate,
+        **NONE,
+    }

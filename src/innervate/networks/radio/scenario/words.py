@@ -1,0 +1,52 @@
+"""A radio scenario in a few lines, without running it."""
+
+from __future__ import annotations
+
+from innervate.networks.radio.scenario.model import RadioScenario
+from innervate.networks.radio.scenario.plan import RadioFault, RadioPlan
+from innervate.networks.radio.scenario.rules import pair
+
+EVENTS_SHOWN = 12
+
+
+def describe(made: RadioPlan) -> str:
+    """A plan in words, several lines, without a newline at the end."""
+    model: RadioScenario = made.scenario.model
+    params = made.params
+    lines = [
+        f"{made.scenario.name}: a radio scenario of at most {made.duration_us / 1e6:g} s, "
+        f"seed {made.seed}",
+        f"  stations   {made.stations}, packets of {_range(*pair(model.packet_slots), 'slots')}",
+        f"  traffic    {traffic_words(model)}",
+        f"  channel    {model.channel.level} level, {model.channel.bit_rate:,} bit/s, "
+        f"a slot of {params['slot_us']} us, delays of {_range(*pair(model.channel.tau_us), 'us')}, "
+        f"turnaround {params['ta_us'] / 1000:g} ms",
+        f"  protocol   {made.protocol}",
+    ]
+    lines += [f"  {'event' if i == 0 else '':10} {fault_words(made, fault)}"
+              for i, fault in enumerate(made.faults[:EVENTS_SHOWN])]  # fmt: skip
+    if len(made.faults) > EVENTS_SHOWN:
+        lines.append(f"  {'':10} and {len(made.faults) - EVENTS_SHOWN} more")
+    return "\n".join(lines)
+
+
+def traffic_words(model: RadioScenario) -> str:
+    """What stations send, and when."""
+    traffic = model.traffic
+    if traffic.kind == "saturated":
+        return f"saturated, {traffic.packets:,} packets per station"
+    if traffic.kind == "poisson":
+        return f"Poisson, {traffic.load:g} packets per packet time of all stations"
+    spread = f" within {traffic.spread_us / 1000:g} ms" if traffic.spread_us else ""
+    return f"disaster: all start at once{spread}, one packet each"
+
+
+def fault_words(made: RadioPlan, fault: RadioFault) -> str:
+    """A fault in words: "at 2 s kill station 3"."""
+    action = made.scenario.model.event[fault.index].action
+    more = f", {fault.value} CR-Rs" if fault.value else ""
+    return f"at {fault.at_us / 1e6:g} s {action} station {fault.node}{more}"
+
+
+def _range(least: int, most: int, unit: str) -> str:
+    return f"{least} {unit}" if least == most else f"{least} to {most} {unit}"

@@ -1,0 +1,80 @@
+"""A radio run's summary for a terminal, in plain words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from innervate.networks.radio.plot.words import slots_words
+from innervate.plot import words
+
+if TYPE_CHECKING:
+    from innervate.run import Run
+
+
+def summary_lines(run: Run) -> list[str]:
+    """What a person wants to know first."""
+    summary = run.summary
+    return [_first(run), *result_lines(run), *_noticed(summary)]
+
+
+def _first(run: Run) -> str:
+    summary, plan = run.summary, run.plan
+    return (
+        f"{summary['name']}: {words.number_of(plan.stations, 'station')} on one channel, "
+        f"{summary['protocol']}, packets of at most {plan.params['packet_slots']} slots; "
+        f"{run.result.ended_us / 1e6:.4g} s simulated in {summary['wall_s']:.2f} s, "
+        f"seed {summary['seed']}"
+    )
+
+
+def result_lines(run: Run) -> list[str]:
+    """Packets, delays, fairness."""
+    summary = run.summary
+    lines = [_delivered(run)]
+    delay = summary["delay_slots"]
+    if delay["p50"] is not None:
+        lines.append(
+            f"Delay from offer to the end of the frame: half within "
+            f"{slots_words(delay['p50'])}, 99 % within {slots_words(delay['p99'])}, "
+            f"all within {slots_words(delay['max'])}."
+        )
+    if summary["throughput"] is not None:
+        share = words.share_words(summary["throughput"])
+        jain = "" if summary["jain"] is None else f"; fairness (Jain) {summary['jain']:.3f}"
+        lines.append(f"Packets fill {share} of the channel's time{jain}.")
+    lines.append(
+        f"{words.number_of(summary['collisions'], 'collision')}; "
+        f"{words.number_of(summary['lost_silently'], 'packet')} lost without the sender knowing."
+    )
+    if "interrupted_at_s" in summary:
+        lines.append(f"Interrupted at {summary['interrupted_at_s']:.3f} s of simulated time.")
+    return lines
+
+
+def _delivered(run: Run) -> str:
+    counts, plan = run.result.counts, run.plan
+    slots = run.summary["duration_slots"]
+    after = ""
+    if slots is not None:
+        ms = slots * plan.params["slot_us"] / 1000
+        after = f", the last {slots_words(slots)} ({words.ms_words(ms)}) after the first offer"
+    open_ = counts["offers"] - counts["completed"]
+    if open_ and not plan.saturated:
+        return f"{counts['completed']:,} of {counts['offers']:,} packets were delivered{after}."
+    lost = run.summary["lost_silently"]
+    if lost:
+        return (
+            f"{words.number_of(counts['completed'], 'packet')} taken for delivered, {lost:,} of "
+            f"them received by nobody{after}."
+        )
+    return f"{words.number_of(counts['completed'], 'packet')} delivered{after}."
+
+
+def _noticed(summary: dict[str, Any]) -> list[str]:
+    found = summary.get("bounds_noticed")
+    if not found or not found["count"]:
+        return []
+    return [
+        "Delays between stations lie outside the configured bounds; set protocol.tau_bounds_us "
+        "to what is true."
+    ]

@@ -1,0 +1,63 @@
+"""What a run of a radio channel leaves behind: rows, and what is checked on the way."""
+
+from innervate.networks.radio.protocol.constants import DATA
+from innervate.networks.radio.protocol.station import copy_frame
+from innervate.sim import taps
+from innervate.sim.channel.heap import AIR_BITS
+from innervate.sim.rows import keep_step
+
+BROKEN_RANGE = 4
+BROKEN_TURNS = 5
+
+
+def keep_sent(world, node, frame, time):
+    """A row of what goes on the air."""
+    run = world.run[0]
+    start = time + run.ta_us
+    end = start + frame.slots * run.slot_us
+    if run.tap_limit > 0:
+        taps.keep(world, start, start, node, node, 1, taps.FINE, frame, copy_frame)
+    if run.exclusive and frame.kind == DATA:
+        if start < run.data_until and run.broken == 0:
+            run.broken, run.broken_node = BROKEN_TURNS, node
+        run.data_until = end
+    if run.sent_limit > 0:
+        row = world.sent[run.sent]
+        run.sent += 1
+        row.time = start
+        row.end = end
+        row.node = node
+        row.kind = frame.kind
+        row.slots = frame.slots
+        row.pos = frame.pos
+        row.next = frame.next
+        row.handle = frame.handle
+        row.count = frame.count
+        row.more = frame.more
+
+
+def keep_received(world, node, what, time, clear, received):
+    """A signal has ended at a station: a capture says if its frame was received, or why not.
+
+    `clear` = it was alone, and heard from its start.
+    """
+    run, radio, air = world.run[0], world.radios[node], world.air[what]
+    if run.tap_limit > 0 and radio.alive:
+        why = taps.FINE
+        if not received:
+            why = taps.SENDING if radio.deaf else taps.COLLISION
+            if clear:
+                why = taps.SPOILT if air.spoilt else taps.NOISE
+        sender = what >> AIR_BITS
+        taps.keep(world, time, air.start, node, sender, 0, why, world.frames[what], copy_frame)
+
+
+def watch(world, node, time, handler, port):
+    """Checkers, and the trail of all handler calls."""
+    run = world.run[0]
+    if run.checks and run.broken == 0:
+        words = world.words[node]
+        for i in range(len(world.low)):
+            if words[i] < world.low[i] or words[i] > world.high[i]:
+                run.broken, run.broken_node = BROKEN_RANGE, node
+    keep_step(world, node, time, handler, port)

@@ -1,0 +1,1 @@
+"""The slotted level of the radio: a reference model without protocol sources."""

@@ -1,0 +1,120 @@
+"""CSMA/CD after IEEE 802.3 and 802.11 DCF: backoff counters. Times in ticks."""
+
+import numpy as np
+
+from innervate.networks.radio.slotted.books import COLLISIONS, NEVER, deliver, going
+from innervate.networks.radio.slotted.draws import draw
+
+DOUBLINGS_MAX = 10
+
+
+def contend(books, slot, packet, cost, turn, back, backoff, linear, redraw):
+    """1-persistent CSMA/CD with binary (or linear) backoff, which runs on while others send.
+
+    A station that decides at t is on air from t + turn; who decides before it can be heard, turn
+    and half a slot later, sends too. The channel is sensed idle a slot after a packet, or `cost`
+    after the last station of a collision went on air; by its senders `back` after its end, if that
+    is later, and there their backoff begins. `redraw`: who got through draws 0 or 1 as well.
+    """
+    half = slot // 2
+    count = len(books.offer)
+    due = np.zeros(count, np.int64)
+    tries = np.zeros(count, np.int64)
+    found = np.zeros(count + 1, np.int64)
+    for i in range(count):
+        due[i] = _slot_of(books.offer[i], slot)
+    idle = 0
+    while going(books):
+        first = max(idle, _least(due))
+        limit = first + turn + half
+        senders = 0
+        for i in range(count):  # no branches: this is where the time goes
+            found[senders] = i
+            senders += due[i] < limit
+        if senders == 1:
+            winner = found[0]
+            end = first + turn + packet
+            idle = end + slot
+            tries[winner] = 0
+            deliver(books, winner, end)
+            due[winner] = max(idle, end + back, _slot_of(books.offer[winner], slot))
+            if redraw:
+                due[winner] += draw(books.rng, 2) * backoff
+            continue
+        books.counts[COLLISIONS] += 1
+        last = first
+        for j in range(senders):
+            last = max(last, due[found[j]])
+        idle = last + turn + cost
+        known = max(idle, idle - slot + back)
+        for j in range(senders):
+            i = found[j]
+            tries[i] += 1
+            window = tries[i] + 1 if linear else 1 << min(tries[i], DOUBLINGS_MAX)
+            due[i] = known + draw(books.rng, window) * backoff
+
+
+def _slot_of(offer, slot):
+    """The beginning of a slot at which a packet offered at `offer` can be sent."""
+    return (offer + slot - 1) // slot * slot
+
+
+def _least(due):
+    """The earliest of these times; a loop of its own, which the compiler makes wide."""
+    first = due[0]
+    for i in range(1, len(due)):
+        first = min(first, due[i])
+    return first
+
+
+def distribute(books, slot, success, cost, window, stages, at_once):
+    """802.11 DCF as Bianchi's model has it: a busy period is one step of every counter.
+
+    Counters start drawn from `window` values, doubled at most `stages` times; `at_once`: at 0.
+    `success` and `cost` are the whole times that a packet and a collision take.
+    """
+    count = len(books.offer)
+    left = np.zeros(count, np.int64)
+    stage = np.zeros(count, np.int64)
+    time = 0
+    if not at_once:
+        for i in range(count):
+            left[i] = draw(books.rng, window)
+    while going(books):
+        wait = _shortest(books, left, time, slot)
+        senders = 0
+        winner = 0
+        start = time + wait * slot
+        for i in range(count):
+            here = _waiting_since(books.offer[i], time, slot)
+            if here + left[i] == wait:
+                senders += 1
+                winner = i
+        time = start + (success if senders == 1 else cost)
+        if senders > 1:
+            books.counts[COLLISIONS] += 1
+        for i in range(count):
+            here = _waiting_since(books.offer[i], start - wait * slot, slot)
+            if here + left[i] == wait:
+                stage[i] = 0 if senders == 1 else min(stage[i] + 1, stages)
+                left[i] = draw(books.rng, window << stage[i])
+            elif here <= wait:
+                left[i] -= wait - here + 1
+        if senders == 1:
+            deliver(books, winner, time)
+
+
+def _waiting_since(offer, time, slot):
+    """Idle steps from `time` until a station has a packet."""
+    return 0 if offer <= time else (offer - time + slot - 1) // slot
+
+
+def _shortest(books, left, time, slot):
+    """Idle steps until the first counter is at 0."""
+    wait = NEVER
+    for i in range(len(left)):
+        wait = min(wait, _waiting_since(books.offer[i], time, slot) + left[i])
+    return wait
+
+
+PARTS = (_slot_of, _least, _waiting_since, _shortest)

@@ -1,0 +1,233 @@
+"""Which loop runs which protocol of the slotted level, with which times. Times in ticks."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import exp
+from typing import Any
+
+import numpy as np
+
+from innervate.kernel import door
+from innervate.networks.radio.slotted import books as shelf
+from innervate.networks.radio.slotted import chance as chance
+from innervate.networks.radio.slotted import contend as contend
+from innervate.networks.radio.slotted import draws as draws
+from innervate.networks.radio.slotted import turns as turns
+from innervate.networks.radio.slotted.books import Books, Numbers
+
+SLOT = 208  # the paper's us
+POISSON_TAIL = 1e-12
+TURNAROUND = {"csma-cd-r", "csma-cd-d2", "csma-cd-d2p"}
+BACKOFF = {"csma-cd-d1", "csma-cd-d2", "csma-cd-d2p"}
+BY_CHANCE = {"slotted-aloha", "nonpersistent", "p-persistent"}
+MACS = TURNAROUND | BACKOFF | BY_CHANCE | {"dcf", "tree", "tdma"}
+USED_BY = {
+    "p": BY_CHANCE,
+    "reading": {"csma-cd-r"},
+    "window": {"csma-cd-r"},
+    "backoff": BACKOFF,
+    "backoff_slots": BACKOFF,
+    "turnaround_slots": TURNAROUND,
+    "return_slots": TURNAROUND - {"csma-cd-r"},
+    "dcf": {"dcf"},
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Dcf:
+    """Times (us) and backoff of 802.11 DCF: `window` values, doubled at most `stages` times.
+
+    `success_us` and `collision_us` last from the start of the frame to the next backoff step.
+    """
+
+    slot_us: int
+    payload_us: int
+    success_us: int
+    collision_us: int
+    window: int
+    stages: int
+
+    @property
+    def sound(self) -> bool:
+        """All in range: times positive, 1 <= window doubled `stages` times <= 2^20."""
+        times = self.slot_us, self.payload_us, self.success_us, self.collision_us
+        return (
+            min(times) > 0
+            and self.stages in range(21)
+            and 0 < self.window << self.stages <= 1 << 20
+        )
+
+
+# Bianchi 2000: T_s and T_c of his Table II (1 Mbit/s, 8184 bits of payload, FHSS).
+BIANCHI_BASIC = Dcf(50, 8184, 8982, 8713, window=32, stages=5)
+BIANCHI_RTS = Dcf(50, 8184, 9568, 417, window=32, stages=5)
+
+
+def dcf_here(packet_slots: int) -> Dcf:
+    """DCF on the paper's channel: behind a packet an idle slot, a one-byte answer, an idle slot.
+
+    802.11's window for FHSS, 16 to 1024 (Bianchi 2000, Table I).
+    """
+    packet = packet_slots * SLOT
+    return Dcf(SLOT, packet, packet + 3 * SLOT, packet + SLOT, window=16, stages=6)
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What only some of the protocols have; see `slotted.slotted`."""
+
+    p: float | None = None
+    reading: str = "A"
+    window: int | None = None
+    backoff: str = "binary"
+    backoff_slots: int = 1
+    turnaround_slots: float = 0.0
+    return_slots: float | None = None
+    dcf: Dcf | None = None
+
+    def check(self) -> None:
+        """Raise ValueError for what is outside its range."""
+        _require(self.p is None or 0 < self.p <= 1, "p is a probability, 0 < p <= 1")
+        _require(self.reading in ("A", "B"), "reading is A or B")
+        _require(self.window is None or self.window >= 0, "window is a number of slots >= 0")
+        _require(self.backoff in ("binary", "linear"), "backoff is binary or linear")
+        _require(1 <= self.backoff_slots <= 10_000, "backoff_slots is in 1..10,000")
+        _require(0 <= self.turnaround_slots <= 10_000, "turnaround_slots is in 0..10,000")
+        _require(0 <= (self.return_slots or 0) <= 10_000, "return_slots is in 0..10,000")
+        _require(self.dcf is None or self.dcf.sound, "dcf needs times > 0 and a window >= 1")
+
+
+def _require(holds: bool, what: str) -> None:
+    if not holds:
+        raise ValueError(what)
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """One run: which protocol, on which books; `load` only for an infinite population."""
+
+    mac: str
+    books: Books
+    packet_slots: int
+    load: float | None
+    options: Options
+    plain: bool
+
+    @property
+    def packet(self) -> int:
+        """Airtime of a packet."""
+        return self.packet_slots * SLOT
+
+    @property
+    def turn(self) -> int:
+        """From a decision to the first bit on air."""
+        return round(self.options.turnaround_slots * SLOT)
+
+    def run(self, function: Callable[..., None], *values: int) -> None:
+        """Call a loop with the books and these values, all integers."""
+        loop(function, self.plain)(self.books, *values)
+
+
+def drive(job: Job) -> int:
+    """Run a protocol until its books are full; the idle time that belongs to its last packet."""
+    if job.mac in BACKOFF:
+        return _contend(job)
+    if job.mac in BY_CHANCE:
+        return _pool(job) if job.load else _attempt(job)
+    return {"csma-cd-r": _reserve, "dcf": _dcf, "tree": _tree, "tdma": _tdma}[job.mac](job)
+
+
+def _reserve(job: Job) -> int:
+    """Reading A: T + 1 slots for the collision and for each packet, first report and window next.
+
+    B: no idle slots, and a slot for each of the m - 1 reports.
+    """
+    packet, turn = job.packet, job.turn
+    window = job.packet_slots if job.options.window is None else job.options.window
+    if job.options.reading == "A":
+        lead = turn + packet + SLOT + turn + SLOT + window * SLOT
+        job.run(turns.reserve, SLOT, turn, packet, lead, 0, turn + packet + SLOT)
+        return SLOT
+    lead = turn + packet + turn + window * SLOT
+    job.run(turns.reserve, SLOT, turn, packet, lead, SLOT, turn + packet)
+    return SLOT if len(job.books.offer) == 1 else 0
+
+
+def _contend(job: Job) -> int:
+    cost = SLOT if job.mac == "csma-cd-d1" else job.packet + SLOT
+    linear, redraw = job.options.backoff == "linear", job.mac == "csma-cd-d2p"
+    given = job.options.return_slots
+    back = job.turn if given is None else round(given * SLOT)
+    times = SLOT, job.packet, cost, job.turn, back, job.options.backoff_slots * SLOT
+    job.run(contend.contend, *times, int(linear), int(redraw))
+    return SLOT
+
+
+def _dcf(job: Job) -> int:
+    times = job.options.dcf or dcf_here(job.packet_slots)
+    at_once = int(job.books.counts[shelf.TRAFFIC] == shelf.DISASTER)
+    costs = times.slot_us, times.success_us, times.collision_us
+    job.run(contend.distribute, *costs, times.window, times.stages, at_once)
+    return 0
+
+
+def _tree(job: Job) -> int:
+    job.run(turns.split, job.packet)
+    return 0
+
+
+def _tdma(job: Job) -> int:
+    job.run(turns.take_turns, SLOT, job.packet)
+    return SLOT
+
+
+def _attempt(job: Job) -> int:
+    p = job.options.p or 1 / len(job.books.offer)
+    step, gap = (job.packet, 0) if job.mac == "slotted-aloha" else (SLOT, SLOT)
+    job.run(chance.attempt, round(p * draws.UNIT), step, job.packet, gap)
+    return gap
+
+
+def _pool(job: Job) -> int:
+    assert job.load is not None
+    per_slot = job.load / job.packet_slots
+    if job.mac == "slotted-aloha":
+        loop(chance.pool, job.plain)(job.books, poisson_table(job.load), job.packet, job.packet, 0)
+        return 0
+    table = poisson_table(per_slot)
+    if job.mac == "nonpersistent":
+        loop(chance.pool, job.plain)(job.books, table, SLOT, job.packet, SLOT)
+        return SLOT
+    after = poisson_table(per_slot * (job.packet_slots + 1))
+    p = round((job.options.p or 0.1) * draws.UNIT)
+    loop(chance.persist, job.plain)(job.books, table, after, p, SLOT, job.packet)
+    return SLOT
+
+
+def poisson_table(mean: float) -> Numbers:
+    """Cumulative probabilities of a Poisson number, in 1 / UNIT; mean 0..100."""
+    share = total = exp(-mean)
+    table = [total]
+    while len(table) <= mean or share > POISSON_TAIL:
+        share *= mean / len(table)
+        total += share
+        table.append(total)
+    return np.array([round(min(1.0, x) * draws.UNIT) for x in table], np.int64)
+
+
+def loop(function: Callable[..., Any], plain: bool) -> Callable[..., Any]:
+    """A loop as it is, or compiled."""
+    return function if plain else _compiled(function)
+
+
+@functools.cache
+def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+    door.register_functions(
+        draws.step, draws.draw, draws.shuffle, draws.exponential, draws.choose,
+        shelf.going, shelf.deliver, shelf.ready, shelf.opening,
+        *contend.PARTS, *turns.PARTS, *chance.PARTS,
+    )  # fmt: skip
+    return door.compiled(function)

@@ -1,0 +1,229 @@
+"""The slotted level of the radio: slot counter, whole collisions, finishing order given [radio 1].
+
+A reference model: it reproduces the numbers of the CSMA/CD-R paper's Figs. 4-7 and the baselines
+next to them, and is exempt from the one-source rule. What a real medium makes of these protocols
+is the event level's business.
+
+    csma-cd-r      reservation after a collision; reading A: T + 1 slots a packet, reports inside
+                   the window; B: packets back to back, a slot a report [radio Q1]
+    csma-cd-d1     802.3 truncated binary exponential backoff, a collision costs one slot
+    csma-cd-d2     the same, a collision costs a whole packet and its idle slot: the wireless case
+    csma-cd-d2p    D2, where a station that got through draws a backoff of 0 or 1 slots as well
+    slotted-aloha  slots as long as a packet            tree   binary splitting, likewise
+    nonpersistent, p-persistent   slotted CSMA          tdma   fixed turns of T + 1 slots
+    dcf            802.11 DCF without retry limit, as in Bianchi 2000
+
+Backoff runs on while others send and never gives up: with the attempt limit of 802.3 packets would
+be lost, and capture, its main effect here, would look milder than it is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from innervate.networks.radio.slotted import books as shelf
+from innervate.networks.radio.slotted.books import Books, open_books, schedule
+from innervate.networks.radio.slotted.draws import MEAN_MAX, generator
+from innervate.networks.radio.slotted.drive import (
+    BY_CHANCE,
+    MACS,
+    SLOT,
+    USED_BY,
+    Job,
+    Options,
+    drive,
+    loop,
+)
+
+TRAFFIC = {"saturated": shelf.SATURATED, "disaster": shelf.DISASTER, "poisson": shelf.POISSON}
+STATIONS_MAX = 10_000
+PACKET_SLOTS_MAX = 10_000
+SUCCESSES_MAX = 100_000_000
+LOAD_MAX = 50.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SlottedResult:
+    """What a slotted run measured after its warm-up; times in slots.
+
+    throughput is airtime_slots / elapsed_slots; elapsed_slots counts the idle slot that belongs to
+    a packet. duration_slots, from time 0 to the end of the last packet, counts the warm-up too.
+    `order` has the station of every success, delay_slots its time from the offer to the end of the
+    frame. jain is the fairness index of the successes, jain_round its mean over all runs of n
+    successes. An infinite population counts as one station and has no delays.
+    """
+
+    elapsed_slots: float
+    airtime_slots: float
+    throughput: float
+    duration_slots: float
+    successes: list[int]
+    order: list[int]
+    collisions: int
+    delay_slots: Any
+    jain: float
+    jain_round: float
+
+
+def slotted(
+    mac: str,
+    stations: int,
+    packet_slots: int,
+    traffic: str,
+    *,
+    packets: int = 1000,
+    seed: int = 1,
+    warmup: float = 0.1,
+    load: float | None = None,
+    plain: bool = False,
+    **options: Any,
+) -> SlottedResult:
+    """Run one protocol on the slotted channel.
+
+    Args:
+        mac: one of MACS.
+        stations: 1..10,000; 0 = an infinite population (slotted-aloha, nonpersistent, p-persistent
+            under Poisson traffic), which ends after `packets` successes or 1,000 times as many
+            attempts.
+        packet_slots: packet length T, 1..10,000 slots.
+        traffic: "saturated", "disaster" (all at once, one packet each) or "poisson". Whoever has a
+            packet in csma-cd-* sends as soon as the channel is idle.
+        packets: per station in the mean, >= 1: a saturated run ends after stations * packets
+            successes, whosever they are; a Poisson run with the first station that has none left.
+        seed: root seed >= 0; the streams of protocol and traffic are derived from it.
+        warmup: share of the successes that is not measured, 0 <= warmup < 1; none in a disaster.
+        load: Poisson: packets offered per packet time (T slots) by all stations together, up to
+            50; with an infinite population that is fresh packets and retransmissions.
+        plain: run the same loops uncompiled, with the same result.
+        options: what only some protocols have:
+            p: slotted-aloha, nonpersistent, p-persistent: probability of sending in a slot,
+                0 < p <= 1; default 1 / stations, and 0.1 for p-persistent with stations = 0.
+            reading: csma-cd-r: "A" (default) or "B".
+            window: csma-cd-r: slots of the reservation window; default T (T - Tc0 at Tc0 = 0).
+            backoff: csma-cd-d*: "binary" (default), or "linear": k + 1 values after k collisions
+                [radio Q15].
+            backoff_slots: csma-cd-d*: length of a backoff slot in slots, default 1.
+            turnaround_slots: csma-cd-r, -d2, -d2p: a packet is on air that long after its
+                decision, default 0; carriers that come up meanwhile go unnoticed. csma-cd-r pays
+                it at every hand-over: opening, reservation, each turn.
+            return_slots: csma-cd-d2, -d2p: how long after its end a sender knows the channel
+                again; default turnaround_slots, as on the medium [radio M4]. 0 is a gift to
+                CSMA/CD: its packets cost one turnaround instead of two. With either, everybody
+                knows of every collision, the last to finish too.
+            dcf: a `Dcf`; default `dcf_here(packet_slots)`. Its slots are the result's.
+
+    Raises:
+        ValueError: an argument outside its range, or one that this protocol has no use for.
+    """
+    _check(mac, stations, packet_slots, traffic, packets, seed, warmup, load)
+    given = _options(mac, stations, options)
+    if traffic == "disaster":
+        packets, warmup = 1, 0.0
+    slot, airtime = SLOT, packet_slots * SLOT
+    if given.dcf is not None:
+        slot, airtime = given.dcf.slot_us, given.dcf.payload_us
+    name = f"slotted/{mac}/{stations}"
+    kind = TRAFFIC[traffic] if stations else shelf.SATURATED
+    books = open_books(kind, max(1, stations), packets, generator(seed, name))
+    if load is not None and stations:
+        interval = max(1, round(stations * airtime / load))
+        if interval > MEAN_MAX or interval * packets > shelf.NEVER // 64:
+            raise ValueError(f"{packets} packets take too long at a load of {load}")
+        loop(schedule, plain)(books, generator(seed, f"{name}/arrivals"), interval)
+    gap = drive(Job(mac, books, packet_slots, None if stations else load, given, plain))
+    return _measure(books, slot, airtime, gap, warmup, endless=not stations)
+
+
+def _check(
+    mac: str,
+    stations: int,
+    packet_slots: int,
+    traffic: str,
+    packets: int,
+    seed: int,
+    warmup: float,
+    load: float | None,
+) -> None:
+    """Raise ValueError for what is outside its range."""
+    if mac not in MACS:
+        raise ValueError(f"mac is one of {', '.join(sorted(MACS))}; not {mac!r}")
+    if traffic not in TRAFFIC:
+        raise ValueError(f"traffic is one of {', '.join(TRAFFIC)}; not {traffic!r}")
+    if not 0 <= stations <= STATIONS_MAX:
+        raise ValueError(f"stations are 0..{STATIONS_MAX}; not {stations}")
+    if stations == 0 and not (mac in BY_CHANCE and traffic == "poisson"):
+        raise ValueError(f"{mac} with {traffic} traffic needs stations >= 1")
+    if not 1 <= packet_slots <= PACKET_SLOTS_MAX:
+        raise ValueError(f"packet_slots are 1..{PACKET_SLOTS_MAX}; not {packet_slots}")
+    if packets < 1 or max(1, stations) * packets > SUCCESSES_MAX:
+        raise ValueError(f"packets are >= 1 and at most {SUCCESSES_MAX} in all; not {packets}")
+    if seed < 0 or not 0 <= warmup < 1:
+        raise ValueError("seed is >= 0 and warmup in 0 <= warmup < 1")
+    if (load is not None) != (traffic == "poisson"):
+        raise ValueError("load belongs to poisson traffic, and only to it")
+    if load is not None and not 0 < load <= LOAD_MAX:
+        raise ValueError(f"load is in 0 < load <= {LOAD_MAX:g}; not {load}")
+
+
+def _options(mac: str, stations: int, options: dict[str, Any]) -> Options:
+    for name in options:
+        if name not in USED_BY:
+            raise ValueError(f"{name} is no option; there are {', '.join(USED_BY)}")
+        if mac not in USED_BY[name]:
+            raise ValueError(f"{mac} has no use for {name}")
+    if stations == 0 and "p" in options and mac != "p-persistent":
+        raise ValueError(f"{mac} has no use for p with an infinite population")
+    given = Options(**options)
+    given.check()
+    return given
+
+
+def _measure(
+    books: Books, slot: int, airtime: int, gap: int, warmup: float, endless: bool
+) -> SlottedResult:
+    """Times and shares from what the loop wrote down."""
+    done = int(books.counts[shelf.DONE])
+    skipped = int(done * warmup)
+    ends, order = books.end[skipped:done], books.station[skipped:done]
+    since = int(books.end[skipped - 1]) + gap if skipped else 0
+    before = int(books.before[skipped - 1]) if skipped else 0
+    last = int(books.end[done - 1]) if done else 0
+    elapsed = last + gap - since
+    stations = len(books.offer)
+    successes = np.bincount(order, minlength=stations)
+    delays = (ends - books.offered[skipped:done]) / slot
+    return SlottedResult(
+        elapsed_slots=elapsed / slot,
+        airtime_slots=len(ends) * airtime / slot,
+        throughput=len(ends) * airtime / elapsed if done else 0.0,
+        duration_slots=last / slot,
+        successes=successes.tolist(),
+        order=order.tolist(),
+        collisions=int(books.counts[shelf.COLLISIONS]) - before,
+        delay_slots=delays[:0] if endless else delays,
+        jain=jain(successes),
+        jain_round=_jain_round(order, stations),
+    )
+
+
+def jain(shares: Any) -> float:
+    """Jain's fairness index, 1/n (one has everything) to 1; 1 where there is nothing to share.
+
+    Jain, Chiu, Hawe 1984: (sum x)^2 / (n sum x^2).
+    """
+    shares = np.asarray(shares, np.float64)
+    squares = float((shares**2).sum())
+    return float(shares.sum()) ** 2 / (len(shares) * squares) if squares else 1.0
+
+
+def _jain_round(order: Any, stations: int) -> float:
+    """Mean fairness index over the whole rounds of n successes; of all if there is no round."""
+    rounds = len(order) // stations
+    if rounds == 0:
+        return jain(np.bincount(order, minlength=stations))
+    counted = np.arange(rounds * stations) // stations * stations + order[: rounds * stations]
+    counts = np.bincount(counted, minlength=rounds * stations).reshape(rounds, stations)
+    return float((stations / (counts.astype(np.float64) ** 2).sum(axis=1)).mean())

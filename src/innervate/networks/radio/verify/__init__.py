@@ -1,0 +1,1 @@
+"""What is explored of a radio team, and what must hold."""

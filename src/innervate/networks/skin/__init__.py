@@ -1,0 +1,1 @@
+"""The network of a robot skin: cells find routes to a PC and mend them."""

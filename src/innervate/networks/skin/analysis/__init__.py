@@ -1,0 +1,1 @@
+"""What a run of a skin comes to, in numbers."""

@@ -1,0 +1,138 @@
+"""Where all frames went: sent, arrived, lost by reason, still on their way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from innervate.sim.cables import wires
+from innervate.sim.wheel import FRESH, NIL
+
+REASONS = {
+    "cut": wires.LOST_CUT,
+    "noise": wires.LOST_NOISE,
+    "off": wires.LOST_OFF,
+    "queue_full": wires.LOST_QUEUE,
+    "broken_link": wires.LOST_BROKEN,
+}
+
+
+class FramesLost(Exception):
+    """Frames of a run that went nowhere: a mistake of the simulator, never of the scenario."""
+
+
+@dataclass(frozen=True, slots=True)
+class Traffic:
+    """Frames of one class over all cables; a frame counts once for every cable it takes.
+
+    Attributes:
+        sent: handed to a port that has a cable.
+        arrived: reached a node that is on.
+        lost: by reason: cut, noise, off, queue_full, broken_link.
+        flying: on a wire at the end of the run.
+        queued: waiting in a port's queue at the end.
+    """
+
+    sent: int
+    arrived: int
+    lost: dict[str, int]
+    flying: int
+    queued: int
+
+    @property
+    def missing(self) -> int:
+        """0 if every frame is accounted for."""
+        gone = self.arrived + sum(self.lost.values())
+        return self.sent - gone - self.flying - self.queued
+
+
+def data_traffic(result: Any) -> Traffic:
+    """Data frames on the cables."""
+    return _traffic(result, 0)
+
+
+def beacon_traffic(result: Any) -> Traffic:
+    """Beacons, and whatever else goes before data, on the cables."""
+    return _traffic(result, wires.URGENT_BLOCK)
+
+
+def data_summary(result: Any) -> dict[str, Any]:
+    """Tactile samples from cell to PC: sent, delivered, lost by reason, in flight.
+
+    `loss_ratio` is lost / sent; None if none were sent.
+    """
+    counters = result.counters
+    traffic = data_traffic(result)
+    lost_by = dict(traffic.lost)
+    lost_by["no_route"] = counters[wires.NO_ROUTE]
+    lost_by["loop"] = counters[wires.LOOPED]
+    lost, sent = sum(lost_by.values()), counters[wires.OFFERED]
+    return {
+        "sent": sent,
+        "delivered": counters[wires.DELIVERED],
+        "lost": lost,
+        "loss_ratio": lost / sent if sent else None,
+        "lost_by": lost_by,
+        "in_flight": traffic.flying + traffic.queued,
+    }
+
+
+def check_conserved(result: Any) -> None:
+    """Every frame and every sample is accounted for.
+
+    Raises:
+        FramesLost: says how many are not, and of which run.
+    """
+    data = data_summary(result)
+    missing = {
+        "data frames": data_traffic(result).missing,
+        "beacons": beacon_traffic(result).missing,
+        "samples": data["sent"] - data["delivered"] - data["lost"] - data["in_flight"],
+    }
+    wrong = [f"{count} {name}" for name, count in missing.items() if count]
+    if wrong:
+        seed = result.plan.seed
+        raise FramesLost(f"frames not conserved (seed {seed}): {', '.join(wrong)} went nowhere")
+
+
+def beacon_share(result: Any) -> float | None:
+    """Beacon bits over capacity, mean over all directions of all cables; None without cables."""
+    graph = result.plan.graph
+    directions = int(np.count_nonzero(np.frombuffer(graph.peer, np.int32) >= 0))
+    if directions == 0 or result.ended_us == 0:
+        return None
+    beacons = result.counters[wires.SENT + wires.URGENT_BLOCK]
+    return float(beacons * result.plan.wire_us / (directions * result.ended_us))
+
+
+def _traffic(result: Any, block: int) -> Traffic:
+    counters = result.counters
+    return Traffic(
+        sent=counters[wires.SENT + block],
+        arrived=counters[wires.ARRIVED + block],
+        lost={name: counters[place + block] for name, place in REASONS.items()},
+        flying=_flying(result.world, block),
+        queued=0 if block else _queued(result.world),
+    )
+
+
+def _flying(world: Any, block: int) -> int:
+    """Frames on a wire: pool slots in the event queue that arrive somewhere."""
+    events = world.wheel.events
+    behind = int(world.wheel.pool[FRESH])
+    if isinstance(events, list):
+        first = int(world.run[0].pool_slots)
+        live = [e for e in events[first:behind] if e.bucket != NIL and e.kind == block]
+        return len(live)
+    first = int(world.run["pool_slots"][0])
+    part = events[first:behind]
+    return int(np.count_nonzero((part["bucket"] != NIL) & (part["kind"] == block)))
+
+
+def _queued(world: Any) -> int:
+    buffers = world.buffers
+    if isinstance(buffers, list):
+        return sum(int(buffer.queued) for buffer in buffers)
+    return int(buffers["queued"].sum())

@@ -1,0 +1,64 @@
+"""Whose data leave through which interface port at the end of a run, and how evenly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from innervate.networks.skin.analysis.recovery import NOBODY, next_hops
+from innervate.networks.skin.analysis.rows import Numbers
+from innervate.networks.skin.protocol.constants import NONE, PORTS
+
+NO_PORT = -1
+
+
+def interface_of(result: Any) -> Numbers:
+    """Interface port that every cell's data leave through at the end of the run.
+
+    Follows the chain of parents over live cables; NO_PORT (-1) where it does not reach the PC.
+    """
+    graph = result.plan.graph
+    parent = _parents(result.world)
+    epoch = np.array(result.world.epoch, np.int64)
+    ends = PORTS * np.arange(graph.cells) + np.maximum(parent, 0)
+    parent = np.where(epoch[ends] & 1, NONE, parent)
+    return interfaces_along(graph, parent)
+
+
+def _parents(world: Any) -> Numbers:
+    """Parent port of every cell at the end of the run; -1 none."""
+    if isinstance(world.cells, list):
+        return np.array([cell.parent for cell in world.cells], np.int64)
+    parents: Numbers = world.cells["parent"].astype(np.int64)
+    return parents
+
+
+def interfaces_along(graph: Any, parent: Numbers) -> Numbers:
+    """The same for given parent ports (-1 none), all cables live."""
+    cells = graph.cells
+    hop = next_hops(graph, parent)
+    peer = np.frombuffer(graph.peer, np.int32)
+    ends = PORTS * np.arange(cells) + np.maximum(parent, 0)
+    # After the last jump a cell stands at the one that is cabled to the PC, or nowhere.
+    jump = np.where(hop == graph.sink, np.arange(cells), hop)
+    jump = np.append(jump, NOBODY)  # index -1: nowhere leads nowhere
+    for _ in range(max(1, int(cells).bit_length())):
+        jump = np.append(jump[jump[:-1]], NOBODY)
+    last = jump[:-1]
+    at_pc = (last != NOBODY) & (np.append(hop, NOBODY)[last] == graph.sink)
+    port = peer[ends[last]] - PORTS * cells
+    return np.where(at_pc, port, NO_PORT).astype(np.int64)
+
+
+def port_loads(result: Any) -> list[int]:
+    """Cells that each interface port serves at the end of the run."""
+    port = interface_of(result)
+    return [int(n) for n in np.bincount(port[port >= 0], minlength=result.plan.graph.interfaces)]
+
+
+def balance_factor(loads: Sequence[int]) -> float | None:
+    """Eq. 8 [skin III-A.2]: 1 if all ports carry the same, 1/n if one carries all; None if none."""
+    squares = sum(load * load for load in loads)
+    return sum(loads) ** 2 / (len(loads) * squares) if squares else None

@@ -1,0 +1,183 @@
+"""How a skin recovers from each of its scenario's events: detected, converged, routed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from innervate.networks.skin.analysis.rows import (
+    BrokenChanges,
+    Marks,
+    Numbers,
+    UnroutedSteps,
+    broken_changes,
+    marks,
+    parent_changes,
+    unrouted_steps,
+)
+from innervate.networks.skin.protocol.constants import NONE, PORTS
+from innervate.networks.skin.scenario.plan import (
+    ACTIONS,
+    CUT,
+    KILL,
+    RESTART,
+    RESTORE,
+    REVIVE,
+    Fault,
+)
+
+NOBODY = -1
+
+
+def recoveries(result: Any) -> list[dict[str, Any]]:
+    """One entry per event of the scenario that happened, in order of time.
+
+    `at_s` and `action` say what happened. All `_ms` count from the event and look no further than
+    the next one; None = it did not happen.
+    `detected_ms`: the first end of the link found it broken (p_f >= 1).
+    `converged_ms`: the last change of a parent, those for balancing left out.
+    `routed_ms`: the last moment at which a cell physically connected to the PC had no chain of
+    parents over live cables to it; 0.0 if there was none.
+    `cut_cells`: cells whose chain of parents used the link.
+    """
+    at = marks(result)
+    changes = parent_changes(result)
+    switches = changes.row[~changes.balancing]
+    broken, unrouted = broken_changes(result), unrouted_steps(result)
+    faults = {fault.index: fault for fault in result.plan.faults}
+    found = []
+    for place in np.flatnonzero(at.event != NOBODY).tolist():
+        fault = faults[int(at.event[place])]
+        window = _window(result, at, place)
+        start = int(at.time_us[place])
+        found.append(
+            {
+                "at_s": start / 1e6,
+                "action": ACTIONS[fault.action],
+                "detected_ms": _since(start, _detected(result, fault, broken, window)),
+                "converged_ms": _since(start, _last(result.rows["time"], switches, window)),
+                "routed_ms": _since(start, _routed(unrouted, window, start)),
+                "cut_cells": _cut_cells(result, at, place, fault),
+            }
+        )
+    return found
+
+
+def start_up(result: Any) -> dict[str, Any]:
+    """The same for the beginning: `converged_ms` and `routed_ms` from switching on."""
+    at = marks(result)
+    if len(at.row) == 0:  # it ran unobserved
+        return {"converged_ms": None, "routed_ms": None}
+    changes = parent_changes(result)
+    window = _window(result, at, 0)
+    last = _last(result.rows["time"], changes.row[~changes.balancing], window)
+    return {
+        "converged_ms": _since(0, last),
+        "routed_ms": _since(0, _routed(unrouted_steps(result), window, 0)),
+    }
+
+
+def _window(result: Any, at: Marks, place: int) -> tuple[int, int]:
+    """The rows after a mark and before the next one."""
+    behind = int(at.row[place + 1]) if place + 1 < len(at.row) else len(result.rows)
+    return int(at.row[place]) + 1, behind
+
+
+def _since(start_us: int, time_us: int | None) -> float | None:
+    return None if time_us is None else (time_us - start_us) / 1e3
+
+
+def _last(times: Numbers, places: Numbers, window: tuple[int, int]) -> int | None:
+    """Time of the last of these rows inside the window."""
+    after = int(np.searchsorted(places, window[1]))
+    if after == 0 or places[after - 1] < window[0]:
+        return None
+    return int(times[places[after - 1]])
+
+
+def _routed(steps: UnroutedSteps, window: tuple[int, int], start: int) -> int | None:
+    """When the last cell had a route for good; `start` if none ever lacked one."""
+    first, behind = np.searchsorted(steps.row, window).tolist()
+    if first == behind:
+        return start if first == 0 or steps.cells[first - 1] == 0 else None
+    # A step stands only where the number changed: a last one to 0 ended the outage.
+    return None if steps.cells[behind - 1] > 0 else int(steps.time_us[behind - 1])
+
+
+def ends_of(result: Any, fault: Fault) -> list[int]:
+    """All ends of the cables an event happens to."""
+    graph = result.plan.graph
+    ends = [fault.end] if fault.end >= 0 else list(graph.ends_of(fault.node))
+    return [end for own in ends if graph.peer[own] >= 0 for end in (own, graph.peer[own])]
+
+
+def _detected(
+    result: Any, fault: Fault, broken: BrokenChanges, window: tuple[int, int]
+) -> int | None:
+    first, behind = np.searchsorted(broken.row, window).tolist()
+    if first == behind:
+        return None
+    here = np.isin(broken.end[first:behind], ends_of(result, fault))
+    hits = np.flatnonzero(here & (broken.broken[first:behind] == 1))
+    return int(broken.time_us[first + int(hits[0])]) if len(hits) else None
+
+
+def _cut_cells(result: Any, at: Marks, place: int, fault: Fault) -> int:
+    """Cells whose chain of parents used the link, or went through the node."""
+    if fault.action in (RESTORE, REVIVE):
+        return 0
+    if fault.action == CUT or fault.node == result.plan.graph.sink:
+        return int(at.cut_off[place])
+    parent = parents_before(result, place)
+    return int(np.count_nonzero(users(result.plan.graph, parent, fault)))
+
+
+def parents_before(result: Any, place: int) -> Numbers:
+    """Parent port of every cell just before mark `place` (see rows.marks); -1 none."""
+    at, changes = marks(result), parent_changes(result)
+    cells = result.plan.graph.cells
+    behind = int(np.searchsorted(changes.row, at.row[place]))
+    # Of several values for one place NumPy keeps the last.
+    parent = np.full(cells, NONE, np.int64)
+    parent[changes.cell[:behind]] = changes.new[:behind]
+    changed = np.full(cells, NOBODY, np.int64)
+    changed[changes.cell[:behind]] = changes.row[:behind]
+    faults = {fault.index: fault for fault in result.plan.faults}
+    for row, event in zip(at.row[:place].tolist(), at.event[:place].tolist(), strict=True):
+        fault = faults.get(event)
+        if fault is None or fault.action not in (KILL, RESTART):
+            continue
+        if fault.node < cells and changed[fault.node] < row:
+            parent[fault.node] = NONE  # its memory went with it
+    return parent
+
+
+def next_hops(graph: Any, parent: Numbers) -> Numbers:
+    """The node on every cell's parent port; -1 without a parent."""
+    peer = np.frombuffer(graph.peer, np.int32)
+    cells = len(parent)
+    hop = peer[PORTS * np.arange(cells) + np.maximum(parent, 0)].astype(np.int64)
+    hop = np.where(hop >= 0, np.minimum(hop // PORTS, cells), NOBODY)
+    return np.where(parent == NONE, NOBODY, hop)
+
+
+def users(graph: Any, parent: Numbers, fault: Fault) -> Any:
+    """True for every cell whose chain of parents uses the event's cable or node."""
+    cells = len(parent)
+    hop = next_hops(graph, parent)
+    uses = np.zeros(cells + 2, np.bool_)  # the PC, and nobody (index -1)
+    if fault.node >= 0:
+        uses[fault.node] = hop[fault.node] != NOBODY
+        uses[:cells] |= hop == fault.node
+    else:
+        for end in (fault.end, graph.peer[fault.end]):
+            cell, port = divmod(end, PORTS)
+            if cell < cells and parent[cell] == port:
+                uses[cell] = True
+    jump = np.concatenate([hop, [cells, cells + 1]])
+    jump[jump < 0] = cells + 1
+    for _ in range(max(1, cells.bit_length())):
+        uses |= uses[jump]
+        jump = jump[jump]
+    return uses[:cells]

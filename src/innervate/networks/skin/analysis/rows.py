@@ -1,0 +1,141 @@
+"""Raw rows of a run as plain arrays: parent changes, cells without a route, loops, broken ports.
+
+All functions take a `sim.simulate.Result`; times are in us of true time.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from innervate.networks.skin.protocol.constants import (
+    PORTS,
+    REPORT_BALANCE,
+    REPORT_BROKEN,
+    REPORT_PARENT,
+)
+from innervate.networks.skin.sim.observer import CUT_OFF, LOOP_CLOSED, LOOP_OPEN, UNROUTED
+
+Numbers = np.ndarray[Any, np.dtype[np.int64]]
+NEVER = -1
+
+
+class ParentChanges(NamedTuple):
+    """Every change of a parent port, in order of time.
+
+    Attributes:
+        row: place in the run's rows.
+        time_us: when.
+        cell: who.
+        old, new: port before and after; -1 none.
+        balancing: True where the cell changed only to balance the load.
+    """
+
+    row: Numbers
+    time_us: Numbers
+    cell: Numbers
+    old: Numbers
+    new: Numbers
+    balancing: np.ndarray[Any, np.dtype[np.bool_]]
+
+
+class UnroutedSteps(NamedTuple):
+    """How many connected cells have no route: `cells[i]` from `time_us[i]` on (a step function)."""
+
+    row: Numbers
+    time_us: Numbers
+    cells: Numbers
+
+
+class LoopEpisodes(NamedTuple):
+    """Forwarding loops, in the order in which they closed into a ring.
+
+    Attributes:
+        cell: one cell of the ring.
+        opened_us: when the ring came to be.
+        closed_us: when it fell apart; NEVER (-1) if it stood at the end of the run.
+        length: cells in the ring.
+    """
+
+    cell: Numbers
+    opened_us: Numbers
+    closed_us: Numbers
+    length: Numbers
+
+
+class BrokenChanges(NamedTuple):
+    """Every moment at which a cell found a port broken (1) or working again (0)."""
+
+    row: Numbers
+    time_us: Numbers
+    end: Numbers
+    broken: Numbers
+
+
+class Marks(NamedTuple):
+    """The scenario's events as they happened; the first mark is the beginning (event -1).
+
+    Attributes:
+        row: place of the mark in the run's rows: what stands behind it happened after it.
+        time_us: when.
+        event: index in the scenario file.
+        cut_off: cells that lost their working chain of parents at that moment.
+    """
+
+    row: Numbers
+    time_us: Numbers
+    event: Numbers
+    cut_off: Numbers
+
+
+def parent_changes(result: Any) -> ParentChanges:
+    """All changes of parent ports."""
+    rows = result.rows
+    code = rows["code"]
+    at = np.flatnonzero((code == REPORT_PARENT) | (code == REPORT_BALANCE))
+    part = rows[at]
+    return ParentChanges(
+        at, part["time"], part["node"], part["a"], part["b"], part["code"] == REPORT_BALANCE
+    )
+
+
+def unrouted_steps(result: Any) -> UnroutedSteps:
+    """How many cells that are physically connected to the PC had no route, over time."""
+    at, part = _coded(result, UNROUTED)
+    return UnroutedSteps(at, part["time"], part["a"])
+
+
+def broken_changes(result: Any) -> BrokenChanges:
+    """Ports found broken, and working again."""
+    at, part = _coded(result, REPORT_BROKEN)
+    return BrokenChanges(at, part["time"], PORTS * part["node"] + part["a"], part["b"])
+
+
+def marks(result: Any) -> Marks:
+    """The beginning and the scenario's events."""
+    at, part = _coded(result, CUT_OFF)
+    return Marks(at, part["time"], part["a"], part["b"])
+
+
+def loop_episodes(result: Any) -> LoopEpisodes:
+    """All forwarding loops: a ring of parents over live cables."""
+    rows = result.rows
+    code = rows["code"]
+    at = np.flatnonzero((code == LOOP_OPEN) | (code == LOOP_CLOSED))
+    part = rows[at]
+    # The rows of one ring's cell alternate: opened, closed, opened ...
+    order = np.argsort(part["node"], kind="stable")
+    node, time = part["node"][order], part["time"][order]
+    opened = part["code"][order] == LOOP_OPEN
+    closed_us = np.full(len(order), NEVER, np.int64)
+    follows = (node[1:] == node[:-1]) & opened[:-1] & ~opened[1:]
+    closed_us[:-1][follows] = time[1:][follows]
+    where = np.flatnonzero(opened)
+    where = where[np.argsort(order[where], kind="stable")]
+    return LoopEpisodes(node[where], time[where], closed_us[where], part["a"][order][where])
+
+
+def _coded(result: Any, code: int) -> tuple[Numbers, Any]:
+    at = np.flatnonzero(result.rows["code"] == code)
+    return at, result.rows[at]

@@ -1,0 +1,112 @@
+"""The summary of a skin's run: what a person wants to know of it, as plain numbers and words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from innervate.networks.skin.analysis.frames import beacon_share, data_summary
+from innervate.networks.skin.analysis.load import balance_factor, port_loads
+from innervate.networks.skin.analysis.recovery import recoveries, start_up
+from innervate.networks.skin.analysis.rows import (
+    NEVER,
+    BrokenChanges,
+    LoopEpisodes,
+    ParentChanges,
+    UnroutedSteps,
+    broken_changes,
+    loop_episodes,
+    parent_changes,
+    unrouted_steps,
+)
+from innervate.networks.skin.protocol.constants import ONE, PORTS
+from innervate.sim.cables.world import ALIVE
+from innervate.topology import PORT_NAMES
+
+__all__ = [
+    "NEVER",
+    "BrokenChanges",
+    "LoopEpisodes",
+    "ParentChanges",
+    "UnroutedSteps",
+    "broken_changes",
+    "broken_ports",
+    "loop_episodes",
+    "loops",
+    "parent_changes",
+    "recoveries",
+    "start_up",
+    "summarize",
+    "unrouted_steps",
+]
+
+
+def summarize(result: Any) -> dict[str, Any]:
+    """The summary of a run; what never happened is None."""
+    plan = result.plan
+    events = result.handled + result.arrived
+    loads = port_loads(result)
+    summary = {
+        "kind": plan.kind,
+        "name": plan.scenario.name,
+        "seed": plan.seed,
+        "duration_s": plan.duration_us / 1e6,
+        "events": events,
+        "events_per_s": round(events / result.wall_s) if result.wall_s > 0 else None,
+        "wall_s": round(result.wall_s, 6),
+        "fingerprint": result.fingerprint,
+        "cells": plan.graph.cells,
+        "depth_max": plan.depth_max,
+        "start_up": start_up(result),
+        "recoveries": recoveries(result),
+        "loops": loops(result),
+        "balance_factor": balance_factor(loads),
+        "port_loads": loads,
+        "data": data_summary(result),
+        "beacon_share": beacon_share(result),
+        "broken": broken_ports(result),
+    }
+    if result.interrupted:
+        summary["interrupted_at_s"] = result.ended_us / 1e6
+    return summary
+
+
+def loops(result: Any) -> dict[str, Any]:
+    """How many forwarding loops there were, and how long the longest stood (ms)."""
+    found = loop_episodes(result)
+    ends = np.where(found.closed_us == NEVER, result.ended_us, found.closed_us)
+    longest = int((ends - found.opened_us).max()) / 1e3 if len(ends) else None
+    return {"episodes": len(ends), "longest_ms": longest}
+
+
+def broken_ports(result: Any) -> list[dict[str, Any]]:
+    """Ports that carry a cable and are broken at the end, at cells that are on.
+
+    `cell` and `port` say where, `to` is the far end of that cable, `since_s` when it was found
+    broken.
+    """
+    graph = result.plan.graph
+    penalty = _penalties(result.world)
+    peer = np.frombuffer(graph.peer, np.int32)[: PORTS * graph.cells]
+    alive = np.array(result.world.alive[: graph.cells]) == ALIVE
+    ends = np.flatnonzero((penalty >= ONE) & (peer >= 0) & np.repeat(alive, PORTS))
+    changes = broken_changes(result)
+    found = changes.broken == 1
+    since = dict(zip(changes.end[found].tolist(), changes.time_us[found].tolist(), strict=True))
+    return [
+        {
+            "cell": graph.label(end // PORTS),
+            "port": PORT_NAMES[end % PORTS],
+            "since_s": since[end] / 1e6 if end in since else None,
+            "to": graph.label_end(int(peer[end])),
+        }
+        for end in ends.tolist()
+    ]
+
+
+def _penalties(world: Any) -> Any:
+    """Failure penalty of every end of a cell."""
+    if isinstance(world.cells, list):
+        return np.array([cell.pf for cell in world.cells]).reshape(-1)
+    return world.cells["pf"].reshape(-1)

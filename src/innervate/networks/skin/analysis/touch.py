@@ -1,0 +1,73 @@
+"""The touch as the cells felt it and as the PC had it: a lost sample is a hole in the image."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from innervate.networks.skin.analysis.rows import NEVER, Numbers
+from innervate.networks.skin.sim.touch import read_sensors
+
+WINDOW_S = 0.05
+
+Flags = np.ndarray[Any, np.dtype[np.bool_]]
+
+
+class Image(NamedTuple):
+    """One number per cell.
+
+    Attributes:
+        force_mn: mean of the three force sensors, mN.
+        proximity: nearness of an object, raw, 0 far.
+        age_us: how long the PC had had the sample; NEVER (-1) where it had none in the window,
+            force and proximity are 0 then.
+    """
+
+    force_mn: Numbers
+    proximity: Numbers
+    age_us: Numbers
+
+    @property
+    def known(self) -> Flags:
+        """True for every cell the PC had a sample of."""
+        known: Flags = self.age_us != NEVER
+        return known
+
+
+def received_image(run: Any, time_s: float, window_s: float = WINDOW_S) -> Image:
+    """What the PC knew at a time: of every cell the latest sample received in the window before.
+
+    Args:
+        run: a Run, or a simulation's Result, with its received samples kept.
+        time_s: the moment.
+        window_s: samples older than this count as lost.
+    """
+    result = getattr(run, "result", run)
+    cells = result.plan.graph.cells
+    rows = result.deliveries
+    now, since = round(1e6 * time_s), round(1e6 * (time_s - window_s))
+    first, behind = np.searchsorted(rows["time"], [since, now], side="right").tolist()
+    part = rows[first:behind]
+    force, proximity = np.zeros(cells, np.int64), np.zeros(cells, np.int64)
+    age = np.full(cells, NEVER, np.int64)
+    # Of several samples of one cell NumPy keeps the last.
+    force[part["cell"]] = part["force"].mean(axis=1).round().astype(np.int64)
+    proximity[part["cell"]] = part["proximity"]
+    age[part["cell"]] = now - part["time"]
+    return Image(force, proximity, age)
+
+
+def felt_image(run: Any, time_s: float) -> Image:
+    """What the cells felt at a time, lost or not; zero without a touch."""
+    result = getattr(run, "result", run)
+    cells, world = result.plan.graph.cells, result.world
+    sample = SimpleNamespace(force=[0, 0, 0], accel=[0, 0, 0])
+    tables = {name: list(getattr(world, name)) for name in ("touch_x", "touch_y", "touch_span")}
+    sensors = SimpleNamespace(sample=[sample], place=list(world.place), **tables)
+    force, proximity = np.zeros(cells, np.int64), np.zeros(cells, np.int64)
+    for cell in range(cells):
+        read_sensors(sensors, cell, round(1e6 * time_s))  # type: ignore[no-untyped-call]
+        force[cell], proximity[cell] = sum(sample.force) // 3, sample.proximity
+    return Image(force, proximity, np.zeros(cells, np.int64))

@@ -1,0 +1,269 @@
+"""How a skin healed, from the frames of a capture: of running nodes, or of a simulation.
+
+A cell's beacons say which port leads to its parent, so that a capture of all nodes holds every
+route at every moment. What was hurt is said by the capture itself: frames onto a cut cable, nodes
+that went away and came back.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, field
+from pathlib import Path
+from statistics import median
+
+from innervate.export import links, pcapng
+from innervate.export.errors import ExportError
+from innervate.export.reading import Capture, Packet
+from innervate.networks.skin import frames as skin
+from innervate.networks.skin.export.routes import PC, End, Network
+from innervate.networks.skin.protocol import constants as skin_words
+from innervate.wire.bits import get
+from innervate.wire.layout import width
+
+CUT = "cable cut"
+SAME_NS = 1_000_000_000  # within that time both ends of a cable say that it was cut
+RECENT_NS = 500_000_000  # a sample's number comes again after 256 periods
+ROUND_NS = 3_000_000  # beacons of one moment are told within that time
+
+
+def _bit_of(fields: tuple[tuple[str, int, int, int], ...], name: str) -> int:
+    """Where a field begins in a frame, in bits."""
+    return skin.KIND_BITS + width(fields[: [field[0] for field in fields].index(name)])
+
+
+PARENT_AT = _bit_of(skin.ROUTE, "parent")
+CELL_AT = _bit_of(skin.TOUCH, "cell")
+SEQ_AT = _bit_of(skin.TOUCH, "seq")
+CELL_BITS, SEQ_BITS = 16, 8
+SEQS = 1 << SEQ_BITS
+LATE_MAX = 16  # samples that one that comes late may be behind
+END_NS = 2_000_000_000  # nodes that went away so shortly before the end were ended
+
+
+@dataclass
+class Healing:
+    """What became of a skin after something happened to it; times from then, ms; None = never.
+
+    Attributes:
+        at_s: when, from the capture's first frame.
+        what: "cut c1.2 - pc.0", "c6 gone", "pc back", "restore ...", "loose ...".
+        cells: cells whose way to the PC it cut, and that still have cables to it; or that it
+            brought back.
+        first_ms: the first of them said in a beacon that it has another parent, or none.
+        wrong_ms: the last one's last beacon whose parent did not lead to the PC.
+        routed_ms: all had said in beacons that their parents lead to the PC.
+        heard_ms: the PC had a sample of all of them by a way without what was hurt.
+        heard_median_ms: of half of them.
+        lost: samples of theirs that never came to the PC.
+    """
+
+    at_s: float
+    what: str
+    cells: int = 0
+    first_ms: float | None = None
+    wrong_ms: float | None = None
+    routed_ms: float | None = None
+    heard_ms: float | None = None
+    heard_median_ms: float | None = None
+    lost: int = 0
+
+
+@dataclass
+class _Open:
+    """An event whose consequences are watched."""
+
+    found: Healing
+    at_ns: int
+    key: frozenset[End] | str
+    cells: set[str]
+    heard: dict[str, int] = field(default_factory=dict)
+    missing: set[tuple[str, int]] = field(default_factory=set)  # samples that were passed over
+
+
+class Watcher:
+    """Reads a capture packet by packet, and keeps what became of every event."""
+
+    def __init__(self, capture: Capture) -> None:
+        self.capture = capture
+        self.net = Network()
+        self.found: list[Healing] = []
+        self._places: list[End] = []
+        self._names: dict[int, str] = {}
+        self._first_ns = self._last_ns = -1
+        self._now: _Open | None = None
+        self._doubt: dict[str, int] = {}  # who said no of its parent's port, and when
+        # Samples on their way, by cell and number: the ends that they left by.
+        self._samples: dict[tuple[str, int], set[End]] = {}
+        self._order: deque[tuple[int, tuple[str, int]]] = deque()
+        self._newest: dict[str, int | None] = {}  # number of the newest sample that came in
+
+    def take(self, packet: Packet) -> None:
+        """The next packet."""
+        if self._first_ns < 0:
+            self._first_ns = packet.time_ns
+        self._last_ns = packet.time_ns
+        end = self._end(packet.interface)
+        if not packet.data:
+            self._event(packet.time_ns, end, packet.comment.removeprefix("event: "))
+            return
+        out = bool(packet.flags & pcapng.OUTBOUND)
+        is_cut = packet.comment.endswith(CUT)
+        if out and is_cut != (end in self.net.cut):
+            self._event(packet.time_ns, end, "cut" if is_cut else "restore")
+        kind = packet.data[0] >> (8 - skin.KIND_BITS)
+        if len(packet.data) != skin.SIZES.get(kind):
+            return
+        if kind == skin_words.BEACON and out and end.node != PC:
+            self._beacon(packet, end)
+        elif kind == skin_words.DATA and (out or (end.node == PC and not packet.comment)):
+            self._sample(packet, end, out)
+
+    def end(self) -> list[Healing]:
+        """That was the last packet: what was found."""
+        self._close()
+        while (
+            self.found
+            and self.found[-1].what.endswith("gone")
+            and (self._last_ns - self._first_ns - 1e9 * self.found[-1].at_s < END_NS)
+        ):
+            self.found.pop()
+        return self.found
+
+    def _end(self, interface: int) -> End:
+        for one in self.capture.interfaces[len(self._places) :]:
+            place = links.place_of(one.description)
+            name = PC if place.what == "pc" else f"c{place.number}"
+            if place.what not in ("pc", "cell") or place.port < 0 or not place.here:
+                raise ExportError(
+                    f"{self.capture.path} does not say which cables join its interfaces; capture "
+                    "a skin of `innervate live up`, or nodes with a UDP address for each path"
+                )
+            self._places.append(End(name, place.port))
+            self.net.cable(self._places[-1], place.here, place.there)
+        return self._places[interface]
+
+    def _event(self, at_ns: int, end: End, what: str) -> None:
+        other = self.net.peer.get(end, end)
+        is_node = what.startswith("node ")
+        key: frozenset[End] | str = end.node if is_node else frozenset((end, other))
+        word = what.removeprefix("node ")
+        ways = {cell: self.net.way(cell) for cell in self.net.parent}
+        joined = self.net.joined()
+        if is_node:
+            (self.net.away.add if word == "gone" else self.net.away.discard)(end.node)
+            if word == "gone" and end.node != PC:
+                self.net.parent[end.node] = None
+            # A PC that comes back does not know what it missed; a cell counts from 0 again.
+            self._newest = {} if end.node == PC else {**self._newest, end.node: None}
+        elif word == "cut":
+            self.net.cut.add(end)
+        else:
+            self.net.cut.discard(end)
+        now = self._now
+        if (
+            now
+            and now.key == key
+            and now.found.what.startswith(word)
+            and (at_ns - now.at_ns < SAME_NS)
+        ):
+            return  # the other end says so, too
+        self._close()
+        names = [f"{e.node}.{e.port}" for e in sorted({end, other})]
+        text = f"{end.node} {word}" if is_node else f"{word} {' - '.join(names)}"
+        cells = self.net.joined() - joined  # those that it brings back, or that lose their way
+        if word not in ("back", "restore"):
+            cells = {c for c in self.net.joined() if ways[c] and not self.net.way(c)}
+        found = Healing(round((at_ns - self._first_ns) / 1e9, 4), text, len(cells))
+        self._now = _Open(found, at_ns, key, cells)
+
+    def _beacon(self, packet: Packet, end: End) -> None:
+        """A cell says on each of its ports whether it leads to its parent."""
+        for cell, at_ns in list(self._doubt.items()):
+            if packet.time_ns - at_ns > ROUND_NS:
+                del self._doubt[cell]
+                self._moved(cell, None, at_ns)
+        before = self.net.parent[end.node]
+        if not get(packet.data, PARENT_AT, 1):
+            if before == end.port:  # it says so of its new parent's port next, if it has one
+                self._doubt.setdefault(end.node, packet.time_ns)
+            return
+        self._doubt.pop(end.node, None)
+        if before != end.port:
+            self._moved(end.node, end.port, packet.time_ns)
+        now = self._now
+        if now and end.node in now.cells and self.net.way(end.node) is None:
+            now.found.wrong_ms = (packet.time_ns - now.at_ns) / 1e6
+
+    def _moved(self, cell: str, port: int | None, at_ns: int) -> None:
+        """A cell has another parent."""
+        self.net.parent[cell] = port
+        now = self._now
+        if now is None or not now.cells:
+            return
+        after_ms = max(0, at_ns - now.at_ns) / 1e6
+        if cell in now.cells and now.found.first_ms is None:
+            now.found.first_ms = after_ms
+        routed = all(self.net.way(cell) for cell in now.cells)
+        if not routed:
+            now.found.routed_ms = None
+        elif now.found.routed_ms is None:
+            now.found.routed_ms = after_ms
+
+    def _sample(self, packet: Packet, end: End, out: bool) -> None:
+        cell, seq = f"c{get(packet.data, CELL_AT, CELL_BITS)}", get(packet.data, SEQ_AT, SEQ_BITS)
+        while self._order and packet.time_ns - self._order[0][0] > RECENT_NS:
+            self._samples.pop(self._order.popleft()[1], None)
+        if out:
+            if (cell, seq) not in self._samples:
+                self._samples[cell, seq] = set()
+                self._order.append((packet.time_ns, (cell, seq)))
+            self._samples[cell, seq].add(end)
+            return
+        ends = self._samples.pop((cell, seq), set())
+        newest = self._newest.get(cell)
+        missing = 0 if newest is None else (seq - newest - 1) % SEQS
+        is_late = missing >= SEQS - LATE_MAX
+        if not is_late:
+            self._newest[cell] = seq
+        now = self._now
+        if now is None or cell not in now.cells:
+            return
+        if is_late:
+            now.missing.discard((cell, seq))
+        now.missing |= {(cell, (seq - i) % SEQS) for i in range(1, 0 if is_late else missing + 1)}
+        if cell not in now.heard and not _touched(now, ends):
+            now.heard[cell] = packet.time_ns
+
+    def _close(self) -> None:
+        """What is known of the last event."""
+        now, self._now = self._now, None
+        if now is None:
+            return
+        now.found.lost = len(now.missing)
+        times = sorted((at - now.at_ns) / 1e6 for at in now.heard.values())
+        if times and len(times) == len(now.cells):
+            now.found.heard_ms, now.found.heard_median_ms = times[-1], median(times)
+        self.found.append(now.found)
+
+
+def recoveries(path: Path) -> list[Healing]:
+    """Read a capture of a skin: an entry for everything that happened to it, in order.
+
+    Raises:
+        ExportError: it is none, is damaged, or says too little.
+    """
+    capture = Capture(path)
+    watcher = Watcher(capture)
+    for packet in sorted(capture.packets(), key=lambda packet: packet.time_ns):
+        if {one.link_type for one in capture.interfaces} != {links.SKIN}:
+            raise ExportError(f"{path} is no capture of a skin; only skins have parents")
+        watcher.take(packet)
+    return watcher.end()
+
+
+def _touched(now: _Open, ends: set[End]) -> bool:
+    """True if a sample took the cable, or passed the node, that was hurt."""
+    if isinstance(now.key, str):
+        return now.found.what.endswith("gone") and now.key in {end.node for end in ends}
+    return now.found.what.startswith("cut") and not now.key.isdisjoint(ends)

@@ -1,0 +1,327 @@
+"""The skin on live cables: a cell with its four ports, and the PC that all touch comes to."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import Counter
+from collections.abc import AsyncGenerator, Callable
+from typing import Any, NamedTuple
+
+from innervate.dialect import plain
+from innervate.dialect.rng import seeded
+from innervate.live.keys import Sealer
+from innervate.live.links import Link
+from innervate.live.node import LiveNode
+from innervate.live.state import State
+from innervate.live.streams import iterate
+from innervate.networks.skin import frames as wire
+from innervate.networks.skin.protocol import cell as skin
+from innervate.networks.skin.protocol import fields as fields
+from innervate.networks.skin.protocol import sink as skin_sink
+from innervate.networks.skin.protocol.constants import (
+    NONE,
+    ONE,
+    PORTS,
+    REPORT_PARENT,
+    SAMPLE,
+    TIMERS,
+)
+
+OUTBOX = 16
+
+Frame = plain.make("Frame", fields.FRAME)
+Params = plain.make("Params", fields.PARAMS)
+
+
+class Touch(NamedTuple):
+    """What a cell measured, as it comes in at the PC.
+
+    Attributes:
+        cell: who measured it.
+        seq: counts the cell's samples, modulo 256.
+        hops: cells that forwarded it.
+        port: interface port of the PC on which it came.
+        proximity: raw, 0 far, to 65535.
+        force: three sensors, mN.
+        temperature: half degrees from 20 degC.
+        accel: along x, y, z, raw, -512 to 511.
+    """
+
+    cell: int
+    seq: int
+    hops: int
+    port: int
+    proximity: int
+    force: tuple[int, int, int]
+    temperature: int
+    accel: tuple[int, int, int]
+
+
+class SkinStack:
+    """What cells and the PC have in common.
+
+    Args:
+        params: the protocol's parameters by name (`skin_fields.PARAMS`).
+        room: actions that an outbox must hold.
+    """
+
+    timers = TIMERS
+    reasons: tuple[str, ...] = wire.REASONS
+
+    def __init__(self, params: dict[str, int], room: int) -> None:
+        self.params = Params()
+        for name, value in params.items():
+            setattr(self.params, name, value)
+        self.silent_us = self.params.k * self.params.beacon_us
+        self.out = plain.Outbox(Frame, room)
+        self.inbox = Frame()
+        self.port = 0  # on which the frame in the inbox came
+
+    def encode(self, frame: Any) -> bytes:
+        """The bytes of a frame."""
+        return wire.encode(frame)
+
+    def decode(self, data: bytes) -> int:
+        """Read bytes into the inbox; 0, or why not."""
+        return wire.decode(data, self.inbox)
+
+    def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
+        """A port is a path."""
+        return [port]
+
+
+class CellStack(SkinStack):
+    """A cell; free sockets are ports without a path.
+
+    Args:
+        number: in its data frames.
+        params: see SkinStack.
+        seed: any whole number; cells must have different ones.
+        ports: the cell's port of each path, in order of the paths: W, E, up, down = 0..3.
+    """
+
+    def __init__(self, number: int, params: dict[str, int], seed: int, ports: list[int]) -> None:
+        super().__init__(params, OUTBOX)
+        self.cell = plain.make("Cell", fields.CELL)()
+        self.cell.number, self.cell.rng, self.cell.choice = number, seeded(seed), -1
+        self.port_of_path = ports
+        self.path_of_port = {port: path for path, port in enumerate(ports)}
+        self.moves = 0
+
+    def start(self, now: int, cause: int) -> None:
+        """Switch on."""
+        skin.on_start(self.cell, self.params, now, cause, self.out)
+
+    def frame(self, now: int, port: int) -> None:
+        """The frame in the inbox was received on a path."""
+        skin.on_frame(self.cell, self.params, now, self.port_of_path[port], self.inbox, self.out)
+
+    def timer(self, now: int, timer: int) -> None:
+        """A timer fires."""
+        skin.on_timer(self.cell, self.params, now, timer, self.out)
+
+    def input(self, now: int, kind: int, item: Any) -> None:
+        """What the cell's sensors say."""
+        skin.on_input(self.cell, self.params, now, kind, item, self.out)
+
+    def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
+        """The path of a port; a free socket has none."""
+        path = self.path_of_port.get(port)
+        return [] if path is None else [path]
+
+    def status(self, now: int) -> dict[str, Any]:
+        """The way to the PC, and which ports are broken."""
+        cell = self.cell
+        ports = [
+            {
+                "port": port,
+                "path": self.path_of_port.get(port),
+                "cabled": port in self.path_of_port,
+                "broken": cell.pf[port] >= ONE,
+                "dist": cell.dist[port],
+                "child": bool(cell.child[port]),
+            }
+            for port in range(PORTS)
+        ]
+        parent = cell.parent
+        return {
+            "kind": "skin",
+            "number": cell.number,
+            "role": "cell",
+            "parent": None if parent == NONE else parent,
+            "dist": None if parent == NONE else cell.dist[parent] + 1,
+            "load": cell.own_load,
+            "ports": ports,
+        }
+
+
+class SinkStack(SkinStack):
+    """The PC.
+
+    Args:
+        params: see SkinStack.
+        ports: how many interface ports it has.
+    """
+
+    def __init__(self, params: dict[str, int], ports: int) -> None:
+        super().__init__(params, ports + OUTBOX)
+        self.pc = plain.make("Pc", (("own", 1, 0, 0, "", ""),), fields.SINK_PORT, ports=ports)()
+        self.pc.own = [plain.make("Sink", fields.SINK)()]
+        self.pc.own[0].ports = ports
+
+    def start(self, now: int, cause: int) -> None:
+        """Switch on."""
+        skin_sink.on_start(self.pc, self.params, now, cause, self.out)
+
+    def frame(self, now: int, port: int) -> None:
+        """The frame in the inbox was received on an interface port."""
+        self.port = port
+        skin_sink.on_frame(self.pc, self.params, now, port, self.inbox, self.out)
+
+    def timer(self, now: int, timer: int) -> None:
+        """A timer fires."""
+        skin_sink.on_timer(self.pc, self.params, now, timer, self.out)
+
+    def input(self, now: int, kind: int, item: Any) -> None:
+        """The PC has nothing to send down."""
+        skin_sink.on_input(self.pc, self.params, now, kind, item, self.out)
+
+    def status(self, now: int) -> dict[str, Any]:
+        """How many cells each interface port serves."""
+        own = self.pc.own[0]
+        return {"kind": "skin", "role": "sink", "sq": own.sq, "cells": list(self.pc.size)}
+
+
+class CellNode(LiveNode):
+    """A cell: hands its samples to the skin.
+
+    Args:
+        name: as shown to people.
+        stack: the cell.
+        links: its cables.
+        sealer: seals and opens frames.
+        state: what is kept over a restart.
+        rate_hz: a sample made up by the cell itself so often; 0 = only what `sample` is given.
+    """
+
+    stack: CellStack
+
+    def __init__(
+        self,
+        name: str,
+        stack: CellStack,
+        links: list[Link],
+        sealer: Sealer | None = None,
+        state: State | None = None,
+        rate_hz: float = 0.0,
+    ) -> None:
+        super().__init__(name, stack, links, sealer, state)
+        self.moves = 0
+        self._period_s = 1 / rate_hz if rate_hz else 0.0
+        self._due = 0.0
+        self._beat: asyncio.TimerHandle | None = None
+        self._item = Frame()
+
+    async def start(self) -> None:
+        """Switch on."""
+        await super().start()
+        if self._period_s:
+            self._due = asyncio.get_running_loop().time()
+            self._sample_again()
+
+    async def stop(self) -> None:
+        """Switch off."""
+        if self._beat is not None:
+            self._beat.cancel()
+        await super().stop()
+
+    def sample(
+        self,
+        proximity: int = 0,
+        force: tuple[int, int, int] = (0, 0, 0),
+        temperature: int = 0,
+        accel: tuple[int, int, int] = (0, 0, 0),
+    ) -> None:
+        """Send what the sensors say to the PC; units and ranges as in Touch.
+
+        Raises:
+            ValueError: a value leaves its range.
+        """
+        assert self.engine is not None
+        values = {"proximity": (proximity,), "force": force,
+                  "temperature": (temperature,), "accel": accel}  # fmt: skip
+        for name, given in values.items():
+            length, low, high = RANGES[name]
+            if len(given) != max(1, length) or not all(low <= v <= high for v in given):
+                raise ValueError(f"{name} must be {max(1, length)} numbers, {low} to {high}")
+            setattr(self._item, name, list(given) if length else given[0])
+        self.engine.input(SAMPLE, self._item)
+
+    def _reported(self, code: int, a: int, b: int) -> None:
+        if code == REPORT_PARENT:
+            self.moves += 1
+
+    def _sample_again(self) -> None:
+        self.sample(force=(self.stack.cell.number, self.stack.cell.seq, 0))
+        loop = asyncio.get_running_loop()
+        self._due = max(self._due + self._period_s, loop.time())
+        self._beat = loop.call_at(self._due, self._sample_again)
+
+
+class SinkNode(LiveNode):
+    """The PC end of a skin: gives tactile frames.
+
+    Args:
+        name: as shown to people.
+        stack: the PC.
+        links: its interface ports, in order.
+        sealer: seals and opens frames.
+        state: what is kept over a restart.
+    """
+
+    stack: SinkStack
+
+    def __init__(
+        self,
+        name: str,
+        stack: SinkStack,
+        links: list[Link],
+        sealer: Sealer | None = None,
+        state: State | None = None,
+    ) -> None:
+        super().__init__(name, stack, links, sealer, state)
+        self.outcomes: Counter[str] = Counter()
+        self._inbox: list[Touch] = []
+        self._callbacks: list[Callable[[Touch], None]] = []
+
+    def receive_touch(
+        self, callback: Callable[[Touch], None] | None = None
+    ) -> AsyncGenerator[Touch, None]:
+        """Tactile frames as they come: to a callback, and as an async iterator."""
+        queue: asyncio.Queue[Touch] = asyncio.Queue()
+        if callback is None:
+            callback = queue.put_nowait
+        self._callbacks.append(callback)
+        return iterate(queue, self._callbacks, callback)
+
+    def counters(self) -> Counter[str]:
+        """Handler calls, frames dropped by reason, samples received."""
+        return super().counters() + self.outcomes
+
+    def _deliver(self, kind: int, frame: Any) -> None:
+        self.outcomes["samples received"] += 1
+        self._inbox.append(Touch(
+            frame.cell, frame.seq, frame.hops, self.stack.port, frame.proximity,
+            (frame.force[0], frame.force[1], frame.force[2]), frame.temperature,
+            (frame.accel[0], frame.accel[1], frame.accel[2]),
+        ))  # fmt: skip
+
+    def _settled(self) -> None:
+        if self._inbox:
+            inbox, self._inbox = self._inbox, []
+            for touch in inbox:
+                for callback in self._callbacks:
+                    callback(touch)
+
+
+RANGES = {name: (length, low, high) for name, length, low, high, _, _ in fields.FRAME}

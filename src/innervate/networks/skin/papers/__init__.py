@@ -1,0 +1,30 @@
+"""The skin paper: Bader, Bergner and Cheng, a dynamic network protocol for an artificial skin."""
+
+from importlib import import_module
+
+from innervate.papers.experiment import Experiment
+
+TITLE = "A robust and efficient dynamic network protocol for a large-scale artificial robotic skin"
+AUTHORS = "C. Bader, F. Bergner, G. Cheng"
+# One module each, in the order of the paper; the last two are beyond it.
+FIGURES = (
+    "fig5", "fig6", "fig8a", "fig8b", "eq7", "fig10", "eq9", "fig11", "loop", "modes",
+)  # fmt: skip
+
+
+def experiment(name: str) -> Experiment:
+    """The experiment of a figure, loaded when it is asked for."""
+    found = import_module(f"innervate.networks.skin.papers.{name}").EXPERIMENT
+    assert isinstance(found, Experiment)
+    return found
+
+
+def warm_up() -> None:
+    """Compile the loops that the figures need."""
+    from innervate import scenario
+    from innervate.sim.cables.simulate import simulate
+
+    tiny = {"kind": "skin", "duration_s": 0.01, "patch": [{"columns": 2, "rows": 1}]}
+    for rule in ("feasible", "static"):
+        tables = tiny | {"interface": [{"row": 0, "column": 0}], "protocol": {"rule": rule}}
+        simulate(scenario.plan(scenario.from_dict(tables)))

@@ -1,0 +1,294 @@
+"""Fig. 5: the worst case of a single broken connection converges after exactly (k+3) periods.
+
+The paper's picture is not available. Its caption tells the order of events; the smallest graph
+that shows them is this: n1 carries an interface; n2 and n3 hang on n1, n4 on n3; n2 and n4 know
+longer ways to the second interface.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from innervate.networks.skin.analysis.rows import parent_changes
+from innervate.networks.skin.analysis.summary import recoveries
+from innervate.networks.skin.papers.common import joined, seeds_of, simulated
+from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
+from innervate.plot import style
+
+LINKS = (
+    ("pc.0", "n1"), ("n1", "n2"), ("n1", "n3"), ("n3", "n4"), ("pc.1", "a1"),
+    ("a1", "a2"), ("a2", "n2"), ("a2", "a3"), ("a3", "n4"),
+)  # fmt: skip
+PLACES = {
+    "PC 0": (0.0, 2.0), "n1": (0.0, 1.0), "n2": (1.0, 1.0), "n3": (0.0, 0.0), "n4": (1.0, 0.0),
+    "PC 1": (2.9, 2.0), "a1": (2.9, 1.0), "a2": (2.0, 1.0), "a3": (2.0, 0.0),
+}  # fmt: skip
+SHOWN_K = 5
+HZ = 250
+CUT_S = 2.0  # a tick in lock-step
+STEPS = ("a  t = 0", "b  t = k T", "c  t = (k+1) T", "d  t = (k+2) T", "t = (k+3) T")
+LINE_CELLS = 8  # cut in the middle between two interfaces: depth 4
+
+
+def tables(k: int, m: int, lock_step: bool, line: bool = False) -> dict[str, Any]:
+    """The scenario: the graph above, or a line of eight cells."""
+    protocol = {"updates": "periodic", "beacon_hz": HZ, "k": k, "balancing": False}
+    network: dict[str, Any]
+    if line:
+        ends = [{"row": 0, "column": c} for c in (0, LINE_CELLS - 1)]
+        network = {"patch": [{"columns": LINE_CELLS, "rows": 1}], "interface": ends}
+    else:
+        network = {"link": [{"a": a, "b": b} for a, b in LINKS]}
+    period = 1 / HZ
+    return network | {
+        "kind": "skin",
+        "duration_s": CUT_S + (k + 100) * period,
+        "protocol": protocol | ({"m": m} if m else {}),
+        "timing": {"lock_step": lock_step, "drift_ppm": 0, "hop_latency_us": [1, 2]},
+        "event": [
+            {
+                "action": "cut",
+                "interface": 0,
+                "at_s": CUT_S if lock_step else [CUT_S, CUT_S + 5 * period],
+            }
+        ],
+    }
+
+
+# Name, arguments of tables() after k.
+CASES: dict[str, tuple[int, bool, bool]] = {
+    "lock-step, M = 1": (1, True, False),
+    "lock-step, M = min(k, 5)": (0, True, False),
+    "free running, M = 1": (1, False, False),
+    "line of depth 4, free running": (1, False, True),
+}
+
+
+def ks(quick: bool) -> tuple[int, ...]:
+    """The k of the sweep."""
+    return (2, 5, 8) if quick else tuple(range(2, 9))
+
+
+def _key(name: str, quick: bool) -> str:
+    last = len(seeds(quick))
+    return f"fig5 {name} k={joined(ks(quick))} seeds 1-{last}"
+
+
+def seeds(quick: bool) -> range:
+    """Seeds a case."""
+    return seeds_of(4 if quick else 24)
+
+
+def points(quick: bool) -> list[Point]:
+    """Each way of reading the figure, and one run in detail."""
+    made = [Point.of(_key(name, quick), 2.0, measure, case, quick) for name, case in CASES.items()]
+    return [*made, Point.of(f"fig5 story k={SHOWN_K}", 0.1, story)]
+
+
+def measure(case: tuple[int, bool, bool], quick: bool) -> dict[str, list[list[float]]]:
+    """[detected, converged] in periods of every seed, by k."""
+    found: dict[str, list[list[float]]] = {}
+    for k in ks(quick):
+        for seed in seeds(quick):
+            one = recoveries(simulated(tables(k, *case), seed))[0]
+            times = [one[name] * HZ / 1e3 for name in ("detected_ms", "converged_ms")]
+            found.setdefault(str(k), []).append(times)
+    return found
+
+
+def story() -> dict[str, Any]:
+    """Who takes whom as parent, when, in periods since the cut (0 = before it)."""
+    result = simulated(tables(SHOWN_K, 1, True), 1)
+    graph = result.plan.graph
+    changes = parent_changes(result)
+    events = []
+    for time, cell, old, new in zip(
+        changes.time_us, changes.cell, changes.old, changes.new, strict=True
+    ):
+        at = max(0.0, (float(time) / 1e6 - CUT_S) * HZ)
+        hops = [
+            _name(graph, int(graph.peer[4 * int(cell) + int(port)])) if port >= 0 else ""
+            for port in (old, new)
+        ]
+        events.append([round(at, 3), graph.label(int(cell)), *hops])
+    return {"events": events}
+
+
+def _name(graph: Any, end: int) -> str:
+    node = graph.node_of(end)
+    return f"PC {graph.port_of(end)}" if node == graph.sink else str(graph.label(node))
+
+
+def draw(results: Results, quick: bool) -> Figure:
+    """The network at five moments, and the timeline below."""
+    events = results[f"fig5 story k={SHOWN_K}"]["events"]
+    figure = style.figure(style.WIDE_IN, 3.1)
+    top, bottom = figure.subfigures(2, 1, height_ratios=(0.8, 1), squeeze=False).flat
+    for i, (ax, title) in enumerate(zip(top.subplots(1, 5), STEPS, strict=True)):
+        _network(ax, events, 0.0 if i == 0 else SHOWN_K + i - 1.0)
+        ax.set_title(title, fontsize=7.5)
+    _timeline(bottom.subplots(), events)
+    return figure
+
+
+def _network(ax: Axes, events: list[Any], until: float) -> None:
+    parent = {}
+    for at, cell, _, new in events:
+        if at <= until + 0.01:
+            parent[cell] = new
+    for a, b in LINKS:
+        here, there = (PLACES[_plain(name)] for name in (a, b))
+        cut = a == "pc.0"
+        ax.plot(
+            *zip(here, there, strict=True),
+            color=style.VERMILION if cut else style.FAINT,
+            ls=":" if cut else "-",
+            lw=1.2,
+            zorder=1,
+        )
+    ax.plot(0, 1.5, "x", color=style.VERMILION, ms=6, mew=1.6, zorder=5)
+    for name, (x, y) in PLACES.items():
+        is_pc = name.startswith("PC")
+        lost = not is_pc and not parent.get(name)
+        face = style.INK if is_pc else (style.ORANGE if lost else style.PALE)
+        ax.plot(x, y, "s" if is_pc else "o", ms=12.5, mfc=face, mec=style.INK, mew=0.7, zorder=3)
+        words = name.replace("PC ", "PC") if is_pc else name
+        colour = "white" if is_pc else style.INK
+        ax.text(x, y, words, ha="center", va="center", fontsize=5, color=colour, zorder=4)
+        if not is_pc and not lost:
+            _arrow(ax, PLACES[name], PLACES[parent[name]], name in ("n1", "n2", "n3", "n4"))
+        if lost:
+            ax.text(x - 0.33, y + 0.33, "∞", fontsize=7, ha="right", va="center")
+    ax.set_xlim(-0.65, 3.35)
+    ax.set_ylim(-0.5, 2.5)
+    ax.set_aspect("equal")
+    ax.axis("off")
+
+
+def _arrow(ax: Axes, here: tuple[float, float], there: tuple[float, float], strong: bool) -> None:
+    ax.annotate(
+        "",
+        there,
+        here,
+        arrowprops={
+            "arrowstyle": "-|>",
+            "color": style.BLUE if strong else style.SOFT,
+            "lw": 1.3,
+            "shrinkA": 6,
+            "shrinkB": 6,
+            "mutation_scale": 7,
+        },
+        zorder=2,
+    )
+
+
+def _plain(name: str) -> str:
+    return name.replace("pc.", "PC ")
+
+
+def _timeline(ax: Axes, events: list[Any]) -> None:
+    lanes = ("n1", "n2", "n3", "n4")
+    k = SHOWN_K
+    for lane, name in enumerate(lanes):
+        y = len(lanes) - 1 - lane
+        ax.axhline(y, color=style.FAINT, lw=0.6, zorder=0)
+        lost_at: float | None = None
+        for at, cell, old, new in events:
+            if cell != name or at <= 0:
+                continue
+            if new:
+                if lost_at is not None:
+                    ax.plot([lost_at, at], [y, y], color=style.ORANGE, lw=5, alpha=0.5)
+                ax.plot(at, y, "o", color=style.BLUE, ms=5)
+                words = f"takes {new}"
+            else:
+                lost_at = at
+                ax.plot(at, y, "s", color=style.ORANGE, ms=5)
+                words = "finds the cable broken, says ∞" if old == "PC 0" else "says ∞"
+            ax.text(at + 0.09, y + 0.2, words, fontsize=6.5, va="bottom")
+    ax.axvline(0, color=style.VERMILION, lw=1)
+    ax.text(0.08, 3.45, "cable n1 - PC0 fails", fontsize=6.5, color=style.VERMILION)
+    ax.annotate(
+        "",
+        (k, -0.55),
+        (0, -0.55),
+        arrowprops={
+            "arrowstyle": "<->",
+            "color": style.SOFT,
+            "lw": 0.8,
+            "shrinkA": 0,
+            "shrinkB": 0,
+        },
+    )
+    ax.text(k / 2, -0.47, f"k = {k} beacons missed", fontsize=6.5, ha="center", va="bottom")
+    ax.set_yticks(range(len(lanes)), lanes[::-1])
+    ax.set_xticks(range(k + 4), [str(i) for i in range(k)] + ["k", "k+1", "k+2", "k+3"])
+    ax.set_xlim(-0.15, k + 4.1)
+    ax.set_ylim(-0.75, 3.8)
+    ax.grid(axis="y", visible=False)
+    ax.set_xlabel("beacon periods $T_b$ since the failure")
+
+
+def judge(results: Results, quick: bool) -> list[Claim]:
+    """Exactly k+3 in lock-step; what free-running cells do."""
+    found = {
+        name: [
+            (float(k), detected, converged)
+            for k, runs in results[_key(name, quick)].items()
+            for detected, converged in runs
+        ]
+        for name in CASES
+    }
+    lock = [round(c - k, 2) for k, _, c in found["lock-step, M = 1"]]
+    late = [round(c - k, 2) for k, _, c in found["lock-step, M = min(k, 5)"]]
+    free = [c - k for k, _, c in found["free running, M = 1"]]
+    line = {
+        least: [c - d for k, d, c in found["line of depth 4, free running"] if (k == 2) == least]
+        for least in (True, False)
+    }
+    return [
+        Claim(
+            "5",
+            "a single broken connection converges after exactly (k+3) T",
+            f"k+{min(lock):.2f} to k+{max(lock):.2f} T in {len(lock)} runs, k {joined(ks(quick))}",
+            verdict(min(lock) == max(lock) == 3.0, "E20"),
+            "cells in lock-step, beacons not delayed, M = 1 as printed, the failure at a tick",
+        ),
+        Claim(
+            "5",
+            "the same with M = min(k, 5)",
+            f"k+{min(late):.0f} to k+{max(late):.0f} T in {len(late)} runs",
+            verdict(max(late) == 3.0, "E20"),
+            "F3: while k = M the number that lets n2 switch may come one period later",
+        ),
+        Claim(
+            "5",
+            "the same graph with free-running cells",
+            f"k{min(free):+.2f} to k{max(free):+.2f} T, mean k{sum(free) / len(free):+.2f} T",
+            verdict(all(abs(x - 3) < 0.01 for x in free)),
+            "E21: the wait on the way out and the wait back over a link are one period together",
+        ),
+        Claim(
+            "5",
+            "free running on a line of depth 4, k >= 3: detection and exactly 3 T",
+            f"detection + {min(line[False]):.3f} to {max(line[False]):.3f} T in "
+            f"{len(line[False])} runs; k = 2: up to {max(line[True]):.3f} T",
+            verdict(all(abs(x - 3) < 0.01 for x in line[False]), "E21"),
+            "drift and latency next to none; with k = 2 the newer number from the other interface "
+            "may not have come as far as the border yet",
+        ),
+    ]
+
+
+EXPERIMENT = Experiment(
+    "fig5",
+    "Fig. 5: worst case of a single broken connection",
+    "A graph that meets the caption of the paper's figure, cells in lock-step. Arrows: parents; "
+    "orange: no route, the cell announces an infinite distance; k = 5.",
+    points,
+    draw,
+    judge,
+)

@@ -1,0 +1,144 @@
+"""A skin at any moment of a run, put together again from the run's rows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from innervate.networks.skin.analysis import load, recovery, rows
+from innervate.networks.skin.analysis.rows import Numbers
+from innervate.networks.skin.protocol.constants import NONE, PORTS
+from innervate.networks.skin.scenario.plan import CUT, KILL, RESTART, RESTORE, REVIVE, Fault
+
+Flags = np.ndarray[Any, np.dtype[np.bool_]]
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """The skin at one moment.
+
+    Attributes:
+        time_us: when.
+        parent: parent port of every cell, -1 none.
+        hop: node on the parent port's cable; -1 without a parent or where that cable is down.
+        server: interface port that a cell's data leave through; -1 without a route.
+        down: lower ends of the cables that are cut or have a dead end.
+        dead: cells that are switched off.
+    """
+
+    time_us: int
+    parent: Numbers
+    hop: Numbers
+    server: Numbers
+    down: frozenset[int]
+    dead: frozenset[int]
+
+
+class History:
+    """Looks up any moment of a run."""
+
+    def __init__(self, result: Any) -> None:
+        self.result = result
+        self.graph = result.plan.graph
+        self._changes = rows.parent_changes(result)
+        self._marks = rows.marks(result)
+        self._steps = rows.unrouted_steps(result)
+        self._faults: dict[int, Fault] = {fault.index: fault for fault in result.plan.faults}
+
+    def steps(self) -> tuple[Numbers, Numbers]:
+        """(times in us, connected cells without a route from then on)."""
+        return self._steps.time_us, self._steps.cells
+
+    def unrouted_max(self, first_us: int, last_us: int) -> tuple[int, int]:
+        """(when, how many) most cells lacked a route, within first_us <= t <= last_us."""
+        inside = (self._steps.time_us >= first_us) & (self._steps.time_us <= last_us)
+        places = np.flatnonzero(inside)
+        if len(places) == 0:
+            return first_us, 0
+        worst = places[int(np.argmax(self._steps.cells[places]))]
+        return int(self._steps.time_us[worst]), int(self._steps.cells[worst])
+
+    def unrouted_at(self, time_us: int) -> int:
+        """Connected cells without a route at a time."""
+        behind = int(np.searchsorted(self._steps.time_us, time_us, "right"))
+        return int(self._steps.cells[behind - 1]) if behind else 0
+
+    def first_below(self, first_us: int, last_us: int, limit: float) -> tuple[int, int]:
+        """(when, how many) no more than `limit` cells lacked a route for the first time."""
+        inside = (self._steps.time_us >= first_us) & (self._steps.time_us <= last_us)
+        places = np.flatnonzero(inside & (self._steps.cells <= limit))
+        if len(places) == 0:
+            return last_us, self.unrouted_at(last_us)
+        return int(self._steps.time_us[places[0]]), int(self._steps.cells[places[0]])
+
+    def at(self, time_us: int) -> Moment:
+        """The skin after everything that happened up to and including `time_us`."""
+        graph = self.graph
+        down, dead, lost = self._damage(time_us)
+        behind = int(np.searchsorted(self._changes.time_us, time_us, "right"))
+        parent = np.full(graph.cells, NONE, np.int64)
+        # Of several values for one place NumPy keeps the last.
+        parent[self._changes.cell[:behind]] = self._changes.new[:behind]
+        changed = np.full(graph.cells, -1, np.int64)
+        changed[self._changes.cell[:behind]] = self._changes.row[:behind]
+        for cell, row in lost.items():
+            if changed[cell] < row:
+                parent[cell] = NONE
+        live = parent.copy()
+        for end in down:
+            for one in (end, graph.peer[end]):
+                cell, port = divmod(one, PORTS)
+                if cell < graph.cells and live[cell] == port:
+                    live[cell] = NONE
+        hop = recovery.next_hops(graph, live)
+        server = load.interfaces_along(graph, live)
+        return Moment(time_us, parent, hop, server, frozenset(down), frozenset(dead))
+
+    def _damage(self, time_us: int) -> tuple[set[int], set[int], dict[int, int]]:
+        """Cables down and cells dead at a time, and the rows at which cells lost their memory."""
+        reasons: dict[int, int] = {}
+        dead: set[int] = set()
+        lost: dict[int, int] = {}
+        for place in np.flatnonzero(self._marks.time_us <= time_us).tolist():
+            fault = self._faults.get(int(self._marks.event[place]))
+            if fault is None:
+                continue
+            row = int(self._marks.row[place])
+            if fault.action in (CUT, RESTORE):
+                self._shift(reasons, fault.end, 1 if fault.action == CUT else -1)
+            elif fault.action == KILL and fault.node not in dead:
+                dead.add(fault.node)
+                self._shift_all(reasons, fault.node, 1)
+                lost[fault.node] = row
+            elif fault.action == REVIVE and fault.node in dead:
+                dead.discard(fault.node)
+                self._shift_all(reasons, fault.node, -1)
+            elif fault.action == RESTART:
+                lost[fault.node] = row
+        lost.pop(self.graph.sink, None)
+        return {end for end, count in reasons.items() if count > 0}, dead, lost
+
+    def _shift_all(self, reasons: dict[int, int], node: int, by: int) -> None:
+        for end in self.graph.ends_of(node):
+            if self.graph.peer[end] >= 0:
+                self._shift(reasons, end, by)
+
+    def _shift(self, reasons: dict[int, int], end: int, by: int) -> None:
+        """A cable is down for as long as it has a reason to be."""
+        cable = min(end, self.graph.peer[end])
+        reasons[cable] = max(0, reasons.get(cable, 0) + by)
+
+
+def hops_of(moment: Moment, sink: int) -> Numbers:
+    """Hops of every cell along its chain of parents; 0 where the chain does not reach the PC."""
+    cells = len(moment.hop)
+    nowhere = cells + 1
+    jump = np.concatenate([moment.hop, [sink, nowhere]])
+    jump[jump < 0] = nowhere
+    steps = np.concatenate([np.ones(cells, np.int64), [0, 0]])
+    for _ in range(max(1, cells.bit_length())):
+        steps = steps + steps[jump]
+        jump = jump[jump]
+    return np.where(moment.server >= 0, steps[:cells], 0)

@@ -1,0 +1,210 @@
+"""The part of a report that is about skins."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from innervate.networks.skin.plot.map import CELLS_MAX, shows_depth
+from innervate.networks.skin.plot.story import Panel, Story
+from innervate.plot import svg, words
+from innervate.plot.page import element, figure, keys, pictures, section, table, tiles
+from innervate.plot.theme import SHADES
+
+SENTENCES_MAX = 3
+ROWS_MAX = 200
+BROKEN_MAX = 12
+
+
+def body(result: Any, summary: Mapping[str, Any]) -> str:
+    """Headline, status, numbers and pictures of a skin's run, as HTML."""
+    story = Story(result, summary)
+    return "\n".join(
+        part
+        for part in (
+            _top(story),
+            _recovery(story),
+            _touch(story),
+            _traffic(story),
+            _events(story),
+        )
+        if part
+    )
+
+
+def _top(story: Story) -> str:
+    summary, graph = story.summary, story.graph
+    over = (
+        f"{summary['name']}: a robot skin of {words.number_of(graph.cells, 'cell')}, "
+        f"{words.number_of(graph.interfaces, 'interface port')}, at most "
+        f"{words.number_of(summary['depth_max'], 'hop')} deep; {summary['duration_s']:g} s, "
+        f"seed {summary['seed']}"
+    )
+    sentences = _sentences(story)
+    parts = [element("p", over, "over"), element("h1", sentences[0])]
+    parts += [element("p", sentence) for sentence in sentences[1:]]
+    if "interrupted_at_s" in summary:
+        early = f"Ended early, at {summary['interrupted_at_s']:.3f} s of simulated time."
+        parts.append(element("p", early, "status bad"))
+    parts += [_broken(summary), tiles(_figures(story))]
+    return "<header>\n" + "".join(parts) + "</header>"
+
+
+def _sentences(story: Story) -> list[str]:
+    """The worst event first, then others in order of time."""
+    lines = story.headlines()
+    if not lines:
+        routed = story.summary["start_up"]["routed_ms"]
+        if routed is None:
+            return ["Not every cell found a way to the PC."]
+        return [f"Nothing was broken; every cell had a way {words.ms_words(routed)} after start."]
+    hero = story.hero
+    first = story.incidents.index(hero) if hero is not None else 0
+    others = [line for i, line in enumerate(lines) if i != first]
+    more = len(others) - SENTENCES_MAX
+    tail = [f"And {words.number_of(more, 'more event')}, listed below."] if more > 0 else []
+    return [lines[first], *others[:SENTENCES_MAX], *tail]
+
+
+def _broken(summary: Mapping[str, Any]) -> str:
+    """Which cable is broken, and since when: the first question of every skin lab."""
+    broken = summary["broken"]
+    if not broken:
+        return element("p", "No cable is broken at the end.", "status")
+    lines = words.broken_cables(broken)
+    shown = lines[:BROKEN_MAX]
+    if len(lines) > BROKEN_MAX:
+        shown.append(f"and {len(lines) - BROKEN_MAX} more, listed under All numbers")
+    head = f"Broken at the end: {shown[0]}" if len(shown) == 1 else "Broken at the end:"
+    items = "".join(element("li", line) for line in shown) if len(shown) > 1 else ""
+    inside = f"{svg.clean(head)}{f'<ul>{items}</ul>' if items else ''}"
+    return f'<div class="status bad">{inside}</div>'
+
+
+def _figures(story: Story) -> list[tuple[str, str]]:
+    summary = story.summary
+    data, found = summary["data"], []
+    if data["sent"]:
+        found.append((words.share_words(1 - data["loss_ratio"]), "of the samples not lost"))
+    if summary["balance_factor"] is not None and len(summary["port_loads"]) > 1:
+        found.append((f"{summary['balance_factor']:.3f}", "balance of the ports, 1 is even"))
+    if summary["beacon_share"] is not None:
+        found.append((words.share_words(summary["beacon_share"]), "of the wire goes to beacons"))
+    loops = summary["loops"]
+    longest = loops["longest_ms"]
+    note = (
+        f"forwarding loops, the longest {words.stood_words(longest)}"
+        if longest is not None
+        else "forwarding loops"
+    )
+    found.append((f"{loops['episodes']:,}", note))
+    took = f"{summary['wall_s']:.2g} s" if summary["wall_s"] >= 0.01 else "10 ms"
+    count = words.count_words(summary["events"])
+    done_s = summary.get("interrupted_at_s", summary["duration_s"])
+    found.append((took, f"to simulate {done_s:.4g} s, {count} events"))
+    return found
+
+
+def _recovery(story: Story) -> str:
+    panels = story.maps()
+    columns = "four" if len(panels) > 1 and not story.sheet.wide else "two"
+    maps = pictures([_figure(panel) for panel in panels], columns)
+    charts = [_figure(panel) for panel in (*story.zooms(), *story.overview())]
+    head = "The recovery" if story.hero is not None else "The skin"
+    return section(head, maps + keys(legend(story)) + pictures(charts, "two"))
+
+
+def _touch(story: Story) -> str:
+    images = story.images()
+    if not images:
+        return ""
+    period = words.ms_words(story.plan.data_period_us / 1e3)
+    entries = [(_icon("none", crossed=True), "nothing received in that time")]
+    text = f"Every cell measures once in {period}; shown is what came in 1.25 times that."
+    if story.plan.touch is not None:
+        force = story.plan.touch.force_mn / 1e3
+        entries.insert(0, (_ramp("h"), f"0 to {force:g} N"))
+        entries.append((_icon("touch", circle=True), "where the touch really is"))
+    shown = pictures([_figure(p) for p in images], "two" if story.sheet.wide else "three")
+    return section(
+        "Touch as the PC received it", element("p", text, "note") + shown + keys(entries)
+    )
+
+
+def _traffic(story: Story) -> str:
+    panels: list[Panel | None] = [story.loads(), story.losses()]
+    return section(
+        "Load and losses",
+        pictures([_figure(panel) for panel in panels if panel is not None], "two"),
+    )
+
+
+def _events(story: Story) -> str:
+    rows = []
+    for incident in story.incidents[:ROWS_MAX]:
+        recovery = incident.recovery
+        times = [_ms(recovery[key]) for key in ("detected_ms", "routed_ms", "converged_ms")]
+        if recovery["routed_ms"] == 0:
+            times[1] = "had one all the time"
+        what = svg.clean(words.fault_words(story.graph, incident.fault))
+        rows.append((f"{recovery['at_s']:.3f} s", what, str(recovery["cut_cells"]), *times))
+    if not rows:
+        return ""
+    head = ("at", "what", "cells behind it", "noticed after", "all had a way after",
+            "last change after")  # fmt: skip
+    more = len(story.incidents) - len(rows)
+    note = element("p", f"And {more} more, in summary.json.", "note") if more > 0 else ""
+    return section("Events", table(head, rows) + note)
+
+
+def _ms(value: float | None) -> str:
+    return "-" if value is None else words.ms_words(value)
+
+
+def _figure(panel: Panel) -> str:
+    return figure(panel.drawing, panel.head, panel.text)
+
+
+def legend(story: Story) -> list[tuple[svg.Drawing, str]]:
+    """What the colours and lines of the maps mean: samples with words."""
+    interfaces, cells = story.graph.interfaces, story.graph.cells
+    if cells > CELLS_MAX:
+        return [
+            (_ramp("d"), "mean hops to the PC, few to many; a square stands for several cells"),
+            (_icon("none", crossed=True), "some or all of its cells have no way to the PC"),
+        ]
+    entries: list[tuple[svg.Drawing, str]] = []
+    if shows_depth(interfaces):
+        entries.append((_ramp("d"), "hops to the PC, few to many"))
+    else:
+        entries += [(_icon(f"cell p{i}"), f"served by port {i}") for i in range(interfaces)]
+    entries.append((_icon("tree", line=True), "to the parent"))
+    entries.append((_icon("none", crossed=True), "no way to the PC"))
+    if story.incidents:
+        entries.append((_icon("cut", line=True), "cut cable"))
+    return entries
+
+
+def _icon(
+    kind: str, crossed: bool = False, line: bool = False, circle: bool = False
+) -> svg.Drawing:
+    """A small sample for a legend."""
+    drawing = svg.Drawing(22, 18, "")
+    if line:
+        drawing.path("M2,9h18", kind)
+        return drawing
+    if circle:
+        drawing.circle((11, 9), 7, kind)
+        return drawing
+    corners = [(0, -8), (7, -4), (7, 4), (0, 8), (-7, 4), (-7, -4)]
+    drawing.path(svg.polygon(11, 9, corners), kind)
+    if crossed:
+        drawing.path(svg.cross(11, 9, 2.6), "lack")
+    return drawing
+
+
+def _ramp(letter: str) -> svg.Drawing:
+    drawing = svg.Drawing(8 * SHADES, 14, "")
+    for i in range(SHADES):
+        drawing.rect((8 * i, 1), (8, 12), f"{letter}{i}")
+    return drawing

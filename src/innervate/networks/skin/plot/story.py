@@ -1,0 +1,270 @@
+"""Which moments of a run are worth a picture, and the pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from innervate.networks.skin.analysis import touch
+from innervate.networks.skin.plot import map as skinmap
+from innervate.networks.skin.plot.history import History
+from innervate.networks.skin.plot.sheet import Sheet
+from innervate.networks.skin.scenario.plan import ACTIONS, Fault
+from innervate.plot import charts, svg, words
+
+WINDOW_PERIODS = 1.25
+ZOOMS_MAX = 6
+OUTAGE_US = 1000
+MARKS_MAX = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """A drawing with its caption."""
+
+    drawing: svg.Drawing
+    head: str
+    text: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Incident:
+    """An event of the scenario with what came of it.
+
+    Attributes:
+        fault: what happened.
+        recovery: its entry in the summary.
+        until_us: when the next event came, or the run ended.
+    """
+
+    fault: Fault
+    recovery: Mapping[str, Any]
+    until_us: int
+
+    @property
+    def at_us(self) -> int:
+        """When it happened."""
+        return round(1e6 * float(self.recovery["at_s"]))
+
+    @property
+    def routed_us(self) -> int:
+        """When all cells had a route again; the last moment before `until_us` if never."""
+        routed_ms = self.recovery["routed_ms"]
+        if routed_ms is None:
+            return max(self.at_us, self.until_us - 1)
+        return self.at_us + round(1e3 * float(routed_ms))
+
+
+class Story:
+    """A run of a skin, as pictures are made from it."""
+
+    def __init__(self, result: Any, summary: Mapping[str, Any]) -> None:
+        self.result = result
+        self.plan = result.plan
+        self.graph = result.plan.graph
+        self.summary = summary
+        self.history = History(result)
+        self.incidents = self._incidents()
+
+    def _incidents(self) -> list[Incident]:
+        recoveries = self.summary["recoveries"]
+        starts = [round(1e6 * recovery["at_s"]) for recovery in recoveries]
+        ends = [*starts, self.result.ended_us][1:]
+        faults = self.plan.faults[: len(recoveries)]
+        return [Incident(*three) for three in zip(faults, recoveries, ends, strict=True)]
+
+    @cached_property
+    def sheet(self) -> Sheet:
+        """Where everything lies on maps of routes."""
+        return Sheet(self.graph)
+
+    @cached_property
+    def bare_sheet(self) -> Sheet:
+        """Where the cells lie on pictures of touch."""
+        return Sheet(self.graph, margin=18.0)
+
+    @cached_property
+    def hero(self) -> Incident | None:
+        """The event that cut off most cells; None if none did."""
+        hurt = [i for i in self.incidents if i.recovery["cut_cells"]]
+        return max(hurt, key=lambda i: i.recovery["cut_cells"], default=None)
+
+    def headlines(self) -> list[str]:
+        """One sentence for each event."""
+        return [self.headline(incident) for incident in self.incidents]
+
+    def headline(self, incident: Incident) -> str:
+        """An event and what came of it."""
+        who = words.number_of(self.history.unrouted_at(incident.until_us - 1), "cell")
+        still = f"{who} still had no way to the PC {self._then(incident)}"
+        return words.headline(self.graph, incident.fault, incident.recovery, still)
+
+    def _then(self, incident: Incident) -> str:
+        last = incident.until_us >= self.result.ended_us
+        return "at the end" if last else "when the next event came"
+
+    def maps(self) -> list[Panel]:
+        """Routes before, during and after the worst event; without one, at the end."""
+        hero = self.hero
+        if hero is None:
+            return [self._map(self.result.ended_us, "At the end")]
+        (before, time_us), *later = self.moments()
+        return [
+            self._map(time_us, before),
+            *(self._map(time_us, head, self._lacking(hero, time_us)) for head, time_us in later),
+        ]
+
+    def moments(self) -> list[tuple[str, int]]:
+        """(name, time in us) of the moments of the worst event; none if no event was bad."""
+        hero = self.hero
+        if hero is None:
+            return []
+        worst_us, most = self.history.unrouted_max(hero.at_us, hero.routed_us)
+        half_us = self.history.first_below(worst_us, hero.routed_us, most / 2)[0]
+        left = self.history.unrouted_at(hero.routed_us)
+        return [
+            ("Before", hero.at_us - 1),
+            ("The worst moment", worst_us),
+            ("On the way back", half_us),
+            ("Afterwards" if left == 0 else f"Still so {self._then(hero)}", hero.routed_us),
+        ]
+
+    def _lacking(self, hero: Incident, time_us: int) -> str:
+        count = self.history.unrouted_at(time_us)
+        when = f"{words.ms_words((time_us - hero.at_us) / 1e3)} after the event"
+        who = words.number_of(count, "cell") if count else "no cell"
+        return f"{when}: {who} without a way"
+
+    def _map(self, time_us: int, head: str, text: str = "") -> Panel:
+        moment = self.history.at(time_us)
+        drawing = skinmap.route_map(self.sheet, moment, f"Routes of the skin: {head} {text}")
+        return Panel(drawing, head, text)
+
+    def zooms(self) -> list[Panel]:
+        """Cells without a route round each event that cost some of them theirs."""
+        hurt = [i for i in self.incidents if self._is_outage(i)]
+        return [self._zoom(incident) for incident in hurt[:ZOOMS_MAX]]
+
+    def _is_outage(self, incident: Incident) -> bool:
+        lasted_us = incident.routed_us - incident.at_us
+        most = self.history.unrouted_max(incident.at_us, incident.until_us - 1)[1]
+        return most > 0 and lasted_us >= OUTAGE_US
+
+    def _zoom(self, incident: Incident) -> Panel:
+        recovery, start = incident.recovery, incident.at_us
+        marks = [charts.Mark(0.0, ACTIONS[incident.fault.action])]
+        reach = (incident.routed_us - start) / 1e3
+        for key, name in (("detected_ms", "noticed"), ("routed_ms", "all routed")):
+            if recovery[key] is not None and recovery[key] > 0:
+                reach = max(reach, recovery[key])
+                marks.append(charts.Mark(recovery[key], f"{name} {words.ms_words(recovery[key])}"))
+        reach = max(reach, 1.0)
+        times, cells = self.history.steps()
+        inside = self.history.unrouted_max(start, start + round(1e3 * reach))[1]
+        x = charts.Axis(-0.12 * reach, 1.6 * reach, "ms after the event")
+        y = charts.Axis(0.0, 1.08 * max(inside, 1))
+        label = self.headline(incident)
+        drawing = charts.step_chart((times - start) / 1e3, cells, x, y, marks, label)
+        what = words.fault_words(self.graph, incident.fault)
+        text = f"{what[0].upper()}{what[1:]} at {start / 1e6:.3f} s."
+        return Panel(drawing, "Cells without a way to the PC", text)
+
+    def overview(self) -> list[Panel]:
+        """The whole run: cells without a route, samples received."""
+        times, cells = self.history.steps()
+        end_s = max(self.result.ended_us, 1) / 1e6
+        x = charts.Axis(0.0, end_s, "seconds")
+        marks = [
+            charts.Mark(i.at_us / 1e6, ACTIONS[i.fault.action]) for i in self.incidents[:MARKS_MAX]
+        ]
+        most = 1.08 * max(int(cells.max(initial=0)), 1)
+        y = charts.Axis(0.0, most)
+        head = "Cells without a way to the PC, whole run"
+        panels = [Panel(charts.step_chart(times / 1e6, cells, x, y, marks, head, 165.0), head)]
+        received = self._received(x, marks)
+        return panels + ([received] if received else [])
+
+    def _received(self, x: charts.Axis, marks: list[charts.Mark]) -> Panel | None:
+        """Samples received in each sample period, as a share of the cells."""
+        period, times = self.plan.data_period_us, self.result.deliveries["time"]
+        if not period or len(times) == 0:
+            return None
+        width = max(period, self.result.ended_us // 400)
+        bins = max(1, self.result.ended_us // width)
+        count = np.bincount(np.minimum(times // width, bins), minlength=bins + 1)[:bins]
+        share = 100.0 * count / (self.graph.cells * width / period)
+        y = charts.Axis(0.0, 1.08 * max(100.0, float(share.max())))
+        at = np.arange(bins) * width / 1e6
+        head = "Tactile samples received, whole run"
+        text = f"In % of what all cells measure, in steps of {words.ms_words(width / 1e3)}."
+        return Panel(charts.step_chart(at, share, x, y, marks, head, 165.0), head, text)
+
+    def images(self) -> list[Panel]:
+        """What the PC received before, during and after the worst event."""
+        period = self.plan.data_period_us
+        if not period or len(self.result.deliveries) == 0:
+            return []
+        window_us = round(WINDOW_PERIODS * period)
+        hero = self.hero
+        if hero is None:
+            return [self._image(self.result.ended_us, window_us, "At the end")]
+        after_us = min(hero.routed_us + window_us + 5000, hero.until_us, self.result.ended_us)
+        return [
+            self._image(hero.at_us, window_us, "Before"),
+            self._image(hero.routed_us, window_us, "During the recovery"),
+            self._image(after_us, window_us, "After"),
+        ]
+
+    def _image(self, time_us: int, window_us: int, head: str) -> Panel:
+        image = touch.received_image(self.result, time_us / 1e6, window_us / 1e6)
+        force_n = np.where(image.known, image.force_mn / 1e3, np.nan)
+        missing = int(np.count_nonzero(~image.known))
+        text = "all samples came"
+        if missing:
+            text = f"nothing from {missing:,} of {words.number_of(self.graph.cells, 'cell')}"
+        pressed = self.plan.touch
+        most = pressed.force_mn / 1e3 if pressed is not None else 1.0
+        label = f"Touch as the PC received it: {head}, {text}"
+        drawing = skinmap.value_map(self.bare_sheet, force_n, most, label, " N")
+        if pressed is not None and len(pressed.x_um):
+            at = min(max(0, time_us - window_us // 2) // pressed.step_us, len(pressed.x_um) - 1)
+            place = (pressed.x_um[at] / 1e3, pressed.y_um[at] / 1e3)
+            skinmap.touch_ring(drawing, self.bare_sheet, *place, pressed.radius_um / 1e3)
+        return Panel(drawing, head, text)
+
+    def loads(self) -> Panel | None:
+        """Cells that each interface port serves at the end."""
+        loads = self.summary["port_loads"]
+        if not loads:
+            return None
+        bars = [
+            charts.Bar(f"port {i}", load, f"{load:,} cells", f"p{i % 8}" if self._tells else "bar")
+            for i, load in enumerate(loads)
+        ]
+        even = sum(loads) / len(loads) if len(loads) > 1 else None
+        drawing = charts.bar_chart(bars, "Cells served by each interface port at the end", even)
+        factor = self.summary["balance_factor"]
+        text = f"Balance factor {factor:.3f}; 1 is even." if factor is not None else ""
+        return Panel(drawing, "Cells behind each interface port", text)
+
+    @property
+    def _tells(self) -> bool:
+        return not skinmap.shows_depth(self.graph.interfaces)
+
+    def losses(self) -> Panel | None:
+        """Where samples were lost."""
+        data = self.summary["data"]
+        lost = {k: n for k, n in data.get("lost_by", {}).items() if n}
+        if not lost:
+            return None
+        bars = [
+            charts.Bar(words.LOST.get(reason, reason), count, f"{count:,}")
+            for reason, count in sorted(lost.items(), key=lambda item: -item[1])
+        ]
+        drawing = charts.bar_chart(bars, "Lost samples by reason")
+        total = f"{data['lost']:,} of {data['sent']:,} samples were lost"
+        return Panel(drawing, "Where samples were lost", f"{total}.")

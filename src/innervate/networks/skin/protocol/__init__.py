@@ -1,0 +1,1 @@
+"""The protocol of a skin: its state machines and what they declare."""

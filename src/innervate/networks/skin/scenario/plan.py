@@ -1,0 +1,202 @@
+"""The plan of a run: the graph and whole numbers only. Floats end here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import ceil, floor
+
+from innervate.networks.skin.scenario.graph import build_graph, check_reach
+from innervate.networks.skin.scenario.model import EventTable, ProtocolTable, SkinScenario
+from innervate.networks.skin.scenario.rules import ONE
+from innervate.networks.skin.scenario.script import Step, steps
+from innervate.networks.skin.scenario.targets import Damage, target
+from innervate.networks.skin.scenario.touch import Touch, sample
+from innervate.scenario.load import Scenario
+from innervate.scenario.source import Source
+from innervate.topology import Graph
+from innervate.trace.streams import Stream, stream
+
+WIRE_US = 60  # a frame of 240 bit at 4 Mbit/s [skin 2]
+K = 5
+DEPTH_EXPECTED = 32  # MAXD' [skin 4]
+DATA_CELLS_MAX = 65_536
+LOSS_ONE = 32_768
+
+RULES = ("feasible", "strict", "paper", "static")
+UPDATES = ("periodic", "triggered", "wave")
+ACTIONS = ("cut", "restore", "kill", "revive", "loose", "restart", "lose")
+CUT, RESTORE, KILL, REVIVE, LOOSE, RESTART, LOSE = range(7)
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One event of a run.
+
+    Attributes:
+        at_us: when, true time, us.
+        action: CUT, RESTORE, KILL, REVIVE, LOOSE, RESTART or LOSE.
+        end: one end of the cable it happens to; -1 for kill, revive and restart.
+        node: the node it happens to (the PC is node `cells`); -1 for cables.
+        loss_q15: for LOOSE the loss on both directions in 1/32768; else 0.
+        frames: for LOSE how many frames are lost on the cable; else 0.
+        index: the event's place in the scenario file.
+    """
+
+    at_us: int
+    action: int
+    end: int
+    node: int
+    loss_q15: int
+    frames: int
+    index: int
+
+
+@dataclass(slots=True)
+class Plan:
+    """Everything a run needs, as whole numbers.
+
+    Attributes:
+        params: the protocol's parameters (see `protocol/skin_fields.py`, PARAMS).
+        drift_ppm: clocks run up to this much fast or slow.
+        latency_us: least and greatest hop latency, wire time included, us.
+        latency_per_frame: drawn for every frame; else once for each link and direction.
+        lock_step: all nodes tick at the same moment, without drift.
+        data_period_us: between a cell's samples; 0 = no data.
+        queue_frames: data frames a port can hold.
+        wire_us: time a frame occupies the wire.
+        loss_q15: share of the frames that every cable loses, in 1/32768.
+        faults: in order of time, then of the file.
+        touch: the touch, or None.
+        script: steps that replace the clock; empty = free running.
+        depths: hops of every cell to the PC over the whole graph.
+    """
+
+    scenario: Scenario
+    graph: Graph
+    kind: str
+    seed: int
+    duration_us: int
+    params: dict[str, int]
+    drift_ppm: int
+    latency_us: tuple[int, int]
+    latency_per_frame: bool
+    lock_step: bool
+    data_period_us: int
+    queue_frames: int
+    wire_us: int = WIRE_US
+    loss_q15: int = 0
+    faults: list[Fault] = field(default_factory=list)
+    touch: Touch | None = None
+    script: tuple[Step, ...] = ()
+    depths: list[int] = field(default_factory=list)
+
+    @property
+    def depth_max(self) -> int:
+        """Hops of the deepest cell."""
+        return max(self.depths)
+
+
+def plan(scenario: Scenario) -> Plan:
+    """The plan of a scenario: same scenario and seed, same plan, on any machine.
+
+    Raises:
+        ScenarioError: the scenario's network cannot be built, is too deep or too large.
+    """
+    model, source = scenario.model, scenario.source
+    graph = build_graph(scenario)
+    depths = graph.depths().tolist()
+    check_reach(source, graph, depths, model.protocol.max_depth)
+    if model.data.rate_hz and graph.cells > DATA_CELLS_MAX:
+        message = f"{graph.cells:,} cells cannot send data: a data frame numbers {DATA_CELLS_MAX:,}"
+        raise source.error(("data", "rate_hz"), f"{message}; set data.rate_hz = 0")
+    return Plan(
+        scenario=scenario,
+        graph=graph,
+        kind=scenario.kind,
+        seed=scenario.seed,
+        duration_us=max(1, _micros(model.duration_s)),
+        params=parameters(model.protocol, max(depths)),
+        drift_ppm=0 if model.timing.lock_step else model.timing.drift_ppm,
+        latency_us=model.timing.hop_latency_us,
+        latency_per_frame=model.timing.latency == "per_frame",
+        lock_step=model.timing.lock_step,
+        data_period_us=_period_us(model.data.rate_hz) if model.data.rate_hz else 0,
+        queue_frames=model.data.queue,
+        loss_q15=round(_exact(model.timing.loss) * LOSS_ONE),
+        faults=_faults(source, graph, model),
+        touch=sample(model.touch, graph, model.duration_s) if model.touch is not None else None,
+        script=steps(source, graph, model.script) if model.script is not None else (),
+        depths=depths,
+    )
+
+
+def parameters(protocol: ProtocolTable, depth_max: int) -> dict[str, int]:
+    """The protocol's parameters [skin 5] for a skin whose deepest cell has `depth_max` hops."""
+    beacon_us = _period_us(protocol.beacon_hz)
+    if protocol.r_f is not None:
+        r_f = ceil(ONE * _exact(protocol.r_f))
+    else:
+        r_f = ceil(Fraction(ONE, protocol.k or K))
+    r_r = r_f if protocol.r_r is None else max(1, floor(ONE * _exact(protocol.r_r)))
+    k = ceil(Fraction(ONE, r_f))
+    balance = protocol.balance_periods or min(8 * depth_max, 65_535)
+    return {
+        "rule": RULES.index(protocol.rule),
+        "updates": UPDATES.index(protocol.updates),
+        "beacon_us": beacon_us,
+        "r_f": r_f,
+        "r_r": r_r,
+        "k": k,
+        "max_depth": protocol.max_depth,
+        "seq_every": protocol.m or min(k, 5),
+        "balance_periods": balance if protocol.balancing else 0,
+        "hold_periods": k + 4 * max(depth_max, DEPTH_EXPECTED),
+        "gap_us": protocol.gap_us,
+        "skip_us": beacon_us * 6 // 10,
+        "restart_us": _micros(protocol.restart_s),
+        "forward_min_us": protocol.forward_us[0],
+        "forward_max_us": protocol.forward_us[1],
+    }
+
+
+def _faults(source: Source, graph: Graph, model: SkinScenario) -> list[Fault]:
+    draws = [stream(model.seed, f"event/{index}") for index in range(len(model.event))]
+    times = [_at_us(event, draw) for event, draw in zip(model.event, draws, strict=True)]
+    damage = Damage()
+    faults = []
+    for index in sorted(range(len(times)), key=lambda i: (times[i], i)):
+        event = model.event[index]
+        end, node = target(source, graph, index, event, draws[index], damage)
+        damage.note(graph, event.action, end, node)
+        faults.append(
+            Fault(
+                at_us=times[index],
+                action=ACTIONS.index(event.action),
+                end=end,
+                node=node,
+                loss_q15=round(_exact(event.loss or 0.0) * LOSS_ONE),
+                frames=(event.frames or 1) if event.action == "lose" else 0,
+                index=index,
+            )
+        )
+    return faults
+
+
+def _at_us(event: EventTable, draw: Stream) -> int:
+    if isinstance(event.at_s, tuple):
+        return draw.uniform(_micros(event.at_s[0]), _micros(event.at_s[1]))
+    return _micros(event.at_s)
+
+
+def _exact(value: float) -> Fraction:
+    """The decimal number the user wrote, free of binary rounding."""
+    return Fraction(repr(float(value)))
+
+
+def _micros(seconds: float) -> int:
+    return round(_exact(seconds) * 1_000_000)
+
+
+def _period_us(rate_hz: float) -> int:
+    return round(1_000_000 / _exact(rate_hz))

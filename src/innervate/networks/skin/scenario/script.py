@@ -1,0 +1,96 @@
+"""[script]: steps that replace the clock, so that a counterexample is a scenario.
+
+- "tick n1": the node's period is over
+- "soon n1": its timer for a triggered beacon fires
+- "deliver n1->n2": the oldest frame under way from n1 arrives at n2; "n1.2->n2.0" says on which
+  cable
+- "lose n1->n2": that frame is lost
+- "detect n1.2": n1 misses one more beacon on its port 2, and with its next tick finds it broken
+- "draw 3": the next random choice returns 3
+- "cut n1->n2", "restore n1->n2": the cable fails, with all frames on it, or works again
+- "restart pc": the node loses its memory
+
+With `keepalive` every cable that `detect` does not name has brought something before each tick.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from innervate.networks.skin.scenario.graph import node_and_port
+from innervate.networks.skin.scenario.model import ScriptTable
+from innervate.networks.skin.scenario.targets import find_link
+from innervate.scenario.lines import Key
+from innervate.scenario.source import Source, dotted
+from innervate.topology import Graph
+
+TICK, DELIVER, STEP_LOSE, DETECT, DRAW, SOON, STEP_CUT, STEP_RESTORE, STEP_RESTART = range(9)
+STEP_NAMES = (
+    "tick", "deliver", "lose", "detect", "draw", "soon", "cut", "restore", "restart",
+)  # fmt: skip
+ON_CABLE = (DELIVER, STEP_LOSE, STEP_CUT, STEP_RESTORE)
+DRAW_MAX = 2**30 - 1
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One step.
+
+    Attributes:
+        action: TICK, SOON, DELIVER, STEP_LOSE, DETECT, DRAW, STEP_CUT, STEP_RESTORE or
+            STEP_RESTART.
+        node: who acts or receives; -1 for a draw.
+        end: where the frame was sent from (deliver, lose), one end of the cable (cut, restore) or
+            which is broken (detect); else -1.
+        value: what the draw returns, 0 .. 2^30-1.
+    """
+
+    action: int
+    node: int = -1
+    end: int = -1
+    value: int = 0
+
+
+def steps(source: Source, graph: Graph, script: ScriptTable) -> tuple[Step, ...]:
+    """The steps of a script.
+
+    Raises:
+        ScenarioError: a step that cannot be read, or names what is not there.
+    """
+    return tuple(
+        _step(source, graph, text, ("script", "steps", index))
+        for index, text in enumerate(script.steps)
+    )
+
+
+def _step(source: Source, graph: Graph, text: str, key: Key) -> Step:
+    verb, _, rest = text.strip().partition(" ")
+    rest = rest.strip()
+    if verb not in STEP_NAMES or not rest:
+        message = f'{dotted(key)}: "{text[:60]}" is no step; they are tick n, soon n, deliver a->b'
+        others = "cut a->b, restore a->b, restart n"
+        raise source.error(key, f"{message}, lose a->b, detect n.port, draw v, {others}")
+    action = STEP_NAMES.index(verb)
+    if action == DRAW:
+        if not (rest.isascii() and rest.isdigit() and len(rest) < 11 and int(rest) <= DRAW_MAX):
+            raise source.error(key, f"{dotted(key)}: draw takes a whole number below 2^30")
+        return Step(DRAW, value=int(rest))
+    if action in ON_CABLE:
+        a, arrow, b = rest.partition("->")
+        if not arrow:
+            raise source.error(key, f"{dotted(key)}: {verb} takes two nodes, like {verb} n1->n2")
+        there = node_and_port(source, graph, b, key)
+        end = find_link(graph, node_and_port(source, graph, a, key), there)
+        if end < 0:
+            raise source.error(key, f"{dotted(key)}: no cable leads from {a[:60]} to {b[:60]}")
+        return Step(action, there[0], end)
+    node, port = node_and_port(source, graph, rest, key)
+    if action in (TICK, SOON, STEP_RESTART):
+        if port >= 0:
+            raise source.error(
+                key, f"{dotted(key)}: {verb} takes a node, not a port; leave the port out"
+            )
+        return Step(action, node)
+    if port < 0 or node == graph.cells:
+        raise source.error(key, f"{dotted(key)}: detect takes a cell's port, like detect n1.2")
+    return Step(DETECT, node, graph.end(node, port))

@@ -1,0 +1,255 @@
+"""Watches the routes of a skin while it runs: who has one, which loops close, what breaks.
+
+Keeps for every cell whether its chain of parents reaches the PC over live cables. A change costs
+as much as the cells it concerns, so that it can stay on at any size.
+"""
+
+from innervate.networks.skin.protocol.constants import (
+    DROP_NO_ROUTE,
+    NONE,
+    PORTS,
+    REPORT_BALANCE,
+    REPORT_BROKEN,
+    REPORT_DROP,
+    REPORT_PARENT,
+    RULE_PAPER,
+)
+from innervate.sim.cables.wires import LOOPED, NO_ROUTE
+
+# Codes of the observer's own rows; those below 100 are the protocol's reports.
+UNROUTED = 100  # a = connected cells without a route, from now on
+LOOP_OPEN = 101  # a = cells in it
+LOOP_CLOSED = 102  # a = how long it stood, us
+CUT_OFF = 103  # a = index of the scenario's event, b = cells whose chain used the link
+
+BROKEN_LOOP = 1
+BROKEN_FEASIBLE = 2
+BROKEN_RANGE = 3
+BROKEN_OUTBOX = 4
+
+
+def note(world, time, node, code, a, b):
+    """Add a row to the run's table; the loop makes room beforehand."""
+    run = world.run[0]
+    row = world.rows[run.rows]
+    row.time = time
+    row.node = node
+    row.code = code
+    row.a = a
+    row.b = b
+    run.rows += 1
+
+
+def on_report(world, time, node, code, a, b):
+    """A node reported something."""
+    if code == REPORT_DROP:
+        world.counters[NO_ROUTE if a == DROP_NO_ROUTE else LOOPED] += 1
+        return
+    if world.run[0].observe == 0:
+        return
+    if code == REPORT_BROKEN and world.ends[4 * node + a].peer < 0:
+        return
+    note(world, time, node, code, a, b)
+    if code == REPORT_PARENT or code == REPORT_BALANCE:
+        follow(world, time, node, b)
+        note_unrouted(world, time, node)
+
+
+def next_hop(world, cell):
+    """The node a cell's data goes to over a live cable, or NONE."""
+    port = world.watch.port[cell]
+    if port == NONE:
+        return NONE
+    end = 4 * cell + port
+    peer = world.ends[end].peer
+    if peer < 0 or world.epoch[end] & 1:
+        return NONE
+    return min(peer >> 2, world.run[0].cells)
+
+
+def follow(world, time, cell, port):
+    """A cell takes another parent: settle who has a route now, and which loops open or close."""
+    watch = world.watch
+    if watch.ring[cell] != NONE:
+        close_loop(world, time, cell)
+    watch.port[cell] = port
+    resettle(world, time, cell)
+
+
+def resettle(world, time, cell):
+    """Work out anew whether a cell has a route, and with it all cells that go through it."""
+    watch = world.watch
+    hop = next_hop(world, cell)
+    routed = 0
+    if hop == world.run[0].cells:
+        routed = 1
+    elif hop != NONE:
+        if closes(world, hop, cell):
+            open_loop(world, time, cell)
+        else:
+            routed = watch.routed[hop]
+    spread(world, cell, routed)
+
+
+def closes(world, start, cell):
+    """True if the chain of parents from `start` comes to `cell`."""
+    node = start
+    steps = 0
+    while node != NONE and node != world.run[0].cells and steps <= world.run[0].cells:
+        if node == cell:
+            return True
+        if world.watch.ring[node] != NONE:
+            return False
+        node = next_hop(world, node)
+        steps += 1
+    return False
+
+
+def spread(world, cell, routed):
+    """Give a cell and all that go through it the same state."""
+    watch = world.watch
+    if watch.routed[cell] == routed:
+        return
+    count = 1
+    watch.stack[0] = cell
+    while count > 0:
+        count -= 1
+        node = watch.stack[count]
+        if watch.routed[node] == routed:
+            continue
+        watch.routed[node] = routed
+        if watch.joined[node]:
+            world.run[0].unrouted += 1 - 2 * routed
+        for p in range(PORTS):
+            end = 4 * node + p
+            peer = world.ends[end].peer
+            if peer >= 0 and peer >> 2 < world.run[0].cells:
+                child = peer >> 2
+                if watch.port[child] == peer & 3 and (world.epoch[end] & 1) == 0:
+                    if watch.routed[child] != routed:
+                        watch.stack[count] = child
+                        count += 1
+
+
+def open_loop(world, time, cell):
+    """The chain from `cell` comes back to it."""
+    run = world.run[0]
+    node = cell
+    length = 0
+    while world.watch.ring[node] == NONE:
+        world.watch.ring[node] = cell
+        node = next_hop(world, node)
+        length += 1
+    run.loops += 1
+    run.loops_open += 1
+    note(world, time, cell, LOOP_OPEN, length, 0)
+    if run.rule < RULE_PAPER and run.checks and run.broken == 0:
+        run.broken = BROKEN_LOOP
+        run.broken_node = cell
+        run.broken_other = next_hop(world, cell)
+
+
+def close_loop(world, time, cell):
+    """A member of a loop leaves it: the loop is gone. Its duration stands in the rows."""
+    watch = world.watch
+    start = watch.ring[cell]
+    node = start
+    while node != NONE and node < world.run[0].cells and watch.ring[node] == start:
+        watch.ring[node] = NONE
+        node = peer_of_parent(world, node)
+    world.run[0].loops_open -= 1
+    note(world, time, start, LOOP_CLOSED, 0, 0)
+
+
+def peer_of_parent(world, cell):
+    """The node on a cell's parent port, whether or not the cable is live."""
+    port = world.watch.port[cell]
+    if port == NONE:
+        return NONE
+    peer = world.ends[4 * cell + port].peer
+    if peer < 0:
+        return NONE
+    return min(peer >> 2, world.run[0].cells)
+
+
+def remember(world):
+    """Before a command: who has a route now."""
+    for cell in range(world.run[0].cells):
+        world.watch.before[cell] = world.watch.routed[cell]
+
+
+def on_links_changed(world, time, node, index):
+    """Cables or nodes went down or came back: settle everything anew; the cells it cut off."""
+    run = world.run[0]
+    watch = world.watch
+    for cell in range(run.cells):
+        if watch.ring[cell] != NONE and ring_is_broken(world, cell):
+            close_loop(world, time, cell)
+    for cell in range(run.cells):
+        watch.routed[cell] = 0
+    for cell in range(run.cells):
+        if next_hop(world, cell) == run.cells:
+            spread(world, cell, 1)
+    for cell in range(run.cells):
+        if watch.routed[cell] == 0 and watch.ring[cell] == NONE and watch.port[cell] != NONE:
+            hop = next_hop(world, cell)
+            if hop != NONE and hop < run.cells and closes(world, hop, cell):
+                open_loop(world, time, cell)
+    trace_cables(world)
+    run.unrouted = 0
+    lost = 0
+    for cell in range(run.cells):
+        run.unrouted += watch.joined[cell] & (1 - watch.routed[cell])
+        lost += watch.before[cell] & (1 - watch.routed[cell])
+    note(world, time, node, CUT_OFF, index, lost)
+    note_unrouted(world, time, node)
+
+
+def note_unrouted(world, time, node):
+    """A row whenever the number of connected cells without a route has changed."""
+    run = world.run[0]
+    if run.unrouted != run.noted:
+        run.noted = run.unrouted
+        note(world, time, node, UNROUTED, run.unrouted, 0)
+
+
+def ring_is_broken(world, cell):
+    """True if some cable of the loop that a cell is in is down."""
+    start = world.watch.ring[cell]
+    node = start
+    for _ in range(world.run[0].cells):
+        node = next_hop(world, node)
+        if node == NONE or node >= world.run[0].cells:
+            return True
+        if node == start:
+            return False
+    return True
+
+
+def trace_cables(world):
+    """From the PC outwards along live cables: who is physically connected."""
+    run = world.run[0]
+    watch = world.watch
+    for cell in range(run.cells):
+        watch.joined[cell] = 0
+    if world.alive[run.cells] == 2:
+        return
+    count = 0
+    for end in range(4 * run.cells, len(world.ends)):
+        peer = world.ends[end].peer
+        if peer >= 0 and (world.epoch[end] & 1) == 0 and watch.joined[peer >> 2] == 0:
+            watch.joined[peer >> 2] = 1
+            watch.stack[count] = peer >> 2
+            count += 1
+    while count > 0:
+        count -= 1
+        node = watch.stack[count]
+        for p in range(PORTS):
+            end = 4 * node + p
+            peer = world.ends[end].peer
+            if peer >= 0 and peer >> 2 < run.cells and (world.epoch[end] & 1) == 0:
+                other = peer >> 2
+                if watch.joined[other] == 0:
+                    watch.joined[other] = 1
+                    watch.stack[count] = other
+                    count += 1

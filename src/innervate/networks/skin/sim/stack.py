@@ -1,0 +1,103 @@
+"""Binds the skin's state machines to the simulator: which node is what, what its words mean."""
+
+from innervate.dialect.arith import MASK30
+from innervate.networks.skin.protocol import cell as skin
+from innervate.networks.skin.protocol import sink as skin_sink
+from innervate.networks.skin.protocol.cell import copy_frame
+from innervate.networks.skin.protocol.constants import BEACON, DATA, NONE, REPORT_BALANCE, SAMPLE
+from innervate.networks.skin.sim.checks import check_cell, check_route
+from innervate.networks.skin.sim.observer import follow, on_report
+from innervate.sim.cables.wires import DELIVERED
+from innervate.sim.clocks import reading
+
+__all__ = ["copy_frame"]
+
+
+def start(world, node, now, cause):
+    """Switch a node on."""
+    if node == world.run[0].cells:
+        skin_sink.on_start(world.pc, world.params[0], now, cause, world.out)
+    else:
+        skin.on_start(world.cells[node], world.params[0], now, cause, world.out)
+
+
+def hear(world, node, time, port, frame):
+    """Hand a node a frame. A beacon is taken in as `skin.on_frame` does, but the clock is read
+    only for news: reading it costs a twentieth of an arrival.
+    """
+    params, out = world.params[0], world.out
+    if node == world.run[0].cells:
+        skin_sink.on_frame(world.pc, params, local(world, node, time), port, frame, out)
+    elif frame.kind == BEACON:
+        if skin.hear(world.cells[node], params, port, frame, out):
+            skin.announce_soon(world.cells[node], params, local(world, node, time), out)
+    else:
+        skin.on_frame(world.cells[node], params, local(world, node, time), port, frame, out)
+
+
+def local(world, node, time):
+    """A node's clock as its protocol sees it."""
+    return reading(world.clocks[node], time) & MASK30
+
+
+def fire(world, node, now, timer):
+    """A node's timer fires."""
+    if node == world.run[0].cells:
+        skin_sink.on_timer(world.pc, world.params[0], now, timer, world.out)
+    else:
+        skin.on_timer(world.cells[node], world.params[0], now, timer, world.out)
+
+
+def sample(world, node, now):
+    """Hand a cell what its sensors say."""
+    cell, params = world.cells[node], world.params[0]
+    skin.on_input(cell, params, now, SAMPLE, world.sample[0], world.out)
+
+
+def digest(frame):
+    """A frame in one word, for the fingerprint."""
+    if frame.kind == DATA:
+        word = frame.cell | (frame.seq << 16) | (frame.hops << 24) | (frame.proximity << 32)
+        word ^= frame.force[0] * 1000003 + frame.force[1] * 70001 + frame.force[2] * 5003
+        return word ^ (frame.accel[2] << 40) ^ (frame.temperature << 20)
+    word = frame.dist | (frame.sq << 8) | (frame.load << 24) | (frame.size << 36)
+    return word | (frame.parent << 48) | (frame.kind << 49)
+
+
+def report(world, time, node, code, a, b):
+    """A node reported something."""
+    on_report(world, time, node, code, a, b)
+    if world.run[0].checks and code <= REPORT_BALANCE:
+        check_route(world, node)
+
+
+def stopped(world, time, node):
+    """A node lost its memory or went dark: it has no parent any more."""
+    if node < world.run[0].cells and world.run[0].observe:
+        follow(world, time, node, NONE)
+
+
+def check(world, node):
+    """After every handler."""
+    if node < world.run[0].cells:
+        check_cell(world, node)
+
+
+def deliver(world, time, port, frame):
+    """The PC's user gets a tactile sample."""
+    world.counters[DELIVERED] += 1
+    run = world.run[0]
+    if run.delivery_limit == 0:
+        return
+    row = world.deliveries[run.deliveries]
+    run.deliveries += 1
+    row.time = time
+    row.port = port
+    row.cell = frame.cell
+    row.seq = frame.seq
+    row.hops = frame.hops
+    row.proximity = frame.proximity
+    row.temperature = frame.temperature
+    for i in range(3):
+        row.force[i] = frame.force[i]
+        row.accel[i] = frame.accel[i]

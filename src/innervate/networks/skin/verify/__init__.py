@@ -1,0 +1,1 @@
+"""What is explored of a skin, and what must hold."""

@@ -1,0 +1,228 @@
+"""What `innervate verify skin` does: which graphs, rules and updates, one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, field, fields, replace
+from typing import Any
+
+from innervate.networks.skin.verify import assumptions as promises
+from innervate.networks.skin.verify import fair, graphs, retrace, story
+from innervate.networks.skin.verify import system as system
+from innervate.topology import Graph
+from innervate.verify import explore
+from innervate.verify.errors import VerifyError
+
+RULES = system.RULES
+UPDATES = system.UPDATES
+CELLS_MAX = 4
+PLAYED = ("complete", "memory", "limit")  # ends of a search that a fair schedule goes on from
+PROPERTIES = "no closed loop, feasible distances in order, no value out of range"
+
+
+@dataclass(slots=True)
+class Case:
+    """One exploration and what came of it.
+
+    Attributes:
+        model: what is explored.
+        cables: its graph as text.
+        tally: how far the search came.
+        fair: the fair schedule; None where it was not asked for or something broke before.
+        story: the counterexample, if something is broken.
+    """
+
+    model: system.SkinModel
+    cables: str
+    tally: explore.Tally
+    fair: fair.Fair | None = None
+    story: story.Story | None = None
+
+    @property
+    def is_broken(self) -> bool:
+        """True if a property does not hold."""
+        return self.story is not None or (self.fair is not None and self.fair.ended == "broken")
+
+    @property
+    def is_complete(self) -> bool:
+        """True if every state was looked at."""
+        return self.tally.ended == "complete" and (
+            self.fair is None
+            or (self.fair.ended == "complete" and self.fair.starts == self.fair.of)
+        )
+
+    def as_dict(self) -> dict[str, Any]:
+        """For --json."""
+        budget = asdict(self.model.budget)
+        if budget["ticks"] == system.ANY:
+            budget["ticks"] = "any"
+        found = {
+            "graph": self.cables,
+            "rule": self.model.rule,
+            "updates": self.model.updates,
+            "budget": budget,
+            **{name: getattr(self.tally, name) for name in ("states", "expanded", "generated")},
+            "depth": self.tally.depth,
+            "wall_s": round(self.tally.wall_s, 3),
+            "ended": self.tally.ended,
+            "broken": self.story.title if self.story else None,
+            "story": self.story.sentences if self.story else None,
+            "fair": None,
+        }
+        if self.fair is not None:
+            names = ("bound", "rounds", "starts", "calm", "played", "ended")
+            found["fair"] = {name: getattr(self.fair, name) for name in names}
+        return found
+
+
+Tell = Callable[[str, explore.Tally], bool]
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What was asked for (see `innervate verify --help`)."""
+
+    rules: tuple[str, ...] = ("feasible",)
+    updates: tuple[str, ...] = UPDATES
+    graphs: tuple[Graph, ...] = ()
+    budget: system.Budget = field(default_factory=system.Budget)
+    prompt: bool = False
+    live: bool = True
+    starts: int = 0
+    walks: int = 0
+    seed: int = 1
+    states: int = 0
+    memory: int = explore.MEMORY
+    plain: bool = False
+    lean: bool = True
+
+
+def budget_of(text: str) -> system.Budget:
+    """Budgets from text like "ticks=any,loss=0,faults=1"; those left out keep their defaults.
+
+    Raises:
+        VerifyError: no such budget, or no number.
+    """
+    given: dict[str, int] = {}
+    names = [one.name for one in fields(system.Budget)]
+    for part in filter(None, text.replace(" ", ",").split(",")):
+        name, _, value = part.partition("=")
+        if part == "ticks=any":
+            given["ticks"] = system.ANY
+        elif name in names and value.isascii() and value.isdigit() and int(value) <= 20:
+            given[name] = int(value)
+        else:
+            message = f'--budget: "{part[:40]}" should be NAME=NUMBER, at most 20, or ticks=any'
+            raise VerifyError(f"{message}; the names are {', '.join(names)}")
+    return system.Budget(**given)
+
+
+def graphs_of(text: str, cells: int) -> tuple[Graph, ...]:
+    """The graphs that --graph and --cells mean: "all" of up to so many cells, or one by name.
+
+    Raises:
+        VerifyError: there is no such graph, or the cells are too many.
+    """
+    if text != "all":
+        return (graphs.parse(text),)
+    if not 1 <= cells <= CELLS_MAX:
+        raise VerifyError(f"--cells must be 1 to {CELLS_MAX}, not {cells}")
+    return tuple(graph for count in range(1, cells + 1) for graph in graphs.all_graphs(count))
+
+
+def models(wanted: Wanted) -> Iterator[system.SkinModel]:
+    """Everything that is asked for, in order.
+
+    Raises:
+        VerifyError: things that do not go together.
+    """
+    if wanted.budget.ticks == system.ANY and (wanted.prompt or not wanted.lean):
+        raise VerifyError("ticks=any goes neither with --no-reduce nor with --prompt")
+    for graph in wanted.graphs:
+        for rule in wanted.rules:
+            for updates in wanted.updates:
+                yield system.SkinModel(
+                    graph, rule, updates, wanted.budget, prompt=wanted.prompt,
+                    keep=wanted.live and rule == "feasible", lean=wanted.lean,
+                )  # fmt: skip
+
+
+def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> Case:
+    """Explore one model; then, under the recommended rule, play the fair schedule.
+
+    Raises:
+        VerifyError: the protocol does not keep what the reductions rest on.
+    """
+    taken = promises.broken(model) if model.lean else ""
+    if taken:
+        raise VerifyError(f"{taken}; --no-reduce explores it without resting on the rule")
+    cables = graphs.cables(model.graph)
+    name = f"{cables}, {model.rule}, {model.updates}"
+    if wanted.walks:
+        found = explore.wander(
+            model, wanted.walks, seed=wanted.seed, plain=wanted.plain,
+            progress=lambda tally: tell(name, tally),
+        )  # fmt: skip
+        return Case(model, cables, found.tally, story=_tell(found, wanted, name, tell))
+    found = _explore(model, wanted, name, tell)
+    case = Case(model, cables, found.tally, story=_tell(found, wanted, name, tell))
+    if wanted.live and model.rule == "feasible" and found.tally.ended in PLAYED:
+        case.fair = _settle(found, wanted, name, tell)
+        if case.fair.ended == "broken" and model.lean:
+            case.fair = _settle_whole(case.fair, found, wanted, name, tell)
+    return case
+
+
+def _tell(found: explore.Result, wanted: Wanted, name: str, tell: Tell) -> story.Story | None:
+    """The story, told of states with all that is in them; of a search the shortest one."""
+    if not found.broken:
+        return None
+    whole = retrace.retrace(found) if found.model.lean else found
+    if not wanted.walks and (whole is None or len(whole.path) > len(found.path)):
+        shorter = _explore(_whole(found), wanted, name, tell)
+        whole = shorter if shorter.broken else whole
+    return story.tell(whole) if whole is not None else story.in_short(found)
+
+
+def _settle_whole(
+    broken: fair.Fair, found: explore.Result, wanted: Wanted, name: str, tell: Tell
+) -> fair.Fair:
+    """What the unreduced search says of a schedule that ends badly: a reduced one starts from
+    more than can happen. Unless it says all there is to say, the finding stands.
+    """
+    whole = _explore(_whole(found), wanted, name, tell)
+    again = _settle(whole, wanted, name, tell)
+    is_all = (
+        whole.model.budget == found.model.budget
+        and whole.tally.ended == again.ended == "complete"
+        and again.starts == again.of
+        and whole.tally.left_out + again.left_out == 0
+    )
+    return again if again.ended == "broken" or is_all else broken
+
+
+def _settle(found: explore.Result, wanted: Wanted, name: str, tell: Tell) -> fair.Fair:
+    return fair.check(
+        found,
+        plain=wanted.plain,
+        starts=wanted.starts,
+        memory=wanted.memory,
+        progress=lambda _: tell(f"{name}: the fair schedule", found.tally),
+    )
+
+
+def _whole(found: explore.Result) -> system.SkinModel:
+    """The same with nothing forgotten, and no more ticks than it took."""
+    model = found.model
+    ticks = min(model.budget.ticks, found.tally.depth + 1)
+    return model.changed(lean=False, budget=replace(model.budget, ticks=ticks))
+
+
+def _explore(model: system.SkinModel, wanted: Wanted, name: str, tell: Tell) -> explore.Result:
+    return explore.explore(
+        model,
+        plain=wanted.plain,
+        memory=wanted.memory,
+        states=wanted.states,
+        progress=lambda tally: tell(name, tally),
+    )

@@ -1,0 +1,103 @@
+"""What must hold of a skin's state: no closed ring, feasible distances in order.
+
+A state is the row of bytes `world.work` (see skin_world.py).
+"""
+
+from innervate.networks.skin.invariants import is_worse
+from innervate.networks.skin.protocol.constants import INFINITY, NONE, PORTS
+from innervate.networks.skin.verify.row import IS_PARENT, is_up, load_cell
+from innervate.networks.skin.verify.world import (
+    BROKEN_LOOP,
+    BROKEN_ORDER,
+    CELLS,
+    DIRECTIONS,
+    DIST,
+    FEASIBLE,
+    FINE,
+    MAY_LOOP,
+    SAYS,
+)
+
+
+def parent_port(world, c):
+    """A cell's parent port, or NONE."""
+    for p in range(PORTS):
+        slot = world.port_at[PORTS * c + p]
+        if slot >= 0 and world.work[slot + SAYS] & IS_PARENT:
+            return p
+    return NONE
+
+
+def next_hop(world, c):
+    """The node a cell's data goes to over a live cable; the PC is node `cells`; NONE."""
+    p = parent_port(world, c)
+    if p == NONE:
+        return NONE
+    way = world.out_way[PORTS * c + p]
+    if not is_up(world, world.way_link[way]):
+        return NONE
+    return min(world.way_end[way] // PORTS, world.at[CELLS])
+
+
+def check(world):
+    """What is broken in the row, or FINE [skin 6]."""
+    cells = world.at[CELLS]
+    for c in range(cells):
+        hop = next_hop(world, c)
+        if hop == NONE or hop == cells:
+            continue
+        if world.at[FEASIBLE]:
+            load_cell(world, c, 0)
+            load_cell(world, hop, 1)
+            if not is_worse(world.cells[0], world.cells[1]):
+                return BROKEN_ORDER
+        if world.at[MAY_LOOP] == 0:
+            steps = 0
+            while hop != NONE and hop != cells and steps < cells:
+                hop = next_hop(world, hop)
+                steps = steps + 1
+            if steps == cells:
+                return BROKEN_LOOP
+    return FINE
+
+
+def measure_depths(world):
+    """Hops of every cell to the PC over live cables into world.depth; INFINITY without a way."""
+    cells = world.at[CELLS]
+    for c in range(cells):
+        world.depth[c] = INFINITY
+    world.depth[cells] = 0
+    for _ in range(cells):
+        for way in range(world.at[DIRECTIONS]):
+            if is_up(world, world.way_link[way]):
+                here = min(world.way_end[way] // PORTS, cells)
+                there = min(world.way_end[way ^ 1] // PORTS, cells)
+                if world.depth[there] + 1 < world.depth[here]:
+                    world.depth[here] = world.depth[there] + 1
+
+
+def is_settled(world):
+    """1 if every cell that cables connect to the PC has a shortest route, and knows how far all its
+    neighbours are: without faults it stays so.
+    """
+    measure_depths(world)
+    for c in range(world.at[CELLS]):
+        if world.depth[c] < INFINITY and not is_cell_settled(world, c):
+            return False
+    return True
+
+
+def is_cell_settled(world, c):
+    """1 if a cell has a shortest route and knows how far its neighbours are."""
+    p = parent_port(world, c)
+    if p == NONE or next_hop(world, c) == NONE:
+        return False
+    if world.work[world.port_at[PORTS * c + p] + DIST] + 1 != world.depth[c]:
+        return False
+    for q in range(PORTS):
+        way = world.in_way[PORTS * c + q]
+        if way != NONE and is_up(world, world.way_link[way]):
+            there = min(world.way_end[way ^ 1] // PORTS, world.at[CELLS])
+            if world.work[world.port_at[PORTS * c + q] + DIST] != world.depth[there]:
+                return False
+    return True

@@ -1,0 +1,289 @@
+"""Liveness: from every state found, without further faults, routes become shortest in time.
+
+The schedule is fair: in every round each node ticks once, in any order, and everything in flight
+arrives before the next one ticks. A round leads from a set of states to the set of those that
+are not settled yet, by every order of the nodes; the set has to be empty after the bound.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import permutations
+from typing import Any
+
+import numpy as np
+
+from innervate.kernel import door, tables
+from innervate.kernel.wall import wall_s
+from innervate.networks.skin.verify import calm as skin_calm
+from innervate.networks.skin.verify import system as skin_system
+from innervate.networks.skin.verify import world as w
+from innervate.verify import explore as ex
+from innervate.verify import search as s
+
+CHUNK = 2_000
+PLAIN_CHUNK = 50
+# What is played, if not a round of so many nodes: what comes before the first one; what comes
+# before that, where beacons may have been lost; what comes before one in which cells may forget.
+CALM, LOST, EXPIRY = 0, -1, -2
+CHOICES = 2  # what every draw of a round returns, if it was out of so many
+
+
+@dataclass(slots=True)
+class Fair:
+    """What came of the fair schedule.
+
+    Attributes:
+        bound: rounds that routes may take.
+        starts: states it was tried from.
+        of: states there were.
+        calm: different states when faults have ended and nothing is in flight.
+        rounds: until everything was settled; the bound if it was not.
+        left: states not settled after each round.
+        played: rounds played in all.
+        left_out: of these, with more in flight than there is room for; they prove nothing.
+        path: rows from the state in question to the one that is not settled at the bound.
+        ended: "complete", "broken", "memory" or "interrupted".
+    """
+
+    bound: int
+    starts: int = 0
+    of: int = 0
+    calm: int = 0
+    rounds: int = 0
+    left: list[int] = field(default_factory=list)
+    played: int = 0
+    left_out: int = 0
+    wall_s: float = 0.0
+    path: list[bytes] = field(default_factory=list)
+    ended: str = "interrupted"
+
+
+def build(system: Any) -> tuple[Callable[..., Any], ...]:
+    """Functions; the last plays a round from rows begin .. end - 1 of `source`."""
+    settle, turn, is_settled = system.settle, system.turn, system.is_settled
+
+    def calm(world, source, target, index):
+        """No more faults, and what is in flight arrives, before the first round."""
+        for choice in range(CHOICES):
+            s.fetch_row(world, source, index)
+            skin_calm.forget_budgets(world)
+            world.found[1] = 0
+            world.found[0] = 0
+            if not settle(world, choice):
+                target.run[s.BROKEN] = 1
+            if world.found[0] == s.TOO_MANY:
+                target.run[s.LEFT_OUT] += 1
+            s.insert(world, target, index)
+            if world.found[1] == 0:
+                break
+
+    def round_of(world, source, target, index, orders, order, nodes):
+        """One round in one order, with every choice; what is not settled afterwards is kept."""
+        run = target.run
+        for choice in range(CHOICES):
+            s.fetch_row(world, source, index)
+            world.found[0], world.found[1] = 0, 0
+            for k in range(nodes):
+                if not turn(world, orders[order + k], choice):
+                    run[s.BROKEN] = 1
+            run[s.GENERATED] += 1
+            if world.found[0] == s.TOO_MANY:
+                run[s.LEFT_OUT] += 1
+            if not is_settled(world):
+                s.insert(world, target, index)
+            if world.found[1] == 0:  # nothing was drawn: the other choice is the same
+                break
+
+    def play(world, source, target, orders, nodes, begin, end):
+        """A round from each state, or CALM, LOST, or EXPIRY."""
+        run = target.run
+        for index in range(begin, end):
+            run[s.STATUS] = s.room_left(run)
+            if run[s.STATUS] == s.GROW or run[s.STATUS] == s.FULL:
+                run[s.NEXT] = -index  # how far it came, out of the way of `room_left`
+                return
+            if nodes == CALM:
+                calm(world, source, target, index)
+            elif nodes == LOST:
+                skin_calm.insert_lost(world, source, target, index)
+            elif nodes == EXPIRY:
+                skin_calm.insert_expiring(world, source, target, index)
+            else:
+                for order in range(0, len(orders), nodes):
+                    round_of(world, source, target, index, orders, order, nodes)
+        run[s.NEXT] = -end
+
+    return calm, round_of, play
+
+
+@functools.cache
+def _compiled() -> Callable[..., None]:
+    engine = ex.compiled_engine()
+    system = skin_system.compiled_parts()
+    parts = build(system)
+    door.register(skin_calm, hot=False)
+    door.register_functions(*engine.parts, *parts[:-1], hot=False)
+    return door.compiled(parts[-1])
+
+
+def bound_of(model: Any) -> int:
+    """Rounds within which every connected cell has to have a shortest route."""
+    return 4 * int(model.graph.cells) + skin_system.hold_periods(model)
+
+
+def check(
+    result: ex.Result,
+    *,
+    plain: bool = False,
+    system: Any = None,
+    starts: int = 0,
+    memory: int = ex.MEMORY,
+    progress: Callable[[Fair], bool] | None = None,
+) -> Fair:
+    """Play the fair schedule from all states of a search, or from `starts` evenly spaced ones."""
+    model = result.model
+    begun = wall_s()
+    rows, words = _starts(result, starts)
+    fair = Fair(bound_of(model), starts=len(rows) // words, of=result.tally.states)
+    play = build(system or skin_system.system_of())[-1] if plain else _compiled()
+    world = skin_system.world_of(model.changed(keep=True), plain)
+    _put(world.at, w.FAIR, 1)
+    nodes = model.graph.nodes
+    flat = [node for order in permutations(range(nodes)) for node in order]
+    orders = flat if plain else np.array(flat, np.int32)
+    given = [world, orders] if plain else [tables.borrowed(world), tables.borrowed(orders)]
+    source = _Rows(model, plain, rows, words, memory)
+    chain = []
+    for _ in range(model.budget.loss if model.merges else 0):
+        target = _Rows(model, plain, rows[:0], words, memory)
+        if not _round(play, given, source, target, LOST, fair, progress, begun):
+            return fair
+        chain.append(source)
+        source = target
+    for turn in range(fair.bound + 1):
+        target = _Rows(model, plain, rows[:0], words, memory)
+        if not _round(play, given, source, target, nodes if turn else CALM, fair, progress, begun):
+            return fair
+        chain.append(source)
+        if turn:
+            fair.rounds += 1
+            fair.left.append(target.count)
+        else:
+            fair.calm = target.count
+        source = target
+        if int(target.search.run[s.BROKEN]):
+            break
+        if target.count == 0:
+            fair.ended = "complete"
+            return fair
+        if turn + int(world.at[w.HELD]) >= skin_system.hold_periods(model):
+            source = _Rows(model, plain, rows[:0], words, memory)
+            chain.append(target)
+            if not _round(play, given, target, source, EXPIRY, fair, progress, begun):
+                return fair
+    fair.ended = "broken"
+    index = 0
+    for place in [source, *reversed(chain)]:
+        fair.path.append(place.row(index))
+        index = int(place.search.before[index])
+    fair.path.reverse()
+    return fair
+
+
+def _round(
+    play: Any, given: list[Any], source: _Rows, target: _Rows, nodes: int, fair: Fair,
+    progress: Any, begun: float,
+) -> bool:  # fmt: skip
+    """One round from all rows of `source`; False if it was ended early."""
+    world, orders = given
+    at, chunk = 0, PLAIN_CHUNK if target.plain else CHUNK
+    while at < source.count:
+        end = min(at + chunk, source.count)
+        target.search.run[s.NEXT] = -1 << 40
+        play(world, source.seen, target.seen, orders, nodes, at, end)
+        at = -int(target.search.run[s.NEXT])
+        status = int(target.search.run[s.STATUS])
+        if status == s.GROW:
+            target.grow()
+        fair.wall_s = wall_s() - begun
+        if status == s.FULL:
+            fair.ended = "memory"
+            return False
+        if progress is not None and progress(fair):
+            return False
+    fair.played += int(target.search.run[s.GENERATED])
+    fair.left_out += int(target.search.run[s.LEFT_OUT])
+    return True
+
+
+def _starts(result: ex.Result, starts: int) -> tuple[Any, int]:
+    words = skin_system.layout(result.model).width // 8
+    count = len(result.rows) // words
+    if not starts or starts >= count:
+        return result.rows, words
+    picked = [count * i // starts for i in range(starts)]
+    if isinstance(result.rows, np.ndarray):
+        return result.rows.reshape(-1, words)[picked].reshape(-1), words
+    flat = [word for i in picked for word in result.rows[i * words : (i + 1) * words]]
+    view = memoryview(bytearray(8 * len(flat))).cast("q")
+    for i, word in enumerate(flat):
+        view[i] = word
+    return view, words
+
+
+def _put(table: Any, place: int, value: int) -> None:
+    table[place] = value
+
+
+class _Rows:
+    """The states of a round."""
+
+    def __init__(self, model: Any, plain: bool, rows: Any, words: int, memory: int) -> None:
+        self.plain, self.words = plain, words
+        lay = skin_system.layout(model)
+        given = len(rows) // words
+        limit = given or memory // (8 * words + 32)
+        forms = w.Forms(plain)
+        limit = min(limit, 1 << 19) if plain and not given else limit
+        self.search = s.Search(
+            run=forms.longs(s.NUMBERS),
+            rows=rows if given else self._room(limit * words),
+            table=forms.longs(ex.SLOTS),
+            before=self._room(limit),
+            body=ex.body_words([255] * lay.width, plain),
+        )
+        run = self.search.run
+        run[s.COUNT], run[s.LIMIT], run[s.SLOTS] = given, limit, ex.SLOTS
+        run[s.WORDS], run[s.WIDTH] = words, lay.width
+        run[s.IMAGES] = len(lay.images()) // lay.width
+        self.seen = self.search if plain else tables.borrowed(self.search)
+
+    def _room(self, count: int) -> Any:
+        if self.plain:
+            return memoryview(bytearray(8 * max(count, 1))).cast("q")
+        return np.empty(count, np.int64)
+
+    @property
+    def count(self) -> int:
+        """How many."""
+        return int(self.search.run[s.COUNT])
+
+    def row(self, index: int) -> bytes:
+        """One of them."""
+        part = self.search.rows[index * self.words : (index + 1) * self.words]
+        return bytes(part.tobytes())
+
+    def grow(self) -> None:
+        """A table with twice the places."""
+        run = self.search.run
+        run[s.SLOTS] = 2 * int(run[s.SLOTS])
+        table = w.Forms(self.plain).longs(int(run[s.SLOTS]))
+        self.search = self.search._replace(table=table)
+        self.seen = self.search if self.plain else tables.borrowed(self.search)
+        if self.plain:
+            s.refill(self.search)
+        else:
+            ex.compiled_refill()(self.seen)

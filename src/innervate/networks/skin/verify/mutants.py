@@ -1,0 +1,175 @@
+"""The explorer can fail: it runs on copies of the protocol with a small mistake in each.
+
+A mistake is a text of the protocol's sources replaced by another. The copy is a package of its own
+in a temporary folder and runs uncompiled; the real protocol is not touched.
+"""
+
+from __future__ import annotations
+
+import importlib
+import itertools
+import sys
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+from innervate import dialect as protocol_room
+from innervate.networks.skin.verify import assumptions as promises
+from innervate.networks.skin.verify import fair, graphs, story
+from innervate.networks.skin.verify import system as system
+from innervate.verify import explore
+
+ROOM = Path(protocol_room.__file__).parent
+_count = itertools.count(1)
+
+
+@dataclass(frozen=True, slots=True)
+class Mutant:
+    """A mistake: `old` stands once in the sources and becomes `new`."""
+
+    name: str
+    old: str
+    new: str
+
+
+@dataclass(frozen=True, slots=True)
+class Catch:
+    """What the explorer found of a mutant; `by` is empty if it found nothing."""
+
+    mutant: Mutant
+    by: str
+    where: str
+    states: int
+
+
+# Mistakes that only the explorer's properties are asked to find; tests/mutants has more of them,
+# with the unit and property tests that find those.
+MUTANTS = tuple(
+    Mutant(*texts)
+    for texts in (
+        ("an equal feasible distance is good enough",
+         "return sq == cell.fd_sq and dist < cell.fd_dist",
+         "return sq == cell.fd_sq and dist <= cell.fd_dist"),
+        ("any route of the same number is feasible",
+         "return sq == cell.fd_sq and dist < cell.fd_dist", "return sq == cell.fd_sq"),
+        ("farther is nearer",
+         "return sq == cell.fd_sq and dist < cell.fd_dist",
+         "return sq == cell.fd_sq and dist > cell.fd_dist"),
+        ("the feasible distance is set once only",
+         "if nearer_than_fd(cell, cell.sq_own, dist):", "if cell.fd_known == 0:"),
+        ("the feasible distance is a hop too far",
+         "cell.fd_dist = dist", "cell.fd_dist = dist + 1"),
+        ("the feasible distance keeps its first number",
+         "cell.fd_sq = cell.sq_own\n", "cell.fd_sq = cell.fd_sq\n"),
+        ("the feasible distance is forgotten at once",
+         "if cell.hold >= params.hold_periods:", "if cell.hold >= 1:"),
+        ("an equal number is newer",
+         "return ahead != 0 and ahead < HALF16", "return ahead < HALF16"),
+        ("older is newer", "return ahead != 0 and ahead < HALF16", "return ahead >= HALF16"),
+        ("the distance does not grow",
+         "return min(cell.dist[cell.parent] + 1, INFINITY)",
+         "return min(cell.dist[cell.parent], INFINITY)"),
+        ("the distance grows by two",
+         "return min(cell.dist[cell.parent] + 1, INFINITY)",
+         "return min(cell.dist[cell.parent] + 2, INFINITY)"),
+        ("a newer number is announced than there is",
+         "cell.sent_sq = cell.sq_own\n    cell.sent_at",
+         "cell.sent_sq = (cell.sq_own + 1) & 65535\n    cell.sent_at"),
+        ("a broken cable is still a way",
+         "cell.pf[p] < ONE and cell.child[p] == 0", "cell.child[p] == 0"),
+        ("who has no route is a way",
+         "return cell.dist[p] < params.max_depth and", "return cell.dist[p] < 256 and"),
+        ("a lost parent is kept", "if old != NONE and not is_usable(cell, params, old):",
+         "if old == 9 and not is_usable(cell, params, old):"),
+        ("a nearer port is not taken", "if best < current:", "if best < current and old == NONE:"),
+        ("hearing does not ask the rule",
+         "not (is_usable(cell, params, port) and is_allowed(cell, params, port))",
+         "not is_usable(cell, params, port)"),
+        ("strict takes an equal number",
+         "return params.rule == RULE_PAPER and cell.sq[p] == cell.sq_own",
+         "return cell.sq[p] == cell.sq_own"),
+        ("every neighbour is told that it is the parent",
+         "frame.parent = 1 if p == parent else 0", "frame.parent = 1"),
+        ("penalties grow beyond 2", "min(2 * ONE, penalty", "min(2 * ONE + 840, penalty"),
+        ("penalties shrink below 0", "max(0, penalty - params.r_r)", "penalty - params.r_r"),
+        ("silence heals a port", "if cell.heard[p]:", "if cell.heard[p] == 0:"),
+        ("the PC says that it is a hop away", "frame.dist = 0\n", "frame.dist = 1\n"),
+    )
+)  # fmt: skip
+
+
+def copies(mutant: Mutant, *names: str) -> list[ModuleType]:
+    """Modules of a copy of the protocol with the mistake in it.
+
+    Raises:
+        ValueError: the text does not stand exactly once in the sources.
+    """
+    package = f"innervate_mutant_{next(_count)}"
+    sources = {path.name: path.read_text(encoding="utf-8") for path in ROOM.glob("*.py")}
+    count = sum(text.count(mutant.old) for text in sources.values())
+    if count != 1:  # not a mutant any more
+        raise ValueError(f"{mutant.old!r} stands {count} times in the protocol's sources")
+    with tempfile.TemporaryDirectory() as folder:
+        home = Path(folder, package)
+        home.mkdir()
+        for name, text in sources.items():
+            changed = text.replace(mutant.old, mutant.new)
+            changed = changed.replace("innervate.protocol", package)
+            (home / name).write_text(changed, encoding="utf-8")
+        sys.path.insert(0, folder)
+        importlib.invalidate_caches()
+        try:
+            return [importlib.import_module(f"{package}.{name}") for name in names]
+        finally:
+            sys.path.remove(folder)
+            for name in [name for name in sys.modules if name.partition(".")[0] == package]:
+                del sys.modules[name]
+
+
+def copy_of(mutant: Mutant) -> system.System:
+    """The skin's system on a copy of the protocol with the mistake in it."""
+    cell, sink = copies(mutant, "skin", "skin_sink")
+    return system.system_of(cell, sink)
+
+
+def models(lean: bool = False) -> Iterator[system.SkinModel]:
+    """What each mutant is tried on, smallest first."""
+    calm = system.Budget(loss=0, cut=1, heal=0, false=0, restart=0, faults=1)
+    small = system.Budget(loss=0, cut=1, heal=1, false=1, restart=1, faults=1)
+    for graph, rule, updates, budget in (
+        ("pc-1 1-2", "feasible", "periodic", small),
+        ("pc-1", "feasible", "triggered", small),
+        ("pair", "feasible", "periodic", small),
+        ("triangle", "feasible", "periodic", calm),
+        ("triangle", "strict", "periodic", calm),
+        ("pair", "feasible", "triggered", system.Budget(2, 2, 0, 1, 0, 0, 0, 1)),
+    ):
+        keep = rule == "feasible"
+        yield system.SkinModel(graphs.parse(graph), rule, updates, budget, keep=keep, lean=lean)
+
+
+def hunt(mutant: Mutant, starts: int = 12, lean: bool = False) -> Catch:
+    """Try a mutant on all models until something is broken; liveness from `starts` states."""
+    changed = copy_of(mutant)
+    states = 0
+    for model in models(lean):
+        where = f"{graphs.cables(model.graph)}, {model.rule}, {model.updates}"
+        try:
+            taken = promises.broken(model, changed) if lean else ""
+            if taken:
+                return Catch(mutant, f"a promise that reductions rest on: {taken}", where, states)
+            found = explore.explore(model, plain=True, system=changed, states=15_000)
+            states += found.tally.states
+            if found.broken:
+                by = story.TITLES[found.broken] if lean else story.tell(found, changed).title
+                return Catch(mutant, by, where, states)
+            if model.keep:
+                settled = fair.check(found, plain=True, system=changed, starts=starts)
+                if settled.ended == "broken":
+                    by = f"no shortest routes after {settled.bound} fair rounds"
+                    return Catch(mutant, by, where, states)
+        except (ArithmeticError, IndexError, ValueError) as error:
+            return Catch(mutant, f"{type(error).__name__}: a value out of range", where, states)
+    return Catch(mutant, "", "", states)

@@ -1,0 +1,309 @@
+"""From a row of bytes to the protocol's records and back; see skin_world.py for the row.
+
+What no choice of a route depends on is left out: clock readings (nothing has a time here), sizes
+and how great a load is (balancing is off; only load 0, which marks a cell without a number,
+counts), and whether a port was heard since the last tick (an event decides that).
+"""
+
+from innervate.dialect.arith import MASK30
+from innervate.networks.skin.protocol.constants import BEACON, INFINITY, NONE, ONE, PORTS
+from innervate.networks.skin.verify.world import (
+    BUDGET_AT,
+    BUDGETS,
+    CAPACITY,
+    CELLS,
+    DIST,
+    FAIR,
+    FD_DIST,
+    FD_SQ,
+    FLAGS,
+    FRAME_BYTES,
+    HEAD_BYTES,
+    HOLD,
+    KEEP,
+    LINK_AT,
+    MERGE,
+    NO_ROOM,
+    PC_AT,
+    PC_COUNTS,
+    PC_FLAGS,
+    PC_LISTEN,
+    PC_PERIODS,
+    PC_SQ,
+    PORT_BYTES,
+    RESTART,
+    SAYS,
+    SENT_DIST,
+    SENT_SQ,
+    SQ,
+    SQ_OWN,
+    TICKS,
+    TOTAL,
+    WAIT,
+    WHOLE,
+)
+
+NOTHING_SENT = 254
+
+# Bits of a cell's FLAGS, of a port's SAYS and of a frame's last byte.
+SQ_KNOWN, FD_KNOWN, IS_SOON, HAS_TICKED = 1, 2, 4, 8
+LOADED, IS_CHILD = 1, 2
+PENALTY = 4  # two bits
+IS_PARENT, WAS_PARENT = 16, 32
+
+
+def load_cell(world, c, i):
+    """Cell `c` of the row into scratch record `i`."""
+    row = world.work
+    cell = world.cells[i]
+    at = world.cell_at[c]
+    flags = row[at + FLAGS]
+    cell.sq_known = flags & SQ_KNOWN
+    cell.fd_known = (flags & FD_KNOWN) >> 1
+    cell.soon = (flags & IS_SOON) >> 2
+    cell.sq_own = row[at + SQ_OWN]
+    cell.fd_sq = row[at + FD_SQ]
+    cell.fd_dist = row[at + FD_DIST]
+    cell.hold = row[at + HOLD]
+    cell.wait = row[at + WAIT]
+    cell.sent_sq = row[at + SENT_SQ]
+    sent = row[at + SENT_DIST]
+    cell.sent_dist = -1 if sent == NOTHING_SENT else sent
+    cell.parent = NONE
+    cell.sent_parent = NONE
+    cell.own_load = 1
+    # The gap has passed since never; after a first beacon no time passes.
+    cell.sent_at = (0 - world.params[0].gap_us) & MASK30 if sent == NOTHING_SENT else 0
+    cell.tick_at = 0
+    for p in range(PORTS):
+        load_port(row, cell, p, world.port_at[PORTS * c + p], flags & HAS_TICKED)
+
+
+def load_port(row, cell, p, at, has_ticked):
+    """One port; a socket without a cable is broken from the first tick on."""
+    cell.size[p] = 0
+    cell.heard[p] = 0
+    if at < 0:
+        cell.dist[p] = INFINITY
+        cell.sq[p] = 0
+        cell.load[p] = 0
+        cell.child[p] = 0
+        cell.pf[p] = 2 * ONE if has_ticked else 0
+        return
+    says = row[at + SAYS]
+    cell.dist[p] = row[at + DIST]
+    cell.sq[p] = row[at + SQ]
+    cell.load[p] = says & LOADED
+    cell.child[p] = (says & IS_CHILD) >> 1
+    cell.pf[p] = ((says >> 2) & 3) * ONE
+    if says & IS_PARENT:
+        cell.parent = p
+    if says & WAS_PARENT:
+        cell.sent_parent = p
+
+
+def save_cell(world, c, has_ticked):
+    """Scratch record 0 into the row as cell `c`."""
+    row = world.work
+    cell = world.cells[0]
+    at = world.cell_at[c]
+    flags = (row[at + FLAGS] & HAS_TICKED) | has_ticked
+    row[at + FLAGS] = flags | cell.sq_known | (cell.fd_known << 1) | (cell.soon << 2)
+    row[at + SQ_OWN] = cell.sq_own & 255
+    row[at + FD_SQ] = cell.fd_sq & 255
+    row[at + FD_DIST] = cell.fd_dist
+    row[at + HOLD] = min(cell.hold, 255)
+    row[at + WAIT] = min(cell.wait, 255)
+    if world.at[MERGE]:  # what was sent last matters between ticks only
+        row[at + SENT_DIST] = NOTHING_SENT
+        row[at + SENT_SQ] = 0
+    else:
+        row[at + SENT_DIST] = NOTHING_SENT if cell.sent_dist < 0 else cell.sent_dist
+        row[at + SENT_SQ] = cell.sent_sq & 255
+    for p in range(PORTS):
+        slot = world.port_at[PORTS * c + p]
+        if slot >= 0:
+            says = min(cell.load[p], 1) | (cell.child[p] << 1) | ((cell.pf[p] // ONE) << 2)
+            if cell.parent == p:
+                says |= IS_PARENT
+            if cell.sent_parent == p and world.at[MERGE] == 0:
+                says |= WAS_PARENT
+            row[slot + DIST] = cell.dist[p]
+            row[slot + SQ] = cell.sq[p] & 255
+            row[slot + SAYS] = says
+
+
+def load_pc(world):
+    """The PC of the row into its record."""
+    row = world.work
+    own = world.pc.own[0]
+    at = world.at[PC_AT]
+    own.sq = row[at + PC_SQ]
+    own.sq_known = row[at + PC_FLAGS]
+    own.periods = row[at + PC_PERIODS]
+    own.listen = row[at + PC_LISTEN]
+    own.tick_at = 0
+    for p in range(own.ports):
+        world.pc.size[p] = 0
+
+
+def save_pc(world):
+    """The PC's record into the row."""
+    row = world.work
+    own = world.pc.own[0]
+    at = world.at[PC_AT]
+    row[at + PC_SQ] = own.sq & 255
+    row[at + PC_FLAGS] = own.sq_known
+    row[at + PC_PERIODS] = own.periods
+    row[at + PC_LISTEN] = own.listen
+
+
+def is_up(world, link):
+    """1 if the cable is not cut."""
+    return world.work[world.at[LINK_AT] + link] == 0
+
+
+def has_budget(world, which):
+    """1 if this fault may still happen."""
+    at = world.at[BUDGET_AT]
+    return world.work[at + which] > 0 and world.work[at + TOTAL] > 0
+
+
+def spend(world, which):
+    """Let this fault happen; 0 if it may not. Without faults left all budgets read 0."""
+    if not has_budget(world, which):
+        return False
+    row = world.work
+    at = world.at[BUDGET_AT]
+    row[at + which] -= 1
+    row[at + TOTAL] -= 1
+    if row[at + TOTAL] == 0:
+        for i in range(BUDGETS):
+            row[at + i] = 0
+    return True
+
+
+# Frames in flight.
+
+
+def push(world, way, frame):
+    """A beacon goes out, unless nobody could tell the difference."""
+    row = world.work
+    at = world.queue_at[way]
+    count = row[at]
+    dist = frame.dist
+    sq = frame.sq & 255
+    says = min(frame.load, 1) | (frame.parent << 1)
+    if world.at[WHOLE] == 0 and is_idle(world, way, count, dist, sq, says):
+        return
+    if count >= world.at[CAPACITY]:
+        world.found[0] = NO_ROOM
+        return
+    slot = at + 1 + FRAME_BYTES * count
+    row[slot + DIST] = dist
+    row[slot + SQ] = sq
+    row[slot + SAYS] = says
+    row[at] = count + 1
+
+
+def is_idle(world, way, count, dist, sq, says):
+    """1 if a beacon changes nothing whenever it arrives: it is for the PC and tells no newer
+    number; or, with MERGE, it repeats the one before it, or its receiver never looks again.
+    """
+    row = world.work
+    end = world.way_end[way]
+    cells = world.at[CELLS]
+    if end >= PORTS * cells:
+        pc = world.at[PC_AT]
+        # A number that is not newer changes nothing unless the PC loses its memory.
+        if row[pc + PC_COUNTS] == 0 and world.at[KEEP] == 0:
+            return True
+        known = row[pc + PC_FLAGS] and row[pc + PC_SQ] >= sq
+        may_forget = has_budget(world, RESTART) or world.at[FAIR]
+        return (says & LOADED) == 0 or (known and not may_forget)
+    if world.at[MERGE] == 0:
+        return False
+    c = end // PORTS
+    if row[world.cell_at[c] + TICKS] == 0 and world.at[KEEP] == 0:
+        return True
+    if count > 0:
+        slot = world.queue_at[way] + 1 + FRAME_BYTES * (count - 1)
+    else:
+        slot = world.port_at[end]
+    return row[slot + DIST] == dist and row[slot + SQ] == sq and (row[slot + SAYS] & 3) == says
+
+
+def take(world, way, i):
+    """The oldest frame of a direction into frame record `i`; the others move up."""
+    row = world.work
+    at = world.queue_at[way]
+    frame = world.frame[i]
+    frame.kind = BEACON
+    frame.dist = row[at + 1 + DIST]
+    frame.sq = row[at + 1 + SQ]
+    says = row[at + 1 + SAYS]
+    frame.load = says & LOADED
+    frame.parent = (says & IS_CHILD) >> 1
+    frame.size = 0
+    drop(world, way)
+
+
+def drop(world, way):
+    """The oldest frame of a direction is gone."""
+    row = world.work
+    at = world.queue_at[way]
+    last = at + 1 + FRAME_BYTES * (row[at] - 1)
+    for i in range(at + 1, last):
+        row[i] = row[i + FRAME_BYTES]
+    for i in range(last, last + FRAME_BYTES):
+        row[i] = 0
+    row[at] -= 1
+
+
+def clear(world, way):
+    """All frames of a direction are gone."""
+    row = world.work
+    at = world.queue_at[way]
+    for i in range(at, at + 1 + FRAME_BYTES * row[at]):
+        row[i] = 0
+
+
+def trim(world, c):
+    """With MERGE: forget frames to a cell that say what it last heard, or that it never hears.
+
+    Of a cell that never ticks again nothing but its parent and feasible distance matters.
+    """
+    row = world.work
+    head = world.cell_at[c]
+    if row[head + TICKS] == 0 and world.at[KEEP] == 0:
+        row[head + FLAGS] &= FD_KNOWN
+        row[head + SQ_OWN] = 0
+        row[head + HOLD] = 0
+        row[head + WAIT] = 0
+    for p in range(PORTS):
+        slot = world.port_at[PORTS * c + p]
+        if slot < 0:
+            continue
+        way = world.in_way[PORTS * c + p]
+        at = world.queue_at[way]
+        if row[world.cell_at[c] + TICKS] == 0 and world.at[KEEP] == 0:
+            clear(world, way)
+            row[slot + DIST] = 0
+            row[slot + SQ] = 0
+            row[slot + SAYS] &= IS_PARENT
+        while row[at] > 0 and is_same(row, at + 1, slot):
+            drop(world, way)
+
+
+def is_same(row, frame, port):
+    """1 if a frame says what the port last heard."""
+    return (
+        row[frame + DIST] == row[port + DIST]
+        and row[frame + SQ] == row[port + SQ]
+        and row[frame + SAYS] == (row[port + SAYS] & 3)
+    )
+
+
+def cell_bytes(ports):
+    """Room a cell with so many cables takes in a row."""
+    return HEAD_BYTES + PORT_BYTES * ports

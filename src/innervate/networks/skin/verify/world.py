@@ -1,0 +1,150 @@
+"""What the explorer of a skin works on: one state as a row of bytes, and where things lie in it.
+
+A row holds the cells, the PC, the cables, what may still happen (budgets) and the frames in
+flight on every direction of every cable, oldest first. One byte holds one number, so that the
+symmetries of a graph are plain permutations of bytes.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from innervate.dialect import plain
+from innervate.kernel import records
+from innervate.networks.skin.protocol import fields as skin_fields
+
+# Places in `SkinWorld.at`.
+CELLS, LINKS, CAPACITY, DIRECTIONS, PC_AT, LINK_AT, BUDGET_AT = range(7)
+MERGE, PROMPT, FAIR, FEASIBLE, MAY_LOOP, KEEP, WHOLE, IMAGES, WIDTH, LEAN = range(7, 17)
+HELD, RISING, STEADY = range(17, 20)
+SETTINGS = 20
+
+# A cell's head; then PORT_BYTES for each cabled port.
+FLAGS, SQ_OWN, FD_SQ, FD_DIST, HOLD, SENT_DIST, SENT_SQ, WAIT, TICKS = range(9)
+HEAD_BYTES = 9
+ANY = 127  # ticks: as many as it takes
+DIST, SQ, SAYS = range(3)
+PORT_BYTES = 3
+
+# The PC.
+PC_SQ, PC_FLAGS, PC_PERIODS, PC_LISTEN, PC_COUNTS = range(5)
+PC_BYTES = 5
+
+# Budgets of faults: one each, and all together.
+LOSS, CUT, HEAL, FALSE, RESTART, TOTAL = range(6)
+BUDGETS = 6
+
+FRAME_BYTES = 3
+
+# What can be broken (SkinWorld.found[0]).
+FINE, BROKEN_LOOP, BROKEN_ORDER, BROKEN_WORSE, BROKEN_RANGE, BROKEN_OUTBOX = range(6)
+NO_ROOM = -1
+
+# Kinds of moves.
+TICK, PC_TICK, SOON, DELIVER, LOSE, CUT_LINK, HEAL_LINK, RESTART_PC = range(8)
+
+OUTBOX = 16
+
+
+class Sink(NamedTuple):
+    """The PC's state: one record and a number per port."""
+
+    own: Any
+    size: Any
+
+
+class Out(NamedTuple):
+    """The outbox (see protocol/outbox.py)."""
+
+    count: Any
+    limit: Any
+    overflow: Any
+    action: Any
+    frame: Any
+
+
+class SkinWorld(NamedTuple):
+    """All of it; the tables of numbers are fixed but `found`, `work`, `trial`, `best`."""
+
+    at: Any  # settings and places
+    cell_at: Any  # where a cell's head lies
+    port_at: Any  # [4 * cell + port] where a cabled port lies, -1 none
+    out_way: Any  # [end] the direction that frames sent there take, -1 no cable
+    in_way: Any  # [end] the direction that ends there
+    way_end: Any  # [direction] the end it leads to
+    way_link: Any
+    queue_at: Any
+    link_way: Any  # [link] its first direction; the other is the next
+    depth: Any  # scratch of a search for shortest routes
+    move_kind: Any
+    move_arg: Any
+    image: Any  # [g * width + i] where byte i of image g comes from
+    params: Any  # of the exploration, and of the fair schedule
+    cells: Any  # scratch records
+    words: Any  # the first of them as a row of words
+    low: Any
+    high: Any
+    pc: Sink
+    out: Out
+    frame: Any
+    found: Any  # [0] what a step broke, [1] whether anything was drawn
+    work: Any
+    work_words: Any
+    trial: Any
+    trial_words: Any
+    best: Any
+    best_words: Any
+
+
+class Forms:
+    """Makes tables of one form: compiled (arrays) or plain (lists and memory views)."""
+
+    def __init__(self, is_plain: bool) -> None:
+        self.is_plain = is_plain
+
+    def numbers(self, values: Any) -> Any:
+        """Whole numbers."""
+        return list(values) if self.is_plain else np.array(list(values), np.int32)
+
+    def longs(self, count: int) -> Any:
+        """`count` 64-bit numbers; arrays are not initialised before they are used."""
+        if self.is_plain:
+            return memoryview(bytearray(8 * count)).cast("q")
+        return np.zeros(count, np.int64)
+
+    def row(self, width: int) -> tuple[Any, Any]:
+        """`width` bytes, and the same memory as 64-bit words."""
+        if self.is_plain:
+            view = memoryview(bytearray(width))
+            return view, view.cast("q")
+        memory = np.zeros(width, np.uint8)
+        return memory, memory.view(np.int64)
+
+    def states(self, declaration: Any, count: int) -> Any:
+        """`count` records of a declaration."""
+        if self.is_plain:
+            make = plain.make("State", declaration)
+            return [make() for _ in range(count)]
+        return records.zeros(declaration, count)
+
+    def words(self, states: Any, declaration: Any) -> Any:
+        """The states as rows of words."""
+        if self.is_plain:
+            return [records.Words(state, declaration) for state in states]
+        return states.view(np.int32).reshape(len(states), -1)
+
+    def outbox(self) -> Out:
+        """An empty outbox."""
+        fields = ("kind", "a", "b", "c")
+        action = tuple((name, 0, 0, 0, "", "") for name in fields)
+        limit = self.longs(1)
+        limit[0] = OUTBOX
+        return Out(
+            count=self.longs(1),
+            limit=limit,
+            overflow=self.longs(1),
+            action=self.states(action, OUTBOX),
+            frame=self.states(skin_fields.FRAME, OUTBOX),
+        )

@@ -1,0 +1,265 @@
+"""What a simulated skin looks like."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from innervate.networks.skin.analysis.load import balance_factor
+from innervate.networks.skin.protocol.constants import (
+    NONE,
+    REPORT_BALANCE,
+    REPORT_BROKEN,
+    REPORT_PARENT,
+)
+from innervate.networks.skin.scenario.plan import CUT, KILL, LOOSE, RESTORE, REVIVE, Fault
+from innervate.networks.skin.sim.observer import CUT_OFF, LOOP_OPEN, UNROUTED
+from innervate.networks.skin.view.scene import places
+from innervate.networks.skin.view.state import Cables
+from innervate.plot.words import fault_words, number_of
+from innervate.sim.cables.wires import LOOPED, LOST_BROKEN, LOST_CUT, NO_ROUTE, OFFERED
+from innervate.sim.cables.world import DEAD
+from innervate.topology import PORTS
+from innervate.web.engine import Engine, Rows
+from innervate.web.engines import SkinEngine
+from innervate.web.errors import Refused
+from innervate.web.history import History
+from innervate.web.messages import Command, Touch, number
+from innervate.web.view import Memory, View
+from innervate.web.ways import NOWHERE
+
+HZ_WITHOUT_DATA = 250.0  # load is shown as if cells sampled so often
+FORCE_FULL_MN = 5_000  # shown as 255
+STALE_US = 200_000  # of a cell not heard for so long nothing is known any more
+
+
+@dataclass(slots=True)
+class SkinMemory(Memory):
+    """Besides: the observer's newest word, and what the PC received of every cell."""
+
+    unrouted: int = 0
+    settled: bool = False
+    touch: Any = None
+    touch_us: Any = None
+    counted: tuple[int, int] = field(default=(0, 0))
+
+
+class SkinView(View):
+    """Cells and interface ports; the links are the cables, in order of their lower end."""
+
+    speed: ClassVar[float] = 0.1
+    slow: ClassVar[float] = 0.05
+    can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
+
+    def __init__(self, engine: Engine, history: History) -> None:
+        super().__init__(engine, history)
+        graph = self.plan.graph
+        self.cells, self.ports = graph.cells, graph.interfaces
+        self.cables = Cables(self.plan)
+        self.rate_hz = (
+            1e6 / self.plan.data_period_us if self.plan.data_period_us else HZ_WITHOUT_DATA
+        )
+        self._planned = {fault.index: fault for fault in self.plan.faults}
+        touch_us = np.full(self.cells, -STALE_US, np.int64)
+        self.memory = SkinMemory(touch=np.zeros(self.cells, np.int64), touch_us=touch_us)
+        if self.plan.data_period_us:
+            self.can = (*self.can, "touch")
+
+    def scene(self) -> dict[str, Any]:
+        """Nodes, links and what else stands still."""
+        graph, where = self.plan.graph, places(self.plan.graph).round(3).tolist()
+        nodes = [
+            {"id": i, "label": graph.label(i), "x": x, "y": y, "role": "cell"}
+            for i, (x, y) in enumerate(where[: self.cells])
+        ]
+        nodes += [
+            {"id": self.cells + i, "label": f"pc.{i}", "x": x, "y": y, "role": "port", "port": i}
+            for i, (x, y) in enumerate(where[self.cells :])
+        ]
+        links = [
+            {"id": i, "a": int(self.cables.node_of[a]), "b": int(self.cables.node_of[b])}
+            for i, (a, b) in enumerate(self.cables.ends.tolist())
+        ]
+        series = [
+            {"id": "unconnected", "label": "cells without a way", "unit": "cells"},
+            {"id": "balance", "label": "balance of the ports", "unit": ""},
+        ]
+        if self.plan.data_period_us:
+            series.append({"id": "loss", "label": "samples lost", "unit": "%"})
+        return {
+            "nodes": nodes, "links": links, "ports": self.ports, "fence": None, "series": series,
+        }  # fmt: skip
+
+    def note(self, rows: Rows) -> None:
+        """Take in what happened since the last call."""
+        memory = self.memory
+        told = rows["deliveries"]
+        if len(told):
+            force = told["force"].mean(axis=1)
+            memory.touch[told["cell"]] = np.minimum(255, force * 255 / FORCE_FULL_MN)
+            memory.touch_us[told["cell"]] = told["time"]
+        codes = (CUT_OFF, UNROUTED, LOOP_OPEN, REPORT_BROKEN, REPORT_PARENT, REPORT_BALANCE)
+        found = rows["rows"]
+        found = found[np.isin(found["code"], codes)]
+        for at, node, code, a, b in found.tolist():
+            if code == CUT_OFF and a >= 0:
+                self._fault(a, b)
+            elif code == UNROUTED:
+                self._unrouted(at, a)
+            elif code == REPORT_BROKEN:
+                self._broken(at, PORTS * node + a, b)
+            elif code == LOOP_OPEN:
+                self.log.often("loop", at, f"a forwarding loop of {number_of(a, 'cell')}", "bad")
+            elif code == REPORT_PARENT and b == NONE and memory.settled:
+                label = self.plan.graph.label(node)
+                self.log.often("lost", at, f"{label} lost its parent", "bad")
+
+    def _fault(self, index: int, cut_off: int) -> None:
+        """A mark of the observer: something was done to the skin."""
+        given = index - len(self.plan.scenario.model.event)
+        fault = self._planned[index] if given < 0 else self.engine.given[given]
+        self.begin_fault(fault)
+        recovery = self.memory.recovery
+        if self.memory.unrouted == 0 and self.takes(fault) and recovery is not None:
+            recovery.recovered_ms = 0.0
+        if cut_off:
+            text = f"{number_of(cut_off, 'cell')} lost the way to the PC"
+            self.log.say(fault.at_us, text, "bad")
+
+    def _unrouted(self, at_us: int, cells: int) -> None:
+        """So many cells that are connected to the PC have no way to it from now on."""
+        memory, recovery = self.memory, self.memory.recovery
+        memory.unrouted = cells
+        if recovery is not None and not recovery.closed:
+            recovery.recovered_ms = None if cells else (at_us - recovery.at_us) / 1e3
+            recovery.closed = cells == 0 and memory.event_us > recovery.at_us
+        after_us = at_us - memory.event_us
+        if cells == 0:
+            what = "again after" if memory.settled else "after"
+            self.log.often("routed", at_us, f"all cells have a way {what} {after_us / 1e3:.1f} ms",
+                           "good")  # fmt: skip
+            memory.settled = True
+
+    def _broken(self, at_us: int, end: int, broken: int) -> None:
+        """A cell finds a port broken, or working again."""
+        recovery = self.memory.recovery
+        label = self.plan.graph.label_end(end)
+        if recovery is not None and broken and recovery.detected_ms is None:
+            graph, fault = self.plan.graph, self.memory.fault
+            own = [fault.end] if fault.end >= 0 else list(graph.ends_of(fault.node))
+            if end in own or graph.peer[end] in own:
+                recovery.detected_ms = (at_us - recovery.at_us) / 1e3
+        self.log.often("broken", at_us, f"{label} {'found broken' if broken else 'works again'}")
+
+    def points(self) -> dict[str, float | None]:
+        """A point of every plot, for now."""
+        ways = self.cables.ways(self.engine.world)
+        loads = np.bincount(ways["port"][ways["port"] >= 0], minlength=self.ports)
+        balance = balance_factor(loads.tolist())
+        found = {
+            "unconnected": float(ways["unconnected"]),
+            "balance": None if balance is None else round(balance, 4),
+        }
+        if self.plan.data_period_us:
+            counters = self.engine.world.counters
+            lost = (
+                counters[LOST_CUT : LOST_BROKEN + 1].sum() + counters[NO_ROUTE : LOOPED + 1].sum()
+            )
+            now = (int(counters[OFFERED]), int(lost))
+            offered, gone = (a - b for a, b in zip(now, self.memory.counted, strict=True))
+            self.memory.counted = now
+            found["loss"] = round(100 * gone / offered, 3) if offered else 0.0
+        return found
+
+    def arrays(self, flights: bool) -> dict[str, Any]:
+        """The state's fields for nodes and links."""
+        world, memory = self.engine.world, self.memory
+        ways = self.cables.ways(self.engine.world)
+        share = world.cells["own_load"] * self.rate_hz * self.plan.wire_us * 1e-6
+        there = ways["port"][: self.cells] != NOWHERE
+        load = np.where(there, np.minimum(share, 1.0), 0.0).round(3)
+        up = (world.alive[: self.cells] != DEAD).astype(np.int64)
+        none = np.zeros(self.ports, np.int64)
+        fields = {
+            "node_up": np.concatenate([up, none + 1]),
+            "link_up": 1 - (world.epoch[self.cables.ends[:, 0]] & 1),
+            **ways,
+            "load": np.concatenate([load, none]),
+            "flights": self.cables.flights(world, self.engine.now_us) if flights else [],
+        }
+        if self.plan.data_period_us:
+            heard = self.engine.now_us - memory.touch_us < STALE_US
+            fields["touch"] = np.concatenate([np.where(heard, memory.touch, 0), none])
+        return fields
+
+    def apply(self, command: Command) -> None:
+        """Have a command happen at the earliest moment."""
+        if not isinstance(command, Touch):
+            super().apply(command)
+            return
+        cell = number("cell", command.node, self.cells)
+        assert isinstance(self.engine, SkinEngine)
+        self.engine.touch(cell if command.value else None)
+        what = f"{self.plan.graph.label(cell)} touched" if command.value else "let go"
+        self.log.often("touch", self.engine.now_us, what)
+
+    def extra(self) -> dict[str, Any]:
+        """The touch, as a hand has led it."""
+        assert isinstance(self.engine, SkinEngine)
+        finger = self.engine.finger
+        return {} if finger is None else {"touch": finger.table()}
+
+    def words(self, fault: Any) -> str:
+        """A fault in words."""
+        return fault_words(self.plan.graph, fault)
+
+    def takes(self, fault: Any) -> bool:
+        """True if a fault takes something away, false if it gives it back."""
+        mends = fault.action in (RESTORE, REVIVE)
+        return not mends and not (fault.action == LOOSE and fault.loss_q15 == 0)
+
+    def cut(self, link: int, heal: bool) -> dict[str, int]:
+        """The fault that cuts a link, or puts it back."""
+        a, b = self.cables.ends[number("link", link, len(self.cables.ends))].tolist()
+        reasons = int(self.engine.world.ends["impaired"][a]) >> 2
+        dead = sum(self._is_dead(self.cables.node_of[end]) for end in (a, b))
+        if heal and reasons <= dead:
+            raise Refused("this cable is not cut" if not reasons else "its cell is switched off")
+        if not heal and reasons > dead:
+            raise Refused("this cable is cut already")
+        # As a scenario names it: an interface's cable by the PC's end.
+        end = b if b >= PORTS * self.cells else a
+        return {"action": RESTORE if heal else CUT, "end": end, "node": -1}
+
+    def _is_dead(self, node: int) -> bool:
+        return node < self.cells and int(self.engine.world.alive[node]) == DEAD
+
+    def kill(self, node: int, revive: bool) -> dict[str, int]:
+        """The fault that switches a node off, or on."""
+        number("node", node, self.cells + self.ports)
+        if node >= self.cells:
+            raise Refused("the PC cannot be switched off; cut the cable of this port")
+        if self._is_dead(node) != revive:
+            raise Refused("this cell is on" if revive else "this cell is off already")
+        return {"action": REVIVE if revive else KILL, "end": -1, "node": node}
+
+    def make(self, at_us: int, index: int, fields: dict[str, int]) -> Fault:
+        """A fault of the kind's own type."""
+        return Fault(at_us=at_us, loss_q15=0, frames=0, index=index, **fields)
+
+    def event(self, fault: Any) -> dict[str, Any]:
+        """The [[event]] table of a fault, without its time."""
+        graph = self.plan.graph
+        if fault.end >= PORTS * self.cells:
+            return {"interface": fault.end - PORTS * self.cells}
+        cell = fault.node if fault.end < 0 else fault.end // PORTS
+        if cell == graph.sink:
+            return {"pc": True}
+        port = {} if fault.end < 0 else {"port": fault.end % PORTS}
+        patch = graph.patch_of(cell)
+        if patch < 0:
+            return {"node": graph.label(cell), **port}
+        row, column = graph.patches[patch].row_column(cell)
+        return {"cell": {"patch": patch, "row": row, "column": column}, **port}

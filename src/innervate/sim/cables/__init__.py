@@ -1,0 +1,1 @@
+"""The medium of cables: every frame has one sender and one receiver."""

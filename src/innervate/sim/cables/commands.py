@@ -1,0 +1,122 @@
+"""What is done to a running network from outside: cables cut, nodes killed, frames lost."""
+
+from innervate.networks.skin.sim import observer
+from innervate.sim import wheel as queue
+from innervate.sim.cables import wires
+from innervate.sim.cables.wires import DOWN, LOSSY
+from innervate.sim.cables.world import ALIVE, DEAD, TIMER_SLOTS
+from innervate.sim.clocks import timer_slot
+from innervate.sim.wheel import NIL
+
+# As in a plan's faults; the loop begins with a command of its own.
+BEGIN = -1
+CUT = 0
+RESTORE = 1
+KILL = 2
+REVIVE = 3
+LOOSE = 4
+RESTART = 5
+LOSE = 6
+
+MEMORY_LOST = 1
+
+
+def obey(world, command, switch_on, stopped):
+    """Carry out one command at its time."""
+    action = command.action
+    time = command.at
+    if world.run[0].observe:
+        observer.remember(world)
+    if action == BEGIN:
+        for node in range(world.run[0].nodes):
+            queue.insert(world.wheel, node, world.starts[node].phase)
+    elif action == CUT:
+        change_link(world, command.end, 1)
+    elif action == RESTORE:
+        change_link(world, command.end, -1)
+    elif action == KILL:
+        switch_off(world, time, command.node, stopped)
+    elif action == REVIVE:
+        if world.alive[command.node] == DEAD:
+            change_all(world, command.node, -1)
+            switch_on(world, command.node, time, MEMORY_LOST)
+    elif action == RESTART:
+        if world.alive[command.node] == ALIVE:
+            forget(world, time, command.node, stopped)
+            switch_on(world, command.node, time, MEMORY_LOST)
+    elif action == LOOSE or action == LOSE:
+        impair(world, command)
+    if world.run[0].observe:
+        node = max(command.node, command.end >> 2)
+        observer.on_links_changed(world, time, min(node, world.run[0].cells), command.index)
+
+
+def change_link(world, end, by):
+    """Take a cable down (by = 1) or up (-1): an end counts the reasons it is down for."""
+    peer = world.ends[end].peer
+    shift_end(world, end, by)
+    shift_end(world, peer, by)
+
+
+def shift_end(world, end, by):
+    """One end's part of it; the epoch is odd while there is any reason."""
+    wire = world.ends[end]
+    reasons = (wire.impaired >> 2) + by
+    if reasons < 0:
+        return
+    was_down = wire.impaired & DOWN
+    down = 1 if reasons > 0 else 0
+    wire.impaired = (reasons << 2) | (wire.impaired & LOSSY) | down
+    if down != was_down:
+        world.epoch[end] += 1
+
+
+def ends_of(world, node):
+    """First end of a node and the end after its last."""
+    cells = world.run[0].cells
+    if node == cells:
+        return 4 * cells, len(world.ends)
+    return 4 * node, 4 * node + 4
+
+
+def change_all(world, node, by):
+    """All cables of a node at once."""
+    first, behind = ends_of(world, node)
+    for end in range(first, behind):
+        if world.ends[end].peer >= 0:
+            change_link(world, end, by)
+
+
+def switch_off(world, time, node, stopped):
+    """A node dies: its timers stop, its queues are lost, its cables are dead."""
+    if world.alive[node] == DEAD:
+        return
+    world.alive[node] = DEAD
+    change_all(world, node, 1)
+    forget(world, time, node, stopped)
+
+
+def forget(world, time, node, stopped):
+    """A node loses its memory: timers and queues go."""
+    for timer in range(TIMER_SLOTS):
+        slot = timer_slot(world, node, timer)
+        if world.wheel.events[slot].bucket != NIL:
+            queue.remove(world.wheel, slot)
+    first, behind = ends_of(world, node)
+    for end in range(first, behind):
+        wires.drop_queue(world, end, time)
+    stopped(world, time, node)
+
+
+def impair(world, command):
+    """A loose cable loses frames both ways with a probability (2^-15), or the next few for sure."""
+    for end in (command.end, world.ends[command.end].peer):
+        buffer = world.buffers[end]
+        if command.action == LOOSE:
+            buffer.loss = command.value
+        else:
+            buffer.lose = command.value
+        wire = world.ends[end]
+        wire.impaired &= ~LOSSY
+        if buffer.loss > 0 or buffer.lose > 0:
+            wire.impaired |= LOSSY

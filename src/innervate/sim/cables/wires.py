@@ -1,0 +1,192 @@
+"""Cables: 4 Mbit/s each way, a queue per port, latency, loss, loose and cut connections.
+
+A frame occupies its wire for `wire_us` and arrives `latency` after its start. Urgent frames
+(beacons) take the wire as soon as the frame on it is out; others wait in the port's drop-tail
+queue.
+A cable's `epoch` is odd while it is down; a frame arrives only if the epoch did not change.
+"""
+
+from innervate.dialect.outbox import FLUSH, URGENT
+from innervate.dialect.rng import LOW15, step
+from innervate.networks.skin.protocol.cell import copy_frame as copy_skin_frame
+from innervate.sim import taps
+from innervate.sim import wheel as queue
+from innervate.sim.cables.world import ALIVE
+
+# Kinds of pool slots; an arrival is marked by the block of counters its frame belongs to.
+DELAYED = 1
+
+# Words of `world.counters`; the second block counts urgent frames, the first all others.
+SENT = 0
+ARRIVED = 1
+LOST_CUT = 2
+LOST_NOISE = 3
+LOST_OFF = 4
+LOST_QUEUE = 5
+LOST_BROKEN = 6
+URGENT_BLOCK = 8
+# What the protocol says of its data, and the user's side of it.
+OFFERED = 16
+DELIVERED = 17
+NO_ROUTE = 18
+LOOPED = 19
+COUNTERS = 24
+
+# Bits of `end.impaired`.
+DOWN = 1
+LOSSY = 2
+
+
+def tap(world, end, frame, time, out, why):
+    """Keep a copy of a frame at this end of a cable, if a capture is wanted."""
+    if world.run[0].tap_limit > 0:
+        taps.keep(world, time, time, end, 0, out, why, frame, copy_skin_frame)
+
+
+def transmit(world, end, frame, time, flags, copy_frame):
+    """A node hands a frame to its port at true time `time` (us)."""
+    wire = world.ends[end]
+    if wire.peer < 0:
+        return
+    if flags & FLUSH and world.buffers[end].queued > 0:
+        world.counters[LOST_BROKEN] += world.buffers[end].queued
+        taps.keep_queue(world, end, time, taps.BROKEN, copy_skin_frame)
+        world.buffers[end].queued = 0
+    if flags & URGENT:
+        launch(world, end, frame, max(time, wire.busy), URGENT_BLOCK, copy_frame)
+    elif wire.waiting == 0 and time >= wire.busy:
+        launch(world, end, frame, time, 0, copy_frame)
+    else:
+        enqueue(world, end, frame, time, copy_frame)
+
+
+def enqueue(world, end, frame, time, copy_frame):
+    """Put a frame into its port's drop-tail queue."""
+    buffer = world.buffers[end]
+    room = world.run[0].queue_frames
+    world.counters[SENT] += 1
+    if buffer.queued >= room:
+        world.counters[LOST_QUEUE] += 1
+        tap(world, end, frame, time, 1, taps.QUEUE)
+        return
+    place = (buffer.first + buffer.queued) % room
+    copy_frame(world.queue[end * room + place], frame)
+    buffer.queued += 1
+    wire = world.ends[end]
+    if wire.waiting == 0:
+        wire.waiting = 1
+        queue.insert(world.wheel, world.run[0].tx_slots + end, wire.busy)
+
+
+def wire_free(world, end, time, copy_frame):
+    """The frame on the wire is out: start the next of the queue."""
+    wire = world.ends[end]
+    buffer = world.buffers[end]
+    slot = world.run[0].tx_slots + end
+    if buffer.queued == 0:
+        wire.waiting = 0
+    elif time < wire.busy:
+        queue.insert(world.wheel, slot, wire.busy)
+    else:
+        room = world.run[0].queue_frames
+        world.counters[SENT] -= 1  # launch counts it again
+        launch(world, end, world.queue[end * room + buffer.first], time, 0, copy_frame)
+        buffer.first = (buffer.first + 1) % room
+        buffer.queued -= 1
+        if buffer.queued == 0:
+            wire.waiting = 0
+        else:
+            queue.insert(world.wheel, slot, wire.busy)
+
+
+def launch(world, end, frame, start, block, copy_frame):
+    """Put a frame on the wire at `start`; a queue slot brings it to the other side."""
+    run = world.run[0]
+    wire = world.ends[end]
+    peer = wire.peer
+    latency = wire.latency
+    epoch = world.epoch[end]
+    wire.busy = start + run.wire_us
+    world.counters[SENT + block] += 1
+    if wire.impaired and is_lost(world, end, block):
+        tap(world, end, frame, start, 1, taps.CUT if wire.impaired & DOWN else taps.NOISE)
+        return
+    tap(world, end, frame, start, 1, taps.FINE)
+    if run.latency_per_frame:
+        latency = run.latency_low + chance(run, run.latency_high - run.latency_low + 1)
+    slot = queue.take(world.wheel)
+    event = world.wheel.events[slot]
+    event.kind = block
+    event.target = peer
+    event.epoch = epoch
+    copy_frame(world.frames[slot - run.pool_slots], frame)
+    queue.insert(world.wheel, slot, start + latency)
+
+
+def is_lost(world, end, block):
+    """True if a cut or loose cable, or a planned loss, takes the frame; counts it."""
+    wire = world.ends[end]
+    if wire.impaired & DOWN:
+        world.counters[LOST_CUT + block] += 1
+        return True
+    buffer = world.buffers[end]
+    if buffer.lose > 0:
+        buffer.lose -= 1
+        if buffer.lose == 0 and buffer.loss == 0:
+            wire.impaired &= ~LOSSY
+        world.counters[LOST_NOISE + block] += 1
+        return True
+    if buffer.loss > 0 and chance(world.run[0], 32768) < buffer.loss:
+        world.counters[LOST_NOISE + block] += 1
+        return True
+    return False
+
+
+def chance(run, n):
+    """A uniform integer 0 <= result < n <= 2^15 from the medium's own stream."""
+    run.rng = step(run.rng)
+    return ((run.rng & LOW15) * n) >> 15
+
+
+def lands(world, event, node, frame, time):
+    """True if a frame gets through to the node at the end of its cable; counts it either way."""
+    end = event.target
+    if event.epoch == world.epoch[end]:
+        if world.alive[node] == ALIVE:
+            tap(world, end, frame, time, 0, taps.FINE)
+            return True
+        world.counters[LOST_OFF + event.kind] += 1
+        tap(world, end, frame, time, 0, taps.OFF)
+    else:
+        world.counters[LOST_CUT + event.kind] += 1
+        tap(world, end, frame, time, 0, taps.CUT)
+    return False
+
+
+def drop_queue(world, end, time):
+    """Empty a port's queue because its node is switched off."""
+    buffer = world.buffers[end]
+    world.counters[LOST_OFF] += buffer.queued
+    taps.keep_queue(world, end, time, taps.OFF, copy_skin_frame)
+    buffer.queued = 0
+
+
+def delay(world, end, frame, at, flags, copy_frame):
+    """Hand a frame to its port later, at true time `at` (us)."""
+    slot = queue.take(world.wheel)
+    event = world.wheel.events[slot]
+    event.kind = DELAYED
+    event.target = end
+    event.epoch = flags
+    copy_frame(world.frames[slot - world.run[0].pool_slots], frame)
+    queue.insert(world.wheel, slot, at)
+
+
+def release(world, slot, time, copy_frame):
+    """The delay of a frame is over; a node that went off meanwhile sends nothing."""
+    event = world.wheel.events[slot]
+    end = event.target
+    frame = world.frames[slot - world.run[0].pool_slots]
+    if world.alive[min(end >> 2, world.run[0].cells)] == ALIVE:
+        transmit(world, end, frame, time, event.epoch, copy_frame)
+    queue.give(world.wheel, slot)

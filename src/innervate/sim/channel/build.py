@@ -1,0 +1,186 @@
+"""From a radio plan to a world: all tables of a simulation, compiled (arrays) or plain (lists)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from innervate.dialect import rng
+from innervate.kernel import records
+from innervate.networks.radio.protocol import fields as radio_fields
+from innervate.networks.radio.scenario.plan import BEGIN
+from innervate.networks.radio.sim.stacks import PROTOCOLS
+from innervate.sim.cables import world as w
+from innervate.sim.cables.build import put, uniform
+from innervate.sim.channel import world as r
+from innervate.sim.channel.heap import AIRS, COMMAND, OFFER, key_of, push
+from innervate.sim.channel.loop import BATCH
+from innervate.sim.channel.medium import NEVER
+
+ROWS = 1 << 16
+OUTBOX = 16
+
+
+def build(
+    plan: Any,
+    plain: bool,
+    checks: bool,
+    keep: bool,
+    trail: bool,
+    tap: bool = False,
+    room: int = ROWS,
+) -> r.World:
+    """The world of a plan, before its first event.
+
+    `keep` keeps a row per report, transmission and delivered packet, `trail` one per handler call,
+    `tap` copies of frames on the air; there is `room` for so many rows before the loop stops.
+    """
+    tables = w.Tables(plain)
+    n = plan.stations
+    fields = radio_fields.STATION + PROTOCOLS[plan.protocol].fields
+    stations = tables.states(fields, n)
+    low, high = records.bounds(fields)
+    order, delay, degree = _neighbours(plan)
+    rows = room if keep else 1
+    tapped = ROWS + OUTBOX * n * BATCH if tap else 1
+    world = r.World(
+        run=tables.records(r.RUN, 1, wide=r.WIDE),
+        heap=r.Heap(tables.numbers(64 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64)),
+        above=(),
+        stations=stations,
+        words=tables.words(stations, fields),
+        low=low.tolist() if plain else low,
+        high=high.tolist() if plain else high,
+        params=tables.states(radio_fields.PARAMS, 1),
+        radios=tables.records(r.RADIO, n + 1, wide=r.WIDE),
+        due=tables.numbers(n * r.TIMERS, NEVER, np.int64),
+        told=tables.numbers(n + 2, 0, np.int64),
+        air=tables.records(r.AIR, n * AIRS, wide=r.WIDE),
+        frames=tables.states(radio_fields.FRAME, n * AIRS),
+        degree=_given(tables, degree),
+        order=_given(tables, order),
+        delay=_given(tables, delay),
+        arrivals=_given(tables, [at for times in plan.arrivals for at in times] + [0]),
+        sizes=_given(tables, [np.resize(sizes, r.RING) for sizes in plan.sizes]),
+        offered=tables.numbers(n * r.RING, 0, np.int64),
+        got=tables.numbers(n * r.RING),
+        tries=tables.numbers(n * r.RING),
+        last=tables.numbers(n * n, NEVER),
+        item=tables.states(radio_fields.PACKET, 1),
+        out=w.Out(
+            count=tables.numbers(1, 0, np.int64),
+            limit=tables.numbers(1, OUTBOX, np.int64),
+            overflow=tables.numbers(1, 0, np.int64),
+            action=tables.records(w.ACTION, OUTBOX),
+            frame=tables.states(radio_fields.FRAME, OUTBOX),
+        ),
+        commands=tables.records(r.COMMAND, len(plan.faults) + 1, wide=r.WIDE),
+        rows=tables.records(r.ROW, rows, fresh=True, wide=r.WIDE),
+        sent=tables.records(r.SENT, rows, fresh=True, wide=r.WIDE),
+        packets=tables.records(r.PACKET, rows, fresh=True, wide=r.WIDE),
+        trail=tables.records(r.TRAIL, ROWS if trail else 1, fresh=True, wide=r.WIDE),
+        taps=tables.records(w.TAP, tapped, fresh=True, wide=r.WIDE),
+        tapped=tables.states(radio_fields.FRAME, tapped),
+    )
+    _set_run(world, plan, checks, keep, trail)
+    _set_stations(world, plan)
+    _set_events(world, plan)
+    return world
+
+
+def grow_heap(world: Any) -> Any:
+    """The same world, of the radio or of a mesh, with twice the room for events."""
+    keys = world.heap.keys
+    if isinstance(keys, list):
+        keys.extend([0] * len(keys))
+        return world
+    longer = np.zeros(2 * len(keys), np.int64)
+    longer[: len(keys)] = keys
+    return world._replace(heap=r.Heap(longer, world.heap.size))
+
+
+def _given(tables: w.Tables, values: Any) -> Any:
+    made = np.ascontiguousarray(values, np.int64).ravel()
+    return made.tolist() if tables.plain else made
+
+
+def _neighbours(plan: Any) -> tuple[Any, Any, Any]:
+    """Per station: who hears it and after how long, the nearest first; and how many."""
+    n = plan.stations
+    delays = np.array(plan.delays_us, np.int64)
+    far = np.where(delays < 0, 1 << 40, delays)
+    np.fill_diagonal(far, 1 << 40)
+    order = np.lexsort((np.broadcast_to(np.arange(n), (n, n)), far), axis=1)
+    sorted_delays = np.take_along_axis(far, order, axis=1)
+    degree = (sorted_delays < 1 << 40).sum(axis=1)
+    return order, sorted_delays, degree
+
+
+def _is_orderly(plan: Any) -> bool:
+    """Practical CSMA/CD-R on a channel as it assumes it: then no two turns ever overlap."""
+    low, high = plan.params["dmin_us"], plan.params["dmax_us"]
+    n = plan.stations
+    pairs = (plan.delays_us[i][j] for i in range(n) for j in range(n) if i != j)
+    return (
+        plan.protocol == "csma-cd-r/practical"
+        and plan.loss_q15 == 0
+        and not plan.faults
+        and all(low <= delay <= high for delay in pairs)
+    )
+
+
+def _set_run(world: r.World, plan: Any, checks: bool, keep: bool, trail: bool) -> None:
+    limit = len(world.rows) if keep else 0
+    put(
+        world.run,
+        0,
+        stations=plan.stations,
+        slot_us=plan.params["slot_us"],
+        ta_us=plan.params["ta_us"],
+        oracle=plan.params["oracle"],
+        full_duplex=plan.params["full_duplex"],
+        period=plan.params["period_us"],
+        loss=plan.loss_q15,
+        rng=rng.seeded(int(uniform(plan.seed, "medium", 1, 1 << 30)[0])),
+        saturated=int(plan.saturated),
+        forced=int(plan.forced),
+        per_turn=plan.params["per_turn"],
+        wanted=plan.wanted,
+        checks=int(checks),
+        exclusive=int(checks and _is_orderly(plan)),
+        watchful=int(checks or trail),
+        row_limit=limit,
+        sent_limit=limit,
+        packet_limit=limit,
+        trail_limit=len(world.trail) if trail else 0,
+        broken_at=-1,
+        hurt=plan.stations,
+    )
+    put(world.run, 0, tap_limit=ROWS if len(world.taps) > ROWS else 0)
+    put(world.params, 0, **{field[0]: plan.params[field[0]] for field in radio_fields.PARAMS})
+
+
+def _set_stations(world: r.World, plan: Any) -> None:
+    n = plan.stations
+    seeds = uniform(plan.seed, "stations", n, rng.FIXED_POINT - 1) + 1
+    offsets = uniform(plan.seed, "offset", n, 1 << 30)
+    first = 0
+    for i in range(n):
+        put(world.stations, i, number=i, rng=int(seeds[i]), choice=rng.GENERATE)
+        put(world.radios, i, offset=int(offsets[i]), first_offer=first, next_offer=first)
+        put(world.radios, i, candidate=NEVER, leaving=int(plan.absent[i]), told_at=NEVER)
+        first += len(plan.arrivals[i])
+    put(world.radios, n, first_offer=first)
+
+
+def _set_events(world: r.World, plan: Any) -> None:
+    for i in range(plan.stations):
+        if len(plan.arrivals[i]):
+            push(world.heap, key_of(int(plan.arrivals[i][0]), OFFER, i, 0))
+    put(world.commands, len(plan.faults), action=BEGIN)
+    push(world.heap, key_of(0, COMMAND, 0, len(plan.faults)))
+    for index, fault in enumerate(plan.faults):
+        put(world.commands, index, action=fault.action, node=fault.node, value=fault.value)
+        put(world.commands, index, index=fault.index)
+        push(world.heap, key_of(fault.at_us, COMMAND, 0, index))

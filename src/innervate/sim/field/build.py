@@ -1,0 +1,272 @@
+"""From a mesh plan to a world: all tables of a simulation, compiled (arrays) or plain (lists)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from innervate.dialect import rng
+from innervate.kernel import records
+from innervate.networks.mesh.protocol import csma_fields
+from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.mesh.sim import channel
+from innervate.networks.mesh.sim import recorder as books
+from innervate.networks.mesh.sim.over_channel import KEPT
+from innervate.sim.cables import world as w
+from innervate.sim.cables.build import get, put, uniform
+from innervate.sim.channel.world import Heap
+from innervate.sim.field import powers, queue
+from innervate.sim.field import world as m
+from innervate.sim.field.loop import BOOT, NEVER
+from innervate.sim.field.medium import NONE
+
+ROWS = 1 << 16
+PLAIN_ROWS = 1 << 12  # objects: dear to make
+TAPS = 1 << 12
+OUTBOX = 32
+MAC_OUTBOX = 4
+SEEN = 1 << 15
+FRAME_BYTES = 1 << 10
+PLACES_PER_NODE = 8
+FORGET_US = 30_000_000  # receivers forget origins that are silent for so long
+CSMA = {"backoff_us": 320, "exponent_min": 3, "exponent_max": 6, "busy_max": 8}
+MACS = {"none": 0, "csma": 1}
+
+
+def build(
+    plan: Any, plain: bool, checks: bool, keep: bool, trail: bool, tap: bool = False
+) -> m.World:
+    """The world of a plan, before its first event.
+
+    `keep` keeps all rows, `trail` one per handler call, `tap` copies of frames on the air.
+    """
+    tables = w.Tables(plain, np.int64)
+    n = plan.nodes
+    gates = sum(rank >= 0 for rank in plan.ranks) + 1
+    fields, gate_fields = mesh_fields.node(plan.capacity), mesh_fields.gate(plan.capacity)
+    nodes, gate = tables.states(fields, n + 1), tables.states(gate_fields, gates)
+    low, high = records.bounds(fields)
+    rows = PLAIN_ROWS if plain else ROWS
+    kept = rows + _margin(n) if keep else 1
+    tapped = TAPS + _margin(n) if tap else 1
+    heap = Heap(tables.numbers(128 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64))
+    world = m.World(
+        run=tables.records(m.RUN, 1, wide=m.WIDE),
+        heap=heap,
+        below=() if plan.mac in MACS else channel.world_of(plan, plain, checks, heap),
+        nodes=nodes,
+        words=tables.words(nodes, fields),
+        low=_given(tables, low, np.int32),
+        high=_given(tables, high, np.int32),
+        gates=gate,
+        gate_words=tables.words(gate, gate_fields),
+        params=tables.states(mesh_fields.PARAMS, 1),
+        macs=tables.states(csma_fields.STATION, n),
+        mac_params=tables.states(csma_fields.PARAMS, 1),
+        mac_item=tables.states(csma_fields.ITEM, 1),
+        radios=tables.records(m.RADIO, n, wide=m.RADIO),
+        due=tables.numbers(n * m.TIMERS, NEVER, np.int64),
+        **_medium(tables, plan),
+        **_script(tables, plan),
+        item=tables.states(mesh_fields.ITEM, 1),
+        out=_outbox(tables, OUTBOX, mesh_fields.FRAME),
+        mac_out=_outbox(tables, MAC_OUTBOX, csma_fields.ITEM),
+        seen_key=tables.numbers(SEEN, 0, np.int64),
+        seen_at=tables.numbers(SEEN, 0, np.int64),
+        rows=tables.records(m.ROW, kept, fresh=True, wide=m.WIDE),
+        sent=tables.records(m.SENT, kept, fresh=True, wide=m.WIDE),
+        delivered=tables.records(m.DELIVERED, kept, fresh=True, wide=m.WIDE),
+        rounds=tables.records(m.ROUND, kept, fresh=True, wide=m.WIDE),
+        trail=tables.records(m.TRAIL, rows + _margin(n) if trail else 1, fresh=True, wide=m.WIDE),
+        taps=tables.records(w.TAP, tapped, fresh=True, wide=m.WIDE),
+        tapped=tables.states(mesh_fields.FRAME, tapped),
+    )
+    limit = rows if keep else 0
+    put(world.run, 0, row_limit=limit, sent_limit=limit, delivered_limit=limit, round_limit=limit)
+    put(world.run, 0, checks=int(checks), watchful=int(checks or trail))
+    put(world.run, 0, trail_limit=rows if trail else 0, tap_limit=TAPS if tap else 0)
+    _set_run(world, plan, sum(max(int(field[1]), 1) for field in gate_fields))
+    _set_nodes(world, plan, gates - 1)
+    _set_events(world, plan)
+    return world
+
+
+def grow_seen(world: m.World) -> m.World:
+    """The same world with twice the room for deliveries."""
+    tables = w.Tables(isinstance(world.seen_key, list))
+    count = 2 * len(world.seen_key)
+    keys, times = tables.numbers(count, 0, np.int64), tables.numbers(count, 0, np.int64)
+    for key, at in zip(world.seen_key, world.seen_at, strict=True):
+        if key:
+            place = books.place_of(keys, int(key))
+            keys[place], times[place] = key, at
+    put(world.run, 0, seen_limit=count // 2 - _margin(len(world.radios)) // 4)
+    return world._replace(seen_key=keys, seen_at=times)
+
+
+def _margin(nodes: int) -> int:
+    """Most rows that one event can add: all nodes hear a frame and fill their outboxes."""
+    return (nodes + 1) * (OUTBOX + 1)
+
+
+def _given(tables: w.Tables, values: Any, kind: type = np.int64) -> Any:
+    numbers: Any = np.ascontiguousarray(values, kind).ravel()
+    return numbers.tolist() if tables.plain else numbers
+
+
+def _outbox(tables: w.Tables, limit: int, frame: Any) -> w.Out:
+    return w.Out(
+        count=tables.numbers(1, 0, np.int64),
+        limit=tables.numbers(1, limit, np.int64),
+        overflow=tables.numbers(1, 0, np.int64),
+        action=tables.records(w.ACTION, limit, wide=w.ACTION),
+        frame=tables.states(frame, limit),
+    )
+
+
+def _medium(tables: w.Tables, plan: Any) -> dict[str, Any]:
+    """Tables of the medium."""
+    n, radio = plan.nodes, plan.radio
+    places = min(PLACES_PER_NODE * n + 64, queue.PLACES_MAX)
+    if plan.mac not in MACS:
+        places = n * KEPT
+    strengths = powers.strength_table()
+    power = [powers.strength(strengths, cdb) for cdb in radio.rssi_cdb]
+    power[:: n + 1] = [0] * n  # nobody hears himself
+    good = np.zeros((n, n), np.int64)
+    for a, b in plan.good:
+        good[a, b] = good[b, a] = 1
+    return {
+        "rssi": _given(tables, radio.rssi_cdb, np.int32),
+        "base": _given(tables, radio.base_cdb or [0], np.int32),
+        "prob": _given(tables, radio.prob_q15, np.int32),
+        "cut": tables.numbers(n * n),
+        "power": _given(tables, power),
+        "sums": tables.numbers(n, 0, np.int64),
+        "strengths": _given(tables, strengths),
+        "losses": _given(tables, powers.loss_table(radio.exponent_c)),
+        "chances": _given(tables, powers.chance_table()),
+        "air": tables.records(m.AIR, places, wide=m.AIR),
+        "frames": tables.states(mesh_fields.FRAME, places, FRAME_BYTES),
+        "worst": tables.numbers(places * n, 0, np.int64),
+        "on_air": tables.numbers(places),
+        "free": _given(tables, range(places - 1, -1, -1)),
+        "got": tables.numbers(n),
+        "good": _given(tables, good),
+    }
+
+
+def _script(tables: w.Tables, plan: Any) -> dict[str, Any]:
+    """What happens to the nodes, as tables in order of time."""
+    events = [(at, BOOT, i, 0, 0) for i, at in enumerate(plan.starts_us) if not plan.absent[i]]
+    events += [(f.at_us, f.action, f.node, max(f.other, 0), f.value) for f in plan.faults]
+    events.sort(key=lambda event: event[0])
+    offers = [(o.at_us, o.node, o.dest, o.flags, o.length) for o in plan.offers]
+    offers.sort(key=lambda offer: offer[0])
+    walks, points = _walks(plan)
+    made: dict[str, list[Any]] = {
+        "commands": events,
+        "offers": offers,
+        "walks": walks,
+        "points": points,
+    }
+    names = {"commands": m.COMMAND, "offers": m.OFFER, "walks": m.WALK, "points": m.POINT}
+    found = {}
+    for name, rows in made.items():
+        table = tables.records(names[name], max(len(rows), 1), wide=names[name])
+        for i, row in enumerate(rows):
+            put(table, i, **dict(zip(names[name], row, strict=True)))
+        found[name] = table
+    return found
+
+
+def _walks(plan: Any) -> tuple[list[Any], list[Any]]:
+    """Walkers with their place in the list of all points; robots that stand still, too."""
+    paths = [(walk.node, walk.points) for walk in plan.walks]
+    moving = {node for node, _ in paths}
+    for node, robot in enumerate(plan.robots):
+        if robot and plan.positions_cm and node not in moving:
+            paths.append((node, ((0, *plan.positions_cm[node]),)))
+    phases = uniform(plan.seed, "sample", plan.nodes, plan.sample_us)
+    walks: list[Any] = []
+    points: list[Any] = []
+    for node, path in paths:
+        first = len(points)
+        points += list(path)
+        walks.append((node, first, len(points) - 1, int(phases[node]), 0))
+    return walks, points
+
+
+def _set_run(world: m.World, plan: Any, gate_words: int) -> None:
+    radio, n = plan.radio, plan.nodes
+    strengths = powers.strength_table()
+    put(
+        world.run,
+        0,
+        nodes=n,
+        mac=MACS.get(plan.mac, 0),
+        collisions=int(radio.collisions and plan.mac in MACS),
+        turnaround=radio.turnaround_us,
+        byte_ns=radio.byte_ns,
+        phy_bytes=radio.phy_bytes,
+        sense=max(1, powers.strength(strengths, radio.sense_cdb)),
+        capture=powers.capture_ratio(radio.capture_cdb),
+        rng=rng.seeded(int(uniform(plan.seed, "medium", 1, 1 << 30)[0])),
+        sample=plan.sample_us,
+        origin_x=plan.origin_cm[0],
+        origin_y=plan.origin_cm[1],
+        unit=plan.params["unit_cm"],
+        moving=int(bool(radio.base_cdb)),
+        rssi50=radio.rssi50_cdb,
+        told=plan.params["told"],
+        row=plan.params["row"],
+        good=len(plan.good),
+        free=len(world.air),
+        gate_words=gate_words,
+        commands=sum(not away for away in plan.absent) + len(plan.faults),
+        offers=len(plan.offers),
+        seen_limit=SEEN // 2 - _margin(n) // 4,
+        forget=FORGET_US,
+    )
+    for name, length, *_ in mesh_fields.PARAMS:
+        if length:
+            field = get(world.params, 0, name)
+            for i, value in enumerate(plan.params[name]):
+                field[i] = value
+        else:
+            put(world.params, 0, **{name: plan.params[name]})
+    if plan.mac in MACS:
+        put(world.mac_params, 0, **{name: plan.mac_params.get(name, CSMA[name]) for name in CSMA})
+
+
+def _set_nodes(world: m.World, plan: Any, spare: int) -> None:
+    n = plan.nodes
+    seeds = uniform(plan.seed, "nodes", n, rng.FIXED_POINT - 1) + 1
+    mac_seeds = uniform(plan.seed, "macs", n, rng.FIXED_POINT - 1) + 1
+    offsets = uniform(plan.seed, "offset", n, 1 << 30)
+    gate = 0
+    put(world.nodes, n, choice=rng.GENERATE)
+    for i in range(n):
+        own = {"number": i, "rank": plan.ranks[i], "robot": plan.robots[i]}
+        put(world.nodes, i, rng=int(seeds[i]), choice=rng.GENERATE, **own)
+        put(world.macs, i, rng=int(mac_seeds[i]), choice=rng.GENERATE)
+        put(world.radios, i, offset=int(offsets[i]), held=NONE, tell_at=NONE, gate=spare)
+        if plan.ranks[i] >= 0:
+            put(world.radios, i, gate=gate)
+            gate += 1
+        if plan.positions_cm:
+            x, y = plan.positions_cm[i]
+            put(world.radios, i, x=x, y=y)
+
+
+def _set_events(world: m.World, plan: Any) -> None:
+    """Queue the first event of every kind; each queues the next."""
+    if plan.offers:
+        queue.push(world.heap, queue.key_of(int(get(world.offers, 0, "time")), queue.OFFER, 0, 0))
+    if int(get(world.run, 0, "commands")):
+        at = int(get(world.commands, 0, "time"))
+        queue.push(world.heap, queue.key_of(at, queue.COMMAND, 0, 0))
+    for i in range(len(_walks(plan)[0])):
+        at, node = int(get(world.walks, i, "phase")), int(get(world.walks, i, "node"))
+        queue.push(world.heap, queue.key_of(at, queue.SAMPLE, node, i))

@@ -1,0 +1,228 @@
+"""Runs a mesh plan: builds the world, drives the loop in slices, collects its tables."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from innervate.kernel import door, tables
+from innervate.kernel.stop import Stop
+from innervate.kernel.wall import wall_s
+from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.mesh.sim import channel, over_channel, over_medium, stacks
+from innervate.networks.mesh.sim import recorder as books
+from innervate.networks.radio.sim import stacks as radio_stacks
+from innervate.sim import rows, taps
+from innervate.sim.cables import loop as skin_loop
+from innervate.sim.cables.build import get, hand_over, move_rows
+from innervate.sim.cables.simulate import InvariantBroken
+from innervate.sim.channel import heap
+from innervate.sim.channel import loop as radio_loop
+from innervate.sim.channel import simulate as radio_simulate
+from innervate.sim.field import build as builder
+from innervate.sim.field import loop, medium, motion, powers, queue
+from innervate.sim.field import world as w
+
+SLICE_EVENTS = 200_000
+PLAIN_SLICE_EVENTS = 2_000
+
+Progress = Callable[[int, int], None]
+
+NAMES = {
+    "rows": w.ROW,
+    "sent": w.SENT,
+    "delivered": w.DELIVERED,
+    "rounds": w.ROUND,
+    "trail": w.TRAIL,
+}
+
+
+@dataclass(slots=True)
+class MeshResult:
+    """What a mesh simulation leaves.
+
+    Structured arrays with the fields of `world.ROW`, `SENT`, `DELIVERED`, `ROUND` and `TRAIL`;
+    times in us.
+
+    Attributes:
+        rows: what nodes reported.
+        sent: what was on the air, by its end; frames that their sender's death cut short have no
+            receivers.
+        delivered: what nodes gave to their users.
+        rounds: what a gateway knew after each of its rounds.
+        trail: all handler calls, if asked for; those of the medium access are numbered from
+            `books.MAC`.
+        counts: the numbers of the run by name, see COUNTS.
+        ended_us: up to where it ran.
+    """
+
+    plan: Any
+    world: w.World
+    rows: Any
+    sent: Any
+    delivered: Any
+    rounds: Any
+    trail: Any
+    counts: dict[str, int]
+    ended_us: int
+    wall_s: float
+    fingerprint: str
+    interrupted: bool
+
+
+COUNTS = (
+    "handled",  # handler calls
+    "arrived",  # frames received
+    "transmissions",  # frames that went on the air
+    "gave_up",  # frames that the medium access returned
+    "blocked",  # frames that came down while the radio was sending another
+    "unasked",  # messages for a node that was off
+)
+
+
+def compiled_loop(entry: ModuleType, mac: str) -> Callable[..., None]:
+    """The compiled loop of a router over a medium access protocol by name."""
+    return _compiled(entry, radio_stacks.PROTOCOLS.get(mac))
+
+
+@functools.cache
+def _compiled(entry: ModuleType, access: radio_stacks.Protocol | None) -> Callable[..., None]:
+    """The same; CSMA is what there is without a protocol for a channel that all share."""
+    from innervate.dialect import arith, outbox, rng
+    from innervate.networks.mesh.protocol import csma
+
+    door.register(arith, outbox, rng, heap)
+    door.register(*stacks.modules_of(entry), csma, medium, motion, books, rows, taps, hot=False)
+    door.register_functions(powers.strength, powers.chance, powers.loss)
+    door.register_functions(loop.pressing, loop.wipe, queue.set_timer, hot=False)
+    layer: Any = over_medium
+    if access is None:
+        below = (over_medium.give_up, over_medium.short, over_medium.due, over_medium.step)
+        door.register_functions(*below, hot=False)
+    else:
+        handlers = radio_simulate.registered(access, over_channel)
+        door.register_functions(*handlers[:-1], hot=False)
+        door.register(over_channel, hot=False)
+        layer = over_channel.layer(handlers)
+        door.register_functions(layer.step, hot=False)
+    stack = stacks.bind(entry)
+    door.register_functions(*stack, hot=False)
+    parts = loop.build(stack, layer)
+    door.register_functions(*parts[:-1], hot=False)
+    advance = door.compiled_as_one(parts[-1])
+    return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
+
+
+def simulate(
+    plan: Any,
+    *,
+    plain: bool = False,
+    checks: bool = True,
+    keep: bool = True,
+    trail: bool = False,
+    progress: Progress | None = None,
+    entry: ModuleType | None = None,
+    through: Callable[[Any], Any] | None = None,
+    tap: taps.Tap | None = None,
+) -> MeshResult:
+    """Run a mesh plan to its end; an interrupt (Ctrl-C) ends it early and keeps what was done.
+
+    Args:
+        plan: what `scenario` made of a file.
+        plain: the same loop uncompiled, on lists and objects.
+        checks: stop when an invariant is broken.
+        keep: keep all rows; otherwise only the counts.
+        trail: a row per handler call.
+        progress: called with the time reached and the whole duration, us, now and then.
+        entry: the router's module; the mesh's own if none is given.
+        through: plain runs only: every frame passes through it on its way to the air.
+        tap: is handed copies of all frames as they leave and come in (see sim/taps.py).
+
+    Raises:
+        InvariantBroken: a checker found something that must not happen.
+    """
+    if through is not None and not plain:
+        raise ValueError("frames pass through a function in plain runs only")
+    _check_mac(plan.mac)
+    router = entry or stacks.mesh()
+    if plain:
+        fields = mesh_fields.node(plan.capacity)
+        stack = stacks.plain_stack(router, fields, through)
+        advance = loop.build(stack, _plain_layer(plan.mac))[-1]
+    else:
+        advance = compiled_loop(router, plan.mac)
+    world = builder.build(plan, plain, checks, keep, trail, tap is not None)
+    advance(world, 0, 1)  # nothing is due before time 0: only compiles, or loads what was compiled
+    if not plain:
+        door.mark_compiled(loop_name(plan))
+    parts: dict[str, list[Any]] = {name: [] for name in NAMES}
+    started = wall_s()
+    with Stop() as stop:
+        status = skin_loop.BUDGET
+        while status != skin_loop.DONE and not stop.asked:
+            advance(world, plan.duration_us, PLAIN_SLICE_EVENTS if plain else SLICE_EVENTS)
+            status = int(get(world.run, 0, "status"))
+            if status == skin_loop.BROKEN:
+                raise InvariantBroken(story(plan, world))
+            if status == skin_loop.POOL_FULL:
+                world = channel.grown(world)
+            if status == loop.SEEN_FULL:
+                world = builder.grow_seen(world)
+            move_rows(world, parts, NAMES, w.WIDE)
+            hand_over(world, tap, int(get(world.run, 0, "now")))
+            if progress is not None:
+                progress(int(get(world.run, 0, "now")), plan.duration_us)
+    done = status == skin_loop.DONE
+    return MeshResult(
+        plan=plan,
+        world=world,
+        counts={name: int(get(world.run, 0, name)) for name in COUNTS},
+        ended_us=plan.duration_us if done else int(get(world.run, 0, "now")),
+        wall_s=wall_s() - started,
+        fingerprint=f"{int(get(world.run, 0, 'fingerprint')) & (1 << 64) - 1:016x}",
+        interrupted=not done,
+        **{name: np.concatenate(kept) for name, kept in parts.items()},
+    )
+
+
+def _check_mac(mac: str) -> None:
+    known = (*builder.MACS, *radio_stacks.PROTOCOLS)
+    if mac not in known:
+        raise ValueError(f"mac must be one of {', '.join(known)}, not {mac!r}")
+
+
+def loop_name(plan: Any) -> str:
+    """Which loop a plan runs on, for `kernel.door.is_compiled`."""
+    access = radio_stacks.PROTOCOLS.get(plan.mac)
+    below = f"-{access.entry.__name__.rpartition('.')[2]}" if access else ""
+    return f"mesh-{plan.capacity}{below}"
+
+
+def _plain_layer(mac: str) -> Any:
+    """What is below the router in a plain run."""
+    if mac in builder.MACS:
+        return over_medium
+    stack = radio_stacks.bind(radio_stacks.PROTOCOLS[mac].entry)
+    return over_channel.layer(radio_loop.build(stack, over_channel))
+
+
+def story(plan: Any, world: w.World) -> str:
+    """A broken invariant in one line."""
+    if int(get(world.run, 0, "broken")) == books.BROKEN_BELOW:
+        return radio_simulate.story(plan, world.below)
+    at = int(get(world.run, 0, "now")) / 1e6
+    name = plan.names[int(get(world.run, 0, "broken_node"))]
+    what = {
+        medium.BROKEN_AIR: f"node {name} has too many frames under way",
+        books.BROKEN_OUTBOX: f"outbox of node {name} overflowed",
+        books.BROKEN_RANGE: f"a value of node {name} is out of its declared range",
+        books.BROKEN_TWICE: f"node {name} delivered a packet twice",
+        books.BROKEN_HELD: f"node {name} handed down a frame while another was under way",
+        books.BROKEN_FRAME: f"a receiver changed the frame that node {name} had sent",
+    }[int(get(world.run, 0, "broken"))]
+    return f"invariant broken at {at:.6f} s (seed {plan.seed}): {what}"

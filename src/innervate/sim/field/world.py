@@ -1,0 +1,108 @@
+"""Everything a running mesh simulation holds, as tuples of tables (see sim/world.py)."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import csma
+from innervate.sim.cables.world import Out
+from innervate.sim.channel.world import Heap
+
+RUN = (
+    "nodes", "mac", "collisions", "turnaround", "byte_ns", "phy_bytes", "sense", "capture",
+    "rng", "sample", "origin_x", "origin_y", "unit", "moving", "rssi50", "told", "row", "good",
+    "on_air", "free", "gate_words", "next_command", "commands", "next_offer", "offers",
+    "seen", "seen_limit", "forget", "checks", "watchful", "status", "fingerprint", "now",
+    "handled", "arrived", "transmissions", "received", "gave_up", "blocked", "unasked",
+    "rows", "row_limit", "sent", "sent_limit", "delivered", "delivered_limit",
+    "rounds", "round_limit", "trail", "trail_limit", "taps", "tap_limit",
+    "broken", "broken_node",
+)  # fmt: skip
+# What the medium knows of a node.
+RADIO = ("state", "deaf", "on_air", "held", "hot", "told", "tell_at", "boots", "gate", "offset",
+         "noise", "x", "y")  # fmt: skip
+AIR = ("node", "state", "start", "end", "digest", "receivers")
+WALK = ("node", "point", "last", "phase", "placed")
+POINT = ("time", "x", "y")
+COMMAND = ("time", "action", "node", "other", "value")
+OFFER = ("time", "node", "dest", "flags", "length")
+
+ROW = ("time", "node", "code", "a", "b")
+SENT = ("time", "end", "node", "kind", "flags", "link_dst", "origin", "dest", "seq", "path_len",
+        "bytes", "receivers")  # fmt: skip
+DELIVERED = ("time", "node", "kind", "flags", "origin", "dest", "seq", "path_len", "looped",
+             "body0", "body1", "body2", "body3")  # fmt: skip
+ROUND = ("time", "node", "round", "links", "good", "both")
+TRAIL = ("time", "node", "handler", "port", "fingerprint")
+
+# All fields have 32 bits, these and all of RUN 64.
+WIDE = frozenset({"time", "start", "end", "phase", "offset", "noise", "x", "y", "value", "digest",
+                  "fingerprint", "tell_at", *RUN})  # fmt: skip
+
+# Timers of a node: the router's, then those of the medium access below it.
+TIMERS = mesh_words.TIMERS + csma.TIMERS
+
+# States of a node.
+OFF = 0
+ALIVE = 1
+DEAD = 2
+
+# States of a place for a frame under way.
+FREE = 0
+HELD = 1  # waits for the channel
+COMMITTED = 2  # the radio turns round
+ON_AIR = 3
+VOID = 4  # its sender died; free as soon as its event in the queue is due
+
+
+class World(NamedTuple):
+    """All of it."""
+
+    run: Any
+    heap: Heap
+    nodes: Any  # the routers' records; one more, as one is before its start
+    words: Any  # these as rows of words
+    low: Any
+    high: Any
+    gates: Any  # what gateways and standbys have besides; one more, untouched
+    gate_words: Any
+    params: Any
+    macs: Any  # medium access: a record a node
+    mac_params: Any
+    mac_item: Any
+    radios: Any
+    below: Any  # a channel that all share: a radio.world.World; () where there is none
+    due: Any  # per node and timer: when it fires, -1 never
+    rssi: Any  # per sender and receiver: 0.01 dBm
+    base: Any  # ... at 1 m, where somebody moves
+    prob: Any  # ... chance of reception in 1/32768
+    cut: Any  # ... 1 = no signal for now
+    power: Any  # ... linear, see powers.py
+    sums: Any  # per node: power of all signals and of the noise there
+    strengths: Any  # power per 0.1 dBm
+    losses: Any  # path loss by squared distance
+    chances: Any  # chance of reception per 0.1 dB
+    air: Any  # per place: a transmission
+    frames: Any  # its frame
+    worst: Any  # per place and receiver: the strongest interference it met
+    on_air: Any  # places that are on the air
+    free: Any  # places that are free
+    got: Any  # who receives the frame that ends
+    good: Any  # per pair: 1 = a good link at the start
+    walks: Any
+    points: Any
+    commands: Any
+    offers: Any
+    item: Any
+    out: Out
+    mac_out: Out
+    seen_key: Any  # what was delivered lately: a hash table
+    seen_at: Any
+    rows: Any
+    sent: Any
+    delivered: Any
+    rounds: Any
+    trail: Any
+    taps: Any  # frames for a capture (see sim/taps.py): what happened to them
+    tapped: Any  # ... and they themselves
