@@ -19,7 +19,10 @@ from innervate.live.profile import skin_parameters
 
 HERE = Path(__file__).resolve().parent / "micropython"
 ROOM = Path(__file__).resolve().parent.parent / "src"
-SHARED = ("protocol/skin_words", "wire/bits", "wire/crc", "wire/layout", "wire/cobs", "wire/skin")
+SHARED = (
+    "networks/skin/protocol/constants", "networks/skin/frames",
+    "wire/bits", "wire/crc", "wire/layout", "wire/cobs",
+)  # fmt: skip
 
 
 def cell_files(params: dict[str, int]) -> dict[str, bytes]:

@@ -13,7 +13,6 @@ import inspect
 from types import ModuleType
 from typing import Any
 
-ROOM = "innervate.protocol."
 HEADER = "# Made from {}: see boards/join.py.\n"
 
 
@@ -44,7 +43,7 @@ def reached(entry: str) -> list[ModuleType]:
         if module not in found:
             found.append(module)
 
-    visit(importlib.import_module(ROOM + entry))
+    visit(importlib.import_module(entry))
     return found
 
 
@@ -52,7 +51,7 @@ def functions(*entries: str) -> dict[str, str]:
     """Name and source of every function that the entries' functions can reach, callees first.
 
     Args:
-        entries: modules of the protocol room, like "skin".
+        entries: modules with the five functions, like "innervate.networks.skin.protocol.cell".
     """
     modules: list[ModuleType] = []
     for entry in entries:
@@ -203,9 +202,9 @@ def _called(modules: list[ModuleType], entries: tuple[str, ...], names: Any) -> 
     """(module, function) of the handlers and of all that they call, directly or not."""
     by_name = {module.__name__: module for module in modules}
     waiting = [
-        (ROOM + entry, name)
+        (entry, name)
         for entry in entries
-        for name in _own(by_name[ROOM + entry])
+        for name in _own(by_name[entry])
         if name.startswith("on_") or len(entries) > 1
     ]
     found = set(waiting)

@@ -26,7 +26,7 @@ class Role(NamedTuple):
     """A node's protocol.
 
     Attributes:
-        entry: the module in `protocol/` with the five functions.
+        entry: the module with the five functions.
         state, params, frame, item: declarations of its records; `item` is what its user hands
             down. CSMA looks into no frame.
         kinds: what a frame of each kind has on the wire: (field, how many: 0 one, a number, or
@@ -56,20 +56,24 @@ def _mesh_kinds() -> Kinds:
 
 ROLES = {
     "skin": Role(
-        "skin", skin_fields.CELL, skin_fields.PARAMS, skin_fields.FRAME, skin_fields.FRAME,
+        "innervate.networks.skin.protocol.cell",
+        skin_fields.CELL, skin_fields.PARAMS, skin_fields.FRAME, skin_fields.FRAME,
         {kind: _wire(fields) for kind, fields in skin.FIELDS.items()}, 12, True,
     ),
     "csma": Role(
-        "csma", csma_fields.STATION, csma_fields.PARAMS, (), csma_fields.ITEM,
+        "innervate.networks.mesh.protocol.csma",
+        csma_fields.STATION, csma_fields.PARAMS, (), csma_fields.ITEM,
         {}, 4, True,
     ),
     "radio": Role(
-        "radio_practical", radio_fields.STATION + radio_fields.PRACTICAL, radio_fields.PARAMS,
+        "innervate.networks.radio.protocol.practical",
+        radio_fields.STATION + radio_fields.PRACTICAL, radio_fields.PARAMS,
         radio_fields.FRAME, radio_fields.PACKET,
         {CRR: (("slots", 0),), **{kind: _wire(f) for kind, f in radio.FIELDS.items()}}, 16, False,
     ),
     "mesh": Role(
-        "mesh", mesh_fields.node(MESH_CLASS), mesh_fields.PARAMS, mesh_fields.FRAME,
+        "innervate.networks.mesh.protocol.node",
+        mesh_fields.node(MESH_CLASS), mesh_fields.PARAMS, mesh_fields.FRAME,
         mesh_fields.ITEM, _mesh_kinds(), 32, False,
     ),
 }  # fmt: skip

@@ -6,72 +6,51 @@ are its only events, so that a test can play any interleaving. `check` asserts t
 """
 
 import importlib
-import itertools
-import sys
-import tempfile
 import types
 from pathlib import Path
 from types import SimpleNamespace
 
-from innervate import dialect as protocol_room
+from innervate.dialect.copies import changed_copy
+from innervate.networks.skin import protocol as skin_protocol
 from innervate.networks.skin.scenario.model import ProtocolTable
 from innervate.networks.skin.scenario.plan import parameters
-from innervate.networks.skin.sim import stack as skin_stack
 
-ROOM = Path(protocol_room.__file__).parent
-STACKS = Path(skin_stack.__file__).parent
 NO_CHANGE = types.MappingProxyType({})
-_count = itertools.count(1)
 
 
-def protocol_of(load):
-    """The modules of a protocol under one roof; `load` imports one by name.
+DIALECT = ("arith", "outbox", "plain", "rng")
+STACKS = {"skin_stack": "innervate.networks.skin.sim.stack",
+          "static_stack": "innervate.networks.skin.sim.static_stack"}  # fmt: skip
+PARTS = {
+    **{name: f"innervate.dialect.{name}" for name in DIALECT},
+    **{
+        "skin" if path.stem == "cell" else f"skin_{path.stem}":
+            f"innervate.networks.skin.protocol.{path.stem}"
+        for path in sorted(Path(skin_protocol.__file__).parent.glob("[a-z]*.py"))
+    },
+    **STACKS,
+}  # fmt: skip
 
-    `skin` holds everything that a cell's modules define, wherever in the room it stands.
+
+def protocol_of(modules):
+    """The modules of a protocol under one roof, in the order of PARTS.
+
+    `skin` holds everything that a cell's modules define, wherever in the folder it stands.
     """
-    parts = {path.stem: load(path.stem) for path in sorted(ROOM.glob("[a-z]*.py"))}
+    parts = dict(zip(PARTS, modules, strict=True))
     cell = {}
     for name, part in parts.items():
-        if name.startswith("skin_") and name not in ("skin_sink", "skin_static"):
+        if name.startswith("skin_") and name not in ("skin_sink", "skin_static", "skin_stack"):
             cell |= vars(part)
-    parts |= {name: load(name) for name in ("skin_stack", "static_stack")}
     return SimpleNamespace(**parts | {"skin": SimpleNamespace(**cell | vars(parts["skin"]))})
 
 
-def _real(name):
-    room = "sim" if name.endswith("_stack") else "protocol"
-    return importlib.import_module(f"innervate.{room}.{name}")
-
-
-REAL = protocol_of(_real)
+REAL = protocol_of(importlib.import_module(name) for name in PARTS.values())
 
 
 def changed_protocol(*changes):
     """A second copy of the protocol with texts (old, new) replaced; each stands in it once."""
-    package = f"innervate_changed_{next(_count)}"
-    sources = {path.name: path.read_text() for path in ROOM.glob("*.py")}
-    for old, new in changes:
-        places = [name for name, text in sources.items() if old in text]
-        count = sum(text.count(old) for text in sources.values())
-        assert count == 1, f"{old!r} stands {count} times in {places}"
-        sources[places[0]] = sources[places[0]].replace(old, new)
-    for name in ("skin_stack.py", "static_stack.py"):
-        sources[name] = (STACKS / name).read_text()
-    with tempfile.TemporaryDirectory() as folder:
-        home = Path(folder, package)
-        home.mkdir()
-        for name, text in sources.items():
-            text = text.replace("innervate.protocol", package)
-            text = text.replace("innervate.networks.skin.sim.stack", f"{package}.skin_stack")
-            (home / name).write_text(text)
-        sys.path.insert(0, folder)
-        importlib.invalidate_caches()
-        try:
-            return protocol_of(lambda name: importlib.import_module(f"{package}.{name}"))
-        finally:
-            sys.path.remove(folder)
-            for name in [name for name in sys.modules if name.partition(".")[0] == package]:
-                del sys.modules[name]
+    return protocol_of(changed_copy(changes, *PARTS.values(), beside=STACKS.values()))
 
 
 def params_of(protocol=REAL, depth_max=8, *, numbers=NO_CHANGE, **keys):
@@ -163,7 +142,7 @@ def new_cell(protocol=REAL, number=0, seed=1):
 def beacon(protocol=REAL, dist=0, sq=1, load=1, size=1, parent=0):
     """A beacon."""
     frame = protocol.plain.make("Frame", protocol.skin_fields.FRAME)()
-    frame.kind = protocol.skin_words.BEACON
+    frame.kind = protocol.skin_constants.BEACON
     frame.dist, frame.sq, frame.load, frame.size, frame.parent = dist, sq, load, size, parent
     return frame
 
@@ -200,7 +179,9 @@ class OneCell:
         """The cell's period is over; its actions."""
         self.now = max(self.now, self.cell.tick_at)
         skin = self.protocol.skin
-        skin.on_timer(self.cell, self.params, self.now, self.protocol.skin_words.TICK, self.box.out)
+        skin.on_timer(
+            self.cell, self.params, self.now, self.protocol.skin_constants.TICK, self.box.out
+        )
         return self.box.take()
 
     def period(self, *silent):

@@ -66,9 +66,9 @@ class CellBench:
             skin.on_frame(self.cell, self.params, self.now, self.port, self.frame, out)
         elif step[0] == "tick":
             self.now = max(self.now, self.cell.tick_at)
-            skin.on_timer(self.cell, self.params, self.now, self.protocol.skin_words.TICK, out)
+            skin.on_timer(self.cell, self.params, self.now, self.protocol.skin_constants.TICK, out)
         else:
-            skin.on_timer(self.cell, self.params, self.now, self.protocol.skin_words.SOON, out)
+            skin.on_timer(self.cell, self.params, self.now, self.protocol.skin_constants.SOON, out)
         actions = self.box.take()
         wrong = out_of_range(self.cell, self.protocol.skin_fields.CELL)
         assert not wrong, f"after {step}: {wrong}"
@@ -98,8 +98,8 @@ def check_react(history, first_sq, protocol=REAL, **keys):
         settled = is_settled(bench, twin, box)
         assert (
             settled
-            or bench.params.rule != protocol.skin_words.RULE_FEASIBLE
-            or (bench.params.updates == protocol.skin_words.PERIODIC)
+            or bench.params.rule != protocol.skin_constants.RULE_FEASIBLE
+            or (bench.params.updates == protocol.skin_constants.PERIODIC)
         ), f"select(0) is not at rest before step {place} of {history}, {first_sq}, {keys}"
         actions = bench.play(step)
         if step[0] != "hear" or not settled:
@@ -109,7 +109,7 @@ def check_react(history, first_sq, protocol=REAL, **keys):
         twin.dist[port], twin.sq[port] = frame.dist, frame.sq
         twin.load[port], twin.size[port] = frame.load, frame.size
         twin.child[port], twin.heard[port] = frame.parent, 1
-        if bench.params.updates != protocol.skin_words.PERIODIC:
+        if bench.params.updates != protocol.skin_constants.PERIODIC:
             skin.select(twin, bench.params, 0, box.out)
             if skin.is_news(twin, bench.params):
                 skin.announce_soon(twin, bench.params, bench.now, box.out)

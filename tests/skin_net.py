@@ -23,7 +23,7 @@ class Net:
         self.protocol = protocol
         self.graph = free_graph([tuple(link) for link in links])
         self.params = params or params_of(protocol, max(self.graph.depths()), **keys)
-        self.static = self.params.rule == protocol.skin_words.RULE_STATIC
+        self.static = self.params.rule == protocol.skin_constants.RULE_STATIC
         self.cells = [new_cell(protocol, i, seed + 7919 * i) for i in range(self.graph.cells)]
         self.pc = sink_state(protocol, self.graph.interfaces)
         self.box = Box(protocol, max(16, self.graph.interfaces + 4))
@@ -65,7 +65,7 @@ class Net:
         """Let a cell read its sensors."""
         item = self.box.frame_class()
         skin = self.protocol.skin
-        skin.on_input(*self._head(node), self.protocol.skin_words.SAMPLE, item, self.box.out)
+        skin.on_input(*self._head(node), self.protocol.skin_constants.SAMPLE, item, self.box.out)
         self.drain(node)
 
     def _handlers(self, node):
@@ -96,7 +96,7 @@ class Net:
                 self.timers[node][a] = b
             elif kind == kinds.REPORT:
                 self.reports.append((node, a, b, c))
-                if a == self.protocol.skin_words.REPORT_FORGET:
+                if a == self.protocol.skin_constants.REPORT_FORGET:
                     self.fds[node] = None
             else:
                 self.delivered.append(frame)
@@ -120,16 +120,16 @@ class Net:
         node = self.node(name)
         if node in self.dead:
             return
-        at = self.timers[node].get(self.protocol.skin_words.TICK, self.now)
+        at = self.timers[node].get(self.protocol.skin_constants.TICK, self.now)
         if after(at, self.now & ((1 << 30) - 1)):
             self.now += (at - self.now) & ((1 << 30) - 1)
-        self.timer(node, self.protocol.skin_words.TICK)
+        self.timer(node, self.protocol.skin_constants.TICK)
 
     def soon(self, name):
         """The send-soon timer of a node fires, if it is set."""
         node = self.node(name)
-        if node not in self.dead and self.protocol.skin_words.SOON in self.timers[node]:
-            self.timer(node, self.protocol.skin_words.SOON)
+        if node not in self.dead and self.protocol.skin_constants.SOON in self.timers[node]:
+            self.timer(node, self.protocol.skin_constants.SOON)
 
     def deliver(self, end):
         """The oldest frame sent from `end` arrives; True if there was one."""
@@ -165,7 +165,7 @@ class Net:
         """The cell at `end` misses one more beacon there, and with it finds the port broken."""
         cell, port = self.cells[self.graph.node_of(end)], self.graph.port_of(end)
         cell.heard[port] = 0
-        cell.pf[port] = self.protocol.skin_words.ONE - 1
+        cell.pf[port] = self.protocol.skin_constants.ONE - 1
 
     def kill(self, node):
         """A node goes dark; what is on its cables is lost."""
@@ -240,9 +240,9 @@ class Net:
                 raise Broken(f"{self.graph.label(cell)}: {wrong}")
         if wrong := out_of_range(self.pc.own[0], fields.SINK):
             raise Broken(f"pc: {wrong}")
-        if self.params.rule < self.protocol.skin_words.RULE_PAPER and (ring := self.ring()):
+        if self.params.rule < self.protocol.skin_constants.RULE_PAPER and (ring := self.ring()):
             raise Broken("closed loop " + " -> ".join([*ring, ring[0]]))
-        if self.params.rule == self.protocol.skin_words.RULE_FEASIBLE:
+        if self.params.rule == self.protocol.skin_constants.RULE_FEASIBLE:
             for cell in range(self.graph.cells):
                 self._check_fd(cell)
 

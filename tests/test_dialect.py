@@ -5,10 +5,13 @@ from pathlib import Path
 
 import pytest
 
-import innervate.dialect
+import innervate
 
-ROOM = Path(innervate.protocol.__file__).parent
-PACKAGE = "innervate.protocol"
+HOME = Path(innervate.__file__).parent
+FOLDERS = (HOME / "dialect", *sorted((HOME / "networks").glob("*/protocol")))
+PACKAGE = "innervate.dialect"
+SOURCES = [path for folder in FOLDERS for path in sorted(folder.rglob("*.py"))]
+PYTHON = {"plain.py", "copies.py", "__init__.py"}  # about protocols, in full Python
 BUILTINS = {"abs", "max", "min", "range"}
 
 # Every kind of syntax that the dialect has; whatever is not here is refused by its name.
@@ -25,12 +28,9 @@ PLAIN = (
 
 def dialect_sources():
     """The files that compile: not the declarations, the plain classes or the package itself."""
-    exempt = {"plain.py", "__init__.py"}
-    return sorted(
-        path
-        for path in ROOM.rglob("*.py")
-        if path.name not in exempt and not path.name.endswith("_fields.py")
-    )
+    return [
+        path for path in SOURCES if path.name not in PYTHON and not path.name.endswith("fields.py")
+    ]
 
 
 def functions_of(tree):
@@ -50,7 +50,9 @@ def imports_of(tree):
 
 
 def is_ours(module):
-    return module == PACKAGE or module.startswith(PACKAGE + ".")
+    parts = module.split(".")
+    of_network = parts[:2] == ["innervate", "networks"] and "protocol" in parts
+    return f"{module}.".startswith(f"{PACKAGE}.") or of_network
 
 
 def is_docstring(node, parents):
@@ -194,15 +196,15 @@ def test_protocol_source_keeps_to_the_dialect(path):
     assert broken_rules(path.read_text(), known_functions()) == []
 
 
-@pytest.mark.parametrize("path", sorted(ROOM.rglob("*.py")), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", [p for p in SOURCES if p.name != "copies.py"], ids=str)
 def test_protocol_imports_only_itself(path):
     assert [m for m, _ in imports_of(ast.parse(path.read_text())) if not is_ours(m)] == []
 
 
 GOOD = '''"""Doc."""
 
-from innervate.protocol import arith
-from innervate.protocol.arith import later
+from innervate.dialect import arith
+from innervate.dialect.arith import later
 from . import outbox
 
 LIMIT = (1 << 30) - 1
@@ -242,9 +244,9 @@ BAD = {
     "no docstring": '"""Doc."""\n\n\ndef f(a):\n    return a\n',
     "foreign import": '"""Doc."""\nimport numpy\n',
     "foreign from": '"""Doc."""\nfrom math import floor\n',
-    "look-alike import": '"""Doc."""\nimport innervate.protocols\n',
-    "import star": '"""Doc."""\nfrom innervate.protocol.arith import *\n',
-    "import inside": inside("import innervate.protocol.arith"),
+    "look-alike import": '"""Doc."""\nimport innervate.dialects\n',
+    "import star": '"""Doc."""\nfrom innervate.dialect.arith import *\n',
+    "import inside": inside("import innervate.dialect.arith"),
     "statement at the top": '"""Doc."""\nfor i in range(3):\n    pass\n',
     "variable at the top": '"""Doc."""\nlimit = 3\n',
     "call at the top": '"""Doc."""\nLIMIT = max(1, 2)\n',

@@ -79,7 +79,7 @@ def test_no_path_of_somebodys_machine():
 
 
 def field_tables():
-    for path in sorted((ROOT / "src/innervate/protocol").rglob("*_fields.py")):
+    for path in sorted((ROOT / "src/innervate/networks").rglob("protocol/*fields.py")):
         spec = importlib.util.spec_from_file_location(path.stem, path)
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)

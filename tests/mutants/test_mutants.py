@@ -165,7 +165,7 @@ def test_a_copy_behaves_like_the_original():
 
 
 def test_a_text_that_is_not_there_is_no_mutant():
-    with pytest.raises(AssertionError, match="stands 0 times"):
+    with pytest.raises(ValueError, match="stands 0 times"):
         changed_protocol(("no such text", ""))
 
 

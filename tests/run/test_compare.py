@@ -10,7 +10,8 @@ from innervate.run import RunError, compare, run
 from innervate.run.compare import differences
 from innervate.run.trail import FIELDS, first_difference
 from innervate.sim.cables.simulate import simulate
-from innervate.sim.cables.world import TRAIL, row_dtype
+from innervate.sim.cables.world import TRAIL
+from innervate.sim.tables import row_dtype
 
 
 @pytest.fixture

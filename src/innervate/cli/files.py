@@ -7,6 +7,7 @@ from pathlib import Path
 
 from innervate import scenario
 from innervate.cli.errors import UserError
+from innervate.networks.mesh.scenario.template import measured
 
 
 def scenarios() -> int:
@@ -68,7 +69,7 @@ def _of_network(
     if Path(network).is_file():
         given = Path(os.path.relpath(network, folder)).as_posix()
     name = file.stem if file is not None else Path(network).stem
-    text = scenario.measured_template(name, given, types, min_tq)
+    text = measured(name, given, types, min_tq)
     return text, scenario.summary(scenario.loads(text, folder=str(folder)))
 
 

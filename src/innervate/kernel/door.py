@@ -23,7 +23,7 @@ from numba.extending import register_jitable
 
 from innervate.kernel.whole import as_one
 
-SOURCE_ROOMS = ("protocol", "kernel", "sim", "verify")
+SOURCE_ROOMS = ("dialect", "kernel", "sim", "verify", "networks")
 FOLDERS_KEPT = 4
 
 _registered: set[Callable[..., Any]] = set()

@@ -2,58 +2,25 @@
 
 from typing import Any
 
-from innervate.networks.mesh.scenario import planning as mesh_planning
-from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan
-from innervate.networks.radio.scenario import planning as radio_planning
-from innervate.networks.radio.scenario.plan import RadioFault, RadioPlan
-from innervate.networks.skin.scenario.plan import (
-    CUT,
-    KILL,
-    LOOSE,
-    LOSE,
-    RESTART,
-    RESTORE,
-    REVIVE,
-    Fault,
-    Plan,
-)
-from innervate.networks.skin.scenario.plan import plan as skin_planning
-from innervate.networks.skin.scenario.touch import Touch
+from innervate.network import networks
 from innervate.scenario.bundled import bundled
-from innervate.scenario.check import check, describe, summary
+from innervate.scenario.check import check, summary
 from innervate.scenario.emit import dump, inline
 from innervate.scenario.errors import ScenarioError
+from innervate.scenario.explain import nearest
 from innervate.scenario.load import Scenario, from_dict, load, loads, read
-from innervate.scenario.templates import measured as measured_template
-from innervate.scenario.templates import template
 
 __all__ = [
-    "CUT",
-    "KILL",
-    "LOOSE",
-    "LOSE",
-    "RESTART",
-    "RESTORE",
-    "REVIVE",
-    "Fault",
-    "MeshFault",
-    "MeshPlan",
-    "Plan",
-    "RadioFault",
-    "RadioPlan",
     "Scenario",
     "ScenarioError",
-    "Touch",
     "bundled",
     "check",
-    "describe",
     "dump",
     "from_dict",
     "inline",
     "json_schema",
     "load",
     "loads",
-    "measured_template",
     "plan",
     "read",
     "summary",
@@ -62,24 +29,30 @@ __all__ = [
 
 
 def plan(scenario: Scenario) -> Any:
-    """The plan of a run, a Plan, RadioPlan or MeshPlan: same scenario and seed, same plan.
+    """The plan of a run, whole numbers only: same scenario and seed, same plan.
 
     Raises:
         ScenarioError: it cannot be run as written.
     """
-    if scenario.kind == "radio":
-        return radio_planning.plan(scenario)
-    if scenario.kind == "mesh":
-        return mesh_planning.plan(scenario)
-    return skin_planning(scenario)
+    return networks()[scenario.kind].plan(scenario)
+
+
+def template(kind: str = "skin") -> str:
+    """A commented scenario of a kind, ready to run.
+
+    Raises:
+        ScenarioError: there is no such kind.
+    """
+    known = networks()
+    if kind in known:
+        return str(known[kind].template)
+    hint = nearest(kind, list(known)).replace("it knows", "there is")
+    raise ScenarioError(f'there is no kind "{kind[:40]}"{hint}')
 
 
 def json_schema() -> dict[str, Any]:
     """The JSON Schema of scenario files, for editors."""
     import msgspec
 
-    from innervate.scenario.kinds import KINDS
-
-    models = [kind.model for kind in KINDS.values()]
-    schemas, parts = msgspec.json.schema_components(models)
+    schemas, parts = msgspec.json.schema_components([n.model for n in networks().values()])
     return {"anyOf": list(schemas), "$defs": parts}

@@ -5,30 +5,15 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 
-from innervate.networks.mesh.scenario import planning as mesh_planning
-from innervate.networks.mesh.scenario import words as mesh_words
-from innervate.networks.radio.scenario import planning as radio_planning
-from innervate.networks.radio.scenario import words as radio_words
-from innervate.networks.skin.scenario.plan import (
-    ACTIONS,
-    LOSS_ONE,
-    RULES,
-    UPDATES,
-    Fault,
-    Plan,
-    plan,
-)
+from innervate.network import networks
 from innervate.scenario.load import Scenario, load
 from innervate.scenario.overrides import Override
-from innervate.topology import Graph
-
-EVENTS_SHOWN = 12
 
 
 def check(
     path: str | os.PathLike[str], overrides: Iterable[Override] = (), seed: int | None = None
 ) -> str:
-    """What a scenario file holds: cells, interface ports, depth, cables, events.
+    """What a scenario file holds: its network, protocol, events, and what is to be warned of.
 
     Raises:
         ScenarioError: it cannot be run as written.
@@ -42,49 +27,5 @@ def summary(loaded: Scenario) -> str:
     Raises:
         ScenarioError: it cannot be run as written.
     """
-    if loaded.kind == "radio":
-        return radio_words.describe(radio_planning.plan(loaded))
-    if loaded.kind == "mesh":
-        return mesh_words.describe(mesh_planning.plan(loaded))
-    return describe(plan(loaded))
-
-
-def describe(made: Plan) -> str:
-    """A plan in words, several lines, without a newline at the end."""
-    graph, params = made.graph, made.params
-    cables = sum(1 for _ in graph.links())
-    ports = f"{graph.interfaces} interface port{'s' if graph.interfaces != 1 else ''}"
-    rate_hz = made.scenario.model.data.rate_hz
-    data = f"{rate_hz:g} Hz per cell" if made.data_period_us else "off"
-    lines = [
-        f"{made.scenario.name}: a {made.kind} scenario of {made.duration_us / 1e6:g} s, "
-        f"seed {made.seed}",
-        f"  cells      {graph.cells:,}, {ports}, {cables:,} cables, "
-        f"at most {made.depth_max} hops deep",
-        f"  protocol   {RULES[params['rule']]}, {UPDATES[params['updates']]}, "
-        f"a beacon every {params['beacon_us'] / 1000:g} ms, k = {params['k']}",
-        f"  data       {data}",
-    ]
-    if made.touch is not None:
-        lines.append(
-            f"  touch      {made.touch.force_mn / 1000:g} N, "
-            f"radius {made.touch.radius_um / 1000:g} mm"
-        )
-    if made.script:
-        lines.append(f"  script     {len(made.script)} steps")
-    lines += [f"  {'event' if i == 0 else '':10} {words(graph, fault)}"
-              for i, fault in enumerate(made.faults[:EVENTS_SHOWN])]  # fmt: skip
-    if len(made.faults) > EVENTS_SHOWN:
-        lines.append(f"  {'':10} and {len(made.faults) - EVENTS_SHOWN} more")
-    return "\n".join(lines)
-
-
-def words(graph: Graph, fault: Fault) -> str:
-    """A fault in words: "at 2 s cut pc.1 - p0 r16 c7 down"."""
-    if fault.end >= 0:
-        what = f"{graph.label_end(fault.end)} - {graph.label_end(graph.peer[fault.end])}"
-    else:
-        what = graph.label(fault.node)
-    more = f", loss {fault.loss_q15 / LOSS_ONE:.3g}" if ACTIONS[fault.action] == "loose" else ""
-    more += f", {fault.frames} frames" if fault.frames else ""
-    return f"at {fault.at_us / 1e6:g} s {ACTIONS[fault.action]} {what}{more}"
+    network = networks()[loaded.kind]
+    return str(network.describe(network.plan(loaded)))

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import json
 import re
-from pathlib import Path
 from typing import Any
 
 import msgspec
 
-from innervate.networks.mesh.scenario.nodes import import_path
-from innervate.scenario.bundled import FOLDER
+from innervate.network import networks
 from innervate.scenario.load import Scenario
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
@@ -19,17 +17,10 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 def dump(scenario: Scenario) -> str:
     """TOML that loads to the same scenario.
 
-    A relative `urdf` or `import.file` becomes the full path, since the text may be kept elsewhere.
+    Relative paths in it become full ones, since the text may be kept elsewhere.
     """
     tables = msgspec.to_builtins(scenario.model)
-    body = tables.get("body")
-    if body is not None and not body["urdf"].startswith("package:"):
-        body["urdf"] = str((Path(scenario.source.folder) / body["urdf"]).absolute())
-    imported = tables.get("import")
-    if imported is not None and imported["file"] is not None:
-        path = import_path(imported["file"], scenario.source)
-        if FOLDER not in path.parents:
-            imported["file"] = str(path.absolute())
+    networks()[scenario.kind].anchor(tables, scenario.source)
     return to_toml(tables)
 
 

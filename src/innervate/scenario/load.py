@@ -10,12 +10,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from innervate.networks.skin.scenario.model import SCHEMA
-from innervate.networks.skin.scenario.rules import check_kind
+from innervate.network import networks
 from innervate.scenario.bundled import bundled
 from innervate.scenario.errors import ScenarioError
 from innervate.scenario.explain import convert, nearest
-from innervate.scenario.kinds import KINDS
+from innervate.scenario.keys import SCHEMA
 from innervate.scenario.lines import key_lines
 from innervate.scenario.overrides import Override, apply
 from innervate.scenario.source import Source, check_plain, shown
@@ -30,8 +29,7 @@ class Scenario:
     """A validated scenario.
 
     Attributes:
-        model: its tables (see model.py, radio_model.py, mesh_model.py), overrides and defaults
-            filled in.
+        model: its tables, overrides and defaults filled in; the `model` of its network.
         source: where it came from, for error messages.
     """
 
@@ -40,7 +38,7 @@ class Scenario:
 
     @property
     def kind(self) -> str:
-        """What it describes: "skin", "radio" or "mesh"."""
+        """What kind of network it describes, by its name."""
         return str(self.model.kind)
 
     @property
@@ -153,13 +151,31 @@ def _build(
     if isinstance(schema, int) and schema > SCHEMA:
         message = f"schema = {schema} is newer than this version knows ({SCHEMA}); update innervate"
         raise source.error(("schema",), message)
-    kind = check_kind(source, raw.get("kind"), list(KINDS))
+    kind = _check_kind(source, raw.get("kind"), list(networks()))
     if not raw.get("name", "x"):
         del raw["name"]
     raw.setdefault("name", Path(source.path).stem or kind)
-    model = convert(source, raw, KINDS[kind].model)
-    KINDS[kind].check(source, model)
+    network = networks()[kind]
+    model = convert(source, raw, network.model)
+    network.check(source, model)
     return Scenario(model, source)
+
+
+def _check_kind(source: Source, kind: object, known: list[str]) -> str:
+    """The kind, if this version runs it.
+
+    Raises:
+        ScenarioError: missing or unknown.
+    """
+    if kind is None:
+        raise source.error((), f'the scenario has no kind; add kind = "{known[0]}"')
+    if isinstance(kind, str) and kind in known:
+        return kind
+    *most, last = (f'"{name}"' for name in known)
+    one = f"{', '.join(most)} or {last}"
+    shown = f'"{kind}"' if isinstance(kind, str) else str(kind)[:40]
+    error: ScenarioError = source.error(("kind",), f"kind must be {one}, not {shown}")
+    raise error
 
 
 def _copy(value: Any) -> Any:

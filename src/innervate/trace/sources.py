@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 
 # Rooms whose sources decide what a simulation gives.
-ROOMS = ("protocol", "kernel", "sim", "topology", "trace", "scenario", "analysis")
+ROOMS = ("dialect", "kernel", "sim", "topology", "trace", "scenario", "analysis", "networks")
 
 
 @cache

@@ -10,11 +10,11 @@ from innervate.networks.skin.analysis.summary import summarize
 from innervate.networks.skin.protocol.constants import TICK
 from innervate.networks.skin.scenario.plan import Plan
 from innervate.run.columns import columns
-from innervate.sim.cables import build, loop
+from innervate.sim.cables import build
 from innervate.sim.cables import simulate as simulator
-from innervate.sim.cables.build import get, put
-from innervate.sim.cables.loop import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.sim.cables.simulate import RULE_STATIC, SLICE_EVENTS, compiled_loop
+from innervate.sim.status import DONE, ON_FRAME, ON_INPUT, ON_START, ON_TIMER, POOL_FULL
+from innervate.sim.tables import get, put
 from innervate.topology import PORT_NAMES
 from innervate.trace import tables
 from innervate.trace.tables import Table
@@ -66,12 +66,12 @@ def trail(plan: Plan, until_us: int) -> Iterator[Any]:
     while True:
         advance(world, until_us, SLICE_EVENTS)
         status = int(get(world.run, 0, "status"))
-        if status == loop.POOL_FULL:
+        if status == POOL_FULL:
             world = build.grow_pool(world)
         count = int(get(world.run, 0, "trail"))
         yield world.trail[:count].copy()
         put(world.run, 0, trail=0)
-        if status == loop.DONE:
+        if status == DONE:
             return
 
 

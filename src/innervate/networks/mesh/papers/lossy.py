@@ -16,8 +16,8 @@ from innervate.networks.mesh.protocol.constants import END_TO_END
 from innervate.networks.mesh.scenario.plan import ONE, UNHEARD, Offer
 from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
 from innervate.plot import style
-from innervate.sim.cables.build import get
 from innervate.sim.field.simulate import simulate
+from innervate.sim.tables import get
 from innervate.trace.streams import stream
 
 LOSSES = (0, 1, 2, 5, 10, 20)

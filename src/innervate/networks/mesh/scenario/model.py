@@ -12,7 +12,7 @@ from msgspec import Meta, Struct, field
 
 from innervate.networks.mesh.scenario.settings import MeshProtocolTable
 from innervate.networks.radio.scenario.model import MACS
-from innervate.networks.skin.scenario.model import SCHEMA
+from innervate.scenario.keys import SCHEMA
 
 Node = Annotated[int | str, Meta(description='a node by number from 0, or by name, like "n3"')]
 Metres = Annotated[

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.scenario.bundled import FOLDER
@@ -143,3 +144,12 @@ def import_path(name: str, source: Source) -> Path:
         if bundled.is_file():
             return bundled
     return Path(source.folder) / name
+
+
+def anchor(tables: dict[str, Any], source: Source) -> None:
+    """Make a relative `import.file` the full path, unless it is a bundled one."""
+    imported = tables.get("import")
+    if imported is not None and imported["file"] is not None:
+        path = import_path(imported["file"], source)
+        if FOLDER not in path.parents:
+            imported["file"] = str(path.absolute())

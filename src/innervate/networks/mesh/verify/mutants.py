@@ -68,7 +68,7 @@ def models() -> Iterator[MeshModel]:
 
 def hunt(mutant: Mutant) -> Catch:
     """Try a mutant on all models until something is broken."""
-    (entry,) = copies(mutant, "mesh")
+    (entry,) = copies(mutant, "innervate.networks.mesh.protocol.node")
     states = 0
     for model in models():
         what = "gateways" if model.beats else "an alarm" if model.robot >= 0 else "messages"

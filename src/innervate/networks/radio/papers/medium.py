@@ -14,8 +14,8 @@ from innervate.networks.radio.papers.common import TAU_US, Options
 from innervate.networks.radio.protocol.constants import DATA
 from innervate.networks.radio.scenario.plan import RadioPlan, parameters
 from innervate.papers.experiment import Point
-from innervate.sim.cables.build import uniform
 from innervate.sim.channel.simulate import RadioResult, simulate
+from innervate.sim.tables import uniform
 
 START_US = 100_000
 

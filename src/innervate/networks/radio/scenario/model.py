@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta, Struct
 
-from innervate.networks.skin.scenario.model import SCHEMA, Micros
+from innervate.scenario.keys import SCHEMA, Micros
 
 MACS = (
     "csma-cd-r", "csma-cd-d1", "csma-cd-d2", "csma-cd-d2p", "slotted-aloha", "nonpersistent",

@@ -37,7 +37,7 @@ def trees() -> Iterator[tree.Tree]:
 
 def hunt(mutant: Mutant) -> Catch:
     """Try a mutant on all trees until something is broken."""
-    (entry,) = copies(mutant, "radio_practical")
+    (entry,) = copies(mutant, "innervate.networks.radio.protocol.practical")
     runs = 0
     for one in trees():
         found = tree.search(one, entry, RUNS)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from innervate.networks.skin.scenario.model import (
     BodyTable,
@@ -242,3 +243,10 @@ def _node(source: Source, graph: Graph, text: str, key: Key) -> int | None:
         return None
     patch, row, column = (int(part) for part in match.groups())
     return cell_at(source, graph, CellTable(patch=patch, row=row, column=column), key)
+
+
+def anchor(tables: dict[str, Any], source: Source) -> None:
+    """Make a relative `body.urdf` the full path."""
+    body = tables.get("body")
+    if body is not None and not body["urdf"].startswith("package:"):
+        body["urdf"] = str((Path(source.folder) / body["urdf"]).absolute())

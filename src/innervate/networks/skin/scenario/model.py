@@ -11,16 +11,13 @@ from typing import Annotated, Literal
 
 from msgspec import Meta, Struct
 
-SCHEMA = 1
+from innervate.scenario.keys import SCHEMA, Micros
 
 Count = Annotated[int, Meta(ge=0, le=4_000_000, description="a whole number from 0")]
 Side = Annotated[int, Meta(ge=1, le=4_000_000, description="a whole number from 1")]
 Fraction = Annotated[float, Meta(ge=0, le=1, description="a fraction from 0 to 1")]
 Penalty = Annotated[float, Meta(gt=0, le=2, description="a fraction > 0, at most 2")]
 Port = Annotated[int | str, Meta(description='a port: "W", "E", "up", "down" or 0 to 3')]
-Micros = Annotated[
-    int, Meta(ge=0, le=1_000_000, description="a whole number of microseconds, 0 to 1000000")
-]
 Coordinate = Annotated[
     float, Meta(ge=-1_000_000, le=1_000_000, description="a number of mm within +-1000000")
 ]

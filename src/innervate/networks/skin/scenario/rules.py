@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import ceil
 
 from innervate.networks.skin.scenario.model import EventTable, SkinScenario
-from innervate.scenario.errors import ScenarioError
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source
 
@@ -175,20 +174,3 @@ def _amount(source: Source, key: Key, name: str, event: EventTable) -> None:
     if event.action != "lose" and event.frames is not None:
         message = f'{name}.frames goes with "lose", not "{event.action}"'
         raise source.error((*key, "frames"), message)
-
-
-def check_kind(source: Source, kind: object, known: list[str]) -> str:
-    """The kind, if this version runs it.
-
-    Raises:
-        ScenarioError: missing or unknown.
-    """
-    if kind is None:
-        raise source.error((), f'the scenario has no kind; add kind = "{known[0]}"')
-    if isinstance(kind, str) and kind in known:
-        return kind
-    *most, last = (f'"{name}"' for name in known)
-    one = f"{', '.join(most)} or {last}"
-    shown = f'"{kind}"' if isinstance(kind, str) else str(kind)[:40]
-    error: ScenarioError = source.error(("kind",), f"kind must be {one}, not {shown}")
-    raise error

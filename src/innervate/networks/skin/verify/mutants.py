@@ -6,22 +6,18 @@ in a temporary folder and runs uncompiled; the real protocol is not touched.
 
 from __future__ import annotations
 
-import importlib
 import itertools
-import sys
-import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from types import ModuleType
 
-from innervate import dialect as protocol_room
+from innervate.dialect.copies import changed_copy
 from innervate.networks.skin.verify import assumptions as promises
 from innervate.networks.skin.verify import fair, graphs, story
 from innervate.networks.skin.verify import system as system
 from innervate.verify import explore
 
-ROOM = Path(protocol_room.__file__).parent
+PROTOCOL = "innervate.networks.skin.protocol"
 _count = itertools.count(1)
 
 
@@ -101,36 +97,17 @@ MUTANTS = tuple(
 
 
 def copies(mutant: Mutant, *names: str) -> list[ModuleType]:
-    """Modules of a copy of the protocol with the mistake in it.
+    """Modules of a copy of the protocols with the mistake in it.
 
     Raises:
-        ValueError: the text does not stand exactly once in the sources.
+        ValueError: the text does not stand exactly once in the sources: no mutant any more.
     """
-    package = f"innervate_mutant_{next(_count)}"
-    sources = {path.name: path.read_text(encoding="utf-8") for path in ROOM.glob("*.py")}
-    count = sum(text.count(mutant.old) for text in sources.values())
-    if count != 1:  # not a mutant any more
-        raise ValueError(f"{mutant.old!r} stands {count} times in the protocol's sources")
-    with tempfile.TemporaryDirectory() as folder:
-        home = Path(folder, package)
-        home.mkdir()
-        for name, text in sources.items():
-            changed = text.replace(mutant.old, mutant.new)
-            changed = changed.replace("innervate.protocol", package)
-            (home / name).write_text(changed, encoding="utf-8")
-        sys.path.insert(0, folder)
-        importlib.invalidate_caches()
-        try:
-            return [importlib.import_module(f"{package}.{name}") for name in names]
-        finally:
-            sys.path.remove(folder)
-            for name in [name for name in sys.modules if name.partition(".")[0] == package]:
-                del sys.modules[name]
+    return changed_copy([(mutant.old, mutant.new)], *names)
 
 
 def copy_of(mutant: Mutant) -> system.System:
     """The skin's system on a copy of the protocol with the mistake in it."""
-    cell, sink = copies(mutant, "skin", "skin_sink")
+    cell, sink = copies(mutant, f"{PROTOCOL}.cell", f"{PROTOCOL}.sink")
     return system.system_of(cell, sink)
 
 

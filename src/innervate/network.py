@@ -1,0 +1,88 @@
+"""What a kind of network is, and which kinds there are.
+
+Nothing else in the toolkit names a network. What it wants of one it asks of its `Network`: a name,
+and where each part of it stands. A part is imported when it is first asked for, so that a command
+loads only what it needs; one that a network leaves out is the default for any network.
+"""
+
+from __future__ import annotations
+
+import pkgutil
+from functools import cache
+from importlib import import_module
+from typing import Any
+
+HOME = "innervate.networks"
+
+# Every part that a network can have, and what it is. Those with a default may be left out.
+PARTS = {
+    "model": "msgspec.Struct: the keys of its scenarios, with ranges and meanings",
+    "check": "(source, model): raises ScenarioError at the first thing that does not fit together",
+    "plan": "(scenario) -> the plan of its run, whole numbers only; `plan.kind` is the name",
+    "describe": "(plan) -> str: the scenario in a few lines, without running it",
+    "template": "str: a commented scenario to start from",
+    "anchor": "(tables, source): makes relative paths in a scenario's tables absolute",
+    "run": "module: simulate, summarize, tables_of, columns, trail, call_words",
+    "tables": "tuple of Table: all tables that its runs can have",
+    "report": "(result, summary) -> str: the body of its report, HTML",
+    "figures": "module: draw(run, figure) -> a matplotlib figure",
+    "summary_lines": "(run) -> list of str: what a person wants to know first",
+    "view": "class: what the live page shows of its simulation (web/view.py)",
+    "scene": "(plan): what a page draws once",
+}
+DEFAULTS = {
+    "anchor": "innervate.network:nothing_to_anchor",
+}
+
+
+class Network:
+    """A kind of network; its parts are attributes, by the names of PARTS.
+
+    Args:
+        name: as `kind` in its scenarios.
+        package: the package that its parts' places are relative to.
+        rank: its place in lists for people.
+        **parts: where each part stands: "module" or "module:name".
+    """
+
+    def __init__(self, name: str, package: str, rank: int = 100, **parts: str) -> None:
+        for part in parts:
+            if part not in PARTS:
+                raise TypeError(f"network {name}: no part {part!r}; there are {', '.join(PARTS)}")
+        self.name = name
+        self.package = package
+        self.rank = rank
+        self.parts = {**DEFAULTS, **{part: f"{package}.{place}" for part, place in parts.items()}}
+
+    def __repr__(self) -> str:
+        """Its name."""
+        return f"Network({self.name!r})"
+
+    def __getattr__(self, part: str) -> Any:
+        """A part, imported when it is first asked for."""
+        place = self.__dict__.get("parts", {}).get(part)
+        if place is None:
+            raise AttributeError(f"network {self.__dict__.get('name')} has no part {part!r}")
+        module, _, name = place.partition(":")
+        found: Any = import_module(module)
+        if name:
+            found = getattr(found, name)
+        self.__dict__[part] = found
+        return found
+
+    def has(self, part: str) -> bool:
+        """True if there is such a part, its own or the default."""
+        return part in self.parts
+
+
+def nothing_to_anchor(tables: dict[str, Any], source: Any) -> None:
+    """A scenario without relative paths."""
+
+
+@cache
+def networks() -> dict[str, Network]:
+    """All kinds of networks by name: every folder of `networks` with a `network.py` in it."""
+    home = import_module(HOME)
+    found = [import_module(f"{HOME}.{folder.name}.network").NETWORK
+             for folder in pkgutil.iter_modules(home.__path__) if folder.ispkg]  # fmt: skip
+    return {network.name: network for network in sorted(found, key=lambda n: n.rank)}

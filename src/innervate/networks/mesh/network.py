@@ -1,0 +1,15 @@
+"""What the toolkit asks of a mesh, and where it stands."""
+
+from innervate.network import Network
+
+NETWORK = Network(
+    "mesh",
+    __package__,
+    rank=2,
+    model="scenario.model:MeshScenario",
+    check="scenario.rules:check",
+    plan="scenario.planning:plan",
+    describe="scenario.words:describe",
+    template="scenario.template:TEMPLATE",
+    anchor="scenario.nodes:anchor",
+)

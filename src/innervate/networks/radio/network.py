@@ -1,0 +1,14 @@
+"""What the toolkit asks of a radio team, and where it stands."""
+
+from innervate.network import Network
+
+NETWORK = Network(
+    "radio",
+    __package__,
+    rank=1,
+    model="scenario.model:RadioScenario",
+    check="scenario.rules:check",
+    plan="scenario.planning:plan",
+    describe="scenario.words:describe",
+    template="scenario.template:TEMPLATE",
+)

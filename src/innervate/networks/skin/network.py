@@ -1,0 +1,15 @@
+"""What the toolkit asks of a skin, and where it stands."""
+
+from innervate.network import Network
+
+NETWORK = Network(
+    "skin",
+    __package__,
+    rank=0,
+    model="scenario.model:SkinScenario",
+    check="scenario.rules:check",
+    plan="scenario.plan:plan",
+    describe="scenario.words:describe",
+    template="scenario.template:TEMPLATE",
+    anchor="scenario.graph:anchor",
+)
