@@ -7,8 +7,7 @@ import pytest
 
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.radio.protocol import fields as radio_fields
-from innervate.networks.skin.scenario import plan
-from innervate.scenario import load
+from innervate.scenario import load, plan
 from innervate.sim.field.simulate import simulate
 from tests.parity.test_mesh import TABLES, states
 

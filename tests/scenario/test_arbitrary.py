@@ -9,9 +9,8 @@ from typing import Any
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from innervate.networks.skin.scenario import plan
 from innervate.networks.skin.scenario.plan import Plan
-from innervate.scenario import Scenario, ScenarioError, bundled, from_dict, loads
+from innervate.scenario import Scenario, ScenarioError, bundled, from_dict, loads, plan
 
 FEW = settings(
     max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow]

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from innervate.networks.skin.scenario import plan
-from innervate.scenario import ScenarioError, from_dict, load, loads
+from innervate.scenario import ScenarioError, from_dict, load, loads, plan
 
 # what to replace, by what, the message
 WRONG = [

@@ -9,7 +9,6 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from innervate.networks.skin.scenario import plan
 from innervate.scenario import (
     Scenario,
     bundled,
@@ -19,6 +18,7 @@ from innervate.scenario import (
     json_schema,
     load,
     loads,
+    plan,
     template,
 )
 from innervate.scenario.lines import key_lines

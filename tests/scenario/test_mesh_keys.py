@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.networks.skin.scenario import plan
-from innervate.scenario import ScenarioError, from_dict, json_schema, load, loads
+from innervate.scenario import ScenarioError, from_dict, json_schema, load, loads, plan
 
 SMALL = """\
 kind = "mesh"

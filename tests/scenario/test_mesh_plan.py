@@ -14,8 +14,7 @@ from innervate.networks.mesh.protocol.fields import PARAMS
 from innervate.networks.mesh.scenario.network import quality_cdb, reception_q15
 from innervate.networks.mesh.scenario.plan import CUT, JAM, KILL, ONE, REVIVE, UNHEARD, MeshPlan
 from innervate.networks.mesh.scenario.words import warnings
-from innervate.networks.skin.scenario import plan
-from innervate.scenario import ScenarioError, bundled, check, dump, load, loads, template
+from innervate.scenario import ScenarioError, bundled, check, dump, load, loads, plan, template
 from innervate.topology.placement import components, good_links, neighbours
 
 MESHES = sorted(name for name in bundled() if name.startswith("mesh"))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from innervate.networks.skin.protocol import fields as skin_fields
-from innervate.networks.skin.scenario import plan
 from innervate.networks.skin.scenario.plan import (
     CUT,
     KILL,
@@ -17,7 +16,7 @@ from innervate.networks.skin.scenario.plan import (
     Plan,
 )
 from innervate.networks.skin.scenario.script import DELIVER, DETECT, DRAW, STEP_LOSE, TICK
-from innervate.scenario import ScenarioError, load, loads
+from innervate.scenario import ScenarioError, load, loads, plan
 
 
 def test_parameters_are_those_of_the_protocol(small: str) -> None:

@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from innervate.networks.radio.scenario.plan import JOIN, KILL
 from innervate.networks.radio.scenario.traffic import exponential
-from innervate.networks.skin.scenario import plan
-from innervate.scenario import ScenarioError, check, dump, from_dict, load, loads, template
+from innervate.scenario import ScenarioError, check, dump, from_dict, load, loads, plan, template
 from innervate.trace.streams import stream
 
 SMALL = """\

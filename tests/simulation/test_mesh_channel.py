@@ -11,8 +11,7 @@ from innervate.networks.mesh.scenario.plan import KILL, RESTART, REVIVE, MeshFau
 from innervate.networks.mesh.sim import channel, over_channel
 from innervate.networks.radio.protocol.constants import QUEUE
 from innervate.networks.radio.scenario.baselines import NUMBERS
-from innervate.networks.skin.scenario import plan
-from innervate.scenario import load
+from innervate.scenario import load, plan
 from innervate.sim.cables.simulate import InvariantBroken
 from innervate.sim.channel import build
 from innervate.sim.field.simulate import simulate
