@@ -6,8 +6,8 @@ import pytest
 from innervate import run
 from innervate.cli.show import summary_lines
 from innervate.networks.mesh import tables as declared
-from innervate.run import compare
-from innervate.run.rooms import room_of
+from innervate.running import compare
+from innervate.running.rooms import room_of
 from tests.mesh_tables_runs import mesh_tables, without_fence
 
 NAMES = ["nodes", "links", "discovery", "delivery_ratio", "latency_ms", "alarms", "duplicates",

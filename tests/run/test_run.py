@@ -6,17 +6,10 @@ import sys
 import pytest
 
 import innervate
-import innervate.run as room
 from innervate import scenario
 from innervate.networks.skin import run as skin
-from innervate.run import Run, RunError, run
+from innervate.running import RunError, run
 from innervate.scenario import ScenarioError
-
-
-def test_the_room_is_a_function_too(four):
-    assert innervate.run is room
-    assert isinstance(innervate.run(four()), Run)
-    assert room.run is run
 
 
 @pytest.mark.parametrize("how", ["dict", "scenario", "file", "path"])

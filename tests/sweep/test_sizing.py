@@ -7,7 +7,7 @@ import pytest
 from innervate import scenario
 from innervate.cli import main
 from innervate.networks.skin.sizing import Question, answer_lines, parse_ports, size
-from innervate.sweep import SweepError
+from innervate.sweeping import SweepError
 
 pytest.importorskip("icub_models")
 ICUB = "package:icub-models/iCubGenova02"

@@ -6,7 +6,7 @@ from innervate.networks.radio.verify import grid as grid
 from innervate.networks.radio.verify import mutants as radio_mutants
 from innervate.networks.radio.verify import tree as tree
 from innervate.networks.skin.verify import mutants
-from innervate.run.errors import RunError
+from innervate.running.errors import RunError
 
 
 def test_a_grid_has_all_its_points():

@@ -7,7 +7,7 @@ import pytest
 
 from innervate import scenario
 from innervate.networks.skin.view.scene import places
-from innervate.run import run
+from innervate.running import run
 from innervate.web import messages
 from innervate.web.errors import Refused, WatchError
 from innervate.web.history import LOG, SERIES, TIMELINE

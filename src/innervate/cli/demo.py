@@ -16,7 +16,7 @@ from innervate.plot import words
 
 if TYPE_CHECKING:
     from innervate.networks.mesh.analysis.alarms import Crossing
-    from innervate.run import Run
+    from innervate.running import Run
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from innervate.networks.mesh.plot import words as mesh_words
 from innervate.plot import words
 
 if TYPE_CHECKING:
-    from innervate.run import Run
+    from innervate.running import Run
 
 
 def summary_lines(run: Run) -> list[str]:

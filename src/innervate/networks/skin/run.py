@@ -9,7 +9,7 @@ from innervate.networks.skin.analysis import frames
 from innervate.networks.skin.analysis.summary import summarize
 from innervate.networks.skin.protocol.constants import TICK
 from innervate.networks.skin.scenario.plan import Plan
-from innervate.run.columns import columns
+from innervate.running.columns import columns
 from innervate.sim.cables import build
 from innervate.sim.cables import simulate as simulator
 from innervate.sim.cables.simulate import RULE_STATIC, SLICE_EVENTS, compiled_loop

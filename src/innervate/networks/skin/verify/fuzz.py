@@ -14,7 +14,7 @@ from typing import Any
 from innervate import scenario as scenarios
 from innervate.networks.mesh.verify import fuzz as wild_mesh
 from innervate.networks.skin.analysis.frames import FramesLost
-from innervate.run.run import run
+from innervate.running.run import run
 from innervate.sim.cables.simulate import InvariantBroken
 
 SKIN_ACTIONS = ("cut", "restore", "kill", "revive", "loose", "lose", "restart")

@@ -15,7 +15,7 @@ from typing import Any
 
 from innervate.networks.mesh import tables as mesh_tables
 from innervate.networks.radio import tables as radio_tables
-from innervate.run.errors import RunError
+from innervate.running.errors import RunError
 from innervate.trace import tables
 
 SCENARIO = "scenario.toml"
