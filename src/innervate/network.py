@@ -22,15 +22,21 @@ PARTS = {
     "describe": "(plan) -> str: the scenario in a few lines, without running it",
     "template": "str: a commented scenario to start from",
     "anchor": "(tables, source): makes relative paths in a scenario's tables absolute",
-    "run": "module: simulate, summarize, tables_of, columns, trail, call_words",
+    "run": "module: simulate, summarize, tables_of, written_of, columns, trail, call_words",
     "tables": "tuple of Table: all tables that its runs can have",
+    "received_image": "(result, time_s, window_s): what was felt, as it was received",
     "report": "(result, summary) -> str: the body of its report, HTML",
     "figures": "module: draw(run, figure) -> a matplotlib figure",
     "summary_lines": "(run) -> list of str: what a person wants to know first",
+    "simulation": "(plan) -> sim.driver.Simulation: the network as it is watched, not yet begun",
+    "unwatchable": '(plan) -> str: why it cannot be watched; "" if it can',
+    "engine": "class: web.engine.Engine, or what can do more",
     "view": "class: what the live page shows of its simulation (web/view.py)",
     "scene": "(plan): what a page draws once",
 }
 DEFAULTS = {
+    "unwatchable": "innervate.network:nothing_against_it",
+    "engine": "innervate.web.engine:Engine",
     "anchor": "innervate.network:nothing_to_anchor",
 }
 
@@ -77,6 +83,11 @@ class Network:
 
 def nothing_to_anchor(tables: dict[str, Any], source: Any) -> None:
     """A scenario without relative paths."""
+
+
+def nothing_against_it(plan: Any) -> str:
+    """Any plan will do."""
+    return ""
 
 
 @cache

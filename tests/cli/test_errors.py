@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from innervate.cli import errors
-from innervate.sim.cables.simulate import InvariantBroken
+from innervate.sim.driver import InvariantBroken, Simulation
 
 WRONG = {
     "unknown command": (("runn", "x"), 'Did you mean "run"?'),
@@ -111,13 +111,12 @@ def test_control_characters_do_not_reach_the_terminal(sh):
 
 def test_interrupted_runs_end_with_130(sh, monkeypatch):
     from innervate.cli import progress
-    from innervate.sim.cables import simulate as room
 
     def interrupt(*_):
         signal.raise_signal(signal.SIGINT)
 
     monkeypatch.setattr(progress.Progress, "__call__", interrupt)
-    monkeypatch.setattr(room, "SLICE_EVENTS", 500)
+    monkeypatch.setattr(Simulation, "slice_events", 500)
     assert sh("run", "four.toml") == 130
     assert "Interrupted at 0." in sh.out
     assert Path("runs/four-1/summary.json").exists()

@@ -8,6 +8,7 @@ import pytest
 from innervate import run
 from innervate.networks.skin.plot.story import Story
 from innervate.plot import report
+from innervate.sim.driver import Simulation
 
 VOID = {"meta", "link", "br", "hr", "img", "input"}
 BIG = 2_000_000
@@ -145,9 +146,8 @@ def test_large_skins_stay_readable(tables, count):
 
 
 def test_an_interrupted_run_says_so(tables, monkeypatch):
-    from innervate.sim.cables import simulate as room
 
-    monkeypatch.setattr(room, "SLICE_EVENTS", 10_000)
+    monkeypatch.setattr(Simulation, "slice_events", 10_000)
     done = run(tables(), progress=lambda now, end: signal.raise_signal(signal.SIGINT))
     assert done.interrupted
     assert "Ended early, at" in read(report.render(done))

@@ -5,9 +5,9 @@ import pytest
 
 from innervate import run
 from innervate.cli.show import summary_lines
+from innervate.network import networks
 from innervate.networks.mesh import tables as declared
 from innervate.running import compare
-from innervate.running.rooms import room_of
 from tests.mesh_tables_runs import mesh_tables, without_fence
 
 NAMES = ["nodes", "links", "discovery", "delivery_ratio", "latency_ms", "alarms", "duplicates",
@@ -90,4 +90,4 @@ def test_two_runs_are_compared_event_by_event(tmp_path):
 
 def test_calls_in_words(field):
     row = {"node": 3, "port": 10, "handler": 1}
-    assert room_of("mesh").call_words(field.plan, row) == "node n3: received an alarm"
+    assert networks()["mesh"].run.call_words(field.plan, row) == "node n3: received an alarm"

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from innervate import scenario
-from innervate.sim.cables import simulate as simulator
-from innervate.sim.cables.simulate import simulate
+from innervate.networks.skin.sim.simulate import simulate
+from innervate.sim.driver import Simulation
 from tests.skin_runs import busy, plan_of, run, setup_1
 
 TABLE = Path(__file__).with_name("fingerprints.csv")
@@ -46,7 +46,7 @@ def test_what_is_recorded_or_checked_changes_nothing():
 def test_slices_change_nothing(monkeypatch):
     keys = busy(5)
     whole = run(keys, trail=True)
-    monkeypatch.setattr(simulator, "SLICE_EVENTS", 1000)
+    monkeypatch.setattr(Simulation, "slice_events", 1000)
     seen = []
     sliced = simulate(plan_of(keys), trail=True, progress=lambda now, end: seen.append(now))
     assert len(seen) > 5

@@ -4,18 +4,21 @@ import numpy as np
 import pytest
 
 from innervate import scenario
+from innervate.network import networks
 from innervate.running import run
-from innervate.web.engine import twin
-from innervate.web.engines import engine_of
+from innervate.web.engine import engine_of, twin
 from innervate.web.errors import Refused, WatchError
 from innervate.web.history import History
 from innervate.web.messages import Cut, Heal, Kill, Revive
 from innervate.web.saving import saved
-from innervate.web.views import view_of
 from tests.skin_runs import free
 from tests.web_runs import KINDS, MESH, RADIO, SKIN, plan_of
 
 BUDGETS = (64, 1000, 100_000)
+
+
+def view_of(engine, history):
+    return networks()[engine.plan.kind].view(engine, history)
 
 
 def ready(kind, **more):
@@ -161,7 +164,7 @@ def test_what_has_no_clock_cannot_be_watched():
 
 def test_a_copy_keeps_views_of_the_same_memory():
     engine = ready("mesh", **{k: v for k, v in MESH.items() if k == "nodes"})
-    made, size = twin(engine.world, engine.tables)
+    made, size = twin(engine.world, tuple(engine.running.tables))
     assert size > made.nodes.nbytes
     made.nodes["seq"][3] = 77
     assert 77 in made.words[3]

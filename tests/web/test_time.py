@@ -5,7 +5,7 @@ import pytest
 
 from innervate import scenario
 from innervate.running import run
-from innervate.sim.cables.simulate import InvariantBroken
+from innervate.sim.driver import InvariantBroken
 from innervate.web import messages
 from innervate.web.errors import Refused, WatchError
 from innervate.web.history import LOG, SERIES, TIMELINE

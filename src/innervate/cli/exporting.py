@@ -10,6 +10,7 @@ from innervate import scenario as scenarios
 from innervate.cli.errors import UserError
 from innervate.cli.progress import Progress, is_compiled
 from innervate.export import dissector
+from innervate.network import networks
 from innervate.scenario import ScenarioError
 
 if TYPE_CHECKING:
@@ -151,12 +152,12 @@ class _Source:
                 with Progress(is_compiled(self.plan)) as progress:
                     self._run = room.run(self.scenario, progress=progress)
             return dict(self._run.tables)
-        from innervate.running import folder as folders
         from innervate.trace import tables
 
         here = self.folder
         return {
             table.name: tables.read(table, here)
-            for table in folders.TABLES
+            for network in networks().values()
+            for table in network.tables
             if (here / f"{table.name}.parquet").exists()
         }

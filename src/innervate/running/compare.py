@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from innervate import scenario as scenarios
+from innervate.network import networks
 from innervate.running import folder as folders
 from innervate.running.errors import RunError
-from innervate.running.rooms import room_of
 from innervate.running.trail import first_difference
 from innervate.scenario import ScenarioError
 
@@ -141,7 +141,7 @@ def _diverge(a: _Recorded, b: _Recorded) -> Divergence | None:
     plans = a.plan(), b.plan()
     rows = first_difference(
         *(
-            room_of(plan.kind).trail(plan, min(run.ended_us, plan.duration_us))
+            networks()[plan.kind].run.trail(plan, min(run.ended_us, plan.duration_us))
             for plan, run in zip(plans, (a, b), strict=True)
         )
     )
@@ -156,7 +156,7 @@ def _in_words(plan: Any, row: Any) -> str:
     """A row of the trail: "2.016000 s, p0 r3 c4: beacon period"."""
     if row is None:
         return "nothing more"
-    return f"{int(row['time']) / 1e6:.6f} s, {room_of(plan.kind).call_words(plan, row)}"
+    return f"{int(row['time']) / 1e6:.6f} s, {networks()[plan.kind].run.call_words(plan, row)}"
 
 
 def _notes(a: _Recorded, b: _Recorded) -> list[str]:

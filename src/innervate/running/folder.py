@@ -10,24 +10,27 @@ import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from innervate.networks.mesh import tables as mesh_tables
-from innervate.networks.radio import tables as radio_tables
+from innervate.network import networks
 from innervate.running.errors import RunError
-from innervate.trace import tables
 
 SCENARIO = "scenario.toml"
 SUMMARY = "summary.json"
 PROVENANCE = "provenance.json"
 REPORT = "report.html"
 REQUIRED = (SCENARIO, SUMMARY, PROVENANCE)
-TABLES = (*tables.TABLES, *radio_tables.TABLES, *mesh_tables.TABLES)
-TABLE_FILES = tuple(f"{table.name}.parquet" for table in TABLES)
-KNOWN = frozenset({*REQUIRED, REPORT, *TABLE_FILES})
 
 _UNSUITABLE = re.compile(r"[^\w.+-]+")
+
+
+@cache
+def table_files() -> tuple[str, ...]:
+    """The files of all tables that runs of any network can have."""
+    tables = [table for network in networks().values() for table in network.tables]
+    return tuple(dict.fromkeys(f"{table.name}.parquet" for table in tables))
 
 
 def default_folder(name: str, seed: int) -> Path:
@@ -66,7 +69,7 @@ def _check_content(target: Path, shown: str) -> None:
     names = {entry.name for entry in target.iterdir()}
     if names and not names.issuperset(REQUIRED):
         raise RunError(f"{shown} is not a run folder and not empty; choose another with --out")
-    strange = sorted(names - KNOWN)
+    strange = sorted(names - {*REQUIRED, REPORT, *table_files()})
     if strange:
         what = _shown(Path(strange[0])) + (" and more" if len(strange) > 1 else "")
         raise RunError(f"{shown} also holds {what}; move it away or choose another --out")
@@ -122,7 +125,7 @@ def read_json(folder: Path, name: str) -> dict[str, Any]:
 
 def digests(folder: Path) -> dict[str, str]:
     """The SHA-256 of every table in a run folder, by file name."""
-    return {name: _digest(folder / name) for name in TABLE_FILES if (folder / name).exists()}
+    return {name: _digest(folder / name) for name in table_files() if (folder / name).exists()}
 
 
 def check_tables(folder: Path, recorded: Any) -> None:
@@ -134,7 +137,7 @@ def check_tables(folder: Path, recorded: Any) -> None:
         RunError: one is missing or damaged.
     """
     for name, digest in recorded.items() if isinstance(recorded, dict) else ():
-        if name not in TABLE_FILES:
+        if name not in table_files():
             continue
         shown = _shown(folder / name)
         try:

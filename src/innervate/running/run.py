@@ -11,9 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from innervate import scenario as scenarios
-from innervate.networks.skin.analysis.touch import WINDOW_S, Image, received_image
+from innervate.network import networks
 from innervate.running import folder as folders
-from innervate.running.rooms import room_of
 from innervate.scenario import Scenario
 from innervate.scenario.given import Changes, Given, load
 from innervate.trace import tables
@@ -54,7 +53,7 @@ class Run:
         radio team packets, transmissions, reports; of a mesh messages, crossings, deliveries,
         transmissions, rounds, reports.
         """
-        room = room_of(self.plan.kind)
+        room = networks()[self.plan.kind].run
         return {
             table.name: tables.frame(table, room.columns(table, self.result)).lazy()
             for table in room.tables_of(self.result)
@@ -77,9 +76,9 @@ class Run:
         """True if it was ended early; all it holds is then of the time until there."""
         return bool(self.result.interrupted)
 
-    def received_image(self, time_s: float, window_s: float = WINDOW_S) -> Image:
-        """Force and proximity per cell as the PC had them at a time (see analysis/touch.py)."""
-        return received_image(self.result, time_s, window_s)
+    def received_image(self, time_s: float, **window: float) -> Any:
+        """Of a skin: force and proximity per cell as the PC had them at a time, s."""
+        return networks()[self.plan.kind].received_image(self.result, time_s, **window)
 
     def plot(self, figure: str = "", **options: Any) -> Any:
         """A matplotlib figure of the run; `innervate.plot.figures` says which there are."""
@@ -103,10 +102,9 @@ class Run:
         with folders.replacing(folder) as fresh:
             text = scenarios.dump(self.scenario)
             (fresh / folders.SCENARIO).write_text(text, encoding="utf-8")
-            room = room_of(self.plan.kind)
-            for table in room.tables_of(self.result):
-                if table is not tables.RECEIVED or self.result.received_kept:
-                    tables.write(table, room.columns(table, self.result), fresh)
+            room = networks()[self.plan.kind].run
+            for table in room.written_of(self.result):
+                tables.write(table, room.columns(table, self.result), fresh)
             if report:
                 (fresh / folders.REPORT).write_text(self.report(), encoding="utf-8")
             folders.write_json(fresh / folders.SUMMARY, self.summary)
@@ -149,7 +147,7 @@ def run(
     plan = scenarios.plan(made)
     if out is not None:
         folders.check_target(out)
-    room = room_of(plan.kind)
+    room = networks()[plan.kind].run
     result = room.simulate(plan, plain=plain, checks=checks, received=received, progress=progress)
     done = Run(made, plan, result, room.summarize(result), checks)
     if out is not None:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from bisect import bisect_left, insort
-from collections.abc import Callable
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from innervate.kernel import door
-from innervate.sim.cables.simulate import InvariantBroken
-from innervate.sim.status import BROKEN, DONE
-from innervate.sim.tables import get, put
+from innervate.network import networks
+from innervate.sim.driver import Simulation
+from innervate.sim.status import DONE
+from innervate.web.errors import WatchError
 
 Rows = dict[str, Any]
 
@@ -25,34 +23,33 @@ class Mark(NamedTuple):
     bytes: int
 
 
-class Engine(ABC):
-    """A plan's network while it runs, compiled.
+class Engine:
+    """A plan's network while it runs, compiled: held at any microsecond, changed, taken back.
 
-    The loop that it drives is the one of `innervate run`, cut into slices: same plan, same network.
+    Args:
+        running: the simulation, the same that `innervate run` drives: same plan, same network.
 
     Attributes:
         plan: what runs.
-        world: its tables.
         now_us: everything before this time has happened, and nothing at it or after it.
         given: faults added to those of the plan, in the order in which they were given.
     """
 
-    # Tables of rows that the loop fills.
-    tables: ClassVar[tuple[str, ...]]
-
-    def __init__(self, plan: Any) -> None:
-        self.plan = plan
+    def __init__(self, running: Simulation) -> None:
+        self.running = running
+        self.plan = running.plan
         self.now_us = 0
         self.given: list[Any] = []
-        self._times: list[int] = sorted(fault.at_us for fault in plan.faults)
-        self._advance = self._loop()
-        self.world = self._build()
-        self._fresh: dict[str, list[Any]] = {name: [] for name in self.tables}
+        self._times: list[int] = sorted(fault.at_us for fault in self.plan.faults)
+
+    @property
+    def world(self) -> Any:
+        """The simulation's tables."""
+        return self.running.world
 
     def prepare(self) -> None:
         """Compile the loop, or load what was compiled; nothing happens yet."""
-        self._advance(self.world, 0, 1)
-        door.mark_compiled(self._name())
+        self.running.prepare()
 
     def advance(self, until_us: int, budget: int) -> None:
         """Go on to `until_us`, or, after about `budget` events, to some whole microsecond before.
@@ -62,40 +59,36 @@ class Engine(ABC):
         """
         if until_us <= self.now_us or self.is_complete():
             return
-        if self._slice(until_us, budget) != DONE:
-            until_us = min(until_us, max(self._clock(), self.now_us) + 1)
-            while self._slice(until_us, budget) != DONE:
+        running = self.running
+        if running.advance(until_us, budget) != DONE:
+            until_us = min(until_us, max(running.clock_us(), self.now_us) + 1)
+            while running.advance(until_us, budget) != DONE:
                 pass
-        self.now_us = self._clock() + 1 if self.is_complete() else until_us
+        self.now_us = running.clock_us() + 1 if self.is_complete() else until_us
 
     def take(self) -> Rows:
         """The rows that were made since the last call, by table."""
-        found = {}
-        for name, parts in self._fresh.items():
-            table = getattr(self.world, name)
-            found[name] = np.concatenate(parts) if parts else table[:0].copy()
-            parts.clear()
-        return found
+        return self.running.take()
 
     def mark(self) -> Mark:
         """Remember this moment."""
-        world, size = twin(self.world, self.tables)
+        world, size = twin(self.world, self._rows)
         return Mark(self.now_us, world, size)
 
     def back_to(self, mark: Mark) -> None:
         """Go back to a moment that was remembered; what was given for later happens again."""
-        self.world = twin(mark.world, self.tables)[0]
+        self.running.world = twin(mark.world, self._rows)[0]
         self.now_us = mark.now_us
         self.take()
         for fault in self.given:
             if fault.at_us >= self.now_us:
-                self._schedule(fault)
+                self.running.schedule(fault)
 
     def add(self, fault: Any) -> None:
         """Something is to be done to the network, not before `earliest_us`."""
         self.given.append(fault)
         insort(self._times, fault.at_us)
-        self._schedule(fault)
+        self.running.schedule(fault)
 
     @property
     def next_index(self) -> int:
@@ -117,58 +110,34 @@ class Engine(ABC):
 
     def is_complete(self) -> bool:
         """True if it ended before its time because there was no more to do."""
-        return False
+        return self.running.is_complete()
 
     @property
     def fingerprint(self) -> str:
         """Of everything that has happened, as in a run's summary."""
-        return f"{int(get(self.world.run, 0, 'fingerprint')) & (1 << 64) - 1:016x}"
+        return self.running.fingerprint
 
-    @abstractmethod
     def next_us(self) -> int | None:
         """When something happens next; None = never."""
+        return self.running.next_us()
 
-    @abstractmethod
-    def _name(self) -> str:
-        """What the loop is called in the cache of compiled code."""
+    @property
+    def _rows(self) -> tuple[str, ...]:
+        return tuple(self.running.tables)
 
-    @abstractmethod
-    def _loop(self) -> Callable[[Any, int, int], None]:
-        """The compiled loop."""
 
-    @abstractmethod
-    def _build(self) -> Any:
-        """The world before its first event."""
+def engine_of(plan: Any) -> Engine:
+    """The engine of a plan.
 
-    @abstractmethod
-    def _clock(self) -> int:
-        """Time of the newest event, us."""
-
-    @abstractmethod
-    def _grow(self, status: int) -> None:
-        """Make room in the table that was full."""
-
-    @abstractmethod
-    def _story(self) -> str:
-        """What was broken, in one line."""
-
-    @abstractmethod
-    def _schedule(self, fault: Any) -> None:
-        """Put a fault into the world's tables."""
-
-    def _slice(self, until_us: int, budget: int) -> int:
-        """Run the loop until its time, its budget or a table is used up; why it stopped."""
-        self._advance(self.world, until_us, budget)
-        for name, parts in self._fresh.items():
-            count = int(get(self.world.run, 0, name))
-            if count:
-                parts.append(getattr(self.world, name)[:count].copy())
-                put(self.world.run, 0, **{name: 0})
-        status = int(get(self.world.run, 0, "status"))
-        if status == BROKEN:
-            raise InvariantBroken(self._story())
-        self._grow(status)
-        return status
+    Raises:
+        WatchError: it cannot be watched: it has no clock, say, or is too large.
+    """
+    network = networks()[plan.kind]
+    why = network.unwatchable(plan)
+    if why:
+        raise WatchError(f"{plan.scenario.path or plan.scenario.name}: {why}")
+    made: Engine = network.engine(network.simulation(plan))
+    return made
 
 
 def twin(world: Any, shared: tuple[str, ...]) -> tuple[Any, int]:

@@ -7,16 +7,15 @@ from collections.abc import Callable
 from typing import Any, ClassVar, NamedTuple
 
 from innervate import __version__
-from innervate.sim.cables.simulate import InvariantBroken
-from innervate.web.engine import Engine, Mark
-from innervate.web.engines import engine_of
+from innervate.network import networks
+from innervate.sim.driver import InvariantBroken
+from innervate.web.engine import Engine, Mark, engine_of
 from innervate.web.errors import Refused
 from innervate.web.messages import Command, Go, Pause, Save, Seek, Speed, Step
 from innervate.web.pace import Pace
 from innervate.web.saving import saved
 from innervate.web.source import Source
 from innervate.web.view import View
-from innervate.web.views import view_of
 
 SLICE_S = 0.01  # so long nobody is listened to
 BUDGET = 500  # events at least, and as many as fit into a slice
@@ -55,7 +54,7 @@ class Simulated(Source):
         super().__init__()
         self.plan = plan
         self.engine: Engine = engine_of(plan)
-        self.view: View = view_of(self.engine, self.history)
+        self.view: View = networks()[plan.kind].view(self.engine, self.history)
         self.can = ("pause", "step", "speed", "seek", *self.view.can, "save")
         self.pace = Pace(self.view.speed if speed is None else speed)
         self.broken = ""

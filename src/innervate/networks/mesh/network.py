@@ -12,4 +12,8 @@ NETWORK = Network(
     describe="scenario.words:describe",
     template="scenario.template:TEMPLATE",
     anchor="scenario.nodes:anchor",
+    simulation="sim.simulate:simulation",
+    view="view.view:MeshView",
+    run="run",
+    tables="tables:TABLES",
 )

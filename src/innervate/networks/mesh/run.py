@@ -13,8 +13,8 @@ from innervate.networks.mesh.analysis.alarms import all_crossings
 from innervate.networks.mesh.analysis.messages import NEVER, messages
 from innervate.networks.mesh.analysis.summary import summarize
 from innervate.networks.mesh.plot.words import HANDED, PACKETS, TIMERS
+from innervate.networks.mesh.sim import simulate as simulator
 from innervate.networks.mesh.sim.recorder import MAC
-from innervate.sim.field import simulate as simulator
 from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.trace.tables import Table
 
@@ -38,6 +38,9 @@ def simulate(
 def tables_of(_result: Any) -> tuple[Table, ...]:
     """The tables of a run."""
     return mesh_tables.TABLES
+
+
+written_of = tables_of
 
 
 def columns(table: Table, result: Any) -> Columns:

@@ -11,4 +11,9 @@ NETWORK = Network(
     plan="scenario.planning:plan",
     describe="scenario.words:describe",
     template="scenario.template:TEMPLATE",
+    simulation="sim.simulate:simulation",
+    unwatchable="scenario.words:unwatchable",
+    view="view.view:RadioView",
+    run="run",
+    tables="tables:TABLES",
 )

@@ -11,8 +11,8 @@ import numpy as np
 from innervate.networks.radio import tables as radio_tables
 from innervate.networks.radio.analysis import summary as analysis
 from innervate.networks.radio.protocol.constants import CLOCK, LEAVE, MAIN, RESULT
+from innervate.networks.radio.sim import simulate as simulator
 from innervate.networks.radio.slotted import run as radio_slotted
-from innervate.sim.channel import simulate as simulator
 from innervate.sim.channel.loop import ON_CARRIER
 from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.trace.tables import Table
@@ -48,6 +48,9 @@ def summarize(result: Any) -> dict[str, Any]:
 def tables_of(result: Any) -> tuple[Table, ...]:
     """The tables of a run; the slotted level has none."""
     return () if _is_slotted(result.plan) else radio_tables.TABLES
+
+
+written_of = tables_of
 
 
 def columns(table: Table, result: Any) -> Columns:

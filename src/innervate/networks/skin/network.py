@@ -12,4 +12,11 @@ NETWORK = Network(
     describe="scenario.words:describe",
     template="scenario.template:TEMPLATE",
     anchor="scenario.graph:anchor",
+    simulation="view.engine:simulation",
+    unwatchable="view.engine:unwatchable",
+    engine="view.engine:SkinEngine",
+    view="view.view:SkinView",
+    run="run",
+    received_image="analysis.touch:received_image",
+    tables="tables:TABLES",
 )

@@ -5,29 +5,32 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from innervate.networks.skin import tables
 from innervate.networks.skin.analysis import frames
 from innervate.networks.skin.analysis.summary import summarize
+from innervate.networks.skin.columns import columns
 from innervate.networks.skin.protocol.constants import TICK
 from innervate.networks.skin.scenario.plan import Plan
-from innervate.running.columns import columns
-from innervate.sim.cables import build
-from innervate.sim.cables import simulate as simulator
-from innervate.sim.cables.simulate import RULE_STATIC, SLICE_EVENTS, compiled_loop
-from innervate.sim.status import DONE, ON_FRAME, ON_INPUT, ON_START, ON_TIMER, POOL_FULL
-from innervate.sim.tables import get, put
+from innervate.networks.skin.sim import simulate as simulator
+from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.topology import PORT_NAMES
-from innervate.trace import tables
 from innervate.trace.tables import Table
 
 # Received samples are kept by default as long as they fit easily: some 60 MB.
 RECEIVED_MAX = 1_000_000
 
-__all__ = ["columns", "simulate", "summarize", "tables_of"]
+__all__ = ["columns", "simulate", "summarize", "tables_of", "written_of"]
 
 
 def tables_of(_result: Any) -> tuple[Table, ...]:
     """The tables of a run."""
     return tables.TABLES
+
+
+def written_of(result: Any) -> tuple[Table, ...]:
+    """Those that are written: without samples where none were kept."""
+    kept = result.received_kept
+    return tuple(table for table in tables.TABLES if kept or table is not tables.RECEIVED)
 
 
 def simulate(
@@ -61,18 +64,8 @@ def trail(plan: Plan, until_us: int) -> Iterator[Any]:
 
     Each belongs to the caller; together they are what `simulate(plan, trail=True)` keeps.
     """
-    advance = compiled_loop(plan.params["rule"] == RULE_STATIC)
-    world = build.build(plan, checks=False, observe=False, trail=True)
-    while True:
-        advance(world, until_us, SLICE_EVENTS)
-        status = int(get(world.run, 0, "status"))
-        if status == POOL_FULL:
-            world = build.grow_pool(world)
-        count = int(get(world.run, 0, "trail"))
-        yield world.trail[:count].copy()
-        put(world.run, 0, trail=0)
-        if status == DONE:
-            return
+    running = simulator.simulation(plan, checks=False, observe=False, trail=True)
+    return running.pieces("trail", until_us)
 
 
 def call_words(plan: Plan, row: Any) -> str:

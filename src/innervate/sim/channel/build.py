@@ -12,9 +12,9 @@ from innervate.networks.radio.protocol import fields as radio_fields
 from innervate.networks.radio.scenario.plan import BEGIN
 from innervate.networks.radio.sim.stacks import PROTOCOLS
 from innervate.sim.channel import world as r
-from innervate.sim.channel.heap import AIRS, COMMAND, OFFER, key_of, push
 from innervate.sim.channel.loop import BATCH
 from innervate.sim.channel.medium import NEVER
+from innervate.sim.heap import AIRS, COMMAND, OFFER, key_of, push
 from innervate.sim.tables import ACTION, TAP, Out, Tables, put, uniform
 
 ROWS = 1 << 16

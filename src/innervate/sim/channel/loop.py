@@ -20,9 +20,11 @@ from innervate.networks.radio.scenario.plan import BEGIN, FADE, GARBLE, JOIN, KI
 from innervate.networks.radio.scenario.plan import LEAVE as RETIRE
 from innervate.networks.radio.sim import traffic
 from innervate.networks.radio.sim.recorder import keep_received, keep_sent, watch
-from innervate.sim.channel import heap as queue
+from innervate.sim import heap as queue
 from innervate.sim.channel import medium
-from innervate.sim.channel.heap import (
+from innervate.sim.channel.medium import NEVER
+from innervate.sim.channel.world import RING, TIMERS
+from innervate.sim.heap import (
     ENDS,
     OFFER,
     OUTCOME,
@@ -34,8 +36,6 @@ from innervate.sim.channel.heap import (
     TIME_SHIFT,
     TIMER,
 )
-from innervate.sim.channel.medium import NEVER
-from innervate.sim.channel.world import RING, TIMERS
 from innervate.sim.rows import keep_row
 from innervate.sim.status import (
     BROKEN,

@@ -50,3 +50,10 @@ def fault_words(made: RadioPlan, fault: RadioFault) -> str:
 
 def _range(least: int, most: int, unit: str) -> str:
     return f"{least} {unit}" if least == most else f"{least} to {most} {unit}"
+
+
+def unwatchable(plan: RadioPlan) -> str:
+    """Why a team cannot be watched; "" if it can."""
+    if plan.scenario.model.channel.level == "slotted":
+        return 'the slotted level has no stations to watch; set channel.level = "event"'
+    return ""

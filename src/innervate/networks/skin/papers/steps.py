@@ -5,29 +5,27 @@ from __future__ import annotations
 from typing import Any
 
 from innervate import scenario
-from innervate.networks.skin.protocol.constants import RULE_PAPER
 from innervate.networks.skin.scenario.plan import Plan
+from innervate.networks.skin.sim.simulate import simulation
 from innervate.scenario import Scenario
-from innervate.sim.cables import build
-from innervate.sim.cables.simulate import SLICE_EVENTS, InvariantBroken, compiled_loop
-from innervate.sim.status import BROKEN, DONE, POOL_FULL, ROWS_FULL
-from innervate.sim.tables import put
-
-RULE_STATIC = RULE_PAPER + 1
+from innervate.sim.status import DONE
 
 
 class Steps:
     """Runs a scenario up to given times; between them `world` may be read.
 
-    Rows that the run reports are dropped when their table is full: what is asked of it here is
-    its state.
+    Rows that the run reports are dropped: what is asked of it here is its state.
     """
 
     def __init__(self, source: Scenario | dict[str, Any], seed: int | None = None) -> None:
         made = source if isinstance(source, Scenario) else scenario.from_dict(source, seed=seed)
         self.plan: Plan = scenario.plan(made)
-        self.world: Any = build.build(self.plan)
-        self._advance = compiled_loop(self.plan.params["rule"] == RULE_STATIC)
+        self._running = simulation(self.plan)
+
+    @property
+    def world(self) -> Any:
+        """Its tables now."""
+        return self._running.world
 
     def to(self, time_s: float) -> None:
         """Run up to, not including, a time.
@@ -35,18 +33,10 @@ class Steps:
         Raises:
             InvariantBroken: a checker found what must not happen.
         """
-        until = min(round(1e6 * time_s), self.plan.duration_us)
-        while True:
-            self._advance(self.world, until, SLICE_EVENTS)
-            status = int(self.world.run["status"][0])
-            if status == DONE:
-                return
-            if status == BROKEN:
-                raise InvariantBroken(f"invariant broken (seed {self.plan.seed})")
-            if status == POOL_FULL:
-                self.world = build.grow_pool(self.world)
-            elif status == ROWS_FULL:
-                put(self.world.run, 0, rows=0)
+        until_us = min(round(1e6 * time_s), self.plan.duration_us)
+        while self._running.advance(until_us, self._running.slice_events) != DONE:
+            pass
+        self._running.take()
 
     def counters(self) -> list[int]:
         """The counters of sim/wires.py up to now."""

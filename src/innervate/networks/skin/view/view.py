@@ -16,6 +16,7 @@ from innervate.networks.skin.protocol.constants import (
 )
 from innervate.networks.skin.scenario.plan import CUT, KILL, LOOSE, RESTORE, REVIVE, Fault
 from innervate.networks.skin.sim.observer import CUT_OFF, LOOP_OPEN, UNROUTED
+from innervate.networks.skin.view.engine import SkinEngine
 from innervate.networks.skin.view.scene import places
 from innervate.networks.skin.view.state import Cables
 from innervate.plot.words import fault_words, number_of
@@ -23,7 +24,6 @@ from innervate.sim.cables.wires import LOOPED, LOST_BROKEN, LOST_CUT, NO_ROUTE, 
 from innervate.sim.cables.world import DEAD
 from innervate.topology import PORTS
 from innervate.web.engine import Engine, Rows
-from innervate.web.engines import SkinEngine
 from innervate.web.errors import Refused
 from innervate.web.history import History
 from innervate.web.messages import Command, Touch, number

@@ -3,34 +3,26 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import ModuleType
-from typing import Any
-
-import numpy as np
+from typing import Any, ClassVar
 
 from innervate.kernel import door, tables
-from innervate.kernel.stop import Stop
 from innervate.kernel.wall import wall_s
 from innervate.networks.skin.sim import script, static_stack
 from innervate.networks.skin.sim import stack as skin_stack
 from innervate.sim import taps
 from innervate.sim.cables import build as builder
-from innervate.sim.cables import loop
+from innervate.sim.cables import commands, loop, wires
 from innervate.sim.cables import world as w
+from innervate.sim.cables.simulation import Cables
 from innervate.sim.cables.wires import ARRIVED, URGENT_BLOCK
-from innervate.sim.status import BROKEN, BUDGET, DONE, POOL_FULL
-from innervate.sim.tables import get, hand_over, put, row_dtype
+from innervate.sim.driver import Ended, InvariantBroken, Progress
+from innervate.sim.status import BROKEN
+from innervate.sim.tables import get, move_rows
 
 RULE_STATIC = 3
-SLICE_EVENTS = 1_000_000
-
-Progress = Callable[[int, int], None]
-
-
-class InvariantBroken(Exception):
-    """A checker found something that must not happen; says what, where, when and which seed."""
 
 
 @dataclass(slots=True)
@@ -68,7 +60,6 @@ def _modules() -> list[ModuleType]:
     from innervate.networks.skin.protocol import static as skin_static
     from innervate.networks.skin.sim import checks
     from innervate.sim import clocks, wheel
-    from innervate.sim.cables import wires
 
     return [
         arith, outbox, generator, skin_route, skin, skin_sink, skin_static,
@@ -80,7 +71,6 @@ def _rare() -> list[ModuleType]:
     """What runs too seldom to be worth copying into every caller."""
     from innervate.networks.skin.sim import observer, touch
     from innervate.sim import rows
-    from innervate.sim.cables import commands
 
     return [observer, commands, touch, rows, taps]
 
@@ -107,6 +97,26 @@ def plain_loop(static: bool) -> Callable[..., None]:
     return loop.build(static_stack if static else skin_stack)[-1]
 
 
+class SkinSimulation(Cables):
+    """A skin under way."""
+
+    tables: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "rows": w.ROW, "deliveries": w.DELIVERY, "trail": w.TRAIL,
+    }  # fmt: skip
+
+    def story(self) -> str:
+        """The broken invariant, in one line."""
+        return story(self.plan, self.world)
+
+
+def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> SkinSimulation:
+    """A plan's skin before its first event; `kept` as in `cables.build`."""
+    static = plan.params["rule"] == RULE_STATIC
+    advance = (plain_loop if plain else compiled_loop)(static)
+    name = "" if plain else loop_name(plan)
+    return SkinSimulation(plan, builder.build(plan, plain, **kept), advance, name)
+
+
 def simulate(
     plan: Any,
     *,
@@ -126,87 +136,43 @@ def simulate(
     A plan with a script plays that instead, on plain state.
     Raises InvariantBroken, and ScenarioError for a step that cannot be taken.
     """
-    static = plan.params["rule"] == RULE_STATIC
     if plan.script:
-        started = wall_s()
-        stack = static_stack if static else skin_stack
-        world, now = script.play(plan, stack, checks, trail)
-        if int(get(world.run, 0, "status")) == BROKEN:
-            raise InvariantBroken(story(plan, world))
-        return _result(plan, world, _Keep(), now, wall_s() - started, False)
-    advance = (plain_loop if plain else compiled_loop)(static)
-    world = builder.build(plan, plain, checks, observe, deliveries, trail, tap is not None)
-    keep = _Keep()
-    advance(world, 0, 1)  # nothing is due before time 0: only compiles, or loads what was compiled
-    if not plain:
-        door.mark_compiled(loop_name(plan))
+        return _played(plan, checks, trail)
+    running = simulation(
+        plan, plain=plain, checks=checks, observe=observe, deliveries=deliveries, trail=trail,
+        tap=tap is not None,
+    )  # fmt: skip
+    done = _result(running, running.finish(progress, tap))
+    done.received_kept = deliveries
+    return done
+
+
+def _played(plan: Any, checks: bool, trail: bool) -> Result:
+    """A scenario's script, in place of the clock."""
     started = wall_s()
-    with Stop() as stop:
-        status = BUDGET
-        while status != DONE and not stop.asked:
-            advance(world, plan.duration_us, SLICE_EVENTS)
-            status = int(get(world.run, 0, "status"))
-            if status == BROKEN:
-                raise InvariantBroken(story(plan, world))
-            if status == POOL_FULL:
-                world = builder.grow_pool(world)
-            keep.collect(world, final=False)
-            now = plan.duration_us if status == DONE else int(world.wheel.clock[0])
-            hand_over(world, tap, now)
-            if progress is not None:
-                progress(now, plan.duration_us)
-        done = _result(plan, world, keep, now, wall_s() - started, status != DONE)
-        done.received_kept = deliveries
-        return done
+    stack = static_stack if plan.params["rule"] == RULE_STATIC else skin_stack
+    world, now = script.play(plan, stack, checks, trail)
+    if int(get(world.run, 0, "status")) == BROKEN:
+        raise InvariantBroken(story(plan, world))
+    played = SkinSimulation(plan, world, lambda *_: None)
+    move_rows(world, played._kept, played.tables, played.wide)
+    return _result(played, Ended(now, wall_s() - started, False, played.take()))
 
 
-def _result(
-    plan: Any, world: w.World, keep: _Keep, ended_us: int, took_s: float, interrupted: bool
-) -> Result:
-    rows, delivered, steps = keep.collect(world, final=True)
+def _result(running: SkinSimulation, ended: Ended) -> Result:
+    world = running.world
     return Result(
-        plan=plan,
+        plan=running.plan,
         world=world,
-        rows=rows,
-        deliveries=delivered,
-        trail=steps,
         counters=[int(count) for count in world.counters],
-        ended_us=ended_us,
-        wall_s=took_s,
-        fingerprint=f"{int(get(world.run, 0, 'fingerprint')) & (1 << 64) - 1:016x}",
+        ended_us=ended.ended_us,
+        wall_s=ended.wall_s,
+        fingerprint=running.fingerprint,
         handled=int(get(world.run, 0, "handled")),
         arrived=int(world.counters[ARRIVED] + world.counters[ARRIVED + URGENT_BLOCK]),
-        interrupted=interrupted,
+        interrupted=ended.interrupted,
+        **ended.rows,
     )
-
-
-class _Keep:
-    """Moves filled rows out of the loop's tables, so that these can stay small."""
-
-    def __init__(self) -> None:
-        self.parts: dict[str, list[Any]] = {"rows": [], "deliveries": [], "trail": []}
-        self.names = {"rows": w.ROW, "deliveries": w.DELIVERY, "trail": w.TRAIL}
-
-    def collect(self, world: w.World, final: bool) -> tuple[Any, ...]:
-        for name, parts in self.parts.items():
-            count = int(get(world.run, 0, name))
-            table = getattr(world, name)
-            if count > len(table) // 2 or final:
-                parts.append(self._array(table, name, count))
-                put(world.run, 0, **{name: 0})
-        if not final:
-            return ()
-        return tuple(np.concatenate(parts) for parts in self.parts.values())
-
-    def _array(self, table: Any, name: str, count: int) -> Any:
-        if not isinstance(table, list):
-            return table[:count].copy()
-        fields = self.names[name]
-        tuples = [
-            tuple(tuple(v) if isinstance(v := getattr(r, f), list) else v for f in fields)
-            for r in table[:count]
-        ]
-        return np.array(tuples, row_dtype(fields))
 
 
 def story(plan: Any, world: w.World) -> str:

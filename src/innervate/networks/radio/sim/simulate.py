@@ -3,30 +3,21 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
+from typing import Any, ClassVar
 
 from innervate.kernel import door, tables
-from innervate.kernel.stop import Stop
-from innervate.kernel.wall import wall_s
+from innervate.networks.radio.scenario.plan import KILL, LEAVE
 from innervate.networks.radio.sim import recorder as books
 from innervate.networks.radio.sim import stacks, traffic
-from innervate.sim import rows, taps
-from innervate.sim.cables.simulate import InvariantBroken
+from innervate.sim import heap, rows, taps
 from innervate.sim.channel import build as builder
-from innervate.sim.channel import heap, loop, medium
+from innervate.sim.channel import loop, medium
 from innervate.sim.channel import world as w
-from innervate.sim.status import BROKEN, BUDGET, DONE, POOL_FULL
-from innervate.sim.tables import get, hand_over, move_rows
-
-SLICE_EVENTS = 1_000_000
-
-Progress = Callable[[int, int], None]
-
-NAMES = {"rows": w.ROW, "sent": w.SENT, "packets": w.PACKET, "trail": w.TRAIL}
+from innervate.sim.channel.simulation import Channel
+from innervate.sim.driver import Progress
+from innervate.sim.tables import get, put
 
 
 @dataclass(slots=True)
@@ -100,44 +91,66 @@ def simulate(
     `tap` is handed copies of all frames as they leave and come in (see sim/taps.py).
     Raises InvariantBroken.
     """
+    running = simulation(plan, plain=plain, checks=checks, keep=keep, trail=trail,
+                         tap=tap is not None)  # fmt: skip
+    ended = running.finish(progress, tap)
+    return RadioResult(
+        plan=plan,
+        world=running.world,
+        counts={name: int(get(running.world.run, 0, name)) for name in COUNTS},
+        ended_us=ended.ended_us,
+        wall_s=ended.wall_s,
+        fingerprint=running.fingerprint,
+        interrupted=ended.interrupted,
+        **ended.rows,
+    )
+
+
+class RadioSimulation(Channel):
+    """A radio team under way."""
+
+    tables: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "rows": w.ROW, "sent": w.SENT, "packets": w.PACKET, "trail": w.TRAIL,
+    }  # fmt: skip
+
+    def prepare(self) -> None:
+        """Compile the loop; all names of one protocol share it."""
+        super().prepare()
+        if self.name:
+            same = stacks.PROTOCOLS[self.plan.protocol]
+            for name, protocol in stacks.PROTOCOLS.items():
+                if protocol == same:
+                    door.mark_compiled(name.replace("/", "-"))
+
+    def schedule(self, fault: Any) -> None:
+        """As a plan with such events has it: turns may overlap, who is gone delivers no more."""
+        super().schedule(fault)
+        put(self.world.run, 0, exclusive=0)
+        if fault.action in (KILL, LEAVE):
+            put(self.world.run, 0, wanted=0)
+
+    def story(self) -> str:
+        """The broken invariant, in one line."""
+        return story(self.plan, self.world)
+
+
+def simulation(
+    plan: Any,
+    *,
+    plain: bool = False,
+    checks: bool = True,
+    keep: bool = True,
+    trail: bool = False,
+    tap: bool = False,
+) -> RadioSimulation:
+    """A plan's team before its first event; what is kept as in `channel.build`."""
     if plain:
         advance = loop.build(stacks.bind(stacks.PROTOCOLS[plan.protocol].entry))[-1]
     else:
         advance = compiled_loop(plan.protocol)
-    world = builder.build(plan, plain, checks, keep, trail, tap is not None)
-    advance(world, 0, 1)
-    if not plain:
-        for name, protocol in stacks.PROTOCOLS.items():
-            if protocol == stacks.PROTOCOLS[plan.protocol]:
-                door.mark_compiled(name.replace("/", "-"))
-    parts: dict[str, list[Any]] = {name: [] for name in NAMES}
-    started = wall_s()
-    with Stop() as stop:
-        status = BUDGET
-        while status != DONE and not stop.asked:
-            advance(world, plan.duration_us, SLICE_EVENTS)
-            status = int(get(world.run, 0, "status"))
-            if status == BROKEN:
-                raise InvariantBroken(story(plan, world))
-            if status == POOL_FULL:
-                world = builder.grow_heap(world)
-            move_rows(world, parts, NAMES, w.WIDE)
-            hand_over(world, tap, int(get(world.run, 0, "now")))
-            if progress is not None:
-                progress(int(get(world.run, 0, "now")), plan.duration_us)
-    done = int(get(world.run, 0, "completed")) >= plan.wanted > 0
-    ended = int(get(world.run, 0, "now")) if done or stop.asked else plan.duration_us
-    found = {name: np.concatenate(kept) for name, kept in parts.items()}
-    return RadioResult(
-        plan=plan,
-        world=world,
-        counts={name: int(get(world.run, 0, name)) for name in COUNTS},
-        ended_us=ended,
-        wall_s=wall_s() - started,
-        fingerprint=f"{int(get(world.run, 0, 'fingerprint')) & (1 << 64) - 1:016x}",
-        interrupted=status != DONE,
-        **found,
-    )
+    world = builder.build(plan, plain, checks, keep, trail, tap)
+    name = "" if plain else plan.protocol.replace("/", "-")
+    return RadioSimulation(plan, world, advance, name)
 
 
 def story(plan: Any, world: w.World) -> str:

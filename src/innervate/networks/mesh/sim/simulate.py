@@ -3,43 +3,29 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import ModuleType
-from typing import Any
-
-import numpy as np
+from typing import Any, ClassVar
 
 from innervate.kernel import door, tables
-from innervate.kernel.stop import Stop
-from innervate.kernel.wall import wall_s
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.sim import channel, over_channel, over_medium, stacks
 from innervate.networks.mesh.sim import recorder as books
+from innervate.networks.radio.sim import simulate as radio_simulate
 from innervate.networks.radio.sim import stacks as radio_stacks
-from innervate.sim import rows, taps
-from innervate.sim.cables.simulate import InvariantBroken
-from innervate.sim.channel import heap
+from innervate.sim import heap, rows, taps
 from innervate.sim.channel import loop as radio_loop
-from innervate.sim.channel import simulate as radio_simulate
+from innervate.sim.driver import Progress
 from innervate.sim.field import build as builder
 from innervate.sim.field import loop, medium, motion, powers, queue
 from innervate.sim.field import world as w
-from innervate.sim.status import BROKEN, BUDGET, DONE, POOL_FULL
-from innervate.sim.tables import get, hand_over, move_rows
+from innervate.sim.field.simulation import Field
+from innervate.sim.status import POOL_FULL
+from innervate.sim.tables import get
 
 SLICE_EVENTS = 200_000
 PLAIN_SLICE_EVENTS = 2_000
-
-Progress = Callable[[int, int], None]
-
-NAMES = {
-    "rows": w.ROW,
-    "sent": w.SENT,
-    "delivered": w.DELIVERED,
-    "rounds": w.ROUND,
-    "trail": w.TRAIL,
-}
 
 
 @dataclass(slots=True)
@@ -146,6 +132,53 @@ def simulate(
     Raises:
         InvariantBroken: a checker found something that must not happen.
     """
+    running = simulation(plan, plain=plain, checks=checks, keep=keep, trail=trail, entry=entry,
+                         through=through, tap=tap is not None)  # fmt: skip
+    ended = running.finish(progress, tap)
+    return MeshResult(
+        plan=plan,
+        world=running.world,
+        counts={name: int(get(running.world.run, 0, name)) for name in COUNTS},
+        ended_us=ended.ended_us,
+        wall_s=ended.wall_s,
+        fingerprint=running.fingerprint,
+        interrupted=ended.interrupted,
+        **ended.rows,
+    )
+
+
+class MeshSimulation(Field):
+    """A mesh under way."""
+
+    tables: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "rows": w.ROW, "sent": w.SENT, "delivered": w.DELIVERED, "rounds": w.ROUND,
+        "trail": w.TRAIL,
+    }  # fmt: skip
+
+    def grow(self, status: int) -> None:
+        """Make room for more events, or for more deliveries to be remembered."""
+        if status == POOL_FULL:
+            self.world = channel.grown(self.world)
+        if status == loop.SEEN_FULL:
+            self.world = builder.grow_seen(self.world)
+
+    def story(self) -> str:
+        """The broken invariant, in one line."""
+        return story(self.plan, self.world)
+
+
+def simulation(
+    plan: Any,
+    *,
+    plain: bool = False,
+    checks: bool = True,
+    keep: bool = True,
+    trail: bool = False,
+    tap: bool = False,
+    entry: ModuleType | None = None,
+    through: Callable[[Any], Any] | None = None,
+) -> MeshSimulation:
+    """A plan's mesh before its first event; arguments as for `simulate`."""
     if through is not None and not plain:
         raise ValueError("frames pass through a function in plain runs only")
     _check_mac(plan.mac)
@@ -156,38 +189,10 @@ def simulate(
         advance = loop.build(stack, _plain_layer(plan.mac))[-1]
     else:
         advance = compiled_loop(router, plan.mac)
-    world = builder.build(plan, plain, checks, keep, trail, tap is not None)
-    advance(world, 0, 1)  # nothing is due before time 0: only compiles, or loads what was compiled
-    if not plain:
-        door.mark_compiled(loop_name(plan))
-    parts: dict[str, list[Any]] = {name: [] for name in NAMES}
-    started = wall_s()
-    with Stop() as stop:
-        status = BUDGET
-        while status != DONE and not stop.asked:
-            advance(world, plan.duration_us, PLAIN_SLICE_EVENTS if plain else SLICE_EVENTS)
-            status = int(get(world.run, 0, "status"))
-            if status == BROKEN:
-                raise InvariantBroken(story(plan, world))
-            if status == POOL_FULL:
-                world = channel.grown(world)
-            if status == loop.SEEN_FULL:
-                world = builder.grow_seen(world)
-            move_rows(world, parts, NAMES, w.WIDE)
-            hand_over(world, tap, int(get(world.run, 0, "now")))
-            if progress is not None:
-                progress(int(get(world.run, 0, "now")), plan.duration_us)
-    done = status == DONE
-    return MeshResult(
-        plan=plan,
-        world=world,
-        counts={name: int(get(world.run, 0, name)) for name in COUNTS},
-        ended_us=plan.duration_us if done else int(get(world.run, 0, "now")),
-        wall_s=wall_s() - started,
-        fingerprint=f"{int(get(world.run, 0, 'fingerprint')) & (1 << 64) - 1:016x}",
-        interrupted=not done,
-        **{name: np.concatenate(kept) for name, kept in parts.items()},
-    )
+    world = builder.build(plan, plain, checks, keep, trail, tap)
+    made = MeshSimulation(plan, world, advance, "" if plain else loop_name(plan))
+    made.slice_events = PLAIN_SLICE_EVENTS if plain else SLICE_EVENTS
+    return made
 
 
 def _check_mac(mac: str) -> None:

@@ -1,0 +1,42 @@
+"""A network of cables under way (see sim/driver.py)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from innervate.sim import wheel
+from innervate.sim.cables import build, commands
+from innervate.sim.driver import Simulation
+from innervate.sim.queue import with_command
+from innervate.sim.status import POOL_FULL
+from innervate.sim.tables import get
+
+
+class Cables(Simulation):
+    """Nodes that are joined by cables; its network says which rows it keeps, and what broke."""
+
+    def clock_us(self) -> int:
+        """Time of the newest event, us."""
+        return int(self.world.wheel.clock[wheel.NOW])
+
+    def next_us(self) -> int | None:
+        """When something happens next; None = never."""
+        world = self.world
+        events = world.wheel.events[: int(world.wheel.pool[wheel.FRESH])]
+        times = events["time"][events["bucket"] != wheel.NIL]
+        found = [int(times.min())] if len(times) else []
+        place = int(get(world.run, 0, "next_command"))
+        if place < int(get(world.run, 0, "commands")):
+            found.append(int(world.commands["at"][place]))
+        return min(found, default=None)
+
+    def grow(self, status: int) -> None:
+        """Make room for more frames on their way."""
+        if status == POOL_FULL:
+            self.world = build.grow_pool(self.world)
+
+    def schedule(self, fault: Any) -> None:
+        """Something is to be done to the network."""
+        value = fault.frames if fault.action == commands.LOSE else fault.loss_q15
+        row = (fault.at_us, fault.action, fault.end, fault.node, value, fault.index)
+        self.world, _ = with_command(self.world, "at", row)

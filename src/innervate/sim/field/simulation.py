@@ -1,0 +1,42 @@
+"""A field under way (see sim/driver.py)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from innervate.sim.driver import Simulation
+from innervate.sim.field import queue, world
+from innervate.sim.queue import first_of, with_command
+from innervate.sim.tables import get
+
+
+class Field(Simulation):
+    """Nodes that hear whom they can; its network says which rows it keeps, and what broke."""
+
+    wide = world.WIDE
+
+    def clock_us(self) -> int:
+        """Time of the newest event, us."""
+        return int(get(self.world.run, 0, "now"))
+
+    def next_us(self) -> int | None:
+        """When something happens next; None = never."""
+        times = [first_of(self.world.heap)]
+        if self.world.below:
+            told = bool(self.world.below.told[0])
+            times.append(self.clock_us() if told else first_of(self.world.below.heap))
+        return min((time for time in times if time is not None), default=None)
+
+    def schedule(self, fault: Any) -> None:
+        """Something is to be done to the network; the queue holds the next command's key alone."""
+        row = (fault.at_us, fault.action, fault.node, fault.other, fault.value)
+        self.world, is_next = with_command(self.world, "time", row)
+        if is_next:
+            keys, size = self.world.heap
+            rank = (keys[: size[0]] >> queue.RANK_SHIFT) & 7
+            others = np.sort(keys[: size[0]][rank != queue.COMMAND])
+            keys[: len(others)] = others  # in order, hence a heap
+            size[0] = len(others)
+            queue.push(self.world.heap, queue.key_of(fault.at_us, queue.COMMAND, 0, 0))
