@@ -11,10 +11,11 @@ import sys
 import time
 
 from innervate import scenario
-from innervate.sim.cables.build import build, get, grow_pool, put
-from innervate.sim.cables.loop import DONE, POOL_FULL
-from innervate.sim.cables.simulate import compiled_loop
+from innervate.networks.skin.sim.simulate import compiled_loop
+from innervate.sim.cables.build import build, grow_pool
 from innervate.sim.cables.wires import ARRIVED, URGENT_BLOCK
+from innervate.sim.status import DONE, POOL_FULL
+from innervate.sim.tables import get, put
 
 SIZES = (99, 204, 1_000, 10_000, 100_000, 1_000_000)
 SLICES = 5

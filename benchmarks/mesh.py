@@ -8,8 +8,8 @@ counts, because other work on the machine only ever slows one down.
 import time
 
 from innervate import scenario
+from innervate.networks.mesh.sim.simulate import simulate
 from innervate.running import run
-from innervate.sim.field.simulate import simulate
 
 NODES = (30, 100, 254)
 DURATION_S = 60.0

@@ -5,7 +5,7 @@ station. The best of a few runs counts, because other work on the machine only e
 """
 
 from innervate import scenario
-from innervate.sim.channel.simulate import simulate
+from innervate.networks.radio.sim.simulate import simulate
 
 STATIONS = (10, 100)
 EVENTS = 20_000_000

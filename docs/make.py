@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from innervate.networks.skin.tables import TABLES
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.radio.protocol import fields as radio_fields
 from innervate.networks.skin.protocol import fields as skin_fields
@@ -117,7 +118,7 @@ PARTS = (
     ("wire.md", "wire-mesh-payloads", lambda: layout_tables(mesh_payloads.LAYOUTS, MEANINGS)),
     ("wire.md", "wire-mesh-graph", lambda: layout_table(mesh_payloads.WHOLE_GRAPH, MEANINGS)),
     ("wire.md", "wire-radio", lambda: layout_tables(radio.LAYOUTS, meanings(radio_fields.FRAME))),
-    ("reading-a-report.md", "tables", lambda: run_tables(tables.TABLES)),
+    ("reading-a-report.md", "tables", lambda: run_tables(TABLES)),
     ("reading-a-report.md", "radio-tables", lambda: run_tables(radio_tables.TABLES)),
     ("reading-a-report.md", "mesh-tables", lambda: run_tables(mesh_tables.TABLES)),
 )

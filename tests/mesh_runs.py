@@ -2,7 +2,7 @@
 
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.scenario.plan import ONE, UNHEARD, MeshPlan, MeshRadio, Offer
-from innervate.sim.field.simulate import simulate
+from innervate.networks.mesh.sim.simulate import simulate
 from tests import mesh_pinger
 
 LOUD = -6_000  # 0.01 dBm: received for certain

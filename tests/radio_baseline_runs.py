@@ -1,7 +1,7 @@
 """Runs of the baselines on the event-level channel, for tests."""
 
 from innervate.networks.radio.scenario.baselines import baseline
-from innervate.sim.channel.simulate import simulate
+from innervate.networks.radio.sim.simulate import simulate
 from tests.radio_runs import radio_plan
 
 SLOT_US = 208

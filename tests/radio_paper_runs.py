@@ -4,7 +4,7 @@ from itertools import pairwise
 
 from innervate.networks.radio.protocol.constants import DATA
 from innervate.networks.radio.scenario.plan import RadioFault
-from innervate.sim.channel.simulate import simulate
+from innervate.networks.radio.sim.simulate import simulate
 from tests.radio_runs import START_US, radio_plan
 
 TAU, SLOT, BIT = 104, 208, 26

@@ -1,8 +1,8 @@
 """Radio plans for tests, without a scenario file."""
 
 from innervate.networks.radio.scenario.plan import RadioPlan, parameters
-from innervate.sim.cables.build import uniform
-from innervate.sim.channel.simulate import simulate
+from innervate.networks.radio.sim.simulate import simulate
+from innervate.sim.tables import uniform
 
 START_US = 100_000
 

@@ -8,10 +8,10 @@ import numpy as np
 
 from innervate import scenario
 from innervate.networks.skin.protocol.constants import NONE, REPORT_BROKEN, REPORT_PARENT
+from innervate.networks.skin.sim import simulate as simulator
 from innervate.networks.skin.sim.observer import CUT_OFF, LOOP_OPEN, UNROUTED
+from innervate.networks.skin.sim.simulate import simulate
 from innervate.sim.cables import loop
-from innervate.sim.cables import simulate as simulator
-from innervate.sim.cables.simulate import simulate
 
 PERIOD_US = 4000  # at 250 beacons per second
 EVERYTHING = ["cut", "restore", "kill", "revive", "loose", "lose", "restart", "restart pc",

@@ -15,12 +15,12 @@ from innervate import scenario
 from innervate.dialect import plain
 from innervate.networks.mesh.protocol import csma
 from innervate.networks.mesh.protocol import node as mesh
+from innervate.networks.mesh.sim import simulate as mesh_simulate
 from innervate.networks.radio.protocol import practical as radio_practical
+from innervate.networks.radio.sim import simulate as radio_simulate
 from innervate.networks.skin.protocol import cell as skin
+from innervate.networks.skin.sim import simulate as skin_simulate
 from innervate.networks.skin.sim import stack as skin_stack
-from innervate.sim.cables import simulate as skin_simulate
-from innervate.sim.channel import simulate as radio_simulate
-from innervate.sim.field import simulate as mesh_simulate
 
 HERE = Path(__file__).resolve().parent
 # Handlers in order of their number, and how many arguments stand between clock and outbox.

@@ -1,7 +1,7 @@
 import pytest
 
 from innervate import scenario
-from innervate.sim.cables.simulate import simulate
+from innervate.networks.skin.sim.simulate import simulate
 
 
 def make_line(cells, **changes):

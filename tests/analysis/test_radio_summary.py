@@ -7,9 +7,9 @@ from innervate.networks.radio.analysis import air as radio_air
 from innervate.networks.radio.analysis import summary as radio
 from innervate.networks.radio.protocol.constants import CRR, DATA, OPEN, REPORT_BOUNDS, REPORT_LEFT
 from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
+from innervate.networks.radio.sim.simulate import COUNTS
 from innervate.sim.channel import world as w
 from innervate.sim.channel.loop import ON_CARRIER
-from innervate.sim.channel.simulate import COUNTS
 from tests.radio_runs import radio_plan, run
 
 SLOT = 208

@@ -9,8 +9,9 @@ from innervate.networks.skin.analysis.recovery import recoveries, start_up
 from innervate.networks.skin.protocol.constants import REPORT_BALANCE, REPORT_BROKEN, REPORT_PARENT
 from innervate.networks.skin.scenario.plan import KILL, LOOSE
 from innervate.networks.skin.sim.observer import CUT_OFF, UNROUTED
-from innervate.sim.cables.simulate import Result
-from innervate.sim.cables.world import ROW, row_dtype
+from innervate.networks.skin.sim.simulate import Result
+from innervate.sim.cables.world import ROW
+from innervate.sim.tables import row_dtype
 
 # A line of three: pc.0 - 0 - 1 - 2 - pc.1; end = 4 * cell + port, W 0, E 1.
 BEGIN = [(0, -1, CUT_OFF, -1, 0), (0, -1, UNROUTED, 3, 0)]

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from innervate.cli import errors
-from innervate.sim.cables.simulate import InvariantBroken
+from innervate.networks.skin.sim.simulate import InvariantBroken
 
 WRONG = {
     "unknown command": (("runn", "x"), 'Did you mean "run"?'),
@@ -111,7 +111,7 @@ def test_control_characters_do_not_reach_the_terminal(sh):
 
 def test_interrupted_runs_end_with_130(sh, monkeypatch):
     from innervate.cli import progress
-    from innervate.sim.cables import simulate as room
+    from innervate.networks.skin.sim import simulate as room
 
     def interrupt(*_):
         signal.raise_signal(signal.SIGINT)

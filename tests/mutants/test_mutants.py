@@ -8,7 +8,7 @@ import random
 
 import pytest
 
-from innervate.sim.cables.simulate import InvariantBroken
+from innervate.networks.skin.sim.simulate import InvariantBroken
 from tests.mutants_checks import CHECKS
 from tests.skin_bench import REAL, changed_protocol
 

@@ -10,7 +10,7 @@ from innervate.networks.radio.protocol.constants import (
     REPORT_ROLE,
 )
 from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL, RadioFault
-from innervate.sim.channel.simulate import simulate
+from innervate.networks.radio.sim.simulate import simulate
 from tests.radio_paper_runs import (
     BIT,
     R1,

@@ -20,7 +20,7 @@ from innervate.networks.mesh.scenario.plan import (
     Offer,
     Walk,
 )
-from innervate.sim.cables.build import uniform
+from innervate.sim.tables import uniform
 from tests.mesh_runs import mesh_plan, radio, run
 
 QUIET_RUN = settings(deadline=None, suppress_health_check=list(HealthCheck))

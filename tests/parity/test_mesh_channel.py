@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from innervate.networks.mesh.scenario.plan import ONE
+from innervate.networks.mesh.sim.simulate import simulate
 from innervate.networks.radio.protocol import fields as radio_fields
 from innervate.scenario import load, plan
-from innervate.sim.field.simulate import simulate
 from tests.parity.test_mesh import TABLES, states
 
 EVENTS = (

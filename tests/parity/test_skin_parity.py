@@ -11,7 +11,7 @@ from innervate.networks.skin import frames as wire
 from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.networks.skin.sim import stack as skin_stack
 from innervate.networks.skin.sim import static_stack
-from innervate.sim.cables.simulate import InvariantBroken, simulate
+from innervate.networks.skin.sim.simulate import InvariantBroken, simulate
 from tests.skin_runs import EVERYTHING, free, keys_of, patch, plain_stack, plan_of, random_events
 
 RULES = ["feasible", "strict", "paper", "static"]

@@ -145,7 +145,7 @@ def test_large_skins_stay_readable(tables, count):
 
 
 def test_an_interrupted_run_says_so(tables, monkeypatch):
-    from innervate.sim.cables import simulate as room
+    from innervate.networks.skin.sim import simulate as room
 
     monkeypatch.setattr(room, "SLICE_EVENTS", 10_000)
     done = run(tables(), progress=lambda now, end: signal.raise_signal(signal.SIGINT))

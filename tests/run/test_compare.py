@@ -6,11 +6,12 @@ import pytest
 
 from innervate import scenario
 from innervate.networks.skin.run import trail
+from innervate.networks.skin.sim.simulate import simulate
 from innervate.running import RunError, compare, run
 from innervate.running.compare import differences
 from innervate.running.trail import FIELDS, first_difference
-from innervate.sim.cables.simulate import simulate
-from innervate.sim.cables.world import TRAIL, row_dtype
+from innervate.sim.cables.world import TRAIL
+from innervate.sim.tables import row_dtype
 
 
 @pytest.fixture

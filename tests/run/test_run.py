@@ -115,7 +115,7 @@ def test_default_folder(four, tmp_path, page, monkeypatch):
 
 
 def test_an_interrupted_run_keeps_what_was_done(four, tmp_path, page, monkeypatch):
-    from innervate.sim.cables import simulate as simulation
+    from innervate.networks.skin.sim import simulate as simulation
 
     loop = simulation.compiled_loop(False)
 

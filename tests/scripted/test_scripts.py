@@ -25,7 +25,7 @@ import pytest
 
 from innervate import scenario
 from innervate.networks.skin.protocol.constants import NONE
-from innervate.sim.cables.simulate import simulate
+from innervate.networks.skin.sim.simulate import simulate
 from tests.skin_bench import REAL
 from tests.skin_net import Net
 from tests.skin_runs import loops_closed

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from innervate import scenario
-from innervate.sim.cables import simulate as simulator
-from innervate.sim.cables.simulate import simulate
+from innervate.networks.skin.sim import simulate as simulator
+from innervate.networks.skin.sim.simulate import simulate
 from tests.skin_runs import busy, plan_of, run, setup_1
 
 TABLE = Path(__file__).with_name("fingerprints.csv")

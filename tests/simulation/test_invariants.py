@@ -7,7 +7,7 @@ import random
 
 import pytest
 
-from innervate.sim.cables.simulate import InvariantBroken
+from innervate.networks.skin.sim.simulate import InvariantBroken
 from tests.skin_checks import random_links
 from tests.skin_runs import faulty, free, keys_of, loops_closed, random_events, run
 

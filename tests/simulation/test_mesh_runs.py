@@ -7,9 +7,9 @@ import pytest
 
 from innervate.dialect.outbox import deliver, report, send
 from innervate.networks.mesh.protocol.frames import copy_frame
+from innervate.networks.mesh.sim import simulate as simulation
 from innervate.networks.mesh.sim.recorder import place_of
-from innervate.sim.cables.simulate import InvariantBroken
-from innervate.sim.field import simulate as simulation
+from innervate.networks.skin.sim.simulate import InvariantBroken
 from innervate.sim.field.build import build, grow_seen
 from tests import mesh_pinger
 from tests.mesh_runs import mesh_plan, run

@@ -5,7 +5,7 @@ import pytest
 
 from innervate.networks.radio.protocol.constants import DATA, REPORT_BOUNDS
 from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
-from innervate.sim.cables.build import uniform
+from innervate.sim.tables import uniform
 from tests.radio_runs import START_US, run
 
 SIZES = (2, 3, 5, 10, 20, 50, 100)

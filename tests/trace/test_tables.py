@@ -4,8 +4,8 @@ import sys
 import polars
 import pytest
 
+from innervate.networks.skin.tables import LOOPS, RECEIVED, TABLES
 from innervate.trace import tables
-from innervate.trace.tables import LOOPS, RECEIVED, TABLES
 
 
 def test_names_and_types_are_declared_once():

@@ -6,10 +6,10 @@ import pytest
 
 from innervate import scenario
 from innervate.networks.skin.plot import counterexample
+from innervate.networks.skin.sim.simulate import InvariantBroken, simulate
 from innervate.networks.skin.verify import graphs, retrace, story
 from innervate.networks.skin.verify.system import ANY, Budget, SkinModel
 from innervate.networks.skin.verify.world import BROKEN_LOOP
-from innervate.sim.cables.simulate import InvariantBroken, simulate
 from innervate.verify import explore
 
 # Every frame arrives before anything else happens, or is lost where the budget says so: these are

@@ -7,6 +7,7 @@ import pytest
 from innervate import scenario
 from innervate.networks.mesh.plot import counterexample as mesh_counterexample
 from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.sim.simulate import simulate
 from innervate.networks.mesh.verify import cases as mesh_cases
 from innervate.networks.mesh.verify import fair as mesh_fair
 from innervate.networks.mesh.verify import local as mesh_local
@@ -17,7 +18,6 @@ from innervate.networks.mesh.verify import search as mesh_search
 from innervate.networks.mesh.verify import story as story
 from innervate.networks.mesh.verify.cases import SHORT
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
-from innervate.sim.field.simulate import simulate
 from innervate.verify.errors import VerifyError
 
 NOTHING = MeshBudget(0, 0, 0, 0)

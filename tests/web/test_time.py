@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from innervate import scenario
+from innervate.networks.skin.sim.simulate import InvariantBroken
 from innervate.running import run
-from innervate.sim.cables.simulate import InvariantBroken
 from innervate.web import messages
 from innervate.web.errors import Refused, WatchError
 from innervate.web.history import LOG, SERIES, TIMELINE

@@ -33,7 +33,7 @@ _KNOWN = (
     ("innervate.web.errors", "WatchError", USERS),
     ("innervate.export.errors", "ExportError", USERS),
     ("cyclopts", "CycloptsError", USERS),
-    ("innervate.sim.cables.simulate", "InvariantBroken", OURS),
+    ("innervate.networks.skin.sim.simulate", "InvariantBroken", OURS),
     ("innervate.networks.skin.analysis.frames", "FramesLost", OURS),
 )
 

@@ -114,9 +114,9 @@ def is_compiled(plan: Any) -> bool:
     if plan.kind == "radio":
         return door.is_compiled(plan.protocol.replace("/", "-"))
     if plan.kind == "mesh":
-        from innervate.sim.field.simulate import loop_name as mesh_loop_name
+        from innervate.networks.mesh.sim.simulate import loop_name as mesh_loop_name
 
         return door.is_compiled(mesh_loop_name(plan))
-    from innervate.sim.cables.simulate import loop_name
+    from innervate.networks.skin.sim.simulate import loop_name
 
     return bool(plan.script) or door.is_compiled(loop_name(plan))

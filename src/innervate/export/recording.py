@@ -13,9 +13,9 @@ from innervate.export import files, scenes, schemas
 from innervate.export.scenes import Channel, Message, stamp
 from innervate.networks.mesh import tables as mesh_tables
 from innervate.networks.radio import tables as radio_tables
-from innervate.trace import tables
+from innervate.networks.skin.tables import TABLES
 
-TABLES = {"skin": tables.TABLES, "mesh": mesh_tables.TABLES, "radio": radio_tables.TABLES}
+TABLES = {"skin": TABLES, "mesh": mesh_tables.TABLES, "radio": radio_tables.TABLES}
 TOPICS = {"received": "/samples", "crossings": "/alarms"}  # others are called as their table
 INFORMATION, WARNING = 2, 3
 HARM = ("cut", "kill", "loose", "lose", "jam", "leave", "garble", "fade")

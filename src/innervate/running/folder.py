@@ -15,15 +15,15 @@ from typing import Any
 
 from innervate.networks.mesh import tables as mesh_tables
 from innervate.networks.radio import tables as radio_tables
+from innervate.networks.skin.tables import TABLES
 from innervate.running.errors import RunError
-from innervate.trace import tables
 
 SCENARIO = "scenario.toml"
 SUMMARY = "summary.json"
 PROVENANCE = "provenance.json"
 REPORT = "report.html"
 REQUIRED = (SCENARIO, SUMMARY, PROVENANCE)
-TABLES = (*tables.TABLES, *radio_tables.TABLES, *mesh_tables.TABLES)
+TABLES = (*TABLES, *radio_tables.TABLES, *mesh_tables.TABLES)
 TABLE_FILES = tuple(f"{table.name}.parquet" for table in TABLES)
 KNOWN = frozenset({*REQUIRED, REPORT, *TABLE_FILES})
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from innervate import scenario as scenarios
 from innervate.networks.skin.analysis.touch import WINDOW_S, Image, received_image
+from innervate.networks.skin.tables import RECEIVED
 from innervate.running import folder as folders
 from innervate.running.rooms import room_of
 from innervate.scenario import Scenario
@@ -105,7 +106,7 @@ class Run:
             (fresh / folders.SCENARIO).write_text(text, encoding="utf-8")
             room = room_of(self.plan.kind)
             for table in room.tables_of(self.result):
-                if table is not tables.RECEIVED or self.result.received_kept:
+                if table is not RECEIVED or self.result.received_kept:
                     tables.write(table, room.columns(table, self.result), fresh)
             if report:
                 (fresh / folders.REPORT).write_text(self.report(), encoding="utf-8")

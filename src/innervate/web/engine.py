@@ -10,9 +10,9 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from innervate.kernel import door
-from innervate.sim.cables import loop
-from innervate.sim.cables.build import get, put
-from innervate.sim.cables.simulate import InvariantBroken
+from innervate.networks.skin.sim.simulate import InvariantBroken
+from innervate.sim.status import BROKEN, DONE
+from innervate.sim.tables import get, put
 
 Rows = dict[str, Any]
 
@@ -62,9 +62,9 @@ class Engine(ABC):
         """
         if until_us <= self.now_us or self.is_complete():
             return
-        if self._slice(until_us, budget) != loop.DONE:
+        if self._slice(until_us, budget) != DONE:
             until_us = min(until_us, max(self._clock(), self.now_us) + 1)
-            while self._slice(until_us, budget) != loop.DONE:
+            while self._slice(until_us, budget) != DONE:
                 pass
         self.now_us = self._clock() + 1 if self.is_complete() else until_us
 
@@ -165,7 +165,7 @@ class Engine(ABC):
                 parts.append(getattr(self.world, name)[:count].copy())
                 put(self.world.run, 0, **{name: 0})
         status = int(get(self.world.run, 0, "status"))
-        if status == loop.BROKEN:
+        if status == BROKEN:
             raise InvariantBroken(self._story())
         self._grow(status)
         return status

@@ -8,21 +8,20 @@ from typing import Any, ClassVar
 import numpy as np
 
 from innervate.networks.mesh.sim import channel, stacks
+from innervate.networks.mesh.sim import simulate as mesh
 from innervate.networks.radio.scenario.plan import KILL, LEAVE
+from innervate.networks.radio.sim import simulate as radio
 from innervate.networks.skin.scenario.plan import LOSE
+from innervate.networks.skin.sim import simulate as skin
 from innervate.networks.skin.view.touching import Finger
-from innervate.sim import wheel
+from innervate.sim import heap, wheel
 from innervate.sim.cables import build as skin_build
-from innervate.sim.cables import loop as skin_loop
-from innervate.sim.cables import simulate as skin
-from innervate.sim.cables.build import get, put
 from innervate.sim.channel import build as radio_build
-from innervate.sim.channel import heap
-from innervate.sim.channel import simulate as radio
 from innervate.sim.field import build as mesh_build
 from innervate.sim.field import loop as mesh_loop
 from innervate.sim.field import queue as mesh_queue
-from innervate.sim.field import simulate as mesh
+from innervate.sim.status import POOL_FULL
+from innervate.sim.tables import get, put
 from innervate.web.engine import Engine, Mark
 from innervate.web.errors import WatchError
 
@@ -95,7 +94,7 @@ class SkinEngine(Engine):
         return int(self.world.wheel.clock[wheel.NOW])
 
     def _grow(self, status: int) -> None:
-        if status == skin_loop.POOL_FULL:
+        if status == POOL_FULL:
             self.world = skin_build.grow_pool(self.world)
 
     def _story(self) -> str:
@@ -136,7 +135,7 @@ class RadioEngine(Engine):
         return int(get(self.world.run, 0, "now"))
 
     def _grow(self, status: int) -> None:
-        if status == skin_loop.POOL_FULL:
+        if status == POOL_FULL:
             self.world = radio_build.grow_heap(self.world)
 
     def _story(self) -> str:
@@ -182,7 +181,7 @@ class MeshEngine(Engine):
         return int(get(self.world.run, 0, "now"))
 
     def _grow(self, status: int) -> None:
-        if status == skin_loop.POOL_FULL:
+        if status == POOL_FULL:
             self.world = channel.grown(self.world)
         if status == mesh_loop.SEEN_FULL:
             self.world = mesh_build.grow_seen(self.world)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any, ClassVar, NamedTuple
 
 from innervate import __version__
-from innervate.sim.cables.simulate import InvariantBroken
+from innervate.networks.skin.sim.simulate import InvariantBroken
 from innervate.web.engine import Engine, Mark
 from innervate.web.engines import engine_of
 from innervate.web.errors import Refused

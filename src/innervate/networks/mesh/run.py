@@ -13,9 +13,9 @@ from innervate.networks.mesh.analysis.alarms import all_crossings
 from innervate.networks.mesh.analysis.messages import NEVER, messages
 from innervate.networks.mesh.analysis.summary import summarize
 from innervate.networks.mesh.plot.words import HANDED, PACKETS, TIMERS
+from innervate.networks.mesh.sim import simulate as simulator
 from innervate.networks.mesh.sim.recorder import MAC
-from innervate.sim.cables.loop import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
-from innervate.sim.field import simulate as simulator
+from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.trace.tables import Table
 
 __all__ = ["call_words", "columns", "simulate", "summarize", "tables_of", "trail"]

@@ -11,10 +11,10 @@ import numpy as np
 from innervate.networks.radio import tables as radio_tables
 from innervate.networks.radio.analysis import summary as analysis
 from innervate.networks.radio.protocol.constants import CLOCK, LEAVE, MAIN, RESULT
+from innervate.networks.radio.sim import simulate as simulator
 from innervate.networks.radio.slotted import run as radio_slotted
-from innervate.sim.cables.loop import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
-from innervate.sim.channel import simulate as simulator
 from innervate.sim.channel.loop import ON_CARRIER
+from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.trace.tables import Table
 
 Columns = dict[str, Any]

@@ -7,16 +7,16 @@ from typing import Any
 
 from innervate.networks.skin.analysis import frames
 from innervate.networks.skin.analysis.summary import summarize
+from innervate.networks.skin.columns import columns
 from innervate.networks.skin.protocol.constants import TICK
 from innervate.networks.skin.scenario.plan import Plan
-from innervate.running.columns import columns
-from innervate.sim.cables import build, loop
-from innervate.sim.cables import simulate as simulator
-from innervate.sim.cables.build import get, put
-from innervate.sim.cables.loop import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
-from innervate.sim.cables.simulate import RULE_STATIC, SLICE_EVENTS, compiled_loop
+from innervate.networks.skin.sim import simulate as simulator
+from innervate.networks.skin.sim.simulate import RULE_STATIC, SLICE_EVENTS, compiled_loop
+from innervate.networks.skin.tables import TABLES
+from innervate.sim.cables import build
+from innervate.sim.status import DONE, ON_FRAME, ON_INPUT, ON_START, ON_TIMER, POOL_FULL
+from innervate.sim.tables import get, put
 from innervate.topology import PORT_NAMES
-from innervate.trace import tables
 from innervate.trace.tables import Table
 
 # Received samples are kept by default as long as they fit easily: some 60 MB.
@@ -27,7 +27,7 @@ __all__ = ["columns", "simulate", "summarize", "tables_of"]
 
 def tables_of(_result: Any) -> tuple[Table, ...]:
     """The tables of a run."""
-    return tables.TABLES
+    return TABLES
 
 
 def simulate(
@@ -66,12 +66,12 @@ def trail(plan: Plan, until_us: int) -> Iterator[Any]:
     while True:
         advance(world, until_us, SLICE_EVENTS)
         status = int(get(world.run, 0, "status"))
-        if status == loop.POOL_FULL:
+        if status == POOL_FULL:
             world = build.grow_pool(world)
         count = int(get(world.run, 0, "trail"))
         yield world.trail[:count].copy()
         put(world.run, 0, trail=0)
-        if status == loop.DONE:
+        if status == DONE:
             return
 
 

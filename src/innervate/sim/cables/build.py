@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -11,30 +9,16 @@ import numpy as np
 from innervate.dialect import rng
 from innervate.kernel import records
 from innervate.networks.skin.protocol import fields as skin_fields
-from innervate.sim import taps
 from innervate.sim.cables import commands
 from innervate.sim.cables import world as w
 from innervate.sim.cables.loop import BATCH
 from innervate.sim.cables.wires import COUNTERS, LOSSY
+from innervate.sim.tables import ACTION, TAP, Out, Tables, _longer, get, put, uniform
 from innervate.sim.wheel import BUCKETS, FREE, FRESH, LAST, LEVELS, NIL, PENDING, WORDS
 
-GAMMA = 0x9E3779B97F4A7C15
 ROWS = 1 << 16
 CELL_BYTES = 256  # whole cache lines
 FRAME_BYTES = 128
-
-Numbers = np.ndarray[Any, np.dtype[np.int64]]
-
-
-def uniform(seed: int, name: str, count: int, n: int) -> Numbers:
-    """`count` integers 0 <= x < n <= 2^30 of the stream `name`; the same on any machine."""
-    key = hashlib.blake2b(f"{seed}/{name}".encode(), digest_size=8).digest()
-    z = np.arange(1, count + 1, dtype=np.uint64) * np.uint64(GAMMA)
-    z += np.uint64(int.from_bytes(key, "big"))
-    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-    z ^= z >> np.uint64(31)
-    return (((z >> np.uint64(32)) * np.uint64(n)) >> np.uint64(32)).astype(np.int64)
 
 
 def build(
@@ -51,7 +35,7 @@ def build(
     `deliveries` keeps a row per tactile sample the PC receives, `trail` a row per handler call,
     `tap` copies of frames as they leave and come in.
     """
-    tables = w.Tables(plain)
+    tables = Tables(plain)
     graph = plan.graph
     cells, nodes, ends = graph.cells, graph.cells + 1, len(graph.peer)
     tx_slots = nodes * w.TIMER_SLOTS
@@ -85,7 +69,7 @@ def build(
         rows=tables.records(w.ROW, ROWS + 8 * limit, fresh=True),
         deliveries=tables.records(w.DELIVERY, ROWS if deliveries else 1, fresh=True),
         trail=tables.records(w.TRAIL, ROWS if trail else 1, fresh=True),
-        taps=tables.records(w.TAP, tapped, fresh=True),
+        taps=tables.records(TAP, tapped, fresh=True),
         tapped=tables.states(skin_fields.FRAME, tapped),
         **_touch(tables, plan),
     )
@@ -102,7 +86,7 @@ def build(
     return world
 
 
-def _wheel(tables: w.Tables, pool_slots: int, pool: int) -> w.Wheel:
+def _wheel(tables: Tables, pool_slots: int, pool: int) -> w.Wheel:
     """An empty event queue."""
     wheel = w.Wheel(
         clock=tables.numbers(2, 0, np.int64),
@@ -121,18 +105,18 @@ def _wheel(tables: w.Tables, pool_slots: int, pool: int) -> w.Wheel:
     return wheel
 
 
-def _outbox(tables: w.Tables, limit: int) -> w.Out:
+def _outbox(tables: Tables, limit: int) -> Out:
     """An empty outbox with room for `limit` actions."""
-    return w.Out(
+    return Out(
         count=tables.numbers(1, 0, np.int64),
         limit=tables.numbers(1, limit, np.int64),
         overflow=tables.numbers(1, 0, np.int64),
-        action=tables.records(w.ACTION, limit),
+        action=tables.records(ACTION, limit),
         frame=tables.states(skin_fields.FRAME, limit),
     )
 
 
-def _touch(tables: w.Tables, plan: Any) -> dict[str, Any]:
+def _touch(tables: Tables, plan: Any) -> dict[str, Any]:
     """Tables of the synthetic touch, empty without one."""
     touch = plan.touch
     span = (touch.radius_um, touch.force_mn, touch.step_us) if touch else (0, 0, 1)
@@ -143,15 +127,6 @@ def _touch(tables: w.Tables, plan: Any) -> dict[str, Any]:
         "touch_span": _numbers(tables, span),
         "place": _numbers(tables, places),
     }
-
-
-def put(table: Any, place: int, /, **values: int) -> None:
-    """Set fields of one record."""
-    for name, value in values.items():
-        if isinstance(table, list):
-            setattr(table[place], name, int(value))
-        else:
-            table[name][place] = value
 
 
 def grow_pool(world: w.World) -> w.World:
@@ -167,49 +142,6 @@ def grow_pool(world: w.World) -> w.World:
     )
 
 
-def _longer(table: Any, length: int) -> Any:
-    if isinstance(table, list):
-        make = (lambda: 0) if isinstance(table[0], int) else type(table[0])
-        return table + [make() for _ in range(length - len(table))]
-    longer = np.zeros(length, table.dtype)
-    longer[: len(table)] = table
-    return longer
-
-
-def hand_over(world: Any, tap: taps.Tap | None, now: int) -> None:
-    """Give a tap the frames that were kept, and make room for more."""
-    if tap is not None:
-        count = int(get(world.run, 0, "taps"))
-        tap(world.taps[:count], world.tapped[:count], now)
-        put(world.run, 0, taps=0)
-
-
-def move_rows(
-    world: Any, parts: dict[str, list[Any]], fields: Mapping[str, tuple[str, ...]], wide: Any
-) -> None:
-    """Move filled rows out of the loop's tables, so that these can stay small.
-
-    Args:
-        world: of a run; its record counts what is in the table of each name.
-        parts: per table, the rows so far; these are added as one array each.
-        fields: of the rows, per table.
-        wide: fields of 64 bits.
-    """
-    for name, kept in parts.items():
-        count, table = int(get(world.run, 0, name)), getattr(world, name)
-        if isinstance(table, list):
-            rows = [tuple(getattr(row, f) for f in fields[name]) for row in table[:count]]
-            kept.append(np.array(rows, w.row_dtype(fields[name], wide)))
-        else:
-            kept.append(table[:count].copy())
-        put(world.run, 0, **{name: 0})
-
-
-def get(table: Any, place: int, name: str) -> Any:
-    """A field of one record, compiled or plain."""
-    return getattr(table[place], name) if isinstance(table, list) else table[name][place]
-
-
 def _fill(table: Any, name: str, values: Any, count: int) -> None:
     """Set a field of the first `count` records: to one value, or to one each."""
     if isinstance(table, list):
@@ -219,12 +151,12 @@ def _fill(table: Any, name: str, values: Any, count: int) -> None:
         table[name][:count] = values
 
 
-def _numbers(tables: w.Tables, values: Any) -> Any:
+def _numbers(tables: Tables, values: Any) -> Any:
     made = np.array(values, np.int64)
     return made.tolist() if tables.plain else made
 
 
-def _watch(tables: w.Tables, cells: int, states: Any) -> w.Watch:
+def _watch(tables: Tables, cells: int, states: Any) -> w.Watch:
     low, high = records.bounds(skin_fields.CELL)
     return w.Watch(
         port=tables.numbers(cells, NIL),

@@ -18,23 +18,19 @@ from innervate.sim import wheel as queue
 from innervate.sim.cables import commands, wires
 from innervate.sim.cables.wires import OFFERED
 from innervate.sim.cables.world import ALIVE, DEAD, OFF, SOURCE
+from innervate.sim.status import (
+    BROKEN,
+    BUDGET,
+    COLD,
+    DONE,
+    ON_FRAME,
+    ON_INPUT,
+    ON_START,
+    ON_TIMER,
+    POOL_FULL,
+    ROWS_FULL,
+)
 from innervate.sim.wheel import FRESH, LAST, NIL
-
-# Why the loop stopped.
-DONE = 0
-POOL_FULL = 1
-ROWS_FULL = 2
-BROKEN = 3
-BUDGET = 4
-
-ON_START = 0
-ON_FRAME = 1
-ON_TIMER = 2
-ON_INPUT = 3
-
-COLD = 0
-MEMORY_LOST = 1
-
 
 # Events between two looks at the room left in the tables.
 BATCH = 64

@@ -7,13 +7,9 @@ the simulator keeps true time.
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from innervate.dialect import plain
-from innervate.kernel import records
+from innervate.sim.tables import Out
 
 # All fields have 32 bits, those named in WIDE and all of RUN 64.
 EVENT = ("time", "bucket", "kind", "target", "epoch")
@@ -34,10 +30,6 @@ COMMAND = ("at", "action", "end", "node", "value", "index")
 ROW = ("time", "node", "code", "a", "b")
 DELIVERY = ("time", "port", "cell", "seq", "hops", "proximity", "force", "temperature", "accel")
 TRAIL = ("time", "node", "handler", "port", "fingerprint")
-# A frame for a capture: when; when its sender began; whose interface (a cable's end, a node, a
-# station); who sent it (mesh, radio); 1 = it left, 0 = it came in; why it got no further.
-TAP = ("time", "start", "at", "sender", "out", "why")
-ACTION = ("kind", "a", "b", "c")
 WIDE = {"time", "start", "busy", "offset", "rate", "inverse", "source", "at", "fingerprint"} | set(
     RUN
 )
@@ -68,16 +60,6 @@ class Sink(NamedTuple):
 
     own: Any
     size: Any
-
-
-class Out(NamedTuple):
-    """The outbox (see protocol/outbox.py)."""
-
-    count: Any
-    limit: Any
-    overflow: Any
-    action: Any
-    frame: Any
 
 
 class Watch(NamedTuple):
@@ -124,67 +106,3 @@ class World(NamedTuple):
     touch_y: Any
     touch_span: Any
     place: Any
-
-
-class Tables:
-    """Makes tables of one form: compiled (arrays) or plain (lists)."""
-
-    def __init__(self, plain_form: bool, word: Any = np.int32) -> None:
-        """`word` is what protocols' records consist of.
-
-        32 bits save memory. 64 bits save compiling: functions that are not inlined are compiled
-        for every mix of widths that they are called with.
-        """
-        self.plain = plain_form
-        self.word = word
-
-    def numbers(self, count: int, value: int = 0, kind: type = np.int32) -> Any:
-        """`count` integers."""
-        if self.plain:
-            return [value] * count
-        return np.full(count, value, kind) if value else np.zeros(count, kind)
-
-    def records(
-        self,
-        names: tuple[str, ...],
-        count: int,
-        fresh: bool = False,
-        wide: Collection[str] = frozenset(WIDE),
-    ) -> Any:
-        """`count` simulator records; with `fresh` their content is not initialised.
-
-        Fields in `wide` have 64 bits, all others 32.
-        """
-        if self.plain:
-            declaration = tuple((name, _length(name), 0, 0, "", "") for name in names)
-            make = plain.make("Record", declaration)
-            return [make() for _ in range(count)]
-        dtype = row_dtype(names, wide)
-        return np.empty(count, dtype) if fresh else np.zeros(count, dtype)
-
-    def states(self, declaration: Any, count: int, itemsize: int = 0) -> Any:
-        """`count` records of a protocol's declaration."""
-        if self.plain:
-            make = plain.make("State", declaration)
-            return [make() for _ in range(count)]
-        return records.zeros(declaration, count, itemsize, self.word)
-
-    def words(self, states: Any, declaration: Any) -> Any:
-        """The states as rows of words."""
-        if self.plain:
-            return [records.Words(state, declaration) for state in states]
-        return states.view(self.word).reshape(len(states), -1)
-
-
-def row_dtype(names: tuple[str, ...], wide: Collection[str] = frozenset(WIDE)) -> np.dtype[Any]:
-    """The array form of simulator records with these fields."""
-    return np.dtype([_column(name, wide) for name in names], align=True)
-
-
-def _length(name: str) -> int:
-    return 3 if name in ("force", "accel") else 0
-
-
-def _column(name: str, wide: Collection[str]) -> tuple[Any, ...]:
-    kind = np.int64 if name in wide else np.int32
-    return (name, kind, (3,)) if _length(name) else (name, kind)

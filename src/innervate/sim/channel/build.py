@@ -11,12 +11,11 @@ from innervate.kernel import records
 from innervate.networks.radio.protocol import fields as radio_fields
 from innervate.networks.radio.scenario.plan import BEGIN
 from innervate.networks.radio.sim.stacks import PROTOCOLS
-from innervate.sim.cables import world as w
-from innervate.sim.cables.build import put, uniform
 from innervate.sim.channel import world as r
-from innervate.sim.channel.heap import AIRS, COMMAND, OFFER, key_of, push
 from innervate.sim.channel.loop import BATCH
 from innervate.sim.channel.medium import NEVER
+from innervate.sim.heap import AIRS, COMMAND, OFFER, key_of, push
+from innervate.sim.tables import ACTION, TAP, Out, Tables, put, uniform
 
 ROWS = 1 << 16
 OUTBOX = 16
@@ -36,7 +35,7 @@ def build(
     `keep` keeps a row per report, transmission and delivered packet, `trail` one per handler call,
     `tap` copies of frames on the air; there is `room` for so many rows before the loop stops.
     """
-    tables = w.Tables(plain)
+    tables = Tables(plain)
     n = plan.stations
     fields = radio_fields.STATION + PROTOCOLS[plan.protocol].fields
     stations = tables.states(fields, n)
@@ -68,11 +67,11 @@ def build(
         tries=tables.numbers(n * r.RING),
         last=tables.numbers(n * n, NEVER),
         item=tables.states(radio_fields.PACKET, 1),
-        out=w.Out(
+        out=Out(
             count=tables.numbers(1, 0, np.int64),
             limit=tables.numbers(1, OUTBOX, np.int64),
             overflow=tables.numbers(1, 0, np.int64),
-            action=tables.records(w.ACTION, OUTBOX),
+            action=tables.records(ACTION, OUTBOX),
             frame=tables.states(radio_fields.FRAME, OUTBOX),
         ),
         commands=tables.records(r.COMMAND, len(plan.faults) + 1, wide=r.WIDE),
@@ -80,7 +79,7 @@ def build(
         sent=tables.records(r.SENT, rows, fresh=True, wide=r.WIDE),
         packets=tables.records(r.PACKET, rows, fresh=True, wide=r.WIDE),
         trail=tables.records(r.TRAIL, ROWS if trail else 1, fresh=True, wide=r.WIDE),
-        taps=tables.records(w.TAP, tapped, fresh=True, wide=r.WIDE),
+        taps=tables.records(TAP, tapped, fresh=True, wide=r.WIDE),
         tapped=tables.states(radio_fields.FRAME, tapped),
     )
     _set_run(world, plan, checks, keep, trail)
@@ -100,7 +99,7 @@ def grow_heap(world: Any) -> Any:
     return world._replace(heap=r.Heap(longer, world.heap.size))
 
 
-def _given(tables: w.Tables, values: Any) -> Any:
+def _given(tables: Tables, values: Any) -> Any:
     made = np.ascontiguousarray(values, np.int64).ravel()
     return made.tolist() if tables.plain else made
 

@@ -20,20 +20,11 @@ from innervate.networks.radio.scenario.plan import BEGIN, FADE, GARBLE, JOIN, KI
 from innervate.networks.radio.scenario.plan import LEAVE as RETIRE
 from innervate.networks.radio.sim import traffic
 from innervate.networks.radio.sim.recorder import keep_received, keep_sent, watch
-from innervate.sim.cables.loop import (
-    BROKEN,
-    BUDGET,
-    DONE,
-    ON_FRAME,
-    ON_INPUT,
-    ON_START,
-    ON_TIMER,
-    POOL_FULL,
-    ROWS_FULL,
-)
-from innervate.sim.channel import heap as queue
+from innervate.sim import heap as queue
 from innervate.sim.channel import medium
-from innervate.sim.channel.heap import (
+from innervate.sim.channel.medium import NEVER
+from innervate.sim.channel.world import RING, TIMERS
+from innervate.sim.heap import (
     ENDS,
     OFFER,
     OUTCOME,
@@ -45,9 +36,18 @@ from innervate.sim.channel.heap import (
     TIME_SHIFT,
     TIMER,
 )
-from innervate.sim.channel.medium import NEVER
-from innervate.sim.channel.world import RING, TIMERS
 from innervate.sim.rows import keep_row
+from innervate.sim.status import (
+    BROKEN,
+    BUDGET,
+    DONE,
+    ON_FRAME,
+    ON_INPUT,
+    ON_START,
+    ON_TIMER,
+    POOL_FULL,
+    ROWS_FULL,
+)
 
 ON_CARRIER = 4
 BROKEN_OUTBOX = 3

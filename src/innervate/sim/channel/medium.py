@@ -9,7 +9,7 @@ may break off; with `oracle` it learns, when all could know, how many received i
 """
 
 from innervate.dialect.rng import LOW15, step
-from innervate.sim.channel.heap import (
+from innervate.sim.heap import (
     AIR_BITS,
     AIRS,
     ENDS,

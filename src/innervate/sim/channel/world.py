@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from innervate.sim.cables.world import Out
+from innervate.sim.tables import Out
 
 RUN = (
     "stations", "slot_us", "ta_us", "loss", "rng", "saturated", "forced", "per_turn", "wanted",

@@ -13,13 +13,12 @@ from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.sim import channel
 from innervate.networks.mesh.sim import recorder as books
 from innervate.networks.mesh.sim.over_channel import KEPT
-from innervate.sim.cables import world as w
-from innervate.sim.cables.build import get, put, uniform
 from innervate.sim.channel.world import Heap
 from innervate.sim.field import powers, queue
 from innervate.sim.field import world as m
 from innervate.sim.field.loop import BOOT, NEVER
 from innervate.sim.field.medium import NONE
+from innervate.sim.tables import ACTION, TAP, Out, Tables, get, put, uniform
 
 ROWS = 1 << 16
 PLAIN_ROWS = 1 << 12  # objects: dear to make
@@ -41,7 +40,7 @@ def build(
 
     `keep` keeps all rows, `trail` one per handler call, `tap` copies of frames on the air.
     """
-    tables = w.Tables(plain, np.int64)
+    tables = Tables(plain, np.int64)
     n = plan.nodes
     gates = sum(rank >= 0 for rank in plan.ranks) + 1
     fields, gate_fields = mesh_fields.node(plan.capacity), mesh_fields.gate(plan.capacity)
@@ -79,7 +78,7 @@ def build(
         delivered=tables.records(m.DELIVERED, kept, fresh=True, wide=m.WIDE),
         rounds=tables.records(m.ROUND, kept, fresh=True, wide=m.WIDE),
         trail=tables.records(m.TRAIL, rows + _margin(n) if trail else 1, fresh=True, wide=m.WIDE),
-        taps=tables.records(w.TAP, tapped, fresh=True, wide=m.WIDE),
+        taps=tables.records(TAP, tapped, fresh=True, wide=m.WIDE),
         tapped=tables.states(mesh_fields.FRAME, tapped),
     )
     limit = rows if keep else 0
@@ -94,7 +93,7 @@ def build(
 
 def grow_seen(world: m.World) -> m.World:
     """The same world with twice the room for deliveries."""
-    tables = w.Tables(isinstance(world.seen_key, list))
+    tables = Tables(isinstance(world.seen_key, list))
     count = 2 * len(world.seen_key)
     keys, times = tables.numbers(count, 0, np.int64), tables.numbers(count, 0, np.int64)
     for key, at in zip(world.seen_key, world.seen_at, strict=True):
@@ -110,22 +109,22 @@ def _margin(nodes: int) -> int:
     return (nodes + 1) * (OUTBOX + 1)
 
 
-def _given(tables: w.Tables, values: Any, kind: type = np.int64) -> Any:
+def _given(tables: Tables, values: Any, kind: type = np.int64) -> Any:
     numbers: Any = np.ascontiguousarray(values, kind).ravel()
     return numbers.tolist() if tables.plain else numbers
 
 
-def _outbox(tables: w.Tables, limit: int, frame: Any) -> w.Out:
-    return w.Out(
+def _outbox(tables: Tables, limit: int, frame: Any) -> Out:
+    return Out(
         count=tables.numbers(1, 0, np.int64),
         limit=tables.numbers(1, limit, np.int64),
         overflow=tables.numbers(1, 0, np.int64),
-        action=tables.records(w.ACTION, limit, wide=w.ACTION),
+        action=tables.records(ACTION, limit, wide=ACTION),
         frame=tables.states(frame, limit),
     )
 
 
-def _medium(tables: w.Tables, plan: Any) -> dict[str, Any]:
+def _medium(tables: Tables, plan: Any) -> dict[str, Any]:
     """Tables of the medium."""
     n, radio = plan.nodes, plan.radio
     places = min(PLACES_PER_NODE * n + 64, queue.PLACES_MAX)
@@ -157,7 +156,7 @@ def _medium(tables: w.Tables, plan: Any) -> dict[str, Any]:
     }
 
 
-def _script(tables: w.Tables, plan: Any) -> dict[str, Any]:
+def _script(tables: Tables, plan: Any) -> dict[str, Any]:
     """What happens to the nodes, as tables in order of time."""
     events = [(at, BOOT, i, 0, 0) for i, at in enumerate(plan.starts_us) if not plan.absent[i]]
     events += [(f.at_us, f.action, f.node, max(f.other, 0), f.value) for f in plan.faults]

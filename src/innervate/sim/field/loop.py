@@ -8,7 +8,10 @@ from innervate.networks.mesh.protocol.constants import MESSAGE, REPORT_GRAPH, SA
 from innervate.networks.mesh.scenario.plan import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.networks.mesh.sim import recorder as books
 from innervate.sim import rows
-from innervate.sim.cables.loop import (
+from innervate.sim.field import medium, motion, powers, queue
+from innervate.sim.field.queue import RANK_SHIFT, STATION_SHIFT, STATIONS_MAX, TIME_SHIFT, WHAT_MASK
+from innervate.sim.field.world import ALIVE, OFF, TIMERS
+from innervate.sim.status import (
     BROKEN,
     BUDGET,
     DONE,
@@ -19,9 +22,6 @@ from innervate.sim.cables.loop import (
     POOL_FULL,
     ROWS_FULL,
 )
-from innervate.sim.field import medium, motion, powers, queue
-from innervate.sim.field.queue import RANK_SHIFT, STATION_SHIFT, STATIONS_MAX, TIME_SHIFT, WHAT_MASK
-from innervate.sim.field.world import ALIVE, OFF, TIMERS
 
 NEVER = -1
 BOOT = 7  # a command besides those of `scenario/mesh_plan.py`

@@ -4,7 +4,8 @@ Signals end before others start, both before anything that could look at the cha
 """
 
 from innervate.dialect.arith import MASK30
-from innervate.sim.channel.heap import (
+from innervate.sim.field.world import TIMERS
+from innervate.sim.heap import (
     AIR_BITS,
     LAST,
     RANK_SHIFT,
@@ -17,7 +18,6 @@ from innervate.sim.channel.heap import (
     pop,
     push,
 )
-from innervate.sim.field.world import TIMERS
 
 # The first three belong to the layer below the router.
 ENDS = 0  # what: the frame's place

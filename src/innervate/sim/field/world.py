@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 from innervate.networks.mesh.protocol import constants as mesh_words
 from innervate.networks.mesh.protocol import csma
-from innervate.sim.cables.world import Out
 from innervate.sim.channel.world import Heap
+from innervate.sim.tables import Out
 
 RUN = (
     "nodes", "mac", "collisions", "turnaround", "byte_ns", "phy_bytes", "sense", "capture",

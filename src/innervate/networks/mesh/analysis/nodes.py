@@ -9,7 +9,7 @@ import numpy as np
 from innervate.networks.mesh.analysis.network import CONTROL, acked_kinds, airtime_us
 from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.protocol.constants import DATA, REPORT_SUSPECT
-from innervate.sim.cables.build import get
+from innervate.sim.tables import get
 
 UNKNOWN = 255
 

@@ -29,7 +29,7 @@ from innervate.networks.mesh.analysis.messages import (
 )
 from innervate.networks.mesh.analysis.paths import UNREACHABLE, Ground
 from innervate.networks.mesh.protocol.constants import ALARM, ALL, DATA, FLOOD, MONITOR, PARITY
-from innervate.sim.cables.build import get
+from innervate.sim.tables import get
 
 __all__ = ["alternates", "connected", "flows", "looped", "stretch", "summarize"]
 

@@ -13,9 +13,9 @@ from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
 from innervate.networks.mesh.papers.testbed import GATEWAY, LITERAL, Bed, Options, dying, kill
 from innervate.networks.mesh.protocol.constants import ALARM, FLOOD
 from innervate.networks.mesh.scenario.profiles import GOOD_CDB
+from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers.experiment import Point, Results
-from innervate.sim.cables.loop import ON_FRAME
-from innervate.sim.field.simulate import simulate
+from innervate.sim.status import ON_FRAME
 from innervate.topology.placement import distance_cm, path_loss_cdb
 from innervate.trace.streams import stream
 

@@ -14,9 +14,9 @@ from innervate.networks.mesh.papers.testbed import BYTES, GATEWAY, Bed, Options,
 from innervate.networks.mesh.papers.words import percent, seeds_of
 from innervate.networks.mesh.protocol.constants import END_TO_END, MONITOR
 from innervate.networks.mesh.scenario.plan import Offer
+from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
 from innervate.plot import style
-from innervate.sim.field.simulate import simulate
 from innervate.trace.streams import stream
 
 DIES_S = 22.0  # at the earliest; up to a discovery period later

@@ -10,8 +10,8 @@ from innervate.networks.mesh.analysis.messages import duplicates, latencies_us, 
 from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.analysis.summary import connected, looped, stretch
 from innervate.networks.mesh.papers.testbed import LITERAL, Bed, Options, dying, kill, send_rounds
+from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers.experiment import Results
-from innervate.sim.field.simulate import simulate
 
 DEATHS_US = 7_000_000  # tables are there, and the next discovery is far
 ROUNDS = 4

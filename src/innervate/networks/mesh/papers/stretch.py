@@ -13,7 +13,7 @@ from innervate.networks.mesh.papers.testbed import Bed
 from innervate.networks.mesh.papers.words import joined, percent, seeds_of
 from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
 from innervate.plot import style
-from innervate.sim.cables.build import get
+from innervate.sim.tables import get
 from innervate.topology.placement import good_links, neighbours
 
 READINGS = ("tree", "each", "list")

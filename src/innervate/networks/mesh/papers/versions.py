@@ -12,9 +12,9 @@ from innervate.networks.mesh.analysis.summary import looped
 from innervate.networks.mesh.papers.testbed import BYTES, Bed, Options
 from innervate.networks.mesh.papers.words import FEW, joined, percent
 from innervate.networks.mesh.scenario.plan import Offer
+from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
 from innervate.plot import style
-from innervate.sim.field.simulate import simulate
 from innervate.trace.streams import stream
 
 SPEEDS = (0.1, 0.5, 1.0, 2.0)

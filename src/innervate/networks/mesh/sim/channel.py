@@ -6,9 +6,9 @@ from typing import Any
 
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.radio.scenario.plan import RadioPlan
-from innervate.sim.cables.build import put
 from innervate.sim.channel import build
 from innervate.sim.channel.world import Heap, World
+from innervate.sim.tables import put
 
 
 def world_of(plan: Any, plain: bool, checks: bool, above: Heap) -> World:

@@ -14,8 +14,7 @@ from innervate.networks.mesh.scenario.plan import HEADER_SLOTS
 from innervate.networks.mesh.sim import recorder as books
 from innervate.networks.radio.protocol.constants import QUEUE
 from innervate.networks.radio.sim import traffic
-from innervate.sim import taps
-from innervate.sim.channel import heap
+from innervate.sim import heap, taps
 from innervate.sim.channel import loop as radio_loop
 from innervate.sim.channel import medium as channel
 from innervate.sim.channel.world import RING

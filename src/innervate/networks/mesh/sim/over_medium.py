@@ -12,10 +12,10 @@ from innervate.networks.mesh.protocol.constants import ACK
 from innervate.networks.mesh.sim import recorder as books
 from innervate.networks.mesh.sim.recorder import MAC
 from innervate.sim import rows, taps
-from innervate.sim.cables.loop import DONE, ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.sim.field import medium, queue
 from innervate.sim.field.medium import NONE
 from innervate.sim.field.world import COMMITTED, FREE, HELD, ON_AIR
+from innervate.sim.status import DONE, ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 
 NEVER = -1
 

@@ -13,11 +13,11 @@ from typing import Any
 
 from innervate import scenario as scenarios
 from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.sim.simulate import simulate
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify import net as mesh_net
 from innervate.networks.mesh.verify.story import MeshStory, ring
-from innervate.sim.cables.build import get
-from innervate.sim.field.simulate import simulate
+from innervate.sim.tables import get
 
 FIRST_S = 12.0  # tables are in force, the next round is far
 APART_S = 2.0

@@ -20,7 +20,7 @@ from innervate.networks.radio.protocol.constants import (
 from innervate.networks.radio.slotted.drive import SLOT
 from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
 from innervate.plot import style
-from innervate.sim.cables.build import uniform
+from innervate.sim.tables import uniform
 
 R1, R2, R3, R4 = range(4)
 NAMES = ("Robot1", "Robot2", "Robot3", "Robot4")

@@ -13,9 +13,9 @@ from innervate.networks.radio.analysis import summary as radio
 from innervate.networks.radio.papers.common import TAU_US, Options
 from innervate.networks.radio.protocol.constants import DATA
 from innervate.networks.radio.scenario.plan import RadioPlan, parameters
+from innervate.networks.radio.sim.simulate import RadioResult, simulate
 from innervate.papers.experiment import Point
-from innervate.sim.cables.build import uniform
-from innervate.sim.channel.simulate import RadioResult, simulate
+from innervate.sim.tables import uniform
 
 START_US = 100_000
 

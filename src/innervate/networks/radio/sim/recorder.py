@@ -3,7 +3,7 @@
 from innervate.networks.radio.protocol.constants import DATA
 from innervate.networks.radio.protocol.station import copy_frame
 from innervate.sim import taps
-from innervate.sim.channel.heap import AIR_BITS
+from innervate.sim.heap import AIR_BITS
 from innervate.sim.rows import keep_step
 
 BROKEN_RANGE = 4

@@ -2,9 +2,9 @@
 
 from innervate.dialect.arith import HALF16, MASK16
 from innervate.networks.radio.protocol.constants import QUEUE
-from innervate.sim.channel.heap import OFFER, key_of, push
 from innervate.sim.channel.medium import NEVER
 from innervate.sim.channel.world import RING
+from innervate.sim.heap import OFFER, key_of, push
 
 
 def schedule(world, node):

@@ -4,7 +4,7 @@ L'Ecuyer's combined generator (Efficient and portable combined random number gen
 1988): two multiplicative generators whose products fit 64 bits, period 2.3e18.
 """
 
-from innervate.sim.cables.build import uniform
+from innervate.sim.tables import uniform
 
 FIRST = 2147483563
 SECOND = 2147483399

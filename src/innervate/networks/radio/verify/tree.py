@@ -20,11 +20,10 @@ from innervate.dialect import rng
 from innervate.kernel.wall import wall_s
 from innervate.networks.radio.sim import stacks
 from innervate.networks.radio.verify import grid as grid
-from innervate.sim.cables.build import get, put
-from innervate.sim.cables.world import row_dtype
 from innervate.sim.channel import build as builder
 from innervate.sim.channel import loop
 from innervate.sim.channel import world as w
+from innervate.sim.tables import get, put, row_dtype
 
 FEW = 6
 ROOM = 512  # frames and reports of a run; a few stations need some dozens

@@ -22,7 +22,7 @@ def experiment(name: str) -> Experiment:
 def warm_up() -> None:
     """Compile the loops that the figures need."""
     from innervate import scenario
-    from innervate.sim.cables.simulate import simulate
+    from innervate.networks.skin.sim.simulate import simulate
 
     tiny = {"kind": "skin", "duration_s": 0.01, "patch": [{"columns": 2, "rows": 1}]}
     for rule in ("feasible", "static"):

@@ -12,8 +12,8 @@ from innervate import scenario
 from innervate.networks.skin.analysis.rows import loop_episodes
 from innervate.networks.skin.analysis.summary import recoveries
 from innervate.networks.skin.scenario.plan import Plan
+from innervate.networks.skin.sim.simulate import Result, simulate
 from innervate.papers.experiment import Point, Results
-from innervate.sim.cables.simulate import Result, simulate
 
 SETTLE_PERIODS = 60  # until nothing changes any more: listening, the deepest cell, its fresh number
 DRAWN_PERIODS = 5  # the cut comes at a random moment of these

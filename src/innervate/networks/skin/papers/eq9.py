@@ -9,9 +9,9 @@ from innervate import scenario
 from innervate.networks.skin.analysis import formulas
 from innervate.networks.skin.analysis.frames import beacon_share
 from innervate.networks.skin.papers.common import joined
+from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers.experiment import FAILS, HOLDS, Claim, Experiment, Point, Results, verdict
 from innervate.plot import style
-from innervate.sim.cables.simulate import simulate
 
 SETUP = "setup-1"
 UPDATES = ("periodic", "triggered", "wave")

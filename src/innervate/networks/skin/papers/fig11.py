@@ -13,9 +13,9 @@ from innervate.networks.skin.analysis.rows import unrouted_steps
 from innervate.networks.skin.analysis.summary import recoveries
 from innervate.networks.skin.papers import arm
 from innervate.networks.skin.papers.common import joined, seeds_of
+from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
 from innervate.plot import style
-from innervate.sim.cables.simulate import simulate
 
 SETUP = "setup-4"  # 7 columns along the forearm, 5 rows round it; h = 5, so ceil(h/2) = 3
 COLUMNS, ROWS, DEPTH = 7, 5, 3

@@ -19,9 +19,9 @@ from innervate.networks.skin.papers.common import (
     recovery_point,
     seeds_of,
 )
+from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
 from innervate.plot import style
-from innervate.sim.cables.simulate import simulate
 
 # Setups and their h: cells on the shortest path between the two interfaces [skin 1a].
 SETUPS = (("setup-4", 5), ("setup-3", 7), ("setup-2", 9), ("setup-1", 13))

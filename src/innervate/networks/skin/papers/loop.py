@@ -15,9 +15,9 @@ from innervate.networks.skin.papers.common import Case, joined, seeds_of
 from innervate.networks.skin.plot.axes import NO_ROUTE, SkinAxes
 from innervate.networks.skin.protocol.constants import NONE
 from innervate.networks.skin.sim.observer import LOOP_OPEN
+from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
 from innervate.plot import style
-from innervate.sim.cables.simulate import simulate
 
 SHOWN = Case("setup-1", 250, 5, "paper", "periodic", 1)
 SHOWN_SEED = 1

@@ -7,9 +7,11 @@ from typing import Any
 from innervate import scenario
 from innervate.networks.skin.protocol.constants import RULE_PAPER
 from innervate.networks.skin.scenario.plan import Plan
+from innervate.networks.skin.sim.simulate import SLICE_EVENTS, InvariantBroken, compiled_loop
 from innervate.scenario import Scenario
-from innervate.sim.cables import build, loop
-from innervate.sim.cables.simulate import SLICE_EVENTS, InvariantBroken, compiled_loop
+from innervate.sim.cables import build
+from innervate.sim.status import BROKEN, DONE, POOL_FULL, ROWS_FULL
+from innervate.sim.tables import put
 
 RULE_STATIC = RULE_PAPER + 1
 
@@ -37,14 +39,14 @@ class Steps:
         while True:
             self._advance(self.world, until, SLICE_EVENTS)
             status = int(self.world.run["status"][0])
-            if status == loop.DONE:
+            if status == DONE:
                 return
-            if status == loop.BROKEN:
+            if status == BROKEN:
                 raise InvariantBroken(f"invariant broken (seed {self.plan.seed})")
-            if status == loop.POOL_FULL:
+            if status == POOL_FULL:
                 self.world = build.grow_pool(self.world)
-            elif status == loop.ROWS_FULL:
-                build.put(self.world.run, 0, rows=0)
+            elif status == ROWS_FULL:
+                put(self.world.run, 0, rows=0)
 
     def counters(self) -> list[int]:
         """The counters of sim/wires.py up to now."""

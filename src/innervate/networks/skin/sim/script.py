@@ -14,9 +14,11 @@ from innervate.networks.skin.scenario import script as steps
 from innervate.scenario import ScenarioError
 from innervate.sim import wheel
 from innervate.sim.cables import commands, loop
-from innervate.sim.cables.build import build, get
+from innervate.sim.cables.build import build
 from innervate.sim.cables.wires import DOWN, LOST_CUT, LOST_NOISE
 from innervate.sim.cables.world import COMMAND, World
+from innervate.sim.status import BROKEN, COLD, DONE
+from innervate.sim.tables import get
 from innervate.sim.wheel import NIL
 
 STEP_US = 1000
@@ -39,17 +41,17 @@ def play(plan: Any, stack: Any, checks: bool, trail: bool) -> tuple[World, int]:
     handle.advance(world, 1, 1)  # the command that begins a run
     for node in range(get(world.run, 0, "nodes")):
         wheel.remove(world.wheel, node)
-        handle.switch_on(world, node, 0, loop.COLD)
+        handle.switch_on(world, node, 0, COLD)
     time = 0
     missed: set[int] = set()
     for number, step in enumerate(plan.script):
         time += STEP_US
         _take(plan, world, handle, stack, step, time, number, missed)
         if get(world.run, 0, "broken"):
-            world.run[0].status = loop.BROKEN
+            world.run[0].status = BROKEN
             world.run[0].broken_at = time
             return world, time
-    world.run[0].status = loop.DONE
+    world.run[0].status = DONE
     return world, time
 
 

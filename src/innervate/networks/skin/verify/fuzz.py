@@ -14,8 +14,8 @@ from typing import Any
 from innervate import scenario as scenarios
 from innervate.networks.mesh.verify import fuzz as wild_mesh
 from innervate.networks.skin.analysis.frames import FramesLost
+from innervate.networks.skin.sim.simulate import InvariantBroken
 from innervate.running.run import run
-from innervate.sim.cables.simulate import InvariantBroken
 
 SKIN_ACTIONS = ("cut", "restore", "kill", "revive", "loose", "lose", "restart")
 TARGETS = {"cut": "link", "restore": "link", "loose": "link", "lose": "link"}

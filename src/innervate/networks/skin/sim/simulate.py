@@ -19,8 +19,9 @@ from innervate.sim import taps
 from innervate.sim.cables import build as builder
 from innervate.sim.cables import loop
 from innervate.sim.cables import world as w
-from innervate.sim.cables.build import get
 from innervate.sim.cables.wires import ARRIVED, URGENT_BLOCK
+from innervate.sim.status import BROKEN, BUDGET, DONE, POOL_FULL
+from innervate.sim.tables import get, hand_over, put, row_dtype
 
 RULE_STATIC = 3
 SLICE_EVENTS = 1_000_000
@@ -130,7 +131,7 @@ def simulate(
         started = wall_s()
         stack = static_stack if static else skin_stack
         world, now = script.play(plan, stack, checks, trail)
-        if int(get(world.run, 0, "status")) == loop.BROKEN:
+        if int(get(world.run, 0, "status")) == BROKEN:
             raise InvariantBroken(story(plan, world))
         return _result(plan, world, _Keep(), now, wall_s() - started, False)
     advance = (plain_loop if plain else compiled_loop)(static)
@@ -141,20 +142,20 @@ def simulate(
         door.mark_compiled(loop_name(plan))
     started = wall_s()
     with Stop() as stop:
-        status = loop.BUDGET
-        while status != loop.DONE and not stop.asked:
+        status = BUDGET
+        while status != DONE and not stop.asked:
             advance(world, plan.duration_us, SLICE_EVENTS)
             status = int(get(world.run, 0, "status"))
-            if status == loop.BROKEN:
+            if status == BROKEN:
                 raise InvariantBroken(story(plan, world))
-            if status == loop.POOL_FULL:
+            if status == POOL_FULL:
                 world = builder.grow_pool(world)
             keep.collect(world, final=False)
-            now = plan.duration_us if status == loop.DONE else int(world.wheel.clock[0])
-            builder.hand_over(world, tap, now)
+            now = plan.duration_us if status == DONE else int(world.wheel.clock[0])
+            hand_over(world, tap, now)
             if progress is not None:
                 progress(now, plan.duration_us)
-        done = _result(plan, world, keep, now, wall_s() - started, status != loop.DONE)
+        done = _result(plan, world, keep, now, wall_s() - started, status != DONE)
         done.received_kept = deliveries
         return done
 
@@ -192,7 +193,7 @@ class _Keep:
             table = getattr(world, name)
             if count > len(table) // 2 or final:
                 parts.append(self._array(table, name, count))
-                builder.put(world.run, 0, **{name: 0})
+                put(world.run, 0, **{name: 0})
         if not final:
             return ()
         return tuple(np.concatenate(parts) for parts in self.parts.values())
@@ -205,7 +206,7 @@ class _Keep:
             tuple(tuple(v) if isinstance(v := getattr(r, f), list) else v for f in fields)
             for r in table[:count]
         ]
-        return np.array(tuples, w.row_dtype(fields))
+        return np.array(tuples, row_dtype(fields))
 
 
 def story(plan: Any, world: w.World) -> str:

@@ -8,7 +8,8 @@ import numpy as np
 
 from innervate.networks.skin.analysis import rows
 from innervate.networks.skin.protocol.constants import PORTS
-from innervate.trace.tables import LINKS, LOOPS, OUTAGES, RECEIVED, ROUTES, Table
+from innervate.networks.skin.tables import LINKS, LOOPS, OUTAGES, RECEIVED, ROUTES
+from innervate.trace.tables import Table
 
 Columns = dict[str, Any]
 

@@ -14,13 +14,13 @@ from innervate.kernel.stop import Stop
 from innervate.kernel.wall import wall_s
 from innervate.networks.radio.sim import recorder as books
 from innervate.networks.radio.sim import stacks, traffic
-from innervate.sim import rows, taps
-from innervate.sim.cables import loop as skin_loop
-from innervate.sim.cables.build import get, hand_over, move_rows
-from innervate.sim.cables.simulate import InvariantBroken
+from innervate.networks.skin.sim.simulate import InvariantBroken
+from innervate.sim import heap, rows, taps
 from innervate.sim.channel import build as builder
-from innervate.sim.channel import heap, loop, medium
+from innervate.sim.channel import loop, medium
 from innervate.sim.channel import world as w
+from innervate.sim.status import BROKEN, BUDGET, DONE, POOL_FULL
+from innervate.sim.tables import get, hand_over, move_rows
 
 SLICE_EVENTS = 1_000_000
 
@@ -113,13 +113,13 @@ def simulate(
     parts: dict[str, list[Any]] = {name: [] for name in NAMES}
     started = wall_s()
     with Stop() as stop:
-        status = skin_loop.BUDGET
-        while status != skin_loop.DONE and not stop.asked:
+        status = BUDGET
+        while status != DONE and not stop.asked:
             advance(world, plan.duration_us, SLICE_EVENTS)
             status = int(get(world.run, 0, "status"))
-            if status == skin_loop.BROKEN:
+            if status == BROKEN:
                 raise InvariantBroken(story(plan, world))
-            if status == skin_loop.POOL_FULL:
+            if status == POOL_FULL:
                 world = builder.grow_heap(world)
             move_rows(world, parts, NAMES, w.WIDE)
             hand_over(world, tap, int(get(world.run, 0, "now")))
@@ -135,7 +135,7 @@ def simulate(
         ended_us=ended,
         wall_s=wall_s() - started,
         fingerprint=f"{int(get(world.run, 0, 'fingerprint')) & (1 << 64) - 1:016x}",
-        interrupted=status != skin_loop.DONE,
+        interrupted=status != DONE,
         **found,
     )
 

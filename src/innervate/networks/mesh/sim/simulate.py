@@ -16,17 +16,16 @@ from innervate.kernel.wall import wall_s
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.sim import channel, over_channel, over_medium, stacks
 from innervate.networks.mesh.sim import recorder as books
+from innervate.networks.radio.sim import simulate as radio_simulate
 from innervate.networks.radio.sim import stacks as radio_stacks
-from innervate.sim import rows, taps
-from innervate.sim.cables import loop as skin_loop
-from innervate.sim.cables.build import get, hand_over, move_rows
-from innervate.sim.cables.simulate import InvariantBroken
-from innervate.sim.channel import heap
+from innervate.networks.skin.sim.simulate import InvariantBroken
+from innervate.sim import heap, rows, taps
 from innervate.sim.channel import loop as radio_loop
-from innervate.sim.channel import simulate as radio_simulate
 from innervate.sim.field import build as builder
 from innervate.sim.field import loop, medium, motion, powers, queue
 from innervate.sim.field import world as w
+from innervate.sim.status import BROKEN, BUDGET, DONE, POOL_FULL
+from innervate.sim.tables import get, hand_over, move_rows
 
 SLICE_EVENTS = 200_000
 PLAIN_SLICE_EVENTS = 2_000
@@ -163,13 +162,13 @@ def simulate(
     parts: dict[str, list[Any]] = {name: [] for name in NAMES}
     started = wall_s()
     with Stop() as stop:
-        status = skin_loop.BUDGET
-        while status != skin_loop.DONE and not stop.asked:
+        status = BUDGET
+        while status != DONE and not stop.asked:
             advance(world, plan.duration_us, PLAIN_SLICE_EVENTS if plain else SLICE_EVENTS)
             status = int(get(world.run, 0, "status"))
-            if status == skin_loop.BROKEN:
+            if status == BROKEN:
                 raise InvariantBroken(story(plan, world))
-            if status == skin_loop.POOL_FULL:
+            if status == POOL_FULL:
                 world = channel.grown(world)
             if status == loop.SEEN_FULL:
                 world = builder.grow_seen(world)
@@ -177,7 +176,7 @@ def simulate(
             hand_over(world, tap, int(get(world.run, 0, "now")))
             if progress is not None:
                 progress(int(get(world.run, 0, "now")), plan.duration_us)
-    done = status == skin_loop.DONE
+    done = status == DONE
     return MeshResult(
         plan=plan,
         world=world,

@@ -1,0 +1,147 @@
+""""""
+
+# A frame for a capture: when; when its sender began; whose interface (a cable's end, a node, a
+# station); who sent it (mesh, radio); 1 = it left, 0 = it came in; why it got no further.
+TAP = ("time", "start", "at", "sender", "out", "why")
+ACTION = ("kind", "a", "b", "c")
+
+
+class Out(NamedTuple):
+    """The outbox (see protocol/outbox.py)."""
+
+    count: Any
+    limit: Any
+    overflow: Any
+    action: Any
+    frame: Any
+
+
+class Tables:
+    """Makes tables of one form: compiled (arrays) or plain (lists)."""
+
+    def __init__(self, plain_form: bool, word: Any = np.int32) -> None:
+        """`word` is what protocols' records consist of.
+
+        32 bits save memory. 64 bits save compiling: functions that are not inlined are compiled
+        for every mix of widths that they are called with.
+        """
+        self.plain = plain_form
+        self.word = word
+
+    def numbers(self, count: int, value: int = 0, kind: type = np.int32) -> Any:
+        """`count` integers."""
+        if self.plain:
+            return [value] * count
+        return np.full(count, value, kind) if value else np.zeros(count, kind)
+
+    def records(
+        self,
+        names: tuple[str, ...],
+        count: int,
+        fresh: bool = False,
+        wide: Collection[str] = frozenset(WIDE),
+    ) -> Any:
+        """`count` simulator records; with `fresh` their content is not initialised.
+
+        Fields in `wide` have 64 bits, all others 32.
+        """
+        if self.plain:
+            declaration = tuple((name, _length(name), 0, 0, "", "") for name in names)
+            make = plain.make("Record", declaration)
+            return [make() for _ in range(count)]
+        dtype = row_dtype(names, wide)
+        return np.empty(count, dtype) if fresh else np.zeros(count, dtype)
+
+    def states(self, declaration: Any, count: int, itemsize: int = 0) -> Any:
+        """`count` records of a protocol's declaration."""
+        if self.plain:
+            make = plain.make("State", declaration)
+            return [make() for _ in range(count)]
+        return records.zeros(declaration, count, itemsize, self.word)
+
+    def words(self, states: Any, declaration: Any) -> Any:
+        """The states as rows of words."""
+        if self.plain:
+            return [records.Words(state, declaration) for state in states]
+        return states.view(self.word).reshape(len(states), -1)
+
+
+def row_dtype(names: tuple[str, ...], wide: Collection[str] = frozenset(WIDE)) -> np.dtype[Any]:
+    """The array form of simulator records with these fields."""
+    return np.dtype([_column(name, wide) for name in names], align=True)
+
+
+def _length(name: str) -> int:
+    return 3 if name in ("force", "accel") else 0
+
+
+def _column(name: str, wide: Collection[str]) -> tuple[Any, ...]:
+    kind = np.int64 if name in wide else np.int32
+    return (name, kind, (3,)) if _length(name) else (name, kind)
+
+
+GAMMA = 0x9E3779B97F4A7C15
+Numbers = np.ndarray[Any, np.dtype[np.int64]]
+
+
+def uniform(seed: int, name: str, count: int, n: int) -> Numbers:
+    """`count` integers 0 <= x < n <= 2^30 of the stream `name`; the same on any machine."""
+    key = hashlib.blake2b(f"{seed}/{name}".encode(), digest_size=8).digest()
+    z = np.arange(1, count + 1, dtype=np.uint64) * np.uint64(GAMMA)
+    z += np.uint64(int.from_bytes(key, "big"))
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    z ^= z >> np.uint64(31)
+    return (((z >> np.uint64(32)) * np.uint64(n)) >> np.uint64(32)).astype(np.int64)
+
+
+def put(table: Any, place: int, /, **values: int) -> None:
+    """Set fields of one record."""
+    for name, value in values.items():
+        if isinstance(table, list):
+            setattr(table[place], name, int(value))
+        else:
+            table[name][place] = value
+
+
+def _longer(table: Any, length: int) -> Any:
+    if isinstance(table, list):
+        make = (lambda: 0) if isinstance(table[0], int) else type(table[0])
+        return table + [make() for _ in range(length - len(table))]
+    longer = np.zeros(length, table.dtype)
+    longer[: len(table)] = table
+    return longer
+
+
+def hand_over(world: Any, tap: taps.Tap | None, now: int) -> None:
+    """Give a tap the frames that were kept, and make room for more."""
+    if tap is not None:
+        count = int(get(world.run, 0, "taps"))
+        tap(world.taps[:count], world.tapped[:count], now)
+        put(world.run, 0, taps=0)
+
+
+def move_rows(
+    world: Any, parts: dict[str, list[Any]], fields: Mapping[str, tuple[str, ...]], wide: Any
+) -> None:
+    """Move filled rows out of the loop's tables, so that these can stay small.
+
+    Args:
+        world: of a run; its record counts what is in the table of each name.
+        parts: per table, the rows so far; these are added as one array each.
+        fields: of the rows, per table.
+        wide: fields of 64 bits.
+    """
+    for name, kept in parts.items():
+        count, table = int(get(world.run, 0, name)), getattr(world, name)
+        if isinstance(table, list):
+            rows = [tuple(getattr(row, f) for f in fields[name]) for row in table[:count]]
+            kept.append(np.array(rows, row_dtype(fields[name], wide)))
+        else:
+            kept.append(table[:count].copy())
+        put(world.run, 0, **{name: 0})
+
+
+def get(table: Any, place: int, name: str) -> Any:
+    """A field of one record, compiled or plain."""
+    return getattr(table[place], name) if isinstance(table, list) else table[name][place]
