@@ -9,6 +9,7 @@ from innervate.networks.radio.protocol.constants import CRR, DATA, OPEN, REPORT_
 from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
 from innervate.networks.radio.sim.simulate import COUNTS
 from innervate.sim.channel import world as w
+from innervate.sim.channel.build import build
 from innervate.sim.channel.loop import ON_CARRIER
 from tests.radio_runs import radio_plan, run
 
@@ -32,6 +33,7 @@ def made(packets=(), sent=(), rows=(), ended_us=100_000, **plan):
     plan = radio_plan(n, packet_slots=5, real=(52, 52), **plan)
     return SimpleNamespace(
         plan=plan,
+        world=build(plan, plain=True, checks=False, keep=False, trail=False),
         packets=table(w.PACKET, *packets),
         sent=table(w.SENT, *sent),
         rows=table(w.ROW, *rows),

@@ -9,6 +9,7 @@ import numpy as np
 from innervate.dialect import rng
 from innervate.kernel import records
 from innervate.networks.skin.protocol import fields as skin_fields
+from innervate.sim import delays
 from innervate.sim.cables import commands
 from innervate.sim.cables import world as w
 from innervate.sim.cables.loop import BATCH
@@ -46,6 +47,7 @@ def build(
     # What a batch of events and a command can add: every action empties a queue, the PC goes off.
     burst = (BATCH + 1) * limit * (1 + plan.queue_frames)
     tapped = ROWS + burst if tap else 1
+    ways = graph.interfaces if plan.data_period_us else 0
     states = tables.states(skin_fields.CELL, cells, CELL_BYTES)
     world = w.World(
         run=tables.records(w.RUN, 1, wide=w.WIDE),
@@ -71,6 +73,8 @@ def build(
         trail=tables.records(w.TRAIL, ROWS if trail else 1, fresh=True),
         taps=tables.records(TAP, tapped, fresh=True),
         tapped=tables.states(skin_fields.FRAME, tapped),
+        delays=tables.records(w.DELAY, ways, wide=w.WIDE),
+        delay_counts=tables.numbers(ways * delays.CLASSES),
         **_touch(tables, plan),
     )
     _set_run(world, plan, tx_slots, pool_slots)
@@ -161,7 +165,9 @@ def _watch(tables: Tables, cells: int, states: Any) -> w.Watch:
     return w.Watch(
         port=tables.numbers(cells, NIL),
         routed=tables.numbers(cells),
+        had=tables.numbers(cells),
         joined=tables.numbers(cells),
+        apart=tables.numbers(cells, NIL, np.int64),
         ring=tables.numbers(cells, NIL),
         before=tables.numbers(cells),
         stack=tables.numbers(cells),

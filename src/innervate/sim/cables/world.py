@@ -24,14 +24,18 @@ RUN = (
     "checks", "observe", "watchful", "status", "fingerprint", "handled", "rng",
     "commands", "next_command", "rows", "row_limit", "deliveries", "delivery_limit",
     "trail", "trail_limit", "taps", "tap_limit",
-    "unrouted", "noted", "loops", "loops_open",
+    "unrouted", "noted", "apart", "joined", "loops", "loops_open",
     "broken", "broken_at", "broken_node", "broken_other",
 )  # fmt: skip
 COMMAND = ("at", "action", "end", "node", "value", "index")
 ROW = ("time", "node", "code", "a", "b")
-DELIVERY = ("time", "port", "cell", "seq", "hops", "proximity", "force", "temperature", "accel")
+DELIVERY = (
+    "time", "port", "cell", "seq", "hops", "latency",
+    "proximity", "force", "temperature", "accel",
+)  # fmt: skip
+DELAY = ("count", "sum", "high")
 TRAIL = ("time", "node", "handler", "port", "fingerprint")
-WIDE = frozenset({*tables.WIDE, *RUN})
+WIDE = frozenset({*tables.WIDE, *RUN, *DELAY})
 
 # States of a node.
 OFF = 0
@@ -66,7 +70,9 @@ class Watch(NamedTuple):
 
     port: Any  # parent port in force, -1 none
     routed: Any  # 1 = chain of parents reaches the PC over live cables
+    had: Any  # 1 = it did so at some time
     joined: Any  # 1 = physically connected to the PC
+    apart: Any  # since when it is on without being so, us; -1 = it is not
     ring: Any  # start of the forwarding loop the cell is in, -1 none
     before: Any  # `routed` as it was before the present command
     stack: Any
@@ -101,6 +107,8 @@ class World(NamedTuple):
     trail: Any
     taps: Any  # frames for a capture (see taps.py): what happened to them
     tapped: Any  # ... and they themselves
+    delays: Any  # per interface port the latencies of data: how many, sum, greatest
+    delay_counts: Any  # ... and how many in each class (see delays.py)
     touch_x: Any
     touch_y: Any
     touch_span: Any

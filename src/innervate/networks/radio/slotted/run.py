@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from innervate.kernel.wall import wall_s
+from innervate.networks.radio.analysis.headline import RadioFacts, headline
 from innervate.networks.radio.scenario.traffic import mean_interval_us
 from innervate.networks.radio.slotted.model import SlottedResult, slotted
 
@@ -87,9 +88,11 @@ def summarize(result: SlottedRun) -> dict[str, Any]:
     }
     first = list(dict.fromkeys(found.order))
     done = result.counts["completed"]
+    facts = RadioFacts(plan.stations, offered=done, delivered=done, ended=True)
     return {
         "kind": plan.kind,
         "name": plan.scenario.name,
+        "headline": headline(facts).as_summary(),
         "seed": plan.seed,
         "duration_s": plan.duration_us / 1e6,
         "events": done,

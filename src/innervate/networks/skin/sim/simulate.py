@@ -59,11 +59,11 @@ def _modules() -> list[ModuleType]:
     from innervate.networks.skin.protocol import sink as skin_sink
     from innervate.networks.skin.protocol import static as skin_static
     from innervate.networks.skin.sim import checks
-    from innervate.sim import clocks, wheel
+    from innervate.sim import clocks, delays, wheel
 
     return [
         arith, outbox, generator, skin_route, skin, skin_sink, skin_static,
-        wheel, clocks, wires, invariants, checks, skin_stack, static_stack,
+        wheel, clocks, wires, delays, invariants, checks, skin_stack, static_stack,
     ]  # fmt: skip
 
 

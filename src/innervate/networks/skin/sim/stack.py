@@ -7,6 +7,7 @@ from innervate.networks.skin.protocol.cell import copy_frame
 from innervate.networks.skin.protocol.constants import BEACON, DATA, NONE, REPORT_BALANCE, SAMPLE
 from innervate.networks.skin.sim.checks import check_cell, check_route
 from innervate.networks.skin.sim.observer import follow, on_report
+from innervate.sim import delays
 from innervate.sim.cables.wires import DELIVERED
 from innervate.sim.clocks import reading
 
@@ -83,9 +84,11 @@ def check(world, node):
         check_cell(world, node)
 
 
-def deliver(world, time, port, frame):
+def deliver(world, time, node, port, frame):
     """The PC's user gets a tactile sample."""
     world.counters[DELIVERED] += 1
+    latency_us = (time - frame.made_at) & MASK30
+    delays.note(world, port, latency_us)
     run = world.run[0]
     if run.delivery_limit == 0:
         return
@@ -96,6 +99,7 @@ def deliver(world, time, port, frame):
     row.cell = frame.cell
     row.seq = frame.seq
     row.hops = frame.hops
+    row.latency = latency_us
     row.proximity = frame.proximity
     row.temperature = frame.temperature
     for i in range(3):
