@@ -20,6 +20,7 @@ PARTS = {
     "check": "(source, model): raises ScenarioError at the first thing that does not fit together",
     "plan": "(scenario) -> the plan of its run, whole numbers only; `plan.kind` is the name",
     "describe": "(plan) -> str: the scenario in a few lines, without running it",
+    "actions": "tuple of str: what can be done to it while it runs, in the order of their numbers",
     "template": "str: a commented scenario to start from",
     "anchor": "(tables, source): makes relative paths in a scenario's tables absolute",
     "run": "module: simulate, summarize, tables_of, written_of, columns, trail, call_words",
@@ -58,7 +59,10 @@ class Network:
         self.name = name
         self.package = package
         self.rank = rank
-        self.parts = {**DEFAULTS, **{part: f"{package}.{place}" for part, place in parts.items()}}
+        self.parts = {
+            **DEFAULTS,
+            **{part: _absolute(package, place) for part, place in parts.items()},
+        }
 
     def __repr__(self) -> str:
         """Its name."""
@@ -97,3 +101,8 @@ def networks() -> dict[str, Network]:
     found = [import_module(f"{HOME}.{folder.name}.network").NETWORK
              for folder in pkgutil.iter_modules(home.__path__) if folder.ispkg]  # fmt: skip
     return {network.name: network for network in sorted(found, key=lambda n: n.rank)}
+
+
+def _absolute(package: str, place: str) -> str:
+    """A place within a network's package, or one that is named in full."""
+    return place if place.startswith("innervate.") else f"{package}.{place}"

@@ -5,15 +5,10 @@ from __future__ import annotations
 import tomllib
 from typing import Any
 
+from innervate.network import networks
 from innervate.scenario import dump
 from innervate.scenario.emit import to_toml
 from innervate.web.view import View
-
-ACTIONS = {
-    "skin": ("cut", "restore", "kill", "revive", "loose", "restart", "lose"),
-    "radio": ("begin", "revive", "kill", "leave", "garble", "fade"),
-    "mesh": ("kill", "revive", "cut", "restore", "jam", "quiet", "restart"),
-}
 
 
 def saved(view: View) -> str:
@@ -39,7 +34,7 @@ def saved(view: View) -> str:
 
 def _event(view: View, fault: Any) -> dict[str, Any]:
     """The [[event]] table of a fault."""
-    action = ACTIONS[view.plan.kind][fault.action]
+    action = networks()[view.plan.kind].actions[fault.action]
     return {"at_s": fault.at_us / 1e6, "action": action, **view.event(fault)}
 
 

@@ -10,6 +10,7 @@ NETWORK = Network(
     check="scenario.rules:check",
     plan="scenario.planning:plan",
     describe="scenario.words:describe",
+    actions="innervate.scenario.actions.field:ACTIONS",
     template="scenario.template:TEMPLATE",
     anchor="scenario.nodes:anchor",
     simulation="sim.simulate:simulation",

@@ -10,6 +10,7 @@ NETWORK = Network(
     check="scenario.rules:check",
     plan="scenario.planning:plan",
     describe="scenario.words:describe",
+    actions="innervate.scenario.actions.channel:ACTIONS",
     template="scenario.template:TEMPLATE",
     simulation="sim.simulate:simulation",
     unwatchable="scenario.words:unwatchable",

@@ -10,6 +10,7 @@ NETWORK = Network(
     check="scenario.rules:check",
     plan="scenario.plan:plan",
     describe="scenario.words:describe",
+    actions="innervate.scenario.actions.cables:ACTIONS",
     template="scenario.template:TEMPLATE",
     anchor="scenario.graph:anchor",
     simulation="view.engine:simulation",

@@ -1,24 +1,17 @@
 """What is done to a running network from outside: cables cut, nodes killed, frames lost."""
 
 from innervate.networks.skin.sim import observer
+from innervate.scenario.actions.cables import CUT, KILL, LOOSE, LOSE, RESTART, RESTORE, REVIVE
 from innervate.sim import wheel as queue
 from innervate.sim.cables import wires
 from innervate.sim.cables.wires import DOWN, LOSSY
 from innervate.sim.cables.world import ALIVE, DEAD, TIMER_SLOTS
 from innervate.sim.clocks import timer_slot
+from innervate.sim.status import MEMORY_LOST
 from innervate.sim.wheel import NIL
 
 # As in a plan's faults; the loop begins with a command of its own.
 BEGIN = -1
-CUT = 0
-RESTORE = 1
-KILL = 2
-REVIVE = 3
-LOOSE = 4
-RESTART = 5
-LOSE = 6
-
-MEMORY_LOST = 1
 
 
 def obey(world, command, switch_on, stopped):

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from innervate.dialect import rng
 from innervate.kernel import records
-from innervate.networks.radio.protocol import fields as radio_fields
-from innervate.networks.radio.scenario.plan import BEGIN
-from innervate.networks.radio.sim.stacks import PROTOCOLS
+from innervate.scenario.actions.channel import BEGIN
 from innervate.sim.channel import world as r
 from innervate.sim.channel.loop import BATCH
 from innervate.sim.channel.medium import NEVER
@@ -21,8 +19,23 @@ ROWS = 1 << 16
 OUTBOX = 16
 
 
+class Records(NamedTuple):
+    """Declarations of a protocol's records, as columns of name, length, range, unit, meaning.
+
+    Attributes:
+        station: state of a station.
+        params, frame, packet: parameters, frames, and what a station is handed to send.
+    """
+
+    station: Any
+    params: Any
+    frame: Any
+    packet: Any
+
+
 def build(
     plan: Any,
+    of: Records,
     plain: bool,
     checks: bool,
     keep: bool,
@@ -32,12 +45,14 @@ def build(
 ) -> r.World:
     """The world of a plan, before its first event.
 
+    `of` declares the records of its protocol.
+
     `keep` keeps a row per report, transmission and delivered packet, `trail` one per handler call,
     `tap` copies of frames on the air; there is `room` for so many rows before the loop stops.
     """
     tables = Tables(plain)
     n = plan.stations
-    fields = radio_fields.STATION + PROTOCOLS[plan.protocol].fields
+    fields = of.station
     stations = tables.states(fields, n)
     low, high = records.bounds(fields)
     order, delay, degree = _neighbours(plan)
@@ -51,12 +66,12 @@ def build(
         words=tables.words(stations, fields),
         low=low.tolist() if plain else low,
         high=high.tolist() if plain else high,
-        params=tables.states(radio_fields.PARAMS, 1),
+        params=tables.states(of.params, 1),
         radios=tables.records(r.RADIO, n + 1, wide=r.WIDE),
         due=tables.numbers(n * r.TIMERS, NEVER, np.int64),
         told=tables.numbers(n + 2, 0, np.int64),
         air=tables.records(r.AIR, n * AIRS, wide=r.WIDE),
-        frames=tables.states(radio_fields.FRAME, n * AIRS),
+        frames=tables.states(of.frame, n * AIRS),
         degree=_given(tables, degree),
         order=_given(tables, order),
         delay=_given(tables, delay),
@@ -66,13 +81,13 @@ def build(
         got=tables.numbers(n * r.RING),
         tries=tables.numbers(n * r.RING),
         last=tables.numbers(n * n, NEVER),
-        item=tables.states(radio_fields.PACKET, 1),
+        item=tables.states(of.packet, 1),
         out=Out(
             count=tables.numbers(1, 0, np.int64),
             limit=tables.numbers(1, OUTBOX, np.int64),
             overflow=tables.numbers(1, 0, np.int64),
             action=tables.records(ACTION, OUTBOX),
-            frame=tables.states(radio_fields.FRAME, OUTBOX),
+            frame=tables.states(of.frame, OUTBOX),
         ),
         commands=tables.records(r.COMMAND, len(plan.faults) + 1, wide=r.WIDE),
         rows=tables.records(r.ROW, rows, fresh=True, wide=r.WIDE),
@@ -80,9 +95,9 @@ def build(
         packets=tables.records(r.PACKET, rows, fresh=True, wide=r.WIDE),
         trail=tables.records(r.TRAIL, ROWS if trail else 1, fresh=True, wide=r.WIDE),
         taps=tables.records(TAP, tapped, fresh=True, wide=r.WIDE),
-        tapped=tables.states(radio_fields.FRAME, tapped),
+        tapped=tables.states(of.frame, tapped),
     )
-    _set_run(world, plan, checks, keep, trail)
+    _set_run(world, plan, of, checks, keep, trail)
     _set_stations(world, plan)
     _set_events(world, plan)
     return world
@@ -116,20 +131,7 @@ def _neighbours(plan: Any) -> tuple[Any, Any, Any]:
     return order, sorted_delays, degree
 
 
-def _is_orderly(plan: Any) -> bool:
-    """Practical CSMA/CD-R on a channel as it assumes it: then no two turns ever overlap."""
-    low, high = plan.params["dmin_us"], plan.params["dmax_us"]
-    n = plan.stations
-    pairs = (plan.delays_us[i][j] for i in range(n) for j in range(n) if i != j)
-    return (
-        plan.protocol == "csma-cd-r/practical"
-        and plan.loss_q15 == 0
-        and not plan.faults
-        and all(low <= delay <= high for delay in pairs)
-    )
-
-
-def _set_run(world: r.World, plan: Any, checks: bool, keep: bool, trail: bool) -> None:
+def _set_run(world: r.World, plan: Any, of: Records, checks: bool, keep: bool, trail: bool) -> None:
     limit = len(world.rows) if keep else 0
     put(
         world.run,
@@ -147,7 +149,6 @@ def _set_run(world: r.World, plan: Any, checks: bool, keep: bool, trail: bool) -
         per_turn=plan.params["per_turn"],
         wanted=plan.wanted,
         checks=int(checks),
-        exclusive=int(checks and _is_orderly(plan)),
         watchful=int(checks or trail),
         row_limit=limit,
         sent_limit=limit,
@@ -157,7 +158,7 @@ def _set_run(world: r.World, plan: Any, checks: bool, keep: bool, trail: bool) -
         hurt=plan.stations,
     )
     put(world.run, 0, tap_limit=ROWS if len(world.taps) > ROWS else 0)
-    put(world.params, 0, **{field[0]: plan.params[field[0]] for field in radio_fields.PARAMS})
+    put(world.params, 0, **{field[0]: plan.params[field[0]] for field in of.params})
 
 
 def _set_stations(world: r.World, plan: Any) -> None:

@@ -3,10 +3,7 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-from innervate.dialect.arith import MASK16, MASK30
-from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, STOP
-from innervate.kernel.bits import mix
-from innervate.networks.radio.protocol.constants import (
+from innervate.dialect.access import (
     CLOCK,
     FORCE,
     LEAVE,
@@ -16,12 +13,13 @@ from innervate.networks.radio.protocol.constants import (
     REPORT_LEFT,
     RESULT,
 )
-from innervate.networks.radio.scenario.plan import BEGIN, FADE, GARBLE, JOIN, KILL
-from innervate.networks.radio.scenario.plan import LEAVE as RETIRE
-from innervate.networks.radio.sim import traffic
-from innervate.networks.radio.sim.recorder import keep_received, keep_sent, watch
+from innervate.dialect.arith import MASK16, MASK30
+from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, STOP
+from innervate.kernel.bits import mix
+from innervate.scenario.actions.channel import BEGIN, FADE, GARBLE, JOIN, KILL
+from innervate.scenario.actions.channel import LEAVE as RETIRE
 from innervate.sim import heap as queue
-from innervate.sim.channel import medium
+from innervate.sim.channel import medium, traffic
 from innervate.sim.channel.medium import NEVER
 from innervate.sim.channel.world import RING, TIMERS
 from innervate.sim.heap import (
@@ -94,13 +92,15 @@ def pressing(world):
     return DONE
 
 
-def build(stack, packets=traffic):
+def build(stack, recorder, packets=traffic):
     """The loop for a stack: an object with start, hear, fire, give, carrier, digest, copy_frame.
 
+    `recorder` keeps rows and checks: it has keep_sent, keep_received and watch.
     `packets` follows what becomes of packets: `traffic`, or a protocol above whose frames they are.
     """
     start, hear, fire, give = stack.start, stack.hear, stack.fire, stack.give
     carrier, digest, copy_frame = stack.carrier, stack.digest, stack.copy_frame
+    keep_sent, keep_received, watch = recorder.keep_sent, recorder.keep_received, recorder.watch
     note_sent, note_delivered = packets.note_sent, packets.note_delivered
     note_received = packets.note_received
 

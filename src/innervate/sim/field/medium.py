@@ -10,11 +10,10 @@ have several frames on the air.
 """
 
 from innervate.dialect.rng import LOW15, step
-from innervate.networks.mesh.sim import recorder as books
 from innervate.sim import taps
 from innervate.sim.field import powers
 from innervate.sim.field.queue import ENDS, STARTS, key_of, push
-from innervate.sim.field.world import ALIVE, COMMITTED, DEAD, FREE, HELD, ON_AIR, VOID
+from innervate.sim.field.states import ALIVE, COMMITTED, DEAD, FREE, HELD, ON_AIR, VOID
 
 NONE = -1
 DEAF = (1 << 62) - 1  # interference that nothing survives
@@ -89,7 +88,6 @@ def start(world, place, time, length):
         add_signal(world, node, 1)
         note_interference(world)
     push(world.heap, key_of(air.end, ENDS, node, place))
-    books.tap(world, place, node, time, 1, taps.FINE)
 
 
 def add_signal(world, node, times):
@@ -128,8 +126,11 @@ def leave(world, place):
         add_signal(world, node, -1)
 
 
-def receivers(world, place):
-    """Who received the frame that has just ended: their number; world.got has them in order."""
+def receivers(world, place, tap):
+    """Who received the frame that has just ended: their number; world.got has them in order.
+
+    `tap` keeps a frame for a capture.
+    """
     run = world.run[0]
     node = world.air[place].node
     count = 0
@@ -138,25 +139,25 @@ def receivers(world, place):
         if signal == 0 or world.radios[j].state != ALIVE:
             continue
         if signal * powers.CAPTURE_ONE // run.capture < world.worst[place * run.nodes + j]:
-            miss_frame(world, place, j, taps.COLLISION)
+            miss_frame(world, place, j, taps.COLLISION, tap)
             continue
         run.rng = step(run.rng)
         if (run.rng & LOW15) < world.prob[node * run.nodes + j]:
             world.got[count] = j
             count += 1
         else:
-            miss_frame(world, place, j, taps.NOISE)
+            miss_frame(world, place, j, taps.NOISE, tap)
     run.received += count
     return count
 
 
-def miss_frame(world, place, node, why):
+def miss_frame(world, place, node, why, tap):
     """A node in reach has not received the frame at `place`: a capture says so."""
     air = world.air[place]
     at = place * world.run[0].nodes + node
     if world.prob[air.node * world.run[0].nodes + node] > 0:
         met = taps.SENDING if world.worst[at] == DEAF else why
-        books.tap(world, place, node, air.end, 0, met)
+        tap(world, place, node, air.end, 0, met)
 
 
 def rssi_dbm(world, sender, node):

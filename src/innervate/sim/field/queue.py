@@ -3,8 +3,6 @@
 Signals end before others start, both before anything that could look at the channel.
 """
 
-from innervate.dialect.arith import MASK30
-from innervate.sim.field.world import TIMERS
 from innervate.sim.heap import (
     AIR_BITS,
     LAST,
@@ -33,13 +31,5 @@ PLACES_MAX = 1 << (SENDER_BITS + AIR_BITS)
 
 __all__ = [
     "LAST", "RANK_SHIFT", "STATIONS_MAX", "STATION_SHIFT", "TIME_MAX", "TIME_SHIFT", "key_of",
-    "pop", "push", "set_timer",
+    "pop", "push",
 ]  # fmt: skip
-
-
-def set_timer(world, node, timer, at, time, now):
-    """A timer of a node fires at its clock reading `at`."""
-    when = time + max(0, ((at - now + (1 << 29)) & MASK30) - (1 << 29))
-    if world.due[node * TIMERS + timer] != when:
-        world.due[node * TIMERS + timer] = when
-        push(world.heap, key_of(when, TIMER, node, timer))

@@ -7,15 +7,13 @@ from typing import Any
 import numpy as np
 
 from innervate.sim.driver import Simulation
-from innervate.sim.field import queue, world
+from innervate.sim.field import queue
 from innervate.sim.queue import first_of, with_command
 from innervate.sim.tables import get
 
 
 class Field(Simulation):
     """Nodes that hear whom they can; its network says which rows it keeps, and what broke."""
-
-    wide = world.WIDE
 
     def clock_us(self) -> int:
         """Time of the newest event, us."""

@@ -6,7 +6,8 @@ from typing import Any
 
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.radio.scenario.plan import RadioPlan
-from innervate.sim.channel import build
+from innervate.networks.radio.sim import build
+from innervate.sim.channel.build import grow_heap
 from innervate.sim.channel.world import Heap, World
 from innervate.sim.tables import put
 
@@ -41,7 +42,7 @@ def world_of(plan: Any, plain: bool, checks: bool, above: Heap) -> World:
 
 def grown(world: Any) -> Any:
     """The mesh's world with twice the room for events, in its own queue and the channel's."""
-    world = build.grow_heap(world)
+    world = grow_heap(world)
     if not world.below:
         return world
-    return world._replace(below=build.grow_heap(world.below)._replace(above=world.heap))
+    return world._replace(below=grow_heap(world.below)._replace(above=world.heap))

@@ -11,10 +11,11 @@ from innervate.networks.mesh.protocol import csma
 from innervate.networks.mesh.protocol.constants import ACK
 from innervate.networks.mesh.sim import recorder as books
 from innervate.networks.mesh.sim.recorder import MAC
+from innervate.networks.mesh.sim.timers import set_timer
 from innervate.sim import rows, taps
 from innervate.sim.field import medium, queue
 from innervate.sim.field.medium import NONE
-from innervate.sim.field.world import COMMITTED, FREE, HELD, ON_AIR
+from innervate.sim.field.states import COMMITTED, FREE, HELD, ON_AIR
 from innervate.sim.status import DONE, ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 
 NEVER = -1
@@ -81,7 +82,7 @@ def down(stack):
             if kind == SEND:
                 medium.commit(world, radio.hot if c & URGENT else radio.held, time)
             elif kind == SET_TIMER:
-                queue.set_timer(world, node, mesh_words.TIMERS + a, b, time, now)
+                set_timer(world, node, mesh_words.TIMERS + a, b, time, now)
             elif kind == REPORT and a == csma.REPORT_GAVE_UP:
                 give_up(world, node, time)
             elif kind == DELIVER:
@@ -181,7 +182,7 @@ def up(stack, below, take, tell_sent):
         frame, node, is_whole = world.frames[place], air.node, air.state == ON_AIR
         if is_whole:
             medium.leave(world, place)
-            count = medium.receivers(world, place)
+            count = medium.receivers(world, place, books.tap)
             books.keep_sent(world, place, time, frame_bytes(frame), count)
             for i in range(count):
                 arrive(world, world.got[i], place, time)
@@ -199,6 +200,7 @@ def up(stack, below, take, tell_sent):
         elif rank == queue.STARTS:
             if world.air[what].state == COMMITTED:
                 medium.start(world, what, time, frame_bytes(world.frames[what]))
+                books.tap(world, what, world.air[what].node, time, 1, taps.FINE)
             else:
                 medium.release(world, what)
         elif world.radios[node].tell_at == time:

@@ -10,16 +10,18 @@ from typing import Any, ClassVar
 
 from innervate.kernel import door, tables
 from innervate.networks.mesh.protocol import fields as mesh_fields
-from innervate.networks.mesh.sim import channel, over_channel, over_medium, stacks
+from innervate.networks.mesh.sim import build as builder
+from innervate.networks.mesh.sim import channel, loop, over_channel, over_medium, stacks
 from innervate.networks.mesh.sim import recorder as books
+from innervate.networks.mesh.sim import world as w
+from innervate.networks.mesh.sim.timers import set_timer
+from innervate.networks.radio.sim import recorder as radio_recorder
 from innervate.networks.radio.sim import simulate as radio_simulate
 from innervate.networks.radio.sim import stacks as radio_stacks
 from innervate.sim import heap, rows, taps
 from innervate.sim.channel import loop as radio_loop
 from innervate.sim.driver import Progress
-from innervate.sim.field import build as builder
-from innervate.sim.field import loop, medium, motion, powers, queue
-from innervate.sim.field import world as w
+from innervate.sim.field import medium, motion, powers
 from innervate.sim.field.simulation import Field
 from innervate.sim.status import POOL_FULL
 from innervate.sim.tables import get
@@ -85,7 +87,7 @@ def _compiled(entry: ModuleType, access: radio_stacks.Protocol | None) -> Callab
     door.register(arith, outbox, rng, heap)
     door.register(*stacks.modules_of(entry), csma, medium, motion, books, rows, taps, hot=False)
     door.register_functions(powers.strength, powers.chance, powers.loss)
-    door.register_functions(loop.pressing, loop.wipe, queue.set_timer, hot=False)
+    door.register_functions(loop.pressing, loop.wipe, set_timer, hot=False)
     layer: Any = over_medium
     if access is None:
         below = (over_medium.give_up, over_medium.short, over_medium.due, over_medium.step)
@@ -150,6 +152,7 @@ def simulate(
 class MeshSimulation(Field):
     """A mesh under way."""
 
+    wide = w.WIDE
     tables: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "rows": w.ROW, "sent": w.SENT, "delivered": w.DELIVERED, "rounds": w.ROUND,
         "trail": w.TRAIL,
@@ -213,7 +216,7 @@ def _plain_layer(mac: str) -> Any:
     if mac in builder.MACS:
         return over_medium
     stack = radio_stacks.bind(radio_stacks.PROTOCOLS[mac].entry)
-    return over_channel.layer(radio_loop.build(stack, over_channel))
+    return over_channel.layer(radio_loop.build(stack, radio_recorder, over_channel))
 
 
 def story(plan: Any, world: w.World) -> str:

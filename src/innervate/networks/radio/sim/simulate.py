@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from innervate.kernel import door, tables
-from innervate.networks.radio.scenario.plan import KILL, LEAVE
+from innervate.networks.radio.sim import build as builder
 from innervate.networks.radio.sim import recorder as books
-from innervate.networks.radio.sim import stacks, traffic
+from innervate.networks.radio.sim import stacks
+from innervate.scenario.actions.channel import KILL, LEAVE
 from innervate.sim import heap, rows, taps
-from innervate.sim.channel import build as builder
-from innervate.sim.channel import loop, medium
+from innervate.sim.channel import loop, medium, traffic
 from innervate.sim.channel import world as w
 from innervate.sim.channel.simulation import Channel
 from innervate.sim.driver import Progress
@@ -72,7 +72,7 @@ def registered(protocol: stacks.Protocol, packets: Any) -> loop.Handlers:
     door.register_functions(loop.pressing, hot=False)
     stack = stacks.bind(protocol.entry)
     door.register_functions(*stack)
-    return loop.build(stack, packets)
+    return loop.build(stack, books, packets)
 
 
 def simulate(
@@ -145,7 +145,7 @@ def simulation(
 ) -> RadioSimulation:
     """A plan's team before its first event; what is kept as in `channel.build`."""
     if plain:
-        advance = loop.build(stacks.bind(stacks.PROTOCOLS[plan.protocol].entry))[-1]
+        advance = loop.build(stacks.bind(stacks.PROTOCOLS[plan.protocol].entry), books)[-1]
     else:
         advance = compiled_loop(plan.protocol)
     world = builder.build(plan, plain, checks, keep, trail, tap)

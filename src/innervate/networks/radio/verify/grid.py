@@ -18,9 +18,9 @@ from innervate import scenario as scenarios
 from innervate.dialect import rng
 from innervate.kernel.wall import wall_s
 from innervate.networks.radio.protocol.constants import DATA
+from innervate.networks.radio.sim import build as builder
 from innervate.networks.radio.sim import simulate as simulator
 from innervate.running.errors import RunError
-from innervate.sim.channel import build as builder
 from innervate.sim.status import BROKEN
 from innervate.sim.tables import get, put
 

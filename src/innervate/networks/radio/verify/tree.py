@@ -18,9 +18,9 @@ import numpy as np
 
 from innervate.dialect import rng
 from innervate.kernel.wall import wall_s
-from innervate.networks.radio.sim import stacks
+from innervate.networks.radio.sim import build as builder
+from innervate.networks.radio.sim import recorder, stacks
 from innervate.networks.radio.verify import grid as grid
-from innervate.sim.channel import build as builder
 from innervate.sim.channel import loop
 from innervate.sim.channel import world as w
 from innervate.sim.tables import get, put, row_dtype
@@ -126,7 +126,7 @@ def search(
     """All runs of a tree, or the first `limit`; `entry` a copy of the protocol to run."""
     shared = grid.base_plan(tree.grid)
     stack = stacks.bind(entry or stacks.PROTOCOLS[shared.protocol].entry)
-    advance = loop.build(stack)[-1]
+    advance = loop.build(stack, recorder)[-1]
     asked, grown = Asked(tree.depth), Grown(tree, 0, 0, 0.0, {}, {}, "interrupted")
     started = wall_s()
     for point in _points(tree.grid):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from innervate.networks.skin.scenario.plan import ACTIONS, LOSS_ONE, RULES, UPDATES, Fault, Plan
+from innervate.networks.skin.scenario.plan import LOSS_ONE, RULES, UPDATES, Fault, Plan
+from innervate.scenario.actions.cables import ACTIONS
 from innervate.topology import Graph
 
 EVENTS_SHOWN = 12

@@ -5,12 +5,14 @@ from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.kernel.bits import mix
 from innervate.networks.mesh.protocol import constants as mesh_words
 from innervate.networks.mesh.protocol.constants import MESSAGE, REPORT_GRAPH, SAMPLE, SENT
-from innervate.networks.mesh.scenario.plan import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.networks.mesh.sim import recorder as books
+from innervate.networks.mesh.sim.timers import set_timer
+from innervate.networks.mesh.sim.world import TIMERS
+from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.sim import rows
 from innervate.sim.field import medium, motion, powers, queue
 from innervate.sim.field.queue import RANK_SHIFT, STATION_SHIFT, STATIONS_MAX, TIME_SHIFT, WHAT_MASK
-from innervate.sim.field.world import ALIVE, OFF, TIMERS
+from innervate.sim.field.states import ALIVE, OFF
 from innervate.sim.status import (
     BROKEN,
     BUDGET,
@@ -85,7 +87,7 @@ def build(stack, layer):
                 sent = hand_down(world, node, out.frame[i], b, c & URGENT, time, now)
                 run.fingerprint = mix(run.fingerprint, sent)
             elif kind == SET_TIMER:
-                queue.set_timer(world, node, a, b, time, now)
+                set_timer(world, node, a, b, time, now)
             elif kind == REPORT:
                 rows.keep_row(world, time, node, a, b, c)
                 if a == REPORT_GRAPH:

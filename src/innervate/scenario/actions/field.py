@@ -1,0 +1,4 @@
+"""What can be done to the nodes of a field while it runs."""
+
+ACTIONS = ("kill", "revive", "cut", "restore", "jam", "quiet", "restart")
+KILL, REVIVE, CUT, RESTORE, JAM, QUIET, RESTART = range(7)
