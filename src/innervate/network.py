@@ -29,6 +29,11 @@ PARTS = {
     "report": "(result, summary) -> str: the body of its report, HTML",
     "figures": "module: draw(run, figure) -> a matplotlib figure",
     "summary_lines": "(run) -> list of str: what a person wants to know first",
+    "capture": "module: LINK_TYPE, LATE_US, refusal, interfaces, numbers, frames, simulate",
+    "graph": "(plan) -> export.graphs.Graph: its network as a graph",
+    "scenes": "(plan, tables) -> list of export.scenes.Channel: what a recording shows in space",
+    "has_places": "(plan) -> bool: its nodes lie somewhere in space",
+    "rerun_parts": "(rerun, plan, tables) -> export.rrd_parts.Parts: a run in space",
     "simulation": "(plan) -> sim.driver.Simulation: the network as it is watched, not yet begun",
     "unwatchable": '(plan) -> str: why it cannot be watched; "" if it can',
     "engine": "class: web.engine.Engine, or what can do more",
@@ -36,6 +41,8 @@ PARTS = {
     "scene": "(plan): what a page draws once",
 }
 DEFAULTS = {
+    "scenes": "innervate.network:nothing_to_show",
+    "has_places": "innervate.network:no_places",
     "unwatchable": "innervate.network:nothing_against_it",
     "engine": "innervate.web.engine:Engine",
     "anchor": "innervate.network:nothing_to_anchor",
@@ -92,6 +99,16 @@ def nothing_to_anchor(tables: dict[str, Any], source: Any) -> None:
 def nothing_against_it(plan: Any) -> str:
     """Any plan will do."""
     return ""
+
+
+def nothing_to_show(plan: Any, tables: Any) -> list[Any]:
+    """A recording without a scene."""
+    return []
+
+
+def no_places(plan: Any) -> bool:
+    """Nodes that lie nowhere in particular."""
+    return False
 
 
 @cache

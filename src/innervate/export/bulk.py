@@ -9,9 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from innervate.networks.mesh import frames as mesh
-from innervate.networks.radio import frames as radio
-from innervate.networks.skin import frames as skin
 from innervate.wire import crc
 from innervate.wire.layout import SPARE
 
@@ -67,25 +64,14 @@ def _seal(rows: Any) -> None:
     rows[:, end + 1] = found & np.uint16(255)
 
 
-def skin_frames(frames: Any) -> list[bytes]:
-    """The bytes of skin frames, given as an array of records."""
-    return _by_kind(frames, {
-        kind: (fields, kind, skin.KIND_BITS, skin.SIZES[kind])
-        for kind, _name, fields in skin.LAYOUTS
-    })  # fmt: skip
+def by_kind(frames: Any, forms: dict[int, tuple[Any, int, int, int]]) -> list[bytes]:
+    """The bytes of frames, given as an array of records.
 
-
-def radio_frames(frames: Any) -> list[bytes]:
-    """The bytes of radio frames; packets in them have none in a simulation."""
-    made = _by_kind(frames, {
-        kind: (fields, radio.VERSION << 4 | kind, radio.AT, radio.SIZES[kind])
-        for kind, _name, fields in radio.LAYOUTS
-    })  # fmt: skip
-    carrier = bytes((radio.CRR_BYTE,))
-    return [data or carrier for data in made]
-
-
-def _by_kind(frames: Any, forms: dict[int, tuple[Any, int, int, int]]) -> list[bytes]:
+    Args:
+        frames: with a column `kind`.
+        forms: per kind its fields, head, bits of the head, and bytes in all; other kinds stay
+            empty.
+    """
     made = [b""] * len(frames)
     for kind, (fields, head, head_bits, size) in forms.items():
         where = np.flatnonzero(frames["kind"] == kind)
@@ -94,33 +80,3 @@ def _by_kind(frames: Any, forms: dict[int, tuple[Any, int, int, int]]) -> list[b
             for i, place in enumerate(where.tolist()):
                 made[place] = packed[i * size : (i + 1) * size]
     return made
-
-
-class _Record:
-    """A mesh frame as `wire` wants it."""
-
-    __slots__ = (*(name for name, *_ in mesh.COMMON), "body", "kind", "length", "path", "rssi")
-
-
-def mesh_frames(rows: Any, frames: Any) -> list[bytes]:
-    """The bytes of mesh frames; what many received is put into bytes once."""
-    whole = np.dtype([(name, np.int64) for name in _SAME])
-    keys = np.empty(len(frames), whole)
-    keys["start"], keys["sender"] = rows["start"], rows["sender"]
-    for name in _SAME[2:]:
-        keys[name] = frames[name]
-    _, first, which = np.unique(keys, return_index=True, return_inverse=True)
-    made = [_mesh_frame(frames[i]) for i in first.tolist()]
-    return [made[i] for i in which.tolist()]
-
-
-# Who agrees in these is the same transmission.
-_SAME = ("start", "sender", "kind", "flags", "link_dst", "origin", "dest", "seq", "ttl", "length")
-
-
-def _mesh_frame(given: Any) -> bytes:
-    record = _Record()
-    for name in _Record.__slots__:
-        value = given[name]
-        setattr(record, name, value.tolist() if value.ndim else int(value))
-    return mesh.encode(record)

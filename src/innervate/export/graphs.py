@@ -8,21 +8,34 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 from xml.etree import ElementTree as tree
 
 from innervate.export import files
 from innervate.export.errors import ExportError
-from innervate.topology import PORT_NAMES
+from innervate.network import networks
 
 SUFFIXES = (".graphml", ".json")
-ONE = 32_768
 NAMESPACE = "http://graphml.graphdrawing.org/xmlns"
 TYPES = {bool: "boolean", int: "long", float: "double", str: "string"}
 
 Attributes = dict[str, Any]
 Node = tuple[str, Attributes]
 Edge = tuple[str, str, Attributes]
+
+
+class Graph(NamedTuple):
+    """Nodes and links with their attributes, by the names that reports show.
+
+    Attributes:
+        directed: a link has a direction, and the way back attributes of its own.
+        nodes: (name, attributes).
+        edges: (name of one end, of the other, attributes).
+    """
+
+    directed: bool
+    nodes: list[Node]
+    edges: list[Edge]
 
 
 def write(plan: Any, path: Path) -> None:
@@ -33,72 +46,10 @@ def write(plan: Any, path: Path) -> None:
     """
     if path.suffix not in SUFFIXES:
         raise ExportError(f'{path}: a graph is a file "….graphml" or "….json"')
-    nodes, edges = graph_of(plan)
+    graph: Graph = networks()[plan.kind].graph(plan)
     make = node_link if path.suffix == ".json" else graphml
     about = {"name": plan.scenario.name, "kind": plan.kind}
-    files.write_text(path, make(about, plan.kind != "skin", nodes, edges))
-
-
-def graph_of(plan: Any) -> tuple[list[Node], list[Edge]]:
-    """Nodes and links with their attributes, by the names that reports show."""
-    return {"skin": _skin, "mesh": _mesh, "radio": _radio}[plan.kind](plan)
-
-
-def _skin(plan: Any) -> tuple[list[Node], list[Edge]]:
-    graph = plan.graph
-    nodes: list[Node] = []
-    for cell, (x, y) in enumerate(graph.layout()):
-        at: Attributes = {"x_mm": float(x), "y_mm": float(y)}
-        if graph.positions:
-            at = dict(zip(("x_mm", "y_mm", "z_mm"), graph.positions[3 * cell : 3 * cell + 3],
-                          strict=True))  # fmt: skip
-        hops = int(plan.depths[cell])
-        nodes.append((graph.label(cell), {"role": "cell", "number": cell, "hops": hops, **at}))
-    nodes.append((graph.label(graph.sink), {"role": "pc", "number": graph.sink, "hops": 0}))
-    edges = [
-        (graph.label(graph.node_of(a)), graph.label(graph.node_of(b)),
-         {"port_a": _port(graph, a), "port_b": _port(graph, b)})
-        for a, b in graph.links()
-    ]  # fmt: skip
-    return nodes, edges
-
-
-def _port(graph: Any, end: int) -> str:
-    port = graph.port_of(end)
-    return str(port) if graph.node_of(end) == graph.sink else PORT_NAMES[port]
-
-
-def _mesh(plan: Any) -> tuple[list[Node], list[Edge]]:
-    nodes = []
-    for i, name in enumerate(plan.names):
-        role = "gateway" if plan.ranks[i] == 0 else "standby" if plan.ranks[i] > 0 else "node"
-        about: Attributes = {"role": role, "number": i, "robot": bool(plan.robots[i])}
-        if plan.positions_cm:
-            about |= {"x_m": plan.positions_cm[i][0] / 100, "y_m": plan.positions_cm[i][1] / 100}
-        nodes.append((name, about))
-    good = {*plan.good, *((b, a) for a, b in plan.good)}
-    edges = []
-    for i, name in enumerate(plan.names):
-        for j, other in enumerate(plan.names):
-            at = i * plan.nodes + j
-            if i != j and plan.radio.prob_q15[at]:
-                quality = plan.radio.prob_q15[at] / ONE
-                rssi = plan.radio.rssi_cdb[at] / 100
-                is_good = (i, j) in good
-                edges.append((name, other, {"quality": quality, "rssi_dbm": rssi, "good": is_good}))
-    return nodes, edges
-
-
-def _radio(plan: Any) -> tuple[list[Node], list[Edge]]:
-    names = [f"station {i}" for i in range(plan.stations)]
-    nodes = [(name, {"role": "station", "number": i}) for i, name in enumerate(names)]
-    edges = [
-        (names[i], names[j], {"delay_us": int(plan.delays_us[i][j])})
-        for i in range(plan.stations)
-        for j in range(plan.stations)
-        if i != j and plan.delays_us[i][j] >= 0
-    ]
-    return nodes, edges
+    files.write_text(path, make(about, graph.directed, graph.nodes, graph.edges))
 
 
 def node_link(about: Attributes, directed: bool, nodes: list[Node], edges: list[Edge]) -> str:

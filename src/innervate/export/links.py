@@ -1,6 +1,6 @@
 """What a capture says of its frames: numbers of link types, names of interfaces.
 
-pcapng keeps sixteen link types for private use; ours are the first three. An interface has a name
+pcapng keeps sixteen link types for private use; ours are the first ones. An interface has a name
 for people, and a description in these words for programs, its parts after "; ":
 "cell 7 port 1", "pc port 0", "node 3" or "station 3" first, then "A to B" where its frames take
 one cable only, from one end to the other. The interface at the cable's other end says "B to A".
@@ -9,13 +9,23 @@ one cable only, from one end to the other. The interface at the cable's other en
 from __future__ import annotations
 
 import re
+from functools import cache
 from typing import NamedTuple
 
-SKIN, MESH, RADIO = 147, 148, 149  # LINKTYPE_USER0, 1, 2
-LINK_TYPES = {"skin": SKIN, "mesh": MESH, "radio": RADIO}
-KINDS = {number: kind for kind, number in LINK_TYPES.items()}
+from innervate.network import networks
 
 _FIRST = re.compile(r"(cell|pc|node|station)(?: (\d{1,9}))?(?: port (\d{1,9}))?")
+
+
+@cache
+def link_types() -> dict[str, int]:
+    """The link type of each network's frames."""
+    return {name: network.capture.LINK_TYPE for name, network in networks().items()}
+
+
+def kind_of(link_type: int) -> str | None:
+    """Whose frames have a link type; None = nobody's here."""
+    return next((name for name, number in link_types().items() if number == link_type), None)
 
 
 class Interface(NamedTuple):

@@ -11,11 +11,8 @@ from typing import Any
 import innervate
 from innervate.export import files, scenes, schemas
 from innervate.export.scenes import Channel, Message, stamp
-from innervate.networks.mesh import tables as mesh_tables
-from innervate.networks.radio import tables as radio_tables
-from innervate.networks.skin.tables import TABLES
+from innervate.network import networks
 
-TABLES = {"skin": TABLES, "mesh": mesh_tables.TABLES, "radio": radio_tables.TABLES}
 TOPICS = {"received": "/samples", "crossings": "/alarms"}  # others are called as their table
 INFORMATION, WARNING = 2, 3
 HARM = ("cut", "kill", "loose", "lose", "jam", "leave", "garble", "fade")
@@ -56,7 +53,7 @@ def write(plan: Any, found: Mapping[str, Any], path: Path) -> int:
 def channels(plan: Any, found: Mapping[str, Any]) -> list[Channel]:
     """All channels of a run that have a message."""
     made = scenes.channels(plan, found)
-    for table in TABLES[plan.kind]:
+    for table in networks()[plan.kind].tables:
         if table.name in found and len(found[table.name]):
             rows = _rows(found[table.name])
             topic = TOPICS.get(table.name, f"/{table.name}")

@@ -15,8 +15,7 @@ import numpy as np
 from innervate.export import files, recording
 from innervate.export.errors import ExportError
 from innervate.export.rrd_parts import Column, Parts
-from innervate.networks.mesh.export import rrd as rrd_mesh
-from innervate.networks.skin.export import rrd as rrd_skin
+from innervate.network import networks
 
 TIMELINE = "sim_time"
 WARNING = recording.WARNING
@@ -30,7 +29,7 @@ def check(plan: Any) -> None:
         ExportError: the network has no places.
         ModuleNotFoundError: Rerun's package is missing.
     """
-    if plan.kind == "radio" or (plan.kind == "mesh" and not plan.positions_cm):
+    if not networks()[plan.kind].has_places(plan):
         raise ExportError("--rerun shows where nodes are, and these have no places; try --mcap")
     import rerun  # noqa: F401
 
@@ -50,7 +49,7 @@ def write(plan: Any, found: Mapping[str, Any], path: Path) -> int:
     import rerun.blueprint as views
 
     check(plan)
-    made = (rrd_skin if plan.kind == "skin" else rrd_mesh).parts(rerun, plan, found)
+    made: Parts = networks()[plan.kind].rerun_parts(rerun, plan, found)
     told = [*recording.events(plan)]
     log = sorted([*made.log, *((at, one["message"], one["level"]) for at, one in told)])
     with files.beside(path) as fresh:

@@ -5,6 +5,7 @@ from innervate.network import Network
 NETWORK = Network(
     "mesh",
     __package__,
+    link_type=148,
     rank=2,
     model="scenario.model:MeshScenario",
     check="scenario.rules:check",
@@ -17,4 +18,9 @@ NETWORK = Network(
     view="view.view:MeshView",
     run="run",
     tables="tables:TABLES",
+    capture="export.capture",
+    graph="export.graph:graph",
+    scenes="export.scenes:channels",
+    has_places="export.rrd:has_places",
+    rerun_parts="export.rrd:parts",
 )

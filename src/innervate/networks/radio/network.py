@@ -5,6 +5,7 @@ from innervate.network import Network
 NETWORK = Network(
     "radio",
     __package__,
+    link_type=149,
     rank=1,
     model="scenario.model:RadioScenario",
     check="scenario.rules:check",
@@ -17,4 +18,6 @@ NETWORK = Network(
     view="view.view:RadioView",
     run="run",
     tables="tables:TABLES",
+    capture="export.capture",
+    graph="export.graph:graph",
 )

@@ -5,6 +5,7 @@ from innervate.network import Network
 NETWORK = Network(
     "skin",
     __package__,
+    link_type=147,
     rank=0,
     model="scenario.model:SkinScenario",
     check="scenario.rules:check",
@@ -20,4 +21,9 @@ NETWORK = Network(
     run="run",
     received_image="analysis.touch:received_image",
     tables="tables:TABLES",
+    capture="export.capture",
+    graph="export.graph:graph",
+    scenes="export.scenes:channels",
+    has_places="export.rrd:has_places",
+    rerun_parts="export.rrd:parts",
 )

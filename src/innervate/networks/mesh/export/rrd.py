@@ -18,6 +18,11 @@ OFF = 0.4  # of its radius, while a node is switched off
 ROBOT, INSIDE = PORTS[1], PORTS[2]
 
 
+def has_places(plan: Any) -> bool:
+    """Its nodes lie somewhere in space."""
+    return bool(plan.positions_cm)
+
+
 def parts(rerun: Any, plan: Any, tables: Mapping[str, Any]) -> Parts:
     """All that is shown of a mesh; positions become metres, all of them at height 0."""
     places = np.array([(x / 100, y / 100, 0.0) for x, y in plan.positions_cm], np.float32)

@@ -22,6 +22,11 @@ WITHOUT_ROUTE, OFF = 0.6, 0.3  # of that radius
 POINTS_MAX = 1000  # of a shape, when it is asked how near it is
 
 
+def has_places(plan: Any) -> bool:
+    """Its nodes lie somewhere in space."""
+    return True
+
+
 def parts(rerun: Any, plan: Any, tables: Mapping[str, Any]) -> Parts:
     """All that is shown of a skin."""
     step_us = max(STEP_US, -(-plan.duration_us // STATES_MAX))

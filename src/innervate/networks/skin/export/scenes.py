@@ -1,0 +1,81 @@
+"""A skin in a recording: cells as balls, lines to their parents, the touch as it was received."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from innervate.export import schemas
+from innervate.export.scenes import (
+    BLUE,
+    DARK,
+    LINE_PAIRS,
+    ORANGE,
+    STEP_US,
+    YELLOW,
+    Channel,
+    Message,
+    ball,
+    entity,
+    lines,
+    stamp,
+)
+from innervate.networks.skin.export.states import States
+
+FORCE_MAX_MN = 3000
+
+
+def channels(plan: Any, tables: Mapping[str, Any]) -> list[Channel]:
+    """What there is to show; tables are polars frames by name."""
+
+    def told(make: Callable[[int, States], Any]) -> Iterator[Message]:
+        states = States(plan, tables, STEP_US)
+        return ((at, make(at, now)) for at, now in states.snapshots())
+
+    found = [
+        Channel("/cells", schemas.CELLS, told(_cells)),
+        Channel("/scene", schemas.SCENE, told(_balls)),
+    ]
+    if len(tables.get("received", ())):
+        found.append(Channel("/touch", schemas.TOUCH, told(_touch)))
+    return found
+
+
+def _cells(at: int, now: States) -> Any:
+    """A message of all cells."""
+    return {
+        "timestamp": stamp(at),
+        "unrouted": now.unrouted,
+        "parent_port": list(now.parent),
+        "hops": now.hops,
+    }
+
+
+def _touch(at: int, now: States) -> Any:
+    """A message of what the PC knew of the touch."""
+    known = now.known(at)
+    return {
+        "timestamp": stamp(at),
+        "force_mn": [f if k else 0 for f, k in zip(now.force, known, strict=True)],
+        "proximity": [p if k else 0 for p, k in zip(now.proximity, known, strict=True)],
+        "known": known,
+    }
+
+
+def _balls(at: int, now: States) -> Any:
+    """Cells as balls, and a line from each to its parent."""
+    known = now.known(at)
+    balls, ways = [], []
+    for cell, place in enumerate(now.places):
+        colour = BLUE if now.hops[cell] >= 0 else ORANGE
+        share = min(1.0, now.force[cell] / FORCE_MAX_MN) if known[cell] else 0.0
+        mixed = tuple((1 - share) * a + share * b for a, b in zip(colour, YELLOW, strict=True))
+        balls.append(ball(place, 0.012, mixed))
+        above = now.above(cell)
+        if 0 <= above < now.graph.sink:
+            ways += [place, now.places[above]]
+    return {
+        "deletions": [],
+        "entities": [entity(at, "cells", spheres=balls),
+                     entity(at, "parents", lines=[lines(LINE_PAIRS, 0.002, DARK, ways)])],
+    }  # fmt: skip
