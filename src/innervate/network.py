@@ -29,7 +29,7 @@ PARTS = {
     "report": "(result, summary) -> str: the body of its report, HTML",
     "figures": "module: draw(run, figure) -> a matplotlib figure",
     "summary_lines": "(run) -> list of str: what a person wants to know first",
-    "capture": "module: LINK_TYPE, LATE_US, refusal, interfaces, numbers, frames, simulate",
+    "capture": "module: LATE_US, refusal, interfaces, numbers, frames, simulate",
     "graph": "(plan) -> export.graphs.Graph: its network as a graph",
     "scenes": "(plan, tables) -> list of export.scenes.Channel: what a recording shows in space",
     "has_places": "(plan) -> bool: its nodes lie somewhere in space",
@@ -56,16 +56,21 @@ class Network:
         name: as `kind` in its scenarios.
         package: the package that its parts' places are relative to.
         rank: its place in lists for people.
+        link_type: of its frames in captures: LINKTYPE_USER0 .. USER15 = 147 .. 162, which pcapng
+            keeps for private use.
         **parts: where each part stands: "module" or "module:name".
     """
 
-    def __init__(self, name: str, package: str, rank: int = 100, **parts: str) -> None:
+    def __init__(
+        self, name: str, package: str, rank: int = 100, link_type: int = 162, **parts: str
+    ) -> None:
         for part in parts:
             if part not in PARTS:
                 raise TypeError(f"network {name}: no part {part!r}; there are {', '.join(PARTS)}")
         self.name = name
         self.package = package
         self.rank = rank
+        self.link_type = link_type
         self.parts = {
             **DEFAULTS,
             **{part: _absolute(package, place) for part, place in parts.items()},

@@ -1,17 +1,21 @@
 """Bytes made by the thousand are those that `wire` makes one by one."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
 from innervate.dialect import plain
-from innervate.export import bulk
 from innervate.kernel import records
 from innervate.networks.mesh import frames as mesh
+from innervate.networks.mesh.export import capture as mesh_capture
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.radio import frames as radio
+from innervate.networks.radio.export import capture as radio_capture
 from innervate.networks.radio.protocol import constants as radio_words
 from innervate.networks.radio.protocol import fields as radio_fields
 from innervate.networks.skin import frames as skin
+from innervate.networks.skin.export import capture as skin_capture
 from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.wire.layout import SPARE
 
@@ -44,8 +48,8 @@ def as_object(declaration, row):
 @pytest.mark.parametrize(
     ("wire", "declaration", "many"),
     [
-        (skin, skin_fields.FRAME, bulk.skin_frames),
-        (radio, radio_fields.FRAME, bulk.radio_frames),
+        (skin, skin_fields.FRAME, partial(skin_capture.frames, None)),
+        (radio, radio_fields.FRAME, partial(radio_capture.frames, None)),
     ],
     ids=["skin", "radio"],
 )
@@ -70,6 +74,6 @@ def test_mesh_frames_that_many_received_are_the_same_bytes():
     frames["rssi"] = RNG.integers(-90, -10, COUNT)
     rows = np.zeros(COUNT, [("start", np.int64), ("sender", np.int32)])
     twice = np.repeat(np.arange(COUNT), 2)
-    found = bulk.mesh_frames(rows[twice], frames[twice])
+    found = mesh_capture.frames(rows[twice], frames[twice])
     assert found[::2] == found[1::2]
     assert found[::2] == [mesh.encode(as_object(mesh_fields.FRAME, row)) for row in frames]

@@ -11,6 +11,7 @@ from innervate.dialect import plain
 from innervate.export import capture, links
 from innervate.export.errors import ExportError
 from innervate.export.reading import Capture
+from innervate.network import networks
 from innervate.networks.mesh import frames as mesh
 from innervate.networks.radio import frames as radio
 from innervate.networks.skin import frames as skin
@@ -123,7 +124,7 @@ def test_captures_are_in_order_of_time_and_their_frames_whole(kind, made):
     packets = list(capture_read.packets())
     times = [packet.time_ns for packet in packets]
     assert times == sorted(times)
-    assert {one.link_type for one in capture_read.interfaces} == {links.LINK_TYPES[kind]}
+    assert {one.link_type for one in capture_read.interfaces} == {networks()[kind].link_type}
     wire = {"skin": skin, "mesh": mesh, "radio": radio}[kind]
     if kind == "skin":
         frame = plain.make("Frame", skin_fields.FRAME)()

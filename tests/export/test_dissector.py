@@ -5,7 +5,8 @@ import random
 import pytest
 
 from innervate.dialect import plain
-from innervate.export import dissector, links, pcapng
+from innervate.export import dissector, pcapng
+from innervate.network import networks
 from innervate.networks.mesh import frames as mesh
 from innervate.networks.mesh import payloads as mesh_payloads
 from innervate.networks.mesh.protocol import constants as mesh_words
@@ -26,7 +27,7 @@ DRAW = random.Random(7)
 
 
 def capture_of(path, kind, frames):
-    blocks = [pcapng.section(), pcapng.interface(links.LINK_TYPES[kind], kind)]
+    blocks = [pcapng.section(), pcapng.interface(networks()[kind].link_type, kind)]
     blocks += [pcapng.packet(0, 1000 * i, frame, 0) for i, frame in enumerate(frames)]
     path.write_bytes(b"".join(blocks))
     return path

@@ -8,7 +8,7 @@ import pytest
 import innervate
 from innervate import scenario
 from innervate.cli import app, capturing
-from innervate.export import capture, links, pcapng
+from innervate.export import capture, pcapng
 from innervate.export.errors import ExportError
 from innervate.live import status, tap
 from innervate.live.profile import SKIN
@@ -99,8 +99,8 @@ def test_a_live_skins_capture_says_what_happened_to_it(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("kind", "description", "why"),
     [
-        (links.MESH, "node 1", "no capture of a skin"),
-        (links.SKIN, "cell 1 port 0", "which cables join its interfaces"),
+        (148, "node 1", "no capture of a skin"),
+        (147, "cell 1 port 0", "which cables join its interfaces"),
     ],
 )
 def test_what_says_nothing_of_parents_is_told(kind, description, why, tmp_path):

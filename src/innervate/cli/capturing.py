@@ -16,6 +16,7 @@ from innervate.cli.errors import UserError, say
 from innervate.export import links, pcapng
 from innervate.export.errors import ExportError
 from innervate.live import status
+from innervate.network import networks
 
 # Nodes tell of their frames a little later, each when it gets to it: time to put them in order.
 HOLD_S = 0.25
@@ -145,7 +146,7 @@ class Recorder:
             several = len(about["paths"]) > 1
             name = about["capturing"] + (f" port {port}" if several else "")
             text = links.describe(what, about["number"], port, (here, there))
-            link_type = links.LINK_TYPES[about["kind"]]
+            link_type = networks()[about["kind"]].link_type
             if (name, text) not in self.numbers:
                 self.numbers[name, text] = len(self.numbers)
                 self.file.write(pcapng.interface(link_type, name, text))

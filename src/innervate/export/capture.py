@@ -104,8 +104,9 @@ class _Stream:
         self.number = self.captured.numbers(plan)
         comment = f"innervate {plan.kind} {plan.scenario.name}, seed {plan.seed}, simulated"
         file.write(pcapng.section(comment, f"innervate {innervate.__version__}"))
+        link_type = networks()[plan.kind].link_type
         for name, text in self.captured.interfaces(plan):
-            file.write(pcapng.interface(self.captured.LINK_TYPE, name, text))
+            file.write(pcapng.interface(link_type, name, text))
 
     def take(self, rows: Any, frames: Any, now: int) -> None:
         """What a simulation hands over."""

@@ -9,7 +9,6 @@ one cable only, from one end to the other. The interface at the cable's other en
 from __future__ import annotations
 
 import re
-from functools import cache
 from typing import NamedTuple
 
 from innervate.network import networks
@@ -17,15 +16,10 @@ from innervate.network import networks
 _FIRST = re.compile(r"(cell|pc|node|station)(?: (\d{1,9}))?(?: port (\d{1,9}))?")
 
 
-@cache
-def link_types() -> dict[str, int]:
-    """The link type of each network's frames."""
-    return {name: network.capture.LINK_TYPE for name, network in networks().items()}
-
-
 def kind_of(link_type: int) -> str | None:
     """Whose frames have a link type; None = nobody's here."""
-    return next((name for name, number in link_types().items() if number == link_type), None)
+    known = networks().items()
+    return next((name for name, network in known if network.link_type == link_type), None)
 
 
 class Interface(NamedTuple):

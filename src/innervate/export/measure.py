@@ -48,7 +48,7 @@ def measure(path: Path) -> Measured:
     capture = Capture(path)
     packets = capture.packets()
     first = next(packets, None)
-    kinds = {links.KINDS.get(one.link_type) for one in capture.interfaces}
+    kinds = {links.kind_of(one.link_type) for one in capture.interfaces}
     if first is None:
         raise ExportError(f"{path} holds no packets; capture for longer")
     if kinds == {"radio"}:

@@ -256,7 +256,7 @@ def recoveries(path: Path) -> list[Healing]:
     capture = Capture(path)
     watcher = Watcher(capture)
     for packet in sorted(capture.packets(), key=lambda packet: packet.time_ns):
-        if {one.link_type for one in capture.interfaces} != {links.SKIN}:
+        if {links.kind_of(one.link_type) for one in capture.interfaces} != {"skin"}:
             raise ExportError(f"{path} is no capture of a skin; only skins have parents")
         watcher.take(packet)
     return watcher.end()
