@@ -16,6 +16,7 @@ from innervate.plot import words
 
 if TYPE_CHECKING:
     from innervate.networks.mesh.analysis.alarms import Crossing
+    from innervate.networks.skin.analysis.summary_keys import Recovery
     from innervate.running import Run
 
 
@@ -62,7 +63,7 @@ def _skin(seed: int | None, out: Path | None) -> Told:
     print(flush=True)
     run = simulate("demo", [], seed, _part(out, "skin"))
     folder = run.write(_part(out, "skin"))
-    summary, plan = run.summary, run.plan
+    summary, plan = run.skin, run.plan
     graph = plan.graph
     print(
         f"  {graph.cells} cells, {graph.interfaces} cables to the PC, "
@@ -83,7 +84,7 @@ def _skin(seed: int | None, out: Path | None) -> Told:
     return Told(folder / "report.html", run.interrupted)
 
 
-def _steps(recovery: dict[str, float | None], cells: int) -> list[tuple[str, str]]:
+def _steps(recovery: Recovery, cells: int) -> list[tuple[str, str]]:
     """What followed an event, in order of time."""
     cut, settled = recovery["cut_cells"], recovery["converged_ms"]
     steps: list[tuple[float, str]] = []
@@ -114,12 +115,12 @@ def _radio(seed: int | None, out: Path | None) -> Told:
     folder = run.write(_part(out, "radio"))
     plan, packets = run.plan, run.result.packets
     start_us = int(packets["offered"].min())
-    order = ", ".join(str(i) for i in run.summary["order"])
+    order = ", ".join(str(i) for i in run.radio["order"])
     firsts = (int(packets["end"].min()), "the first packet has arrived, everybody knows the order")
     for at_us, what in (firsts, (int(packets["end"].max()), "all ten packets have arrived")):
         print(f"  {'+' + words.ms_words((at_us - start_us) / 1e3):>10}   {what}")
     print()
-    print(f"  Order: {order}. {run.summary['lost_silently']} packets lost without their sender "
+    print(f"  Order: {order}. {run.radio['lost_silently']} packets lost without their sender "
           "knowing.")  # fmt: skip
     times = (plan.params["packet_slots"] * plan.params["slot_us"] * plan.stations) / 1e3
     print(f"  The packets alone take {words.ms_words(times)}.")
@@ -136,7 +137,7 @@ def _mesh(seed: int | None, out: Path | None) -> Told:
     print(flush=True)
     run = simulate("mesh-field", [], seed, _part(out, "mesh"))
     folder = run.write(_part(out, "mesh"))
-    summary, plan = run.summary, run.plan
+    summary, plan = run.mesh, run.plan
     reach = 2 * summary["links"] / plan.nodes
     print(f"  {plan.nodes} nodes, each with about {reach:.0f} others in good reach")
     print()
@@ -157,7 +158,7 @@ def _mesh_steps(run: Run) -> list[tuple[str, str]]:
     from innervate.networks.mesh.analysis.alarms import all_crossings
     from innervate.networks.mesh.analysis.messages import NEVER
 
-    summary, plan = run.summary, run.plan
+    summary, plan = run.mesh, run.plan
     steps: list[tuple[float, str, str]] = []
     if summary["discovery"]["tables_s"] is not None:
         at = summary["gateways"][0]["at_s"] + summary["discovery"]["tables_s"]

@@ -11,6 +11,7 @@ import numpy as np
 from innervate.dialect.access import CLOCK, LEAVE, RESULT
 from innervate.networks.radio import tables as radio_tables
 from innervate.networks.radio.analysis import summary as analysis
+from innervate.networks.radio.analysis.summary_keys import RadioSummary, SlottedSummary
 from innervate.networks.radio.protocol.constants import MAIN
 from innervate.networks.radio.sim import simulate as simulator
 from innervate.networks.radio.slotted import run as radio_slotted
@@ -39,7 +40,7 @@ def _is_slotted(plan: Any) -> bool:
     return bool(plan.scenario.model.channel.level == "slotted")
 
 
-def summarize(result: Any) -> dict[str, Any]:
+def summarize(result: Any) -> RadioSummary | SlottedSummary:
     """The summary of a run; what never happened is None."""
     if _is_slotted(result.plan):
         return radio_slotted.summarize(result)

@@ -15,6 +15,7 @@ from innervate.networks.mesh.analysis.fence import (
     position_cm,
 )
 from innervate.networks.mesh.analysis.messages import NEVER, patience_us, percentiles
+from innervate.networks.mesh.analysis.summary_keys import Alarms
 from innervate.networks.mesh.protocol.constants import ALARM, CROSS, FLOOD, PREDICT, REPORT_ALARM
 
 
@@ -130,7 +131,7 @@ def _crossing(
     )
 
 
-def alarms(found: list[Crossing]) -> dict[str, Any]:
+def alarms(found: list[Crossing]) -> Alarms:
     """The summary's part on alarms; a crossing that nobody noticed counts as not delivered."""
     decided = [crossing for crossing in found if not crossing.open]
     came = [crossing for crossing in decided if crossing.accepted_us != NEVER]

@@ -11,7 +11,15 @@ from innervate.kernel import records
 from innervate.networks.skin.protocol import cell as skin
 from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.networks.skin.protocol import sink as skin_sink
-from innervate.networks.skin.protocol.constants import NONE, ONE, PORTS
+from innervate.networks.skin.protocol.constants import (
+    NONE,
+    ONE,
+    PORTS,
+    RULE_FEASIBLE,
+    RULE_PAPER,
+    RULE_PAPER_LAX,
+    RULE_STRICT,
+)
 from innervate.networks.skin.verify import check as skin_check
 from innervate.networks.skin.verify import moves as skin_moves
 from innervate.networks.skin.verify import reduction as skin_dead
@@ -22,8 +30,9 @@ from innervate.networks.skin.verify.graphs import symmetries
 from innervate.topology import Graph
 from innervate.verify.errors import VerifyError
 
-RULES = ("feasible", "strict", "paper")
+RULES = ("feasible", "strict", "paper", "paper-lax")
 UPDATES = ("periodic", "triggered")
+_NUMBERS = dict(zip(RULES, (RULE_FEASIBLE, RULE_STRICT, RULE_PAPER, RULE_PAPER_LAX), strict=True))
 ANY = w.ANY
 FAULTS = ("loss", "cut", "heal", "false", "restart")
 SETTLED_M = 3  # the fair schedule counts the PC's number every so many rounds
@@ -62,7 +71,7 @@ class SkinModel:
 
     Attributes:
         graph: cells, PC and cables.
-        rule: "feasible", "strict" or "paper".
+        rule: one of RULES.
         updates: "periodic" or "triggered".
         budget: how often what may happen.
         hold: FD_HOLD, in periods.
@@ -219,7 +228,7 @@ def first_row(model: SkinModel, system: System) -> list[int]:
 
 def _parameters(model: SkinModel, seq_every: int) -> dict[str, int]:
     return {
-        "rule": RULES.index(model.rule),
+        "rule": _NUMBERS[model.rule],
         "updates": UPDATES.index(model.updates),
         "beacon_us": 4000,
         "r_f": ONE,
@@ -228,6 +237,7 @@ def _parameters(model: SkinModel, seq_every: int) -> dict[str, int]:
         "max_depth": 64,
         "seq_every": seq_every,
         "balance_periods": 0,
+        "balance_rule": 0,
         "hold_periods": hold_periods(model),
         "gap_us": 500,
         "skip_us": 2400,
