@@ -1,8 +1,9 @@
 """Mesh plans for tests, without a scenario file."""
 
 from innervate.networks.mesh.protocol import fields as mesh_fields
-from innervate.networks.mesh.scenario.plan import ONE, UNHEARD, MeshPlan, MeshRadio, Offer
+from innervate.networks.mesh.scenario.plan import ONE, MeshPlan, MeshRadio, Offer
 from innervate.networks.mesh.sim.simulate import simulate
+from innervate.topology.placement import UNHEARD
 from tests import mesh_pinger
 
 LOUD = -6_000  # 0.01 dBm: received for certain

@@ -1,10 +1,11 @@
 """A bench for one station of CSMA/CD-R as published: the test is its channel and its clock."""
 
 from innervate.dialect import plain
+from innervate.dialect.access import PACKET
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
 from innervate.networks.radio.protocol import fields as radio_fields
 from innervate.networks.radio.protocol import paper as radio_paper
-from innervate.networks.radio.protocol.constants import CRR, DATA, PACKET
+from innervate.networks.radio.protocol.constants import CRR, DATA
 from innervate.networks.radio.scenario.plan import parameters
 
 TAU, SLOT, BIT, T = 104, 208, 26, 25

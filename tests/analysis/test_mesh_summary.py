@@ -32,8 +32,9 @@ from innervate.networks.mesh.protocol.constants import (
     REQUEST,
     RESPONSE,
 )
-from innervate.networks.mesh.scenario.plan import CUT, KILL, RESTORE, REVIVE, MeshFault, Offer, Walk
-from innervate.sim.field import world as w
+from innervate.networks.mesh.scenario.plan import MeshFault, Offer, Walk
+from innervate.networks.mesh.sim import world as w
+from innervate.scenario.actions.field import CUT, KILL, RESTORE, REVIVE
 
 S = 1_000_000
 

@@ -7,7 +7,8 @@ from innervate.networks.radio.analysis.headline import RadioFacts, headline, pat
 from innervate.networks.radio.analysis.state import Still, facts, of_stations
 from innervate.networks.radio.analysis.summary import facts as facts_of_run
 from innervate.networks.radio.analysis.summary import summarize
-from innervate.networks.radio.scenario.plan import JOIN, KILL, LEAVE, RadioFault
+from innervate.networks.radio.scenario.plan import RadioFault
+from innervate.scenario.actions.channel import JOIN, KILL, LEAVE
 from innervate.sim.tables import get
 from tests.radio_runs import START_US, radio_plan, run
 

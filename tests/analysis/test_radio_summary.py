@@ -3,11 +3,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from innervate.dialect.access import REPORT_LEFT
 from innervate.networks.radio.analysis import air as radio_air
 from innervate.networks.radio.analysis import summary as radio
-from innervate.networks.radio.protocol.constants import CRR, DATA, OPEN, REPORT_BOUNDS, REPORT_LEFT
-from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
+from innervate.networks.radio.protocol.constants import CRR, DATA, OPEN, REPORT_BOUNDS
+from innervate.networks.radio.scenario.plan import RadioFault
 from innervate.networks.radio.sim.simulate import COUNTS
+from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 from innervate.sim.channel import world as w
 from innervate.sim.channel.build import build
 from innervate.sim.channel.loop import ON_CARRIER

@@ -4,6 +4,7 @@ import random
 
 import pytest
 
+from innervate.dialect.access import REPORT_DELIVERED
 from innervate.networks.radio.protocol.constants import (
     CRR,
     DATA,
@@ -11,7 +12,6 @@ from innervate.networks.radio.protocol.constants import (
     OTHER,
     REPORT_COLLISION,
     REPORT_COUNT,
-    REPORT_DELIVERED,
     REPORT_ROLE,
     REPORT_TURN,
     REPORTER,

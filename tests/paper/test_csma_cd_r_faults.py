@@ -9,8 +9,9 @@ from innervate.networks.radio.protocol.constants import (
     REPORT_COLLISION,
     REPORT_ROLE,
 )
-from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL, RadioFault
+from innervate.networks.radio.scenario.plan import RadioFault
 from innervate.networks.radio.sim.simulate import simulate
+from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL
 from tests.radio_paper_runs import (
     BIT,
     R1,

@@ -6,21 +6,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from innervate.networks.mesh.protocol import fields as mesh_fields
-from innervate.networks.mesh.scenario.plan import (
-    CUT,
-    JAM,
-    KILL,
-    ONE,
-    QUIET,
-    RESTART,
-    RESTORE,
-    REVIVE,
-    UNHEARD,
-    MeshFault,
-    Offer,
-    Walk,
-)
+from innervate.networks.mesh.scenario.plan import ONE, MeshFault, Offer, Walk
+from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.sim.tables import uniform
+from innervate.topology.placement import UNHEARD
 from tests.mesh_runs import mesh_plan, radio, run
 
 QUIET_RUN = settings(deadline=None, suppress_health_check=list(HealthCheck))

@@ -5,10 +5,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from innervate.networks.radio.protocol import fields as radio_fields
-from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
+from innervate.networks.radio.scenario.plan import RadioFault
 from innervate.networks.radio.sim.simulate import simulate
 from innervate.networks.radio.sim.stacks import PROTOCOLS
 from innervate.networks.skin.sim.simulate import InvariantBroken
+from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 from tests.parity.test_skin_parity import assert_same
 from tests.radio_runs import START_US, radio_plan
 

@@ -3,6 +3,7 @@ from types import SimpleNamespace
 import matplotlib.image
 import pytest
 
+from innervate.dialect.access import REPORT_DELIVERED
 from innervate.networks.radio.analysis import summary as radio
 from innervate.networks.radio.analysis.headline import headline
 from innervate.networks.radio.plot import figures as radio_figures
@@ -16,12 +17,12 @@ from innervate.networks.radio.protocol.constants import (
     NO_PROOF,
     OPEN,
     REPORT,
-    REPORT_DELIVERED,
     REPORT_FAILED,
     REPORT_TURN,
 )
-from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
+from innervate.networks.radio.scenario.plan import RadioFault
 from innervate.plot import page, style
+from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 from tests.plot.test_report import read
 from tests.radio_runs import START_US, run
 

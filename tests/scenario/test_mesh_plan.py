@@ -12,10 +12,11 @@ import pytest
 from innervate.networks.mesh.protocol.constants import END_TO_END, MONITOR, PRIORITY
 from innervate.networks.mesh.protocol.fields import PARAMS
 from innervate.networks.mesh.scenario.network import quality_cdb, reception_q15
-from innervate.networks.mesh.scenario.plan import CUT, JAM, KILL, ONE, REVIVE, UNHEARD, MeshPlan
+from innervate.networks.mesh.scenario.plan import ONE, MeshPlan
 from innervate.networks.mesh.scenario.words import warnings
 from innervate.scenario import ScenarioError, bundled, check, dump, load, loads, plan, template
-from innervate.topology.placement import components, good_links, neighbours
+from innervate.scenario.actions.field import CUT, JAM, KILL, REVIVE
+from innervate.topology.placement import UNHEARD, components, good_links, neighbours
 
 MESHES = sorted(name for name in bundled() if name.startswith("mesh"))
 

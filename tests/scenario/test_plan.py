@@ -5,18 +5,10 @@ from __future__ import annotations
 import pytest
 
 from innervate.networks.skin.protocol import fields as skin_fields
-from innervate.networks.skin.scenario.plan import (
-    CUT,
-    KILL,
-    LOOSE,
-    LOSE,
-    RESTART,
-    RESTORE,
-    REVIVE,
-    Plan,
-)
+from innervate.networks.skin.scenario.plan import Plan
 from innervate.networks.skin.scenario.script import DELIVER, DETECT, DRAW, STEP_LOSE, TICK
 from innervate.scenario import ScenarioError, load, loads, plan
+from innervate.scenario.actions.cables import CUT, KILL, LOOSE, LOSE, RESTART, RESTORE, REVIVE
 
 
 def test_parameters_are_those_of_the_protocol(small: str) -> None:

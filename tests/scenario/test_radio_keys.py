@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.networks.radio.scenario.plan import JOIN, KILL
 from innervate.networks.radio.scenario.traffic import exponential
 from innervate.scenario import ScenarioError, check, dump, from_dict, load, loads, plan, template
+from innervate.scenario.actions.channel import JOIN, KILL
 from innervate.trace.streams import stream
 
 SMALL = """\

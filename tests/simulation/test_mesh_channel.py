@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 
 from innervate import run as run_scenario
+from innervate.dialect.access import QUEUE
 from innervate.networks.mesh.protocol.constants import ACK, ALARM, DATA, REPORT_HOP
-from innervate.networks.mesh.scenario.plan import KILL, RESTART, REVIVE, MeshFault, Offer
+from innervate.networks.mesh.scenario.plan import MeshFault, Offer
 from innervate.networks.mesh.sim import channel, over_channel
 from innervate.networks.mesh.sim.simulate import simulate
-from innervate.networks.radio.protocol.constants import QUEUE
 from innervate.networks.radio.scenario.baselines import NUMBERS
 from innervate.networks.skin.sim.simulate import InvariantBroken
 from innervate.scenario import load, plan
+from innervate.scenario.actions.field import KILL, RESTART, REVIVE
 from innervate.sim.channel import build
 from tests.mesh_channel_runs import SLOT_US, TURN_US, slots, team
 from tests.mesh_pinger import REPORT_HEARD, REPORT_SENT

@@ -2,18 +2,10 @@
 
 import pytest
 
-from innervate.networks.mesh.scenario.plan import (
-    CUT,
-    JAM,
-    KILL,
-    ONE,
-    QUIET,
-    RESTART,
-    RESTORE,
-    REVIVE,
-)
+from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.mesh.scenario.plan import MeshFault as Fault
 from innervate.networks.mesh.sim.recorder import MAC
+from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from tests.mesh_pinger import REPORT_HEARD, REPORT_SENT, REPORT_TICK
 from tests.mesh_runs import LOUD, TURN_US, both_ways, mesh_plan, radio, run
 

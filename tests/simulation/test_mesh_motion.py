@@ -5,7 +5,8 @@ import math
 
 import pytest
 
-from innervate.networks.mesh.scenario.plan import UNHEARD, Walk
+from innervate.networks.mesh.scenario.plan import Walk
+from innervate.topology.placement import UNHEARD
 from tests.mesh_pinger import REPORT_HEARD, REPORT_PLACE, REPORT_SPEED
 from tests.mesh_runs import mesh_plan, radio, run
 

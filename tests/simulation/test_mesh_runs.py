@@ -8,9 +8,9 @@ import pytest
 from innervate.dialect.outbox import deliver, report, send
 from innervate.networks.mesh.protocol.frames import copy_frame
 from innervate.networks.mesh.sim import simulate as simulation
+from innervate.networks.mesh.sim.build import build, grow_seen
 from innervate.networks.mesh.sim.recorder import place_of
 from innervate.networks.skin.sim.simulate import InvariantBroken
-from innervate.sim.field.build import build, grow_seen
 from tests import mesh_pinger
 from tests.mesh_runs import mesh_plan, run
 
@@ -48,7 +48,7 @@ def test_without_rows_the_run_is_the_same():
 
 def test_rows_are_kept_when_their_tables_are_full(monkeypatch):
     whole = run(busy_plan())
-    monkeypatch.setattr("innervate.sim.field.build.PLAIN_ROWS", 40)
+    monkeypatch.setattr("innervate.networks.mesh.sim.build.PLAIN_ROWS", 40)
     seen = []
     assert same(whole, run(busy_plan(), progress=lambda now, end: seen.append((now, end))))
     assert len(seen) > 3

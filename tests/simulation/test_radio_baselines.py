@@ -7,9 +7,10 @@ from innervate.networks.radio.analysis import formulas as forms
 from innervate.networks.radio.analysis import summary as analysis
 from innervate.networks.radio.protocol.constants import REPORT_COLLISION, REPORT_STOPPED
 from innervate.networks.radio.scenario.baselines import NUMBERS
-from innervate.networks.radio.scenario.plan import JOIN, KILL, LEAVE, RadioFault
+from innervate.networks.radio.scenario.plan import RadioFault
 from innervate.networks.radio.sim.simulate import simulate
 from innervate.networks.radio.slotted.model import slotted
+from innervate.scenario.actions.channel import JOIN, KILL, LEAVE
 from innervate.sim.tables import uniform
 from tests.radio_baseline_runs import SLOT_US, TAU_US, baseline_plan, run_baseline, saturate
 from tests.radio_runs import START_US

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from innervate.networks.radio.protocol.constants import DATA, REPORT_BOUNDS
-from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
+from innervate.networks.radio.scenario.plan import RadioFault
+from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 from innervate.sim.tables import uniform
 from tests.radio_runs import START_US, run
 

@@ -2,17 +2,16 @@
 
 import pytest
 
+from innervate.dialect.access import FORCE, REPORT_DELIVERED
 from innervate.networks.radio.protocol.constants import (
     CRR,
     DATA,
-    FORCE,
     LAST,
     MAIN,
     OTHER,
     OUTSIDER,
     REPORT_COLLISION,
     REPORT_COUNT,
-    REPORT_DELIVERED,
     REPORT_ROLE,
     REPORT_TURN,
     REPORTER,

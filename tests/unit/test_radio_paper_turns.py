@@ -2,18 +2,16 @@
 
 import pytest
 
+from innervate.dialect.access import LEAVE, REPORT_DELIVERED, REPORT_LEFT
 from innervate.networks.radio.protocol import paper as radio_paper
 from innervate.networks.radio.protocol.constants import (
     ACT,
     CRR,
     DATA,
-    LEAVE,
     MAIN,
     OUTSIDER,
     REPORT_COLLISION,
     REPORT_COUNT,
-    REPORT_DELIVERED,
-    REPORT_LEFT,
     REPORT_ROLE,
     REPORT_TURN,
     REPORTER,

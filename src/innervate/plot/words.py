@@ -6,17 +6,8 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from innervate.networks.skin.protocol.constants import PORTS
-from innervate.networks.skin.scenario.plan import (
-    CUT,
-    KILL,
-    LOOSE,
-    LOSE,
-    LOSS_ONE,
-    RESTART,
-    RESTORE,
-    REVIVE,
-    Fault,
-)
+from innervate.networks.skin.scenario.plan import LOSS_ONE, Fault
+from innervate.scenario.actions.cables import CUT, KILL, LOOSE, LOSE, RESTART, RESTORE, REVIVE
 from innervate.topology import Graph
 
 LOST = {

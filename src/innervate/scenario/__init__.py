@@ -6,19 +6,10 @@ from innervate.networks.mesh.scenario import planning as mesh_planning
 from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan
 from innervate.networks.radio.scenario import planning as radio_planning
 from innervate.networks.radio.scenario.plan import RadioFault, RadioPlan
-from innervate.networks.skin.scenario.plan import (
-    CUT,
-    KILL,
-    LOOSE,
-    LOSE,
-    RESTART,
-    RESTORE,
-    REVIVE,
-    Fault,
-    Plan,
-)
+from innervate.networks.skin.scenario.plan import Fault, Plan
 from innervate.networks.skin.scenario.plan import plan as skin_planning
 from innervate.networks.skin.scenario.touch import Touch
+from innervate.scenario.actions.cables import CUT, KILL, LOOSE, LOSE, RESTART, RESTORE, REVIVE
 from innervate.scenario.bundled import bundled
 from innervate.scenario.check import check, describe, summary
 from innervate.scenario.emit import dump, inline

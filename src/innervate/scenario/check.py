@@ -9,15 +9,8 @@ from innervate.networks.mesh.scenario import planning as mesh_planning
 from innervate.networks.mesh.scenario import words as mesh_words
 from innervate.networks.radio.scenario import planning as radio_planning
 from innervate.networks.radio.scenario import words as radio_words
-from innervate.networks.skin.scenario.plan import (
-    ACTIONS,
-    LOSS_ONE,
-    RULES,
-    UPDATES,
-    Fault,
-    Plan,
-    plan,
-)
+from innervate.networks.skin.scenario.plan import LOSS_ONE, RULES, UPDATES, Fault, Plan, plan
+from innervate.scenario.actions.cables import ACTIONS
 from innervate.scenario.load import Scenario, load
 from innervate.scenario.overrides import Override
 from innervate.topology import Graph

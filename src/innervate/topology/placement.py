@@ -149,3 +149,6 @@ def components(near: Sequence[Sequence[int]]) -> list[list[int]]:
         left.difference_update(part)
         found.append(part)
     return sorted(found, key=lambda part: (-len(part), part))
+
+
+UNHEARD = -32_768  # in `rssi_cdb`: no signal at all

@@ -7,18 +7,18 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from innervate.networks.mesh.sim import build as mesh_build
 from innervate.networks.mesh.sim import channel, stacks
+from innervate.networks.mesh.sim import loop as mesh_loop
 from innervate.networks.mesh.sim import simulate as mesh
-from innervate.networks.radio.scenario.plan import KILL, LEAVE
 from innervate.networks.radio.sim import simulate as radio
-from innervate.networks.skin.scenario.plan import LOSE
 from innervate.networks.skin.sim import simulate as skin
 from innervate.networks.skin.view.touching import Finger
+from innervate.scenario.actions.cables import LOSE
+from innervate.scenario.actions.channel import KILL, LEAVE
 from innervate.sim import heap, wheel
 from innervate.sim.cables import build as skin_build
 from innervate.sim.channel import build as radio_build
-from innervate.sim.field import build as mesh_build
-from innervate.sim.field import loop as mesh_loop
 from innervate.sim.field import queue as mesh_queue
 from innervate.sim.status import POOL_FULL
 from innervate.sim.tables import get, put

@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from innervate.dialect.access import CLOCK, LEAVE, RESULT
 from innervate.networks.radio import tables as radio_tables
 from innervate.networks.radio.analysis import summary as analysis
 from innervate.networks.radio.analysis.summary_keys import RadioSummary, SlottedSummary
-from innervate.networks.radio.protocol.constants import CLOCK, LEAVE, MAIN, RESULT
+from innervate.networks.radio.protocol.constants import MAIN
 from innervate.networks.radio.sim import simulate as simulator
 from innervate.networks.radio.slotted import run as radio_slotted
 from innervate.sim.channel.loop import ON_CARRIER

@@ -9,8 +9,8 @@ import numpy as np
 from innervate.dialect import rng
 from innervate.kernel import records
 from innervate.networks.radio.protocol import fields as radio_fields
-from innervate.networks.radio.scenario.plan import BEGIN
 from innervate.networks.radio.sim.stacks import PROTOCOLS
+from innervate.scenario.actions.channel import BEGIN
 from innervate.sim.channel import world as r
 from innervate.sim.channel.loop import BATCH
 from innervate.sim.channel.medium import NEVER

@@ -3,10 +3,7 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-from innervate.dialect.arith import MASK16, MASK30
-from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, STOP
-from innervate.kernel.bits import mix
-from innervate.networks.radio.protocol.constants import (
+from innervate.dialect.access import (
     CLOCK,
     FORCE,
     LEAVE,
@@ -16,12 +13,14 @@ from innervate.networks.radio.protocol.constants import (
     REPORT_LEFT,
     RESULT,
 )
-from innervate.networks.radio.scenario.plan import BEGIN, FADE, GARBLE, JOIN, KILL
-from innervate.networks.radio.scenario.plan import LEAVE as RETIRE
-from innervate.networks.radio.sim import traffic
+from innervate.dialect.arith import MASK16, MASK30
+from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, STOP
+from innervate.kernel.bits import mix
 from innervate.networks.radio.sim.recorder import keep_received, keep_sent, watch
+from innervate.scenario.actions.channel import BEGIN, FADE, GARBLE, JOIN, KILL
+from innervate.scenario.actions.channel import LEAVE as RETIRE
 from innervate.sim import heap as queue
-from innervate.sim.channel import medium
+from innervate.sim.channel import medium, traffic
 from innervate.sim.channel.medium import NEVER
 from innervate.sim.channel.world import RING, TIMERS
 from innervate.sim.heap import (

@@ -14,7 +14,7 @@ from innervate.networks.mesh.sim import recorder as books
 from innervate.sim import taps
 from innervate.sim.field import powers
 from innervate.sim.field.queue import ENDS, STARTS, key_of, push
-from innervate.sim.field.world import ALIVE, COMMITTED, DEAD, FREE, HELD, ON_AIR, VOID
+from innervate.sim.field.states import ALIVE, COMMITTED, DEAD, FREE, HELD, ON_AIR, VOID
 
 NONE = -1
 DEAF = (1 << 62) - 1  # interference that nothing survives

@@ -1,8 +1,8 @@
 """Robots move: where they are, what their radio links are worth there, what they are told."""
 
-from innervate.networks.mesh.scenario.plan import UNHEARD
 from innervate.sim.field import medium, powers
-from innervate.sim.field.world import ALIVE
+from innervate.sim.field.states import ALIVE
+from innervate.topology.placement import UNHEARD
 
 SPEED_MAX = 127
 PLACE_MAX = 32767

@@ -4,7 +4,7 @@ Signals end before others start, both before anything that could look at the cha
 """
 
 from innervate.dialect.arith import MASK30
-from innervate.sim.field.world import TIMERS
+from innervate.networks.mesh.sim.world import TIMERS
 from innervate.sim.heap import (
     AIR_BITS,
     LAST,

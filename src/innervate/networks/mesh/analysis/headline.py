@@ -11,7 +11,7 @@ from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline
 from innervate.networks.mesh.analysis.alarms import Crossing
 from innervate.networks.mesh.analysis.messages import DELIVERED, NEVER, Messages, counted
 from innervate.networks.mesh.analysis.reach import Ways
-from innervate.networks.mesh.scenario.plan import CUT, JAM, KILL, RESTART
+from innervate.scenario.actions.field import CUT, JAM, KILL, RESTART
 
 __all__ = ["Traffic", "headline", "traffic"]
 

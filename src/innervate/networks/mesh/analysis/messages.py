@@ -22,7 +22,7 @@ from innervate.networks.mesh.protocol.constants import (
     REPORT_EXPIRED,
     REPORT_FULL,
 )
-from innervate.networks.mesh.scenario.plan import KILL, RESTART, REVIVE
+from innervate.scenario.actions.field import KILL, RESTART, REVIVE
 
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
 Flags = np.ndarray[Any, np.dtype[np.bool_]]

@@ -27,7 +27,7 @@ from innervate.networks.mesh.protocol.constants import (
     TABLE_ACK,
     TABLE_FREE,
 )
-from innervate.networks.mesh.scenario.plan import KILL, RESTART
+from innervate.scenario.actions.field import KILL, RESTART
 
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
 

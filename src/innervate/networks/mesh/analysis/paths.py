@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections import deque
 from typing import Any
 
-from innervate.networks.mesh.scenario.plan import CUT, KILL, RESTORE, REVIVE
+from innervate.scenario.actions.field import CUT, KILL, RESTORE, REVIVE
 
 UNREACHABLE = -1
 

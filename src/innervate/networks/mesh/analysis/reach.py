@@ -28,7 +28,7 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.sim.field.powers import CAPTURE_ONE
-from innervate.sim.field.world import ALIVE, DEAD
+from innervate.sim.field.states import ALIVE, DEAD
 from innervate.sim.tables import get
 
 FAR = 1 << 30

@@ -13,11 +13,12 @@ from innervate.networks.mesh.papers.sending import DOCUMENT, GRAPH, SEARCH, Rule
 from innervate.networks.mesh.papers.testbed import BYTES, Bed, Options
 from innervate.networks.mesh.papers.words import joined, percent, seeds_of
 from innervate.networks.mesh.protocol.constants import END_TO_END
-from innervate.networks.mesh.scenario.plan import ONE, UNHEARD, Offer
+from innervate.networks.mesh.scenario.plan import ONE, Offer
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
 from innervate.plot import style
 from innervate.sim.tables import get
+from innervate.topology.placement import UNHEARD
 from innervate.trace.streams import stream
 
 LOSSES = (0, 1, 2, 5, 10, 20)

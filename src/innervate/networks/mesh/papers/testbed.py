@@ -8,9 +8,10 @@ from typing import Any
 
 from innervate import scenario as scenarios
 from innervate.networks.mesh.protocol.constants import END_TO_END
-from innervate.networks.mesh.scenario.plan import KILL, MeshFault, MeshPlan, Offer
+from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan, Offer
 from innervate.networks.mesh.sim.simulate import MeshResult, simulate
 from innervate.papers.experiment import Point
+from innervate.scenario.actions.field import KILL
 from innervate.trace.streams import stream
 
 Options = tuple[tuple[str, Any], ...]

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from innervate.networks.mesh.protocol import constants as w
-from innervate.networks.mesh.scenario.plan import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.plot.words import ms_words, number_of, share_words
+from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 
 PACKETS = {
     w.REQUEST: "a discovery request",

@@ -7,16 +7,8 @@ from typing import Any
 
 from innervate.networks.mesh.scenario.model import MeshEventTable, MeshScenario
 from innervate.networks.mesh.scenario.nodes import Nodes
-from innervate.networks.mesh.scenario.plan import (
-    CUT,
-    JAM,
-    KILL,
-    QUIET,
-    RESTART,
-    RESTORE,
-    REVIVE,
-    MeshFault,
-)
+from innervate.networks.mesh.scenario.plan import MeshFault
+from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.trace.streams import Stream, stream
 
 ACTIONS = {"kill": KILL, "revive": REVIVE, "cut": CUT, "restore": RESTORE, "jam": JAM,

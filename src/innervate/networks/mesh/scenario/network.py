@@ -8,11 +8,11 @@ from typing import Any
 
 from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.networks.mesh.scenario.nodes import Nodes, listed
-from innervate.networks.mesh.scenario.plan import ONE, UNHEARD, MeshRadio
+from innervate.networks.mesh.scenario.plan import ONE, MeshRadio
 from innervate.networks.mesh.scenario.profiles import GOOD_CDB, REPORT_CDB, Profile
 from innervate.scenario.errors import ScenarioError
 from innervate.topology import placement
-from innervate.topology.placement import Point
+from innervate.topology.placement import UNHEARD, Point
 from innervate.trace.streams import stream
 
 MEAN_DEGREE = 8.0

@@ -5,10 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-KILL, REVIVE, CUT, RESTORE, JAM, QUIET, RESTART = range(7)
-
 CLASSES = (32, 64, 254)  # capacity classes: nodes that a record has room for
-UNHEARD = -32_768  # in `rssi_cdb`: no signal at all
 ONE = 32_768
 HEADER_SLOTS = 2  # what medium access protocols of radio teams put in front of a frame, bytes
 

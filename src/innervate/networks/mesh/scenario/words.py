@@ -5,7 +5,8 @@ from __future__ import annotations
 from innervate.networks.mesh.protocol.constants import MONITOR, PATH_MAX, TABLE_FREE, TABLES
 from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.networks.mesh.scenario.nodes import listed
-from innervate.networks.mesh.scenario.plan import JAM, MeshFault, MeshPlan
+from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan
+from innervate.scenario.actions.field import JAM
 from innervate.topology.placement import distances, neighbours
 
 EVENTS_SHOWN = 12

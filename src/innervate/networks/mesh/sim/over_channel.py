@@ -8,19 +8,19 @@ the mesh's queue, which goes first at equal times.
 from collections.abc import Callable
 from typing import NamedTuple
 
+from innervate.dialect.access import QUEUE
 from innervate.kernel.bits import mix
 from innervate.networks.mesh.protocol.constants import ACK
 from innervate.networks.mesh.scenario.plan import HEADER_SLOTS
 from innervate.networks.mesh.sim import recorder as books
-from innervate.networks.radio.protocol.constants import QUEUE
-from innervate.networks.radio.sim import traffic
 from innervate.sim import heap, taps
 from innervate.sim.channel import loop as radio_loop
 from innervate.sim.channel import medium as channel
+from innervate.sim.channel import traffic
 from innervate.sim.channel.world import RING
 from innervate.sim.field import medium, queue
 from innervate.sim.field.medium import NONE
-from innervate.sim.field.world import ALIVE, HELD, VOID
+from innervate.sim.field.states import ALIVE, HELD, VOID
 
 KEPT = 32  # frames of a node that are kept; more than its medium access can hold
 

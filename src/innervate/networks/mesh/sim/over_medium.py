@@ -14,7 +14,7 @@ from innervate.networks.mesh.sim.recorder import MAC
 from innervate.sim import rows, taps
 from innervate.sim.field import medium, queue
 from innervate.sim.field.medium import NONE
-from innervate.sim.field.world import COMMITTED, FREE, HELD, ON_AIR
+from innervate.sim.field.states import COMMITTED, FREE, HELD, ON_AIR
 from innervate.sim.status import DONE, ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 
 NEVER = -1

@@ -3,7 +3,7 @@
 from innervate.kernel.bits import mix
 from innervate.networks.mesh.protocol.frames import copy_frame
 from innervate.sim import taps
-from innervate.sim.field.world import ON_AIR
+from innervate.sim.field.states import ON_AIR
 
 BROKEN_OUTBOX = 2
 BROKEN_RANGE = 3

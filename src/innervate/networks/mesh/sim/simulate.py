@@ -14,16 +14,16 @@ from innervate.kernel import door, tables
 from innervate.kernel.stop import Stop
 from innervate.kernel.wall import wall_s
 from innervate.networks.mesh.protocol import fields as mesh_fields
-from innervate.networks.mesh.sim import channel, over_channel, over_medium, stacks
+from innervate.networks.mesh.sim import build as builder
+from innervate.networks.mesh.sim import channel, loop, over_channel, over_medium, stacks
 from innervate.networks.mesh.sim import recorder as books
+from innervate.networks.mesh.sim import world as w
 from innervate.networks.radio.sim import simulate as radio_simulate
 from innervate.networks.radio.sim import stacks as radio_stacks
 from innervate.networks.skin.sim.simulate import InvariantBroken
 from innervate.sim import heap, rows, taps
 from innervate.sim.channel import loop as radio_loop
-from innervate.sim.field import build as builder
-from innervate.sim.field import loop, medium, motion, powers, queue
-from innervate.sim.field import world as w
+from innervate.sim.field import medium, motion, powers, queue
 from innervate.sim.status import BROKEN, BUDGET, DONE, POOL_FULL
 from innervate.sim.tables import get, hand_over, move_rows
 

@@ -10,7 +10,7 @@ from innervate.networks.mesh.plot.map import monitor_of
 from innervate.networks.mesh.plot.sheet import WIDTH, is_to_scale, laid_out
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.mesh.scenario.profiles import GOOD_CDB
-from innervate.sim.field.world import ALIVE
+from innervate.sim.field.states import ALIVE
 
 UP, DOWN, AWAY = 1, 0, 2  # of links; AWAY: out of range for now
 

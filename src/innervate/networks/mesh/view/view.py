@@ -12,11 +12,12 @@ from innervate.networks.mesh.analysis.headline import headline
 from innervate.networks.mesh.analysis.reach import Ways, of_simulation
 from innervate.networks.mesh.plot.words import fault_words
 from innervate.networks.mesh.protocol import constants as w
-from innervate.networks.mesh.scenario.plan import CUT, KILL, QUIET, RESTORE, REVIVE, MeshFault
+from innervate.networks.mesh.scenario.plan import MeshFault
+from innervate.networks.mesh.sim.build import MACS
 from innervate.networks.mesh.view.books import Books
 from innervate.networks.mesh.view.scene import Field
-from innervate.sim.field.build import MACS
-from innervate.sim.field.world import ALIVE, DEAD, ON_AIR
+from innervate.scenario.actions.field import CUT, KILL, QUIET, RESTORE, REVIVE
+from innervate.sim.field.states import ALIVE, DEAD, ON_AIR
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import History

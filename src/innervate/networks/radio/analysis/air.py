@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from innervate.networks.radio.protocol.constants import CRR, DATA, OPEN, REPORT_LEFT, REPORT_STOPPED
-from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL
+from innervate.dialect.access import REPORT_LEFT
+from innervate.networks.radio.protocol.constants import CRR, DATA, OPEN, REPORT_STOPPED
+from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL
 
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
 Flags = np.ndarray[Any, np.dtype[np.bool_]]

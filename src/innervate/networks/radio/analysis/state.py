@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from innervate.networks.radio.analysis.headline import RadioFacts, patience_us
-from innervate.networks.radio.scenario.plan import JOIN
+from innervate.scenario.actions.channel import JOIN
 from innervate.sim.channel.world import RING
 from innervate.sim.tables import get
 

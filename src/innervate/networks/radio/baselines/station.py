@@ -3,17 +3,10 @@
 CSMA/CD and DCF stand in contend.py, ALOHA, CSMA and TDMA in slots.py, splitting in tree.py.
 """
 
+from innervate.dialect.access import CLOCK, FORCE, LEAVE, PACKET, RESULT
 from innervate.networks.radio.baselines import contend, slots, tree
 from innervate.networks.radio.baselines.common import LISTEN, SEND, STOPPED, TOLD
-from innervate.networks.radio.protocol.constants import (
-    CLOCK,
-    DATA,
-    FORCE,
-    LEAVE,
-    MAIN,
-    PACKET,
-    RESULT,
-)
+from innervate.networks.radio.protocol.constants import DATA, MAIN
 from innervate.networks.radio.protocol.station import enqueue, hand_up, leave, reset
 from innervate.networks.radio.scenario.baselines import DCF as LAST_WITHOUT_CLOCK
 from innervate.networks.radio.scenario.baselines import TREE as TREE_MAC

@@ -16,6 +16,7 @@ from functools import partial
 from typing import Any, Protocol
 
 from innervate.dialect import plain
+from innervate.dialect.access import PACKET, QUEUE, REPORT_DELIVERED
 from innervate.dialect.rng import seeded
 from innervate.live.errors import LiveError
 from innervate.live.links import Path
@@ -25,7 +26,6 @@ from innervate.networks.mesh.live.receipts import DELIVERED, REFUSED, Receipt
 from innervate.networks.radio import frames as wire
 from innervate.networks.radio.protocol import fields as fields
 from innervate.networks.radio.protocol import practical as radio_practical
-from innervate.networks.radio.protocol.constants import PACKET, QUEUE, REPORT_DELIVERED
 
 OUTBOX = 8
 TIMERS = 2

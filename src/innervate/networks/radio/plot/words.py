@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from innervate.dialect.access import REPORT_DELIVERED, REPORT_LEFT
 from innervate.networks.radio.protocol.constants import (
     CRR,
     DATA,
@@ -17,17 +18,15 @@ from innervate.networks.radio.protocol.constants import (
     REPORT,
     REPORT_BOUNDS,
     REPORT_COLLISION,
-    REPORT_DELIVERED,
     REPORT_DROPPED,
     REPORT_FAILED,
-    REPORT_LEFT,
     REPORT_ROLE,
     REPORT_SKIPPED,
     REPORT_STOPPED,
     REPORT_TURN,
 )
-from innervate.networks.radio.scenario.plan import FADE, GARBLE, JOIN, KILL, LEAVE
 from innervate.plot.words import ms_words, number_of
+from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 
 
 class FrameWords(NamedTuple):

@@ -6,33 +6,23 @@ DATA = 2  # a packet, or several of one turn
 OPEN = 3  # practical mode: begins a sequence; a probe, or the first packet
 REPORT = 4  # practical mode: which minislots were good, what follows
 
-# Inputs.
-PACKET = 1  # item: a packet to send (see radio_fields.PACKET)
-LEAVE = 2  # finish and send no more
-FORCE = 3  # paper mode: a packet to send at once, whatever the carrier says
-RESULT = 4  # baselines: item.handle stations received our last packet
-CLOCK = 5  # baselines: slot item.handle began item.ago us ago
 
 # Timers.
 MAIN = 0
 ACT = 1
 
-QUEUE = 16  # packets a station holds; its user keeps the rest
 POSITIONS = 120  # places in a round of turns; what 7 bits of a header leave
 MINISLOTS = 32  # in one window; two bits for each must fit into a report
 NONE = -1
 ALONE = 127  # in `next`: nobody else has a turn
 TURNS_MOST = 4095  # paper mode: more turns or CR-Rs than that are not counted
 
-# Reports: (code, a, b).
-REPORT_DELIVERED = 1  # packet handle a and the b - 1 after it are taken for delivered
 REPORT_FAILED = 2  # packet handle a was sent and is not delivered, for reason b
 REPORT_COLLISION = 3  # own transmission collided; a = 1: in a turn (paper)
 REPORT_TURN = 4  # own turn begins: position a (practical), turn a of b (paper)
 REPORT_ROLE = 5  # after a collision: role a (paper)
 REPORT_BOUNDS = 6  # a pair delay of a us lies outside the configured bounds; b = which bound
 REPORT_DROPPED = 7  # packet handle a was offered to a full queue
-REPORT_LEFT = 8  # sends no more and may be switched off
 REPORT_SKIPPED = 9  # own place in the round was passed over
 
 REPORT_COUNT = 10  # the window closes: a CR-Rs behind our own, b in all (paper)

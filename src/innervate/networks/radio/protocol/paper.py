@@ -5,16 +5,8 @@ added where it is silent. Step 1 stands in radio_paper_idle.py, 2 to 5 in radio_
 5 and 6 in radio_paper_reserve.py, 7 in radio_paper_turns.py.
 """
 
-from innervate.networks.radio.protocol.constants import (
-    CRR,
-    DATA,
-    FORCE,
-    LEAVE,
-    MAIN,
-    NOBODY,
-    NONE,
-    PACKET,
-)
+from innervate.dialect.access import FORCE, LEAVE, PACKET
+from innervate.networks.radio.protocol.constants import CRR, DATA, MAIN, NOBODY, NONE
 from innervate.networks.radio.protocol.paper_idle import (
     AWAIT,
     GARBLED,

@@ -7,8 +7,9 @@ Windows stand in radio_reporter.py and radio_window.py, turns in radio_turn.py a
 radio_follow.py, openings in radio_idle.py.
 """
 
+from innervate.dialect.access import LEAVE, PACKET
 from innervate.dialect.arith import MASK30
-from innervate.networks.radio.protocol.constants import CRR, DATA, LEAVE, MAIN, OPEN, PACKET, REPORT
+from innervate.networks.radio.protocol.constants import CRR, DATA, MAIN, OPEN, REPORT
 from innervate.networks.radio.protocol.follow import (
     garbled_turn,
     hear_data,

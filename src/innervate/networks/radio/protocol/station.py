@@ -1,13 +1,8 @@
 """What every station on a radio channel does: keep its packets, note the carrier, send a frame."""
 
+from innervate.dialect.access import QUEUE, REPORT_DELIVERED, REPORT_LEFT
 from innervate.dialect.outbox import deliver, report, send
-from innervate.networks.radio.protocol.constants import (
-    CRR,
-    QUEUE,
-    REPORT_DELIVERED,
-    REPORT_DROPPED,
-    REPORT_LEFT,
-)
+from innervate.networks.radio.protocol.constants import CRR, REPORT_DROPPED
 
 
 def copy_frame(to, frm):

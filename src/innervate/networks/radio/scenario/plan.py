@@ -7,8 +7,6 @@ from typing import Any
 
 from innervate.networks.radio.scenario.baselines import NONE
 
-BEGIN, JOIN, KILL, LEAVE, GARBLE, FADE = range(6)
-
 
 @dataclass(frozen=True, slots=True)
 class RadioFault:

@@ -6,18 +6,10 @@ from typing import Any
 
 from innervate.networks.radio.scenario.baselines import baseline
 from innervate.networks.radio.scenario.model import MACS, RadioEventTable, RadioScenario
-from innervate.networks.radio.scenario.plan import (
-    FADE,
-    GARBLE,
-    JOIN,
-    KILL,
-    LEAVE,
-    RadioFault,
-    RadioPlan,
-    parameters,
-)
+from innervate.networks.radio.scenario.plan import RadioFault, RadioPlan, parameters
 from innervate.networks.radio.scenario.rules import pair
 from innervate.networks.radio.scenario.traffic import OFFERS_MAX, arrivals, mean_interval_us, sizes
+from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 from innervate.trace.streams import stream
 
 ACTIONS = {"join": JOIN, "revive": JOIN, "kill": KILL, "leave": LEAVE, "garble": GARBLE,

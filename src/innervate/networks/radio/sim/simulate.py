@@ -13,11 +13,11 @@ from innervate.kernel import door, tables
 from innervate.kernel.stop import Stop
 from innervate.kernel.wall import wall_s
 from innervate.networks.radio.sim import recorder as books
-from innervate.networks.radio.sim import stacks, traffic
+from innervate.networks.radio.sim import stacks
 from innervate.networks.skin.sim.simulate import InvariantBroken
 from innervate.sim import heap, rows, taps
 from innervate.sim.channel import build as builder
-from innervate.sim.channel import loop, medium
+from innervate.sim.channel import loop, medium, traffic
 from innervate.sim.channel import world as w
 from innervate.sim.status import BROKEN, BUDGET, DONE, POOL_FULL
 from innervate.sim.tables import get, hand_over, move_rows

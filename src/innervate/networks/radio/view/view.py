@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from innervate.analysis.headline import Headline
+from innervate.dialect.access import REPORT_LEFT
 from innervate.networks.radio.analysis.air import CARRYING
 from innervate.networks.radio.analysis.headline import headline
 from innervate.networks.radio.analysis.state import facts
@@ -19,10 +20,10 @@ from innervate.networks.radio.protocol.constants import (
     OPEN,
     REPORT,
     REPORT_BOUNDS,
-    REPORT_LEFT,
     REPORT_STOPPED,
 )
-from innervate.networks.radio.scenario.plan import JOIN, KILL, RadioFault
+from innervate.networks.radio.scenario.plan import RadioFault
+from innervate.scenario.actions.channel import JOIN, KILL
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import TIMELINE, History

@@ -11,7 +11,7 @@ import numpy as np
 from innervate.export import rrd_parts
 from innervate.export.rrd_parts import ALARM, GREY, INK, PALE, PORTS, Column, Parts
 from innervate.networks.skin.export.states import States
-from innervate.networks.skin.scenario.plan import CUT, KILL, RESTORE, REVIVE
+from innervate.scenario.actions.cables import CUT, KILL, RESTORE, REVIVE
 
 STEP_US = 10_000  # between two states, unless these would be too many
 STATES_MAX = 2000

@@ -10,7 +10,8 @@ import numpy as np
 from innervate.networks.skin.analysis import load, recovery, rows
 from innervate.networks.skin.analysis.rows import Numbers
 from innervate.networks.skin.protocol.constants import NONE, PORTS
-from innervate.networks.skin.scenario.plan import CUT, KILL, RESTART, RESTORE, REVIVE, Fault
+from innervate.networks.skin.scenario.plan import Fault
+from innervate.scenario.actions.cables import CUT, KILL, RESTART, RESTORE, REVIVE
 
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
 

@@ -13,8 +13,9 @@ from innervate.networks.skin.analysis import touch
 from innervate.networks.skin.plot import map as skinmap
 from innervate.networks.skin.plot.history import History
 from innervate.networks.skin.plot.sheet import Sheet
-from innervate.networks.skin.scenario.plan import ACTIONS, Fault
+from innervate.networks.skin.scenario.plan import Fault
 from innervate.plot import charts, svg, words
+from innervate.scenario.actions.cables import ACTIONS
 
 WINDOW_PERIODS = 1.25
 ZOOMS_MAX = 6

@@ -12,6 +12,7 @@ from innervate.networks.skin.scenario.rules import ONE
 from innervate.networks.skin.scenario.script import Step, steps
 from innervate.networks.skin.scenario.targets import Damage, target
 from innervate.networks.skin.scenario.touch import Touch, sample
+from innervate.scenario.actions.cables import ACTIONS
 from innervate.scenario.load import Scenario
 from innervate.scenario.source import Source
 from innervate.topology import Graph
@@ -26,8 +27,6 @@ LOSS_ONE = 32_768
 RULES = ("feasible", "strict", "paper", "static", "paper-lax")
 BALANCE_RULES = ("even", "paper")
 UPDATES = ("periodic", "triggered", "wave")
-ACTIONS = ("cut", "restore", "kill", "revive", "loose", "restart", "lose")
-CUT, RESTORE, KILL, REVIVE, LOOSE, RESTART, LOSE = range(7)
 
 
 @dataclass(frozen=True, slots=True)

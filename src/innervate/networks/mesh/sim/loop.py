@@ -5,12 +5,13 @@ from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.kernel.bits import mix
 from innervate.networks.mesh.protocol import constants as mesh_words
 from innervate.networks.mesh.protocol.constants import MESSAGE, REPORT_GRAPH, SAMPLE, SENT
-from innervate.networks.mesh.scenario.plan import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.networks.mesh.sim import recorder as books
+from innervate.networks.mesh.sim.world import TIMERS
+from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.sim import rows
 from innervate.sim.field import medium, motion, powers, queue
 from innervate.sim.field.queue import RANK_SHIFT, STATION_SHIFT, STATIONS_MAX, TIME_SHIFT, WHAT_MASK
-from innervate.sim.field.world import ALIVE, OFF, TIMERS
+from innervate.sim.field.states import ALIVE, OFF
 from innervate.sim.status import (
     BROKEN,
     BUDGET,

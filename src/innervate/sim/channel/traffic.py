@@ -1,7 +1,7 @@
 """Packets: offered to stations, followed until their sender takes them for delivered."""
 
+from innervate.dialect.access import QUEUE
 from innervate.dialect.arith import HALF16, MASK16
-from innervate.networks.radio.protocol.constants import QUEUE
 from innervate.sim.channel.medium import NEVER
 from innervate.sim.channel.world import RING
 from innervate.sim.heap import OFFER, key_of, push

@@ -12,11 +12,11 @@ from innervate.networks.mesh.protocol import csma_fields
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.sim import channel
 from innervate.networks.mesh.sim import recorder as books
+from innervate.networks.mesh.sim import world as m
+from innervate.networks.mesh.sim.loop import BOOT, NEVER
 from innervate.networks.mesh.sim.over_channel import KEPT
 from innervate.sim.channel.world import Heap
 from innervate.sim.field import powers, queue
-from innervate.sim.field import world as m
-from innervate.sim.field.loop import BOOT, NEVER
 from innervate.sim.field.medium import NONE
 from innervate.sim.tables import ACTION, TAP, Out, Tables, get, put, uniform
 

@@ -43,18 +43,6 @@ WIDE = frozenset({"time", "start", "end", "phase", "offset", "noise", "x", "y", 
 # Timers of a node: the router's, then those of the medium access below it.
 TIMERS = mesh_words.TIMERS + csma.TIMERS
 
-# States of a node.
-OFF = 0
-ALIVE = 1
-DEAD = 2
-
-# States of a place for a frame under way.
-FREE = 0
-HELD = 1  # waits for the channel
-COMMITTED = 2  # the radio turns round
-ON_AIR = 3
-VOID = 4  # its sender died; free as soon as its event in the queue is due
-
 
 class World(NamedTuple):
     """All of it."""

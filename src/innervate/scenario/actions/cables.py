@@ -1,0 +1,4 @@
+"""What can be done to a network of cables while it runs."""
+
+ACTIONS = ("cut", "restore", "kill", "revive", "loose", "restart", "lose")
+CUT, RESTORE, KILL, REVIVE, LOOSE, RESTART, LOSE = range(7)
