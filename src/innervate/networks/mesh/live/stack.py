@@ -16,14 +16,12 @@ from innervate.networks.mesh.protocol.constants import (
     ACK_WANTED,
     ALL,
     ALTERNATE,
-    OWN,
     SEARCH,
     TABLE_FREE,
     TABLES,
     TIMERS,
 )
 from innervate.networks.mesh.protocol.frames import is_sound
-from innervate.networks.mesh.protocol.messages import resolve
 from innervate.networks.mesh.protocol.neighbours import (
     FREE,
     SUSPECT,
@@ -31,8 +29,6 @@ from innervate.networks.mesh.protocol.neighbours import (
     is_suspect,
     place_of,
 )
-from innervate.networks.mesh.protocol.queue import has_room
-from innervate.networks.mesh.protocol.retransmission import crowds, is_ahead
 from innervate.networks.mesh.protocol.route import alternate, planned
 from innervate.networks.mesh.protocol.upward import is_better, is_uplink
 
@@ -150,13 +146,6 @@ class MeshStack:
     def decode(self, data: bytes) -> int:
         """Read bytes into the inbox; 0, or why not."""
         return wire.decode(data, self.inbox)
-
-    def may_send(self, recipient: int) -> bool:
-        """True if the router takes a message of ours, besides what others send through it."""
-        if not has_room(self.node, OWN) or 0 not in self.node.wait_kind:
-            return False
-        dest = resolve(self.node, self.params, recipient)
-        return not is_ahead(self.node, dest) and not crowds(self.node, dest)
 
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """Where a frame leaves: on the path its receiver was heard on last; None = on all.

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from innervate.networks.radio.plot.words import robots
+from innervate.networks.radio.scenario.words import warnings
 from innervate.plot import charts, words
 from innervate.plot.page import element, figure, headline, pictures, section, tiles
 
@@ -41,6 +42,7 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         (f"{summary['collisions']:,}", "collisions"),
     ]
     parts = [element("p", over, "over"), headline(summary["headline"]), element("p", head)]
+    parts += [element("p", warning) for warning in warnings(result.plan)]
     parts.append(tiles(found))
     return "<header>\n" + "".join(parts) + "</header>"
 
