@@ -19,7 +19,7 @@ from innervate.sim import taps
 from innervate.sim.cables import build as builder
 from innervate.sim.cables import loop
 from innervate.sim.cables import world as w
-from innervate.sim.cables.wires import ARRIVED, URGENT_BLOCK
+from innervate.sim.cables.wires import ARRIVED, BLOCKS
 from innervate.sim.status import BROKEN, BUDGET, DONE, POOL_FULL
 from innervate.sim.tables import get, hand_over, put, row_dtype
 
@@ -63,6 +63,7 @@ def _modules() -> list[ModuleType]:
     from innervate.dialect import rng as generator
     from innervate.networks.skin import invariants
     from innervate.networks.skin.protocol import cell as skin
+    from innervate.networks.skin.protocol import down as skin_down
     from innervate.networks.skin.protocol import route as skin_route
     from innervate.networks.skin.protocol import sink as skin_sink
     from innervate.networks.skin.protocol import static as skin_static
@@ -71,7 +72,7 @@ def _modules() -> list[ModuleType]:
     from innervate.sim.cables import wires
 
     return [
-        arith, outbox, generator, skin_route, skin, skin_sink, skin_static,
+        arith, outbox, generator, skin_route, skin_down, skin, skin_sink, skin_static,
         wheel, clocks, wires, delays, invariants, checks, skin_stack, static_stack,
     ]  # fmt: skip
 
@@ -79,10 +80,10 @@ def _modules() -> list[ModuleType]:
 def _rare() -> list[ModuleType]:
     """What runs too seldom to be worth copying into every caller."""
     from innervate.networks.skin.sim import observer, touch
-    from innervate.sim import rows
+    from innervate.sim import orders, rows
     from innervate.sim.cables import commands
 
-    return [observer, commands, touch, rows, taps]
+    return [observer, commands, orders, touch, rows, taps]
 
 
 @functools.cache
@@ -175,7 +176,7 @@ def _result(
         wall_s=took_s,
         fingerprint=f"{int(get(world.run, 0, 'fingerprint')) & (1 << 64) - 1:016x}",
         handled=int(get(world.run, 0, "handled")),
-        arrived=int(world.counters[ARRIVED] + world.counters[ARRIVED + URGENT_BLOCK]),
+        arrived=sum(int(world.counters[ARRIVED + block]) for block in BLOCKS),
         interrupted=interrupted,
     )
 
