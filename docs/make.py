@@ -12,6 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from innervate.networks.skin.tables import TABLES
+from innervate.networks.mesh.papers import readings as mesh_readings
+from innervate.networks.radio.papers import readings as radio_readings
+from innervate.networks.skin.papers import readings as skin_readings
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.radio.protocol import fields as radio_fields
 from innervate.networks.skin.protocol import fields as skin_fields
@@ -38,6 +41,16 @@ def field_table(fields: Iterable[tuple[str, object, int, int, str, str]]) -> str
         many = {0: "", "ports": " per port"}.get(length, f", {length} of them")  # type: ignore[call-overload]
         rows.append(f"| `{name}` | {low} .. {high}{many} | {unit} | {meaning} |")
     return "\n".join(rows)
+
+
+def reading_table(readings: dict[str, str]) -> str:
+    """Labels of readings and their sentences as a Markdown table."""
+    rows = [f"| {label} | {_cell(sentence)} |" for label, sentence in readings.items()]
+    return "\n".join(["| label | what it says |", "|---|---|", *rows])
+
+
+def _cell(text: str) -> str:
+    return text.replace("*", "\\*").replace("|", "\\|").replace("_", "\\_")
 
 
 def run_tables(given: Iterable[tables.Table]) -> str:
@@ -120,6 +133,9 @@ PARTS = (
     ("wire.md", "wire-radio", lambda: layout_tables(radio.LAYOUTS, meanings(radio_fields.FRAME))),
     ("reading-a-report.md", "tables", lambda: run_tables(TABLES)),
     ("reading-a-report.md", "radio-tables", lambda: run_tables(radio_tables.TABLES)),
+    ("readings.md", "skin-readings", lambda: reading_table(skin_readings.READINGS)),
+    ("readings.md", "radio-readings", lambda: reading_table(radio_readings.READINGS)),
+    ("readings.md", "mesh-readings", lambda: reading_table(mesh_readings.READINGS)),
     ("reading-a-report.md", "mesh-tables", lambda: run_tables(mesh_tables.TABLES)),
 )
 

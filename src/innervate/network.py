@@ -20,6 +20,7 @@ PARTS = {
     "check": "(source, model): raises ScenarioError at the first thing that does not fit together",
     "plan": "(scenario) -> the plan of its run, whole numbers only; `plan.kind` is the name",
     "describe": "(plan) -> str: the scenario in a few lines, without running it",
+    "fault_words": '(plan, fault) -> str: "at 2 s cut pc.1 - p0 r16 c7 down"',
     "actions": "tuple of str: what can be done to it while it runs, in the order of their numbers",
     "template": "str: a commented scenario to start from",
     "anchor": "(tables, source): makes relative paths in a scenario's tables absolute",

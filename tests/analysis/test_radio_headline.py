@@ -4,7 +4,8 @@ import pytest
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK
 from innervate.networks.radio.analysis.headline import RadioFacts, headline, patience_us
-from innervate.networks.radio.analysis.state import Still, facts, of_stations
+from innervate.networks.radio.analysis.live import Still, of_stations
+from innervate.networks.radio.analysis.state import facts
 from innervate.networks.radio.analysis.summary import facts as facts_of_run
 from innervate.networks.radio.analysis.summary import summarize
 from innervate.networks.radio.scenario.plan import RadioFault
@@ -61,6 +62,8 @@ def test_all_is_well():
         ({"off": (1, 3), "delivered": 6, "abandoned": 4},
          {"away": (1, 3), "delivered": 6, "abandoned": 4},
          DEGRADED, "Robots 1 and 3 are off with 4 packets not sent; all 6 packets were", (1, 3)),
+        ({"off": (1,), "away": (3,), "delivered": 6, "abandoned": 4}, {}, DEGRADED,
+         "Robot 1 is off; all 6 packets were delivered.", (1,)),
         ({"dropped": 1, "delivered": 9}, {}, DEGRADED, "1 packet found a full queue; 9 of 10", ()),
         ({"delivered": 9, "pending": 1, "overdue": 1, "waiting": (2,)},
          {"delivered": 9, "pending": 1}, DEGRADED,
@@ -70,8 +73,8 @@ def test_all_is_well():
          "1 pair of robots does not hear each other; all 10", (0, 3)),
         ({"bounds": {}, "stations_wrong": (1,)}, {}, DEGRADED,
          "Delays lie outside what stations believe; all 10", (1,)),
-        ({"bounds": {"believed_us": [52, 104], "measured_us": [48, 52]}}, {}, DEGRADED,
-         "Delays of 48 to 52 us were measured where stations believe 52 to 104 us; all", ()),
+        ({"bounds": {"believed_us": [52, 104]}}, {}, DEGRADED,
+         "Delays lie outside the 52 to 104 us that stations believe; all", ()),
     ],
 )  # fmt: skip
 def test_both_sides(there, absent, level, text, nodes):
@@ -83,7 +86,7 @@ def test_both_sides(there, absent, level, text, nodes):
 
 
 def test_delays_measured_among_hidden_pairs_are_none():
-    text = of(hidden=((0, 3),), bounds={"believed_us": [52, 104], "measured_us": [1, 420]})[1]
+    text = of(hidden=((0, 3),), bounds={"believed_us": [52, 104]})[1]
     assert text == "1 pair of robots does not hear each other; all 10 packets were delivered."
 
 

@@ -3,6 +3,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import innervate
+from innervate.cli.show import summary_lines
 from innervate.dialect.access import REPORT_LEFT
 from innervate.networks.radio.analysis import air as radio_air
 from innervate.networks.radio.analysis import airtime as radio_airtime
@@ -12,6 +14,7 @@ from innervate.networks.radio.protocol.constants import CRR, DATA, OPEN, REPORT_
 from innervate.networks.radio.scenario.plan import RadioFault
 from innervate.networks.radio.sim.build import build
 from innervate.networks.radio.sim.simulate import COUNTS
+from innervate.plot import report
 from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 from innervate.sim.channel import world as w
 from innervate.sim.channel.loop import ON_CARRIER
@@ -328,3 +331,29 @@ def test_packets_of_who_left_are_told_apart():
         "1 packet waited while its robot was off; delays leave them out."
     ]
     assert off_words(summary | {"abandoned": 0}) == []
+
+
+@pytest.mark.parametrize(
+    ("tables", "level", "warning"),
+    [
+        ({"stations": 1}, "down", "One station alone: nobody can receive what it sends."),
+        ({"stations": 3, "channel": {"hidden": [[0, 2]]}}, "d",
+         "Stations that do not hear each other (0 and 2): packets may collide unnoticed, stations "
+         "may starve."),
+        ({"stations": 1, "channel": {"level": "slotted"}}, "down",
+         "One station alone: nobody can receive what it sends."),
+        ({"stations": 3}, "ok", ""),
+    ],
+)  # fmt: skip
+def test_summary_terminal_and_report_say_the_same(tables, level, warning):
+    done = innervate.run({"kind": "radio", "duration_s": 0.4} | tables, plain=True)
+    head = done.summary["headline"]
+    assert head["level"].startswith(level)
+    lines, page = summary_lines(done), report.render(done)
+    assert f"{head['level']}: {head['text']}" in lines
+    assert f"<h1>{head['text']}</h1>" in page
+    beginnings = ("One station alone", "Stations that do not hear")
+    assert [line for line in lines if line.startswith(beginnings)] == [warning] * bool(warning)
+    assert [text for text in beginnings if text in page] == [
+        text for text in beginnings if warning.startswith(text)
+    ]

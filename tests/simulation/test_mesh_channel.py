@@ -13,7 +13,7 @@ from innervate.networks.mesh.sim import channel, over_channel
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.networks.radio.scenario.baselines import NUMBERS
 from innervate.networks.radio.sim import build
-from innervate.scenario import load, plan
+from innervate.scenario import ScenarioError, load, plan
 from innervate.scenario.actions.field import KILL, RESTART, REVIVE
 from innervate.sim.driver import InvariantBroken
 from tests.mesh_channel_runs import SLOT_US, TURN_US, slots, team
@@ -166,7 +166,17 @@ def test_the_bundled_team_delivers_everything_and_its_alarm():
     assert result.tables["transmissions"].collect().height > 500
 
 
-@pytest.mark.parametrize("mac", [m for m in NUMBERS if m != "csma-cd-d1"])
+# Those whose stations have to be there all the time to hand on a token or to ask are not offered.
+HANDED_ON = ("token-ring", "polling")
+
+
+@pytest.mark.parametrize("mac", HANDED_ON)
+def test_a_mesh_does_not_hand_on_the_right_to_send(mac):
+    with pytest.raises(ScenarioError, match=r"radio\.mac must be"):
+        team_plan(f"radio.mac={mac}")
+
+
+@pytest.mark.parametrize("mac", [m for m in NUMBERS if m not in ("csma-cd-d1", *HANDED_ON)])
 def test_an_alarm_arrives_over_every_medium_access(mac):
     result = simulate(team_plan(f"radio.mac={mac}"), plain=True)
     assert len(result.delivered[result.delivered["kind"] == ALARM])

@@ -90,17 +90,12 @@ def events(plan: Any) -> Iterator[Message]:
         yield fault.at_us, {
             "timestamp": stamp(fault.at_us),
             "level": WARNING if action in HARM else INFORMATION,
-            "message": _sentence(told[fault.index]),
+            "message": _sentence(plan, fault),
             "name": "scenario", "file": "", "line": 0,
         }  # fmt: skip
 
 
-def _sentence(event: Any) -> str:
-    """An event as it stands in the scenario, without its time."""
-    import msgspec
-
-    keys = msgspec.to_builtins(event)
-    what = keys.pop("action")
-    keys.pop("at_s", None)
-    some = ", ".join(f"{key} {value}" for key, value in keys.items() if value not in (None, False))
-    return f"{what} {some}" if some else str(what)
+def _sentence(plan: Any, fault: Any) -> str:
+    """What was done to whom, drawn ones by their names, without its time."""
+    said: str = networks()[plan.kind].fault_words(plan, fault).partition(" s ")[2]
+    return said

@@ -10,13 +10,14 @@ from typing import Any
 
 from innervate import __version__
 from innervate.live import status
-from innervate.networks.radio.analysis.state import Still
+from innervate.networks.radio.analysis.live import Still
 from innervate.web.errors import Refused, WatchError
-from innervate.web.history import SERIES, Logbook
+from innervate.web.history import LOSS, RETURN, SERIES, Logbook
 from innervate.web.live_map import Link, Map, Place, Status
 from innervate.web.live_poll import Poller
+from innervate.web.live_scene import drawn
 from innervate.web.live_state import State
-from innervate.web.messages import Command, Cut, Heal, Kill, Revive, number
+from innervate.web.messages import Command, Cut, Give, Heal, Kill, Revive, number
 from innervate.web.recovery import Recovery
 from innervate.web.source import Source
 
@@ -72,19 +73,31 @@ class Live(Source):
         kinds = {str(one["kind"]) for one in self._told.values()}
         if len(kinds) > 1:
             raise WatchError(f"{' and '.join(sorted(kinds))} nodes: name those of one network")
+        for i in range(len(sockets)):
+            if i not in self._told:
+                self._log.often("none", 0, f"{self._names[i]}: nobody answers at its socket", "bad")
         self._map = Map(self._last)
+        self._drawn = drawn(sockets, self._map.kind)
         self._off: set[Place] = set()  # cut off whole, from here
         self._state = State(self._map, self._told)
         self.can = self._possible()
 
     def scene(self) -> dict[str, Any]:
         """Who answered, and who is linked with whom as they say."""
-        places = self._map.spread().round(3).tolist()
+        known = self._drawn
+        names = [self._label(place) for place in self._map.places]
+        as_drawn = known is not None and all(name in known.places for name in names)
+        places = (
+            [known.places[name] for name in names]
+            if known is not None and as_drawn
+            else self._map.spread().round(3).tolist()
+        )
         nodes = []
         for at, (place, (x, y)) in enumerate(zip(self._map.places, places, strict=True)):
             node = {
                 "id": at,
-                "label": self._label(place),
+                "label": names[at],
+                "also": known.labels.get(names[at], "") if known is not None else "",
                 "x": x,
                 "y": y,
                 "role": self._role(place),
@@ -103,9 +116,12 @@ class Live(Source):
             {"id": "dropped", "label": "frames dropped, all nodes", "unit": "per s"},
         ]
         return {
-            "kind": self._map.kind, "name": "live", "source": "live", "version": __version__,
+            "kind": self._map.kind, "name": known.name if known is not None else "live",
+            "source": "live", "version": __version__,
             "can": list(self.can), "duration_s": None, "t_s": self._now_us() / 1e6,
-            "nodes": nodes, "links": links, "fence": None, "series": series,
+            "nodes": nodes, "links": links, "series": series,
+            "fence": known.fence if known is not None and as_drawn else None,
+            "metres": known is not None and as_drawn and known.metres,
             "ports": sum(place.port >= 0 for place in self._map.places),
         }  # fmt: skip
 
@@ -158,8 +174,9 @@ class Live(Source):
                 self._log.often("came", at_us, f"{self._names[i]} answers again", "good")
         self._last = {**self._last, **told}
         if went:
-            who = self._names[went[0]] if len(went) == 1 else f"{len(went)} nodes"
-            self._lose(f"{who} {'does' if len(went) == 1 else 'do'} not answer any more")
+            silent = len(self._last) - len(told)
+            alone = f"{self._names[went[0]]} does not answer any more"
+            self._lose(alone if silent == 1 else f"{silent} nodes do not answer any more")
 
     def _compare(self, before: State) -> None:
         """What was cut or put back since `before`, and not from here, is said."""
@@ -210,6 +227,7 @@ class Live(Source):
         if recovery is None or self._map.kind == "radio" or not self._told:
             return
         at_us = self._now_us()
+        recovery.cut_off(state.unconnected - state.lacking)
         after_ms = round((at_us - recovery.at_us) / 1e3, 1)
         if recovery.detected_ms is None and state.lacking:
             recovery.detected_ms = after_ms
@@ -218,7 +236,8 @@ class Live(Source):
             recovery.recovered_ms = 0.0 if kept else after_ms
             how = "kept its way" if kept else f"has a way again after {after_ms:.0f} ms"
             apart = state.unconnected
-            who = "every node" if not apart else f"every node but {apart} that are cut off"
+            are = "is" if apart == 1 else "are"
+            who = "every node" if not apart else f"every node but {apart} that {are} cut off"
             self._log.say(at_us, f"{who} {how}, as they say", "info" if apart else "good")
 
     def _lose(self, cause: str) -> None:
@@ -253,7 +272,30 @@ class Live(Source):
 
     def _possible(self) -> tuple[str, ...]:
         nodes = ("kill", "revive") if any(one.get("paths") for one in self._last.values()) else ()
-        return (*(("cut", "heal") if self._map.links else ()), *nodes)
+        down = ("command",) if self._map.kind == "skin" and self._pc() is not None else ()
+        return (*(("cut", "heal") if self._map.links else ()), *nodes, *down)
+
+    def _pc(self) -> int | None:
+        """Which node is the PC of a skin."""
+        found = (i for i, one in self._last.items() if one.get("role") == "sink")
+        return next(found, None)
+
+    def _give(self, command: Give) -> None:
+        """Have the PC send a command down."""
+        pc, cell, whom = self._pc(), None, "all cells"
+        assert pc is not None
+        if command.node is not None:
+            place = self._map.places[number("node", command.node, len(self._map.places))]
+            if place.port >= 0:
+                raise Refused("this is a port of the PC; commands are for cells")
+            cell, whom = int(self._last[place.node]["number"]), self._label(place)
+        request = {"do": "command", "code": command.code, "value": command.value, "cell": cell}
+        answer = self._poller.ask({pc: request}).get(pc)
+        if answer is None or "error" in answer:
+            raise Refused(f"the PC did not take it: {(answer or {}).get('error', 'no answer')}")
+        if not answer["ports"]:
+            raise Refused("no cell has the PC as its parent: nobody hands it down")
+        self._log.say(self._now_us(), f"command {answer['number']} sent to {whom}")
 
     def do(self, command: Command) -> dict[str, Any] | None:
         """Have drivers drop what comes over a link, or over all paths of a node; or take it again.
@@ -265,6 +307,8 @@ class Live(Source):
             self._plug(place, isinstance(command, Revive))
         elif isinstance(command, Cut | Heal):
             self._cable(command)
+        elif isinstance(command, Give) and "command" in self.can:
+            self._give(command)
         else:
             raise Refused("not possible here")
         self._next = 0.0
@@ -294,7 +338,7 @@ class Live(Source):
     def _note(self, cause: str, heals: bool) -> None:
         if not heals:
             self._lose(cause)
-        self._log.say(self._now_us(), cause)
+        self._log.say(self._now_us(), cause, mark=RETURN if heals else LOSS)
 
     def _cable(self, command: Cut | Heal) -> None:
         at = number("link", command.link, len(self._map.links))

@@ -12,7 +12,7 @@ from innervate.analysis.ways import NOWHERE, Numbers, follow, reach
 from innervate.networks.mesh.analysis.headline import headline
 from innervate.networks.mesh.analysis.reach import Choices, Ways, ways
 from innervate.networks.radio.analysis.headline import headline as radio_headline
-from innervate.networks.radio.analysis.state import of_stations
+from innervate.networks.radio.analysis.live import of_stations
 from innervate.networks.skin.analysis.headline import SkinFacts, skin_headline
 from innervate.web.live_map import Link, Map, Place, Status
 

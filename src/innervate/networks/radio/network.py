@@ -11,6 +11,7 @@ NETWORK = Network(
     check="scenario.rules:check",
     plan="scenario.planning:plan",
     describe="scenario.words:describe",
+    fault_words="scenario.words:fault_words",
     actions="innervate.scenario.actions.channel:ACTIONS",
     template="scenario.template:TEMPLATE",
     simulation="sim.simulate:simulation",

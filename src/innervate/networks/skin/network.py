@@ -11,6 +11,7 @@ NETWORK = Network(
     check="scenario.rules:check",
     plan="scenario.plan:plan",
     describe="scenario.words:describe",
+    fault_words="scenario.words:fault_words",
     actions="innervate.scenario.actions.cables:ACTIONS",
     template="scenario.template:TEMPLATE",
     anchor="scenario.graph:anchor",

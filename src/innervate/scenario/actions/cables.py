@@ -2,3 +2,4 @@
 
 ACTIONS = ("cut", "restore", "kill", "revive", "loose", "restart", "lose")
 CUT, RESTORE, KILL, REVIVE, LOOSE, RESTART, LOSE = range(7)
+GIVE = 7  # no fault: the sink is given a command for nodes

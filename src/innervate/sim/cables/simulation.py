@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from innervate.sim import wheel
-from innervate.sim.cables import build, commands
+from innervate.sim.cables import build
 from innervate.sim.driver import Simulation
 from innervate.sim.queue import with_command
 from innervate.sim.status import POOL_FULL
@@ -37,6 +37,8 @@ class Cables(Simulation):
 
     def schedule(self, fault: Any) -> None:
         """Something is to be done to the network."""
-        value = fault.frames if fault.action == commands.LOSE else fault.loss_q15
-        row = (fault.at_us, fault.action, fault.end, fault.node, value, fault.index)
+        self.schedule_row(build.fault_row(fault))
+
+    def schedule_row(self, row: tuple[int, ...]) -> None:
+        """One row of `world.COMMAND`, at a time that has not come yet."""
         self.world, _ = with_command(self.world, "at", row)

@@ -29,7 +29,6 @@ from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.sim.field.powers import CAPTURE_ONE
 from innervate.sim.field.states import ALIVE, DEAD
-from innervate.sim.tables import get
 
 FAR = 1 << 30
 HALF = 0.5
@@ -182,7 +181,7 @@ def carries(world: Any, plan: Any) -> Flags:
     heard = chance * (np.asarray(world.cut).reshape(shape) == 0)
     noise = _column(world.radios, "noise", count)
     if noise.any() and plan.radio.collisions:
-        capture = int(get(world.run, 0, "capture"))
+        capture = int(_column(world.run, "capture", 1)[0])
         power = np.asarray(world.power).reshape(shape)
         heard = heard * (power * CAPTURE_ONE // capture >= noise[None, :])
     acked = heard * heard.T if params["hop_acks"] else heard

@@ -2,6 +2,7 @@
 
 from importlib import import_module
 
+from innervate.networks.mesh.papers.readings import READINGS as READINGS
 from innervate.papers.experiment import Experiment
 
 TITLE = "Routing tables from a gateway, and a virtual fence"

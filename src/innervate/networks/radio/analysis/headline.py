@@ -11,6 +11,8 @@ NAMED = 4  # so many robots are named one by one
 ROUNDS = 4  # turns of everybody that may pass before somebody's packet gets through
 BACKOFF_SLOTS = 1024  # ... besides the longest backoff
 
+Stations = tuple[int, ...]
+
 
 class RadioFacts(NamedTuple):
     """What is known of a team at one moment.
@@ -35,15 +37,15 @@ class RadioFacts(NamedTuple):
         still_ms: how long nothing has been delivered though somebody who is on had a packet.
         patience_ms: how long that may take, see `patience_us`.
         hidden: pairs that do not hear each other.
-        bounds: summary's `delay_bounds` where delays were found wrong: "believed_us" and
-            "measured_us", [least, greatest] each; None = nothing was noticed.
+        bounds: where delays were found wrong, "believed_us": [least, greatest]; None = nothing was
+            noticed.
         stations_wrong: who noticed it.
         ended: nothing more will happen.
     """
 
     stations: int
-    off: tuple[int, ...] = ()
-    away: tuple[int, ...] = ()
+    off: Stations = ()
+    away: Stations = ()
     answering: bool = True
     offered: int = 0
     delivered: int = 0
@@ -53,12 +55,12 @@ class RadioFacts(NamedTuple):
     lost_silently: int = 0
     partial: int = 0
     overdue: int = 0
-    waiting: tuple[int, ...] = ()
+    waiting: Stations = ()
     still_ms: float = 0.0
     patience_ms: float = 1000.0
     hidden: tuple[tuple[int, int], ...] = ()
     bounds: Mapping[str, Any] | None = None
-    stations_wrong: tuple[int, ...] = ()
+    stations_wrong: Stations = ()
     ended: bool = False
 
 
@@ -116,7 +118,7 @@ def _degraded(facts: RadioFacts, told: bool) -> tuple[list[str], tuple[int, ...]
         lost = _count(facts.lost_silently, "packet was", "packets were")
         news.append(f"{lost} lost silently, taken for delivered by the sender")
     if facts.off and len(facts.off) + len(facts.away) < facts.stations:
-        left = facts.abandoned
+        left = 0 if facts.away else facts.abandoned  # else nobody can say whose they are
         with_it = f" with {_count(left, 'packet', 'packets')} not sent" if left else ""
         news.append(f"{_robots(facts.off)} off{with_it}")
         nodes |= set(facts.off)
@@ -160,14 +162,15 @@ def _counts(facts: RadioFacts) -> list[str]:
 
 
 def _wrong(bounds: Mapping[str, Any]) -> str:
-    """Delays that are not what stations believe."""
-    believed, measured = bounds.get("believed_us"), bounds.get("measured_us")
-    if not believed or not measured:
+    """Delays that are not what stations believe.
+
+    What a station took for the delay is not told: a CR-R that comes too early looks late in the
+    minislot before its own.
+    """
+    believed = bounds.get("believed_us")
+    if not believed:
         return "delays lie outside what stations believe"
-    return (
-        f"delays of {measured[0]:g} to {measured[1]:g} us were measured where stations believe "
-        f"{believed[0]:g} to {believed[1]:g} us"
-    )
+    return f"delays lie outside the {believed[0]:g} to {believed[1]:g} us that stations believe"
 
 
 def _robots(stations: Iterable[int]) -> str:

@@ -1,14 +1,16 @@
 """A station of any baseline; params.mac says which. One stack, so that it compiles once.
 
-CSMA/CD and DCF stand in contend.py, ALOHA, CSMA and TDMA in slots.py, splitting in tree.py.
+CSMA/CD and DCF stand in contend.py, ALOHA, CSMA and TDMA in slots.py, splitting in tree.py, token
+ring and polling in passing.py.
 """
 
 from innervate.dialect.access import CLOCK, FORCE, LEAVE, PACKET, RESULT
-from innervate.networks.radio.baselines import contend, slots, tree
+from innervate.networks.radio.baselines import contend, passing, slots, tree
 from innervate.networks.radio.baselines.common import LISTEN, SEND, STOPPED, TOLD
-from innervate.networks.radio.protocol.constants import DATA, MAIN
+from innervate.networks.radio.protocol.constants import MAIN
 from innervate.networks.radio.protocol.station import enqueue, hand_up, leave, reset
 from innervate.networks.radio.scenario.baselines import DCF as LAST_WITHOUT_CLOCK
+from innervate.networks.radio.scenario.baselines import TOKEN_RING
 from innervate.networks.radio.scenario.baselines import TREE as TREE_MAC
 
 
@@ -20,6 +22,8 @@ def on_start(station, params, now, cause, out):
     station.tries = 0
     if params.mac <= LAST_WITHOUT_CLOCK:
         contend.begin(station, params, now, out)
+    elif params.mac >= TOKEN_RING:
+        passing.begin(station, params, now, out)
 
 
 def on_input(station, params, now, kind, item, out):
@@ -28,7 +32,7 @@ def on_input(station, params, now, kind, item, out):
         if enqueue(station, item, out) and station.queued == 1:
             if params.mac <= LAST_WITHOUT_CLOCK:
                 contend.offer(station, params, now, out)
-            elif params.mac != TREE_MAC:
+            elif params.mac < TREE_MAC:
                 slots.offer(station, params, now, out)
     elif kind == LEAVE:
         leave(station, out)
@@ -36,6 +40,8 @@ def on_input(station, params, now, kind, item, out):
         slots.set_clock(station, now, item, out)
         if params.mac == TREE_MAC:
             tree.begin(station, params, now, out)
+    elif kind == RESULT and params.mac >= TOKEN_RING:
+        passing.told(station, 1 if item.handle > 0 else 0, out)
     elif kind == RESULT and station.mode == TOLD:
         received = 1 if item.handle > 0 else 0
         if params.mac <= LAST_WITHOUT_CLOCK:
@@ -50,8 +56,10 @@ def on_frame(station, params, now, port, frame, out):
     """A packet was received whole; the carrier's end is reported after it."""
     station.decoded = 1
     station.heard = tree.READ
-    if frame.kind == DATA:
+    if frame.count:
         hand_up(frame, out)
+    if params.mac >= TOKEN_RING:
+        passing.heard(station, params, now, frame, out)
 
 
 def on_carrier(station, params, now, cd, voc, out):
@@ -70,6 +78,8 @@ def on_carrier(station, params, now, cd, voc, out):
         station.decoded = 0
         if params.mac <= LAST_WITHOUT_CLOCK:
             contend.ready(station, params, now, out)
+        elif params.mac >= TOKEN_RING:
+            passing.ready(station, params, now, out)
         else:
             tree.ready(station)
     elif params.mac <= LAST_WITHOUT_CLOCK:
@@ -77,6 +87,11 @@ def on_carrier(station, params, now, cd, voc, out):
             contend.rise(station, params, now, out)
         elif went:
             contend.fall(station, params, now, out)
+    elif params.mac >= TOKEN_RING:
+        if came:
+            passing.rise(station)
+        elif went:
+            passing.fall(station, params, now, out)
     elif params.mac != TREE_MAC:
         if came:
             slots.rise(station, params)
@@ -93,6 +108,8 @@ def on_timer(station, params, now, timer, out):
         station.armed = 0
         if params.mac <= LAST_WITHOUT_CLOCK:
             contend.fire(station, params, now, out)
+        elif params.mac >= TOKEN_RING:
+            passing.fire(station, params, now, out)
         elif params.mac == TREE_MAC:
             tree.fire(station, params, now, out)
         else:

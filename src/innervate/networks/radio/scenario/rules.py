@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from innervate.networks.radio.scenario import slotted as radio_slotted
 from innervate.networks.radio.scenario.model import RadioEventTable, RadioScenario
 from innervate.scenario.source import Source
+from innervate.scenario.times import check_end
 
 PACKET_SLOTS = (3, 250)
 DELAY_US = (1, 1000)
@@ -19,6 +21,8 @@ def check(source: Source, model: RadioScenario) -> None:
     _traffic(source, model)
     for index, event in enumerate(model.event):
         _event(source, model, index, event)
+    if model.channel.level == "slotted":
+        radio_slotted.check(source, model)
 
 
 def pair(value: int | tuple[int, int]) -> tuple[int, int]:
@@ -54,20 +58,6 @@ def _channel(source: Source, model: RadioScenario) -> None:
             raise source.error(key, _no_station(model, max(a, b)))
         if a == b:
             raise source.error(key, f"station {a} cannot be hidden from itself; name two")
-    if model.channel.level == "slotted":
-        given = [
-            name
-            for name, there in (
-                ("hidden", bool(model.channel.hidden)),
-                ("loss", model.channel.loss > 0),
-            )
-            if there
-        ]
-        if given:
-            message = f'channel.{given[0]} goes with level = "event"; the slotted level has none'
-            raise source.error(("channel", given[0]), message)
-        if model.event:
-            raise source.error(("event", 0), 'events go with level = "event"; leave them out')
 
 
 def _protocol(source: Source, model: RadioScenario) -> None:
@@ -101,8 +91,10 @@ def _protocol(source: Source, model: RadioScenario) -> None:
                 f"practical mode has {POSITIONS} places in a round, too few for {model.stations} "
                 "stations",
             )
-    if protocol.per_turn > 1 and not practical:
-        message = 'protocol.per_turn goes with csma-cd-r in mode = "practical"'
+    if protocol.per_turn > 1 and not (practical or protocol.mac in radio_slotted.EVENT_ONLY):
+        message = (
+            'protocol.per_turn goes with csma-cd-r in mode = "practical", token-ring and polling'
+        )
         raise source.error(("protocol", "per_turn"), message)
 
 
@@ -111,7 +103,8 @@ def _traffic(source: Source, model: RadioScenario) -> None:
     if traffic.spread_us and traffic.kind != "disaster":
         message = f'traffic.spread_us goes with kind = "disaster", not "{traffic.kind}"'
         raise source.error(("traffic", "spread_us"), message)
-    if traffic.kind != "saturated" and traffic.start_s >= model.duration_s:
+    begins = traffic.kind != "saturated" and model.channel.level == "event"
+    if begins and traffic.start_s >= model.duration_s:
         message = f"traffic.start_s = {traffic.start_s:g} is after the end ({model.duration_s:g} s)"
         raise source.error(("traffic", "start_s"), message)
 
@@ -123,12 +116,10 @@ def _event(source: Source, model: RadioScenario, index: int, event: RadioEventTa
     if times[0] > times[1]:
         message = f"{name}.at_s must be [from, to], not [{times[0]:g}, {times[1]:g}]"
         raise source.error((*key, "at_s"), message)
-    if not times[0] >= 0 or times[1] > model.duration_s:
-        wrong = times[0] if not times[0] >= 0 else times[1]
-        raise source.error(
-            (*key, "at_s"),
-            f"{name}.at_s = {wrong:g} is outside the run; duration_s is {model.duration_s:g}",
-        )
+    if not times[0] >= 0:
+        message = f"{name}.at_s must be a number of seconds from 0, not {times[0]:g}"
+        raise source.error((*key, "at_s"), message)
+    check_end(source, index, times[1], model.duration_s)
     station = event.station
     if isinstance(station, str):
         if station != "random":

@@ -6,8 +6,9 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any, NamedTuple
 
-from innervate.networks.radio.baselines import common, contend, slots, station, tree
+from innervate.networks.radio.baselines import common, contend, passing, slots, station, tree
 from innervate.networks.radio.baselines.fields import BASELINE
+from innervate.networks.radio.protocol import bounds as radio_bounds
 from innervate.networks.radio.protocol import fields as radio_fields
 from innervate.networks.radio.protocol import follow as radio_follow
 from innervate.networks.radio.protocol import idle as radio_idle
@@ -20,6 +21,7 @@ from innervate.networks.radio.protocol import paper_verify as radio_paper_verify
 from innervate.networks.radio.protocol import practical as radio_practical
 from innervate.networks.radio.protocol import reporter as radio_reporter
 from innervate.networks.radio.protocol import station as radio_station
+from innervate.networks.radio.protocol import times as radio_times
 from innervate.networks.radio.protocol import turn as radio_turn
 from innervate.networks.radio.protocol import window as radio_window
 from innervate.networks.radio.protocol.station import copy_frame
@@ -53,14 +55,16 @@ class Protocol(NamedTuple):
 
 
 # One stack for all baselines; a parameter says which.
-BASELINES = Protocol(station, (radio_station, common, contend, slots, tree, station), BASELINE)
+BASELINES = Protocol(
+    station, (radio_station, common, contend, slots, tree, passing, station), BASELINE
+)
 
 PROTOCOLS: dict[str, Protocol] = {
     "csma-cd-r/practical": Protocol(
         radio_practical,
         (
-            radio_station, radio_modes, radio_idle, radio_turn, radio_reporter, radio_window,
-            radio_follow, radio_practical,
+            radio_station, radio_times, radio_bounds, radio_modes, radio_idle,
+            radio_turn, radio_reporter, radio_window, radio_follow, radio_practical,
         ),
         radio_fields.PRACTICAL,
     ),
@@ -81,7 +85,9 @@ def digest(frame):
     word = frame.kind | (frame.slots << 4) | (frame.source << 16) | (frame.handle << 26)
     word ^= (frame.pos << 42) | (frame.next << 49) | (frame.more << 56) | (frame.ok << 57)
     word ^= (frame.good[0] << 5) ^ (frame.good[1] << 21) ^ (frame.bad[0] << 13)
-    return word ^ (frame.bad[1] << 29) ^ (frame.window << 44) ^ (frame.span << 50)
+    return (
+        word ^ (frame.bad[1] << 29) ^ (frame.window << 44) ^ (frame.span << 50) ^ (frame.wide << 60)
+    )
 
 
 def bind(entry: ModuleType) -> Stack:

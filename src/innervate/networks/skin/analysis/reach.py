@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.commands import missed_on_the_way
 from innervate.networks.skin.analysis.frames import lost_at_start
 from innervate.networks.skin.analysis.headline import SkinFacts
 from innervate.networks.skin.analysis.rows import apart_steps, marks
@@ -49,6 +50,7 @@ def world_facts(world: Any, cells: int) -> SkinFacts:
         never=np.flatnonzero(seeking & (np.array(watch.had) == 0)).tolist(),
         since_s=int(apart[cut_off].min()) / 1e6 if cut_off.any() else None,
         pc_off=int(alive[cells]) == DEAD,
+        missed=missed_on_the_way(world, cells),
     )
 
 

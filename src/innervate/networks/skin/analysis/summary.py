@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.commands import commands_summary
 from innervate.networks.skin.analysis.frames import beacon_share, data_summary
 from innervate.networks.skin.analysis.headline import skin_headline
 from innervate.networks.skin.analysis.load import balance_factor, port_loads
@@ -24,6 +25,7 @@ from innervate.networks.skin.analysis.rows import (
 )
 from innervate.networks.skin.analysis.summary_keys import BrokenPort, Loops, SkinSummary
 from innervate.networks.skin.protocol.constants import ONE, PORTS
+from innervate.networks.skin.scenario.warnings import warnings
 from innervate.sim.cables.world import ALIVE
 from innervate.topology import PORT_NAMES
 
@@ -63,6 +65,7 @@ def summarize(result: Any) -> SkinSummary:
         "wall_s": round(result.wall_s, 6),
         "fingerprint": result.fingerprint,
         "headline": skin_headline(facts, plan.graph.label).as_summary(),
+        "warnings": warnings(plan),
         "cells": plan.graph.cells,
         "depth_max": plan.depth_max,
         "start_up": start_up(result),
@@ -75,6 +78,7 @@ def summarize(result: Any) -> SkinSummary:
         "balance_factor": balance_factor(loads),
         "port_loads": loads,
         "data": data,
+        "commands": commands_summary(result),
         "beacon_share": beacon_share(result),
         "broken": broken_ports(result),
     }

@@ -6,13 +6,17 @@ How the parent is chosen stands in skin_route.py.
 """
 
 from innervate.dialect.arith import MASK30, after, later
-from innervate.dialect.outbox import FLUSH, URGENT, report, send, set_timer
+from innervate.dialect.outbox import FLUSH, URGENT, deliver, report, send, set_timer
 from innervate.dialect.rng import draw
 from innervate.networks.skin.protocol.constants import (
     BEACON,
+    COMMAND,
     DATA,
+    DROP_AGAIN,
     DROP_LOOP,
     DROP_NO_ROUTE,
+    DROP_TOO_FAR,
+    EVERYBODY,
     INFINITY,
     LOAD_MAX,
     MEMORY_LOST,
@@ -27,6 +31,7 @@ from innervate.networks.skin.protocol.constants import (
     TICK,
     WAVE,
 )
+from innervate.networks.skin.protocol.down import take_first
 from innervate.networks.skin.protocol.route import distance, react, select
 
 
@@ -44,10 +49,10 @@ def copy_frame(to, frm):
     to.load = load
     to.size = size
     to.parent = parent
-    if kind == DATA:
+    if kind == DATA or kind == COMMAND:
         to.cell = frm.cell
-        to.seq = frm.seq
         to.hops = frm.hops
+        to.seq = frm.seq
         copy_sample(to, frm)
 
 
@@ -85,6 +90,8 @@ def on_start(cell, params, now, cause, out):
     cell.sent_at = (now - params.gap_us) & MASK30
     cell.soon = 0
     cell.seq = 0
+    cell.last_command = 0
+    cell.commands = 0
     # Children of our former life give us up within k + 1 of their periods: they hear that we have
     # no route, or nothing. Only then may we take one, or it could lead through them. The tick of
     # now is one of ours, and with clocks 5 % off theirs can be k/9 longer than as many of ours.
@@ -105,6 +112,8 @@ def on_frame(cell, params, now, port, frame, out):
             announce_soon(cell, params, now, out)
     elif frame.kind == DATA:
         forward(cell, params, frame, out)
+    elif frame.kind == COMMAND:
+        hand_down(cell, params, port, frame, out)
 
 
 def on_timer(cell, params, now, timer, out):
@@ -141,6 +150,27 @@ def forward(cell, params, frame, out):
         onward = out.frame[send(out, cell.parent, 0, 0)]
         copy_frame(onward, frame)
         onward.hops = frame.hops + 1
+
+
+def hand_down(cell, params, port, frame, out):
+    """A command: for us, for our children, or for both [skin II-A].
+
+    A cell knows its children, and not who is behind them: a command for one cell goes to all of
+    them as well, and ends where it is for.
+    """
+    if not take_first(cell, frame.sq):
+        report(out, REPORT_DROP, DROP_AGAIN, 0)
+        return
+    if frame.cell == EVERYBODY or frame.cell == cell.number:
+        copy_frame(out.frame[deliver(out, COMMAND)], frame)
+    if frame.hops >= params.max_depth:
+        report(out, REPORT_DROP, DROP_TOO_FAR, 0)
+    elif frame.cell != cell.number:
+        for p in range(PORTS):
+            if p != port and cell.child[p] and cell.pf[p] < ONE:
+                onward = out.frame[send(out, p, 0, 0)]
+                copy_frame(onward, frame)
+                onward.hops = frame.hops + 1
 
 
 def hear(cell, params, port, beacon, out):

@@ -14,6 +14,7 @@ from innervate.networks.skin.protocol import cell as skin
 from innervate.networks.skin.protocol import sink as skin_sink
 from innervate.networks.skin.protocol.constants import (
     BEACON,
+    COMMAND,
     INFINITY,
     NONE,
     ONE,
@@ -33,7 +34,7 @@ def on_start(cell, params, now, cause, out):
 
 
 def on_frame(cell, params, now, port, frame, out):
-    """Keep watch, join the first set-up heard, pass restarts and data on."""
+    """Keep watch, join the first set-up heard, pass restarts, data and commands on."""
     if frame.kind == BEACON:
         cell.dist[port] = frame.dist
         cell.sq[port] = frame.sq
@@ -52,6 +53,8 @@ def on_frame(cell, params, now, port, frame, out):
     elif frame.kind == RESTART:
         if cell.sq_known and frame.sq == cell.sq_own and cell.parent != NONE:
             give_up(cell, out)
+    elif frame.kind == COMMAND:
+        skin.hand_down(cell, params, port, frame, out)
     else:
         skin.forward(cell, params, frame, out)
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from innervate.networks.skin.scenario.plan import LOSS_ONE, RULES, UPDATES, Fault, Plan
+from innervate.networks.skin.scenario.warnings import port_rate, warnings
 from innervate.scenario.actions.cables import ACTIONS
-from innervate.topology import Graph
 
 EVENTS_SHOWN = 12
 
@@ -15,7 +15,13 @@ def describe(made: Plan) -> str:
     cables = sum(1 for _ in graph.links())
     ports = f"{graph.interfaces} interface port{'s' if graph.interfaces != 1 else ''}"
     rate_hz = made.scenario.model.data.rate_hz
-    data = f"{rate_hz:g} Hz per cell" if made.data_period_us else "off"
+    data = "off"
+    if made.data_period_us:
+        room = graph.interfaces * port_rate(made)
+        data = (
+            f"{rate_hz:g} Hz per cell, {graph.cells * rate_hz:,.0f} samples a second; "
+            f"{ports} carr{'y' if graph.interfaces != 1 else 'ies'} at most {room:,.0f}"
+        )
     lines = [
         f"{made.scenario.name}: a {made.kind} scenario of {made.duration_us / 1e6:g} s, "
         f"seed {made.seed}",
@@ -32,15 +38,17 @@ def describe(made: Plan) -> str:
         )
     if made.script:
         lines.append(f"  script     {len(made.script)} steps")
-    lines += [f"  {'event' if i == 0 else '':10} {words(graph, fault)}"
+    lines += [f"  {'event' if i == 0 else '':10} {fault_words(made, fault)}"
               for i, fault in enumerate(made.faults[:EVENTS_SHOWN])]  # fmt: skip
     if len(made.faults) > EVENTS_SHOWN:
         lines.append(f"  {'':10} and {len(made.faults) - EVENTS_SHOWN} more")
+    lines += [f"  warning    {text}" for text in warnings(made)]
     return "\n".join(lines)
 
 
-def words(graph: Graph, fault: Fault) -> str:
+def fault_words(made: Plan, fault: Fault) -> str:
     """A fault in words: "at 2 s cut pc.1 - p0 r16 c7 down"."""
+    graph = made.graph
     if fault.end >= 0:
         what = f"{graph.label_end(fault.end)} - {graph.label_end(graph.peer[fault.end])}"
     else:

@@ -14,10 +14,10 @@ from innervate.networks.skin.sim import script, static_stack
 from innervate.networks.skin.sim import stack as skin_stack
 from innervate.sim import taps
 from innervate.sim.cables import build as builder
-from innervate.sim.cables import commands, loop, wires
+from innervate.sim.cables import loop, wires
 from innervate.sim.cables import world as w
 from innervate.sim.cables.simulation import Cables
-from innervate.sim.cables.wires import ARRIVED, URGENT_BLOCK
+from innervate.sim.cables.wires import ARRIVED, BLOCKS
 from innervate.sim.driver import Ended, InvariantBroken, Progress
 from innervate.sim.status import BROKEN
 from innervate.sim.tables import get, move_rows
@@ -55,6 +55,7 @@ def _modules() -> list[ModuleType]:
     from innervate.dialect import rng as generator
     from innervate.networks.skin import invariants
     from innervate.networks.skin.protocol import cell as skin
+    from innervate.networks.skin.protocol import down as skin_down
     from innervate.networks.skin.protocol import route as skin_route
     from innervate.networks.skin.protocol import sink as skin_sink
     from innervate.networks.skin.protocol import static as skin_static
@@ -62,17 +63,18 @@ def _modules() -> list[ModuleType]:
     from innervate.sim import clocks, delays, wheel
 
     return [
-        arith, outbox, generator, skin_route, skin, skin_sink, skin_static,
+        arith, outbox, generator, skin_route, skin_down, skin, skin_sink, skin_static,
         wheel, clocks, wires, delays, invariants, checks, skin_stack, static_stack,
     ]  # fmt: skip
 
 
 def _rare() -> list[ModuleType]:
     """What runs too seldom to be worth copying into every caller."""
-    from innervate.networks.skin.sim import observer, touch
+    from innervate.networks.skin.sim import observer, orders, touch
     from innervate.sim import rows
+    from innervate.sim.cables import commands
 
-    return [observer, commands, touch, rows, taps]
+    return [observer, commands, orders, touch, rows, taps]
 
 
 @functools.cache
@@ -169,7 +171,7 @@ def _result(running: SkinSimulation, ended: Ended) -> Result:
         wall_s=ended.wall_s,
         fingerprint=running.fingerprint,
         handled=int(get(world.run, 0, "handled")),
-        arrived=int(world.counters[ARRIVED] + world.counters[ARRIVED + URGENT_BLOCK]),
+        arrived=sum(int(world.counters[ARRIVED + block]) for block in BLOCKS),
         interrupted=ended.interrupted,
         **ended.rows,
     )

@@ -8,6 +8,7 @@ from innervate.networks.skin.protocol.constants import SAMPLE
 from innervate.networks.skin.sim.stack import check as check
 from innervate.networks.skin.sim.stack import deliver as deliver
 from innervate.networks.skin.sim.stack import digest as digest
+from innervate.networks.skin.sim.stack import give as give
 from innervate.networks.skin.sim.stack import local
 from innervate.networks.skin.sim.stack import report as report
 from innervate.networks.skin.sim.stack import stopped as stopped

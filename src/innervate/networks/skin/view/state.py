@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis.ways import NOWHERE, follow
-from innervate.networks.skin.protocol.constants import BEACON, DATA
+from innervate.networks.skin.protocol.constants import BEACON, COMMAND, DATA
 from innervate.networks.skin.view.scene import nodes_of_ends
 from innervate.sim import wheel
 from innervate.sim.cables.wires import DELAYED
@@ -15,7 +15,7 @@ from innervate.sim.cables.world import DEAD
 from innervate.topology import PORTS
 
 FLIGHTS_MAX = 2_000
-KINDS = {BEACON: "beacon", DATA: "data"}
+KINDS = {BEACON: "beacon", DATA: "data", COMMAND: "command"}
 
 
 class Cables:

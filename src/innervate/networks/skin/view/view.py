@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
+from msgspec import to_builtins
 
 from innervate.analysis.headline import Headline
 from innervate.analysis.ways import NOWHERE
@@ -20,6 +21,7 @@ from innervate.networks.skin.protocol.constants import (
 )
 from innervate.networks.skin.scenario.plan import Fault
 from innervate.networks.skin.sim.observer import APART, CUT_OFF, LOOP_OPEN, UNROUTED
+from innervate.networks.skin.sim.orders import ORDER_CAME, ORDER_GIVEN
 from innervate.networks.skin.view.engine import SkinEngine
 from innervate.networks.skin.view.scene import places
 from innervate.networks.skin.view.state import Cables
@@ -28,10 +30,11 @@ from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE
 from innervate.sim.cables.wires import EARLY, LOOPED, LOST_BROKEN, LOST_CUT, NO_ROUTE, OFFERED
 from innervate.sim.cables.world import DEAD
 from innervate.topology import PORTS
+from innervate.web import giving
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import History
-from innervate.web.messages import Command, Touch, number
+from innervate.web.messages import Command, Give, Touch, number
 from innervate.web.view import Memory, View
 
 HZ_WITHOUT_DATA = 250.0  # load is shown as if cells sampled so often
@@ -48,7 +51,10 @@ class SkinMemory(Memory):
     touch: Any = None
     touch_us: Any = None
     counted: tuple[int, int] = field(default=(0, 0))
+    apart: int = 0  # cells that are cut off from the PC now
     apart_most: int = 0  # most cells that were cut off from the PC at the same time
+    given: dict[int, giving.Given] = field(default_factory=dict)
+    told: Any = None  # per cell the newest command that came, -1 none
     waited: tuple[int, int] = (0, 0)  # samples since the last point, the sum of their latencies, us
 
 
@@ -69,9 +75,12 @@ class SkinView(View):
         )
         self._planned = {fault.index: fault for fault in self.plan.faults}
         touch_us = np.full(self.cells, -STALE_US, np.int64)
-        self.memory = SkinMemory(touch=np.zeros(self.cells, np.int64), touch_us=touch_us)
+        self.memory = SkinMemory(touch=np.zeros(self.cells, np.int64), touch_us=touch_us,
+                                 told=np.full(self.cells, -1))  # fmt: skip
         if self.plan.data_period_us:
             self.can = (*self.can, "touch")
+        if isinstance(engine, SkinEngine) and engine.takes_orders:
+            self.can = (*self.can, "command")
 
     def scene(self) -> dict[str, Any]:
         """Nodes, links and what else stands still."""
@@ -110,16 +119,22 @@ class SkinView(View):
             memory.waited = (
                 memory.waited[0] + len(told), memory.waited[1] + int(told["latency"].sum())
             )  # fmt: skip
-        apart = rows["rows"]["a"][rows["rows"]["code"] == APART]
-        memory.apart_most = max(memory.apart_most, int(apart.max(initial=0)))
-        codes = (CUT_OFF, UNROUTED, LOOP_OPEN, REPORT_BROKEN, REPORT_PARENT, REPORT_BALANCE)
+        codes = (APART, CUT_OFF, UNROUTED, LOOP_OPEN, REPORT_BROKEN, REPORT_PARENT, REPORT_BALANCE,
+                 ORDER_GIVEN, ORDER_CAME)  # fmt: skip
         found = rows["rows"]
         found = found[np.isin(found["code"], codes)]
         for at, node, code, a, b in found.tolist():
             if code == CUT_OFF and a >= 0:
                 self._fault(a, b)
+            elif code == APART:
+                self._apart(a)
             elif code == UNROUTED:
                 self._unrouted(at, a)
+            elif code == ORDER_GIVEN:
+                memory.given[a] = giving.begin(self.log, self.plan.graph, at, a, b)
+            elif code == ORDER_CAME and a in memory.given:
+                memory.told[node] = a
+                giving.reached(self.log, self.plan.graph, memory.given[a], at, a, node)
             elif code == REPORT_BROKEN:
                 self._broken(at, PORTS * node + a, b)
             elif code == LOOP_OPEN:
@@ -128,12 +143,21 @@ class SkinView(View):
                 label = self.plan.graph.label(node)
                 self.log.often("lost", at, f"{label} lost its parent", "bad")
 
+    def _apart(self, cells: int) -> None:
+        """So many cells are cut off from the PC from now on."""
+        memory = self.memory
+        memory.apart, memory.apart_most = cells, max(memory.apart_most, cells)
+        if memory.recovery is not None:
+            memory.recovery.cut_off(cells)
+
     def _fault(self, index: int, cut_off: int) -> None:
         """A mark of the observer: something was done to the skin."""
         given = index - len(self.plan.scenario.model.event)
         fault = self._planned[index] if given < 0 else self.engine.given[given]
         self.begin_fault(fault)
         recovery = self.memory.recovery
+        if recovery is not None:
+            recovery.cut_off(self.memory.apart)
         if self.memory.unrouted == 0 and self.takes(fault) and recovery is not None:
             recovery.recovered_ms = 0.0
         if cut_off:
@@ -148,10 +172,11 @@ class SkinView(View):
             recovery.recovered_ms = None if cells else (at_us - recovery.at_us) / 1e3
             recovery.closed = cells == 0 and memory.event_us > recovery.at_us
         after_us = at_us - memory.event_us
-        if cells == 0:
+        if cells == 0 and memory.apart < self.cells:
+            who = "all other cells" if memory.apart else "all cells"
             what = "again after" if memory.settled else "after"
-            self.log.often("routed", at_us, f"all cells have a way {what} {after_us / 1e3:.1f} ms",
-                           "good")  # fmt: skip
+            self.log.often("routed", at_us, f"{who} have a way {what} {after_us / 1e3:.1f} ms",
+                           "info" if memory.apart else "good")  # fmt: skip
             memory.settled = True
 
     def _broken(self, at_us: int, end: int, broken: int) -> None:
@@ -221,6 +246,8 @@ class SkinView(View):
             "load": np.concatenate([load, none]),
             "flights": self.cables.flights(world, self.engine.now_us) if flights else [],
         }
+        if "command" in self.can:
+            fields["told"] = np.concatenate([memory.told, none - 1])
         if self.plan.data_period_us:
             heard = self.engine.now_us - memory.touch_us < STALE_US
             fields["touch"] = np.concatenate([np.where(heard, memory.touch, 0), none])
@@ -228,6 +255,10 @@ class SkinView(View):
 
     def apply(self, command: Command) -> None:
         """Have a command happen at the earliest moment."""
+        if isinstance(command, Give) and "command" in self.can:
+            assert isinstance(self.engine, SkinEngine)
+            self.engine.give(giving.order_of(command, self.engine.earliest_us, self.cells))
+            return
         if not isinstance(command, Touch):
             super().apply(command)
             return
@@ -238,10 +269,15 @@ class SkinView(View):
         self.log.often("touch", self.engine.now_us, what)
 
     def extra(self) -> dict[str, Any]:
-        """The touch, as a hand has led it."""
+        """The touch, as a hand has led it, and the commands that were given by hand."""
         assert isinstance(self.engine, SkinEngine)
-        finger = self.engine.finger
-        return {} if finger is None else {"touch": finger.table()}
+        finger, orders = self.engine.finger, self.engine.orders
+        found: dict[str, Any] = {} if finger is None else {"touch": finger.table()}
+        if orders:
+            told = to_builtins(self.plan.scenario.model.command)
+            told += [giving.table(order, self._target(order.cell)) for order in orders]
+            found["command"] = told
+        return found
 
     def words(self, fault: Any) -> str:
         """A fault in words."""
@@ -290,8 +326,15 @@ class SkinView(View):
         if cell == graph.sink:
             return {"pc": True}
         port = {} if fault.end < 0 else {"port": fault.end % PORTS}
+        return {**self._target(cell), **port}
+
+    def _target(self, cell: int) -> dict[str, Any]:
+        """A cell as a scenario names it; nothing for all of them."""
+        if cell < 0:
+            return {}
+        graph = self.plan.graph
         patch = graph.patch_of(cell)
         if patch < 0:
-            return {"node": graph.label(cell), **port}
+            return {"node": graph.label(cell)}
         row, column = graph.patches[patch].row_column(cell)
-        return {"cell": {"patch": patch, "row": row, "column": column}, **port}
+        return {"cell": {"patch": patch, "row": row, "column": column}}

@@ -1,0 +1,1 @@
+"""A skin on real links."""
