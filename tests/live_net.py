@@ -7,7 +7,7 @@ from innervate.live import local
 from innervate.live.profile import mesh_parameters, skin_parameters
 from innervate.networks.mesh.live.messages import MeshNode
 from innervate.networks.mesh.live.stack import MeshStack
-from innervate.networks.skin.live import CellNode, CellStack, SinkNode, SinkStack
+from innervate.networks.skin.live.nodes import CellNode, CellStack, SinkNode, SinkStack
 
 WAIT_S = 20.0
 

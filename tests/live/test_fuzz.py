@@ -20,7 +20,7 @@ from innervate.networks.radio.live.medium import Medium
 from innervate.networks.radio.live.station import Frame as RadioFrame
 from innervate.networks.radio.live.station import read_heard
 from innervate.networks.skin import frames as skin
-from innervate.networks.skin.live import Frame as SkinFrame
+from innervate.networks.skin.live.items import Frame as SkinFrame
 from innervate.wire import cobs, seal
 from tests.live.test_keys import FRAMES, sealer
 

@@ -18,7 +18,7 @@ from innervate.live import nodefile
 from innervate.live.profile import skin_parameters
 from innervate.live.serial import SerialLink
 from innervate.live.serial_cables import Cables
-from innervate.networks.skin.live import SinkNode, SinkStack
+from innervate.networks.skin.live.nodes import SinkNode, SinkStack
 from innervate.networks.skin.protocol import constants as skin_words
 from tests.live_net import until
 

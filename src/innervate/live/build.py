@@ -112,7 +112,7 @@ def _mesh(loaded: Loaded) -> LiveNode:
 
 def _skin(loaded: Loaded) -> LiveNode:
     from innervate.live.profile import skin_parameters
-    from innervate.networks.skin.live import CellNode, CellStack, SinkNode, SinkStack
+    from innervate.networks.skin.live.nodes import CellNode, CellStack, SinkNode, SinkStack
 
     table, links, state = loaded.table, links_of(loaded), state_of(loaded)
     params = skin_parameters(dict(table.protocol), f"{loaded.path}")

@@ -20,7 +20,7 @@ from innervate.live.notices import Notices
 from innervate.live.rotation import Rotation
 from innervate.networks.mesh.live.messages import MeshNode
 from innervate.networks.mesh.live.receipts import FINAL
-from innervate.networks.skin.live import CellNode, SinkNode
+from innervate.networks.skin.live.nodes import CellNode, SinkNode
 
 # Makes the line that a listener gets of what came.
 Form = Callable[[Any], dict[str, Any]]

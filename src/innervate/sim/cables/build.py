@@ -10,6 +10,7 @@ from innervate.dialect import rng
 from innervate.kernel import records
 from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.networks.skin.sim.orders import SLOTS
+from innervate.scenario.actions.cables import GIVE, LOSE
 from innervate.sim import delays
 from innervate.sim.cables import commands
 from innervate.sim.cables import world as w
@@ -256,10 +257,10 @@ def _set_commands(world: w.World, plan: Any) -> None:
 
 def fault_row(fault: Any) -> tuple[int, ...]:
     """A fault of the plan as a row of `world.COMMAND`."""
-    value = fault.frames if fault.action == commands.LOSE else fault.loss_q15
+    value = fault.frames if fault.action == LOSE else fault.loss_q15
     return (fault.at_us, fault.action, fault.end, fault.node, value, fault.index)
 
 
 def order_row(order: Any) -> tuple[int, ...]:
     """A command of the PC as a row of `world.COMMAND`."""
-    return (order.at_us, commands.GIVE, NIL, order.cell, order.code << 16 | order.value, NIL)
+    return (order.at_us, GIVE, NIL, order.cell, order.code << 16 | order.value, NIL)

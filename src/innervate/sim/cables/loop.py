@@ -13,6 +13,7 @@ from innervate.kernel.bits import mix
 from innervate.kernel.tables import fetch
 from innervate.networks.skin.sim import orders, touch
 from innervate.networks.skin.sim.observer import BROKEN_OUTBOX
+from innervate.scenario.actions.cables import GIVE
 from innervate.sim import clocks, rows
 from innervate.sim import wheel as queue
 from innervate.sim.cables import commands, wires
@@ -256,7 +257,7 @@ def build(stack):
                 if limit >= until:
                     return
                 command = world.commands[run.next_command]
-                if command.action == commands.GIVE:
+                if command.action == GIVE:
                     give_order(world, command)
                 else:
                     commands.obey(world, command, switch_on, stopped)

@@ -12,12 +12,11 @@ from matplotlib.figure import Figure
 from innervate.networks.radio.papers.common import joined
 from innervate.networks.radio.papers.medium import START_US, Channel
 from innervate.networks.radio.scenario.plan import RadioFault, RadioPlan
-from innervate.networks.radio.sim import simulate
+from innervate.networks.radio.sim import build, simulate
 from innervate.networks.radio.sim.simulate import RadioResult
 from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
 from innervate.plot import style
 from innervate.scenario.actions.channel import JOIN, KILL
-from innervate.sim.channel import build
 from innervate.sim.tables import put
 
 N, SIZE, SPREAD_US = 4, 25, 100  # so few are put in order even as published (F1)

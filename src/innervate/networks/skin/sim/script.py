@@ -12,6 +12,7 @@ from innervate.dialect import plain
 from innervate.networks.skin.protocol import constants as skin_words
 from innervate.networks.skin.scenario import script as steps
 from innervate.scenario import ScenarioError
+from innervate.scenario.actions import cables as actions
 from innervate.sim import wheel
 from innervate.sim.cables import commands, loop
 from innervate.sim.cables.build import build
@@ -23,9 +24,9 @@ from innervate.sim.wheel import NIL
 
 STEP_US = 1000
 FROM_OUTSIDE = {
-    steps.STEP_CUT: commands.CUT,
-    steps.STEP_RESTORE: commands.RESTORE,
-    steps.STEP_RESTART: commands.RESTART,
+    steps.STEP_CUT: actions.CUT,
+    steps.STEP_RESTORE: actions.RESTORE,
+    steps.STEP_RESTART: actions.RESTART,
 }
 
 

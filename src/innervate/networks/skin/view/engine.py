@@ -6,6 +6,7 @@ from typing import Any
 
 from innervate.networks.skin.scenario.orders import Order
 from innervate.networks.skin.sim import simulate
+from innervate.networks.skin.sim.simulate import SkinSimulation
 from innervate.networks.skin.view.touching import Finger
 from innervate.sim.cables.build import order_row
 from innervate.sim.driver import Simulation
@@ -18,6 +19,7 @@ ORDERS_CELLS_MAX = 2_000  # of a skin without data or commands of its own: they 
 class SkinEngine(Engine):
     """A skin under way, and a finger on it."""
 
+    running: SkinSimulation
     finger: Finger | None = None  # once a hand has touched the skin
 
     def __init__(self, running: Simulation) -> None:
