@@ -110,9 +110,9 @@ def collect(node, gate, params, now, out):
         return
     gate.step = IDLE
     for k in range(params.places):
-        if node.near[k] != FREE and node.round_depth[k] != UNHEARD and trusts_lists(params):
+        if node.neighbour[k] != FREE and node.round_depth[k] != UNHEARD and trusts_lists(params):
             if node.round_rssi[k] >= params.min_rssi:
-                heard(gate, params, node.near[k], node.number, node.round)
+                heard(gate, params, node.neighbour[k], node.number, node.round)
     mark = build_graph(gate, params, node.round)
     changed = mark != gate.sum_a
     gate.sum_a = mark

@@ -36,7 +36,7 @@ from innervate.networks.mesh.protocol.search import set_edge
 from innervate.networks.mesh.protocol.send import pass_on
 from innervate.networks.mesh.protocol.table import GROUP_BYTES, all_parts, in_force
 
-PLACES_KEPT = 3  # of the queue, for what others send through us
+PLACES_RESERVED = 3  # of the queue, for what others send through us
 
 
 def install_own(node, gate, params, out):
@@ -159,7 +159,7 @@ def queue_parts(node, gate, params, now, s, out):
         if index >= gate.job_count[s]:
             return
         if gate.job_parts[s] >> index & 1 == 0:
-            if free_places(node) <= PLACES_KEPT:
+            if free_places(node) <= PLACES_RESERVED:
                 return
             queue_part(node, gate, params, now, s, index, out)
             gate.job_due[s] = job_due(node, gate, params, now, s)

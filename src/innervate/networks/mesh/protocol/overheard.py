@@ -10,7 +10,7 @@ from innervate.networks.mesh.protocol.frames import get16, inner
 from innervate.networks.mesh.protocol.queue import UNACKED, WAITS, drop, tell_hop
 
 
-def spare(node, frame, out):
+def drop_overheard(node, frame, out):
     """Forget what need not be sent as this frame tells: its next hop, or its recipient, has it."""
     for i in range(QUEUE):
         state = node.q_state[i]

@@ -10,7 +10,7 @@ from innervate.networks.mesh.protocol.fields import NEIGHBOURS
 FAR = 255
 NONE = 255
 BITS = 15
-ROUNDS_KEPT = 3
+ROUNDS_VALID = 3
 
 
 def heard(gate, params, who, by, round):
@@ -21,7 +21,7 @@ def heard(gate, params, who, by, round):
 def is_reported(gate, params, who, by, round):
     """1 if `by` heard `who` in one of the last rounds."""
     said = gate.reported[who * params.width + by]
-    return said != 0 and ((round + 1 - said) & MASK16) < ROUNDS_KEPT
+    return said != 0 and ((round + 1 - said) & MASK16) < ROUNDS_VALID
 
 
 def is_link(gate, params, a, b, round):

@@ -3,7 +3,7 @@
 from innervate.dialect.arith import MASK16, MASK30, after
 from innervate.dialect.outbox import URGENT, report, send, set_timer
 from innervate.dialect.rng import draw
-from innervate.networks.mesh.protocol.backoff import NO_PAUSE, answered, end_pause, is_held
+from innervate.networks.mesh.protocol.backoff import NO_BACKOFF, answered, end_backoff, is_held
 from innervate.networks.mesh.protocol.constants import (
     ACK,
     ACK_WAIT,
@@ -161,9 +161,9 @@ def is_before(node, i, j):
 def first_due(node, now):
     """Which frame goes next, or -1."""
     best = -1
-    end_pause(node, now)
+    end_backoff(node, now)
     for i in range(QUEUE):
-        if node.pause != NO_PAUSE and is_held(node, i):
+        if node.pause != NO_BACKOFF and is_held(node, i):
             continue
         if node.q_state[i] == WAITS and after(now, node.q_due[i]):
             if best < 0 or is_before(node, i, best):
@@ -179,7 +179,7 @@ def wake(node, now, out):
             wait = (node.q_due[i] - now) & MASK30
             if after(now, node.q_due[i]):
                 wait = 0
-            if node.pause != NO_PAUSE and is_held(node, i):
+            if node.pause != NO_BACKOFF and is_held(node, i):
                 wait = max(wait, (node.pause - now) & MASK30)
             if soonest < 0 or wait < soonest:
                 soonest = wait

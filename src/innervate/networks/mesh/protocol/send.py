@@ -18,7 +18,7 @@ from innervate.networks.mesh.protocol.constants import (
     TABLE_ACK,
     TABLE_FREE,
 )
-from innervate.networks.mesh.protocol.duplicates import skip, unskip
+from innervate.networks.mesh.protocol.duplicates import clear_skipped, skip
 from innervate.networks.mesh.protocol.fields import QUEUE
 from innervate.networks.mesh.protocol.frames import add_hop, was_at
 from innervate.networks.mesh.protocol.neighbours import DOUBT, is_lively, place_of, suspect, trust
@@ -107,7 +107,7 @@ def climb(node, params, now, i, out):
             give_up(node, i, out)
             return
         trust(node, params)
-        unskip(node, node.q_origin[i], node.q_seq[i])
+        clear_skipped(node, node.q_origin[i], node.q_seq[i])
         who = uplink(node, params, i)
         wait = (params.jitter_us >> 1) + draw(node, params.jitter_us + 1)
         node.q_due[i] = (now + wait) & MASK30
@@ -124,24 +124,24 @@ def is_upward(kind):
 
 def hop_failed(node, params, now, i, out):
     """The next hop of the packet in place i did not answer: try another."""
-    dead = node.q_link_dst[i]
+    failed = node.q_link_dst[i]
     kind = node.q_kind[i]
     node.q_state[i] = WAITS
     node.q_due[i] = now
     node.q_fails[i] = node.q_fails[i] + 1
     if kind == TABLE:
-        suspect(node, params, now, dead, 0, out)
+        suspect(node, params, now, failed, 0, out)
         give_up(node, i, out)
     elif is_upward(kind):
-        suspect(node, params, now, dead, 0, out)
-        skip(node, node.q_origin[i], node.q_seq[i], dead)
+        suspect(node, params, now, failed, 0, out)
+        skip(node, node.q_origin[i], node.q_seq[i], failed)
         if node.q_fails[i] > FAILURES_MAX:
             give_up(node, i, out)
         else:
             climb(node, params, now, i, out)
     else:
-        suspect(node, params, now, dead, planned(node, params, node.q_dest[i]) == dead, out)
-        learn_failure(node, params, i, dead)
+        suspect(node, params, now, failed, planned(node, params, node.q_dest[i]) == failed, out)
+        learn_failure(node, params, i, failed)
         if not params.retry or node.q_fails[i] > HOPS_MAX or is_stale(node, params, now, i):
             give_up(node, i, out)
         elif not aim(node, params, i, out):
@@ -162,7 +162,7 @@ def is_stale(node, params, now, i):
     return (now - node.q_born[i]) & MASK30 > limit
 
 
-def turn_away(node, params, dead, out):
+def turn_away(node, params, failed, out):
     """What else waits to go to a neighbour that does not answer goes another way, if there is one.
 
     Else every packet in the queue would have to find out for itself, one after the other.
@@ -171,7 +171,7 @@ def turn_away(node, params, dead, out):
         return
     for i in range(QUEUE):
         waits = node.q_state[i] == WAITS and node.q_flags[i] & ACK_WANTED
-        if waits and node.q_link_dst[i] == dead and node.q_kind[i] != TABLE:
+        if waits and node.q_link_dst[i] == failed and node.q_kind[i] != TABLE:
             if is_upward(node.q_kind[i]):
                 who = uplink(node, params, i)
                 if who != NOBODY:
@@ -205,7 +205,7 @@ def unanswered(node, params, now, out):
         node.q_state[i] = WAITS
         node.q_due[i] = now
     else:
-        dead = node.q_link_dst[i]
+        failed = node.q_link_dst[i]
         hop_failed(node, params, now, i, out)
-        turn_away(node, params, dead, out)
+        turn_away(node, params, failed, out)
     kick(node, params, now, out)

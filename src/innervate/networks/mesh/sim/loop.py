@@ -3,7 +3,7 @@
 from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.kernel.bits import mix
-from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol.constants import MESSAGE, REPORT_GRAPH, SAMPLE, SENT
 from innervate.networks.mesh.sim import recorder as books
 from innervate.networks.mesh.sim.timers import set_timer
@@ -194,7 +194,7 @@ def build(stack, layer):
             return
         world.due[node * TIMERS + timer] = NEVER
         now = time + radio.offset
-        if timer < mesh_words.TIMERS:
+        if timer < mesh_const.TIMERS:
             fire(world, node, now & MASK30, timer)
             finish(world, node, time, now, ON_TIMER, timer)
         else:

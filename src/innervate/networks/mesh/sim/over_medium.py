@@ -6,7 +6,7 @@ from typing import NamedTuple
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.kernel.bits import mix
-from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import csma
 from innervate.networks.mesh.protocol.constants import ACK
 from innervate.networks.mesh.sim import recorder as books
@@ -82,7 +82,7 @@ def down(stack):
             if kind == SEND:
                 medium.commit(world, radio.hot if c & URGENT else radio.held, time)
             elif kind == SET_TIMER:
-                set_timer(world, node, mesh_words.TIMERS + a, b, time, now)
+                set_timer(world, node, mesh_const.TIMERS + a, b, time, now)
             elif kind == REPORT and a == csma.REPORT_GAVE_UP:
                 give_up(world, node, time)
             elif kind == DELIVER:
@@ -151,7 +151,7 @@ def down(stack):
         if carrier != radio.told:
             radio.told = carrier
             mac_carrier(world, node, now & MASK30, carrier, 0)
-        mac_fire(world, node, now & MASK30, timer - mesh_words.TIMERS)
+        mac_fire(world, node, now & MASK30, timer - mesh_const.TIMERS)
         drain_mac(world, node, time, now, MAC + ON_TIMER)
 
     return Down(drain_mac, hand_down, switch_on, switch_off, expire)

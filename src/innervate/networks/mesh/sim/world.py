@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import csma
 from innervate.sim.channel.world import Heap
 from innervate.sim.tables import Out
@@ -41,7 +41,7 @@ WIDE = frozenset({"time", "start", "end", "phase", "offset", "noise", "x", "y", 
                   "fingerprint", "tell_at", *RUN})  # fmt: skip
 
 # Timers of a node: the router's, then those of the medium access below it.
-TIMERS = mesh_words.TIMERS + csma.TIMERS
+TIMERS = mesh_const.TIMERS + csma.TIMERS
 
 
 class World(NamedTuple):

@@ -11,7 +11,7 @@ from innervate.analysis.headline import Headline
 from innervate.networks.mesh.analysis.headline import headline
 from innervate.networks.mesh.analysis.reach import Ways, of_simulation
 from innervate.networks.mesh.plot.words import fault_words
-from innervate.networks.mesh.protocol import constants as w
+from innervate.networks.mesh.protocol import constants as c
 from innervate.networks.mesh.scenario.plan import MeshFault
 from innervate.networks.mesh.sim.build import MACS
 from innervate.networks.mesh.view.books import Books
@@ -25,12 +25,12 @@ from innervate.web.messages import number
 from innervate.web.view import Memory, View
 
 KINDS = {
-    w.REQUEST: "request", w.RESPONSE: "response", w.TABLE: "table", w.TABLE_ACK: "ack",
-    w.ACTIVATE: "table", w.GRAPH: "table", w.DATA: "data", w.E2E_ACK: "ack", w.ACK: "ack",
-    w.ALARM: "alarm", w.POSITION: "beacon",
+    c.REQUEST: "request", c.RESPONSE: "response", c.TABLE: "table", c.TABLE_ACK: "ack",
+    c.ACTIVATE: "table", c.GRAPH: "table", c.DATA: "data", c.E2E_ACK: "ack", c.ACK: "ack",
+    c.ALARM: "alarm", c.POSITION: "beacon",
 }  # fmt: skip
-ALARMS = {w.PREDICT: "is about to cross", w.CROSS: "has crossed the fence", w.LOST: "is lost",
-          w.CLEAR: "is inside again"}  # fmt: skip
+ALARMS = {c.PREDICT: "is about to cross", c.CROSS: "has crossed the fence", c.LOST: "is lost",
+          c.CLEAR: "is inside again"}  # fmt: skip
 SMOOTH = 0.3  # share of a new value in a load
 MESSAGES_MAX = 4_096
 FLIGHTS_MAX = 2_000
@@ -90,33 +90,33 @@ class MeshView(View):
         for at, node, code, a, b in rows["rows"].tolist():
             self._report(at, node, code, a, b)
         came = rows["delivered"]
-        for row in came[(came["kind"] == w.DATA) & (came["dest"] != w.ALL)]:
+        for row in came[(came["kind"] == c.DATA) & (came["dest"] != c.ALL)]:
             accepted = memory.messages.pop((int(row["origin"]), int(row["seq"])), None)
             if accepted is not None:
                 memory.latency_us.append(int(row["time"]) - accepted)
-        for row in came[came["kind"] == w.ALARM]:
+        for row in came[came["kind"] == c.ALARM]:
             self._alarm_came(int(row["time"]), int(row["body0"]), int(row["body3"]))
 
     def _report(self, at: int, node: int, code: int, a: int, b: int) -> None:
         memory, log, name = self.memory, self.log, self.plan.names
-        if code == w.REPORT_ACCEPTED:
+        if code == c.REPORT_ACCEPTED:
             memory.messages[node, b] = at
             if len(memory.messages) > MESSAGES_MAX:
                 del memory.messages[next(iter(memory.messages))]
-        elif code == w.REPORT_SUSPECT:
+        elif code == c.REPORT_SUSPECT:
             self._suspect(at, node, a)
-        elif code == w.REPORT_GATEWAY and a == node:
+        elif code == c.REPORT_GATEWAY and a == node:
             log.say(at, f"{name[node]} leads as gateway")
-        elif code == w.REPORT_TABLES:
+        elif code == c.REPORT_TABLES:
             missing = f", but {b} nodes have none" if b else ""
             log.say(at, f"tables are out{missing}", "bad" if b else "info")
-        elif code == w.REPORT_EXPIRED:
+        elif code == c.REPORT_EXPIRED:
             log.often("expired", at, f"{name[node]} gave a message up", "bad")
-        elif code == w.REPORT_ALARM:
+        elif code == c.REPORT_ALARM:
             memory.alarms.setdefault((b, a), at)
             who = "" if node == b else f", says {name[node]}"
             log.often("alarm", at, f"robot {name[b]} {ALARMS.get(a, 'raised an alarm')}{who}",
-                      "good" if a == w.CLEAR else "bad")  # fmt: skip
+                      "good" if a == c.CLEAR else "bad")  # fmt: skip
 
     def _suspect(self, at_us: int, node: int, near: int) -> None:
         recovery, fault = self.memory.recovery, self.memory.fault
@@ -130,7 +130,7 @@ class MeshView(View):
 
     def _alarm_came(self, at_us: int, robot: int, kind: int) -> None:
         raised = self.memory.alarms.pop((robot, kind), None)
-        if raised is not None and kind != w.CLEAR:
+        if raised is not None and kind != c.CLEAR:
             text = f"alarm of robot {self.plan.names[robot]} at the monitor after"
             self.log.say(at_us, f"{text} {(at_us - raised) / 1e3:.1f} ms", "good")
 
@@ -206,7 +206,7 @@ class MeshView(View):
         if any(self.plan.robots):
             monitor = self.plan.params["monitor"]
             roots = np.flatnonzero(ways.leads)
-            who = roots if monitor == w.MONITOR else [monitor]
+            who = roots if monitor == c.MONITOR else [monitor]
             raised = world.nodes["raised"][who][:, : self.plan.nodes]
             robots = np.array(self.plan.robots, np.bool_)
             outside = world.nodes["outside"][: self.plan.nodes] == 2
@@ -224,7 +224,7 @@ class MeshView(View):
             part = round(min(1.0, max(0.0, (now - start) / max(1, end - start))), 3)
             a, to = int(air["node"]), int(frame["link_dst"])
             kind = KINDS.get(int(frame["kind"]), "frame")
-            for b in self.near[a] if to == w.ALL else [to]:
+            for b in self.near[a] if to == c.ALL else [to]:
                 found.append({"a": a, "b": b, "kind": kind, "p": part})
         return found[:FLIGHTS_MAX]
 

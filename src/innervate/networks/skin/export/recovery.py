@@ -17,7 +17,7 @@ from innervate.export.errors import ExportError
 from innervate.export.reading import Capture, Packet
 from innervate.networks.skin import frames as skin
 from innervate.networks.skin.export.routes import PC, End, Network
-from innervate.networks.skin.protocol import constants as skin_words
+from innervate.networks.skin.protocol import constants as skin_const
 from innervate.wire.bits import get
 from innervate.wire.layout import width
 
@@ -114,9 +114,9 @@ class Watcher:
         kind = packet.data[0] >> (8 - skin.KIND_BITS)
         if len(packet.data) != skin.SIZES.get(kind):
             return
-        if kind == skin_words.BEACON and out and end.node != PC:
+        if kind == skin_const.BEACON and out and end.node != PC:
             self._beacon(packet, end)
-        elif kind == skin_words.DATA and (out or (end.node == PC and not packet.comment)):
+        elif kind == skin_const.DATA and (out or (end.node == PC and not packet.comment)):
             self._sample(packet, end, out)
 
     def end(self) -> list[Healing]:

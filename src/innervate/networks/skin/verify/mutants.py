@@ -12,8 +12,7 @@ from dataclasses import dataclass
 from types import ModuleType
 
 from innervate.dialect.copies import changed_copy
-from innervate.networks.skin.verify import assumptions as promises
-from innervate.networks.skin.verify import fair, graphs, story
+from innervate.networks.skin.verify import assumptions, fair, graphs, story
 from innervate.networks.skin.verify import system as system
 from innervate.verify import explore
 
@@ -134,7 +133,7 @@ def hunt(mutant: Mutant, starts: int = 12, lean: bool = False) -> Catch:
     for model in models(lean):
         where = f"{graphs.cables(model.graph)}, {model.rule}, {model.updates}"
         try:
-            taken = promises.broken(model, changed) if lean else ""
+            taken = assumptions.broken(model, changed) if lean else ""
             if taken:
                 return Catch(mutant, f"a promise that reductions rest on: {taken}", where, states)
             found = explore.explore(model, plain=True, system=changed, states=15_000)

@@ -22,7 +22,7 @@ from innervate.networks.skin.protocol.constants import (
 )
 from innervate.networks.skin.verify import check as skin_check
 from innervate.networks.skin.verify import moves as skin_moves
-from innervate.networks.skin.verify import reduction as skin_dead
+from innervate.networks.skin.verify import reduction
 from innervate.networks.skin.verify import row as skin_row
 from innervate.networks.skin.verify import world as skin_world
 from innervate.networks.skin.verify import world as w
@@ -148,7 +148,7 @@ def compiled_parts() -> System:
 
     door.register(arith, outbox, rng, invariants)
     door.register(skin_route, skin, skin_sink, hot=False)
-    door.register(skin_row, skin_dead, skin_check, hot=False)
+    door.register(skin_row, reduction, skin_check, hot=False)
     plain = [f for f in vars(skin_moves).values() if callable(f)]
     own = [f for f in plain if getattr(f, "__module__", "") == skin_moves.__name__]
     system = system_of()
@@ -222,7 +222,7 @@ def first_row(model: SkinModel, system: System) -> list[int]:
         world.work[lay.budget_at + i] = count if model.budget.faults else 0
     system.start(world)
     if world.at[w.LEAN]:
-        skin_dead.tidy(world)
+        reduction.tidy(world)
     return list(world.work)
 
 
