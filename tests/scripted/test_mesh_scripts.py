@@ -25,7 +25,7 @@ FENCE = dict(points=4, px=[0, 1000, 1000, 0] + [0] * 44, py=[0, 0, 1000, 1000] +
              after=[1, 2, 3, 0] + [0] * 44)  # fmt: skip
 NAMES = ["REQUEST", "RESPONSE", "TABLE", "TABLE_ACK", "DATA", "E2E_ACK"]
 NAMES += ["ALARM", "POSITION", "GRAPH", "ACK"]
-KINDS = {getattr(constants, name): name.lower().replace("_", " ") for name in NAMES}
+KINDS = {getattr(const, name): name.lower().replace("_", " ") for name in NAMES}
 ALARM_KINDS = ["predict", "cross", "lost", "clear"]
 REPORTS = {
     const.REPORT_HOP: "message {a} has left",

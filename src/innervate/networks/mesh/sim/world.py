@@ -13,7 +13,7 @@ RUN = (
     "nodes", "mac", "collisions", "turnaround", "byte_ns", "phy_bytes", "sense", "capture",
     "rng", "sample", "origin_x", "origin_y", "unit", "moving", "rssi50", "told", "row", "good",
     "on_air", "free", "gate_words", "next_command", "commands", "next_offer", "offers",
-    "seen", "seen_limit", "forget", "checks", "watchful", "status", "fingerprint", "now",
+    "duplicates", "duplicate_limit", "forget", "checks", "watchful", "status", "fingerprint", "now",
     "handled", "arrived", "transmissions", "received", "gave_up", "blocked", "unasked",
     "rows", "row_limit", "sent", "sent_limit", "delivered", "delivered_limit",
     "rounds", "round_limit", "trail", "trail_limit", "taps", "tap_limit",
@@ -85,8 +85,8 @@ class World(NamedTuple):
     item: Any
     out: Out
     mac_out: Out
-    seen_key: Any  # what was delivered lately: a hash table
-    seen_at: Any
+    duplicate_key: Any  # what was delivered lately: a hash table
+    duplicate_at: Any
     rows: Any
     sent: Any
     delivered: Any

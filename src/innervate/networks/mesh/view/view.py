@@ -14,7 +14,7 @@ from innervate.networks.mesh.plot.words import fault_words
 from innervate.networks.mesh.protocol import constants as c
 from innervate.networks.mesh.scenario.plan import MeshFault
 from innervate.networks.mesh.sim.build import MACS
-from innervate.networks.mesh.view.books import Books
+from innervate.networks.mesh.view.recorder import TrafficRecorder
 from innervate.networks.mesh.view.scene import Field
 from innervate.scenario.actions.field import CUT, KILL, QUIET, RESTORE, REVIVE
 from innervate.sim.field.states import ALIVE, DEAD, ON_AIR
@@ -66,7 +66,7 @@ class MeshView(View):
             near[a].append(b)
             near[b].append(a)
         self.near = near
-        self.books = Books(engine)
+        self.recorder = TrafficRecorder(engine)
         self._found: tuple[int, Ways] | None = None
         if self.plan.mac not in MACS:  # a channel on which everybody hears everybody
             self.can = ("kill", "revive")
@@ -83,7 +83,7 @@ class MeshView(View):
     def note(self, rows: Rows) -> None:
         """Take in what happened since the last call."""
         memory, sent = self.memory, rows["sent"]
-        self.books.add(rows)
+        self.recorder.add(rows)
         np.add.at(memory.air_us, sent["node"], sent["end"] - sent["time"])
         if self.tell_faults():
             self.check()
@@ -162,12 +162,12 @@ class MeshView(View):
 
     def headline(self) -> Headline:
         """Is all well, and if not, what is wrong."""
-        return headline(self._ways(), self.books.traffic(self.is_still))
+        return headline(self._ways(), self.recorder.traffic(self.is_still))
 
     def forget(self, memory: Any) -> None:
         """Go back to a memory."""
         super().forget(memory)
-        self.books.forget()
+        self.recorder.forget()
         self._found = None
 
     def points(self) -> dict[str, float | None]:

@@ -61,7 +61,7 @@ def following(station, pos):
     return NONE
 
 
-def is_over(first, last, place):
+def is_passed_over(first, last, place):
     """1 if going round from `first` to `last` passes over `place`, both ends left out."""
     if first < last:
         return first < place < last

@@ -57,7 +57,7 @@ def join_after(params, wide):
     return params.join_us
 
 
-def dead_after(params, wide):
+def turn_timeout(params, wide):
     """D: silence after which a turn is given up."""
     if wide:
         return 2 * params.ta_us + 4 * most_delay(params, wide) + minislot(params, wide)

@@ -3,7 +3,7 @@
 from innervate.dialect.rng import draw
 from innervate.networks.radio.protocol.bounds import adopt
 from innervate.networks.radio.protocol.constants import MINISLOTS, NO_PROOF, NONE, POSITIONS
-from innervate.networks.radio.protocol.idle import over
+from innervate.networks.radio.protocol.idle import end_sequence
 from innervate.networks.radio.protocol.modes import (
     SEND_SLOT,
     WINDOW,
@@ -82,7 +82,7 @@ def go_on(station, params, now, out):
     """The window has ended without a report."""
     note_joined(station)
     if station.cur == NONE and station.pending == 0:
-        over(station, params, now, out)
+        end_sequence(station, params, now, out)
     else:
         enter_turn(station, params, now, station.cur, out)
 

@@ -55,7 +55,7 @@ def _modules() -> list[ModuleType]:
     from innervate.dialect import rng as generator
     from innervate.networks.skin import invariants
     from innervate.networks.skin.protocol import cell as skin
-    from innervate.networks.skin.protocol import down as skin_down
+    from innervate.networks.skin.protocol import command_window
     from innervate.networks.skin.protocol import route as skin_route
     from innervate.networks.skin.protocol import sink as skin_sink
     from innervate.networks.skin.protocol import static as skin_static
@@ -63,7 +63,7 @@ def _modules() -> list[ModuleType]:
     from innervate.sim import clocks, delays, wheel
 
     return [
-        arith, outbox, generator, skin_route, skin_down, skin, skin_sink, skin_static,
+        arith, outbox, generator, skin_route, command_window, skin, skin_sink, skin_static,
         wheel, clocks, wires, delays, invariants, checks, skin_stack, static_stack,
     ]  # fmt: skip
 

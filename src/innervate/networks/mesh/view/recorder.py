@@ -16,7 +16,7 @@ from innervate.networks.mesh.analysis.summary import looped
 from innervate.networks.mesh.protocol import constants as c
 from innervate.web.engine import Engine, Rows
 
-KEPT = ("rows", "sent", "delivered")
+TABLES = ("rows", "sent", "delivered")
 CODES = (
     c.REPORT_ACCEPTED,
     c.REPORT_FULL,
@@ -27,12 +27,12 @@ SHARE = 20  # of this share of the time messages are counted anew, at most
 AT = {"rows": "time", "sent": "end", "delivered": "time"}
 
 
-class Books:
+class TrafficRecorder:
     """The rows that `analysis` counts messages by, as far as the network has come."""
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
-        self._parts: dict[str, list[Any]] = {name: [] for name in KEPT}
+        self._parts: dict[str, list[Any]] = {name: [] for name in TABLES}
         self._found = Traffic()
         self._found_us = -1
         self._not_before = 0.0

@@ -29,7 +29,7 @@ class Scene:
     actor: int
 
 
-class Teller:
+class Narrator:
     """Plays events on the real network and finds words for them."""
 
     def __init__(self, real: Twin, story: Any) -> None:
