@@ -103,9 +103,9 @@ def test_alarms_go_first_then_control_then_messages_each_in_order():
     node, out = net.nodes[1], net.out
     ranks = [2, 1, 0, 2, 1, 0]
     for rank in ranks:
-        mesh_queue.place(node, 0, rank, 255, out)
+        mesh_queue.enqueue(node, 0, rank, 255, out)
     went = []
-    while (i := mesh_queue.first_due(node, 0)) >= 0:
+    while (i := mesh_queue.pick_due(node, 0)) >= 0:
         went.append(i)
         mesh_queue.drop(node, i)
     assert went == [2, 5, 1, 4, 0, 3]
@@ -115,9 +115,9 @@ def test_a_flooded_alarm_does_not_wait_behind_one_to_a_dead_hop():
     net = Net(2, line(2))
     node = net.nodes[1]
     for dest in (0, 255):
-        i = mesh_queue.place(node, 0, mesh_queue.ALARMS, 255, net.out)
+        i = mesh_queue.enqueue(node, 0, mesh_queue.ALARMS, 255, net.out)
         node.q_link_dst[i] = dest
-    assert node.q_link_dst[mesh_queue.first_due(node, 0)] == 255
+    assert node.q_link_dst[mesh_queue.pick_due(node, 0)] == 255
 
 
 @pytest.mark.parametrize("rank", [0, 1, 2])
@@ -126,7 +126,7 @@ def test_the_last_places_are_for_what_is_more_urgent(rank):
     node = net.nodes[1]
     taken = 0
     while mesh_queue.has_room(node, rank):
-        assert mesh_queue.place(node, 0, rank, 255, net.out) >= 0, "room was promised"
+        assert mesh_queue.enqueue(node, 0, rank, 255, net.out) >= 0, "room was promised"
         taken += 1
     assert taken == QUEUE - rank
 
@@ -135,17 +135,17 @@ def test_an_alarm_puts_out_the_newest_of_what_is_least_urgent():
     net = Net(2, line(2))
     node, out = net.nodes[1], net.out
     for k, rank in enumerate([1, 2, 2, 1, 2, 1, 1, 1]):
-        i = mesh_queue.place(node, 0, rank, 255, out)
+        i = mesh_queue.enqueue(node, 0, rank, 255, out)
         node.q_seq[i] = k
     node.q_state[4] = mesh_queue.DOWN
     out.count[0] = 0
     assert mesh_queue.has_room(node, 0)
-    assert mesh_queue.place(node, 0, 0, 255, out) == 2, "place 4 is under way, 2 newer than 1"
+    assert mesh_queue.enqueue(node, 0, 0, 255, out) == 2, "place 4 is under way, 2 newer than 1"
     assert (out.action[0].a, out.action[0].c) == (REPORT_DROPPED, 2)
     for k in range(QUEUE):
         node.q_rank[k] = 0
     assert not mesh_queue.has_room(node, 0), "full of alarms: no ack for what is not kept"
-    assert mesh_queue.place(node, 0, 0, 255, out) == -1
+    assert mesh_queue.enqueue(node, 0, 0, 255, out) == -1
 
 
 def test_of_more_neighbours_than_places_the_loudest_are_kept():

@@ -32,12 +32,11 @@ def make_testbeds(rule: Rule) -> tuple[MeshTestbed, ...]:
 def points(quick: bool) -> list[Point]:
     """Every rule and number of dead; the worst with end-to-end acks too."""
     seeds = seeds_of(quick)
-    made = [
-        sending.point(make_testbeds(rule)[0], k, seeds) for rule in RULES for k in dead_of(quick)
-    ]
-    made += [sending.point(make_testbeds(rule)[1], k, seeds) for rule in RULES if rule is not DOCUMENT
-             for k in (0, WORST)]  # fmt: skip
-    return [*made, sending.point(make_testbeds(ORIGIN)[0], WORST, seeds)]
+    testbeds = {rule: make_testbeds(rule) for rule in (*RULES, ORIGIN)}
+    made = [sending.point(testbeds[rule][0], k, seeds) for rule in RULES for k in dead_of(quick)]
+    again = [rule for rule in RULES if rule is not DOCUMENT]
+    made += [sending.point(testbeds[rule][1], k, seeds) for rule in again for k in (0, WORST)]
+    return [*made, sending.point(testbeds[ORIGIN][0], WORST, seeds)]
 
 
 def lost(results: Results, of: MeshTestbed, dead: int, quick: bool, which: str) -> float:

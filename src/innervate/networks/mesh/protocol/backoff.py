@@ -19,7 +19,7 @@ LONGEST_US = 65_536  # before it is doubled
 NO_BACKOFF = -1
 
 
-def missed(node, params, now):
+def note_missed(node, params, now):
     """A transmission was not acknowledged: pause, the longer the more of them there were."""
     node.strain = min(node.strain + 1, STRAIN_MAX)
     if node.strain > STRAIN_FREE:
@@ -27,7 +27,7 @@ def missed(node, params, now):
         node.pause = (now + draw(node, span) + 1) & MASK30
 
 
-def answered(node):
+def note_answer(node):
     """A transmission was acknowledged: the channel has room."""
     node.strain = max(node.strain - 1, 0)
     node.pause = NO_BACKOFF

@@ -59,12 +59,12 @@ from innervate.networks.mesh.protocol.messages import on_message, take
 from innervate.networks.mesh.protocol.neighbours import clear_neighbours, hear, hear_again, sweep
 from innervate.networks.mesh.protocol.overheard import drop_overheard
 from innervate.networks.mesh.protocol.queue import (
-    acked,
     acknowledge,
     has_room,
     kick,
-    left,
     make_room,
+    on_sent,
+    take_ack,
     take_over,
     tell_hop,
 )
@@ -75,7 +75,7 @@ from innervate.networks.mesh.protocol.retransmission import (
     retransmit,
 )
 from innervate.networks.mesh.protocol.round import on_request, step
-from innervate.networks.mesh.protocol.send import is_upward, send_up, unanswered
+from innervate.networks.mesh.protocol.send import is_upward, on_ack_timeout, send_up
 from innervate.networks.mesh.protocol.table import on_activate, on_graph, on_table
 from innervate.networks.mesh.protocol.watch import NEVER, beacon, on_position, watch
 
@@ -163,7 +163,7 @@ def on_frame(node, gate, params, now, port, frame, out):
 
 def on_hop_ack(node, params, now, frame, out):
     """A hop has taken over what we sent."""
-    i = acked(node, frame)
+    i = take_ack(node, frame)
     if i >= 0:
         tell_hop(node, i, out)
         kick(node, params, now, out)
@@ -240,7 +240,7 @@ def on_upward(node, gate, params, now, frame, out):
 def on_input(node, gate, params, now, kind, item, out):
     """MESSAGE: send it. SENT: the frame below has left. SAMPLE: where a robot is."""
     if kind == SENT:
-        left(node, params, now, item.ok, out)
+        on_sent(node, params, now, item.ok, out)
     elif kind == MESSAGE:
         on_message(node, params, now, item, out)
     elif kind == SAMPLE:
@@ -252,7 +252,7 @@ def on_timer(node, gate, params, now, timer, out):
     if timer == TX:
         kick(node, params, now, out)
     elif timer == ACK_WAIT:
-        unanswered(node, params, now, out)
+        on_ack_timeout(node, params, now, out)
     elif timer == ROUND:
         if node.leading:
             collect(node, gate, params, now, out)

@@ -21,7 +21,7 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.fields import QUEUE
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16, store
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD, place_of
-from innervate.networks.mesh.protocol.queue import NOBODY_GAVE, WAITS, compose, drop, kick, place
+from innervate.networks.mesh.protocol.queue import NOBODY_GAVE, WAITS, compose, drop, enqueue, kick
 from innervate.networks.mesh.protocol.send import send_up
 from innervate.networks.mesh.protocol.table import activate
 from innervate.networks.mesh.protocol.upward import is_uplink, is_weak
@@ -122,7 +122,7 @@ def queue_request(node, params, now, frame, wait, out):
     """Pass the request on after `wait` us and some more; it takes the place of one that waits."""
     i = queued_request(node)
     if i < 0:
-        i = place(node, now, CONTROL, NOBODY_GAVE, out)
+        i = enqueue(node, now, CONTROL, NOBODY_GAVE, out)
     if i >= 0:
         store(node, i, frame)
         node.q_link_dst[i] = ALL

@@ -28,7 +28,7 @@ from innervate.networks.mesh.protocol.neighbours import (
     place_of,
     random_neighbour,
 )
-from innervate.networks.mesh.protocol.search import add_failed, distances, is_edge, towards
+from innervate.networks.mesh.protocol.search import add_failed, find_hop, is_edge, measure_distances
 from innervate.networks.mesh.protocol.upward import uplink
 
 NONE = 255
@@ -163,7 +163,7 @@ def seek(node, params, i):
     return who
 
 
-def by_search(node, params, i):
+def choose_by_search(node, params, i):
     """The next hop by table, alternates and path-trace search."""
     who = seek(node, params, i)
     if who != NOBODY and who != planned(node, params, node.q_dest[i]):
@@ -176,7 +176,7 @@ def room_of(node, params, i):
     return params.mtu - HEADER_BYTES - CRC_BYTES - node.q_path_len[i]
 
 
-def by_graph(node, params, i):
+def choose_by_graph(node, params, i):
     """The next hop on a shortest path around all that failed and all that had the packet.
 
     Where the graph knows none, links may have come that it does not have: search.
@@ -186,13 +186,13 @@ def by_graph(node, params, i):
     if near and not is_suspect(node, params, dest):
         return dest
     if node.version:
-        who = towards(node, params, i, dest, room_of(node, params, i), 1)
+        who = find_hop(node, params, i, dest, room_of(node, params, i), 1)
         if who != NONE:
             return who
     return seek(node, params, i)
 
 
-def along_route(node, params, i):
+def choose_by_route(node, params, i):
     """Table-free: the next of the source route, the recipient if near, else the gateway.
 
     The gateway itself writes the route.
@@ -215,10 +215,10 @@ def plan_route(node, params, i):
     dest = node.q_dest[i]
     if dest >= params.nodes:
         return
-    first = towards(node, params, i, dest, room_of(node, params, i), 0)
+    first = find_hop(node, params, i, dest, room_of(node, params, i), 0)
     if first == NONE:
         return
-    distances(node, params, i, dest, node.number, 0)
+    measure_distances(node, params, i, dest, node.number, 0)
     count = node.far[first] + 1
     length = node.q_length[i]
     if length + count + 1 > room_of(node, params, i):
@@ -243,14 +243,14 @@ def downhill(node, params, at):
     return at
 
 
-def next_hop(node, params, i):
+def choose_hop(node, params, i):
     """Where the packet in place i goes next; NOBODY: nowhere."""
     if params.mode == WHOLE_GRAPH:
-        return by_graph(node, params, i)
+        return choose_by_graph(node, params, i)
     if params.mode == TABLE_FREE:
-        return along_route(node, params, i)
+        return choose_by_route(node, params, i)
     if params.failover >= ALTERNATE:
-        return by_search(node, params, i)
+        return choose_by_search(node, params, i)
     who = planned(node, params, node.q_dest[i])
     if who == NONE and node.q_dest[i] == node.gateway:
         return uplink(node, params, i)

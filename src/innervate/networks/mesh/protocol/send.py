@@ -3,7 +3,7 @@
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import report
 from innervate.dialect.rng import draw
-from innervate.networks.mesh.protocol.backoff import missed
+from innervate.networks.mesh.protocol.backoff import note_missed
 from innervate.networks.mesh.protocol.constants import (
     ACK_WANTED,
     ALARMS,
@@ -25,8 +25,8 @@ from innervate.networks.mesh.protocol.neighbours import DOUBT, is_lively, place_
 from innervate.networks.mesh.protocol.queue import UNACKED, WAITS, drop, kick
 from innervate.networks.mesh.protocol.route import (
     advance_route,
+    choose_hop,
     learn_failure,
-    next_hop,
     planned,
     room_of,
 )
@@ -61,7 +61,7 @@ def enter(node, params, i, out):
 
 def aim(node, params, i, out):
     """Choose the next hop of the routed packet in place i; 0 if there is none."""
-    who = next_hop(node, params, i)
+    who = choose_hop(node, params, i)
     if who == NOBODY:
         return 0
     advance_route(node, i)
@@ -69,7 +69,7 @@ def aim(node, params, i, out):
     return 1
 
 
-def goes_back(node, params, i):
+def resume_search(node, params, i):
     """1 if we search on for a packet that came back: its path has us already, and room for others.
 
     24 nodes can be searched so, not 24 hops; dead ends cost no room.
@@ -84,7 +84,7 @@ def goes_back(node, params, i):
 
 def send_on(node, params, now, i, out):
     """The packet in place i, ours or taken over, goes to its recipient; 0 if it cannot."""
-    if not goes_back(node, params, i) and not enter(node, params, i, out):
+    if not resume_search(node, params, i) and not enter(node, params, i, out):
         return 0
     if not aim(node, params, i, out):
         give_up(node, i, out)
@@ -192,7 +192,7 @@ def most_tries(node, params, i, who):
     return params.transmissions
 
 
-def unanswered(node, params, now, out):
+def on_ack_timeout(node, params, now, out):
     """The hop's ack did not come in time."""
     i = node.busy
     if i < 0 or node.q_state[i] != UNACKED:
@@ -200,7 +200,7 @@ def unanswered(node, params, now, out):
     node.busy = -1
     who = place_of(node, params, node.q_link_dst[i])
     if who < 0 or is_lively(node, who):
-        missed(node, params, now)
+        note_missed(node, params, now)
     if node.q_tries[i] < most_tries(node, params, i, who):
         node.q_state[i] = WAITS
         node.q_due[i] = now

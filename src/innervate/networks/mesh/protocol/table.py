@@ -58,7 +58,7 @@ def expect(node, epoch, version, count):
     return 0
 
 
-def in_force(node, params, epoch, version, out):
+def put_in_force(node, params, epoch, version, out):
     """What came in is in force from now on."""
     node.version = version
     node.table_epoch = epoch
@@ -133,14 +133,14 @@ def finish_table(node, params, out):
         node.ready = 1
     else:
         node.bank = 1 - node.bank
-        in_force(node, params, node.new_epoch, node.new_version, out)
+        put_in_force(node, params, node.new_epoch, node.new_version, out)
 
 
 def activate(node, params, epoch, version, out):
     """The gateway says that these tables are in force."""
     if node.ready and epoch == node.new_epoch and version == node.new_version:
         node.bank = 1 - node.bank
-        in_force(node, params, epoch, version, out)
+        put_in_force(node, params, epoch, version, out)
 
 
 def on_activate(node, params, now, frame, out):
@@ -189,7 +189,7 @@ def on_graph(node, params, now, frame, out):
         read_edges(node, params, frame, index)
         node.parts = node.parts | 1 << index
         if node.parts == all_parts(count):
-            in_force(node, params, epoch, version, out)
+            put_in_force(node, params, epoch, version, out)
             answer_graph(node, params, now, epoch, version, count, out)
     if fresh:
         spread(node, params, now, frame, out)

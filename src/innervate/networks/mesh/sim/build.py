@@ -99,7 +99,7 @@ def grow_duplicates(world: m.World) -> m.World:
         if key:
             place = recorder.place_of(keys, int(key))
             keys[place], times[place] = key, at
-    put(world.run, 0, seen_limit=count // 2 - _margin(len(world.radios)) // 4)
+    put(world.run, 0, duplicate_limit=count // 2 - _margin(len(world.radios)) // 4)
     return world._replace(duplicate_key=keys, duplicate_at=times)
 
 
@@ -224,7 +224,7 @@ def _set_run(world: m.World, plan: Any, gate_words: int) -> None:
         gate_words=gate_words,
         commands=sum(not away for away in plan.absent) + len(plan.faults),
         offers=len(plan.offers),
-        seen_limit=DUPLICATES // 2 - _margin(n) // 4,
+        duplicate_limit=DUPLICATES // 2 - _margin(n) // 4,
         forget=FORGET_US,
     )
     for name, length, *_ in mesh_fields.PARAMS:

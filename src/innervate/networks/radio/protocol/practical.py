@@ -39,7 +39,7 @@ from innervate.networks.radio.protocol.modes import (
     arm,
 )
 from innervate.networks.radio.protocol.reporter import (
-    burst,
+    end_burst,
     end_of_window,
     hear_slot,
     opened,
@@ -48,7 +48,7 @@ from innervate.networks.radio.protocol.reporter import (
 from innervate.networks.radio.protocol.station import enqueue, hand_up, leave, reset
 from innervate.networks.radio.protocol.times import frame_from, join_after, turn_timeout
 from innervate.networks.radio.protocol.turn import enter_turn, send_turn
-from innervate.networks.radio.protocol.window import hear_report, next_deadline, use_slot
+from innervate.networks.radio.protocol.window import hear_report, pass_deadline, use_slot
 
 
 def on_start(station, params, now, cause, out):
@@ -142,7 +142,7 @@ def carrier_went(station, params, now, length, out):
         else:
             schedule(station, now, out)
     elif mode == LEAD:
-        burst(station, params, now, length, noise, out)
+        end_burst(station, params, now, length, noise, out)
     elif mode == WINDOW:
         if noise and length >= frame_from(params, station.used) + params.slot_us:
             station.mode = LOST
@@ -170,7 +170,7 @@ def on_timer(station, params, now, timer, out):
         elif mode == LEAD:
             end_of_window(station, params, now, out)
         elif mode == WINDOW:
-            next_deadline(station, params, now, out)
+            pass_deadline(station, params, now, out)
         elif mode == TURN:
             silent_turn(station, params, now, out)
         elif mode == LOST:

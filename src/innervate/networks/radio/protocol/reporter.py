@@ -150,7 +150,7 @@ def hear_slot(station, params, now, out):
         set_bit(station.good, place)
 
 
-def burst(station, params, now, length, noise, out):
+def end_burst(station, params, now, length, noise, out):
     """The end of a carrier in our window; a report or turn waits for it."""
     if noise and length >= frame_from(params, station.used):
         run_together(station, params, length, out)

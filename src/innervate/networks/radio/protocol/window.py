@@ -67,7 +67,7 @@ def expect_report(station, params, out):
     arm(station, station.ref, length, out)
 
 
-def next_deadline(station, params, now, out):
+def pass_deadline(station, params, now, out):
     """Nobody was heard, so the turns go on; else a report must come, or they go on too.
 
     With a carrier at the second deadline the end of that decides (see carrier_went).
