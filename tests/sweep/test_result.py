@@ -10,7 +10,7 @@ import innervate
 from innervate.analysis.intervals import mean_interval, quantile
 from innervate.cli import main
 from innervate.scenario import ScenarioError
-from innervate.sweep import SweepError, load, make_plan
+from innervate.sweeping import SweepError, load, make_plan
 
 PLAN = """\
 scenario = "four.toml"
