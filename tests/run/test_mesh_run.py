@@ -5,8 +5,8 @@ import pytest
 
 from innervate import run
 from innervate.cli.show import summary_lines
-from innervate.run import compare
-from innervate.run.rooms import room_of
+from innervate.running import compare
+from innervate.running.rooms import room_of
 from innervate.trace import mesh_tables as declared
 from tests.mesh_tables_runs import mesh_tables, without_fence
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from innervate.plot import mesh_words, words
 
 if TYPE_CHECKING:
-    from innervate.run import Run
+    from innervate.running import Run
 
 
 def summary_lines(run: Run) -> list[str]:
