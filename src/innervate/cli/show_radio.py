@@ -8,7 +8,7 @@ from innervate.plot import words
 from innervate.plot.radio_words import slots_words
 
 if TYPE_CHECKING:
-    from innervate.run import Run
+    from innervate.running import Run
 
 
 def summary_lines(run: Run) -> list[str]:
