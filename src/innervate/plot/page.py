@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
 from innervate.plot import theme
@@ -77,6 +77,13 @@ def element(tag: str, text: str, kind: str = "") -> str:
     """An element with text, which is escaped."""
     opening = f'<{tag} class="{kind}">' if kind else f"<{tag}>"
     return f"{opening}{clean(text)}</{tag}>\n"
+
+
+def verdict(headline: Mapping[str, str]) -> str:
+    """A summary's headline as the first line of a report, with its level beside it."""
+    good = headline["level"] == "ok"
+    level = element("p", headline["level"], "status" if good else "status bad")
+    return element("h1", headline["text"]) + level
 
 
 def section(head: str, inside: str) -> str:
