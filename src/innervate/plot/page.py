@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
+from typing import Any
 
 from innervate.plot import theme
 from innervate.plot.svg import Drawing, clean
@@ -14,6 +15,14 @@ body{margin:0;background:var(--ground);color:var(--ink);
 font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,sans-serif}
 main{max-width:1060px;margin:0 auto;padding:28px 20px 60px}
 h1{font-size:1.55rem;line-height:1.3;margin:.2em 0 .4em}
+h1.headline{border-left:.3em solid var(--soft);padding-left:.6em}
+h1.ok{border-color:var(--good)}
+h1.degraded{border-color:var(--warn)}
+h1.down{border-color:var(--alarm)}
+.headline b{display:block;font-size:.9rem;color:var(--soft)}
+h1.ok b{color:var(--good)}
+h1.degraded b{color:var(--warn)}
+h1.down b{color:var(--alarm)}
 h2{font-size:1.15rem;margin:2.2em 0 .6em;padding-bottom:.3em;border-bottom:1px solid var(--faint)}
 h3{font-size:.95rem;margin:0 0 .1em}
 p{margin:.4em 0}
@@ -77,6 +86,12 @@ def element(tag: str, text: str, kind: str = "") -> str:
     """An element with text, which is escaped."""
     opening = f'<{tag} class="{kind}">' if kind else f"<{tag}>"
     return f"{opening}{clean(text)}</{tag}>\n"
+
+
+def headline(entry: Mapping[str, Any]) -> str:
+    """A summary's entry `headline` as the first line of a report, in the colour of its level."""
+    level, text = str(entry["level"]), clean(str(entry["text"]))
+    return f'<h1 class="headline {level.replace(" ", "-")}"><b>{clean(level)}</b>{text}</h1>\n'
 
 
 def section(head: str, inside: str) -> str:
