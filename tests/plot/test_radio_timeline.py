@@ -77,13 +77,14 @@ def test_the_first_sentence_says_what_happened(runs):
 
 def test_packets_lost_silently_are_said_first(runs):
     well = radio_report.body(runs["four"], radio.summarize(runs["four"]))
-    assert '<h1 class="headline ok"><b>ok</b>All 4 packets were delivered.</h1>' in well
+    assert '<h1>All 4 packets were delivered.</h1>\n<p class="status">ok</p>' in well
     facts = radio.facts(runs["four"])._replace(lost_silently=2, delivered=2)
     lost = headline(facts).as_summary()
     summary = radio.summarize(runs["four"]) | {"lost_silently": 2, "headline": lost}
     body = radio_report.body(runs["four"], summary)
     assert "Lost silently: 2 packets that nobody received" in body
-    assert '<h1 class="headline degraded"><b>degraded</b>2 packets were lost silently' in body
+    assert "<h1>2 packets were lost silently" in body
+    assert '<p class="status warn">degraded</p>' in body
 
 
 def test_lanes_show_what_stations_hear(runs, parse, texts):

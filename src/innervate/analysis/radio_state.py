@@ -124,10 +124,12 @@ class Still:
         stations = list(told)
         delivered = sum(int(one["counters"].get("packets delivered", 0)) for one in stations)
         waits = any(one.get("queued", 0) for one in stations)
-        if not waits or delivered != self._delivered or self._since_us is None:
+        if self._since_us is None or delivered != self._delivered:
             self._since_us = now_us
+        still_ms = (now_us - self._since_us) / 1e3 if waits else 0.0
+        self._since_us = self._since_us if waits else None
         self._delivered = delivered
-        return (now_us - self._since_us) / 1e3
+        return still_ms
 
 
 def of_stations(

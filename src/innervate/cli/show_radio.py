@@ -4,24 +4,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from innervate.analysis.headline import OK
 from innervate.plot import words
 from innervate.plot.radio_words import slots_words
 
 if TYPE_CHECKING:
-    from innervate.run import Run
+    from innervate.running import Run
 
 
 def summary_lines(run: Run) -> list[str]:
     """What a person wants to know first."""
     summary = run.summary
-    return [_first(run), headline_line(summary), *result_lines(run), *_noticed(summary)]
-
-
-def headline_line(summary: dict[str, Any]) -> str:
-    """The headline: its text, after its level if all is not well."""
-    found = summary["headline"]
-    return found["text"] if found["level"] == OK else f"{found['level'].upper()}: {found['text']}"
+    return [
+        _first(run),
+        words.headline_line(summary["headline"]),
+        *result_lines(run),
+        *_noticed(summary),
+    ]
 
 
 def _first(run: Run) -> str:

@@ -10,7 +10,7 @@ from innervate.cli import errors
 from innervate.cli.live_table import LiveTable
 
 if TYPE_CHECKING:
-    from innervate.sweep import Sweep, SweepPlan
+    from innervate.sweeping import Sweep, SweepPlan
 
 # What is shown if nobody says: of these, those that the runs have.
 SHOWN = (
@@ -25,7 +25,7 @@ REASONS_MAX = 5
 
 def sweep(file: str, what: dict[str, Any], how: dict[str, Any], show: list[str]) -> int:
     """Run a sweep behind a live table; say what came of it."""
-    from innervate import sweep as room
+    from innervate import sweeping as room
 
     plan: SweepPlan = room.make_plan(file, **what)
     folder = how["out"] or Path("sweeps") / (plan.name or "sweep")

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
-from typing import Any
 
+from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK
 from innervate.plot import theme
 from innervate.plot.svg import Drawing, clean
+
+LEVEL_CLASSES = {OK: "status", DEGRADED: "status warn", DOWN: "status bad", NO_DATA: "status none"}
 
 _STYLE = """
 *{box-sizing:border-box}
@@ -15,14 +17,6 @@ body{margin:0;background:var(--ground);color:var(--ink);
 font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,sans-serif}
 main{max-width:1060px;margin:0 auto;padding:28px 20px 60px}
 h1{font-size:1.55rem;line-height:1.3;margin:.2em 0 .4em}
-h1.headline{border-left:.3em solid var(--soft);padding-left:.6em}
-h1.ok{border-color:var(--good)}
-h1.degraded{border-color:var(--warn)}
-h1.down{border-color:var(--alarm)}
-.headline b{display:block;font-size:.9rem;color:var(--soft)}
-h1.ok b{color:var(--good)}
-h1.degraded b{color:var(--warn)}
-h1.down b{color:var(--alarm)}
 h2{font-size:1.15rem;margin:2.2em 0 .6em;padding-bottom:.3em;border-bottom:1px solid var(--faint)}
 h3{font-size:.95rem;margin:0 0 .1em}
 p{margin:.4em 0}
@@ -31,7 +25,9 @@ p{margin:.4em 0}
 .note,figcaption{font-size:.9rem}
 .status{display:inline-block;margin:.6em 0;padding:.35em .8em;border-radius:6px;
 border:1px solid var(--good);color:var(--good);font-weight:600}
+.status.warn{border-color:var(--warn);color:var(--warn)}
 .status.bad{border-color:var(--alarm);color:var(--alarm)}
+.status.none{border-color:var(--soft);color:var(--soft)}
 .status ul{margin:.2em 0;padding-left:1.2em;font-weight:400}
 .tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(140px,1fr));gap:10px;margin:1em 0}
 .tiles div{background:var(--panel);border-radius:8px;padding:10px 14px}
@@ -88,10 +84,10 @@ def element(tag: str, text: str, kind: str = "") -> str:
     return f"{opening}{clean(text)}</{tag}>\n"
 
 
-def headline(entry: Mapping[str, Any]) -> str:
-    """A summary's entry `headline` as the first line of a report, in the colour of its level."""
-    level, text = str(entry["level"]), clean(str(entry["text"]))
-    return f'<h1 class="headline {level.replace(" ", "-")}"><b>{clean(level)}</b>{text}</h1>\n'
+def headline(found: Mapping[str, str]) -> str:
+    """A summary's headline: its sentence, and below it its level, in the level's colour."""
+    level = found["level"]
+    return element("h1", found["text"]) + element("p", level, LEVEL_CLASSES[level])
 
 
 def section(head: str, inside: str) -> str:

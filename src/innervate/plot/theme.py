@@ -29,7 +29,7 @@ _DARK = {
     "faint": "#37414d",
     "link": "#e3e9f0",
     "alarm": "#ff8a4c",
-    "warn": "#e3b341",
+    "warn": "#f0c04a",
     "good": "#4fd0a0",
     "accent": "#6db8f2",
 }

@@ -15,7 +15,7 @@ from typing import Any
 
 from innervate.scenario import inline
 from innervate.scenario.overrides import parse_value
-from innervate.sweep.errors import SweepError
+from innervate.sweeping.errors import SweepError
 
 STEPS_MAX = 1_000_000
 _NUMBER = r"[+-]?\d+(?:\.\d+)?"

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from innervate import scenario as scenarios
-from innervate.run import folder as folders
-from innervate.run.errors import RunError
-from innervate.run.rooms import room_of
-from innervate.run.trail import first_difference
+from innervate.running import folder as folders
+from innervate.running.errors import RunError
+from innervate.running.rooms import room_of
+from innervate.running.trail import first_difference
 from innervate.scenario import ScenarioError
 
 # What says nothing about the trajectory.

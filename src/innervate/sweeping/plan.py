@@ -17,11 +17,11 @@ from typing import Any
 import msgspec
 
 from innervate.scenario import ScenarioError
-from innervate.sweep.base import Base, Settings
-from innervate.sweep.derive import Formula
-from innervate.sweep.errors import SweepError
-from innervate.sweep.until import Until
-from innervate.sweep.vary import Axis, canonical, column, plain, shown
+from innervate.sweeping.base import Base, Settings
+from innervate.sweeping.derive import Formula
+from innervate.sweeping.errors import SweepError
+from innervate.sweeping.until import Until
+from innervate.sweeping.vary import Axis, canonical, column, plain, shown
 from innervate.trace.sources import stamp
 from innervate.trace.streams import stream
 
@@ -152,7 +152,7 @@ class SweepPlan:
             "what --set says": canonical([list(pair) for pair in self.base.settings]),
             "the root seed": str(self.root),
             "what is paired": canonical(list(self.paired)),
-            "the version of innervate": stamp("run"),
+            "the version of innervate": stamp("running"),
         }
 
 

@@ -18,7 +18,7 @@ from innervate import scenario as scenarios
 from innervate.kernel.wall import wall_s
 from innervate.protocol import rng
 from innervate.protocol.radio_words import DATA
-from innervate.run.errors import RunError
+from innervate.running.errors import RunError
 from innervate.sim.build import get, put
 from innervate.sim.loop import BROKEN
 from innervate.sim.radio import build as builder

@@ -12,17 +12,17 @@ from typing import Any
 
 from innervate import scenario as scenarios
 from innervate.scenario import Scenario, ScenarioError
-from innervate.sweep import planfile, tables
-from innervate.sweep.base import PLAN_FILE, Source, base_of
-from innervate.sweep.conduct import Conductor
-from innervate.sweep.derive import Formula
-from innervate.sweep.engines import engine
-from innervate.sweep.errors import SweepError
-from innervate.sweep.jobs import FILE, Jobs
-from innervate.sweep.plan import REPEAT_MAX, SweepPlan
-from innervate.sweep.result import Sweep
-from innervate.sweep.until import parse as parse_until
-from innervate.sweep.vary import Axis, axis, parse
+from innervate.sweeping import planfile, tables
+from innervate.sweeping.base import PLAN_FILE, Source, base_of
+from innervate.sweeping.conduct import Conductor
+from innervate.sweeping.derive import Formula
+from innervate.sweeping.engines import engine
+from innervate.sweeping.errors import SweepError
+from innervate.sweeping.jobs import FILE, Jobs
+from innervate.sweeping.plan import REPEAT_MAX, SweepPlan
+from innervate.sweeping.result import Sweep
+from innervate.sweeping.until import parse as parse_until
+from innervate.sweeping.vary import Axis, axis, parse
 from innervate.trace.provenance import checkout
 
 REPEAT_UNTIL = 1000  # repeats at most, with `until`, if nobody says

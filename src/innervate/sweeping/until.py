@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from innervate.analysis.intervals import Interval, mean_interval
-from innervate.sweep.errors import SweepError
+from innervate.sweeping.errors import SweepError
 
 _RULE = re.compile(r"\s*([\w.-]+)\.ci\s*=\s*([0-9.eE+-]+)\s*(%?)\s*")
 

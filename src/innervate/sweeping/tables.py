@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from innervate.analysis.intervals import mean_interval, quantile
-from innervate.sweep.jobs import Jobs
-from innervate.sweep.plan import Point, SweepPlan
+from innervate.sweeping.jobs import Jobs
+from innervate.sweeping.plan import Point, SweepPlan
 
 if TYPE_CHECKING:
     import polars

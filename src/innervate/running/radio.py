@@ -10,7 +10,7 @@ import numpy as np
 
 from innervate.analysis import radio as analysis
 from innervate.protocol.radio_words import CLOCK, LEAVE, MAIN, RESULT
-from innervate.run import radio_slotted
+from innervate.running import radio_slotted
 from innervate.sim.loop import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.sim.radio import simulate as simulator
 from innervate.sim.radio.loop import ON_CARRIER

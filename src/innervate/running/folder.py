@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from innervate.run.errors import RunError
+from innervate.running.errors import RunError
 from innervate.trace import mesh_tables, radio_tables, tables
 
 SCENARIO = "scenario.toml"

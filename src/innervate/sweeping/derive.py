@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-from innervate.sweep.errors import SweepError
+from innervate.sweeping.errors import SweepError
 
 LENGTH_MAX = 500
 _NAME = re.compile(r"(?<![\w.])[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z0-9_]+)*")

@@ -13,8 +13,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from innervate.sweep.errors import SweepError
-from innervate.sweep.work import Outcome
+from innervate.sweeping.errors import SweepError
+from innervate.sweeping.work import Outcome
 
 SCHEMA = 1
 FILE = "jobs.sqlite"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from innervate.run import radio_grid as grid
-from innervate.run import radio_tree as tree
+from innervate.running import radio_grid as grid
+from innervate.running import radio_tree as tree
 from innervate.verify.mutants import Catch, Mutant, copies
 
 RUNS = 120

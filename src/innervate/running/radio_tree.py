@@ -18,7 +18,7 @@ import numpy as np
 
 from innervate.kernel.wall import wall_s
 from innervate.protocol import rng
-from innervate.run import radio_grid as grid
+from innervate.running import radio_grid as grid
 from innervate.sim.build import get, put
 from innervate.sim.radio import build as builder
 from innervate.sim.radio import loop, stacks

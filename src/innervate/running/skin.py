@@ -8,7 +8,7 @@ from typing import Any
 from innervate.analysis import frames
 from innervate.analysis.skin import summarize
 from innervate.protocol.skin_words import TICK
-from innervate.run.columns import columns
+from innervate.running.columns import columns
 from innervate.scenario import Plan
 from innervate.sim import build, loop
 from innervate.sim import simulate as simulator

@@ -21,11 +21,11 @@ from typing import Any, NamedTuple
 import msgspec
 
 import innervate
-from innervate import run as runs
-from innervate.run import RunError
+from innervate import running as runs
+from innervate.running import RunError
 from innervate.scenario import Scenario, ScenarioError
-from innervate.sweep.base import Base, Settings
-from innervate.sweep.flat import flat
+from innervate.sweeping.base import Base, Settings
+from innervate.sweeping.flat import flat
 from innervate.trace.provenance import PACKAGES
 from innervate.trace.sources import stamp
 
@@ -83,7 +83,7 @@ def run_batch(base: Base, jobs: list[Job]) -> Done:
         KeyboardInterrupt: Ctrl-C; nothing of the run in progress counts.
     """
     mark = base.mark()
-    return Done([_run(base, mark, job) for job in jobs], place(), stamp("run"))
+    return Done([_run(base, mark, job) for job in jobs], place(), stamp("running"))
 
 
 def _run(base: Base, mark: str, job: Job) -> Outcome:

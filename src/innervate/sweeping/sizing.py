@@ -12,11 +12,11 @@ import polars
 
 from innervate import scenario as scenarios
 from innervate.scenario import ScenarioError
-from innervate.sweep.errors import SweepError
-from innervate.sweep.plan import SweepPlan
-from innervate.sweep.result import Sweep
-from innervate.sweep.sweep import Progress, make_plan, sweep
-from innervate.sweep.vary import Named
+from innervate.sweeping.errors import SweepError
+from innervate.sweeping.plan import SweepPlan
+from innervate.sweeping.result import Sweep
+from innervate.sweeping.sweep import Progress, make_plan, sweep
+from innervate.sweeping.vary import Named
 from innervate.topology import TopologyError, cells_from_urdf
 from innervate.topology.body import joining_reach
 from innervate.topology.cover import has_surface
@@ -267,7 +267,7 @@ def parse_ports(text: str) -> tuple[int, ...]:
     Raises:
         SweepError: it is neither.
     """
-    from innervate.sweep.planfile import listed
+    from innervate.sweeping.planfile import listed
 
     found: Sequence[Any] = listed(text, "--ports")
     if not all(isinstance(n, int) and not isinstance(n, bool) and n >= 1 for n in found):

@@ -20,7 +20,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any
 
-from innervate.sweep.errors import SweepError
+from innervate.sweeping.errors import SweepError
 
 KINDS = ("processes", "threads", "here")
 _CONNECT_S = 10
@@ -222,7 +222,7 @@ def _processes(count: int) -> Executor:
     known = multiprocessing.get_all_start_methods()
     context = multiprocessing.get_context("forkserver" if "forkserver" in known else "spawn")
     if "forkserver" in known:
-        context.set_forkserver_preload(["innervate.sweep.work"])
+        context.set_forkserver_preload(["innervate.sweeping.work"])
     return ProcessPoolExecutor(count, mp_context=context, initializer=_settle)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from importlib import import_module
@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 from innervate import scenario as scenarios
 from innervate.analysis.touch import WINDOW_S, Image, received_image
-from innervate.run import folder as folders
-from innervate.run.rooms import room_of
+from innervate.running import folder as folders
+from innervate.running.rooms import room_of
 from innervate.scenario import Scenario
+from innervate.scenario.given import Changes, Given, load
 from innervate.trace import tables
 from innervate.trace.provenance import provenance
 
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     import polars
 
 Progress = Callable[[int, int], None]
-Source = str | os.PathLike[str] | Scenario | dict[str, Any]
 
 
 @dataclass(eq=False, repr=False)
@@ -117,10 +117,10 @@ class Run:
 
 
 def run(
-    scenario: Source,
+    scenario: Given,
     *,
     seed: int | None = None,
-    overrides: Iterable[str] | Mapping[str, Any] = (),
+    overrides: Changes = (),
     out: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
     checks: bool = True,
@@ -145,7 +145,7 @@ def run(
         InvariantBroken: a checker found what must not happen.
         FramesLost: frames are not accounted for.
     """
-    made = resolve(scenario, seed, overrides)
+    made = load(scenario, seed=seed, overrides=overrides)
     plan = scenarios.plan(made)
     if out is not None:
         folders.check_target(out)
@@ -155,24 +155,3 @@ def run(
     if out is not None:
         done.write(out)
     return done
-
-
-def resolve(
-    scenario: Source, seed: int | None = None, overrides: Iterable[str] | Mapping[str, Any] = ()
-) -> Scenario:
-    """The scenario meant by a file, a bundled name, tables or a Scenario, with overrides.
-
-    Raises:
-        ScenarioError: it is not valid.
-    """
-    changes: list[str | tuple[str, Any]] = (
-        list(overrides.items()) if isinstance(overrides, Mapping) else list(overrides)
-    )
-    if isinstance(scenario, dict):
-        return scenarios.from_dict(scenario, changes, seed)
-    if not isinstance(scenario, Scenario):
-        return scenarios.load(scenario, changes, seed)
-    if seed is None and not changes:
-        return scenario
-    text, source = scenarios.dump(scenario), scenario.source
-    return scenarios.loads(text, changes, seed, source.path, source.folder)

@@ -8,4 +8,4 @@ from typing import Any
 
 def room_of(kind: str) -> Any:
     """The module of a kind: simulate, summarize, tables_of, columns, trail, call_words."""
-    return import_module(f"innervate.run.{kind}")
+    return import_module(f"innervate.running.{kind}")

@@ -12,11 +12,11 @@ from typing import Any
 
 from innervate.kernel import door
 from innervate.scenario.explain import nearest
-from innervate.sweep.engines import Engine
-from innervate.sweep.errors import SweepError
-from innervate.sweep.jobs import Jobs
-from innervate.sweep.plan import Point, SweepPlan, blocks
-from innervate.sweep.work import Done, Job, Outcome, run_batch
+from innervate.sweeping.engines import Engine
+from innervate.sweeping.errors import SweepError
+from innervate.sweeping.jobs import Jobs
+from innervate.sweeping.plan import Point, SweepPlan, blocks
+from innervate.sweeping.work import Done, Job, Outcome, run_batch
 from innervate.trace.sources import stamp
 
 BATCH_S = 0.25  # about how long a batch takes: what a kill may cost, and often enough for a display
@@ -215,7 +215,7 @@ class Conductor:
         return suspects
 
     def _keep(self, done: Done) -> None:
-        if done.sources != stamp("run"):
+        if done.sources != stamp("running"):
             host = json.loads(done.place)["host"]
             raise SweepError(
                 f"the worker on {host} has other sources of innervate; install the same version "
@@ -248,7 +248,7 @@ class Conductor:
     def _give_up(self, job: Job) -> None:
         reason = f"its worker died {DEATHS_MAX} times, killed or out of memory"
         outcome = Outcome(job.point, job.repeat, job.seed, None, reason, 0.0, time.time())
-        self._keep(Done([outcome], json.dumps({"host": ""}), stamp("run")))
+        self._keep(Done([outcome], json.dumps({"host": ""}), stamp("running")))
 
     @property
     def done(self) -> int:

@@ -41,8 +41,8 @@ from innervate.scenario.emit import to_toml
 from innervate.scenario.explain import convert
 from innervate.scenario.lines import key_lines
 from innervate.scenario.source import Source
-from innervate.sweep.errors import SweepError
-from innervate.sweep.vary import Axis, Named, axis, plain, split, values_of
+from innervate.sweeping.errors import SweepError
+from innervate.sweeping.vary import Axis, Named, axis, plain, split, values_of
 
 Text = Annotated[str, Meta(min_length=1, max_length=500, description="a text")]
 Texts = Annotated[list[Text] | Text, Meta(description="a text or a list of texts")]

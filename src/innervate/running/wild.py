@@ -13,8 +13,8 @@ from typing import Any
 
 from innervate import scenario as scenarios
 from innervate.analysis.frames import FramesLost
-from innervate.run import wild_mesh
-from innervate.run.run import run
+from innervate.running import wild_mesh
+from innervate.running.run import run
 from innervate.sim.simulate import InvariantBroken
 
 SKIN_ACTIONS = ("cut", "restore", "kill", "revive", "loose", "lose", "restart")

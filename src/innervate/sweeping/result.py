@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from innervate.analysis.intervals import mean_interval, quantile
-from innervate.sweep import tables
-from innervate.sweep.errors import SweepError
-from innervate.sweep.plan import SweepPlan
+from innervate.sweeping import tables
+from innervate.sweeping.errors import SweepError
+from innervate.sweeping.plan import SweepPlan
 from innervate.trace.provenance import SCHEMA
 from innervate.trace.sources import stamp
 
@@ -64,7 +64,7 @@ class Sweep:
         """What the results come from."""
         return {
             "schema": SCHEMA,
-            "sources": stamp("run"),
+            "sources": stamp("running"),
             "identity": self.plan.identity(),
             "runs": self.results.height,
             "failed": self.failed.height,
@@ -193,7 +193,7 @@ class Sweep:
             raise SweepError(f'there is no column "{name}"; there are {", ".join(some[:8])}, ...')
 
 
-def load(folder: str | os.PathLike[str]) -> Sweep:
+def load_sweep(folder: str | os.PathLike[str]) -> Sweep:
     """A sweep from its folder; nothing is run.
 
     Raises:
@@ -201,7 +201,7 @@ def load(folder: str | os.PathLike[str]) -> Sweep:
     """
     import polars
 
-    from innervate.sweep.sweep import make_plan
+    from innervate.sweeping.sweep import make_plan
 
     path = Path(folder)
     try:
