@@ -8,7 +8,7 @@ from innervate.cli import show_mesh, show_radio
 from innervate.plot import words
 
 if TYPE_CHECKING:
-    from innervate.run import Run
+    from innervate.running import Run
 
 EVENTS_MAX = 8
 BROKEN_MAX = 5
@@ -21,7 +21,7 @@ def summary_lines(run: Run) -> list[str]:
         return show_radio.summary_lines(run)
     if summary["kind"] == "mesh":
         return show_mesh.summary_lines(run)
-    said = summary["headline"]["text"]
+    said = words.headline_line(summary["headline"])
     return [_first(run), said, *event_lines(run), *_broken(summary), *state_lines(summary)]
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from innervate.plot import svg, words
-from innervate.plot.page import element, figure, keys, pictures, section, table, tiles, verdict
+from innervate.plot.page import element, figure, headline, keys, pictures, section, table, tiles
 from innervate.plot.skinmap import CELLS_MAX, shows_depth
 from innervate.plot.story import Panel, Story
 from innervate.plot.theme import SHADES
@@ -40,7 +40,7 @@ def _top(story: Story) -> str:
         f"{words.number_of(summary['depth_max'], 'hop')} deep; {summary['duration_s']:g} s, "
         f"seed {summary['seed']}"
     )
-    parts = [element("p", over, "over"), verdict(summary["headline"])]
+    parts = [element("p", over, "over"), headline(summary["headline"])]
     parts += [element("p", sentence) for sentence in _sentences(story)]
     if "interrupted_at_s" in summary:
         early = f"Ended early, at {summary['interrupted_at_s']:.3f} s of simulated time."
