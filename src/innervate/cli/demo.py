@@ -15,7 +15,7 @@ from innervate.plot import mesh_words, words
 
 if TYPE_CHECKING:
     from innervate.analysis.mesh_alarms import Crossing
-    from innervate.run import Run
+    from innervate.running import Run
 
 
 @dataclass(frozen=True, slots=True)

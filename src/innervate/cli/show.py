@@ -8,7 +8,7 @@ from innervate.cli import show_mesh, show_radio
 from innervate.plot import words
 
 if TYPE_CHECKING:
-    from innervate.run import Run
+    from innervate.running import Run
 
 EVENTS_MAX = 8
 BROKEN_MAX = 5
