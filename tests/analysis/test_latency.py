@@ -5,7 +5,7 @@ import pytest
 
 from innervate.analysis.frames import data_summary
 from innervate.cli.show import state_lines
-from innervate.run.columns import columns
+from innervate.running.columns import columns
 from innervate.sim import delays
 from innervate.trace.tables import RECEIVED
 from tests.skin_runs import line, run, setup_1
