@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from innervate import scenario
-from innervate.run import RunError, compare, run
-from innervate.run.compare import differences
-from innervate.run.skin import trail
-from innervate.run.trail import FIELDS, first_difference
+from innervate.running import RunError, compare, run
+from innervate.running.compare import differences
+from innervate.running.skin import trail
+from innervate.running.trail import FIELDS, first_difference
 from innervate.sim.simulate import simulate
 from innervate.sim.world import TRAIL, row_dtype
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from innervate import scenario
-from innervate.run import run
+from innervate.running import run
 from innervate.sim.simulate import InvariantBroken
 from innervate.web import messages
 from innervate.web.errors import Refused, WatchError

@@ -31,3 +31,9 @@ class Headline(NamedTuple):
     def as_summary(self) -> dict[str, Any]:
         """The entry `headline` of a summary."""
         return {"level": self.level, "text": self.text}
+
+
+def silent(count: int, what: str) -> Headline:
+    """Of a network of which nobody answers; `what` one of them is called."""
+    who = f"None of the {count:,} {what}s answers." if count > 1 else f"The only {what} is silent."
+    return Headline(NO_DATA, who, tuple(range(count)))

@@ -8,6 +8,7 @@ import numpy as np
 
 from innervate.analysis import mesh_network as network
 from innervate.analysis.mesh_alarms import alarms, all_crossings
+from innervate.analysis.mesh_headline import headline, traffic
 from innervate.analysis.mesh_messages import (
     DELIVERED,
     IN_FLIGHT,
@@ -28,6 +29,7 @@ from innervate.analysis.mesh_messages import (
     ratio,
 )
 from innervate.analysis.mesh_paths import UNREACHABLE, Ground
+from innervate.analysis.mesh_reach import of_simulation
 from innervate.protocol.mesh_words import ALARM, ALL, DATA, FLOOD, MONITOR, PARITY
 from innervate.sim.build import get
 
@@ -48,7 +50,8 @@ def summarize(result: Any) -> dict[str, Any]:
     kinds = network.acked_kinds(result.sent)
     led = network.gateways(result)
     ground = Ground(plan)
-    summary = {
+    crossings = all_crossings(result)
+    summary: dict[str, Any] = {
         "kind": plan.kind,
         "name": plan.scenario.name,
         "seed": plan.seed,
@@ -62,7 +65,7 @@ def summarize(result: Any) -> dict[str, Any]:
         "discovery": network.discovery(result, kinds),
         "delivery_ratio": delivery_ratio(found),
         "latency_ms": percentiles(latencies_us(found), 1e-3),
-        "alarms": alarms(all_crossings(result)),
+        "alarms": alarms(crossings),
         "duplicates": duplicates(result),
         "looped": looped(result),
         "control_bytes": network.control_bytes(result, kinds),
@@ -78,6 +81,8 @@ def summarize(result: Any) -> dict[str, Any]:
         "give_ups": give_ups(result),
         "suspects": network.suspects(result),
     }
+    sent = traffic(found, crossings, summary["duplicates"], summary["looped"], plan.faults)
+    summary["headline"] = headline(of_simulation(result.world, plan), sent).as_summary()
     if result.interrupted:
         summary["interrupted_at_s"] = result.ended_us / 1e6
     return summary

@@ -8,13 +8,18 @@ from innervate.plot import words
 from innervate.plot.radio_words import slots_words
 
 if TYPE_CHECKING:
-    from innervate.run import Run
+    from innervate.running import Run
 
 
 def summary_lines(run: Run) -> list[str]:
     """What a person wants to know first."""
     summary = run.summary
-    return [_first(run), *result_lines(run), *_noticed(summary)]
+    return [
+        _first(run),
+        words.headline_line(summary["headline"]),
+        *result_lines(run),
+        *_noticed(summary),
+    ]
 
 
 def _first(run: Run) -> str:

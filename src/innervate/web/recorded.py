@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from innervate import scenario as scenarios
-from innervate.run import folder as folders
+from innervate.running import folder as folders
 from innervate.scenario import ScenarioError
 from innervate.web.errors import WatchError
 from innervate.web.simulated import Progress, Simulated
