@@ -28,6 +28,10 @@ class Headline(NamedTuple):
     text: str
     nodes: tuple[int, ...] = ()
 
+    def shown(self) -> dict[str, Any]:
+        """For pages, with the nodes to be marked."""
+        return {**self.as_summary(), "nodes": list(self.nodes)}
+
     def as_summary(self) -> dict[str, Any]:
         """The entry `headline` of a summary."""
         return {"level": self.level, "text": self.text}

@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from innervate.analysis.headline import Headline
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import SERIES, History, Logbook
@@ -61,6 +62,10 @@ class View(ABC):
     @abstractmethod
     def arrays(self, flights: bool) -> dict[str, Any]:
         """The state's fields for nodes and links; `flights` with frames on their way."""
+
+    def headline(self, exact: bool) -> Headline | None:
+        """Is all well; `exact` as of this very moment, else of one shortly before."""
+        return None
 
     @abstractmethod
     def words(self, fault: Any) -> str:
@@ -147,11 +152,13 @@ class View(ABC):
             self.begin_fault(fault)
         return happened
 
-    def fields(self, flights: bool) -> dict[str, Any]:
+    def fields(self, flights: bool, exact: bool = True) -> dict[str, Any]:
         """The state now."""
+        headline = self.headline(exact)
         recovery, fault = self.memory.recovery, self.memory.fault
         return {
             **self.arrays(flights),
+            **({} if headline is None else {"headline": headline.shown()}),
             "since_cut_s": fault and (self.engine.now_us - fault.at_us) / 1e6,
             "recovery": None if recovery is None else recovery.shown(),
         }
