@@ -14,7 +14,12 @@ if TYPE_CHECKING:
 def summary_lines(run: Run) -> list[str]:
     """What a person wants to know first."""
     summary = run.summary
-    return [_first(run), *result_lines(run), *_noticed(summary)]
+    return [
+        _first(run),
+        words.headline_line(summary["headline"]),
+        *result_lines(run),
+        *_noticed(summary),
+    ]
 
 
 def _first(run: Run) -> str:

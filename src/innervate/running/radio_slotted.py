@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.radio_headline import RadioFacts, headline
 from innervate.kernel.wall import wall_s
 from innervate.scenario.radio_traffic import mean_interval_us
 from innervate.sim.slotted import SlottedResult, slotted
@@ -87,9 +88,11 @@ def summarize(result: SlottedRun) -> dict[str, Any]:
     }
     first = list(dict.fromkeys(found.order))
     done = result.counts["completed"]
+    facts = RadioFacts(plan.stations, offered=done, delivered=done, ended=True)
     return {
         "kind": plan.kind,
         "name": plan.scenario.name,
+        "headline": headline(facts).as_summary(),
         "seed": plan.seed,
         "duration_s": plan.duration_us / 1e6,
         "events": done,

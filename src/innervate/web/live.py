@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from innervate import __version__
+from innervate.analysis.radio_state import Still
 from innervate.live import status
 from innervate.web.errors import Refused, WatchError
 from innervate.web.history import SERIES, Logbook
@@ -64,6 +65,7 @@ class Live(Source):
         self._counters: Counter[str] = Counter()
         self._counted_us = 0
         self._recovery: Recovery | None = None
+        self._still, self._still_ms = Still(), 0.0
         self._poll()
         if not self._told:
             raise WatchError(f"{sockets[0]}: no node answers here; are they still running?")
@@ -190,6 +192,8 @@ class Live(Source):
         before, self._state = self._state, State(self._map, self._told, self._off)
         self._compare(before)
         self._recover()
+        if self._map.kind == "radio":
+            self._still_ms = self._still.note(self._now_us(), self._told.values())
         at_us, lost = self._now_us(), self._state.unconnected
         total = self._frames()
         took_s = max(1e-3, (at_us - self._counted_us) / 1e6)
@@ -234,7 +238,7 @@ class Live(Source):
 
     def fields(self) -> dict[str, Any]:
         """The state as it was told last."""
-        recovery, headline = self._recovery, self._state.headline()
+        recovery, headline = self._recovery, self._state.headline(self._still_ms)
         t_s = math.ceil(self._now_us() / 1e5) / 10  # in steps, so that what is idle is told seldom
         return {
             "t_s": t_s,

@@ -10,6 +10,8 @@ import numpy as np
 from innervate.analysis.headline import Headline, silent
 from innervate.analysis.mesh_headline import headline
 from innervate.analysis.mesh_reach import Choices, Ways, ways
+from innervate.analysis.radio_headline import headline as radio_headline
+from innervate.analysis.radio_state import of_stations
 from innervate.analysis.ways import NOWHERE, Numbers, follow, reach
 from innervate.web.live_map import Link, Map, Place, Status
 
@@ -99,13 +101,22 @@ class State:
     def _answered(self, now: State, *places: Place) -> bool:
         return all(place.node in told for place in places for told in (self._told, now._told))
 
-    def headline(self) -> Headline | None:
-        """Is all well, as far as these nodes say."""
-        kind, count = self._map.kind, len({place.node for place in self._map.places})
+    def headline(self, still_ms: float) -> Headline | None:
+        """Is all well, as far as these nodes say.
+
+        Args:
+            still_ms: for how long stations that had a packet have delivered nothing.
+        """
+        kind, places = self._map.kind, self._map.places
         if not self._told:
-            return silent(count, NAMES[kind])
+            return silent(len({place.node for place in places}), NAMES[kind])
         if kind == "mesh":
             return headline(self.ways, absent="silent")
+        if kind == "radio":
+            told = {at: self._told[p.node] for at, p in enumerate(places) if p.node in self._told}
+            off = tuple(np.flatnonzero(self.node_up == 0).tolist())
+            timing = next(iter(told.values()))["timing"]
+            return radio_headline(of_stations(told, len(places), off, still_ms, timing))
         return None
 
     def _word(self, place: Place, name: str, otherwise: Any) -> Any:
@@ -209,6 +220,8 @@ class State:
             }
             return found
         found |= {"parent": self.hop, "depth": self.depth}
+        if self._map.kind == "mesh":
+            found |= {"way": self.ways.lacks, "apart": int(self.ways.cut_off.sum())}
         if self._map.kind == "skin":
             port = [place.port for place in places]
             found["port"] = np.where(self.root == NOWHERE, NOWHERE, np.take(port, self.root))

@@ -156,9 +156,9 @@ class MeshView(View):
         ways = self._ways()
         return int(np.count_nonzero(ways.astray if ways.leads.any() else ways.on))
 
-    def headline(self, exact: bool) -> Headline:
-        """Is all well."""
-        return headline(self._ways(), self.books.traffic(exact))
+    def headline(self) -> Headline:
+        """Is all well, and if not, what is wrong."""
+        return headline(self._ways(), self.books.traffic(self.is_still))
 
     def forget(self, memory: Any) -> None:
         """Go back to a memory."""
@@ -194,6 +194,7 @@ class MeshView(View):
             "load": np.minimum(self.memory.load, 1.0).round(3),
             "unconnected": int(np.count_nonzero(ways.without)),
             "apart": int(np.count_nonzero(ways.cut_off)),
+            "way": ways.lacks,
             "flights": self._flights() if flights else [],
         }
         if self.field.walks:

@@ -91,14 +91,14 @@ class Simulated(Source):
 
     def fields(self) -> dict[str, Any]:
         """The state now."""
-        still = self.pace.paused or self.at_end
+        self.view.is_still = self.pace.paused or self.at_end
         paced = self.pace.paused or 0 < self.pace.speed <= self.view.slow
         return {
             "t_s": self.engine.now_us / 1e6,
             "paused": self.pace.paused,
             "speed": self.pace.speed,
             "at_end": self.at_end,
-            **self.view.fields(flights=paced and self._target_us is None, exact=still),
+            **self.view.fields(flights=paced and self._target_us is None),
         }
 
     def work(self) -> float:

@@ -40,6 +40,7 @@ class View(ABC):
     # `check` is called at multiples of this time, us, while somebody has no way; 0 = never.
     check_us: ClassVar[int] = 0
     memory: Any
+    is_still: bool = True  # the network is held, so that there is time to count all anew
 
     def __init__(self, engine: Engine, history: History) -> None:
         self.engine = engine
@@ -63,8 +64,8 @@ class View(ABC):
     def arrays(self, flights: bool) -> dict[str, Any]:
         """The state's fields for nodes and links; `flights` with frames on their way."""
 
-    def headline(self, exact: bool) -> Headline | None:
-        """Is all well; `exact` as of this very moment, else of one shortly before."""
+    def headline(self) -> Headline | None:
+        """Is all well, and if not, what is wrong."""
         return None
 
     @abstractmethod
@@ -152,9 +153,9 @@ class View(ABC):
             self.begin_fault(fault)
         return happened
 
-    def fields(self, flights: bool, exact: bool = True) -> dict[str, Any]:
+    def fields(self, flights: bool) -> dict[str, Any]:
         """The state now."""
-        headline = self.headline(exact)
+        headline = self.headline()
         recovery, fault = self.memory.recovery, self.memory.fault
         return {
             **self.arrays(flights),
