@@ -121,6 +121,67 @@ def test_a_node_that_stops_is_seen_and_comes_back():
     asyncio.run(main())
 
 
+def test_what_others_do_to_a_network_is_seen_like_what_is_clicked():
+    """Cables cut by hand, a node that ends, and at last all of them."""
+
+    async def main():
+        async with Mesh(4, RING) as mesh, sockets_of(mesh) as paths:
+            source = await asyncio.to_thread(Live, paths)
+            async with serving(source) as served, Page(served.address) as page:
+                await page.until(lambda: page.state.get("headline", {}).get("level") == "ok")
+                assert page.state["headline"]["text"] == "All 4 nodes have a way to the gateway."
+                assert page.state["recovery"] is None
+                for path in mesh.cables[0, 1]:
+                    path.cut = True
+                await page.until(lambda: page.state["recovery"] is not None)
+                assert page.state["recovery"]["cause"] == "link n0 - n1 cut"
+                await page.until(lambda: page.state["recovery"]["recovered_ms"] is not None)
+                assert page.state["since_cut_s"] is not None
+                await page.until(lambda: "link n0 - n1 cut" in page.text())
+                for path in mesh.cables[0, 1]:
+                    path.cut = False
+                await page.until(lambda: "link n0 - n1 put back" in page.text())
+                end(source, paths[2])
+                await page.until(lambda: page.state["headline"]["level"] == "degraded")
+                assert page.state["headline"]["text"] == "1 of 4 nodes is silent."
+                assert page.state["headline"]["nodes"] == [2]
+                cause = "n2 does not answer any more"
+                await page.until(lambda: page.state["recovery"]["cause"] == cause)
+                for path in (paths[0], paths[1], paths[3]):
+                    end(source, path)
+                await page.until(lambda: page.state["headline"]["level"] == "no data")
+                assert page.state["headline"]["text"] == "None of the 4 nodes answers."
+                assert page.state["unconnected"] is None
+                assert page.state["recovery"]["recovered_ms"] is None
+
+    asyncio.run(main())
+
+
+def end(source, path):
+    """As if the process of a socket had ended."""
+    path.rename(path.with_suffix(".aside"))
+    source._poller._lines[source._names.index(path.stem)].drop(gone=True)
+
+
+def test_who_is_slow_once_has_not_ended(monkeypatch):
+    """Node 1 gives no answer in time, once; then twice."""
+    told = {
+        i: {"kind": "mesh", "role": "gateway" if i == 0 else "node", "number": i, "gateway": 0,
+            "onward": [0] if i else [], "paths": [], "counters": {},
+            "neighbours": [{"node": 1 - i, "ports": [0], "suspect": False}]}
+        for i in range(2)
+    }  # fmt: skip
+    answers = [told, {0: told[0]}, told, {0: told[0]}, {0: told[0]}]
+    monkeypatch.setattr(Poller, "ask_all", lambda self, request: dict(answers.pop(0)))
+    source = Live([Path("a"), Path("b")])
+    levels = []
+    while answers:
+        source._poll()
+        source._look()
+        levels.append(source.fields()["headline"]["level"])
+    assert levels == ["ok", "ok", "ok", "down"]
+
+
 def with_processes(plan, cables, do):
     """Have `do(network, page)` happen to a network of processes that a page looks at."""
 
@@ -344,4 +405,6 @@ def test_a_radio_team_is_a_ring_of_stations():
     assert fields["node_up"].tolist() == [1, 1, 0]
     assert fields["radio"] == {"now": [0, 4, 0], "turn": [4, -1, -1]}
     assert fields["unconnected"] == 1  # one that is off
+    gone = State(where, {}).headline(0.0)
+    assert (gone.level, gone.text) == ("no data", "None of the 3 stations answers.")
     assert len({tuple(place) for place in where.spread().round(3).tolist()}) == 3

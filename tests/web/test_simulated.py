@@ -332,6 +332,45 @@ def test_without_a_gateway_nobody_has_a_way_until_the_standby_leads():
     assert "n1 leads as gateway" in texts(made)
 
 
+@pytest.mark.parametrize(
+    ("level", "events"),
+    [
+        ("ok", ()),
+        ("down", [(4.0, "kill", "node", 5), (5.0, "kill", "node", 0)]),
+        ("degraded", [(4.0, "cut", "link", [0, 3]), (6.0, "kill", "node", 7)]),
+    ],
+)  # fmt: skip
+def test_page_summary_and_report_of_a_mesh_have_one_headline(level, events):
+    event = [{"at_s": at_s, "action": action, of: what} for at_s, action, of, what in events]
+    tables = {**MESH, "event": event}
+    done = run(tables)
+    made = simulated(tables)
+    go_to(made, 4.5)
+    early = made.fields()["headline"]
+    made.run_to_end()
+    shown = made.fields()["headline"]
+    assert {"level": shown["level"], "text": shown["text"]} == done.summary["headline"]
+    assert shown["text"] in done.report()
+    assert shown["level"] == level
+    made.back_to(0)
+    go_to(made, 4.5)
+    assert made.fields()["headline"] == early
+
+
+def test_a_mesh_that_has_just_begun_is_neither_well_nor_lost():
+    made = simulated(MESH)
+    assert made.fields()["headline"]["level"] == "no data"
+    go_to(made, 4.0)
+    assert made.fields()["headline"]["level"] == "ok"
+
+
+def test_metres_are_measured_only_where_nodes_are_where_they_are():
+    assert simulated(MESH).scene()["metres"]
+    pairs = {**MESH, "flow": [], "radio": {"profile": "250k"}, "link": [{"a": "g", "b": "x"}]}
+    del pairs["nodes"]
+    assert not simulated(pairs).scene()["metres"]
+
+
 def test_on_a_channel_that_all_share_nothing_can_be_cut():
     made = Simulated(scenario.plan(scenario.load("mesh-team")))
     assert "cut" not in made.scene()["can"]

@@ -29,7 +29,7 @@ export function showState(network, connected) {
 
 /** The large numbers: time since the last cut, how long the recovery took, who has no way. */
 export function showNumbers(network) {
-  const { since_cut_s: since, recovery, unconnected, apart, headline } = network.now;
+  const { since_cut_s: since, recovery, unconnected, apart } = network.now;
   const isKnown = unconnected !== null;
   const none = since === null || since === undefined;
   show("since", none ? "–" : ago(since), none ? "none yet" : "", "");
@@ -40,8 +40,7 @@ export function showNumbers(network) {
     const isOpen = recovery.recovered_ms === null || recovery.recovered_ms === undefined;
     const text = isOpen ? ago(network.now.t_s - recovery.at_s) : duration(recovery.recovered_ms);
     const state = isOpen ? "not yet, " : "";
-    const isGood = headline ? headline.level === "ok" : !unconnected;
-    const look = !isKnown ? "" : isOpen ? "open" : isGood ? "done" : "";
+    const look = !isKnown ? "" : isOpen ? "open" : unconnected ? "" : "done";
     show("recovery", isKnown || !isOpen ? text : "–", `${recovery.cause}: ${state}${noticed}`, look);
   }
   const isRadio = network.kind === "radio"; // there everybody hears everybody
