@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.latency import latency_by_port, latency_ms
 from innervate.sim import wires
 from innervate.sim.wheel import FRESH, NIL
 
@@ -61,7 +62,7 @@ def beacon_traffic(result: Any) -> Traffic:
 def data_summary(result: Any) -> dict[str, Any]:
     """Tactile samples from cell to PC: sent, delivered, lost by reason, in flight.
 
-    `loss_ratio` is lost / sent; None if none were sent.
+    `loss_ratio` is lost / sent; None if none were sent. Latencies: see latency.py.
     """
     counters = result.counters
     traffic = data_traffic(result)
@@ -76,7 +77,15 @@ def data_summary(result: Any) -> dict[str, Any]:
         "loss_ratio": lost / sent if sent else None,
         "lost_by": lost_by,
         "in_flight": traffic.flying + traffic.queued,
+        "latency_ms": latency_ms(result),
+        "latency_by_port": latency_by_port(result),
     }
+
+
+def lost_at_start(result: Any) -> int:
+    """Samples lost, for want of a route, by cells that had not had one yet; if observed."""
+    early: int = result.counters[wires.EARLY]
+    return early
 
 
 def check_conserved(result: Any) -> None:

@@ -21,7 +21,8 @@ def summary_lines(run: Run) -> list[str]:
         return show_radio.summary_lines(run)
     if summary["kind"] == "mesh":
         return show_mesh.summary_lines(run)
-    return [_first(run), *event_lines(run), *_broken(summary), *state_lines(summary)]
+    said = words.headline_line(summary["headline"])
+    return [_first(run), said, *event_lines(run), *_broken(summary), *state_lines(summary)]
 
 
 def _first(run: Run) -> str:
@@ -59,6 +60,7 @@ def state_lines(summary: dict[str, Any]) -> list[str]:
         lines.append(
             f"Samples: {data['sent']:,} sent, {data['lost']:,} lost ({share}){_why(data)}."
         )
+        lines += latency_lines(data["latency_ms"])
     if len(loads) > 1 and summary["balance_factor"] is not None:
         shown = ", ".join(f"{load:,}" for load in loads[:8]) + (", ..." if len(loads) > 8 else "")
         factor = f"balance factor {summary['balance_factor']:.3f}"
@@ -71,6 +73,18 @@ def state_lines(summary: dict[str, Any]) -> list[str]:
     else:
         lines.append("No forwarding loop.")
     return lines
+
+
+def latency_lines(latency: dict[str, float | None]) -> list[str]:
+    """How long samples took; nothing without one."""
+    half, nearly, most = (latency[name] for name in ("p50", "p99", "max"))
+    if half is None or nearly is None or most is None:
+        return []
+    shown = tuple(words.ms_words(value) for value in (half, nearly, most))
+    return [
+        f"From sensor to PC: half within {shown[0]}, 99 % within {shown[1]}, the slowest "
+        f"{shown[2]} (samples received)."
+    ]
 
 
 def _why(data: dict[str, Any]) -> str:

@@ -1,0 +1,55 @@
+"""How long samples took from the sensor to the PC."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from innervate.sim import delays
+from innervate.sim.build import get
+
+SHARES = {"p50": 50, "p95": 95, "p99": 99}  # per cent, by name
+
+Figures = dict[str, float | None]
+
+
+def latency_ms(result: Any) -> Figures:
+    """Of all samples that the PC received: `mean`, `p50`, `p95`, `p99`, `max`, in ms.
+
+    A percentile is the least value that so many of a hundred do not exceed, to 0.4 % and never
+    too small. None without a sample. Samples that were lost have no latency.
+    """
+    return _figures(result.world, range(len(result.world.delays)))
+
+
+def latency_by_port(result: Any) -> list[dict[str, Any]]:
+    """The same for every interface port: `port`, `samples` received there, `latency_ms`."""
+    world = result.world
+    return [
+        {
+            "port": port,
+            "samples": int(get(world.delays, port, "count")),
+            "latency_ms": _figures(world, [port]),
+        }
+        for port in range(len(world.delays))
+    ]
+
+
+def _figures(world: Any, ports: Sequence[int]) -> Figures:
+    kept = {
+        name: [int(get(world.delays, port, name)) for port in ports]
+        for name in ("count", "sum", "high")
+    }
+    total = sum(kept["count"])
+    if total == 0:
+        return dict.fromkeys(("mean", *SHARES, "max"))
+    counts = np.array(world.delay_counts, np.int64).reshape(-1, delays.CLASSES)
+    upto = np.cumsum(counts[list(ports)].sum(axis=0))
+    found: Figures = {"mean": sum(kept["sum"]) / total / 1e3}
+    for name, share in SHARES.items():
+        rank = -(-total * share // 100)
+        longest = delays.longest_of(int(np.searchsorted(upto, rank)))
+        found[name] = min(longest, max(kept["high"])) / 1e3
+    return found | {"max": max(kept["high"]) / 1e3}
