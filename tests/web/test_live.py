@@ -328,6 +328,25 @@ def test_cables_are_found_by_their_addresses():
     assert state.link_up.tolist() == [1, 1, 0]
     assert state.unconnected == 2
     assert where.spread().shape == (3, 2)
+    shown = state.headline(0.0)
+    assert (shown.level, shown.nodes) == ("down", (0, 1))
+    assert "cut off" in shown.text
+
+
+def test_cells_of_a_running_skin_are_cut_off_seeking_or_silent():
+    told = skin_of_three()
+    where = Map(told)
+    assert State(where, told).headline(0.0).level == "ok"
+    told[1]["parent"] = None
+    seeking = State(where, told)
+    assert (seeking.unconnected, seeking.lacking) == (1, 1)
+    assert seeking.headline(0.0).text.startswith("1 of 2 cells (1) has no way to the PC")
+    silent = State(where, {i: one for i, one in told.items() if i != 1}).headline(0.0)
+    assert (silent.level, silent.nodes) == ("degraded", (1,))
+    no_pc = State(where, {i: one for i, one in told.items() if i != 2}).headline(0.0)
+    assert no_pc.level == "down"
+    assert no_pc.text.startswith("The PC")
+    assert State(where, {}).headline(0.0).level == "no data"
 
 
 def test_who_is_gone_stays_on_the_map():

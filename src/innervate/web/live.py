@@ -246,7 +246,7 @@ class Live(Source):
             "speed": 1.0,
             "at_end": False,
             **self._state.fields(),
-            **({} if headline is None else {"headline": headline.shown()}),
+            "headline": headline.shown(),
             "since_cut_s": None if recovery is None else round(t_s - recovery.at_us / 1e6, 6),
             "recovery": None if recovery is None else recovery.shown(),
         }

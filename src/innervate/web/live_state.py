@@ -12,6 +12,7 @@ from innervate.analysis.mesh_headline import headline
 from innervate.analysis.mesh_reach import Choices, Ways, ways
 from innervate.analysis.radio_headline import headline as radio_headline
 from innervate.analysis.radio_state import of_stations
+from innervate.analysis.skin_headline import SkinFacts, skin_headline
 from innervate.analysis.ways import NOWHERE, Numbers, follow, reach
 from innervate.web.live_map import Link, Map, Place, Status
 
@@ -75,7 +76,28 @@ class State:
         if not where.links:  # cables unknown: what cells say has to do
             lost = np.array([self._word(place, "parent", 0) is None for place in where.places])
         joined = reach(live, roots) if where.links else ~none
+        self._skin = self._skin_facts(lost, joined)
         return int(np.count_nonzero(lost)), int(np.count_nonzero(lost & joined))
+
+    def _skin_facts(self, lost: Any, joined: Any) -> SkinFacts:
+        """What cells say of their ways; `joined`: cables join them with the PC."""
+        places = self._map.places
+        is_cell = np.array([place.port < 0 for place in places], np.bool_)
+        told = np.array([place.node in self._told for place in places], np.bool_)
+        apart = told & (~joined | np.array(self.cut_off, np.bool_))
+        ports = told[~is_cell]
+
+        def of(flags: Any) -> list[int]:
+            found: list[int] = np.flatnonzero(is_cell & flags).tolist()
+            return found
+
+        return SkinFacts(
+            cells=int(np.count_nonzero(is_cell)),
+            silent=of(~told),
+            cut_off=of(apart),
+            seeking=of(told & lost & ~apart),
+            pc_off=bool(len(ports)) and not ports.any(),
+        )
 
     def changed_links(self, now: State) -> list[tuple[Link, bool]]:
         """Links that were cut or put back since, while their ends went on answering."""
@@ -101,7 +123,7 @@ class State:
     def _answered(self, now: State, *places: Place) -> bool:
         return all(place.node in told for place in places for told in (self._told, now._told))
 
-    def headline(self, still_ms: float) -> Headline | None:
+    def headline(self, still_ms: float) -> Headline:
         """Is all well, as far as these nodes say.
 
         Args:
@@ -117,7 +139,7 @@ class State:
             off = tuple(np.flatnonzero(self.node_up == 0).tolist())
             timing = next(iter(told.values()))["timing"]
             return radio_headline(of_stations(told, len(places), off, still_ms, timing))
-        return None
+        return skin_headline(self._skin)
 
     def _word(self, place: Place, name: str, otherwise: Any) -> Any:
         """What a node says of itself."""

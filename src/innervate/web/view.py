@@ -64,9 +64,9 @@ class View(ABC):
     def arrays(self, flights: bool) -> dict[str, Any]:
         """The state's fields for nodes and links; `flights` with frames on their way."""
 
-    def headline(self) -> Headline | None:
+    @abstractmethod
+    def headline(self) -> Headline:
         """Is all well, and if not, what is wrong."""
-        return None
 
     @abstractmethod
     def words(self, fault: Any) -> str:
@@ -155,11 +155,10 @@ class View(ABC):
 
     def fields(self, flights: bool) -> dict[str, Any]:
         """The state now."""
-        headline = self.headline()
         recovery, fault = self.memory.recovery, self.memory.fault
         return {
             **self.arrays(flights),
-            **({} if headline is None else {"headline": headline.shown()}),
+            "headline": self.headline().shown(),
             "since_cut_s": fault and (self.engine.now_us - fault.at_us) / 1e6,
             "recovery": None if recovery is None else recovery.shown(),
         }
