@@ -223,6 +223,7 @@ class SkinView(View):
             "node_up": np.concatenate([up, none + 1]),
             "link_up": 1 - (world.epoch[self.cables.ends[:, 0]] & 1),
             **ways,
+            "apart": int(np.count_nonzero(np.array(world.watch.apart) >= 0)),
             "load": np.concatenate([load, none]),
             "flights": self.cables.flights(world, self.engine.now_us) if flights else [],
         }

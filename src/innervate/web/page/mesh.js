@@ -3,7 +3,9 @@ import { colours } from "./colours.js";
 import { Labels } from "./labels.js";
 import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
-import { affected, affectedSample, arrow, boxRound, cross, diamond, flights, stroke, word } from "./shapes.js";
+import {
+  affected, affectedSample, arrow, boxRound, cross, diamond, flights, stroke, word,
+} from "./shapes.js";
 import { symbol } from "./symbols.js";
 import { off, offWord, plural } from "./words.js";
 

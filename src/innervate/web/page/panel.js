@@ -41,7 +41,8 @@ export function showNumbers(network) {
     const text = isOpen ? ago(network.now.t_s - recovery.at_s) : duration(recovery.recovered_ms);
     const state = isOpen ? "not yet, " : "";
     const look = !isKnown ? "" : isOpen ? "open" : unconnected ? "" : "done";
-    show("recovery", isKnown || !isOpen ? text : "–", `${recovery.cause}: ${state}${noticed}`, look);
+    const shown = isKnown || !isOpen ? text : "–";
+    show("recovery", shown, `${recovery.cause}: ${state}${noticed}`, look);
   }
   const isRadio = network.kind === "radio"; // there everybody hears everybody
   const label = isRadio ? offWord(network) : "without a way";
@@ -164,7 +165,8 @@ export class Card {
 /** What of a node or link is said again when it changes. */
 function stateOf(network, { node, link }) {
   const { now } = network;
-  return node === undefined ? `${now.link_up[link]} ${network.isCut(link)}` : `${now.node_up[node]}`;
+  if (node !== undefined) return `${now.node_up[node]}`;
+  return `${now.link_up[link]} ${network.isCut(link)}`;
 }
 
 function linkFacts(view, link) {

@@ -13,8 +13,9 @@ const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDo
 export class Pointer {
   /**
    * @param {Stage} stage
-   * @param {{select: Function, act: Function, nodesOnly: Function}} told of what is selected ({node} or {link}, or
-   *   null) and of what is to be cut, killed or touched
+   * @param {{select: Function, act: Function, nodesOnly: Function}} told of what is selected
+   *   ({node} or {link}, or null) and of what is to be cut, killed or touched; says whether only
+   *   nodes can be
    */
   constructor(stage, told) {
     Object.assign(this, { stage, told, over: null, selected: null });

@@ -41,7 +41,8 @@ export class RadioView {
   }
 
   layersOf(changed) {
-    return ["radio", "node_up", "headline"].some((name) => changed.has(name)) ? [LAYERS.ground] : [];
+    const any = ["radio", "node_up", "headline"].some((name) => changed.has(name));
+    return any ? [LAYERS.ground] : [];
   }
 
   linkFirst() {

@@ -2,7 +2,9 @@
 import { colours, shade } from "./colours.js";
 import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
-import { affected, affectedSample, boxRound, brick, cross, flights, hexagon, stroke, word } from "./shapes.js";
+import {
+  affected, affectedSample, boxRound, brick, cross, flights, hexagon, stroke, word,
+} from "./shapes.js";
 import { off, offWord, plural } from "./words.js";
 
 const NEAR = 1.6; // cables up to this many pitches long are between neighbours
