@@ -16,13 +16,14 @@ from innervate.analysis.rows import (
     parent_changes,
     unrouted_steps,
 )
+from innervate.analysis.skin_summary import Recovery, StartUp
 from innervate.protocol.skin_words import NONE, PORTS
 from innervate.scenario.plan import ACTIONS, CUT, KILL, RESTART, RESTORE, REVIVE, Fault
 
 NOBODY = -1
 
 
-def recoveries(result: Any) -> list[dict[str, Any]]:
+def recoveries(result: Any) -> list[Recovery]:
     """One entry per event of the scenario that happened, in order of time.
 
     `at_s` and `action` say what happened. All `_ms` count from the event and look no further than
@@ -38,7 +39,7 @@ def recoveries(result: Any) -> list[dict[str, Any]]:
     switches = changes.row[~changes.balancing]
     broken, unrouted = broken_changes(result), unrouted_steps(result)
     faults = {fault.index: fault for fault in result.plan.faults}
-    found = []
+    found: list[Recovery] = []
     for place in np.flatnonzero(at.event != NOBODY).tolist():
         fault = faults[int(at.event[place])]
         window = _window(result, at, place)
@@ -56,7 +57,7 @@ def recoveries(result: Any) -> list[dict[str, Any]]:
     return found
 
 
-def start_up(result: Any) -> dict[str, Any]:
+def start_up(result: Any) -> StartUp:
     """The same for the beginning: `converged_ms` and `routed_ms` from switching on."""
     at = marks(result)
     if len(at.row) == 0:  # it ran unobserved

@@ -16,7 +16,7 @@ def summary_lines(run: Run) -> list[str]:
 
 
 def _first(run: Run) -> str:
-    summary = run.summary
+    summary = run.mesh
     return (
         f"{summary['name']}: {words.number_of(summary['nodes'], 'node')}, "
         f"{words.number_of(summary['links'], 'good link')}; "

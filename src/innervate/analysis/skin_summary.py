@@ -1,0 +1,112 @@
+"""The keys of a skin's summary."""
+
+from __future__ import annotations
+
+from typing import Literal, TypedDict, final
+
+from innervate.analysis.summary_common import Common
+
+
+class StartUp(TypedDict):
+    """From switching on.
+
+    Attributes:
+        converged_ms: to the last change of a parent, those for balancing left out.
+        routed_ms: to the moment when the last cell had a way to the PC.
+    """
+
+    converged_ms: float | None
+    routed_ms: float | None
+
+
+class Recovery(TypedDict):
+    """What followed one event; all `_ms` count from it and look no further than the next one.
+
+    Attributes:
+        at_s: when it happened.
+        action: "cut", "restore", "loose", "lose", "kill", "restart" or "revive".
+        detected_ms: until the first end of the cable found it broken.
+        converged_ms: until the last change of a parent, those for balancing left out.
+        routed_ms: until every cell had a way again; 0 if none lacked one.
+        cut_cells: cells whose way used the cable or the node.
+    """
+
+    at_s: float
+    action: str
+    detected_ms: float | None
+    converged_ms: float | None
+    routed_ms: float | None
+    cut_cells: int
+
+
+class Loops(TypedDict):
+    """Forwarding loops: how many, and how long the longest stood."""
+
+    episodes: int
+    longest_ms: float | None
+
+
+class Data(TypedDict):
+    """Tactile samples from cells to the PC.
+
+    Attributes:
+        sent: taken by cells.
+        delivered: received by the PC.
+        lost: not received, and on their way no more.
+        loss_ratio: lost / sent.
+        lost_by: lost by reason: cut, noise, off, queue_full, broken_link, no_route, loop.
+        in_flight: still on their way at the end.
+    """
+
+    sent: int
+    delivered: int
+    lost: int
+    loss_ratio: float | None
+    lost_by: dict[str, int]
+    in_flight: int
+
+
+class BrokenPort(TypedDict):
+    """A port that a cell holds for broken at the end.
+
+    Attributes:
+        cell: its name, "p0 r16 c7".
+        port: "W", "E", "up" or "down".
+        since_s: when it was found broken.
+        to: the far end of its cable.
+    """
+
+    cell: str
+    port: str
+    since_s: float | None
+    to: str
+
+
+@final
+class SkinSummary(Common):
+    """The summary of a skin's run.
+
+    Attributes:
+        cells: how many there are.
+        depth_max: hops of the deepest cell to the PC, by breadth-first search.
+        start_up: from switching on.
+        recoveries: one for every event, in order of time.
+        loops: forwarding loops.
+        balance_factor: of the interface ports at the end, 1/n .. 1 (even) [skin III-A.2].
+        port_loads: cells that each interface port serves at the end.
+        data: samples.
+        beacon_share: of the capacity of all cables, what beacons took.
+        broken: ports found broken at the end.
+    """
+
+    kind: Literal["skin"]
+    cells: int
+    depth_max: int
+    start_up: StartUp
+    recoveries: list[Recovery]
+    loops: Loops
+    balance_factor: float | None
+    port_loads: list[int]
+    data: Data
+    beacon_share: float | None
+    broken: list[BrokenPort]
