@@ -8,6 +8,7 @@ import numpy as np
 
 from innervate.analysis import mesh_network as network
 from innervate.analysis.mesh_alarms import alarms, all_crossings
+from innervate.analysis.mesh_headline import headline, traffic
 from innervate.analysis.mesh_messages import (
     DELIVERED,
     IN_FLIGHT,
@@ -28,6 +29,7 @@ from innervate.analysis.mesh_messages import (
     ratio,
 )
 from innervate.analysis.mesh_paths import UNREACHABLE, Ground
+from innervate.analysis.mesh_reach import of_simulation
 from innervate.analysis.mesh_summary import (
     AfterDeaths,
     Connected,
@@ -56,6 +58,9 @@ def summarize(result: Any) -> MeshSummary:
     kinds = network.acked_kinds(result.sent)
     led = network.gateways(result)
     ground = Ground(plan)
+    crossings = all_crossings(result)
+    again, met = duplicates(result), looped(result)
+    sent = traffic(found, crossings, again, met, plan.faults)
     summary: MeshSummary = {
         "kind": plan.kind,
         "name": plan.scenario.name,
@@ -65,14 +70,15 @@ def summarize(result: Any) -> MeshSummary:
         "events_per_s": round(events / result.wall_s) if result.wall_s > 0 else None,
         "wall_s": round(result.wall_s, 6),
         "fingerprint": result.fingerprint,
+        "headline": headline(of_simulation(result.world, plan), sent).as_summary(),
         "nodes": plan.nodes,
         "links": len(plan.good),
         "discovery": network.discovery(result, kinds),
         "delivery_ratio": delivery_ratio(found),
         "latency_ms": percentiles(latencies_us(found), 1e-3),
-        "alarms": alarms(all_crossings(result)),
-        "duplicates": duplicates(result),
-        "looped": looped(result),
+        "alarms": alarms(crossings),
+        "duplicates": again,
+        "looped": met,
         "control_bytes": network.control_bytes(result, kinds),
         "messages": _counts(found),
         "connected": connected(found, ground),

@@ -12,7 +12,8 @@ if TYPE_CHECKING:
 
 def summary_lines(run: Run) -> list[str]:
     """What a person wants to know first."""
-    return [_first(run), *mesh_words.sentences(run.result, run.summary)]
+    headline = words.headline_line(run.mesh["headline"])
+    return [_first(run), headline, *mesh_words.sentences(run.result, run.summary)]
 
 
 def _first(run: Run) -> str:

@@ -17,6 +17,7 @@ from innervate.plot.page import (
     element,
     figure,
     film_controls,
+    headline,
     keys,
     pictures,
     section,
@@ -56,25 +57,10 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         f"{words.number_of(summary['links'], 'good link')}, radio {model.radio.profile}, "
         f"failover {model.protocol.failover}; seed {summary['seed']}"
     )
-    first, *others = sentences(result, summary)
-    parts = [element("p", over, "over"), element("h1", first)]
-    parts += [element("p", sentence) for sentence in others[:-1]]
-    parts += [_status(summary), tiles(_figures(result, summary))]
+    parts = [element("p", over, "over"), headline(summary["headline"])]
+    parts += [element("p", sentence) for sentence in sentences(result, summary)]
+    parts.append(tiles(_figures(result, summary)))
     return "<header>\n" + "".join(parts) + "</header>"
-
-
-def _status(summary: Mapping[str, Any]) -> str:
-    alarms, doubled = summary["alarms"], summary["duplicates"]
-    missed = alarms["sent"] - alarms["delivered"]
-    if missed:
-        line = f"The monitor never learned of {words.number_of(missed, 'crossing')}."
-        return element("p", line, "status bad")
-    if doubled:
-        line = f"{words.number_of(doubled, 'message')} came twice."
-        return element("p", line, "status bad")
-    if alarms["sent"]:
-        return element("p", "Every crossing came to the monitor; no message came twice.", "status")
-    return element("p", "No message came twice.", "status")
 
 
 def _figures(result: Any, summary: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
+from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK
 from innervate.plot import theme
 from innervate.plot.svg import Drawing, clean
+
+LEVEL_CLASSES = {OK: "status", DEGRADED: "status warn", DOWN: "status bad", NO_DATA: "status none"}
 
 # Parts of a page, wherever they stand.
 PARTS = """
@@ -20,7 +23,9 @@ p{margin:.4em 0}
 .note,figcaption{font-size:.9rem}
 .status{display:inline-block;margin:.6em 0;padding:.35em .8em;border-radius:6px;
 border:1px solid var(--good);color:var(--good);font-weight:600}
+.status.warn{border-color:var(--warn);color:var(--warn)}
 .status.bad{border-color:var(--alarm);color:var(--alarm)}
+.status.none{border-color:var(--soft);color:var(--soft)}
 .status ul{margin:.2em 0;padding-left:1.2em;font-weight:400}
 .tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(140px,1fr));gap:10px;margin:1em 0}
 .tiles div{background:var(--panel);border-radius:8px;padding:10px 14px}
@@ -80,6 +85,12 @@ def element(tag: str, text: str, kind: str = "") -> str:
     """An element with text, which is escaped."""
     opening = f'<{tag} class="{kind}">' if kind else f"<{tag}>"
     return f"{opening}{clean(text)}</{tag}>\n"
+
+
+def headline(found: Mapping[str, str]) -> str:
+    """A summary's headline: its sentence, and below it its level, in the level's colour."""
+    level = found["level"]
+    return element("h1", found["text"]) + element("p", level, LEVEL_CLASSES[level])
 
 
 def section(head: str, inside: str) -> str:

@@ -30,6 +30,11 @@ LOST = {
 }
 
 
+def headline_line(found: Mapping[str, object]) -> str:
+    """A summary's headline in a line: "degraded: 1 of 91 messages was not delivered."."""
+    return f"{found['level']}: {found['text']}"
+
+
 def ms_words(value_ms: float) -> str:
     """A time: "8.43 ms", "17.0 ms", "1.25 s"."""
     if value_ms >= 1000:

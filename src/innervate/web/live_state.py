@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.ways import NOWHERE, Numbers, follow
 from innervate.web.live_map import Link, Map, Place, Status
-from innervate.web.ways import NOWHERE, Numbers, follow
 
 LOAD_FULL = 66  # cells whose samples fill a link, at 250 Hz each
 QUEUE = 16

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from innervate.analysis.load import balance_factor
+from innervate.analysis.ways import NOWHERE
 from innervate.plot.words import fault_words, number_of
 from innervate.protocol.skin_words import (
     NONE,
@@ -34,7 +35,6 @@ from innervate.web.messages import Command, Touch, number
 from innervate.web.skin_scene import places
 from innervate.web.skin_state import Cables
 from innervate.web.view import Memory, View
-from innervate.web.ways import NOWHERE
 
 HZ_WITHOUT_DATA = 250.0  # load is shown as if cells sampled so often
 FORCE_FULL_MN = 5_000  # shown as 255

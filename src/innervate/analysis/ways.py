@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
+Flags = np.ndarray[Any, np.dtype[np.bool_]]
 NOWHERE = -1
 
 
@@ -30,11 +31,19 @@ def follow(hop: Numbers, is_root: Any) -> tuple[Numbers, Numbers]:
     return np.where(there, last, NOWHERE), np.where(there, steps[:count], NOWHERE)
 
 
-def reach(links: Any, start: Any) -> Any:
-    """Per node: can it be reached from `start` (flags) over `links` (a matrix of flags)."""
+def reach(links: Any, start: Any, hops_max: int | None = None) -> Any:
+    """Per node: can it be reached from `start` (flags) over `links` (a matrix of flags).
+
+    Args:
+        links: from row to column.
+        start: who is there already.
+        hops_max: over so many links at most; None any number.
+    """
     found = start.copy()
-    while True:
+    hops = 0
+    while hops_max is None or hops < hops_max:
         more = found | (links[found].any(axis=0) if found.any() else found)
         if (more == found).all():
-            return found
-        found = more
+            break
+        found, hops = more, hops + 1
+    return found
