@@ -7,6 +7,7 @@ from innervate.analysis import radio, radio_air
 from innervate.protocol.radio_words import CRR, DATA, OPEN, REPORT_BOUNDS, REPORT_LEFT
 from innervate.scenario.radio_plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
 from innervate.sim.radio import world as w
+from innervate.sim.radio.build import build
 from innervate.sim.radio.loop import ON_CARRIER
 from innervate.sim.radio.simulate import COUNTS
 from tests.radio_runs import radio_plan, run
@@ -31,6 +32,7 @@ def made(packets=(), sent=(), rows=(), ended_us=100_000, **plan):
     plan = radio_plan(n, packet_slots=5, real=(52, 52), **plan)
     return SimpleNamespace(
         plan=plan,
+        world=build(plan, plain=True, checks=False, keep=False, trail=False),
         packets=table(w.PACKET, *packets),
         sent=table(w.SENT, *sent),
         rows=table(w.ROW, *rows),

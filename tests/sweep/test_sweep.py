@@ -14,6 +14,7 @@ import pytest
 
 import innervate
 from innervate.cli import main
+from innervate.cli.sweeping import headline_lines
 from innervate.scenario import ScenarioError
 from innervate.sweeping import SweepError, engines
 from innervate.sweeping.flat import flat
@@ -44,6 +45,19 @@ def test_other_kinds_go_through_the_same_door(four):
     assert done.failed.height == 0
     assert done.results["stations"].to_list() == [2, 2, 3, 3, 4, 4]
     assert done.results["throughput"].min() > 0
+    assert set(done.results["headline.level"]) == {"ok"}
+    assert headline_lines(done) == []
+
+
+def test_runs_that_are_not_well_are_said(four):
+    vary = {"duration_s": [60, 0.101]}
+    done = innervate.sweep("radio-disaster", vary=vary, repeat=2, workers=1)
+    assert done.results["headline.level"].to_list() == ["ok", "ok", "down", "down"]
+    seed = done.results["seed"][2]
+    assert headline_lines(done) == [
+        f"2 of 4 runs: down; the first, point 1 with seed {seed}: "
+        "Nothing got through; of 10 packets none was delivered."
+    ]
 
 
 def test_a_rows_command_runs_it_again(four, capsys):

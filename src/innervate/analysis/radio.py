@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from innervate.analysis import radio_headline, radio_state
 from innervate.analysis.radio_air import Air, Groups, Heard, Numbers, air, groups, signals
 from innervate.analysis.radio_summary import BoundsNoticed, Delays, RadioSummary
 from innervate.protocol.radio_words import REPORT_BOUNDS
@@ -66,6 +67,7 @@ def summarize(result: Any, name: str | None = None) -> RadioSummary:
     summary: RadioSummary = {
         "kind": plan.kind,
         "name": name or getattr(plan.scenario, "name", None) or plan.protocol,
+        "headline": radio_headline.headline(facts(result)).as_summary(),
         "seed": plan.seed,
         "duration_s": plan.duration_us / 1e6,
         "events": events,
@@ -95,6 +97,22 @@ def summarize(result: Any, name: str | None = None) -> RadioSummary:
     if result.interrupted:
         summary["interrupted_at_s"] = result.ended_us / 1e6
     return summary
+
+
+def facts(result: Any) -> radio_headline.RadioFacts:
+    """What the headline of a finished run is made of."""
+    found = successes(result)
+    noticed = bounds_noticed(result)
+    return radio_state.facts(
+        result.world,
+        result.plan,
+        result.ended_us,
+        int(found["time"].max()) if len(found) else 0,
+        ended=not result.interrupted,
+    )._replace(
+        bounds=noticed if noticed["count"] else None,
+        stations_wrong=tuple(one["station"] for one in noticed["stations"]),
+    )
 
 
 def traffic_of(plan: Any) -> str:

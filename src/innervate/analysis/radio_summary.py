@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal, TypedDict, final
 
+from innervate.analysis.headline import HeadlineEntry
 from innervate.analysis.summary_common import Common
 
 
@@ -42,6 +43,7 @@ class Channel(Common):
     """What both levels have.
 
     Attributes:
+        headline: is all well, in a sentence.
         protocol: the medium access.
         stations: how many robots.
         throughput: share of the time that delivered packets fill, 0 .. 1.
@@ -55,6 +57,7 @@ class Channel(Common):
     """
 
     kind: Literal["radio"]
+    headline: HeadlineEntry
     protocol: str
     stations: int
     throughput: float | None

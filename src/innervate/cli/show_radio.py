@@ -14,7 +14,12 @@ if TYPE_CHECKING:
 
 def summary_lines(run: Run) -> list[str]:
     """What a person wants to know first."""
-    return [_first(run), *result_lines(run), *_noticed(run)]
+    return [
+        _first(run),
+        words.headline_line(_summary(run)["headline"]),
+        *result_lines(run),
+        *_noticed(run),
+    ]
 
 
 def _summary(run: Run) -> RadioSummary | SlottedSummary:

@@ -63,6 +63,7 @@ class LiveNode:
         for link in self.links:
             await link.open(self._receive)
         self.save(False)
+        self.state.check_place()
         self.engine.start(0 if self.state.fresh else 1)
 
     async def stop(self) -> None:
@@ -100,9 +101,11 @@ class LiveNode:
         """Cut, restore or loosen ("loose": `loss` of what comes in is lost) a path; the path.
 
         Raises:
-            ValueError: there is no such path.
+            ValueError: there is no such path, or no such share.
         """
         path = self.path_at(port)
+        if not 0 <= loss <= 1:
+            raise ValueError(f"loss must be 0 to 1, the share that is lost, not {loss:g}")
         path.cut, path.loss = what == "cut", loss
         self._tell(time.time_ns(), port, False, b"", f"event: {what}")
         return path
@@ -116,17 +119,21 @@ class LiveNode:
         path.counters["received"] += 1
         path.counters["received bytes"] += len(data)
         at_ns = time.time_ns() if self.taps else 0
+        opened = None
         if self.sealer is not None:
             opened = self.sealer.open(data)
             if opened is None:
                 self._tell(at_ns, path.port, False, data, "seal")
                 return
-            data = opened
+            data = opened.frame
         assert self.engine is not None
-        reason = self.engine.receive(path.port, data)
-        if reason == 0:
+        why = self.engine.read(data, None if opened is None else opened.sender)
+        if not why:
+            if opened is not None and self.sealer is not None:
+                self.sealer.take(opened)
             path.heard_at = clock_us()
-        self._tell(at_ns, path.port, False, data, self.stack.reasons[reason] if reason else "")
+            self.engine.receive(path.port)
+        self._tell(at_ns, path.port, False, data, why)
 
     def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
         data = bare = self.stack.encode(frame)

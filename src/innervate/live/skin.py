@@ -76,6 +76,10 @@ class SkinStack:
         """Read bytes into the inbox; 0, or why not."""
         return wire.decode(data, self.inbox)
 
+    def objection(self, sender: int | None) -> str:
+        """A beacon names nobody: it speaks for the far end of its cable, whoever that is."""
+        return ""
+
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """A port is a path."""
         return [port]

@@ -10,7 +10,16 @@ import numpy as np
 
 from innervate.analysis import radio
 from innervate.plot import charts, radio_scene, radio_slotted_report, radio_timeline, svg, words
-from innervate.plot.page import details, element, figure, pictures, section, table, tiles
+from innervate.plot.page import (
+    details,
+    element,
+    figure,
+    headline,
+    pictures,
+    section,
+    table,
+    tiles,
+)
 from innervate.plot.radio_words import (
     fault_words,
     protocol_words,
@@ -28,7 +37,7 @@ STEPS_MAX = 2000  # of a cumulative curve
 
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
-    """Headline, status, numbers and pictures of a radio run, as HTML."""
+    """Headline, numbers and pictures of a radio run, as HTML."""
     if summary.get("level") == "slotted":
         return radio_slotted_report.body(result, summary)
     return "\n".join(
@@ -54,20 +63,19 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         f"{params['packet_slots']} slots of {params['slot_us']} us, radios that switch {switch}; "
         f"seed {summary['seed']}"
     )
-    first, *others = sentences(result, summary)
-    parts = [element("p", over, "over"), element("h1", first)]
-    parts += [element("p", sentence) for sentence in others]
+    parts = [element("p", over, "over"), headline(summary["headline"])]
+    parts += [element("p", sentence) for sentence in sentences(result, summary)]
     if "interrupted_at_s" in summary:
         early = f"Ended early, at {summary['interrupted_at_s']:.3f} s of simulated time."
         parts.append(element("p", early, "status bad"))
-    parts += [_status(summary), tiles(_figures(result, summary))]
+    parts.append(tiles(_figures(result, summary)))
     return "<header>\n" + "".join(parts) + "</header>"
 
 
 def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
-    """What happened, for somebody who knows nothing of it; the first is the headline."""
+    """What happened, for somebody who knows nothing of it."""
     telling = {"saturated": _saturated, "disaster": _disaster}.get(summary["traffic"], _arrivals)
-    return [telling(result, summary), *_collisions(result, summary)]
+    return [telling(result, summary), *_collisions(result, summary), _silence(summary)]
 
 
 def _disaster(result: Any, summary: Mapping[str, Any]) -> str:
@@ -118,13 +126,13 @@ def _collisions(result: Any, summary: Mapping[str, Any]) -> list[str]:
     return [f"There were {count:,} collisions, of up to {most} frames at once."]
 
 
-def _status(summary: Mapping[str, Any]) -> str:
+def _silence(summary: Mapping[str, Any]) -> str:
+    """What was lost that nobody knows of."""
     silent = summary["lost_silently"]
-    if silent:
-        who = words.number_of(silent, "packet")
-        line = f"Lost silently: {who} that nobody received, taken for delivered by the sender."
-        return element("p", line, "status bad")
-    return element("p", "No packet was lost silently.", "status")
+    if not silent:
+        return "No packet was lost silently."
+    who = words.number_of(silent, "packet")
+    return f"Lost silently: {who} that nobody received, taken for delivered by the sender."
 
 
 def _figures(result: Any, summary: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from innervate.plot import charts, words
-from innervate.plot.page import element, figure, pictures, section, tiles
+from innervate.plot.page import element, figure, headline, pictures, section, tiles
 from innervate.plot.radio_words import robots
 
 STEPS_MAX = 2000
@@ -40,7 +40,8 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         (f"{summary['jain']:.3f}", "fairness (Jain), 1 is even"),
         (f"{summary['collisions']:,}", "collisions"),
     ]
-    parts = [element("p", over, "over"), element("h1", head), tiles(found)]
+    parts = [element("p", over, "over"), headline(summary["headline"]), element("p", head)]
+    parts.append(tiles(found))
     return "<header>\n" + "".join(parts) + "</header>"
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.radio_headline import RadioFacts, headline
 from innervate.analysis.radio_summary import Delays, SlottedSummary
 from innervate.kernel.wall import wall_s
 from innervate.scenario.radio_traffic import mean_interval_us
@@ -90,9 +91,11 @@ def summarize(result: SlottedRun) -> SlottedSummary:
     quantiles: Delays = {"p50": p50, "p95": p95, "p99": p99, "max": most}
     first = list(dict.fromkeys(found.order))
     done = result.counts["completed"]
+    facts = RadioFacts(plan.stations, offered=done, delivered=done, ended=True)
     return {
         "kind": plan.kind,
         "name": plan.scenario.name,
+        "headline": headline(facts).as_summary(),
         "seed": plan.seed,
         "duration_s": plan.duration_us / 1e6,
         "events": done,
