@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.latency import latency_by_port, latency_ms
 from innervate.analysis.skin_summary import Data
 from innervate.sim import wires
 from innervate.sim.wheel import FRESH, NIL
@@ -62,7 +63,7 @@ def beacon_traffic(result: Any) -> Traffic:
 def data_summary(result: Any) -> Data:
     """Tactile samples from cell to PC: sent, delivered, lost by reason, in flight.
 
-    `loss_ratio` is lost / sent; None if none were sent.
+    `loss_ratio` is lost / sent; None if none were sent. Latencies: see latency.py.
     """
     counters = result.counters
     traffic = data_traffic(result)
@@ -77,6 +78,8 @@ def data_summary(result: Any) -> Data:
         "loss_ratio": lost / sent if sent else None,
         "lost_by": lost_by,
         "in_flight": traffic.flying + traffic.queued,
+        "latency_ms": latency_ms(result),
+        "latency_by_port": latency_by_port(result),
     }
 
 

@@ -46,6 +46,30 @@ class Loops(TypedDict):
     longest_ms: float | None
 
 
+class Latency(TypedDict):
+    """From the sensor to the PC, ms, of samples received; percentiles to 0.4 %, never too small."""
+
+    mean: float | None
+    p50: float | None
+    p95: float | None
+    p99: float | None
+    max: float | None
+
+
+class PortLatency(TypedDict):
+    """The same at one interface port.
+
+    Attributes:
+        port: which, from 0.
+        samples: received there.
+        latency_ms: how long they took.
+    """
+
+    port: int
+    samples: int
+    latency_ms: Latency
+
+
 class Data(TypedDict):
     """Tactile samples from cells to the PC.
 
@@ -56,6 +80,8 @@ class Data(TypedDict):
         loss_ratio: lost / sent.
         lost_by: lost by reason: cut, noise, off, queue_full, broken_link, no_route, loop.
         in_flight: still on their way at the end.
+        latency_ms: of all that were received.
+        latency_by_port: of every interface port.
     """
 
     sent: int
@@ -64,6 +90,8 @@ class Data(TypedDict):
     loss_ratio: float | None
     lost_by: dict[str, int]
     in_flight: int
+    latency_ms: Latency
+    latency_by_port: list[PortLatency]
 
 
 class BrokenPort(TypedDict):

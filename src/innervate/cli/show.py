@@ -8,7 +8,7 @@ from innervate.cli import show_mesh, show_radio
 from innervate.plot import words
 
 if TYPE_CHECKING:
-    from innervate.analysis.skin_summary import Data, SkinSummary
+    from innervate.analysis.skin_summary import Data, Latency, SkinSummary
     from innervate.running import Run
 
 EVENTS_MAX = 8
@@ -59,6 +59,7 @@ def state_lines(summary: SkinSummary) -> list[str]:
         lines.append(
             f"Samples: {data['sent']:,} sent, {data['lost']:,} lost ({share}){_why(data)}."
         )
+        lines += latency_lines(data["latency_ms"])
     if len(loads) > 1 and summary["balance_factor"] is not None:
         shown = ", ".join(f"{load:,}" for load in loads[:8]) + (", ..." if len(loads) > 8 else "")
         factor = f"balance factor {summary['balance_factor']:.3f}"
@@ -71,6 +72,18 @@ def state_lines(summary: SkinSummary) -> list[str]:
     else:
         lines.append("No forwarding loop.")
     return lines
+
+
+def latency_lines(latency: Latency) -> list[str]:
+    """How long samples took; nothing without one."""
+    half, nearly, most = latency["p50"], latency["p99"], latency["max"]
+    if half is None or nearly is None or most is None:
+        return []
+    shown = tuple(words.ms_words(value) for value in (half, nearly, most))
+    return [
+        f"From sensor to PC: half within {shown[0]}, 99 % within {shown[1]}, the slowest "
+        f"{shown[2]} (samples received)."
+    ]
 
 
 def _why(data: Data) -> str:

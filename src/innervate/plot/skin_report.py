@@ -87,6 +87,10 @@ def _figures(story: Story) -> list[tuple[str, str]]:
     data, found = summary["data"], []
     if data["sent"]:
         found.append((words.share_words(1 - data["loss_ratio"]), "of the samples not lost"))
+    if data["latency_ms"]["p99"] is not None:
+        half = words.ms_words(data["latency_ms"]["p50"])
+        text = f"from sensor to PC for 99 % of those received, {half} for half"
+        found.append((words.ms_words(data["latency_ms"]["p99"]), text))
     if summary["balance_factor"] is not None and len(summary["port_loads"]) > 1:
         found.append((f"{summary['balance_factor']:.3f}", "balance of the ports, 1 is even"))
     if summary["beacon_share"] is not None:
@@ -140,8 +144,28 @@ def _traffic(story: Story) -> str:
     panels: list[Panel | None] = [story.loads(), story.losses()]
     return section(
         "Load and losses",
-        pictures([_figure(panel) for panel in panels if panel is not None], "two"),
+        pictures([_figure(panel) for panel in panels if panel is not None], "two")
+        + _latencies(story.summary["data"]),
     )
+
+
+def _latencies(data: Mapping[str, Any]) -> str:
+    """How long samples took to every interface port."""
+    ports = [one for one in data["latency_by_port"] if one["samples"]]
+    if not ports:
+        return ""
+    rows = [("all ports", f"{data['delivered']:,}", *_times(data["latency_ms"]))]
+    rows += [
+        (f"port {one['port']}", f"{one['samples']:,}", *_times(one["latency_ms"]))
+        for one in ports[:ROWS_MAX]
+    ]
+    head = ("received at", "samples", "half within", "95 % within", "99 % within", "slowest")
+    text = "How long samples took from the sensor to the PC; lost ones took for ever."
+    return table(head, rows) + element("p", text, "note")
+
+
+def _times(latency: Mapping[str, Any]) -> list[str]:
+    return [words.ms_words(latency[name]) for name in ("p50", "p95", "p99", "max")]
 
 
 def _events(story: Story) -> str:

@@ -32,14 +32,18 @@ RUN = (
 )  # fmt: skip
 COMMAND = ("at", "action", "end", "node", "value", "index")
 ROW = ("time", "node", "code", "a", "b")
-DELIVERY = ("time", "port", "cell", "seq", "hops", "proximity", "force", "temperature", "accel")
+DELIVERY = (
+    "time", "port", "cell", "seq", "hops", "latency",
+    "proximity", "force", "temperature", "accel",
+)  # fmt: skip
+DELAY = ("count", "sum", "high")
 TRAIL = ("time", "node", "handler", "port", "fingerprint")
 # A frame for a capture: when; when its sender began; whose interface (a cable's end, a node, a
 # station); who sent it (mesh, radio); 1 = it left, 0 = it came in; why it got no further.
 TAP = ("time", "start", "at", "sender", "out", "why")
 ACTION = ("kind", "a", "b", "c")
 WIDE = {"time", "start", "busy", "offset", "rate", "inverse", "source", "at", "fingerprint"} | set(
-    RUN
+    (*RUN, *DELAY)
 )
 
 # States of a node.
@@ -120,6 +124,8 @@ class World(NamedTuple):
     trail: Any
     taps: Any  # frames for a capture (see taps.py): what happened to them
     tapped: Any  # ... and they themselves
+    delays: Any  # per interface port the latencies of data: how many, sum, greatest
+    delay_counts: Any  # ... and how many in each class (see delays.py)
     touch_x: Any
     touch_y: Any
     touch_span: Any
