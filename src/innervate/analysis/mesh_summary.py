@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Literal, TypedDict, final
 
-from innervate.analysis.headline import HeadlineEntry
 from innervate.analysis.summary_common import Common, Percentiles
 
 
@@ -153,7 +152,6 @@ class MeshSummary(Common):
     """The summary of a mesh's run.
 
     Attributes:
-        headline: is all well, in a sentence.
         nodes: how many, robots included.
         links: good in both directions at the start.
         discovery: the first round.
@@ -177,7 +175,6 @@ class MeshSummary(Common):
     """
 
     kind: Literal["mesh"]
-    headline: HeadlineEntry
     nodes: int
     links: int
     discovery: Discovery

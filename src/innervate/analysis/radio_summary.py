@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Literal, TypedDict, final
 
-from innervate.analysis.headline import HeadlineEntry
 from innervate.analysis.summary_common import Common
 
 
@@ -43,7 +42,6 @@ class Channel(Common):
     """What both levels have.
 
     Attributes:
-        headline: is all well, in a sentence.
         protocol: the medium access.
         stations: how many robots.
         throughput: share of the time that delivered packets fill, 0 .. 1.
@@ -57,7 +55,6 @@ class Channel(Common):
     """
 
     kind: Literal["radio"]
-    headline: HeadlineEntry
     protocol: str
     stations: int
     throughput: float | None

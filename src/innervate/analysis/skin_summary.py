@@ -27,7 +27,13 @@ class Recovery(TypedDict):
         action: "cut", "restore", "loose", "lose", "kill", "restart" or "revive".
         detected_ms: until the first end of the cable found it broken.
         converged_ms: until the last change of a parent, those for balancing left out.
-        routed_ms: until every cell had a way again; 0 if none lacked one.
+        routed_ms: until every cell that is on had a way again; 0 if none lacked one; None while
+            any cell is cut off: no cable joins it with the PC.
+        others_ms: the same without the cells that are cut off; None if these are all there are.
+        without_way: cells that had none at the end although cables join them with the PC.
+        cut_off: cells that were joined with the PC before and that no cable joins with it since.
+        cut_off_total: those, and whoever was so before.
+        joined_again: cells that cables join with the PC again.
         cut_cells: cells whose way used the cable or the node.
     """
 
@@ -36,6 +42,11 @@ class Recovery(TypedDict):
     detected_ms: float | None
     converged_ms: float | None
     routed_ms: float | None
+    others_ms: float | None
+    without_way: int
+    cut_off: int
+    cut_off_total: int
+    joined_again: int
     cut_cells: int
 
 
@@ -110,8 +121,49 @@ class BrokenPort(TypedDict):
     to: str
 
 
+class Apart(TypedDict):
+    """Cells that have no way to the PC at the end: how many, and which (100 names at most)."""
+
+    cells: int
+    labels: list[str]
+
+
+class CutOff(Apart):
+    """Cells that are on and that no cable joins with the PC any more.
+
+    Attributes:
+        since_s: when the first of them was cut off.
+        most: how many there were at the worst moment.
+    """
+
+    since_s: float | None
+    most: int
+
+
+class WithoutWay(Apart):
+    """Cells that cables join with the PC, without a way to it; `never` of them never had one."""
+
+    never: int
+
+
+class Reach(TypedDict):
+    """Who has no way to the PC at the end of a run; all None of one that nobody observed.
+
+    Attributes:
+        cut_off: cells that no cable joins with the PC any more.
+        without_way: cells that cables join with it, but that have no way.
+        switched_off: cells that are off.
+        lost_at_start: samples lost before their cell had a way for the first time.
+    """
+
+    cut_off: CutOff | None
+    without_way: WithoutWay | None
+    switched_off: Apart | None
+    lost_at_start: int | None
+
+
 @final
-class SkinSummary(Common):
+class SkinSummary(Common, Reach):
     """The summary of a skin's run.
 
     Attributes:

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import NotRequired, TypedDict
 
+from innervate.analysis.headline import HeadlineEntry
+
 
 class Common(TypedDict):
     """The keys that every run's summary has.
@@ -19,6 +21,7 @@ class Common(TypedDict):
         events: handler calls and frames that arrived.
         events_per_s: events per second of wall time; None if it took no time.
         wall_s: how long the simulation took.
+        headline: is all well, in a sentence.
         fingerprint: 16 hexadecimal digits, the same only for the same run, event by event.
         interrupted_at_s: simulated time at which it was ended early; missing if it was not.
     """
@@ -30,6 +33,7 @@ class Common(TypedDict):
     events_per_s: int | None
     wall_s: float
     fingerprint: str
+    headline: HeadlineEntry
     interrupted_at_s: NotRequired[float]
 
 

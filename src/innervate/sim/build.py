@@ -230,7 +230,9 @@ def _watch(tables: w.Tables, cells: int, states: Any) -> w.Watch:
     return w.Watch(
         port=tables.numbers(cells, NIL),
         routed=tables.numbers(cells),
+        had=tables.numbers(cells),
         joined=tables.numbers(cells),
+        apart=tables.numbers(cells, NIL, np.int64),
         ring=tables.numbers(cells, NIL),
         before=tables.numbers(cells),
         stack=tables.numbers(cells),
