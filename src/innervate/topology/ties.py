@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections import Counter, deque
 
-from innervate.topology.graph import PORTS, Graph
+from innervate.protocol.skin_words import PORTS
+from innervate.topology.graph import Graph
 
 
 def tied_at(graph: Graph) -> Counter[int]:

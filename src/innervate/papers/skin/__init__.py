@@ -3,6 +3,7 @@
 from importlib import import_module
 
 from innervate.papers.experiment import Experiment
+from innervate.papers.skin.readings import READINGS as READINGS
 
 TITLE = "A robust and efficient dynamic network protocol for a large-scale artificial robotic skin"
 AUTHORS = "C. Bader, F. Bergner, G. Cheng"

@@ -103,7 +103,7 @@ def draw(results: Results, quick: bool) -> Figure:
     ax.set_ylabel("samples (%)")
     ax.set_ylim(0, 101)
     ax.set_xlim(0, None)
-    ax.legend(loc="lower right", title="samples a second and cell", title_fontsize=7)
+    ax.legend(loc="center", title="samples a second and cell", title_fontsize=7)
     return figure
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -36,12 +37,14 @@ def seeds(quick: bool, cut: str) -> range:
     return seeds_of(4 if quick else 40)
 
 
+@cache
 def cuts(setup: str) -> list[str]:
     """A random cable, and every interface port of the setup that leaves another one."""
     ports = len(scenario.load(setup).model.interface)
     return ["random link", *(f"interface {i}" for i in range(ports))]
 
 
+@cache
 def depth(setup: str) -> int:
     """The deepest cell of a setup, d_m."""
     return int(scenario.plan(scenario.load(setup)).depth_max)
@@ -156,12 +159,14 @@ def _bound(results: Results, quick: bool, rule: tuple[str, int], band: int) -> C
     routed = float((over[:, 1] <= band).mean())
     last = ratios(results, quick, SETUPS[-1], rule, "interface")[:, 0] - depth(SETUPS[-1]) - K
     words = (
-        f"{RULE_NAMES[rule[0]]}: {percent(share, 1)} of {len(over)} failures (setup 8, interface "
+        f"{percent(share, 1)} of {len(over)} failures (setup 8, interface "
         f"cables: {(last <= band).sum()} of {len(last)}), mean {over[:, 0].mean():+.1f} T, 95 % "
         f"within {np.percentile(over[:, 0], 95):+.1f} T, worst {over[:, 0].max():+.1f} T; routed "
         f"within it: {percent(routed, 1)}"
     )
-    claim = f"Eq. 7: any single failure converges within (d_m + k) T (k = {K}, {HZ} Hz)"
+    claim = (
+        f"{RULE_NAMES[rule[0]]}: any single failure converges within (d_m + k) T (k = {K}, {HZ} Hz)"
+    )
     claim += f" + {band} T" if band else ", without the error bar"
     if rule[0] == "feasible":
         reason = "with d_m the deepest cell of the setup (E22), not ceil(h/2)"
@@ -181,9 +186,8 @@ def _mean(results: Results, quick: bool) -> Claim:
     above = float((over > 0).mean())
     return Claim(
         "Eq. 7",
-        "a bound also with d_m = ceil(h/2) (setups 1-4, interface cables)",
-        f"rule feasible: {percent(above)} of {len(over)} failures above it, mean "
-        f"{over.mean():+.2f} T",
+        "rule feasible: a bound also with d_m = ceil(h/2) (setups 1-4, interface cables)",
+        f"{percent(above)} of {len(over)} failures above it, mean {over.mean():+.2f} T",
         verdict(ALL.has(1 - above)),
         "E21: a mean with a band, not a bound: half of all recoveries are slower than the mean",
     )

@@ -194,7 +194,7 @@ def _arrow(ax: Axes, here: tuple[float, float], there: tuple[float, float], stro
 def _key_of(ax: Axes) -> None:
     """What the shapes mean, in the place of a sixth network."""
     ax.axis("off")
-    shape = {"mec": style.INK, "mew": 0.7, "ms": 9}
+    shape: Any = {"mec": style.INK, "mew": 0.7, "ms": 9}
     ax.plot([], [], "s", mfc=style.INK, label="interface port of the PC", **shape)
     ax.plot([], [], "o", mfc=style.PALE, label="cell with a route", **shape)
     ax.plot([], [], "o", mfc=style.ORANGE, label="cell without: says ∞", **shape)
@@ -278,14 +278,14 @@ def judge(results: Results, quick: bool) -> list[Claim]:
         ),
         Claim(
             "5",
-            "the same with M = min(k, 5)",
+            "a single broken connection takes (k+3) T exactly with M = min(k, 5), too",
             f"k+{min(late):.0f} to k+{max(late):.0f} T in {len(late)} runs",
             verdict(EXACTLY.has(*late), "E20"),
             "F3: while k = M the number that lets n2 switch may come one period later",
         ),
         Claim(
             "5",
-            "the same graph with free-running cells",
+            "a single broken connection takes (k+3) T exactly with free-running cells, too",
             f"k{min(free):+.2f} to k{max(free):+.2f} T, mean k{sum(free) / len(free):+.2f} T",
             verdict(EXACTLY.has(*free)),
             "E21: the wait on the way out and the wait back over a link are one period together",

@@ -38,7 +38,10 @@ AT_LIMIT = Span(-0.1, 0.1)  # loss at which a cable is held broken half of the t
 
 
 # r_f, r_r and loss of the cables that are watched until they are found broken.
-FOUND = (*((r_f, r_r, LOSS) for _, r_f, r_r in SETTINGS), (*SETTINGS[0][1:], RARE))
+FOUND: tuple[tuple[float, float, float], ...] = (
+    *((r_f, r_r, LOSS) for _, r_f, r_r in SETTINGS),
+    (SETTINGS[0][1], SETTINGS[0][2], RARE),
+)
 
 
 def losses(quick: bool) -> list[float]:
@@ -162,10 +165,13 @@ def replug() -> dict[str, list[float]]:
     return found
 
 
-def share_found(results: Results, quick: bool, case: tuple[float, ...], within_s: float) -> float:
+def share_found(
+    results: Results, quick: bool, case: tuple[float, float, float], within_s: float
+) -> float:
     """Share of the watched cables that were found broken within a time."""
     found = results[_found_key(*case, quick)]
-    return sum(n is not None and n <= within_s * HZ for n in found) / len(found)
+    within = sum(n is not None and n <= within_s * HZ for n in found)
+    return float(within / len(found))
 
 
 def draw(results: Results, quick: bool) -> Figure:
@@ -248,7 +254,7 @@ def judge(results: Results, quick: bool) -> list[Claim]:
     ]  # fmt: skip
 
 
-def _times(results: Results, quick: bool, case: tuple[float, ...]) -> str:
+def _times(results: Results, quick: bool, case: tuple[float, float, float]) -> str:
     shares = [
         f"{percent(share_found(results, quick, case, s))} in {s:g} s"
         for s in (SHOWN_PERIODS / HZ, JUDGED_S, WATCHED_S)
@@ -256,7 +262,7 @@ def _times(results: Results, quick: bool, case: tuple[float, ...]) -> str:
     return f"{len(_runs(quick))} cables: found broken {joined(shares)}"
 
 
-def _calm(results: Results, quick: bool, case: tuple[float, ...], reason: str) -> Claim:
+def _calm(results: Results, quick: bool, case: tuple[float, float, float], reason: str) -> Claim:
     share = share_found(results, quick, case, JUDGED_S)
     return Claim(
         "6a",
@@ -269,7 +275,7 @@ def _calm(results: Results, quick: bool, case: tuple[float, ...], reason: str) -
     )
 
 
-def _alert(results: Results, quick: bool, case: tuple[float, ...]) -> Claim:
+def _alert(results: Results, quick: bool, case: tuple[float, float, float]) -> Claim:
     found = [n for n in results[_found_key(*case, quick)] if n is not None]
     half = f"; half of them within {np.median(found):.0f} periods" if found else ""
     return Claim(

@@ -94,7 +94,9 @@ def draw(results: Results, quick: bool) -> Figure:
         _panel(ax, results, quick, rule, m)
         ax.set_title(f"{letter}  {RULE_NAMES[rule]}")
     axes[0].set_ylabel("convergence (ms)")
-    axes[0].set_ylim(0, None)
+    axes[0].set_yscale("log")
+    axes[0].set_yticks([20, 30, 50, 100, 200, 400], ["20", "30", "50", "100", "200", "400"])
+    axes[0].minorticks_off()
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=5)
     return figure
 
@@ -157,9 +159,9 @@ def _band(results: Results, quick: bool, rule: str, m: int) -> Claim:
         reason = "E25: recovery counts up round a loop before it finds the other interface"
     return Claim(
         "8b",
-        "Eq. 6: convergence = (ceil(h/2) + k) T +-2 T for setups 1-4 at 250 Hz, k 3, 5, 8 "
-        f"(at least {percent(INSIDE.low)} inside)",
-        f"{RULE_NAMES[rule]}, inside the band of {runs} each (mean distance from Eq. 6): {words}; "
+        f"{RULE_NAMES[rule]}: convergence = (ceil(h/2) + k) T +-2 T (Eq. 6) for setups 1-4 "
+        f"at 250 Hz, k 3, 5, 8 (at least {percent(INSIDE.low)} inside)",
+        f"inside the band of {runs} each (mean distance from Eq. 6): {words}; "
         f"within +-3 T at least {percent(min(wider))}",
         verdict(not failing, "E21", "E22"),
         reason if failing else "a mean with a band, not a bound",
@@ -175,9 +177,9 @@ def _slope(results: Results, quick: bool, rule: str, m: int) -> Claim:
     fit = float(np.corrcoef(h, mean)[0, 1] ** 2)
     return Claim(
         "8b",
-        f"convergence grows almost linearly with h (R2 at least {FIT.low:g}), half a period a cell "
-        f"({SLOPE.low:g} to {SLOPE.high:g})",
-        f"{RULE_NAMES[rule]}: {slope:.2f} T a cell, {offset:+.1f} T at h = 0, R2 = {fit:.2f}",
+        f"{RULE_NAMES[rule]}: convergence grows almost linearly with h (R2 at least "
+        f"{FIT.low:g}), half a period a cell ({SLOPE.low:g} to {SLOPE.high:g})",
+        f"{slope:.2f} T a cell, {offset:+.1f} T at h = 0, R2 = {fit:.2f}",
         verdict(SLOPE.has(float(slope)) and FIT.has(fit)),
         "E25: counting up round the loop takes longer, the deeper the part that was cut off"
         if rule != "feasible"

@@ -192,7 +192,7 @@ def judge(results: Results, quick: bool) -> list[Claim]:
         _guarantee(lax, "its laxer reading"),
         Claim(
             "II-B.2",
-            "the same with the rules strict (F1) and feasible (F2)",
+            "no loop under the rules strict (F1) and feasible (F2) in the same recoveries",
             joined(f"{rule}: {_episodes(found)} loops" for rule, found in cured.items())
             + f" in {len(printed)} recoveries each",
             verdict(NONE_AT_ALL.has(*map(_episodes, cured.values()))),
