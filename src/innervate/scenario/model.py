@@ -122,9 +122,9 @@ class ProtocolTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
         Annotated[int, Meta(ge=1, le=65535, description="a whole number of periods, 1 to 65535")]
         | None
     ) = None
-    balance_rule: Annotated[
-        Literal["even", "paper"], Meta(description='"even" or "paper"')
-    ] = "even"
+    balance_rule: Annotated[Literal["even", "paper"], Meta(description='"even" or "paper"')] = (
+        "even"
+    )
     max_depth: Annotated[
         int, Meta(ge=1, le=254, description="a whole number of hops, 1 to 254")
     ] = 64

@@ -26,9 +26,7 @@ from innervate.verify.graphs import symmetries
 
 RULES = ("feasible", "strict", "paper", "paper-lax")
 UPDATES = ("periodic", "triggered")
-_NUMBERS = dict(
-    zip(RULES, (RULE_FEASIBLE, RULE_STRICT, RULE_PAPER, RULE_PAPER_LAX), strict=True)
-)
+_NUMBERS = dict(zip(RULES, (RULE_FEASIBLE, RULE_STRICT, RULE_PAPER, RULE_PAPER_LAX), strict=True))
 ANY = w.ANY
 FAULTS = ("loss", "cut", "heal", "false", "restart")
 SETTLED_M = 3  # the fair schedule counts the PC's number every so many rounds
