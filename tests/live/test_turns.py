@@ -262,3 +262,55 @@ def test_status_says_how_many_messages_wait_for_whom():
     told = live_time.run(main())
     assert told["waiting"] == {"2": 25}
     assert "  messages that wait: 25 for 2" in live_status.lines(told)
+
+
+def test_so_many_nodes_at_once_that_the_router_cannot_know_them_hold_others_up_only_once():
+    async def main():
+        async with Star(16, 15) as mesh:
+            for k in range(300):
+                mesh.middle.send_message(mesh.dead[k % 15], b"?")
+            first = await took(mesh.middle.send_message(2, b"."))
+            ends = []
+            for _ in range(40):
+                await asyncio.sleep(0.3)
+                ends.append(await took(mesh.middle.send_message(2, b".")))
+            return first, ends[20:]
+
+    (first_s, first), ends = live_time.run(main())
+    assert (first, {state for _, state in ends}) == (DELIVERED, {DELIVERED})
+    assert first_s < 10
+    assert max(ends)[0] < 0.1
+
+
+def test_a_node_that_comes_back_is_sent_to_as_before():
+    async def main():
+        async with Star(2, 1) as mesh:
+            assert await mesh.middle.send_message(3, b"?").wait() == EXPIRED
+            for _ in range(20):
+                mesh.middle.send_message(3, b"?")
+            await mesh.nodes[3].start()
+            began = now()
+            while mesh.middle.status()["waiting"]:
+                await asyncio.sleep(0.1)
+            receipts = [mesh.middle.send_message(3, b".") for _ in range(20)]
+            ends = await asyncio.gather(*map(took, receipts))
+            return now() - began, ends
+
+    back_s, ends = live_time.run(main())
+    assert {state for _, state in ends} == {DELIVERED}
+    assert back_s < 6  # discovery every 2 s, hope at most every 4 s
+    assert max(ends)[0] < 0.5
+
+
+@pytest.mark.parametrize("own", [1, 254])
+def test_a_message_to_oneself_has_its_end(own):
+    async def main():
+        async with Star(1, 0) as mesh:
+            node, heard = mesh.nodes[1 if own == 1 else 0], []  # 254: the gateway sends to itself
+            node.receive_messages(lambda sender, payload: heard.append((sender, payload)))
+            async with asyncio.timeout(5):
+                state = await node.send_message(own, b"note").wait()
+            return state, heard, node.stack.node.number, node.status()["under_way"]
+
+    state, heard, number, under_way = live_time.run(main())
+    assert (state, heard, under_way) == (DELIVERED, [(number, b"note")], 0)

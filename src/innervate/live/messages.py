@@ -13,7 +13,7 @@ from innervate.live.links import Link
 from innervate.live.mesh import Item, MeshStack
 from innervate.live.node import LiveNode
 from innervate.live.order import BEFORE_BYTES, Callback, Message, Orderly
-from innervate.live.receipts import DELIVERED, EXPIRED, FINAL, HOP_ACKED, REFUSED, Receipt
+from innervate.live.receipts import DELIVERED, EXPIRED, HOP_ACKED, REFUSED, Receipt
 from innervate.live.state import State
 from innervate.live.streams import iterate
 from innervate.live.turns import Turns
@@ -27,6 +27,8 @@ from innervate.protocol.mesh_words import (
     IDS,
     MESSAGE,
     MONITOR,
+    NO_ACK,
+    NO_ROUTE,
     ORDERED,
     PRIORITY,
     REPORT_ACCEPTED,
@@ -226,6 +228,7 @@ class MeshNode(LiveNode):
                 self.outcomes[f"alarms received: {alarm.kind}"] += 1
                 self._alarmed.append(alarm)
         if kind == DATA:
+            self._turns.heard(frame.origin)
             self.arrived_by[frame.origin] = [*frame.path[: frame.path_len], frame.dest]
             self.outcomes["messages received"] += 1
             body = bytes(frame.body[: frame.length])
@@ -251,14 +254,19 @@ class MeshNode(LiveNode):
         elif code == REPORT_HOP:
             receipt.move(HOP_ACKED)
         elif code == REPORT_ARRIVED:
-            receipt.move(DELIVERED)
+            self._end(a, DELIVERED, is_there=True)
         elif code == REPORT_EXPIRED:
-            receipt.move(EXPIRED, REASONS.get(b, ""))
+            self._end(a, EXPIRED, REASONS.get(b, ""), False if b in IN_VAIN else None)
         else:
-            receipt.move(REFUSED, REASONS.get(b, ""))
-        if receipt.state in FINAL:
-            del self._receipts[a]
-            self.outcomes[f"messages {receipt.state}"] += 1
+            self._end(a, REFUSED, REASONS.get(b, ""))
+
+    def _end(self, handle: int, state: str, reason: str = "", is_there: bool | None = None) -> None:
+        """Nothing changes any more for a message; `is_there`: what that says of its recipient."""
+        receipt = self._receipts.pop(handle, None)
+        self._turns.ended(handle, is_there)
+        if receipt is not None:
+            receipt.move(state, reason)
+            self.outcomes[f"messages {state}"] += 1
 
     def _settled(self) -> None:
         if self._alarmed:
@@ -287,8 +295,11 @@ class MeshNode(LiveNode):
             self.engine.input(MESSAGE, item)
             if chained is not None and chained[1] == self.stack.node.seq:
                 self._newest[chained[0]] = chained[1]
-            if not item.flags & END_TO_END or item.dest == ALL:
+            if resolve(self.stack.node, self.stack.params, item.dest) == self.stack.node.number:
+                self._end(handle, DELIVERED)  # to ourselves: it was handed up
+            elif not item.flags & END_TO_END or item.dest == ALL:
                 self._receipts.pop(handle, None)  # nobody will tell us more
+                self._turns.ended(handle, None)
         self._feeding = False
 
     def _chain(self, item: Any) -> tuple[int, int]:
@@ -301,6 +312,7 @@ class MeshNode(LiveNode):
         return dest, seq
 
 
+IN_VAIN = (NO_ROUTE, NO_ACK)
 REASONS = {1: "no route", 2: "no acknowledgement", 3: "path full", 4: "no room"}
 
 

@@ -14,6 +14,7 @@ from innervate.live.mesh import MeshStack
 from innervate.protocol.arith import MASK16
 from innervate.protocol.mesh_kept import FREE, crowds, is_ahead, is_in_vain
 from innervate.protocol.mesh_messages import resolve
+from innervate.protocol.mesh_near import place_of
 from innervate.protocol.mesh_queue import free_places
 from innervate.protocol.mesh_words import ALL, CONTROL, END_TO_END, OWN, PRIORITY
 
@@ -40,6 +41,8 @@ class Turns:
         self._count: Counter[int] = Counter()
         self._total = 0
         self._in_vain: Any = None  # what nobody could go by: the same again will not do either
+        self._under_way: dict[int, int] = {}  # by handle: the recipient
+        self._gone: set[int] = set()  # recipients to whom everything was in vain since
 
     def __len__(self) -> int:
         return self._total
@@ -61,13 +64,28 @@ class Turns:
         """The message that goes now, None = none may."""
         if not self._total or (self._in_vain and self._in_vain == self._facts()):
             return None
-        places = Places(self._stack, ALL in self._urgent or ALL in self._others)
+        all_wait = ALL in self._urgent or ALL in self._others
+        places = Places(self._stack, self._gone, all_wait)
         for queues in (self._urgent, self._others):
             for name, queue in queues.items():
                 if places.takes(queue[0][1]):
                     return self._pop(queues, name)
         self._in_vain = self._facts()
         return None
+
+    def ended(self, handle: int, is_there: bool | None) -> None:
+        """A message has its end: True = it arrived, False = in vain, None = that says nothing."""
+        recipient = self._under_way.pop(handle, ALL)
+        if is_there is False:
+            self._gone.add(recipient)
+        elif is_there:
+            self.heard(recipient)
+
+    def heard(self, sender: int) -> None:
+        """A message of this node came: it is there."""
+        if sender in self._gone:
+            self._gone.discard(sender)
+            self._in_vain = None
 
     def waiting(self) -> dict[int, int]:
         """How many wait for whom."""
@@ -79,6 +97,7 @@ class Turns:
         if queue:
             queues[name] = queue  # behind all others
         self._total -= 1
+        self._under_way[found[0]] = name
         self._count[name] -= 1
         if not self._count[name]:
             del self._count[name]
@@ -94,7 +113,8 @@ class Turns:
         node = self._stack.node
         queue = free_places(node)
         room = (queue > OWN, queue > CONTROL, node.gateway)
-        return (*room, *node.wait_kind, *node.wait_dest, *node.wait_seq, *node.bad_near,
+        suspects = (*node.near, *node.suspect) if self._gone else ()
+        return (*room, *suspects, *node.wait_kind, *node.wait_dest, *node.wait_seq, *node.bad_near,
                 *node.bad_dest)  # fmt: skip
 
 
@@ -103,12 +123,14 @@ class Places:
 
     Args:
         stack: the router.
+        gone: recipients to whom the newest messages were in vain.
         all_wait: True = a message to all waits, which cannot go while one is long under way.
     """
 
-    def __init__(self, stack: MeshStack, all_wait: bool) -> None:
+    def __init__(self, stack: MeshStack, gone: set[int], all_wait: bool) -> None:
         node = stack.node
         self._node = node
+        self._gone = gone
         self._params = stack.params
         self._queue = free_places(node)
         self._free = node.wait_kind.count(FREE)
@@ -128,13 +150,19 @@ class Places:
         if dest == ALL or not item.flags & END_TO_END:
             return True
         held = self._held[dest]
-        if self._free < (1 if urgent else 2) + (SPARE if held else 0):
+        if self._free < (1 if urgent else 2) + (SPARE if held else 0) or crowds(node, dest):
             return False
         if not self._is_silent(dest):
             return True
-        may_wait = self._silent < SILENT + urgent and not self._all_held_up
-        return may_wait and not crowds(node, dest)
+        return self._silent < SILENT + urgent and not self._all_held_up
 
     def _is_silent(self, dest: int) -> bool:
-        """True if messages to `dest` were tried in vain, or are being for a while."""
-        return bool(is_in_vain(self._node, dest, (self._node.seq + 1) & MASK16))
+        """True if messages to `dest` were tried in vain, or are being for a while.
+
+        The router forgets that after a while, or of more than a few; we until something is heard.
+        """
+        node = self._node
+        if dest in self._gone:
+            k = place_of(node, self._params, dest)
+            return k < 0 or bool(node.suspect[k])
+        return bool(is_in_vain(node, dest, (node.seq + 1) & MASK16))
