@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from innervate.analysis.radio_state import hidden_pairs
 from innervate.plot import words
-from innervate.plot.radio_words import slots_words
+from innervate.plot.radio_words import off_words, slots_words
+from innervate.scenario.radio_words import warnings
 
 if TYPE_CHECKING:
     from innervate.running import Run
@@ -18,7 +20,7 @@ def summary_lines(run: Run) -> list[str]:
         _first(run),
         words.headline_line(summary["headline"]),
         *result_lines(run),
-        *_noticed(summary),
+        *_noticed(run),
     ]
 
 
@@ -35,7 +37,7 @@ def _first(run: Run) -> str:
 def result_lines(run: Run) -> list[str]:
     """Packets, delays, fairness."""
     summary = run.summary
-    lines = [_delivered(run)]
+    lines = [_delivered(run), *off_words(summary), *warnings(run.plan)]
     delay = summary["delay_slots"]
     if delay["p50"] is not None:
         lines.append(
@@ -57,27 +59,18 @@ def result_lines(run: Run) -> list[str]:
 
 
 def _delivered(run: Run) -> str:
-    counts, plan = run.result.counts, run.plan
-    slots = run.summary["duration_slots"]
+    summary, plan = run.summary, run.plan
+    slots = summary["duration_slots"]
     after = ""
     if slots is not None:
         ms = slots * plan.params["slot_us"] / 1000
         after = f", the last {slots_words(slots)} ({words.ms_words(ms)}) after the first offer"
-    open_ = counts["offers"] - counts["completed"]
-    if open_ and not plan.saturated:
-        return f"{counts['completed']:,} of {counts['offers']:,} packets were delivered{after}."
-    lost = run.summary["lost_silently"]
-    if lost:
-        return (
-            f"{words.number_of(counts['completed'], 'packet')} taken for delivered, {lost:,} of "
-            f"them received by nobody{after}."
-        )
-    return f"{words.number_of(counts['completed'], 'packet')} delivered{after}."
+    return f"{words.number_of(summary['delivered'], 'packet')} delivered{after}."
 
 
-def _noticed(summary: dict[str, Any]) -> list[str]:
-    found = summary.get("bounds_noticed")
-    if not found or not found["count"]:
+def _noticed(run: Run) -> list[str]:
+    found = run.summary.get("bounds_noticed")
+    if not found or not found["count"] or hidden_pairs(run.plan):
         return []
     return [
         "Delays between stations lie outside the configured bounds; set protocol.tau_bounds_us "

@@ -108,6 +108,7 @@ def summarize(result: SlottedRun) -> dict[str, Any]:
         "jain_round": found.jain_round,
         "delay_slots": quantiles,
         "collisions": found.collisions,
+        "delivered": done,
         "lost_silently": 0,
         "order": found.order[:1000] if plan.scenario.model.traffic.kind == "disaster" else first,
     }
