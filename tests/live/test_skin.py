@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from innervate.cli.live import touch_text
 from innervate.live.profile import SKIN
 from tests.live_net import Skin, until
 
@@ -60,6 +61,8 @@ def test_the_pc_starts_again_and_everybody_comes_back():
 
 
 def test_a_cell_tells_what_its_sensors_say():
+    began_us = time.time_ns() // 1000
+
     async def main():
         async with Skin(2, 1, [(0, 0)], rate_hz=0.0) as skin:
             touches = skin.pc.receive_touch()
@@ -73,7 +76,11 @@ def test_a_cell_tells_what_its_sensors_say():
             return touch
 
     touch = asyncio.run(main())
-    assert touch == (1, 0, 1, 0, 7, (1, 2, 65_535), -3, (-512, 0, 511))
+    assert touch[:-1] == (1, 0, 1, 0, 7, (1, 2, 65_535), -3, (-512, 0, 511))
+    assert began_us < touch.time_us < time.time_ns() // 1000
+    assert "seq 0, 1 hops, interface 0, proximity 7, force 1 2 65535 mN, 18.5 degC" in (
+        touch_text(touch._asdict())
+    )
 
 
 def test_status_names_the_broken_port():

@@ -132,6 +132,7 @@ def through_the_wire(stack):
     def copy_frame(to, frm):
         reason = wire.decode(wire.encode(frm), to)
         assert reason == wire.OK, wire.REASONS[reason]
+        to.made_at = frm.made_at  # the run's own note
 
     return SimpleNamespace(**{**vars(stack), "copy_frame": copy_frame})
 

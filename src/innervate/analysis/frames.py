@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.latency import latency_by_port, latency_ms
+from innervate.analysis.skin_summary import Data
 from innervate.sim import wires
 from innervate.sim.wheel import FRESH, NIL
 
@@ -58,10 +60,10 @@ def beacon_traffic(result: Any) -> Traffic:
     return _traffic(result, wires.URGENT_BLOCK)
 
 
-def data_summary(result: Any) -> dict[str, Any]:
+def data_summary(result: Any) -> Data:
     """Tactile samples from cell to PC: sent, delivered, lost by reason, in flight.
 
-    `loss_ratio` is lost / sent; None if none were sent.
+    `loss_ratio` is lost / sent; None if none were sent. Latencies: see latency.py.
     """
     counters = result.counters
     traffic = data_traffic(result)
@@ -76,7 +78,15 @@ def data_summary(result: Any) -> dict[str, Any]:
         "loss_ratio": lost / sent if sent else None,
         "lost_by": lost_by,
         "in_flight": traffic.flying + traffic.queued,
+        "latency_ms": latency_ms(result),
+        "latency_by_port": latency_by_port(result),
     }
+
+
+def lost_at_start(result: Any) -> int:
+    """Samples lost, for want of a route, by cells that had not had one yet; if observed."""
+    early: int = result.counters[wires.EARLY]
+    return early
 
 
 def check_conserved(result: Any) -> None:

@@ -20,6 +20,7 @@ from innervate.analysis.radio_packets import (
     timed,
     traffic_of,
 )
+from innervate.analysis.radio_summary import BoundsNoticed, Delays, RadioSummary
 from innervate.protocol.radio_words import REPORT_BOUNDS
 
 __all__ = [
@@ -53,7 +54,7 @@ ORDER_MAX = 1000
 PAIRS_FROM = 20_000  # successes whose order is looked at
 
 
-def summarize(result: Any, name: str | None = None) -> dict[str, Any]:
+def summarize(result: Any, name: str | None = None) -> RadioSummary:
     """The summary of a run; what never happened is None.
 
     Args:
@@ -65,7 +66,7 @@ def summarize(result: Any, name: str | None = None) -> dict[str, Any]:
     found, steady = successes(result), settled(result)
     spent = np.bincount(steady["node"], minlength=plan.stations)
     length, known = duration_us(result), facts(result)
-    summary = {
+    summary: RadioSummary = {
         "kind": plan.kind,
         "name": name or getattr(plan.scenario, "name", None) or plan.protocol,
         "headline": radio_headline.headline(known).as_summary(),
@@ -164,7 +165,7 @@ def delays(result: Any) -> Any:
     return (found["end"] - found["offered"]) / result.plan.params["slot_us"]
 
 
-def delay_slots(result: Any) -> dict[str, float | None]:
+def delay_slots(result: Any) -> Delays:
     """Median, 95th and 99th percentile and maximum of the delays, in slots."""
     found = delays(result)
     if len(found) == 0:
@@ -201,7 +202,7 @@ def fifo(result: Any) -> float | None:
     return kept / pairs if pairs else None
 
 
-def bounds_noticed(result: Any) -> dict[str, Any]:
+def bounds_noticed(result: Any) -> BoundsNoticed:
     """How often stations noticed a pair delay outside the configured bounds; who, and how long.
 
     `stations` has for each its number, how often, and the least and greatest delay it measured.

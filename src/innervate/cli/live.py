@@ -5,7 +5,9 @@ from __future__ import annotations
 import asyncio
 import json
 import sys
+from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 from innervate.cli import errors, live_status
 from innervate.live import status
@@ -72,7 +74,7 @@ def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:
         if as_json:
             print(json.dumps(answer), flush=True)
         else:
-            text = str(answer.get("touch", ""))
+            text = touch_text(answer["touch"]) if "touch" in answer else ""
             if "alarm" in answer:
                 text = f"alarm: {live_status.alarm_text(answer['alarm'])}"
             if "payload" in answer:
@@ -82,6 +84,17 @@ def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:
         if heard == count:
             break
     return 0
+
+
+def touch_text(touch: dict[str, Any]) -> str:
+    """A sample, with the time at which the PC received it."""
+    at = datetime.fromtimestamp(touch["time_us"] / 1e6).isoformat(" ", "microseconds")
+    force = " ".join(str(value) for value in touch["force"])
+    return (
+        f"{at} seq {touch['seq']}, {touch['hops']} hops, interface {touch['port']}, "
+        f"proximity {touch['proximity']}, force {force} mN, "
+        f"{20 + touch['temperature'] / 2:g} degC"
+    )
 
 
 def change(name: str, port: int, what: str) -> int:

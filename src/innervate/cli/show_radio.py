@@ -10,22 +10,26 @@ from innervate.plot.radio_words import off_words, slots_words
 from innervate.scenario.radio_words import warnings
 
 if TYPE_CHECKING:
+    from innervate.analysis.summaries import RadioSummary, SlottedSummary
     from innervate.running import Run
 
 
 def summary_lines(run: Run) -> list[str]:
     """What a person wants to know first."""
-    summary = run.summary
     return [
         _first(run),
-        words.headline_line(summary["headline"]),
+        words.headline_line(_summary(run)["headline"]),
         *result_lines(run),
         *_noticed(run),
     ]
 
 
+def _summary(run: Run) -> RadioSummary | SlottedSummary:
+    return run.slotted if "level" in run.summary else run.radio
+
+
 def _first(run: Run) -> str:
-    summary, plan = run.summary, run.plan
+    summary, plan = _summary(run), run.plan
     return (
         f"{summary['name']}: {words.number_of(plan.stations, 'station')} on one channel, "
         f"{summary['protocol']}, packets of at most {plan.params['packet_slots']} slots; "
@@ -36,14 +40,14 @@ def _first(run: Run) -> str:
 
 def result_lines(run: Run) -> list[str]:
     """Packets, delays, fairness."""
-    summary = run.summary
+    summary = _summary(run)
     lines = [_delivered(run), *off_words(summary), *warnings(run.plan)]
     delay = summary["delay_slots"]
-    if delay["p50"] is not None:
+    half, most, longest = delay["p50"], delay["p99"], delay["max"]
+    if half is not None and most is not None and longest is not None:
         lines.append(
-            f"Delay from offer to the end of the frame: half within "
-            f"{slots_words(delay['p50'])}, 99 % within {slots_words(delay['p99'])}, "
-            f"all within {slots_words(delay['max'])}."
+            f"Delay from offer to the end of the frame: half within {slots_words(half)}, "
+            f"99 % within {slots_words(most)}, all within {slots_words(longest)}."
         )
     if summary["throughput"] is not None:
         share = words.share_words(summary["throughput"])
@@ -59,7 +63,7 @@ def result_lines(run: Run) -> list[str]:
 
 
 def _delivered(run: Run) -> str:
-    summary, plan = run.summary, run.plan
+    summary, plan = _summary(run), run.plan
     slots = summary["duration_slots"]
     after = ""
     if slots is not None:
@@ -69,8 +73,8 @@ def _delivered(run: Run) -> str:
 
 
 def _noticed(run: Run) -> list[str]:
-    found = run.summary.get("bounds_noticed")
-    if not found or not found["count"] or hidden_pairs(run.plan):
+    summary = _summary(run)
+    if "level" in summary or not summary["bounds_noticed"]["count"] or hidden_pairs(run.plan):
         return []
     return [
         "Delays between stations lie outside the configured bounds; set protocol.tau_bounds_us "

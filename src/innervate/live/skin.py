@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections import Counter
 from collections.abc import AsyncGenerator, Callable
 from typing import Any, NamedTuple
@@ -36,6 +37,8 @@ class Touch(NamedTuple):
         force: three sensors, mN.
         temperature: half degrees from 20 degC.
         accel: along x, y, z, raw, -512 to 511.
+        time_us: when it came in by the PC's clock, us since 1970 (UTC). Cells have no common
+            clock and a data frame no room for one: how long it took is known to simulations only.
     """
 
     cell: int
@@ -46,6 +49,7 @@ class Touch(NamedTuple):
     force: tuple[int, int, int]
     temperature: int
     accel: tuple[int, int, int]
+    time_us: int
 
 
 class SkinStack:
@@ -308,7 +312,7 @@ class SinkNode(LiveNode):
         self._inbox.append(Touch(
             frame.cell, frame.seq, frame.hops, self.stack.port, frame.proximity,
             (frame.force[0], frame.force[1], frame.force[2]), frame.temperature,
-            (frame.accel[0], frame.accel[1], frame.accel[2]),
+            (frame.accel[0], frame.accel[1], frame.accel[2]), time.time_ns() // 1000,
         ))  # fmt: skip
 
     def _settled(self) -> None:

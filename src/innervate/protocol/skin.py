@@ -56,7 +56,8 @@ def copy_frame(to, frm):
 
 
 def copy_sample(to, frm):
-    """Copy what the sensors say."""
+    """Copy what the sensors say, and what a simulation notes of it."""
+    to.made_at = frm.made_at
     to.proximity = frm.proximity
     to.temperature = frm.temperature
     for i in range(3):

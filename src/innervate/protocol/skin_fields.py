@@ -18,6 +18,7 @@ FRAME = (
     ("force", 3, 0, 65535, "mN", "data: three force sensors"),
     ("temperature", 0, -128, 127, "0.5 degC", "data: from 20 degC"),
     ("accel", 3, -512, 511, "raw", "data: acceleration along x, y, z"),
+    ("made_at", 0, 0, 1073741823, "us", "data: when it was measured; a run's own, not on the wire"),
 )
 
 CELL = (

@@ -63,6 +63,7 @@ def _received(result: Any) -> Columns:
         "time_us": part["time"],
         "interface": part["port"],
         **{name: part[name] for name in ("cell", "seq", "hops", "proximity", "temperature")},
+        "latency_us": part["latency"],
     }
     for i in range(3):
         made[f"force_{i}"] = part["force"][:, i]

@@ -10,7 +10,7 @@ import numpy as np
 
 from innervate.kernel import records
 from innervate.protocol import rng, skin_fields
-from innervate.sim import commands, taps
+from innervate.sim import commands, delays, taps
 from innervate.sim import world as w
 from innervate.sim.loop import BATCH
 from innervate.sim.wheel import BUCKETS, FREE, FRESH, LAST, LEVELS, NIL, PENDING, WORDS
@@ -60,6 +60,7 @@ def build(
     # What a batch of events and a command can add: every action empties a queue, the PC goes off.
     burst = (BATCH + 1) * limit * (1 + plan.queue_frames)
     tapped = ROWS + burst if tap else 1
+    ways = graph.interfaces if plan.data_period_us else 0
     states = tables.states(skin_fields.CELL, cells, CELL_BYTES)
     world = w.World(
         run=tables.records(w.RUN, 1),
@@ -85,6 +86,8 @@ def build(
         trail=tables.records(w.TRAIL, ROWS if trail else 1, fresh=True),
         taps=tables.records(w.TAP, tapped, fresh=True),
         tapped=tables.states(skin_fields.FRAME, tapped),
+        delays=tables.records(w.DELAY, ways),
+        delay_counts=tables.numbers(ways * delays.CLASSES),
         **_touch(tables, plan),
     )
     _set_run(world, plan, tx_slots, pool_slots)
@@ -227,7 +230,9 @@ def _watch(tables: w.Tables, cells: int, states: Any) -> w.Watch:
     return w.Watch(
         port=tables.numbers(cells, NIL),
         routed=tables.numbers(cells),
+        had=tables.numbers(cells),
         joined=tables.numbers(cells),
+        apart=tables.numbers(cells, NIL, np.int64),
         ring=tables.numbers(cells, NIL),
         before=tables.numbers(cells),
         stack=tables.numbers(cells),

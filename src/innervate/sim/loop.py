@@ -137,7 +137,7 @@ def build(stack):
                 report(world, time, node, a, b, c)
             elif kind == DELIVER:
                 mark = mix(mark, digest(out.frame[i]))
-                deliver(world, time, port, out.frame[i])
+                deliver(world, time, node, port, out.frame[i])
         out.count[0] = 0
         run.fingerprint = mark
         if out.overflow[0] and run.broken == 0:
@@ -189,6 +189,7 @@ def build(stack):
             now = clocks.reading(world.clocks[node], time)
             world.counters[OFFERED] += 1
             touch.read_sensors(world, node, time)
+            world.sample[0].made_at = time & MASK30
             sample(world, node, now & MASK30)
             finish(world, node, time, ON_INPUT, 0)
             wait = clocks.true_delay(world, node, time, world.run[0].source_us)

@@ -58,11 +58,11 @@ def _modules() -> list[ModuleType]:
     from innervate.kernel import invariants
     from innervate.protocol import arith, outbox, skin, skin_route, skin_sink, skin_static
     from innervate.protocol import rng as generator
-    from innervate.sim import checks, clocks, wheel, wires
+    from innervate.sim import checks, clocks, delays, wheel, wires
 
     return [
         arith, outbox, generator, skin_route, skin, skin_sink, skin_static,
-        wheel, clocks, wires, invariants, checks, skin_stack, static_stack,
+        wheel, clocks, wires, delays, invariants, checks, skin_stack, static_stack,
     ]  # fmt: skip
 
 

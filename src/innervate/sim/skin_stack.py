@@ -4,6 +4,7 @@ from innervate.protocol import skin, skin_sink
 from innervate.protocol.arith import MASK30
 from innervate.protocol.skin import copy_frame
 from innervate.protocol.skin_words import BEACON, DATA, NONE, REPORT_BALANCE, SAMPLE
+from innervate.sim import delays
 from innervate.sim.checks import check_cell, check_route
 from innervate.sim.clocks import reading
 from innervate.sim.observer import follow, on_report
@@ -82,9 +83,11 @@ def check(world, node):
         check_cell(world, node)
 
 
-def deliver(world, time, port, frame):
+def deliver(world, time, node, port, frame):
     """The PC's user gets a tactile sample."""
     world.counters[DELIVERED] += 1
+    latency_us = (time - frame.made_at) & MASK30
+    delays.note(world, port, latency_us)
     run = world.run[0]
     if run.delivery_limit == 0:
         return
@@ -95,6 +98,7 @@ def deliver(world, time, port, frame):
     row.cell = frame.cell
     row.seq = frame.seq
     row.hops = frame.hops
+    row.latency = latency_us
     row.proximity = frame.proximity
     row.temperature = frame.temperature
     for i in range(3):

@@ -30,6 +30,7 @@ OFFERED = 16
 DELIVERED = 17
 NO_ROUTE = 18
 LOOPED = 19
+EARLY = 20  # of NO_ROUTE: dropped by cells that have not had a route yet, as far as is watched
 COUNTERS = 24
 
 # Bits of `end.impaired`.

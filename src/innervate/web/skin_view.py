@@ -50,6 +50,7 @@ class SkinMemory(Memory):
     touch: Any = None
     touch_us: Any = None
     counted: tuple[int, int] = field(default=(0, 0))
+    waited: tuple[int, int] = (0, 0)  # samples since the last point, the sum of their latencies, us
 
 
 class SkinView(View):
@@ -94,6 +95,7 @@ class SkinView(View):
         ]
         if self.plan.data_period_us:
             series.append({"id": "loss", "label": "samples lost", "unit": "%"})
+            series.append({"id": "latency", "label": "latency of samples", "unit": "ms"})
         return {
             "nodes": nodes, "links": links, "ports": self.ports, "fence": None, "series": series,
         }  # fmt: skip
@@ -106,6 +108,9 @@ class SkinView(View):
             force = told["force"].mean(axis=1)
             memory.touch[told["cell"]] = np.minimum(255, force * 255 / FORCE_FULL_MN)
             memory.touch_us[told["cell"]] = told["time"]
+            memory.waited = (
+                memory.waited[0] + len(told), memory.waited[1] + int(told["latency"].sum())
+            )  # fmt: skip
         codes = (CUT_OFF, UNROUTED, LOOP_OPEN, REPORT_BROKEN, REPORT_PARENT, REPORT_BALANCE)
         found = rows["rows"]
         found = found[np.isin(found["code"], codes)]
@@ -164,7 +169,7 @@ class SkinView(View):
         ways = self.cables.ways(self.engine.world)
         loads = np.bincount(ways["port"][ways["port"] >= 0], minlength=self.ports)
         balance = balance_factor(loads.tolist())
-        found = {
+        found: dict[str, float | None] = {
             "unconnected": float(ways["unconnected"]),
             "balance": None if balance is None else round(balance, 4),
         }
@@ -177,6 +182,9 @@ class SkinView(View):
             offered, gone = (a - b for a, b in zip(now, self.memory.counted, strict=True))
             self.memory.counted = now
             found["loss"] = round(100 * gone / offered, 3) if offered else 0.0
+            count, total_us = self.memory.waited
+            self.memory.waited = (0, 0)
+            found["latency"] = round(total_us / count / 1e3, 3) if count else None
         return found
 
     def arrays(self, flights: bool) -> dict[str, Any]:
