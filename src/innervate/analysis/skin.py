@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.commands import commands_summary
 from innervate.analysis.frames import beacon_share, data_summary
 from innervate.analysis.load import balance_factor, port_loads
 from innervate.analysis.recovery import recoveries, start_up
@@ -64,6 +65,7 @@ def summarize(result: Any) -> dict[str, Any]:
         "balance_factor": balance_factor(loads),
         "port_loads": loads,
         "data": data_summary(result),
+        "commands": commands_summary(result),
         "beacon_share": beacon_share(result),
         "broken": broken_ports(result),
     }

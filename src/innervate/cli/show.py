@@ -60,6 +60,7 @@ def state_lines(summary: dict[str, Any]) -> list[str]:
             f"Samples: {data['sent']:,} sent, {data['lost']:,} lost ({share}){_why(data)}."
         )
         lines += latency_lines(data["latency_ms"])
+    lines += command_lines(summary["commands"])
     if len(loads) > 1 and summary["balance_factor"] is not None:
         shown = ", ".join(f"{load:,}" for load in loads[:8]) + (", ..." if len(loads) > 8 else "")
         factor = f"balance factor {summary['balance_factor']:.3f}"
@@ -84,6 +85,27 @@ def latency_lines(latency: dict[str, float | None]) -> list[str]:
         f"From sensor to PC: half within {shown[0]}, 99 % within {shown[1]}, the slowest "
         f"{shown[2]} (samples received)."
     ]
+
+
+def command_lines(commands: dict[str, Any]) -> list[str]:
+    """What became of the PC's commands; nothing without one."""
+    if not commands["sent"]:
+        return []
+    share = words.share_words(commands["loss_ratio"])
+    line = (
+        f"Commands: {commands['sent']:,} sent, for {commands['addressed']:,} cells in all, "
+        f"{commands['lost']:,} not reached ({share}){_missed(commands)}"
+    )
+    half, most = commands["latency_ms"]["p50"], commands["latency_ms"]["max"]
+    if half is None:
+        return [f"{line}."]
+    took = f"half within {words.ms_words(half)}, the slowest {words.ms_words(most)}"
+    return [f"{line}; {took}."]
+
+
+def _missed(commands: dict[str, Any]) -> str:
+    lost = [(n, why) for why, n in commands["lost_by"].items() if n]
+    return "".join(f", {n:,} {words.MISSED[why]}" for n, why in sorted(lost, reverse=True))
 
 
 def _why(data: dict[str, Any]) -> str:

@@ -14,7 +14,7 @@ from innervate.protocol.skin_words import (
     REPORT_PARENT,
     RULE_PAPER,
 )
-from innervate.sim.wires import LOOPED, NO_ROUTE
+from innervate.sim.wires import NO_ROUTE
 
 # Codes of the observer's own rows; those below 100 are the protocol's reports.
 UNROUTED = 100  # a = connected cells without a route, from now on
@@ -43,7 +43,7 @@ def note(world, time, node, code, a, b):
 def on_report(world, time, node, code, a, b):
     """A node reported something."""
     if code == REPORT_DROP:
-        world.counters[NO_ROUTE if a == DROP_NO_ROUTE else LOOPED] += 1
+        world.counters[NO_ROUTE + a - DROP_NO_ROUTE] += 1
         return
     if world.run[0].observe == 0:
         return
