@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from innervate.analysis.commands import commands_summary
 from innervate.analysis.frames import data_summary
 from innervate.cli.show import state_lines
 from innervate.running.columns import columns
@@ -65,7 +66,7 @@ def _check(figures, latencies_us):
 def test_the_terminal_says_how_long_samples_took(crowded):
     summary = {
         "data": data_summary(crowded), "port_loads": [], "loops": {"episodes": 0},
-        "balance_factor": None,
+        "balance_factor": None, "commands": commands_summary(crowded),
     }  # fmt: skip
     said = "\n".join(state_lines(summary))
     assert "From sensor to PC: half within" in said

@@ -90,6 +90,12 @@ def data_summary(result: Any) -> dict[str, Any]:
     }
 
 
+def lost_at_start(result: Any) -> int:
+    """Samples lost, for want of a route, by cells that had not had one yet; if observed."""
+    early: int = result.counters[wires.EARLY]
+    return early
+
+
 def check_conserved(result: Any) -> None:
     """Every frame and every sample is accounted for.
 

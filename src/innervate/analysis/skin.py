@@ -9,6 +9,7 @@ import numpy as np
 from innervate.analysis.commands import commands_summary
 from innervate.analysis.frames import beacon_share, data_summary
 from innervate.analysis.load import balance_factor, port_loads
+from innervate.analysis.reach import reach, skin_facts
 from innervate.analysis.recovery import recoveries, start_up
 from innervate.analysis.rows import (
     NEVER,
@@ -21,6 +22,7 @@ from innervate.analysis.rows import (
     parent_changes,
     unrouted_steps,
 )
+from innervate.analysis.skin_headline import skin_headline
 from innervate.protocol.skin_words import ONE, PORTS
 from innervate.sim.world import ALIVE
 from innervate.topology import PORT_NAMES
@@ -48,6 +50,9 @@ def summarize(result: Any) -> dict[str, Any]:
     plan = result.plan
     events = result.handled + result.arrived
     loads = port_loads(result)
+    data = data_summary(result)
+    commands = commands_summary(result)
+    facts = skin_facts(result, data, commands)
     summary = {
         "kind": plan.kind,
         "name": plan.scenario.name,
@@ -57,15 +62,17 @@ def summarize(result: Any) -> dict[str, Any]:
         "events_per_s": round(events / result.wall_s) if result.wall_s > 0 else None,
         "wall_s": round(result.wall_s, 6),
         "fingerprint": result.fingerprint,
+        "headline": skin_headline(facts, plan.graph.label).as_summary(),
         "cells": plan.graph.cells,
         "depth_max": plan.depth_max,
         "start_up": start_up(result),
         "recoveries": recoveries(result),
+        **reach(result, facts),
         "loops": loops(result),
         "balance_factor": balance_factor(loads),
         "port_loads": loads,
-        "data": data_summary(result),
-        "commands": commands_summary(result),
+        "data": data,
+        "commands": commands,
         "beacon_share": beacon_share(result),
         "broken": broken_ports(result),
     }

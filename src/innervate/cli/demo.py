@@ -90,9 +90,13 @@ def _steps(recovery: dict[str, float | None], cells: int) -> list[tuple[str, str
         steps.append((0.0, f"{cut} of {cells} cells have lost their way to the PC"))
     if recovery["detected_ms"]:
         steps.append((recovery["detected_ms"], "the cell at the cable has noticed"))
-    if recovery["routed_ms"]:
-        steps.append((recovery["routed_ms"], "every cell has a way again"))
-    elif settled:
+    gone, routed = recovery["cut_off"], recovery["others_ms"]
+    if gone:
+        steps.append((0.0, f"{gone} of {cells} cells are cut off: no cable joins them any more"))
+    if routed:
+        whom = "every other cell" if recovery["cut_off_total"] else "every cell"
+        steps.append((routed, f"{whom} has a way again"))
+    elif settled and recovery["routed_ms"] == 0:
         steps.append((settled, "the cells share both cables again; none lost its way meanwhile"))
     return [
         ("at once" if ms == 0 else f"+{words.ms_words(ms)}", what) for ms, what in sorted(steps)

@@ -21,7 +21,8 @@ def summary_lines(run: Run) -> list[str]:
         return show_radio.summary_lines(run)
     if summary["kind"] == "mesh":
         return show_mesh.summary_lines(run)
-    return [_first(run), *event_lines(run), *_broken(summary), *state_lines(summary)]
+    said = words.headline_line(summary["headline"])
+    return [_first(run), said, *event_lines(run), *_broken(summary), *state_lines(summary)]
 
 
 def _first(run: Run) -> str:

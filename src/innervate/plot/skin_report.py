@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from innervate.plot import svg, words
-from innervate.plot.page import element, figure, keys, pictures, section, table, tiles
+from innervate.plot.page import element, figure, headline, keys, pictures, section, table, tiles
 from innervate.plot.skinmap import CELLS_MAX, shows_depth
 from innervate.plot.story import Panel, Story
 from innervate.plot.theme import SHADES
@@ -40,9 +40,8 @@ def _top(story: Story) -> str:
         f"{words.number_of(summary['depth_max'], 'hop')} deep; {summary['duration_s']:g} s, "
         f"seed {summary['seed']}"
     )
-    sentences = _sentences(story)
-    parts = [element("p", over, "over"), element("h1", sentences[0])]
-    parts += [element("p", sentence) for sentence in sentences[1:]]
+    parts = [element("p", over, "over"), headline(summary["headline"])]
+    parts += [element("p", sentence) for sentence in _sentences(story)]
     if "interrupted_at_s" in summary:
         early = f"Ended early, at {summary['interrupted_at_s']:.3f} s of simulated time."
         parts.append(element("p", early, "status bad"))
@@ -70,7 +69,7 @@ def _broken(summary: Mapping[str, Any]) -> str:
     """Which cable is broken, and since when: the first question of every skin lab."""
     broken = summary["broken"]
     if not broken:
-        return element("p", "No cable is broken at the end.", "status")
+        return element("p", "No cable is broken at the end.")
     lines = words.broken_cables(broken)
     shown = lines[:BROKEN_MAX]
     if len(lines) > BROKEN_MAX:
@@ -191,15 +190,16 @@ def _events(story: Story) -> str:
     rows = []
     for incident in story.incidents[:ROWS_MAX]:
         recovery = incident.recovery
-        times = [_ms(recovery[key]) for key in ("detected_ms", "routed_ms", "converged_ms")]
-        if recovery["routed_ms"] == 0:
+        times = [_ms(recovery[key]) for key in ("detected_ms", "others_ms", "converged_ms")]
+        if recovery["others_ms"] == 0:
             times[1] = "had one all the time"
         what = svg.clean(words.fault_words(story.graph, incident.fault))
-        rows.append((f"{recovery['at_s']:.3f} s", what, str(recovery["cut_cells"]), *times))
+        counts = [f"{recovery[key]:,}" for key in ("cut_cells", "cut_off_total")]
+        rows.append((f"{recovery['at_s']:.3f} s", what, *counts, *times))
     if not rows:
         return ""
-    head = ("at", "what", "cells behind it", "noticed after", "all had a way after",
-            "last change after")  # fmt: skip
+    head = ("at", "what", "cells behind it", "cut off", "noticed after",
+            "all others had a way after", "last change after")  # fmt: skip
     more = len(story.incidents) - len(rows)
     note = element("p", f"And {more} more, in summary.json.", "note") if more > 0 else ""
     return section("Events", table(head, rows) + note)

@@ -65,8 +65,6 @@ def build(
     # What a batch of events and a command can add: every action empties a queue, the PC goes off.
     burst = (BATCH + 1) * limit * (1 + plan.queue_frames)
     tapped = ROWS + burst if tap else 1
-    ways = (graph.interfaces if plan.data_period_us else 0) + orders
-    slots = SLOTS if orders else 0
     states = tables.states(skin_fields.CELL, cells, CELL_BYTES)
     world = w.World(
         run=tables.records(w.RUN, 1),
@@ -92,15 +90,12 @@ def build(
         trail=tables.records(w.TRAIL, ROWS if trail else 1, fresh=True),
         taps=tables.records(w.TAP, tapped, fresh=True),
         tapped=tables.states(skin_fields.FRAME, tapped),
-        delays=tables.records(w.DELAY, ways),
-        due=tables.numbers(slots * cells),
-        due_number=tables.numbers(slots, NIL),
-        delay_counts=tables.numbers(ways * delays.CLASSES),
+        **_books(tables, plan, orders),
         **_touch(tables, plan),
     )
     _set_run(world, plan, tx_slots, pool_slots)
-    put(world.run, 0, checks=int(checks), watchful=int(checks or trail), broken_at=-1)
-    put(world.run, 0, row_limit=len(world.rows), observe=int(observe or checks))
+    put(world.run, 0, checks=int(checks), watchful=int(checks or trail), broken_at=-1,
+        row_limit=len(world.rows), observe=int(observe or checks))  # fmt: skip
     put(world.run, 0, delivery_limit=ROWS if deliveries else 0, trail_limit=ROWS if trail else 0)
     put(world.run, 0, tap_limit=ROWS if tap else 0)
     put(world.params, 0, **{field[0]: plan.params[field[0]] for field in skin_fields.PARAMS})
@@ -139,6 +134,18 @@ def _outbox(tables: w.Tables, limit: int) -> w.Out:
         action=tables.records(w.ACTION, limit),
         frame=tables.states(skin_fields.FRAME, limit),
     )
+
+
+def _books(tables: w.Tables, plan: Any, orders: bool) -> dict[str, Any]:
+    """What is kept of latencies, and of the PC's commands."""
+    ways = (plan.graph.interfaces if plan.data_period_us else 0) + orders
+    slots = SLOTS if orders else 0
+    return {
+        "delays": tables.records(w.DELAY, ways),
+        "delay_counts": tables.numbers(ways * delays.CLASSES),
+        "due": tables.numbers(slots * plan.graph.cells),
+        "due_number": tables.numbers(slots, NIL),
+    }
 
 
 def _touch(tables: w.Tables, plan: Any) -> dict[str, Any]:
@@ -238,7 +245,9 @@ def _watch(tables: w.Tables, cells: int, states: Any) -> w.Watch:
     return w.Watch(
         port=tables.numbers(cells, NIL),
         routed=tables.numbers(cells),
+        had=tables.numbers(cells),
         joined=tables.numbers(cells),
+        apart=tables.numbers(cells, NIL, np.int64),
         ring=tables.numbers(cells, NIL),
         before=tables.numbers(cells),
         stack=tables.numbers(cells),

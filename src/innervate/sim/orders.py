@@ -21,8 +21,8 @@ HAD_A_WAY = 3
 CAME = 4
 
 # Codes of rows.
-ORDER_GIVEN = 104  # by the PC: a = number, b = the cell, or -1 for all
-ORDER_CAME = 105  # at a cell: a = number, b = latency, us
+ORDER_GIVEN = 110  # by the PC: a = number, b = the cell, or -1 for all
+ORDER_CAME = 111  # at a cell: a = number, b = latency, us
 
 
 def begin(world, order):

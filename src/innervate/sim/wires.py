@@ -17,7 +17,7 @@ from innervate.sim.world import ALIVE
 # Kinds of pool slots; an arrival is marked by the block of counters its frame belongs to.
 DELAYED = 1
 
-# Words of `world.counters`; the second block counts urgent frames, the first all others.
+# Words of `world.counters`; in blocks: data, urgent frames, commands.
 SENT = 0
 ARRIVED = 1
 LOST_CUT = 2
@@ -31,11 +31,10 @@ OFFERED = 16
 DELIVERED = 17
 NO_ROUTE = 18
 LOOPED = 19
-# The same of commands: duplicates dropped, given up after too many hops, given by the PC.
-AGAIN = 20
+AGAIN = 20  # a command: dropped because it was here before, given up after too many hops
 TOO_FAR = 21
-GIVEN = 22
-# A third block counts commands on the cables; then cells that they were for: see orders.py.
+EARLY = 22  # of NO_ROUTE: dropped by cells that have not had a route yet, as far as is watched
+GIVEN = 23  # commands given to the PC; who got them: see orders.py
 COMMAND_BLOCK = 24
 BLOCKS = (0, URGENT_BLOCK, COMMAND_BLOCK)
 ADDRESSED = 32

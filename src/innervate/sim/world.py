@@ -27,7 +27,7 @@ RUN = (
     "checks", "observe", "watchful", "status", "fingerprint", "handled", "rng",
     "commands", "next_command", "rows", "row_limit", "deliveries", "delivery_limit",
     "trail", "trail_limit", "taps", "tap_limit",
-    "unrouted", "noted", "loops", "loops_open",
+    "unrouted", "noted", "apart", "joined", "loops", "loops_open",
     "broken", "broken_at", "broken_node", "broken_other",
 )  # fmt: skip
 COMMAND = ("at", "action", "end", "node", "value", "index")
@@ -89,7 +89,9 @@ class Watch(NamedTuple):
 
     port: Any  # parent port in force, -1 none
     routed: Any  # 1 = chain of parents reaches the PC over live cables
+    had: Any  # 1 = it did so at some time
     joined: Any  # 1 = physically connected to the PC
+    apart: Any  # since when it is on without being so, us; -1 = it is not
     ring: Any  # start of the forwarding loop the cell is in, -1 none
     before: Any  # `routed` as it was before the present command
     stack: Any
