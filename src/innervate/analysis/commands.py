@@ -7,24 +7,16 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis.frames import command_traffic, number_of, under_way
-from innervate.analysis.latency import Figures, command_latency_ms
+from innervate.analysis.latency import command_latency_ms
+from innervate.analysis.skin_summary import Commands
 from innervate.sim import orders, wires
 
 # Why a cell that a command was for did not get it, by its state when the command was given.
 REASONS = {"off": orders.WAS_OFF, "no_route": orders.HAD_NO_WAY, "on_the_way": orders.HAD_A_WAY}
 
 
-def commands_summary(result: Any) -> dict[str, Any]:
-    """Commands from the PC down to the cells.
-
-    `sent` counts commands; all else counts cells that a command was for: `addressed`,
-    `delivered`, `lost`, `loss_ratio` (lost / addressed; None if none were), `lost_by` the state
-    of the cell as the command was given (`off`, `no_route`, or `on_the_way`: it had a way),
-    `in_flight` at the end, `latency_ms` of those delivered. `repeated` are deliveries beyond the
-    first: only to cells that lost their memory. `frames` are the copies on the cables: `sent`,
-    `lost_by` reason, `duplicates` that a cell dropped because it had the command already,
-    `too_far` that it did not hand on.
-    """
+def commands_summary(result: Any) -> Commands:
+    """Commands from the PC down to the cells."""
     counters = result.counters
     missed, in_flight = _open(result)
     lost_by = {
@@ -33,7 +25,6 @@ def commands_summary(result: Any) -> dict[str, Any]:
     }
     addressed, lost = counters[wires.ADDRESSED], sum(lost_by.values())
     traffic = command_traffic(result)
-    latency: Figures = command_latency_ms(result)
     return {
         "sent": counters[wires.GIVEN],
         "addressed": addressed,
@@ -43,7 +34,7 @@ def commands_summary(result: Any) -> dict[str, Any]:
         "lost_by": lost_by,
         "in_flight": in_flight,
         "repeated": counters[wires.REPEATED],
-        "latency_ms": latency,
+        "latency_ms": command_latency_ms(result),
         "frames": {
             "sent": traffic.sent,
             "lost_by": traffic.lost,

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis.latency import latency_by_port, latency_ms
+from innervate.analysis.skin_summary import Data
 from innervate.protocol.skin_words import COMMAND
 from innervate.sim import wires
 from innervate.sim.build import get
@@ -67,7 +68,7 @@ def command_traffic(result: Any) -> Traffic:
     return _traffic(result, wires.COMMAND_BLOCK)
 
 
-def data_summary(result: Any) -> dict[str, Any]:
+def data_summary(result: Any) -> Data:
     """Tactile samples from cell to PC: sent, delivered, lost by reason, in flight.
 
     `loss_ratio` is lost / sent; None if none were sent. Latencies: see latency.py.
