@@ -81,6 +81,11 @@ def test_both_sides(there, absent, level, text, nodes):
     assert headline(WELL._replace(**absent)).level == OK
 
 
+def test_delays_measured_among_hidden_pairs_are_none():
+    text = of(hidden=((0, 3),), bounds={"believed_us": [52, 104], "measured_us": [1, 420]})[1]
+    assert text == "1 pair of robots does not hear each other; all 10 packets were delivered."
+
+
 def test_worst_news_come_first():
     text = of(
         lost_silently=2, off=(1,), overdue=3, partial=4, delivered=8, still_ms=2000, pending=3

@@ -127,7 +127,7 @@ def _degraded(facts: RadioFacts, told: bool) -> tuple[list[str], tuple[int, ...]
         ended = "was" if facts.overdue == 1 else "were"
         news.append(f"{who} {ended} not delivered in time")
         nodes |= set(facts.waiting)
-    if facts.bounds is not None:
+    if facts.bounds is not None and not facts.hidden:  # what hidden frames end in is no delay
         news.append(_wrong(facts.bounds))
         nodes |= set(facts.stations_wrong)
     if facts.hidden:

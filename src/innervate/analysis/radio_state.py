@@ -63,6 +63,15 @@ def facts(
     )
 
 
+def pending(world: Any, stations: int) -> int:
+    """Packets that wait in robots that are on."""
+    return sum(
+        int(get(world.radios, i, "backlog"))
+        for i in range(stations)
+        if get(world.radios, i, "alive")
+    )
+
+
 _COUNTS = ("offers", "completed", "silent", "dropped", "partial")
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from innervate.plot import charts, words
 from innervate.plot.page import element, figure, headline, pictures, section, tiles
 from innervate.plot.radio_words import robots
+from innervate.scenario.radio_words import warnings
 
 STEPS_MAX = 2000
 
@@ -41,6 +42,7 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         (f"{summary['collisions']:,}", "collisions"),
     ]
     parts = [element("p", over, "over"), headline(summary["headline"]), element("p", head)]
+    parts += [element("p", warning) for warning in warnings(result.plan)]
     parts.append(tiles(found))
     return "<header>\n" + "".join(parts) + "</header>"
 

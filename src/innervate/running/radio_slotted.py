@@ -111,6 +111,7 @@ def summarize(result: SlottedRun) -> SlottedSummary:
         "jain_round": found.jain_round,
         "delay_slots": quantiles,
         "collisions": found.collisions,
+        "delivered": done,
         "lost_silently": 0,
         "order": found.order[:1000] if plan.scenario.model.traffic.kind == "disaster" else first,
     }

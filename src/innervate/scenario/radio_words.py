@@ -7,6 +7,7 @@ from innervate.scenario.radio_plan import RadioFault, RadioPlan
 from innervate.scenario.radio_rules import pair
 
 EVENTS_SHOWN = 12
+PAIRS_SHOWN = 4
 
 
 def describe(made: RadioPlan) -> str:
@@ -27,7 +28,28 @@ def describe(made: RadioPlan) -> str:
               for i, fault in enumerate(made.faults[:EVENTS_SHOWN])]  # fmt: skip
     if len(made.faults) > EVENTS_SHOWN:
         lines.append(f"  {'':10} and {len(made.faults) - EVENTS_SHOWN} more")
+    lines += [f"  warning    {warning}" for warning in warnings(made)]
     return "\n".join(lines)
+
+
+def warnings(made: RadioPlan) -> list[str]:
+    """What of a plan lies outside the assumptions of all protocols, a sentence each."""
+    found = []
+    if made.stations == 1:
+        found.append("One station alone: nobody can receive what it sends.")
+    hidden = [
+        f"{i} and {j}"
+        for j in range(made.stations)
+        for i in range(j)
+        if made.delays_us[i][j] < 0 or made.delays_us[j][i] < 0
+    ]
+    if hidden:
+        named = ", ".join(hidden[:PAIRS_SHOWN]) + (", ..." if len(hidden) > PAIRS_SHOWN else "")
+        found.append(
+            f"Stations that do not hear each other ({named}): packets may collide unnoticed, "
+            "stations may starve."
+        )
+    return found
 
 
 def traffic_words(model: RadioScenario) -> str:
