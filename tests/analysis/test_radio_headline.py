@@ -6,7 +6,8 @@ from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK
 from innervate.analysis.radio import facts as facts_of_run
 from innervate.analysis.radio import summarize
 from innervate.analysis.radio_headline import RadioFacts, headline, patience_us
-from innervate.analysis.radio_state import Still, facts, of_stations
+from innervate.analysis.radio_live import Still, of_stations
+from innervate.analysis.radio_state import facts
 from innervate.scenario.radio_plan import JOIN, KILL, LEAVE, RadioFault
 from innervate.sim.build import get
 from tests.radio_runs import START_US, radio_plan, run

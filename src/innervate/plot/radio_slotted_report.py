@@ -28,7 +28,10 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         f"{model.protocol.mac}, packets of {result.plan.params['packet_slots']} slots; "
         f"seed {summary['seed']}"
     )
-    if model.traffic.kind == "disaster":
+    if model.traffic.kind == "disaster" and summary["delivered"] < summary["stations"]:
+        count = words.number_of(summary["delivered"], "packet")
+        head = f"{robots(summary['stations'])} started at once; {count} came through in the time."
+    elif model.traffic.kind == "disaster":
         head = (
             f"{robots(summary['stations'])} started at once; every packet was delivered "
             f"{summary['duration_slots']:.4g} slots later."
