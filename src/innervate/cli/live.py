@@ -11,6 +11,7 @@ from typing import Any
 
 from innervate.cli import errors, live_status
 from innervate.live import status
+from innervate.live.errors import LiveError
 
 
 def up(
@@ -31,21 +32,32 @@ def up(
 
 
 def show(names: list[str], as_json: bool) -> int:
-    """What nodes say of themselves."""
+    """What nodes say of themselves; 1 if nobody was named and some do not answer."""
     sockets = [status.find(name) for name in names] if names else status.sockets()
     if not sockets:
         where = f"no node runs here (folder {status.folder()})"
         raise errors.UserError(f"{where}; start one with: innervate live node FILE")
-    told = [status.ask_one(path, {"do": "status"}) for path in sockets]
+    told, silent = [], []
+    for path in sockets:
+        try:
+            told.append(status.ask_one(path, {"do": "status"}))
+        except LiveError:
+            if names:
+                raise
+            silent.append(path.stem)
     if as_json:
         print(json.dumps(told if len(told) != 1 or not names else told[0]))
-        return 0
-    for one in told:
-        for line in live_status.lines(one):
+    else:
+        if not names:
+            print(live_status.headline(told, len(silent)))
+        for one in told:
+            for line in live_status.lines(one):
+                print(line)
+        for line in live_status.broken(told):
             print(line)
-    for line in live_status.broken(told):
-        print(line)
-    return 0
+    for name in silent:
+        print(f"{name}: does not answer; its process was killed, or hangs", file=sys.stderr)
+    return 1 if silent else 0
 
 
 def send(name: str, to: int, text: str, how: dict[str, bool], as_json: bool) -> int:
