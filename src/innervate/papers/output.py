@@ -38,6 +38,8 @@ table.claims{width:100%}
 .readings dd{margin:0 0 0 0}
 .readings :target,section:target h2{background:var(--panel)}
 @media (max-width:760px){
+figure{overflow-x:auto}
+figure:not(.narrow) img{min-width:640px}
 .claims,.claims tbody,.claims tr,.claims td{display:block}
 .claims tr:first-child{display:none}
 .claims tr{border:1px solid var(--faint);border-radius:8px;padding:.5em .8em;margin:.7em 0}
