@@ -2,6 +2,7 @@
 
 import inspect
 import pydoc
+import re
 import subprocess
 import sys
 from importlib.metadata import version
@@ -24,6 +25,13 @@ def main() -> None:
     print(innervate.check(scenario))
     run: innervate.Run = innervate.run(scenario, overrides=["duration_s=1"])
     run.write("runs/a")
+    first = run.skin["recoveries"][0]
+    late: float | None = first["routed_ms"]
+    print(late, run.skin["data"]["lost_by"]["cut"] + 1, run.tables["routes"].collect())
+    summary = run.summary
+    if summary["kind"] == "mesh":
+        ratio: float | None = summary["delivery_ratio"]
+        print(ratio, run.interrupted)
     found: innervate.Comparison = innervate.compare("runs/a", "runs/b")
     print(found.same, len(found.notes))
     done: innervate.Sweep = innervate.sweep("setup-1", vary={"protocol.k": "2..4"}, repeat=2)
@@ -37,6 +45,8 @@ MISTAKES = {
     "innervate.run('a.toml', seed='x')": 'incompatible type "str"',
     "innervate.run('a.toml').sumary": '"Run" has no attribute "sumary"',
     "innervate.compare('a')": "Missing positional argument",
+    "innervate.run('a.toml').skin['cels']": 'has no key "cels"',
+    "innervate.run('a.toml').mesh['nodes'] + 'x'": "Unsupported operand types",
 }
 
 
@@ -61,6 +71,13 @@ def test_a_users_script_passes_mypy_strict_and_its_mistakes_do_not(tmp_path):
             text.startswith(f"script.py:{line}: error:") and mistake in text
             for text in said.splitlines()
         ), (line, said)
+
+
+def test_the_readmes_example_passes_mypy_strict(tmp_path):
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    assert blocks
+    for block in blocks:
+        assert type_checked(block, tmp_path)[0] == 0, type_checked(block, tmp_path)[1]
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)

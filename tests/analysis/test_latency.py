@@ -64,8 +64,8 @@ def _check(figures, latencies_us):
 
 def test_the_terminal_says_how_long_samples_took(crowded):
     summary = {
-        "data": data_summary(crowded), "port_loads": [], "loops": {"episodes": 0},
-        "balance_factor": None,
+        "data": data_summary(crowded), "port_loads": [], "balance_factor": None,
+        "loops": {"episodes": 0, "longest_ms": None},
     }  # fmt: skip
     said = "\n".join(state_lines(summary))
     assert "From sensor to PC: half within" in said

@@ -81,7 +81,7 @@ def test_layouts_hold_exactly_the_declared_ranges():
             seen.add(name)
             low = -(1 << (bits - 1)) if is_signed else 0
             assert RANGES[name] == (count, low, low + (1 << bits) - 1), name
-    assert seen | {"kind"} == set(RANGES)
+    assert seen | {"kind", "made_at"} == set(RANGES)  # made_at: a run's own
 
 
 @given(frames())

@@ -31,6 +31,16 @@ def test_the_same_run_twice(written):
     assert (found.scenario, found.summary, found.divergence, found.notes) == ([], [], None, [])
 
 
+def test_runs_at_hand_are_compared_like_their_folders(four, written):
+    folders = written(), written(seed=2)
+    runs = run(four()), run(four(), seed=2)
+    found, told = compare(*runs), compare(*folders)
+    assert (found.scenario, found.divergence) == (told.scenario, told.divergence)
+    assert (found.summary, found.notes) == (told.summary, told.notes)
+    assert compare(runs[0], folders[0]).same
+    assert not compare(runs[0], folders[1]).same
+
+
 def test_another_seed(written):
     found = compare(written(), written(seed=2))
     assert found.scenario == [("seed", 1, 2)]

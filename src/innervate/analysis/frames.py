@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis.latency import latency_by_port, latency_ms
+from innervate.analysis.skin_summary import Data
 from innervate.sim import wires
 from innervate.sim.wheel import FRESH, NIL
 
@@ -59,7 +60,7 @@ def beacon_traffic(result: Any) -> Traffic:
     return _traffic(result, wires.URGENT_BLOCK)
 
 
-def data_summary(result: Any) -> dict[str, Any]:
+def data_summary(result: Any) -> Data:
     """Tactile samples from cell to PC: sent, delivered, lost by reason, in flight.
 
     `loss_ratio` is lost / sent; None if none were sent. Latencies: see latency.py.

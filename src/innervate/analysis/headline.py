@@ -7,10 +7,17 @@ sweeps show what that function says; none of them judges by itself.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple, TypedDict
 
 OK, DEGRADED, DOWN, NO_DATA = "ok", "degraded", "down", "no data"
 LEVELS = (OK, DEGRADED, DOWN, NO_DATA)  # from well to worst; no data: nobody answers
+
+
+class HeadlineEntry(TypedDict):
+    """The entry `headline` of a summary: one of LEVELS, and a sentence."""
+
+    level: str
+    text: str
 
 
 class Headline(NamedTuple):
@@ -28,7 +35,7 @@ class Headline(NamedTuple):
     text: str
     nodes: tuple[int, ...] = ()
 
-    def as_summary(self) -> dict[str, Any]:
+    def as_summary(self) -> HeadlineEntry:
         """The entry `headline` of a summary."""
         return {"level": self.level, "text": self.text}
 

@@ -7,15 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.skin_summary import Latency, PortLatency
 from innervate.sim import delays
 from innervate.sim.build import get
 
-SHARES = {"p50": 50, "p95": 95, "p99": 99}  # per cent, by name
 
-Figures = dict[str, float | None]
-
-
-def latency_ms(result: Any) -> Figures:
+def latency_ms(result: Any) -> Latency:
     """Of all samples that the PC received: `mean`, `p50`, `p95`, `p99`, `max`, in ms.
 
     A percentile is the least value that so many of a hundred do not exceed, to 0.4 % and never
@@ -24,7 +21,7 @@ def latency_ms(result: Any) -> Figures:
     return _figures(result.world, range(len(result.world.delays)))
 
 
-def latency_by_port(result: Any) -> list[dict[str, Any]]:
+def latency_by_port(result: Any) -> list[PortLatency]:
     """The same for every interface port: `port`, `samples` received there, `latency_ms`."""
     world = result.world
     return [
@@ -37,19 +34,26 @@ def latency_by_port(result: Any) -> list[dict[str, Any]]:
     ]
 
 
-def _figures(world: Any, ports: Sequence[int]) -> Figures:
+def _figures(world: Any, ports: Sequence[int]) -> Latency:
     kept = {
         name: [int(get(world.delays, port, name)) for port in ports]
         for name in ("count", "sum", "high")
     }
     total = sum(kept["count"])
     if total == 0:
-        return dict.fromkeys(("mean", *SHARES, "max"))
+        return {"mean": None, "p50": None, "p95": None, "p99": None, "max": None}
     counts = np.array(world.delay_counts, np.int64).reshape(-1, delays.CLASSES)
     upto = np.cumsum(counts[list(ports)].sum(axis=0))
-    found: Figures = {"mean": sum(kept["sum"]) / total / 1e3}
-    for name, share in SHARES.items():
-        rank = -(-total * share // 100)
-        longest = delays.longest_of(int(np.searchsorted(upto, rank)))
-        found[name] = min(longest, max(kept["high"])) / 1e3
-    return found | {"max": max(kept["high"]) / 1e3}
+    most = max(kept["high"])
+
+    def percentile(share: int) -> float:
+        longest = delays.longest_of(int(np.searchsorted(upto, -(-total * share // 100))))
+        return float(min(longest, most) / 1e3)
+
+    return {
+        "mean": sum(kept["sum"]) / total / 1e3,
+        "p50": percentile(50),
+        "p95": percentile(95),
+        "p99": percentile(99),
+        "max": most / 1e3,
+    }

@@ -12,6 +12,7 @@ import numpy as np
 
 from innervate.analysis import radio_headline, radio_state
 from innervate.analysis.radio_air import Air, Groups, Heard, Numbers, air, groups, signals
+from innervate.analysis.radio_summary import BoundsNoticed, Delays, RadioSummary
 from innervate.protocol.radio_words import REPORT_BOUNDS
 
 __all__ = [
@@ -51,7 +52,7 @@ class Steps(NamedTuple):
     values: Any
 
 
-def summarize(result: Any, name: str | None = None) -> dict[str, Any]:
+def summarize(result: Any, name: str | None = None) -> RadioSummary:
     """The summary of a run; what never happened is None.
 
     Args:
@@ -63,7 +64,7 @@ def summarize(result: Any, name: str | None = None) -> dict[str, Any]:
     found, steady = successes(result), settled(result)
     spent = np.bincount(steady["node"], minlength=plan.stations)
     length = duration_us(result)
-    summary = {
+    summary: RadioSummary = {
         "kind": plan.kind,
         "name": name or getattr(plan.scenario, "name", None) or plan.protocol,
         "headline": radio_headline.headline(facts(result)).as_summary(),
@@ -197,7 +198,7 @@ def delays(result: Any) -> Any:
     return (steady["end"] - steady["offered"]) / result.plan.params["slot_us"]
 
 
-def delay_slots(result: Any) -> dict[str, float | None]:
+def delay_slots(result: Any) -> Delays:
     """Median, 95th and 99th percentile and maximum of the delays, in slots."""
     found = delays(result)
     if len(found) == 0:
@@ -234,7 +235,7 @@ def fifo(result: Any) -> float | None:
     return kept / pairs if pairs else None
 
 
-def bounds_noticed(result: Any) -> dict[str, Any]:
+def bounds_noticed(result: Any) -> BoundsNoticed:
     """How often stations noticed a pair delay outside the configured bounds; who, and how long.
 
     `stations` has for each its number, how often, and the least and greatest delay it measured.

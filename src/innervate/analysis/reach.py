@@ -9,12 +9,13 @@ import numpy as np
 from innervate.analysis.frames import lost_at_start
 from innervate.analysis.rows import apart_steps, marks
 from innervate.analysis.skin_headline import SkinFacts
+from innervate.analysis.skin_summary import Apart, Data, Reach
 from innervate.sim.world import DEAD
 
 LABELS_MAX = 100
 
 
-def skin_facts(result: Any, data: dict[str, Any]) -> SkinFacts | None:
+def skin_facts(result: Any, data: Data) -> SkinFacts | None:
     """What a headline is made of; None of a run that nobody observed.
 
     Samples that cells took before they had a way for the first time do not count.
@@ -51,7 +52,7 @@ def world_facts(world: Any, cells: int) -> SkinFacts:
     )
 
 
-def reach(result: Any, facts: SkinFacts | None) -> dict[str, Any]:
+def reach(result: Any, facts: SkinFacts | None) -> Reach:
     """Entries of a summary on cells that have no way to the PC at the end of a run.
 
     `cut_off`: cells that are on and that no cable joins with the PC any more: `cells` how many,
@@ -62,16 +63,18 @@ def reach(result: Any, facts: SkinFacts | None) -> dict[str, Any]:
     that nobody observed.
     """
     if facts is None:
-        return dict.fromkeys(("cut_off", "without_way", "switched_off", "lost_at_start"))
+        return {
+            "cut_off": None, "without_way": None, "switched_off": None, "lost_at_start": None,
+        }  # fmt: skip
     label = result.plan.graph.label
 
-    def counted(nodes: Any) -> dict[str, Any]:
+    def counted(nodes: Any) -> Apart:
         return {"cells": len(nodes), "labels": [label(node) for node in nodes[:LABELS_MAX]]}
 
     most = max(len(facts.cut_off), facts.cut_off_before)
     return {
-        "cut_off": counted(facts.cut_off) | {"since_s": facts.since_s, "most": most},
-        "without_way": counted(facts.seeking) | {"never": len(facts.never)},
+        "cut_off": {**counted(facts.cut_off), "since_s": facts.since_s, "most": most},
+        "without_way": {**counted(facts.seeking), "never": len(facts.never)},
         "switched_off": counted(facts.off),
         "lost_at_start": lost_at_start(result),
     }

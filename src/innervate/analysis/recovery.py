@@ -20,13 +20,14 @@ from innervate.analysis.rows import (
     parent_changes,
     unrouted_steps,
 )
+from innervate.analysis.skin_summary import Recovery, StartUp
 from innervate.protocol.skin_words import NONE, PORTS
 from innervate.scenario.plan import ACTIONS, CUT, KILL, RESTART, RESTORE, REVIVE, Fault
 
 NOBODY = -1
 
 
-def recoveries(result: Any) -> list[dict[str, Any]]:
+def recoveries(result: Any) -> list[Recovery]:
     """One entry per event of the scenario that happened, in order of time.
 
     `at_s` and `action` say what happened. All `_ms` count from the event and look no further than
@@ -48,12 +49,12 @@ def recoveries(result: Any) -> list[dict[str, Any]]:
     broken, unrouted = broken_changes(result), unrouted_steps(result)
     apart, joined = apart_steps(result), joined_steps(result)
     faults = {fault.index: fault for fault in result.plan.faults}
-    found = []
+    found: list[Recovery] = []
     for place in np.flatnonzero(at.event != NOBODY).tolist():
         fault = faults[int(at.event[place])]
         window = _window(result, at, place)
         start = int(at.time_us[place])
-        cut = _cut_off(apart, window)
+        gone, gone_total = _cut_off(apart, window)
         there_before, there = (_at(joined, row, result.plan.graph.cells) for row in window)
         others = _routed(unrouted, window, start) if there else None
         found.append(
@@ -62,18 +63,19 @@ def recoveries(result: Any) -> list[dict[str, Any]]:
                 "action": ACTIONS[fault.action],
                 "detected_ms": _since(start, _detected(result, fault, broken, window)),
                 "converged_ms": _since(start, _last(result.rows["time"], switches, window)),
-                "routed_ms": _since(start, None if cut["cut_off_total"] else others),
+                "routed_ms": _since(start, None if gone_total else others),
                 "others_ms": _since(start, others),
                 "without_way": _at(unrouted, window[1], 0),
                 "cut_cells": _cut_cells(result, at, place, fault),
-                **cut,
+                "cut_off": gone,
+                "cut_off_total": gone_total,
                 "joined_again": max(0, there - there_before),
             }
         )
     return found
 
 
-def start_up(result: Any) -> dict[str, Any]:
+def start_up(result: Any) -> StartUp:
     """The same for the beginning: `converged_ms` and `routed_ms` from switching on."""
     at = marks(result)
     if len(at.row) == 0:  # it ran unobserved
@@ -103,11 +105,11 @@ def _at(steps: ApartSteps | JoinedSteps | UnroutedSteps, row: int, otherwise: in
     return int(steps.cells[after - 1]) if after else otherwise
 
 
-def _cut_off(steps: ApartSteps, window: tuple[int, int]) -> dict[str, int]:
+def _cut_off(steps: ApartSteps, window: tuple[int, int]) -> tuple[int, int]:
     """Cells cut off inside a window, and all that are so at its end."""
     first, behind = np.searchsorted(steps.row, window).tolist()
     total = _at(steps, window[1], 0)
-    return {"cut_off": min(int(steps.fresh[first:behind].sum()), total), "cut_off_total": total}
+    return min(int(steps.fresh[first:behind].sum()), total), total
 
 
 def _since(start_us: int, time_us: int | None) -> float | None:

@@ -22,6 +22,7 @@ from innervate.analysis.rows import (
     unrouted_steps,
 )
 from innervate.analysis.skin_headline import skin_headline
+from innervate.analysis.skin_summary import BrokenPort, Loops, SkinSummary
 from innervate.protocol.skin_words import ONE, PORTS
 from innervate.sim.world import ALIVE
 from innervate.topology import PORT_NAMES
@@ -44,14 +45,15 @@ __all__ = [
 ]
 
 
-def summarize(result: Any) -> dict[str, Any]:
+def summarize(result: Any) -> SkinSummary:
     """The summary of a run; what never happened is None."""
     plan = result.plan
     events = result.handled + result.arrived
     loads = port_loads(result)
     data = data_summary(result)
     facts = skin_facts(result, data)
-    summary = {
+    apart = reach(result, facts)
+    summary: SkinSummary = {
         "kind": plan.kind,
         "name": plan.scenario.name,
         "seed": plan.seed,
@@ -65,7 +67,10 @@ def summarize(result: Any) -> dict[str, Any]:
         "depth_max": plan.depth_max,
         "start_up": start_up(result),
         "recoveries": recoveries(result),
-        **reach(result, facts),
+        "cut_off": apart["cut_off"],
+        "without_way": apart["without_way"],
+        "switched_off": apart["switched_off"],
+        "lost_at_start": apart["lost_at_start"],
         "loops": loops(result),
         "balance_factor": balance_factor(loads),
         "port_loads": loads,
@@ -78,7 +83,7 @@ def summarize(result: Any) -> dict[str, Any]:
     return summary
 
 
-def loops(result: Any) -> dict[str, Any]:
+def loops(result: Any) -> Loops:
     """How many forwarding loops there were, and how long the longest stood (ms)."""
     found = loop_episodes(result)
     ends = np.where(found.closed_us == NEVER, result.ended_us, found.closed_us)
@@ -86,7 +91,7 @@ def loops(result: Any) -> dict[str, Any]:
     return {"episodes": len(ends), "longest_ms": longest}
 
 
-def broken_ports(result: Any) -> list[dict[str, Any]]:
+def broken_ports(result: Any) -> list[BrokenPort]:
     """Ports that carry a cable and are broken at the end, at cells that are on.
 
     `cell` and `port` say where, `to` is the far end of that cable, `since_s` when it was found

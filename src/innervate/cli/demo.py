@@ -15,6 +15,7 @@ from innervate.plot import mesh_words, words
 
 if TYPE_CHECKING:
     from innervate.analysis.mesh_alarms import Crossing
+    from innervate.analysis.skin_summary import Recovery
     from innervate.running import Run
 
 
@@ -61,7 +62,7 @@ def _skin(seed: int | None, out: Path | None) -> Told:
     print(flush=True)
     run = simulate("demo", [], seed, _part(out, "skin"))
     folder = run.write(_part(out, "skin"))
-    summary, plan = run.summary, run.plan
+    summary, plan = run.skin, run.plan
     graph = plan.graph
     print(
         f"  {graph.cells} cells, {graph.interfaces} cables to the PC, "
@@ -82,7 +83,7 @@ def _skin(seed: int | None, out: Path | None) -> Told:
     return Told(folder / "report.html", run.interrupted)
 
 
-def _steps(recovery: dict[str, float | None], cells: int) -> list[tuple[str, str]]:
+def _steps(recovery: Recovery, cells: int) -> list[tuple[str, str]]:
     """What followed an event, in order of time."""
     cut, settled = recovery["cut_cells"], recovery["converged_ms"]
     steps: list[tuple[float, str]] = []
@@ -113,12 +114,12 @@ def _radio(seed: int | None, out: Path | None) -> Told:
     folder = run.write(_part(out, "radio"))
     plan, packets = run.plan, run.result.packets
     start_us = int(packets["offered"].min())
-    order = ", ".join(str(i) for i in run.summary["order"])
+    order = ", ".join(str(i) for i in run.radio["order"])
     firsts = (int(packets["end"].min()), "the first packet has arrived, everybody knows the order")
     for at_us, what in (firsts, (int(packets["end"].max()), "all ten packets have arrived")):
         print(f"  {'+' + words.ms_words((at_us - start_us) / 1e3):>10}   {what}")
     print()
-    print(f"  Order: {order}. {run.summary['lost_silently']} packets lost without their sender "
+    print(f"  Order: {order}. {run.radio['lost_silently']} packets lost without their sender "
           "knowing.")  # fmt: skip
     times = (plan.params["packet_slots"] * plan.params["slot_us"] * plan.stations) / 1e3
     print(f"  The packets alone take {words.ms_words(times)}.")
@@ -135,7 +136,7 @@ def _mesh(seed: int | None, out: Path | None) -> Told:
     print(flush=True)
     run = simulate("mesh-field", [], seed, _part(out, "mesh"))
     folder = run.write(_part(out, "mesh"))
-    summary, plan = run.summary, run.plan
+    summary, plan = run.mesh, run.plan
     reach = 2 * summary["links"] / plan.nodes
     print(f"  {plan.nodes} nodes, each with about {reach:.0f} others in good reach")
     print()
@@ -156,7 +157,7 @@ def _mesh_steps(run: Run) -> list[tuple[str, str]]:
     from innervate.analysis.mesh_alarms import all_crossings
     from innervate.analysis.mesh_messages import NEVER
 
-    summary, plan = run.summary, run.plan
+    summary, plan = run.mesh, run.plan
     steps: list[tuple[float, str, str]] = []
     if summary["discovery"]["tables_s"] is not None:
         at = summary["gateways"][0]["at_s"] + summary["discovery"]["tables_s"]

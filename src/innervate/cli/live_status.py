@@ -25,6 +25,10 @@ def lines(told: dict[str, Any]) -> list[str]:
     if told["kind"] == "radio":
         told["paths"] = []
     found = [f"{told['name']}: {told['kind']} {told['role']}, up {told['up_s']:g} s, {key}"]
+    state = told.get("state")
+    if state is not None and state["trouble"]:
+        since = "never" if state["written_s"] is None else f"{state['written_s']:g} s ago"
+        found.append(f"  STATE NOT WRITTEN: {state['trouble']}; last {since}, to {state['file']}")
     # A cell's own numbers are those of its sockets; its paths are numbered through.
     cabled = sorted((one for one in told.get("ports", ()) if one["cabled"]),
                     key=lambda one: one["path"])  # fmt: skip

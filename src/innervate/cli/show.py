@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from innervate.cli import show_mesh, show_radio
 from innervate.plot import words
 
 if TYPE_CHECKING:
+    from innervate.analysis.skin_summary import Data, Latency, SkinSummary
     from innervate.running import Run
 
 EVENTS_MAX = 8
@@ -16,17 +17,17 @@ BROKEN_MAX = 5
 
 def summary_lines(run: Run) -> list[str]:
     """What a person wants to know first."""
-    summary = run.summary
-    if summary["kind"] == "radio":
+    if run.summary["kind"] == "radio":
         return show_radio.summary_lines(run)
-    if summary["kind"] == "mesh":
+    if run.summary["kind"] == "mesh":
         return show_mesh.summary_lines(run)
+    summary = run.skin
     said = words.headline_line(summary["headline"])
     return [_first(run), said, *event_lines(run), *_broken(summary), *state_lines(summary)]
 
 
 def _first(run: Run) -> str:
-    summary, graph = run.summary, run.plan.graph
+    summary, graph = run.skin, run.plan.graph
     length = f"{summary['duration_s']:g} s"
     if "interrupted_at_s" in summary:
         length = f"{summary['interrupted_at_s']:.3g} of {length}"
@@ -41,7 +42,7 @@ def _first(run: Run) -> str:
 
 def event_lines(run: Run) -> list[str]:
     """A sentence for every event of the scenario."""
-    summary, plan = run.summary, run.plan
+    summary, plan = run.skin, run.plan
     pairs = list(zip(plan.faults, summary["recoveries"], strict=False))
     lines = [words.headline(plan.graph, *pair) for pair in pairs[:EVENTS_MAX]]
     if len(pairs) > EVENTS_MAX:
@@ -51,11 +52,11 @@ def event_lines(run: Run) -> list[str]:
     return lines
 
 
-def state_lines(summary: dict[str, Any]) -> list[str]:
+def state_lines(summary: SkinSummary) -> list[str]:
     """Samples, ports, loops."""
     lines = []
     data, loads = summary["data"], summary["port_loads"]
-    if data["sent"]:
+    if data["loss_ratio"] is not None:
         share = words.share_words(data["loss_ratio"])
         lines.append(
             f"Samples: {data['sent']:,} sent, {data['lost']:,} lost ({share}){_why(data)}."
@@ -66,7 +67,7 @@ def state_lines(summary: dict[str, Any]) -> list[str]:
         factor = f"balance factor {summary['balance_factor']:.3f}"
         lines.append(f"Cells behind each interface port: {shown} ({factor}).")
     loops = summary["loops"]
-    if loops["episodes"]:
+    if loops["longest_ms"] is not None:
         longest = words.stood_words(loops["longest_ms"])
         count = words.number_of(loops["episodes"], "forwarding loop")
         lines.append(f"{count}, the longest for {longest}.")
@@ -75,9 +76,9 @@ def state_lines(summary: dict[str, Any]) -> list[str]:
     return lines
 
 
-def latency_lines(latency: dict[str, float | None]) -> list[str]:
+def latency_lines(latency: Latency) -> list[str]:
     """How long samples took; nothing without one."""
-    half, nearly, most = (latency[name] for name in ("p50", "p99", "max"))
+    half, nearly, most = latency["p50"], latency["p99"], latency["max"]
     if half is None or nearly is None or most is None:
         return []
     shown = tuple(words.ms_words(value) for value in (half, nearly, most))
@@ -87,13 +88,13 @@ def latency_lines(latency: dict[str, float | None]) -> list[str]:
     ]
 
 
-def _why(data: dict[str, Any]) -> str:
+def _why(data: Data) -> str:
     """The reasons of lost samples, the greatest first."""
     lost = sorted(((n, why) for why, n in data["lost_by"].items() if n), reverse=True)
     return "".join(f", {n:,} {words.LOST.get(why, why)}" for n, why in lost)
 
 
-def _broken(summary: dict[str, Any]) -> list[str]:
+def _broken(summary: SkinSummary) -> list[str]:
     cables = words.broken_cables(summary["broken"])
     if not cables:
         return ["No cable is broken at the end."]

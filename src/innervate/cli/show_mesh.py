@@ -12,12 +12,12 @@ if TYPE_CHECKING:
 
 def summary_lines(run: Run) -> list[str]:
     """What a person wants to know first."""
-    headline = words.headline_line(run.summary["headline"])
+    headline = words.headline_line(run.mesh["headline"])
     return [_first(run), headline, *mesh_words.sentences(run.result, run.summary)]
 
 
 def _first(run: Run) -> str:
-    summary = run.summary
+    summary = run.mesh
     return (
         f"{summary['name']}: {words.number_of(summary['nodes'], 'node')}, "
         f"{words.number_of(summary['links'], 'good link')}; "

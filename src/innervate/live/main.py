@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import signal
 import sys
+from collections import Counter
 from collections.abc import AsyncGenerator, Callable
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from innervate.live.messages import MeshNode
 from innervate.live.metrics import MetricsPage
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import Loaded, address, load
+from innervate.live.notices import Notices
 from innervate.live.receipts import FINAL
 from innervate.live.rotation import Rotation
 from innervate.live.skin import SinkNode
@@ -48,11 +50,13 @@ class Process:
         self.rotation = None if sealer is None else Rotation(sealer)
         named = loaded.table.socket
         where = Path(named) if named else status.folder() / f"{loaded.name}.sock"
-        self.server = status.Server(where, self._answer)
+        self.server = status.Server(where, self._answer, self.node.callers)
         self.page: MetricsPage | None = None
         if loaded.table.metrics is not None:
             self.page = MetricsPage(address(loaded.table.metrics, str(loaded.path)), self.node)
         self.ending = asyncio.Event()
+        self.notices = Notices(self._say)
+        self._callers: Counter[str] = Counter()  # as they were told last
 
     async def run(self) -> None:
         """Until a signal says stop."""
@@ -66,10 +70,12 @@ class Process:
                 await self.page.start()
             await self.node.start()
             self._say(self._ready())
+            self._look()
             while not self.ending.is_set():
                 await self._sleep(SAVE_S)
-                if self.node.sealer is not None:
+                if self.node.sealer is not None or self.node.state.trouble:
                     self.node.save(False)
+                self._look()
             if not await self.node.drain(DRAIN_S):
                 self._say("stopped; messages were still under way")
         finally:
@@ -77,6 +83,7 @@ class Process:
             if self.page is not None:
                 await self.page.stop()
             await self.server.stop()
+        self._look()
 
     def reload(self) -> None:
         """SIGHUP: read the file again; keys may be others, all else needs a restart."""
@@ -94,6 +101,19 @@ class Process:
                   and getattr(fresh.table, name) != getattr(self.loaded.table, name)]  # fmt: skip
         restart = f"; restart it for what else has changed: {', '.join(others)}" if others else ""
         self._say(f"keys reloaded: {keys.use} seals after {keys.grace_s:g} s{restart}")
+
+    def _look(self) -> None:
+        """Say what is the matter with the state's file and with callers, once in a while."""
+        state = self.node.state
+        if state.trouble:
+            text = f"{state.path}: cannot be written: {state.trouble}; going on, trying again"
+            self.notices.tell("state", text)
+        else:
+            self.notices.over("state", f"{state.path}: written again")
+        if self.node.callers != self._callers:
+            self._callers = Counter(self.node.callers)
+            counts = ", ".join(f"{what} {count}" for what, count in self._callers.items())
+            self.notices.tell("callers", f"too many callers: {counts} (since the start)")
 
     async def _sleep(self, seconds: float) -> None:
         try:

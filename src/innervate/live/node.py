@@ -30,6 +30,7 @@ class LiveNode:
         paths: all paths, by port.
         reports: how often the protocol reported what, by code.
         taps: who is told of every frame, as it leaves and comes in.
+        callers: how often callers of the node's process could not be let in, and why.
     """
 
     def __init__(
@@ -48,6 +49,7 @@ class LiveNode:
         self.paths: list[Path] = [path for link in links for path in link.paths]
         self.reports: Counter[int] = Counter()
         self.taps: list[Tap] = []
+        self.callers: Counter[str] = Counter()
         self.engine: Engine | None = None
         self.started_at = time.time()
 
@@ -163,7 +165,9 @@ class LiveNode:
         strangers = sum(getattr(link, "strangers", 0) for link in self.links)
         if strangers:
             total["dropped: from a stranger"] = strangers
-        return total
+        if self.state.failed:
+            total["state not written"] = self.state.failed
+        return total + self.callers
 
     def status(self) -> dict[str, Any]:
         """What is known here: paths, counters, and what the protocol says of itself."""
@@ -174,6 +178,7 @@ class LiveNode:
             "up_s": round(time.time() - self.started_at, 1),
             "sealed": self.sealer is not None,
             "keys": self._keys_status(),
+            "state": self.state.status(),
             "paths": paths,
             "broken": [path["name"] for path in paths if path["broken"]],
             "counters": dict(sorted(self.counters().items())),

@@ -35,8 +35,8 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
     return "\n".join(
         part
         for part in (
-            _top(result, summary),
-            _field(result, sheet, crossings),
+            top(result, summary),
+            field(result, sheet, crossings),
             _film(result, sheet, crossings),
             _charts(result, summary, crossings),
             _crossings(result, crossings),
@@ -49,7 +49,8 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
     )
 
 
-def _top(result: Any, summary: Mapping[str, Any]) -> str:
+def top(result: Any, summary: Mapping[str, Any]) -> str:
+    """What happened, and the figures to know."""
     model = result.plan.scenario.model
     over = (
         f"{summary['name']}: {words.number_of(summary['nodes'], 'node')}, "
@@ -94,7 +95,8 @@ def shown_crossing(crossings: list[Crossing]) -> Crossing | None:
     return max(came, key=lambda c: c.accepted_us - c.raised_us, default=None)
 
 
-def _field(result: Any, sheet: Sheet, crossings: list[Crossing]) -> str:
+def field(result: Any, sheet: Sheet, crossings: list[Crossing]) -> str:
+    """The map, with the way of the alarm that took longest."""
     shown = shown_crossing(crossings)
     sent = copies(result, shown) if shown is not None else []
     hops = way(result, shown, sent) if shown is not None else []

@@ -11,11 +11,9 @@ from innervate.plot.svg import Drawing, clean
 
 LEVEL_CLASSES = {OK: "status", DEGRADED: "status warn", DOWN: "status bad", NO_DATA: "status none"}
 
-_STYLE = """
+# Parts of a page, wherever they stand.
+PARTS = """
 *{box-sizing:border-box}
-body{margin:0;background:var(--ground);color:var(--ink);
-font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,sans-serif}
-main{max-width:1060px;margin:0 auto;padding:28px 20px 60px}
 h1{font-size:1.55rem;line-height:1.3;margin:.2em 0 .4em}
 h2{font-size:1.15rem;margin:2.2em 0 .6em;padding-bottom:.3em;border-bottom:1px solid var(--faint)}
 h3{font-size:.95rem;margin:0 0 .1em}
@@ -55,6 +53,11 @@ td:first-child{white-space:nowrap}
 .summary td{overflow-wrap:anywhere;white-space:normal}
 pre{background:var(--panel);border-radius:8px;padding:12px 14px;overflow-x:auto;font-size:.85rem;
 line-height:1.45}
+"""
+_PAGE = """
+body{margin:0;background:var(--ground);color:var(--ink);
+font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,sans-serif}
+main{max-width:1060px;margin:0 auto;padding:28px 20px 60px}
 details{margin:.5em 0}
 summary{cursor:pointer;color:var(--accent)}
 footer{margin-top:3em;color:var(--soft);font-size:.85rem}
@@ -73,7 +76,7 @@ def page(title: str, body: str) -> str:
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{escape(title)}</title>\n<style>{theme.drawing_style()}{_STYLE}</style>\n"
+        f"<title>{escape(title)}</title>\n<style>{theme.drawing_style()}{PARTS}{_PAGE}</style>\n"
         f"</head>\n<body>\n<main>\n{body}\n</main>\n</body>\n</html>\n"
     )
 

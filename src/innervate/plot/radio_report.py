@@ -43,7 +43,7 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
     return "\n".join(
         part
         for part in (
-            _top(result, summary),
+            top(result, summary),
             _timelines(result),
             _charts(result, summary),
             _events(result),
@@ -53,7 +53,8 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
     )
 
 
-def _top(result: Any, summary: Mapping[str, Any]) -> str:
+def top(result: Any, summary: Mapping[str, Any]) -> str:
+    """What happened, and the figures to know."""
     params = result.plan.params
     switch = f"in {words.ms_words(params['ta_us'] / 1e3)}" if params["ta_us"] else "at once"
     over = (
@@ -151,6 +152,12 @@ def _figures(result: Any, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     count = words.count_words(summary["events"])
     found.append((took, f"to simulate {result.ended_us / 1e6:.4g} s, {count} events"))
     return found
+
+
+def on_air(result: Any) -> str:
+    """The first collision or transmissions, a lane for each station; "" without any."""
+    shown = radio_scene.scene(result, *radio_scene.resolution(result))
+    return _wide(radio_timeline.draw(shown), "", "") if shown.boxes else ""
 
 
 def _timelines(result: Any) -> str:

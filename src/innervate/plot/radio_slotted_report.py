@@ -16,10 +16,11 @@ STEPS_MAX = 2000
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
     """Headline, numbers and pictures, as HTML."""
-    return _top(result, summary) + "\n" + section("How well it went", _charts(result, summary))
+    return top(result, summary) + "\n" + section("How well it went", charts_of(result, summary))
 
 
-def _top(result: Any, summary: Mapping[str, Any]) -> str:
+def top(result: Any, summary: Mapping[str, Any]) -> str:
+    """What happened, and the figures to know."""
     model = result.plan.scenario.model
     over = (
         f"{summary['name']}: the slotted level, a reference model that counts slots; "
@@ -44,7 +45,8 @@ def _top(result: Any, summary: Mapping[str, Any]) -> str:
     return "<header>\n" + "".join(parts) + "</header>"
 
 
-def _charts(result: Any, summary: Mapping[str, Any]) -> str:
+def charts_of(result: Any, summary: Mapping[str, Any]) -> str:
+    """Delays and shares, as figures."""
     figures = []
     delays = np.sort(result.found.delay_slots)
     if len(delays):

@@ -22,7 +22,7 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
     return "\n".join(
         part
         for part in (
-            _top(story),
+            top(story),
             _recovery(story),
             _touch(story),
             _traffic(story),
@@ -32,7 +32,8 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
     )
 
 
-def _top(story: Story) -> str:
+def top(story: Story) -> str:
+    """What happened, what is broken, and the figures to know."""
     summary, graph = story.summary, story.graph
     over = (
         f"{summary['name']}: a robot skin of {words.number_of(graph.cells, 'cell')}, "
@@ -108,13 +109,17 @@ def _figures(story: Story) -> list[tuple[str, str]]:
     return found
 
 
-def _recovery(story: Story) -> str:
+def maps(story: Story) -> str:
+    """The skin before, during and after the worst event, and what the colours mean."""
     panels = story.maps()
     columns = "four" if len(panels) > 1 and not story.sheet.wide else "two"
-    maps = pictures([_figure(panel) for panel in panels], columns)
+    return pictures([_figure(panel) for panel in panels], columns) + keys(legend(story))
+
+
+def _recovery(story: Story) -> str:
     charts = [_figure(panel) for panel in (*story.zooms(), *story.overview())]
     head = "The recovery" if story.hero is not None else "The skin"
-    return section(head, maps + keys(legend(story)) + pictures(charts, "two"))
+    return section(head, maps(story) + pictures(charts, "two"))
 
 
 def _touch(story: Story) -> str:

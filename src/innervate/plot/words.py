@@ -30,7 +30,7 @@ LOST = {
 }
 
 
-def headline_line(found: Mapping[str, str]) -> str:
+def headline_line(found: Mapping[str, object]) -> str:
     """A summary's headline in a line: "degraded: 1 of 91 messages was not delivered."."""
     return f"{found['level']}: {found['text']}"
 

@@ -12,6 +12,7 @@ from innervate import scenario as scenarios
 from innervate.running import folder as folders
 from innervate.running.errors import RunError
 from innervate.running.rooms import room_of
+from innervate.running.run import Run
 from innervate.running.trail import first_difference
 from innervate.scenario import ScenarioError
 
@@ -19,6 +20,7 @@ from innervate.scenario import ScenarioError
 _ASIDE = ("wall_s", "events_per_s")
 
 Difference = tuple[str, Any, Any]
+Side = str | os.PathLike[str] | Run
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,22 +66,30 @@ class Comparison:
         return self.divergence is None and not self.summary
 
 
-def compare(folder_a: str | os.PathLike[str], folder_b: str | os.PathLike[str]) -> Comparison:
-    """Compare two run folders; both are simulated again to find the first event that differs.
+def compare(a: Side, b: Side) -> Comparison:
+    """What differs between two runs; if they differ, both are simulated again to find where.
+
+    Args:
+        a: a run, or the folder of one.
+        b: another.
 
     Raises:
         RunError: one of them is not a run folder, or damaged.
     """
-    a, b = _Recorded(Path(folder_a)), _Recorded(Path(folder_b))
+    one, other = _side(a), _side(b)
     divergence = None
-    if a.fingerprint != b.fingerprint or a.ended_us != b.ended_us:
-        divergence = _diverge(a, b)
+    if one.fingerprint != other.fingerprint or one.ended_us != other.ended_us:
+        divergence = _diverge(one, other)
     return Comparison(
-        scenario=differences(a.tables, b.tables),
-        summary=differences(a.trajectory, b.trajectory),
+        scenario=differences(one.tables, other.tables),
+        summary=differences(one.trajectory, other.trajectory),
         divergence=divergence,
-        notes=_notes(a, b),
+        notes=_notes(one, other),
     )
+
+
+def _side(given: Side) -> _Recorded:
+    return _Done(given) if isinstance(given, Run) else _Recorded(Path(given))
 
 
 def differences(a: Any, b: Any, key: str = "") -> list[Difference]:
@@ -100,7 +110,7 @@ class _Recorded:
     """What a run folder says."""
 
     def __init__(self, folder: Path) -> None:
-        self.folder = folder
+        self.called = str(folder)
         if not folder.is_dir():
             raise RunError(f"{folder} is not a run folder: there is no such folder")
         self.summary = folders.read_json(folder, folders.SUMMARY)
@@ -113,7 +123,12 @@ class _Recorded:
             raise RunError(f"{folder} is not a run folder: it has no {path.name}") from None
         except (OSError, ValueError):
             raise RunError(f"{path} is damaged; run the scenario again") from None
-        self.fingerprint = self.summary.get("fingerprint")
+        self._folder = folder
+
+    @property
+    def fingerprint(self) -> Any:
+        """Of its events."""
+        return self.summary.get("fingerprint")
 
     @property
     def trajectory(self) -> dict[str, Any]:
@@ -125,16 +140,31 @@ class _Recorded:
         """Simulated time the run came to, us."""
         ended = self.summary.get("interrupted_at_s", self.summary.get("duration_s"))
         if not isinstance(ended, int | float):
-            raise RunError(f"{self.folder / folders.SUMMARY} is damaged; run the scenario again")
+            raise RunError(f"{self.called}: its summary is damaged; run the scenario again")
         return round(1e6 * ended)
 
     def plan(self) -> Any:
         """The plan of its scenario."""
         try:
-            made = scenarios.plan(scenarios.load(self.folder / folders.SCENARIO))
+            made = scenarios.plan(scenarios.load(self._folder / folders.SCENARIO))
         except ScenarioError as error:
             raise RunError(f"its scenario cannot be run any more: {error}") from None
         return made
+
+
+class _Done(_Recorded):
+    """The same of a run that is at hand."""
+
+    def __init__(self, run: Run) -> None:
+        self.called = repr(run)
+        self.summary = dict(run.summary)
+        self.provenance = run.provenance
+        self.tables = tomllib.loads(scenarios.dump(run.scenario))
+        self._run = run
+
+    def plan(self) -> Any:
+        """The plan it was run with."""
+        return self._run.plan
 
 
 def _diverge(a: _Recorded, b: _Recorded) -> Divergence | None:
@@ -169,5 +199,5 @@ def _notes(a: _Recorded, b: _Recorded) -> list[str]:
         notes.append("a run on the slotted level has no events to compare")
     for run in (a, b):
         if "interrupted_at_s" in run.summary:
-            notes.append(f"{run.folder} was interrupted at {run.ended_us / 1e6:g} s")
+            notes.append(f"{run.called} was interrupted at {run.ended_us / 1e6:g} s")
     return notes

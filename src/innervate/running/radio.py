@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis import radio as analysis
+from innervate.analysis.radio_summary import RadioSummary, SlottedSummary
 from innervate.protocol.radio_words import CLOCK, LEAVE, MAIN, RESULT
 from innervate.running import radio_slotted
 from innervate.sim.loop import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
@@ -38,7 +39,7 @@ def _is_slotted(plan: Any) -> bool:
     return bool(plan.scenario.model.channel.level == "slotted")
 
 
-def summarize(result: Any) -> dict[str, Any]:
+def summarize(result: Any) -> RadioSummary | SlottedSummary:
     """The summary of a run; what never happened is None."""
     if _is_slotted(result.plan):
         return radio_slotted.summarize(result)

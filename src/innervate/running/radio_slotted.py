@@ -9,9 +9,12 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis.radio_headline import RadioFacts, headline
+from innervate.analysis.radio_summary import Delays, SlottedSummary
 from innervate.kernel.wall import wall_s
 from innervate.scenario.radio_traffic import mean_interval_us
 from innervate.sim.slotted import SlottedResult, slotted
+
+NONE = (None, None, None, None)
 
 
 @dataclass(slots=True)
@@ -78,14 +81,14 @@ def simulate(plan: Any, plain: bool) -> SlottedRun:
     )
 
 
-def summarize(result: SlottedRun) -> dict[str, Any]:
+def summarize(result: SlottedRun) -> SlottedSummary:
     """The summary of a slotted run, by the names of other radio runs."""
     plan, found = result.plan, result.found
     delays = found.delay_slots
-    quantiles = {
-        name: float(np.quantile(delays, q)) if len(delays) else None
-        for name, q in (("p50", 0.5), ("p95", 0.95), ("p99", 0.99), ("max", 1.0))
-    }
+    p50, p95, p99, most = (
+        np.quantile(delays, (0.5, 0.95, 0.99, 1)).tolist() if len(delays) else NONE
+    )
+    quantiles: Delays = {"p50": p50, "p95": p95, "p99": p99, "max": most}
     first = list(dict.fromkeys(found.order))
     done = result.counts["completed"]
     facts = RadioFacts(plan.stations, offered=done, delivered=done, ended=True)

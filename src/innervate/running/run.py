@@ -11,6 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from innervate import scenario as scenarios
+from innervate.analysis.summaries import (
+    MeshSummary,
+    RadioSummary,
+    SkinSummary,
+    SlottedSummary,
+    Summary,
+)
 from innervate.analysis.touch import WINDOW_S, Image, received_image
 from innervate.running import folder as folders
 from innervate.running.rooms import room_of
@@ -33,14 +40,15 @@ class Run:
         scenario: as resolved.
         plan: its whole numbers; a Plan, RadioPlan or MeshPlan.
         result: the simulation's rows and its world at the end: a Result, RadioResult or MeshResult.
-        summary: what a person wants to know, by the names of docs/summary.
+        summary: what a person wants to know; `skin`, `radio`, `slotted` and `mesh` are the same
+            with its keys known to type checkers and editors.
         checks: the invariant checkers were on.
     """
 
     scenario: Scenario
     plan: Any
     result: Any
-    summary: dict[str, Any]
+    summary: Summary
     checks: bool = True
     written: Path | None = field(default=None)
 
@@ -73,6 +81,38 @@ class Run:
         )
 
     @property
+    def skin(self) -> SkinSummary:
+        """The summary of a skin's run; AttributeError if it is of another kind."""
+        if self.summary["kind"] != "skin":
+            raise self._other("skin")
+        return self.summary
+
+    @property
+    def radio(self) -> RadioSummary:
+        """The summary of a radio team's run; AttributeError if it is of another kind."""
+        if self.summary["kind"] != "radio" or "level" in self.summary:
+            raise self._other("radio")
+        return self.summary
+
+    @property
+    def slotted(self) -> SlottedSummary:
+        """The summary of a run of the slotted channel; AttributeError if it is of another kind."""
+        if self.summary["kind"] != "radio" or "level" not in self.summary:
+            raise self._other("slotted")
+        return self.summary
+
+    @property
+    def mesh(self) -> MeshSummary:
+        """The summary of a mesh's run; AttributeError if it is of another kind."""
+        if self.summary["kind"] != "mesh":
+            raise self._other("mesh")
+        return self.summary
+
+    def _other(self, wanted: str) -> AttributeError:
+        own = "slotted" if "level" in self.summary else self.summary["kind"]
+        return AttributeError(f"this run has no summary {wanted!r}; run.{own} is its summary")
+
+    @property
     def interrupted(self) -> bool:
         """True if it was ended early; all it holds is then of the time until there."""
         return bool(self.result.interrupted)
@@ -80,6 +120,11 @@ class Run:
     def received_image(self, time_s: float, window_s: float = WINDOW_S) -> Image:
         """Force and proximity per cell as the PC had them at a time (see analysis/touch.py)."""
         return received_image(self.result, time_s, window_s)
+
+    def _repr_html_(self) -> str:
+        """In a notebook: the headline, the figures to know, and a picture."""
+        shown: str = import_module("innervate.plot.notebook").render(self.result, self.summary)
+        return shown
 
     def plot(self, figure: str = "", **options: Any) -> Any:
         """A matplotlib figure of the run; `innervate.plot.figures` says which there are."""

@@ -160,8 +160,9 @@ def trouble(tables: Tables) -> str:
         done = run(scenarios.from_dict(tables))
     except (InvariantBroken, FramesLost) as error:
         return str(error)
-    if tables["kind"] == "radio" and done.summary["lost_silently"]:
-        return f"{done.summary['lost_silently']} packets lost silently"
+    summary = done.summary
+    if summary["kind"] == "radio" and summary["lost_silently"]:
+        return f"{summary['lost_silently']} packets lost silently"
     return ""
 
 

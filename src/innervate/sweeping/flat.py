@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Any
 
 # Not of the network: the machine's, or columns of their own.
@@ -13,7 +14,7 @@ TABLES_MAX = 16  # elements of a list of tables with columns of their own
 Row = dict[str, Any]
 
 
-def flat(summary: dict[str, Any]) -> Row:
+def flat(summary: Mapping[str, Any]) -> Row:
     """All figures of a summary by dotted name.
 
     A list of tables (`recoveries`) gives the mean over its elements under the plain name
