@@ -13,7 +13,7 @@ from innervate.sim.simulate import InvariantBroken, simulate
 from innervate.wire import skin as wire
 from tests.skin_runs import EVERYTHING, free, keys_of, patch, plain_stack, plan_of, random_events
 
-RULES = ["feasible", "strict", "paper", "static"]
+RULES = ["feasible", "strict", "paper", "paper-lax", "static"]
 SHAPES = [
     patch(3, 3, (0, 1), (2, 1)),
     patch(4, 2, (0, 0)),
@@ -41,6 +41,7 @@ def scenarios(draw):
         "k": draw(st.integers(1, 6)),
         "m": draw(st.integers(1, 4)),
         "balance_periods": draw(st.integers(1, 9)),
+        "balance_rule": draw(st.sampled_from(["even", "paper"])),
         "restart_s": 0.02,
         "gap_us": draw(st.sampled_from([0, 300, 500])),
     }

@@ -332,6 +332,13 @@ def test_without_a_gateway_nobody_has_a_way_until_the_standby_leads():
     assert "n1 leads as gateway" in texts(made)
 
 
+def test_metres_are_measured_only_where_nodes_are_where_they_are():
+    assert simulated(MESH).scene()["metres"]
+    pairs = {**MESH, "flow": [], "radio": {"profile": "250k"}, "link": [{"a": "g", "b": "x"}]}
+    del pairs["nodes"]
+    assert not simulated(pairs).scene()["metres"]
+
+
 def test_on_a_channel_that_all_share_nothing_can_be_cut():
     made = Simulated(scenario.plan(scenario.load("mesh-team")))
     assert "cut" not in made.scene()["can"]

@@ -7,7 +7,7 @@ sweeps show what that function says; none of them judges by itself.
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypedDict
+from typing import Any, NamedTuple, TypedDict
 
 OK, DEGRADED, DOWN, NO_DATA = "ok", "degraded", "down", "no data"
 LEVELS = (OK, DEGRADED, DOWN, NO_DATA)  # from well to worst; no data: nobody answers
@@ -34,6 +34,10 @@ class Headline(NamedTuple):
     level: str
     text: str
     nodes: tuple[int, ...] = ()
+
+    def shown(self) -> dict[str, Any]:
+        """For pages, with the nodes to be marked."""
+        return {**self.as_summary(), "nodes": list(self.nodes)}
 
     def as_summary(self) -> HeadlineEntry:
         """The entry `headline` of a summary."""

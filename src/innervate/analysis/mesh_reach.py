@@ -34,6 +34,8 @@ from innervate.sim.mesh.world import ALIVE, DEAD
 FAR = 1 << 30
 HALF = 0.5
 
+HAS_WAY, ASTRAY, CUT_OFF = range(3)
+
 
 class Choices(NamedTuple):
     """Whom nodes would hand a packet for the gateway, as far as they know; n nodes.
@@ -81,6 +83,11 @@ class Ways(NamedTuple):
         """Who is on and has no way, for whatever reason."""
         found: Flags = self.cut_off | self.astray
         return found
+
+    @property
+    def lacks(self) -> Numbers:
+        """Per node HAS_WAY (or it is off), ASTRAY or CUT_OFF."""
+        return np.where(self.cut_off, CUT_OFF, np.where(self.astray, ASTRAY, HAS_WAY))
 
 
 def ways(known: Choices, carries: Flags, on: Flags, off: Flags, leads: Flags) -> Ways:

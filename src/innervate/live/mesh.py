@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections import Counter
 from typing import Any
 
@@ -10,9 +11,21 @@ from innervate.protocol import mesh_fields as fields
 from innervate.protocol.mesh_frames import is_sound
 from innervate.protocol.mesh_kept import crowds, is_ahead
 from innervate.protocol.mesh_messages import resolve
-from innervate.protocol.mesh_near import FREE, SUSPECT
+from innervate.protocol.mesh_near import FREE, SUSPECT, is_strong, is_suspect, place_of
 from innervate.protocol.mesh_queue import has_room
-from innervate.protocol.mesh_words import ACK, ACK_WANTED, ALL, OWN, TIMERS
+from innervate.protocol.mesh_route import alternate, planned
+from innervate.protocol.mesh_upward import is_better, is_uplink
+from innervate.protocol.mesh_words import (
+    ACK,
+    ACK_WANTED,
+    ALL,
+    ALTERNATE,
+    OWN,
+    SEARCH,
+    TABLE_FREE,
+    TABLES,
+    TIMERS,
+)
 from innervate.protocol.rng import seeded
 from innervate.wire import mesh as wire
 
@@ -185,9 +198,30 @@ class MeshStack:
             "table": node.version,
             "neighbours": neighbours,
             "routes": routes,
+            "onward": self._onward(),
+            "gives_back": params.mode != TABLE_FREE and params.failover == SEARCH,
             "queue": sum(state != 0 for state in node.q_state),
             "round_trip_ms": round(node.round_trip / 1000, 3),
         }
+
+    def _onward(self) -> list[int]:
+        """Whom a message for the gateway goes to, and to whom next if that one is silent."""
+        node, params = self.node, self.params
+        dest = node.gateway
+        if not node.known or dest == node.number:
+            return []
+        strong = is_strong(node, params, place_of(node, params, dest))
+        tables = params.mode == TABLES
+        up = [k for k in range(params.places) if is_uplink(node, k)]
+        order = functools.cmp_to_key(lambda a, b: -1 if is_better(node, params, a, b) else 1)
+        found = [
+            dest if strong else FREE,
+            planned(node, params, dest) if tables else FREE,
+            alternate(node, params, dest) if tables and params.failover >= ALTERNATE else FREE,
+            *(node.near[k] for k in sorted(up, key=order)),
+        ]
+        answering = [who for who in found if who != FREE and not is_suspect(node, params, who)]
+        return list(dict.fromkeys(answering))
 
     def _robot_status(self) -> dict[str, Any]:
         """Where a robot is, from the fence's origin; nothing of other nodes."""

@@ -89,6 +89,9 @@ class Aerial(Path):
             self._radio.plug(not cut)
 
 
+TIMING = ("slot_us", "packet_slots", "ta_us", "dmax_us")
+
+
 class StationStack:
     """One station with practical CSMA/CD-R.
 
@@ -157,6 +160,7 @@ class StationStack:
             "mode": station.mode,
             "place": None if station.pos < 0 else station.pos,
             "queued": station.queued,
+            "timing": {name: getattr(self.params, name) for name in TIMING},
         }
 
 

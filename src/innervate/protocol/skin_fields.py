@@ -67,7 +67,7 @@ SINK_PORT = (
 )
 
 PARAMS = (
-    ("rule", 0, 0, 3, "choice", "0 feasible, 1 strict, 2 paper, 3 static"),
+    ("rule", 0, 0, 4, "choice", "0 feasible, 1 strict, 2 paper, 3 static, 4 paper-lax"),
     ("updates", 0, 0, 2, "choice", "0 periodic, 1 triggered, 2 wave"),
     ("beacon_us", 0, 100, 1000000, "us", "period T_b of beacons"),
     ("r_f", 0, 1, 1680, "1/840", "penalty of a period without a beacon"),
@@ -76,6 +76,7 @@ PARAMS = (
     ("max_depth", 0, 1, 254, "hops", "MAXD: longer routes are refused"),
     ("seq_every", 0, 1, 255, "periods", "M: the PC counts sq up every M periods"),
     ("balance_periods", 0, 0, 65535, "periods", "between attempts to balance; 0 = never"),
+    ("balance_rule", 0, 0, 1, "choice", "who moves: 0 who evens loads out, 1 as Alg. 3 is printed"),
     ("hold_periods", 0, 1, 65535, "periods", "FD_HOLD: without a route until fd is forgotten"),
     ("gap_us", 0, 0, 1000000, "us", "GAP: least time between triggered beacons"),
     ("skip_us", 0, 0, 1000000, "us", "wave: a tick stays silent this long after a send"),

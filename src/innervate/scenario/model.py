@@ -97,8 +97,8 @@ class ProtocolTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     """[protocol] [skin 5]."""
 
     rule: Annotated[
-        Literal["feasible", "strict", "paper", "static"],
-        Meta(description='"feasible", "strict", "paper" or "static"'),
+        Literal["feasible", "strict", "paper", "paper-lax", "static"],
+        Meta(description='"feasible", "strict", "paper", "paper-lax" or "static"'),
     ] = "feasible"
     updates: Annotated[
         Literal["periodic", "triggered", "wave"],
@@ -122,6 +122,9 @@ class ProtocolTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
         Annotated[int, Meta(ge=1, le=65535, description="a whole number of periods, 1 to 65535")]
         | None
     ) = None
+    balance_rule: Annotated[Literal["even", "paper"], Meta(description='"even" or "paper"')] = (
+        "even"
+    )
     max_depth: Annotated[
         int, Meta(ge=1, le=254, description="a whole number of hops, 1 to 254")
     ] = 64

@@ -23,7 +23,8 @@ DEPTH_EXPECTED = 32  # MAXD' [skin 4]
 DATA_CELLS_MAX = 65_536
 LOSS_ONE = 32_768
 
-RULES = ("feasible", "strict", "paper", "static")
+RULES = ("feasible", "strict", "paper", "static", "paper-lax")
+BALANCE_RULES = ("even", "paper")
 UPDATES = ("periodic", "triggered", "wave")
 ACTIONS = ("cut", "restore", "kill", "revive", "loose", "restart", "lose")
 CUT, RESTORE, KILL, REVIVE, LOOSE, RESTART, LOSE = range(7)
@@ -151,6 +152,7 @@ def parameters(protocol: ProtocolTable, depth_max: int) -> dict[str, int]:
         "max_depth": protocol.max_depth,
         "seq_every": protocol.m or min(k, 5),
         "balance_periods": balance if protocol.balancing else 0,
+        "balance_rule": BALANCE_RULES.index(protocol.balance_rule),
         "hold_periods": k + 4 * max(depth_max, DEPTH_EXPECTED),
         "gap_us": protocol.gap_us,
         "skip_us": beacon_us * 6 // 10,

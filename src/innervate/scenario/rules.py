@@ -91,6 +91,9 @@ def _protocol(source: Source, model: SkinScenario) -> None:
     if not protocol.balancing and protocol.balance_periods is not None:
         message = "protocol.balance_periods has no effect with balancing = false; leave one out"
         raise source.error(("protocol", "balance_periods"), message)
+    if not protocol.balancing and protocol.balance_rule != "even":
+        message = "protocol.balance_rule has no effect with balancing = false; leave one out"
+        raise source.error(("protocol", "balance_rule"), message)
     _range(source, ("protocol", "forward_us"), protocol.forward_us)
 
 

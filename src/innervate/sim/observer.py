@@ -13,7 +13,8 @@ from innervate.protocol.skin_words import (
     REPORT_BROKEN,
     REPORT_DROP,
     REPORT_PARENT,
-    RULE_PAPER,
+    RULE_FEASIBLE,
+    RULE_STRICT,
 )
 from innervate.sim.wires import EARLY, LOOPED, NO_ROUTE
 from innervate.sim.world import DEAD
@@ -150,7 +151,8 @@ def open_loop(world, time, cell):
     run.loops += 1
     run.loops_open += 1
     note(world, time, cell, LOOP_OPEN, length, 0)
-    if run.rule < RULE_PAPER and run.checks and run.broken == 0:
+    loop_free = run.rule == RULE_FEASIBLE or run.rule == RULE_STRICT
+    if loop_free and run.checks and run.broken == 0:
         run.broken = BROKEN_LOOP
         run.broken_node = cell
         run.broken_other = next_hop(world, cell)

@@ -7,6 +7,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from innervate.analysis.headline import Headline
+from innervate.analysis.mesh_headline import headline
 from innervate.analysis.mesh_reach import Ways, of_simulation
 from innervate.plot.mesh_words import fault_words
 from innervate.protocol import mesh_words as w
@@ -16,6 +18,7 @@ from innervate.sim.mesh.world import ALIVE, DEAD, ON_AIR
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import History
+from innervate.web.mesh_books import Books
 from innervate.web.mesh_scene import Field
 from innervate.web.messages import number
 from innervate.web.view import Memory, View
@@ -42,7 +45,6 @@ class MeshMemory(Memory):
     latency_us: list[int] = field(default_factory=list)
     messages: dict[tuple[int, int], int] = field(default_factory=dict)
     alarms: dict[tuple[int, int], int] = field(default_factory=dict)
-    heard: set[int] = field(default_factory=set)  # who got a message through since the fault
 
 
 class MeshView(View):
@@ -63,6 +65,8 @@ class MeshView(View):
             near[a].append(b)
             near[b].append(a)
         self.near = near
+        self.books = Books(engine)
+        self._found: tuple[int, Ways] | None = None
         if self.plan.mac not in MACS:  # a channel on which everybody hears everybody
             self.can = ("kill", "revive")
 
@@ -78,9 +82,9 @@ class MeshView(View):
     def note(self, rows: Rows) -> None:
         """Take in what happened since the last call."""
         memory, sent = self.memory, rows["sent"]
+        self.books.add(rows)
         np.add.at(memory.air_us, sent["node"], sent["end"] - sent["time"])
         if self.tell_faults():
-            memory.heard.clear()
             self.check()
         for at, node, code, a, b in rows["rows"].tolist():
             self._report(at, node, code, a, b)
@@ -89,8 +93,6 @@ class MeshView(View):
             accepted = memory.messages.pop((int(row["origin"]), int(row["seq"])), None)
             if accepted is not None:
                 memory.latency_us.append(int(row["time"]) - accepted)
-                if memory.fault is not None and accepted > memory.fault.at_us:
-                    memory.heard.add(int(row["origin"]))
         for row in came[came["kind"] == w.ALARM]:
             self._alarm_came(int(row["time"]), int(row["body0"]), int(row["body3"]))
 
@@ -145,12 +147,24 @@ class MeshView(View):
 
     def _ways(self) -> Ways:
         """Who reaches a gateway now."""
-        return of_simulation(self.engine.world, self.plan)
+        if self._found is None or self._found[0] != self.engine.now_us:
+            self._found = self.engine.now_us, of_simulation(self.engine.world, self.plan)
+        return self._found[1]
 
     def _lacking(self) -> int:
         """Nodes that the network could serve and does not; all while there is no gateway."""
         ways = self._ways()
         return int(np.count_nonzero(ways.astray if ways.leads.any() else ways.on))
+
+    def headline(self) -> Headline:
+        """Is all well, and if not, what is wrong."""
+        return headline(self._ways(), self.books.traffic(self.is_still))
+
+    def forget(self, memory: Any) -> None:
+        """Go back to a memory."""
+        super().forget(memory)
+        self.books.forget()
+        self._found = None
 
     def points(self) -> dict[str, float | None]:
         """A point of every plot, for now."""
@@ -180,6 +194,7 @@ class MeshView(View):
             "load": np.minimum(self.memory.load, 1.0).round(3),
             "unconnected": int(np.count_nonzero(ways.without)),
             "apart": int(np.count_nonzero(ways.cut_off)),
+            "way": ways.lacks,
             "flights": self._flights() if flights else [],
         }
         if self.field.walks:

@@ -7,7 +7,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from innervate.analysis.headline import Headline
 from innervate.analysis.load import balance_factor
+from innervate.analysis.reach import world_facts
+from innervate.analysis.skin_headline import skin_headline
 from innervate.analysis.ways import NOWHERE
 from innervate.plot.words import fault_words, number_of
 from innervate.protocol.skin_words import (
@@ -17,8 +20,9 @@ from innervate.protocol.skin_words import (
     REPORT_PARENT,
 )
 from innervate.scenario import CUT, KILL, LOOSE, RESTORE, REVIVE, Fault
-from innervate.sim.observer import CUT_OFF, LOOP_OPEN, UNROUTED
+from innervate.sim.observer import APART, CUT_OFF, LOOP_OPEN, UNROUTED
 from innervate.sim.wires import (
+    EARLY,
     LOOPED,
     LOST_BROKEN,
     LOST_CUT,
@@ -50,6 +54,7 @@ class SkinMemory(Memory):
     touch: Any = None
     touch_us: Any = None
     counted: tuple[int, int] = field(default=(0, 0))
+    apart_most: int = 0  # most cells that were cut off from the PC at the same time
     waited: tuple[int, int] = (0, 0)  # samples since the last point, the sum of their latencies, us
 
 
@@ -111,6 +116,8 @@ class SkinView(View):
             memory.waited = (
                 memory.waited[0] + len(told), memory.waited[1] + int(told["latency"].sum())
             )  # fmt: skip
+        apart = rows["rows"]["a"][rows["rows"]["code"] == APART]
+        memory.apart_most = max(memory.apart_most, int(apart.max(initial=0)))
         codes = (CUT_OFF, UNROUTED, LOOP_OPEN, REPORT_BROKEN, REPORT_PARENT, REPORT_BALANCE)
         found = rows["rows"]
         found = found[np.isin(found["code"], codes)]
@@ -164,6 +171,26 @@ class SkinView(View):
                 recovery.detected_ms = (at_us - recovery.at_us) / 1e3
         self.log.often("broken", at_us, f"{label} {'found broken' if broken else 'works again'}")
 
+    def headline(self) -> Headline:
+        """Is all well, and if not, what is wrong."""
+        found, most = world_facts(self.engine.world, self.cells), self.memory.apart_most
+        sent, lost = self._samples()
+        early = int(self.engine.world.counters[EARLY])
+        return skin_headline(
+            found._replace(
+                cut_off_before=most if most > len(found.cut_off) else 0,
+                sent=sent - early,
+                lost=lost - early,
+            ),
+            self.plan.graph.label,
+        )
+
+    def _samples(self) -> tuple[int, int]:
+        """Tactile samples so far: taken, lost."""
+        counters = self.engine.world.counters
+        lost = counters[LOST_CUT : LOST_BROKEN + 1].sum() + counters[NO_ROUTE : LOOPED + 1].sum()
+        return int(counters[OFFERED]), int(lost)
+
     def points(self) -> dict[str, float | None]:
         """A point of every plot, for now."""
         ways = self.cables.ways(self.engine.world)
@@ -174,11 +201,7 @@ class SkinView(View):
             "balance": None if balance is None else round(balance, 4),
         }
         if self.plan.data_period_us:
-            counters = self.engine.world.counters
-            lost = (
-                counters[LOST_CUT : LOST_BROKEN + 1].sum() + counters[NO_ROUTE : LOOPED + 1].sum()
-            )
-            now = (int(counters[OFFERED]), int(lost))
+            now = self._samples()
             offered, gone = (a - b for a, b in zip(now, self.memory.counted, strict=True))
             self.memory.counted = now
             found["loss"] = round(100 * gone / offered, 3) if offered else 0.0
@@ -200,6 +223,7 @@ class SkinView(View):
             "node_up": np.concatenate([up, none + 1]),
             "link_up": 1 - (world.epoch[self.cables.ends[:, 0]] & 1),
             **ways,
+            "apart": int(np.count_nonzero(np.array(world.watch.apart) >= 0)),
             "load": np.concatenate([load, none]),
             "flights": self.cables.flights(world, self.engine.now_us) if flights else [],
         }
