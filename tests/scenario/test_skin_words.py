@@ -19,7 +19,7 @@ def test_more_samples_than_the_ports_carry():
     (text,) = warned(data={"rate_hz": 500})
     assert text == (
         "80 cells offer 40,000 samples a second, but 2 interface ports carry at most 32,833: "
-        "18 % or more are lost"
+        "18 % or more are lost in the long run"
     )
     assert warned(data={"rate_hz": 400}) == []
 

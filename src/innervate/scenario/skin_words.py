@@ -61,13 +61,13 @@ def _load(made: Plan) -> list[str]:
     if not made.data_period_us:
         return []
     graph, one = made.graph, port_rate(made)
-    rate = 1e6 / made.data_period_us
+    rate = float(made.scenario.model.data.rate_hz)
     offered, room = graph.cells * rate, graph.interfaces * one
     if offered > room:
         ports = f"{graph.interfaces:,} interface ports carry"
         if graph.interfaces == 1:
             ports = "the only interface port carries"
-        lost = f"{100 * (1 - room / offered):.0f} % or more are lost"
+        lost = f"{100 * (1 - room / offered):.0f} % or more are lost in the long run"
         return [
             f"{graph.cells:,} cells offer {offered:,.0f} samples a second, but {ports} at most "
             f"{room:,.0f}: {lost}"
