@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from innervate import __version__
-from innervate.analysis.radio_state import Still
+from innervate.analysis.radio_live import Still
 from innervate.live import status
 from innervate.web.errors import Refused, WatchError
 from innervate.web.history import SERIES, Logbook
