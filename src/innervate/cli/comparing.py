@@ -13,6 +13,9 @@ def compare(first: Path, second: Path) -> int:
     from innervate.running import compare as room
 
     found = room(first, second)
+    for folder, headline in zip((first, second), found.headlines, strict=True):
+        if headline:
+            print(f"{folder} is {headline}")
     if not found.scenario and found.same:
         print("The two runs are the same, event by event.")
     _print("Scenario", found.scenario)

@@ -53,12 +53,14 @@ class Comparison:
         summary: the same for the summary, without what depends on the machine.
         divergence: the first handler call that differs; None if none does.
         notes: what to know besides, a sentence each.
+        headlines: of either run, with its level; "" where a run has none.
     """
 
     scenario: list[Difference]
     summary: list[Difference]
     divergence: Divergence | None
     notes: list[str]
+    headlines: tuple[str, str] = ("", "")
 
     @property
     def same(self) -> bool:
@@ -85,6 +87,7 @@ def compare(a: Side, b: Side) -> Comparison:
         summary=differences(one.trajectory, other.trajectory),
         divergence=divergence,
         notes=_notes(one, other),
+        headlines=(_headline(one), _headline(other)),
     )
 
 
@@ -187,6 +190,11 @@ def _in_words(plan: Any, row: Any) -> str:
     if row is None:
         return "nothing more"
     return f"{int(row['time']) / 1e6:.6f} s, {room_of(plan.kind).call_words(plan, row)}"
+
+
+def _headline(run: _Recorded) -> str:
+    found = run.summary.get("headline")
+    return f"{found['level']}: {found['text']}" if found else ""
 
 
 def _notes(a: _Recorded, b: _Recorded) -> list[str]:
