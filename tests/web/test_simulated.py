@@ -119,6 +119,23 @@ def test_the_recovery_is_that_of_the_batch_run(event):
     assert made.fields()["since_cut_s"] == pytest.approx(0.5)
 
 
+@pytest.mark.parametrize("mended", [False, True])
+def test_a_page_does_not_call_a_skin_recovered_while_cells_are_cut_off(mended):
+    cuts = [{"at_s": 0.5, "action": "cut", "interface": i} for i in (0, 1)]
+    back = [{"at_s": 0.7, "action": "restore", "interface": 0}] if mended else []
+    batch = run({**SKIN, "event": cuts + back})
+    made = simulated({**SKIN, "event": cuts + back})
+    made.run_to_end()
+    shown, told = made.fields()["recovery"], " ".join(texts(made))
+    assert "30 cells are cut off: no cable leads to the PC any more" in told
+    if mended:
+        after_ms = 200.0 + batch.summary["recoveries"][2]["routed_ms"]
+        assert shown["recovered_ms"] == pytest.approx(after_ms)
+    else:
+        assert shown["recovered_ms"] is None
+        assert "have a way again" not in told
+
+
 def test_what_disturbs_nobody_is_over_at_once():
     made = simulated(SKIN)
     go_to(made, 0.5)
