@@ -122,7 +122,7 @@ class SkinView(View):
         codes = (CUT_OFF, APART, UNROUTED, LOOP_OPEN, REPORT_BROKEN, REPORT_PARENT, REPORT_BALANCE)
         found = rows["rows"]
         found = found[np.isin(found["code"], codes)]
-        for at, node, code, a, b in found.tolist():
+        for at, node, code, a, b in _cut_off_first(found.tolist()):
             if code == CUT_OFF and a >= 0:
                 self._fault(a, b)
             elif code == APART:
@@ -165,7 +165,7 @@ class SkinView(View):
         memory.unrouted = cells
         self._recovered(at_us)
         after_us = at_us - memory.event_us
-        if cells == 0:
+        if cells == 0 and memory.apart < self.cells:
             who = "all cells that cables reach" if memory.apart else "all cells"
             what = "again after" if memory.settled else "after"
             self.log.often("routed", at_us, f"{who} have a way {what} {after_us / 1e3:.1f} ms",
@@ -321,3 +321,15 @@ class SkinView(View):
             return {"node": graph.label(cell), **port}
         row, column = graph.patches[patch].row_column(cell)
         return {"cell": {"patch": patch, "row": row, "column": column}, **port}
+
+
+def _cut_off_first(rows: list[tuple[int, ...]]) -> list[tuple[int, ...]]:
+    """The observer's rows in order, but of one moment cells that are cut off before the others.
+
+    It says first how many still seek a way, which are fewer if some can find none any more.
+    """
+    for i in range(len(rows) - 1):
+        (at, _, code, _, _), (then, _, after, _, fresh) = rows[i], rows[i + 1]
+        if code == UNROUTED and after == APART and at == then and fresh:
+            rows[i], rows[i + 1] = rows[i + 1], rows[i]
+    return rows
