@@ -150,4 +150,5 @@ def test_a_run_that_is_not_well_is_called_so_whether_or_not_the_two_differ(writt
     found = compare(written(event=cut), written(event=cut))
     assert found.same
     assert found.headlines[0] == found.headlines[1]
-    assert found.headlines[0].startswith("down: All 4 cells are cut off since 0.300 s: no cable")
+    assert found.headlines[0]["level"] == "down"
+    assert found.headlines[0]["text"].startswith("All 4 cells are cut off since 0.300 s: no cable")

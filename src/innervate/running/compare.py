@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from innervate import scenario as scenarios
+from innervate.analysis.headline import HeadlineEntry
 from innervate.running import folder as folders
 from innervate.running.errors import RunError
 from innervate.running.rooms import room_of
@@ -53,14 +54,14 @@ class Comparison:
         summary: the same for the summary, without what depends on the machine.
         divergence: the first handler call that differs; None if none does.
         notes: what to know besides, a sentence each.
-        headlines: of either run, with its level; "" where a run has none.
+        headlines: of both runs, as in their summaries; None of a run made before there were any.
     """
 
     scenario: list[Difference]
     summary: list[Difference]
     divergence: Divergence | None
     notes: list[str]
-    headlines: tuple[str, str] = ("", "")
+    headlines: tuple[HeadlineEntry | None, HeadlineEntry | None]
 
     @property
     def same(self) -> bool:
@@ -87,7 +88,7 @@ def compare(a: Side, b: Side) -> Comparison:
         summary=differences(one.trajectory, other.trajectory),
         divergence=divergence,
         notes=_notes(one, other),
-        headlines=(_headline(one), _headline(other)),
+        headlines=(one.summary.get("headline"), other.summary.get("headline")),
     )
 
 
@@ -190,11 +191,6 @@ def _in_words(plan: Any, row: Any) -> str:
     if row is None:
         return "nothing more"
     return f"{int(row['time']) / 1e6:.6f} s, {room_of(plan.kind).call_words(plan, row)}"
-
-
-def _headline(run: _Recorded) -> str:
-    found = run.summary.get("headline")
-    return f"{found['level']}: {found['text']}" if found else ""
 
 
 def _notes(a: _Recorded, b: _Recorded) -> list[str]:

@@ -213,8 +213,8 @@ def on_links_changed(world, time, node, index):
         run.unrouted += watch.joined[cell] & (1 - watch.routed[cell])
         lost += watch.before[cell] & (1 - watch.routed[cell])
     note(world, time, node, CUT_OFF, index, lost)
-    note_unrouted(world, time, node)
     note_apart(world, time, node)
+    note_unrouted(world, time, node)
 
 
 def note_apart(world, time, node):

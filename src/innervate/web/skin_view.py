@@ -50,11 +50,11 @@ class SkinMemory(Memory):
     """Besides: the observer's newest word, and what the PC received of every cell."""
 
     unrouted: int = 0
-    apart: int = 0
     settled: bool = False
     touch: Any = None
     touch_us: Any = None
     counted: tuple[int, int] = field(default=(0, 0))
+    apart: int = 0  # cells that are cut off from the PC now
     apart_most: int = 0  # most cells that were cut off from the PC at the same time
     waited: tuple[int, int] = (0, 0)  # samples since the last point, the sum of their latencies, us
 
@@ -117,16 +117,14 @@ class SkinView(View):
             memory.waited = (
                 memory.waited[0] + len(told), memory.waited[1] + int(told["latency"].sum())
             )  # fmt: skip
-        apart = rows["rows"]["a"][rows["rows"]["code"] == APART]
-        memory.apart_most = max(memory.apart_most, int(apart.max(initial=0)))
-        codes = (CUT_OFF, APART, UNROUTED, LOOP_OPEN, REPORT_BROKEN, REPORT_PARENT, REPORT_BALANCE)
+        codes = (APART, CUT_OFF, UNROUTED, LOOP_OPEN, REPORT_BROKEN, REPORT_PARENT, REPORT_BALANCE)
         found = rows["rows"]
         found = found[np.isin(found["code"], codes)]
-        for at, node, code, a, b in _cut_off_first(found.tolist()):
+        for at, node, code, a, b in found.tolist():
             if code == CUT_OFF and a >= 0:
                 self._fault(a, b)
             elif code == APART:
-                self._apart(at, a, b)
+                self._apart(a)
             elif code == UNROUTED:
                 self._unrouted(at, a)
             elif code == REPORT_BROKEN:
@@ -137,48 +135,41 @@ class SkinView(View):
                 label = self.plan.graph.label(node)
                 self.log.often("lost", at, f"{label} lost its parent", "bad")
 
+    def _apart(self, cells: int) -> None:
+        """So many cells are cut off from the PC from now on."""
+        memory = self.memory
+        memory.apart, memory.apart_most = cells, max(memory.apart_most, cells)
+        if memory.recovery is not None:
+            memory.recovery.cut_off(cells)
+
     def _fault(self, index: int, cut_off: int) -> None:
         """A mark of the observer: something was done to the skin."""
         given = index - len(self.plan.scenario.model.event)
         fault = self._planned[index] if given < 0 else self.engine.given[given]
         self.begin_fault(fault)
         recovery = self.memory.recovery
-        everybody = self.memory.unrouted == self.memory.apart == 0
-        if everybody and self.takes(fault) and recovery is not None:
+        if recovery is not None:
+            recovery.cut_off(self.memory.apart)
+        if self.memory.unrouted == 0 and self.takes(fault) and recovery is not None:
             recovery.recovered_ms = 0.0
         if cut_off:
             text = f"{number_of(cut_off, 'cell')} lost the way to the PC"
             self.log.say(fault.at_us, text, "bad")
 
-    def _apart(self, at_us: int, cells: int, fresh: int) -> None:
-        """So many cells are cut off from now on: no cable joins them with the PC any more."""
-        self.memory.apart = cells
-        self._recovered(at_us)
-        if fresh:
-            what = "is" if fresh == 1 else "are"
-            self.log.say(at_us, f"{number_of(fresh, 'cell')} {what} cut off: no cable leads to the "
-                         "PC any more", "bad")  # fmt: skip
-
     def _unrouted(self, at_us: int, cells: int) -> None:
         """So many cells that are connected to the PC have no way to it from now on."""
-        memory = self.memory
+        memory, recovery = self.memory, self.memory.recovery
         memory.unrouted = cells
-        self._recovered(at_us)
+        if recovery is not None and not recovery.closed:
+            recovery.recovered_ms = None if cells else (at_us - recovery.at_us) / 1e3
+            recovery.closed = cells == 0 and memory.event_us > recovery.at_us
         after_us = at_us - memory.event_us
         if cells == 0 and memory.apart < self.cells:
-            who = "all cells that cables reach" if memory.apart else "all cells"
+            who = "all other cells" if memory.apart else "all cells"
             what = "again after" if memory.settled else "after"
             self.log.often("routed", at_us, f"{who} have a way {what} {after_us / 1e3:.1f} ms",
                            "info" if memory.apart else "good")  # fmt: skip
             memory.settled = True
-
-    def _recovered(self, at_us: int) -> None:
-        """Whether everybody has a way again since the newest fault, as in the summary."""
-        memory, recovery = self.memory, self.memory.recovery
-        lacking = memory.unrouted + memory.apart
-        if recovery is not None and not recovery.closed:
-            recovery.recovered_ms = None if lacking else (at_us - recovery.at_us) / 1e3
-            recovery.closed = lacking == 0 and memory.event_us > recovery.at_us
 
     def _broken(self, at_us: int, end: int, broken: int) -> None:
         """A cell finds a port broken, or working again."""
@@ -321,15 +312,3 @@ class SkinView(View):
             return {"node": graph.label(cell), **port}
         row, column = graph.patches[patch].row_column(cell)
         return {"cell": {"patch": patch, "row": row, "column": column}, **port}
-
-
-def _cut_off_first(rows: list[tuple[int, ...]]) -> list[tuple[int, ...]]:
-    """The observer's rows in order, but of one moment cells that are cut off before the others.
-
-    It says first how many still seek a way, which are fewer if some can find none any more.
-    """
-    for i in range(len(rows) - 1):
-        (at, _, code, _, _), (then, _, after, _, fresh) = rows[i], rows[i + 1]
-        if code == UNROUTED and after == APART and at == then and fresh:
-            rows[i], rows[i + 1] = rows[i + 1], rows[i]
-    return rows
