@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.commands import commands_summary
 from innervate.analysis.frames import beacon_share, data_summary
 from innervate.analysis.load import balance_factor, port_loads
 from innervate.analysis.reach import reach, skin_facts
@@ -51,7 +52,8 @@ def summarize(result: Any) -> SkinSummary:
     events = result.handled + result.arrived
     loads = port_loads(result)
     data = data_summary(result)
-    facts = skin_facts(result, data)
+    commands = commands_summary(result)
+    facts = skin_facts(result, data, commands)
     apart = reach(result, facts)
     summary: SkinSummary = {
         "kind": plan.kind,
@@ -75,6 +77,7 @@ def summarize(result: Any) -> SkinSummary:
         "balance_factor": balance_factor(loads),
         "port_loads": loads,
         "data": data,
+        "commands": commands,
         "beacon_share": beacon_share(result),
         "broken": broken_ports(result),
     }

@@ -59,6 +59,11 @@ def draw_plots(done: Sweep, folder: Path) -> list[Path]:
         name = plot.name or f"plot-{number}"
         with style.house():
             drawn = done.plot(plot.x, plot.y, plot.by, plot.kind, plot.title)
+            over = done.averaged(plot.x, plot.by) if plot.x in done.plan.keys else {}
+            if over:
+                keys = ", ".join(over)
+                errors.say(f"{name}: means over all values of {keys}; to tell them apart, name "
+                           "one as by, or fix the others with --set")  # fmt: skip
             paths.append(style.save(drawn, folder, name)[0])
     return paths
 

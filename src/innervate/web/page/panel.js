@@ -22,6 +22,11 @@ export function showState(network, connected) {
   const level = connected ? headline.level : NO_DATA;
   const text = connected ? headline.text : `Not connected; when last heard of: ${headline.text}`;
   $("state").className = level.replace(" ", "-");
+  const isSilent = connected && level === NO_DATA && network.scene.source === "live";
+  const link = !connected ? "not connected"
+    : isSilent ? "page connected, nodes silent" : "connected";
+  if ($("connection").textContent !== link) $("connection").textContent = link;
+  $("connection").classList.toggle("lost", !connected || isSilent);
   const word = `${LEVELS[level] ?? ""} ${level}`; // said anew only when it changes
   if ($("level").textContent !== word) $("level").textContent = word;
   if ($("headline").textContent !== text) $("headline").textContent = text;
@@ -40,9 +45,12 @@ export function showNumbers(network) {
     const isOpen = recovery.recovered_ms === null || recovery.recovered_ms === undefined;
     const text = isOpen ? ago(network.now.t_s - recovery.at_s) : duration(recovery.recovered_ms);
     const state = isOpen ? "not yet, " : "";
-    const look = !isKnown ? "" : isOpen ? "open" : unconnected ? "" : "done";
+    const isWhole = !unconnected && !recovery.apart; // else it is good news of the others only
+    const look = !isKnown ? "" : isOpen ? "open" : isWhole ? "done" : "";
     const shown = isKnown || !isOpen ? text : "–";
-    show("recovery", shown, `${recovery.cause}: ${state}${noticed}`, look);
+    const cut = recovery.apart ? `${recovery.apart} cut off; the others: ` : "";
+    const more = isKnown ? `${recovery.cause}: ${cut}${state}${noticed}` : recovery.cause;
+    show("recovery", shown, more, look);
   }
   const isRadio = network.kind === "radio"; // there everybody hears everybody
   const label = isRadio ? offWord(network) : "without a way";
@@ -51,9 +59,9 @@ export function showNumbers(network) {
   $("recovery").hidden = isRadio;
   const all = network.nodes.filter((node) => node.role !== "sink" && node.role !== "port").length;
   const of = `of ${plural(all, WORDS[network.kind])}`;
-  const cut = apart ? `; ${apart === unconnected ? "cut off" : `${apart} of them cut off`}` : "";
+  const off = apart ? `; ${apart === unconnected ? "cut off" : `${apart} of them cut off`}` : "";
   show("unconnected", isKnown ? String(unconnected) : "–",
-    isKnown ? `${of}${cut}` : "nobody answers", unconnected ? "bad" : "");
+    isKnown ? `${of}${off}` : "nobody answers", unconnected ? "bad" : "");
 }
 
 export const WORDS = { skin: "cell", radio: "station", mesh: "node" };
