@@ -159,6 +159,7 @@ def test_who_is_behind_a_dead_node_of_a_mesh_is_cut_off_until_it_is_back():
     state = made.fields()
     assert (state["unconnected"], state["apart"]) == (2, 2)
     assert state["recovery"]["recovered_ms"] == 0.0  # there is nothing that it could do
+    assert state["recovery"]["apart"] == 2
     made.carry_out(messages.Revive(1))
     made.run_to_end()
     assert (made.fields()["unconnected"], made.fields()["apart"]) == (0, 0)
@@ -259,6 +260,7 @@ def test_a_cell_alone_has_recovered_when_it_is_back():
     made.carry_out(messages.Revive(1))
     made.run_to_end()
     assert made.fields()["recovery"]["cause"] == "cell p0 r0 c1 switched off"
+    assert made.fields()["recovery"]["apart"] == 1  # for good, had it not been let back
     assert made.fields()["unconnected"] == 0
 
 
