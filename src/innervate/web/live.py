@@ -12,7 +12,7 @@ from innervate import __version__
 from innervate.analysis.radio_state import Still
 from innervate.live import status
 from innervate.web.errors import Refused, WatchError
-from innervate.web.history import SERIES, Logbook
+from innervate.web.history import LOSS, RETURN, SERIES, Logbook
 from innervate.web.live_map import Link, Map, Place, Status
 from innervate.web.live_poll import Poller
 from innervate.web.live_state import State
@@ -294,7 +294,7 @@ class Live(Source):
     def _note(self, cause: str, heals: bool) -> None:
         if not heals:
             self._lose(cause)
-        self._log.say(self._now_us(), cause)
+        self._log.say(self._now_us(), cause, mark=RETURN if heals else LOSS)
 
     def _cable(self, command: Cut | Heal) -> None:
         at = number("link", command.link, len(self._map.links))

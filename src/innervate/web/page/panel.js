@@ -42,7 +42,10 @@ export function showNumbers(network) {
     const state = isOpen ? "not yet, " : "";
     const look = !isKnown ? "" : isOpen ? "open" : unconnected ? "" : "done";
     const shown = isKnown || !isOpen ? text : "–";
-    show("recovery", shown, `${recovery.cause}: ${state}${noticed}`, look);
+    if (recovery.recovered_ms === 0) {
+      const other = /cable|link/.test(recovery.cause) ? "" : "other ";
+      show("recovery", "–", `${recovery.cause}: no ${other}${WORDS[network.kind]} affected`, "");
+    } else show("recovery", shown, `${recovery.cause}: ${state}${noticed}`, look);
   }
   const isRadio = network.kind === "radio"; // there everybody hears everybody
   const label = isRadio ? offWord(network) : "without a way";
@@ -56,7 +59,7 @@ export function showNumbers(network) {
     isKnown ? `${of}${cut}` : "nobody answers", unconnected ? "bad" : "");
 }
 
-export const WORDS = { skin: "cell", radio: "station", mesh: "node" };
+const WORDS = { skin: "cell", radio: "station", mesh: "node" };
 
 /** Events, the newest at the end; it follows them unless the reader scrolled up. */
 export class Log {
@@ -111,14 +114,21 @@ export class Card {
     this.shown = "";
   }
 
+  /** What a click on something does, as a verb: "kills"; "" nothing. */
+  static deed(network, what) {
+    const command = commandFor(network, what);
+    if (!command) return "";
+    const isOff = network.scene.source === "live" && what.node !== undefined;
+    return { cut: "cuts", heal: "heals", kill: isOff ? "cuts off" : "kills",
+      revive: isOff ? "lets back" : "revives" }[command.do];
+  }
+
   /** Show {node} or {link} of a view's network, or nothing. */
   show(view, what) {
     $("selection").hidden = !what;
     if (!what) return void (this.shown = "");
     const { network } = view;
-    const isNode = what.node !== undefined;
-    const name = isNode ? network.nodes[what.node].label : network.linkName(what.link);
-    const facts = isNode ? view.facts(what.node) : linkFacts(view, what.link);
+    const { name, facts } = told(view, what);
     $("selected-name").textContent = name;
     $("selected-facts").textContent = facts;
     this.#buttons(network, what);
@@ -160,6 +170,13 @@ export class Card {
     if (from === undefined) return `${verb} this link`;
     return `${verb}: ${network.nodes[network.across(link, from)].label}`;
   }
+}
+
+/** The name of {node} or {link}, and what is known of it. */
+export function told(view, { node, link }) {
+  return node !== undefined
+    ? { name: view.network.nodes[node].label, facts: view.facts(node) }
+    : { name: view.network.linkName(link), facts: linkFacts(view, link) };
 }
 
 /** What of a node or link is said again when it changes. */
