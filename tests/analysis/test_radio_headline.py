@@ -6,7 +6,8 @@ from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK
 from innervate.analysis.radio import facts as facts_of_run
 from innervate.analysis.radio import summarize
 from innervate.analysis.radio_headline import RadioFacts, headline, patience_us
-from innervate.analysis.radio_state import Still, facts, of_stations
+from innervate.analysis.radio_live import Still, of_stations
+from innervate.analysis.radio_state import facts
 from innervate.scenario.radio_plan import JOIN, KILL, LEAVE, RadioFault
 from innervate.sim.build import get
 from tests.radio_runs import START_US, radio_plan, run
@@ -79,6 +80,11 @@ def test_both_sides(there, absent, level, text, nodes):
     assert found.text.startswith(text)
     assert found.text.endswith(".")
     assert headline(WELL._replace(**absent)).level == OK
+
+
+def test_delays_measured_among_hidden_pairs_are_none():
+    text = of(hidden=((0, 3),), bounds={"believed_us": [52, 104], "measured_us": [1, 420]})[1]
+    assert text == "1 pair of robots does not hear each other; all 10 packets were delivered."
 
 
 def test_worst_news_come_first():

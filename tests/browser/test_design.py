@@ -159,8 +159,7 @@ def test_a_cut_that_nobody_needed_says_so(look, skin):
         click(page, cable)
         expect(page.locator("#selected-facts")).to_have_text("link, cut")
         expect(page.locator("#recovery")).not_to_have_class("number open")
-        if page.locator("#recovery output").inner_text() == "–":
-            expect(page.locator("#recovery .more")).to_contain_text("no cell affected")
+        if "no cell affected" in page.locator("#recovery .more").inner_text():
             return
     raise AssertionError("every one of these cables was on somebody's way")
 

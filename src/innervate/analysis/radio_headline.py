@@ -11,6 +11,8 @@ NAMED = 4  # so many robots are named one by one
 ROUNDS = 4  # turns of everybody that may pass before somebody's packet gets through
 BACKOFF_SLOTS = 1024  # ... besides the longest backoff
 
+Stations = tuple[int, ...]
+
 
 class RadioFacts(NamedTuple):
     """What is known of a team at one moment.
@@ -42,8 +44,8 @@ class RadioFacts(NamedTuple):
     """
 
     stations: int
-    off: tuple[int, ...] = ()
-    away: tuple[int, ...] = ()
+    off: Stations = ()
+    away: Stations = ()
     answering: bool = True
     offered: int = 0
     delivered: int = 0
@@ -53,12 +55,12 @@ class RadioFacts(NamedTuple):
     lost_silently: int = 0
     partial: int = 0
     overdue: int = 0
-    waiting: tuple[int, ...] = ()
+    waiting: Stations = ()
     still_ms: float = 0.0
     patience_ms: float = 1000.0
     hidden: tuple[tuple[int, int], ...] = ()
     bounds: Mapping[str, Any] | None = None
-    stations_wrong: tuple[int, ...] = ()
+    stations_wrong: Stations = ()
     ended: bool = False
 
 
@@ -127,7 +129,7 @@ def _degraded(facts: RadioFacts, told: bool) -> tuple[list[str], tuple[int, ...]
         ended = "was" if facts.overdue == 1 else "were"
         news.append(f"{who} {ended} not delivered in time")
         nodes |= set(facts.waiting)
-    if facts.bounds is not None:
+    if facts.bounds is not None and not facts.hidden:  # what hidden frames end in is no delay
         news.append(_wrong(facts.bounds))
         nodes |= set(facts.stations_wrong)
     if facts.hidden:

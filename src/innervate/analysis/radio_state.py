@@ -1,16 +1,14 @@
-"""What is known of a radio team at one moment: of a simulation's world, and of running stations."""
+"""What is known of a simulated radio team at one moment: while it runs, and when it has ended."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
-from innervate.analysis.radio_headline import RadioFacts, patience_us
+from innervate.analysis.radio_headline import RadioFacts, Stations, patience_us
 from innervate.scenario.radio_plan import JOIN
 from innervate.sim.build import get
 from innervate.sim.radio.world import RING
-
-Stations = tuple[int, ...]
 
 
 def facts(
@@ -63,6 +61,15 @@ def facts(
     )
 
 
+def pending(world: Any, stations: int) -> int:
+    """Packets that wait in robots that are on."""
+    return sum(
+        int(get(world.radios, i, "backlog"))
+        for i in range(stations)
+        if get(world.radios, i, "alive")
+    )
+
+
 _COUNTS = ("offers", "completed", "silent", "dropped", "partial")
 
 
@@ -109,62 +116,4 @@ def hidden_pairs(plan: Any) -> tuple[tuple[int, int], ...]:
         for i in range(plan.stations)
         for j in range(i + 1, plan.stations)
         if delays[i][j] < 0 or delays[j][i] < 0
-    )
-
-
-class Still:
-    """Since when running stations deliver nothing though somebody has a packet."""
-
-    def __init__(self) -> None:
-        self._since_us: int | None = None
-        self._delivered = -1
-
-    def note(self, now_us: int, told: Iterable[Mapping[str, Any]]) -> float:
-        """Take in what they say now; how long nothing has been delivered, ms."""
-        stations = list(told)
-        delivered = sum(int(one["counters"].get("packets delivered", 0)) for one in stations)
-        waits = any(one.get("queued", 0) for one in stations)
-        if self._since_us is None or delivered != self._delivered:
-            self._since_us = now_us
-        still_ms = (now_us - self._since_us) / 1e3 if waits else 0.0
-        self._since_us = self._since_us if waits else None
-        self._delivered = delivered
-        return still_ms
-
-
-def of_stations(
-    told: Mapping[int, Mapping[str, Any]],
-    stations: int,
-    off: Stations,
-    still_ms: float,
-    params: Mapping[str, int],
-) -> RadioFacts:
-    """The facts of running stations, from what they say of themselves.
-
-    Args:
-        told: by index what those say that answer, as `innervate live status --json` shows it.
-        stations: how many are known.
-        off: who does not answer, or is off the channel.
-        still_ms: how long nobody has reported a delivery though somebody had a packet.
-        params: of the protocol.
-    """
-    count = {name: 0 for name in ("packets accepted", "packets delivered")}
-    for one in told.values():
-        for name in count:
-            count[name] += int(one.get("counters", {}).get(name, 0))
-    accepted, delivered = count.values()
-    abandoned = sum(int(told[i].get("queued", 0)) for i in off if i in told)
-    queued = {i: int(one.get("queued", 0)) for i, one in told.items() if i not in off}
-    patience_ms = patience_us(params, stations) / 1e3
-    return RadioFacts(
-        stations=stations,
-        off=off,
-        answering=bool(told),
-        offered=accepted,
-        delivered=delivered,
-        pending=accepted - delivered - abandoned,
-        abandoned=abandoned,
-        waiting=tuple(i for i in sorted(queued) if queued[i]) if still_ms > patience_ms else (),
-        still_ms=still_ms,
-        patience_ms=patience_ms,
     )

@@ -50,6 +50,7 @@ class Channel(Common):
         jain_round: its mean over rounds of as many turns as stations.
         delay_slots: how long packets took.
         collisions: groups of overlapping transmissions.
+        delivered: packets taken for delivered that somebody received.
         lost_silently: packets taken for delivered by their sender, received by nobody.
         order: stations in the order of their success.
     """
@@ -63,6 +64,7 @@ class Channel(Common):
     jain_round: float | None
     delay_slots: Delays
     collisions: int
+    delivered: int
     lost_silently: int
     order: list[int]
 
@@ -80,8 +82,11 @@ class RadioSummary(Channel):
 
     Attributes:
         traffic: "saturated", "disaster" or "poisson".
-        offered: packets handed down.
-        delivered: packets taken for delivered that somebody received.
+        waited_off: delivered packets that waited while their robot was off, and have no delay.
+        offered: packets handed down, the sum of those delivered, lost silently, pending, abandoned
+            and dropped.
+        pending: packets that wait at the end in robots that are on.
+        abandoned: packets of robots that are off, or have left, at the end.
         partial: delivered, but not to everybody in reach.
         dropped: refused because too many waited.
         duplicates: packets received again.
@@ -91,8 +96,10 @@ class RadioSummary(Channel):
     """
 
     traffic: str
+    waited_off: int
     offered: int
-    delivered: int
+    pending: int
+    abandoned: int
     partial: int
     dropped: int
     duplicates: int

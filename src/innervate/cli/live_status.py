@@ -66,6 +66,9 @@ def _mesh_lines(told: dict[str, Any]) -> list[str]:
         lines.append(f"  neighbour {near['node']} by port {ports}: acknowledged {quality}{suspect}")
     ways = [f"{dest} by {hop[0]}" for dest, hop in told["routes"].items()]
     lines.append(f"  routes: {', '.join(ways) or 'none'}")
+    waiting = ", ".join(f"{count} for {dest}" for dest, count in told.get("waiting", {}).items())
+    if waiting:
+        lines.append(f"  messages that wait: {waiting}")
     if "robot" in told:
         at = told["robot"]["at_cm"]
         place = "no position yet" if at is None else f"at {at[0] / 100:.2f}, {at[1] / 100:.2f} m"

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from innervate.analysis.radio_state import hidden_pairs
 from innervate.plot import words
-from innervate.plot.radio_words import slots_words
+from innervate.plot.radio_words import off_words, slots_words
+from innervate.scenario.radio_words import warnings
 
 if TYPE_CHECKING:
     from innervate.analysis.summaries import RadioSummary, SlottedSummary
@@ -39,7 +41,7 @@ def _first(run: Run) -> str:
 def result_lines(run: Run) -> list[str]:
     """Packets, delays, fairness."""
     summary = _summary(run)
-    lines = [_delivered(run)]
+    lines = [_delivered(run), *off_words(summary), *warnings(run.plan)]
     delay = summary["delay_slots"]
     half, most, longest = delay["p50"], delay["p99"], delay["max"]
     if half is not None and most is not None and longest is not None:
@@ -61,27 +63,18 @@ def result_lines(run: Run) -> list[str]:
 
 
 def _delivered(run: Run) -> str:
-    counts, plan = run.result.counts, run.plan
-    slots = _summary(run)["duration_slots"]
+    summary, plan = _summary(run), run.plan
+    slots = summary["duration_slots"]
     after = ""
     if slots is not None:
         ms = slots * plan.params["slot_us"] / 1000
         after = f", the last {slots_words(slots)} ({words.ms_words(ms)}) after the first offer"
-    open_ = counts["offers"] - counts["completed"]
-    if open_ and not plan.saturated:
-        return f"{counts['completed']:,} of {counts['offers']:,} packets were delivered{after}."
-    lost = _summary(run)["lost_silently"]
-    if lost:
-        return (
-            f"{words.number_of(counts['completed'], 'packet')} taken for delivered, {lost:,} of "
-            f"them received by nobody{after}."
-        )
-    return f"{words.number_of(counts['completed'], 'packet')} delivered{after}."
+    return f"{words.number_of(summary['delivered'], 'packet')} delivered{after}."
 
 
 def _noticed(run: Run) -> list[str]:
     summary = _summary(run)
-    if "level" in summary or not summary["bounds_noticed"]["count"]:
+    if "level" in summary or not summary["bounds_noticed"]["count"] or hidden_pairs(run.plan):
         return []
     return [
         "Delays between stations lie outside the configured bounds; set protocol.tau_bounds_us "

@@ -9,10 +9,7 @@ from typing import Any
 from innervate.protocol import mesh, plain
 from innervate.protocol import mesh_fields as fields
 from innervate.protocol.mesh_frames import is_sound
-from innervate.protocol.mesh_kept import crowds, is_ahead
-from innervate.protocol.mesh_messages import resolve
 from innervate.protocol.mesh_near import FREE, SUSPECT, is_strong, is_suspect, place_of
-from innervate.protocol.mesh_queue import has_room
 from innervate.protocol.mesh_route import alternate, planned
 from innervate.protocol.mesh_upward import is_better, is_uplink
 from innervate.protocol.mesh_words import (
@@ -20,7 +17,6 @@ from innervate.protocol.mesh_words import (
     ACK_WANTED,
     ALL,
     ALTERNATE,
-    OWN,
     SEARCH,
     TABLE_FREE,
     TABLES,
@@ -143,13 +139,6 @@ class MeshStack:
     def decode(self, data: bytes) -> int:
         """Read bytes into the inbox; 0, or why not."""
         return wire.decode(data, self.inbox)
-
-    def may_send(self, recipient: int) -> bool:
-        """True if the router takes a message of ours, besides what others send through it."""
-        if not has_room(self.node, OWN) or 0 not in self.node.wait_kind:
-            return False
-        dest = resolve(self.node, self.params, recipient)
-        return not is_ahead(self.node, dest) and not crowds(self.node, dest)
 
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """Where a frame leaves: on the path its receiver was heard on last; None = on all.

@@ -22,6 +22,7 @@ from innervate.plot.page import (
 )
 from innervate.plot.radio_words import (
     fault_words,
+    off_words,
     protocol_words,
     report_kind,
     report_words,
@@ -29,6 +30,7 @@ from innervate.plot.radio_words import (
     slots_words,
     time_words,
 )
+from innervate.scenario.radio_words import warnings
 
 ROWS_MAX = 200
 MARKS_MAX = 8
@@ -75,7 +77,13 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
 def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
     """What happened, for somebody who knows nothing of it."""
     telling = {"saturated": _saturated, "disaster": _disaster}.get(summary["traffic"], _arrivals)
-    return [telling(result, summary), *_collisions(result, summary), _silence(summary)]
+    return [
+        telling(result, summary),
+        *off_words(summary),
+        *warnings(result.plan),
+        *_collisions(result, summary),
+        _silence(summary),
+    ]
 
 
 def _disaster(result: Any, summary: Mapping[str, Any]) -> str:
@@ -105,11 +113,14 @@ def _saturated(result: Any, summary: Mapping[str, Any]) -> str:
 
 
 def _arrivals(result: Any, summary: Mapping[str, Any]) -> str:
-    begin = f"{robots(summary['stations'])} had {summary['offered']:,} packets to send"
+    expected = summary["offered"] - summary["abandoned"]
+    begin = f"{robots(summary['stations'])} had {expected:,} packets to send"
     if not summary["delivered"]:
         return f"{begin}; none was delivered."
+    share = words.share_words(summary["delivered"] / expected)
+    if summary["delay_slots"]["p50"] is None:
+        return f"{begin}; {share} of them were delivered."
     half = time_words(summary["delay_slots"]["p50"], result.plan.params["slot_us"])
-    share = words.share_words(summary["delivered"] / summary["offered"])
     return f"{begin}; {share} of them were delivered, half within {half}."
 
 
@@ -210,7 +221,9 @@ def _listing(result: Any, shown: radio_scene.Scene) -> str:
 def _charts(result: Any, summary: Mapping[str, Any]) -> str:
     if not summary["delivered"]:
         return ""
-    figures = [_over_time(result, summary), _delays(result, summary), _fairness(result, summary)]
+    figures = [_over_time(result, summary), _fairness(result, summary)]
+    if summary["delay_slots"]["p50"] is not None:
+        figures.insert(1, _delays(result, summary))
     return section("How well it went", pictures(figures, "two"))
 
 
@@ -268,7 +281,8 @@ def _fairness(result: Any, summary: Mapping[str, Any]) -> str:
     steady, n = radio.settled(result), result.plan.stations
     if summary["traffic"] == "disaster":
         head = "When each station's packet was delivered"
-        waits = dict(zip(steady["node"].tolist(), radio.delays(result).tolist(), strict=True))
+        who = radio.timed(result)["node"].tolist()
+        waits = dict(zip(who, radio.delays(result).tolist(), strict=True))
         bars = [
             charts.Bar(f"station {i}", waits.get(i, 0.0),
                        slots_words(waits[i]) if i in waits else "never")

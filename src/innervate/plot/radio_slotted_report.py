@@ -10,6 +10,7 @@ import numpy as np
 from innervate.plot import charts, words
 from innervate.plot.page import element, figure, headline, pictures, section, tiles
 from innervate.plot.radio_words import robots
+from innervate.scenario.radio_words import warnings
 
 STEPS_MAX = 2000
 
@@ -27,7 +28,10 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         f"{model.protocol.mac}, packets of {result.plan.params['packet_slots']} slots; "
         f"seed {summary['seed']}"
     )
-    if model.traffic.kind == "disaster":
+    if model.traffic.kind == "disaster" and summary["delivered"] < summary["stations"]:
+        count = words.number_of(summary["delivered"], "packet")
+        head = f"{robots(summary['stations'])} started at once; {count} came through in the time."
+    elif model.traffic.kind == "disaster":
         head = (
             f"{robots(summary['stations'])} started at once; every packet was delivered "
             f"{summary['duration_slots']:.4g} slots later."
@@ -41,6 +45,7 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         (f"{summary['collisions']:,}", "collisions"),
     ]
     parts = [element("p", over, "over"), headline(summary["headline"]), element("p", head)]
+    parts += [element("p", warning) for warning in warnings(result.plan)]
     parts.append(tiles(found))
     return "<header>\n" + "".join(parts) + "</header>"
 

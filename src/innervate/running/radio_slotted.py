@@ -11,6 +11,7 @@ import numpy as np
 from innervate.analysis.radio_headline import RadioFacts, headline
 from innervate.analysis.radio_summary import Delays, SlottedSummary
 from innervate.kernel.wall import wall_s
+from innervate.scenario.radio_slotted import TURNAROUND, USED_BY
 from innervate.scenario.radio_traffic import mean_interval_us
 from innervate.sim.slotted import SlottedResult, slotted
 
@@ -39,16 +40,14 @@ def simulate(plan: Any, plain: bool) -> SlottedRun:
     """
     model, source = plan.scenario.model, plan.scenario.source
     protocol, traffic = model.protocol, model.traffic
-    options: dict[str, Any] = {}
     slot_us = plan.params["slot_us"]
-    if protocol.mac == "csma-cd-r":
-        options["reading"] = protocol.reading
-    if protocol.mac in ("csma-cd-r", "csma-cd-d2", "csma-cd-d2p") and plan.params["ta_us"]:
+    options = {
+        name: getattr(protocol, name)
+        for (table, name), macs in USED_BY.items()
+        if table == "protocol" and protocol.mac in macs
+    }
+    if protocol.mac in TURNAROUND:
         options["turnaround_slots"] = plan.params["ta_us"] / slot_us
-    if protocol.mac in ("slotted-aloha", "nonpersistent", "p-persistent"):
-        options["p"] = protocol.p
-    if protocol.mac in ("csma-cd-d1", "csma-cd-d2", "csma-cd-d2p"):
-        options["backoff_slots"] = protocol.backoff_slots
     packets = traffic.packets
     if traffic.kind == "poisson":
         packets = max(1, plan.duration_us // mean_interval_us(model, slot_us))
@@ -62,6 +61,7 @@ def simulate(plan: Any, plain: bool) -> SlottedRun:
             packets=packets,
             seed=plan.seed,
             load=traffic.load if traffic.kind == "poisson" else None,
+            until_slots=plan.duration_us / slot_us,
             plain=plain,
             **options,
         )
@@ -71,10 +71,11 @@ def simulate(plan: Any, plain: bool) -> SlottedRun:
     digest = hashlib.blake2b(np.asarray(found.order, np.int64).tobytes(), digest_size=8)
     digest.update(np.round(found.delay_slots * 1000).astype(np.int64).tobytes())
     done = sum(found.successes)
+    offers = plan.stations if traffic.kind == "disaster" else done
     return SlottedRun(
         plan=plan,
         found=found,
-        counts={"offers": done, "completed": done, "handled": done},
+        counts={"offers": offers, "completed": done, "handled": done},
         ended_us=round(found.duration_slots * slot_us),
         wall_s=took,
         fingerprint=digest.hexdigest(),
@@ -91,7 +92,15 @@ def summarize(result: SlottedRun) -> SlottedSummary:
     quantiles: Delays = {"p50": p50, "p95": p95, "p99": p99, "max": most}
     first = list(dict.fromkeys(found.order))
     done = result.counts["completed"]
-    facts = RadioFacts(plan.stations, offered=done, delivered=done, ended=True)
+    offers = result.counts["offers"]
+    facts = RadioFacts(
+        plan.stations,
+        offered=offers,
+        delivered=done,
+        pending=offers - done,
+        overdue=offers - done,
+        ended=True,
+    )
     return {
         "kind": plan.kind,
         "name": plan.scenario.name,
@@ -111,6 +120,7 @@ def summarize(result: SlottedRun) -> SlottedSummary:
         "jain_round": found.jain_round,
         "delay_slots": quantiles,
         "collisions": found.collisions,
+        "delivered": done,
         "lost_silently": 0,
         "order": found.order[:1000] if plan.scenario.model.traffic.kind == "disaster" else first,
     }

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from innervate import __version__
-from innervate.analysis.radio_state import Still
+from innervate.analysis.radio_live import Still
 from innervate.live import status
 from innervate.web.errors import Refused, WatchError
 from innervate.web.history import LOSS, RETURN, SERIES, Logbook
@@ -72,6 +72,9 @@ class Live(Source):
         kinds = {str(one["kind"]) for one in self._told.values()}
         if len(kinds) > 1:
             raise WatchError(f"{' and '.join(sorted(kinds))} nodes: name those of one network")
+        for i in range(len(sockets)):
+            if i not in self._told:
+                self._log.often("none", 0, f"{self._names[i]}: nobody answers at its socket", "bad")
         self._map = Map(self._last)
         self._off: set[Place] = set()  # cut off whole, from here
         self._state = State(self._map, self._told)
@@ -158,8 +161,9 @@ class Live(Source):
                 self._log.often("came", at_us, f"{self._names[i]} answers again", "good")
         self._last = {**self._last, **told}
         if went:
-            who = self._names[went[0]] if len(went) == 1 else f"{len(went)} nodes"
-            self._lose(f"{who} {'does' if len(went) == 1 else 'do'} not answer any more")
+            silent = len(self._last) - len(told)
+            alone = f"{self._names[went[0]]} does not answer any more"
+            self._lose(alone if silent == 1 else f"{silent} nodes do not answer any more")
 
     def _compare(self, before: State) -> None:
         """What was cut or put back since `before`, and not from here, is said."""
@@ -218,7 +222,8 @@ class Live(Source):
             recovery.recovered_ms = 0.0 if kept else after_ms
             how = "kept its way" if kept else f"has a way again after {after_ms:.0f} ms"
             apart = state.unconnected
-            who = "every node" if not apart else f"every node but {apart} that are cut off"
+            are = "is" if apart == 1 else "are"
+            who = "every node" if not apart else f"every node but {apart} that {are} cut off"
             self._log.say(at_us, f"{who} {how}, as they say", "info" if apart else "good")
 
     def _lose(self, cause: str) -> None:

@@ -11,7 +11,7 @@ from innervate.analysis.headline import Headline, silent
 from innervate.analysis.mesh_headline import headline
 from innervate.analysis.mesh_reach import Choices, Ways, ways
 from innervate.analysis.radio_headline import headline as radio_headline
-from innervate.analysis.radio_state import of_stations
+from innervate.analysis.radio_live import of_stations
 from innervate.analysis.skin_headline import SkinFacts, skin_headline
 from innervate.analysis.ways import NOWHERE, Numbers, follow, reach
 from innervate.web.live_map import Link, Map, Place, Status

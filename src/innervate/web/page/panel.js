@@ -22,6 +22,11 @@ export function showState(network, connected) {
   const level = connected ? headline.level : NO_DATA;
   const text = connected ? headline.text : `Not connected; when last heard of: ${headline.text}`;
   $("state").className = level.replace(" ", "-");
+  const isSilent = connected && level === NO_DATA && network.scene.source === "live";
+  const link = !connected ? "not connected"
+    : isSilent ? "page connected, nodes silent" : "connected";
+  if ($("connection").textContent !== link) $("connection").textContent = link;
+  $("connection").classList.toggle("lost", !connected || isSilent);
   const word = `${LEVELS[level] ?? ""} ${level}`; // said anew only when it changes
   if ($("level").textContent !== word) $("level").textContent = word;
   if ($("headline").textContent !== text) $("headline").textContent = text;
@@ -42,10 +47,15 @@ export function showNumbers(network) {
     const state = isOpen ? "not yet, " : "";
     const look = !isKnown ? "" : isOpen ? "open" : unconnected ? "" : "done";
     const shown = isKnown || !isOpen ? text : "–";
+<<<<<<< HEAD
     if (recovery.recovered_ms === 0) {
       const other = /cable|link/.test(recovery.cause) ? "" : "other ";
       show("recovery", "–", `${recovery.cause}: no ${other}${WORDS[network.kind]} affected`, "");
     } else show("recovery", shown, `${recovery.cause}: ${state}${noticed}`, look);
+=======
+    const more = isKnown ? `${recovery.cause}: ${state}${noticed}` : recovery.cause;
+    show("recovery", shown, more, look);
+>>>>>>> main
   }
   const isRadio = network.kind === "radio"; // there everybody hears everybody
   const label = isRadio ? offWord(network) : "without a way";
