@@ -47,15 +47,11 @@ export function showNumbers(network) {
     const state = isOpen ? "not yet, " : "";
     const look = !isKnown ? "" : isOpen ? "open" : unconnected ? "" : "done";
     const shown = isKnown || !isOpen ? text : "–";
-<<<<<<< HEAD
-    if (recovery.recovered_ms === 0) {
+    const more = isKnown ? `${recovery.cause}: ${state}${noticed}` : recovery.cause;
+    if (isKnown && recovery.recovered_ms === 0) {
       const other = /cable|link/.test(recovery.cause) ? "" : "other ";
       show("recovery", "–", `${recovery.cause}: no ${other}${WORDS[network.kind]} affected`, "");
-    } else show("recovery", shown, `${recovery.cause}: ${state}${noticed}`, look);
-=======
-    const more = isKnown ? `${recovery.cause}: ${state}${noticed}` : recovery.cause;
-    show("recovery", shown, more, look);
->>>>>>> main
+    } else show("recovery", shown, more, look);
   }
   const isRadio = network.kind === "radio"; // there everybody hears everybody
   const label = isRadio ? offWord(network) : "without a way";
