@@ -95,7 +95,7 @@ export class Plots {
       word(context, fits ? text : value(v, ""), GUTTER - 5, up(v), colours.soft, colours.panel, FONT);
     }
     context.textAlign = "center";
-    const many = Math.max(2, Math.floor((width - GUTTER) / 90));
+    const many = Math.max(4, Math.floor((width - GUTTER) / 65));
     for (const [t_s, text] of ticks(from, to, many)) {
       const x = across(t_s);
       lines.moveTo(x, up(0));

@@ -9,7 +9,7 @@ import { off, offWord, plural } from "./words.js";
 
 const NEAR = 1.6; // cables up to this many pitches long are between neighbours
 const PORT_COLOURS = 8;
-const LINK_PX = 6; // how near a click must be to the middle of a cable at most
+const LINK_PX = 6; // a click is at most so far from the middle of a cable that it cuts
 const FEW = 0.1; // up to this share of cells is painted over one by one
 const BRICKS_PX = 5; // below this pitch hexagons are squares
 const WORDS_PX = 22; // from this pitch on cells bear a number
@@ -67,8 +67,9 @@ export class SkinView {
     const [x0, y0, x1, y1] = [stage.x[a], stage.y[a], stage.x[b], stage.y[b]];
     const long = Math.hypot(x1 - x0, y1 - y0) / stage.scale;
     const isNear = long <= NEAR;
-    const away = distance(x0, y0, x1, y1, x, y, isNear ? 0.45 : 0.3, isNear ? 0.55 : 0.7);
-    return away <= (isNear ? Math.min(0.13 * stage.scale, LINK_PX) : 4) ? away : Infinity;
+    const away = distance(x0, y0, x1, y1, x, y, isNear ? 0.5 : 0.3, isNear ? 0.5 : 0.7);
+    const reach = isNear ? Math.max(3, Math.min(0.14 * stage.scale, LINK_PX)) : 4;
+    return away <= reach ? away : Infinity;
   }
 
   /** How a cell looks: "off", "none" (no way), or a family of colours and a number in it. */
