@@ -172,6 +172,8 @@ def test_the_end_is_said_and_replayed(look, short):
     end(page)
     expect(page.locator("#clock")).to_contain_text("end")
     expect(page.locator("#step")).to_be_disabled()
+    page.locator("#speed").fill("4")  # slow, or it is over before it was looked at
+    expect(page.locator("#speed-text")).to_have_text("0.02x")
     page.locator("#go").click()
     expect(page.locator("#go")).to_have_text("Pause")
     expect(page.locator("#clock")).to_have_text(re.compile(r"^[012]\.\d+ s"))

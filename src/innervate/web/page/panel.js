@@ -180,8 +180,9 @@ export class Card {
 
 /** The name of {node} or {link}, and what is known of it. */
 export function told(view, { node, link }) {
+  const { label, also } = view.network.nodes[node] ?? {};
   return node !== undefined
-    ? { name: view.network.nodes[node].label, facts: view.facts(node) }
+    ? { name: also ? `${label} (${also})` : label, facts: view.facts(node) }
     : { name: view.network.linkName(link), facts: linkFacts(view, link) };
 }
 
