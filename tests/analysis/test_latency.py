@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from innervate.analysis.commands import commands_summary
 from innervate.analysis.frames import data_summary
 from innervate.cli.show import state_lines
 from innervate.running.columns import columns
@@ -66,6 +67,7 @@ def test_the_terminal_says_how_long_samples_took(crowded):
     summary = {
         "data": data_summary(crowded), "port_loads": [], "balance_factor": None,
         "loops": {"episodes": 0, "longest_ms": None},
+        "commands": commands_summary(crowded),
     }  # fmt: skip
     said = "\n".join(state_lines(summary))
     assert "From sensor to PC: half within" in said

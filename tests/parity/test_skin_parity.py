@@ -60,6 +60,11 @@ def scenarios(draw):
         keys["data"] = {"rate_hz": rate, "queue": draw(st.integers(1, 8))}
         if "patch" in keys and draw(st.booleans()):
             keys["touch"] = TOUCH
+    if draw(st.booleans()):
+        rate = draw(st.sampled_from([0, 20, 900]))
+        whom = draw(st.sampled_from([{}, {"random": True}]))
+        at_s = draw(st.integers(0, 1000)) * keys["duration_s"] / 1001
+        keys["command"] = [{"at_s": at_s, "rate_hz": rate, "code": 7, "value": 65_535, **whom}]
     return keys
 
 

@@ -18,7 +18,13 @@ def latency_ms(result: Any) -> Latency:
     A percentile is the least value that so many of a hundred do not exceed, to 0.4 % and never
     too small. None without a sample. Samples that were lost have no latency.
     """
-    return _figures(result.world, range(len(result.world.delays)))
+    return _figures(result.world, _ports(result))
+
+
+def command_latency_ms(result: Any) -> Latency:
+    """The same of the PC's commands, from the PC to every cell that one was for."""
+    world = result.world
+    return _figures(world, range(len(_ports(result)), len(world.delays)))
 
 
 def latency_by_port(result: Any) -> list[PortLatency]:
@@ -30,8 +36,13 @@ def latency_by_port(result: Any) -> list[PortLatency]:
             "samples": int(get(world.delays, port, "count")),
             "latency_ms": _figures(world, [port]),
         }
-        for port in range(len(world.delays))
+        for port in _ports(result)
     ]
+
+
+def _ports(result: Any) -> range:
+    """Interface ports that samples come to; what is kept of commands stands behind theirs."""
+    return range(result.plan.graph.interfaces if result.plan.data_period_us else 0)
 
 
 def _figures(world: Any, ports: Sequence[int]) -> Latency:

@@ -27,7 +27,6 @@ from innervate.protocol.mesh_words import (
     TABLES,
 )
 from innervate.scenario.mesh_plan import ONE
-from innervate.sim.build import get
 from innervate.sim.mesh.powers import CAPTURE_ONE
 from innervate.sim.mesh.world import ALIVE, DEAD
 
@@ -182,7 +181,7 @@ def carries(world: Any, plan: Any) -> Flags:
     heard = chance * (np.asarray(world.cut).reshape(shape) == 0)
     noise = _column(world.radios, "noise", count)
     if noise.any() and plan.radio.collisions:
-        capture = int(get(world.run, 0, "capture"))
+        capture = int(_column(world.run, "capture", 1)[0])
         power = np.asarray(world.power).reshape(shape)
         heard = heard * (power * CAPTURE_ONE // capture >= noise[None, :])
     acked = heard * heard.T if params["hop_acks"] else heard

@@ -9,13 +9,13 @@ import numpy as np
 from innervate.analysis.frames import lost_at_start
 from innervate.analysis.rows import apart_steps, marks
 from innervate.analysis.skin_headline import SkinFacts
-from innervate.analysis.skin_summary import Apart, Data, Reach
+from innervate.analysis.skin_summary import Apart, Commands, Data, Reach
 from innervate.sim.world import DEAD
 
 LABELS_MAX = 100
 
 
-def skin_facts(result: Any, data: Data) -> SkinFacts | None:
+def skin_facts(result: Any, data: Data, commands: Commands) -> SkinFacts | None:
     """What a headline is made of; None of a run that nobody observed.
 
     Samples that cells took before they had a way for the first time do not count.
@@ -23,6 +23,7 @@ def skin_facts(result: Any, data: Data) -> SkinFacts | None:
     Args:
         result: of the run.
         data: its `data_summary`.
+        commands: its `commands_summary`.
     """
     if len(marks(result).row) == 0:
         return None
@@ -32,6 +33,7 @@ def skin_facts(result: Any, data: Data) -> SkinFacts | None:
         cut_off_before=most if most > len(facts.cut_off) else 0,
         sent=data["sent"] - lost_at_start(result),
         lost=data["lost"] - lost_at_start(result),
+        missed=commands["lost_by"]["on_the_way"],
     )
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.commands import commands_summary
 from innervate.analysis.frames import beacon_share, data_summary
 from innervate.analysis.load import balance_factor, port_loads
 from innervate.analysis.reach import reach, skin_facts
@@ -24,6 +25,7 @@ from innervate.analysis.rows import (
 from innervate.analysis.skin_headline import skin_headline
 from innervate.analysis.skin_summary import BrokenPort, Loops, SkinSummary
 from innervate.protocol.skin_words import ONE, PORTS
+from innervate.scenario.skin_words import warnings
 from innervate.sim.world import ALIVE
 from innervate.topology import PORT_NAMES
 
@@ -51,7 +53,8 @@ def summarize(result: Any) -> SkinSummary:
     events = result.handled + result.arrived
     loads = port_loads(result)
     data = data_summary(result)
-    facts = skin_facts(result, data)
+    commands = commands_summary(result)
+    facts = skin_facts(result, data, commands)
     apart = reach(result, facts)
     summary: SkinSummary = {
         "kind": plan.kind,
@@ -63,6 +66,7 @@ def summarize(result: Any) -> SkinSummary:
         "wall_s": round(result.wall_s, 6),
         "fingerprint": result.fingerprint,
         "headline": skin_headline(facts, plan.graph.label).as_summary(),
+        "warnings": warnings(plan),
         "cells": plan.graph.cells,
         "depth_max": plan.depth_max,
         "start_up": start_up(result),
@@ -75,6 +79,7 @@ def summarize(result: Any) -> SkinSummary:
         "balance_factor": balance_factor(loads),
         "port_loads": loads,
         "data": data,
+        "commands": commands,
         "beacon_share": beacon_share(result),
         "broken": broken_ports(result),
     }

@@ -29,6 +29,7 @@ class SkinFacts(NamedTuple):
             page, which shows the moment, leaves it at 0.
         sent: tactile samples that cells took once they had had a way; 0 without data.
         lost: those of them that were lost.
+        missed: cells, over all commands of the PC, that had a way and did not get one for them.
     """
 
     cells: int
@@ -42,13 +43,14 @@ class SkinFacts(NamedTuple):
     cut_off_before: int = 0
     sent: int = 0
     lost: int = 0
+    missed: int = 0
 
 
 def skin_headline(facts: SkinFacts | None, label: Callable[[int], str] = str) -> Headline:
     """The state of a skin in a word and a sentence.
 
-    ok: every cell has a way to the PC, and no sample was lost. down: no cell has a way. no data:
-    no cell answers. degraded: everything between.
+    ok: every cell has a way to the PC, and no sample or command was lost. down: no cell has a way.
+    no data: no cell answers. degraded: everything between.
 
     Args:
         facts: what is known; None = nothing, as nobody watched.
@@ -60,7 +62,7 @@ def skin_headline(facts: SkinFacts | None, label: Callable[[int], str] = str) ->
         return Headline(NO_DATA, "No cell answers: nothing is known of the skin.")
     troubled = (*facts.cut_off, *facts.seeking, *facts.silent, *facts.off)
     with_way = 0 if facts.pc_off else facts.cells - len(troubled)
-    said = [*_reasons(facts, label), *_before(facts), *_samples(facts)]
+    said = [*_reasons(facts, label), *_before(facts), *_samples(facts), *_commands(facts)]
     ending = _others(facts, with_way, bool(troubled))
     text = "; ".join([*said, ending] if said and ending else said or [ending])
     level = DOWN if not with_way else DEGRADED if said else OK
@@ -124,6 +126,12 @@ def _samples(facts: SkinFacts) -> list[str]:
     shown = f"{share:.3g} %" if share >= 0.001 else "less than 0.001 %"
     verb = "was" if facts.lost == 1 else "were"
     return [f"{facts.lost:,} of {facts.sent:,} samples {verb} lost ({shown})"]
+
+
+def _commands(facts: SkinFacts) -> list[str]:
+    if not facts.missed:
+        return []
+    return [f"commands did not reach cells that had a way, {facts.missed:,} times"]
 
 
 def _others(facts: SkinFacts, with_way: int, some: bool) -> str:

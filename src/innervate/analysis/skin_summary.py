@@ -58,7 +58,7 @@ class Loops(TypedDict):
 
 
 class Latency(TypedDict):
-    """From the sensor to the PC, ms, of samples received; percentiles to 0.4 %, never too small."""
+    """In ms, of what was received; percentiles to 0.4 %, never too small."""
 
     mean: float | None
     p50: float | None
@@ -103,6 +103,51 @@ class Data(TypedDict):
     in_flight: int
     latency_ms: Latency
     latency_by_port: list[PortLatency]
+
+
+class CommandFrames(TypedDict):
+    """Copies of commands on the cables.
+
+    Attributes:
+        sent: handed to a port that has a cable.
+        lost_by: lost by reason: cut, noise, off, queue_full, broken_link.
+        duplicates: dropped by a cell because it had the command already.
+        too_far: not handed on, after as many hops as a route can have.
+    """
+
+    sent: int
+    lost_by: dict[str, int]
+    duplicates: int
+    too_far: int
+
+
+class Commands(TypedDict):
+    """Commands from the PC down to the cells; all but `sent` counts cells that one was for.
+
+    Attributes:
+        sent: commands.
+        addressed: cells that they were for.
+        delivered: those that got theirs.
+        lost: those that did not.
+        loss_ratio: lost / addressed; None if none were.
+        lost_by: lost by the state of the cell as the command was given: off, no_route, or
+            on_the_way: it had a way.
+        in_flight: neither, at the end.
+        repeated: deliveries beyond a cell's first: only to cells that lost their memory.
+        latency_ms: from the PC to the cell, of those delivered.
+        frames: copies on the cables.
+    """
+
+    sent: int
+    addressed: int
+    delivered: int
+    lost: int
+    loss_ratio: float | None
+    lost_by: dict[str, int]
+    in_flight: int
+    repeated: int
+    latency_ms: Latency
+    frames: CommandFrames
 
 
 class BrokenPort(TypedDict):
@@ -167,6 +212,7 @@ class SkinSummary(Common, Reach):
     """The summary of a skin's run.
 
     Attributes:
+        warnings: what makes the scenario weaker than it looks, as `check` says it.
         cells: how many there are.
         depth_max: hops of the deepest cell to the PC, by breadth-first search.
         start_up: from switching on.
@@ -175,11 +221,13 @@ class SkinSummary(Common, Reach):
         balance_factor: of the interface ports at the end, 1/n .. 1 (even) [skin III-A.2].
         port_loads: cells that each interface port serves at the end.
         data: samples.
+        commands: of the PC, down to the cells.
         beacon_share: of the capacity of all cables, what beacons took.
         broken: ports found broken at the end.
     """
 
     kind: Literal["skin"]
+    warnings: list[str]
     cells: int
     depth_max: int
     start_up: StartUp
@@ -188,5 +236,6 @@ class SkinSummary(Common, Reach):
     balance_factor: float | None
     port_loads: list[int]
     data: Data
+    commands: Commands
     beacon_share: float | None
     broken: list[BrokenPort]

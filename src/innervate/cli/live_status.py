@@ -8,6 +8,25 @@ SOCKETS = ("W", "E", "up", "down")
 LOSSES = ("unsent", "dropped", "unplugged")  # a path's counters that somebody should see
 
 
+def headline(told: list[dict[str, Any]], silent: int) -> str:
+    """Is all well with these nodes and `silent` more that do not answer: as pages say it, now."""
+    from innervate.analysis.headline import silent as nobody
+    from innervate.web.live_map import Map
+    from innervate.web.live_state import State
+
+    kinds = {one["kind"] for one in told}
+    if len(kinds) > 1:
+        return f"{' and '.join(sorted(kinds))} nodes: name those of one network to have it judged"
+    found = nobody(silent, "node")
+    if told:
+        unknown = [{"kind": min(kinds), "neighbours": [], "paths": []} for _ in range(silent)]
+        if silent and kinds == {"skin"} and all(one["role"] != "sink" for one in told):
+            unknown[0] |= {"role": "sink", "paths": [{"port": 0, "name": ""}]}  # so that is the PC
+        where = Map(dict(enumerate([*told, *unknown])))
+        found = State(where, dict(enumerate(told))).headline(0.0)
+    return f"{found.level}: {found.text}"
+
+
 def broken(told: list[dict[str, Any]]) -> list[str]:
     """A line for each broken cable; of a cable between two of these nodes, one line for both."""
     found: dict[frozenset[str], list[str]] = {}

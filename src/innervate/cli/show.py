@@ -8,7 +8,7 @@ from innervate.cli import show_mesh, show_radio
 from innervate.plot import words
 
 if TYPE_CHECKING:
-    from innervate.analysis.skin_summary import Data, Latency, SkinSummary
+    from innervate.analysis.skin_summary import Commands, Data, Latency, SkinSummary
     from innervate.running import Run
 
 EVENTS_MAX = 8
@@ -23,7 +23,8 @@ def summary_lines(run: Run) -> list[str]:
         return show_mesh.summary_lines(run)
     summary = run.skin
     said = words.headline_line(summary["headline"])
-    return [_first(run), said, *event_lines(run), *_broken(summary), *state_lines(summary)]
+    warned = [f"Warning: {text}." for text in summary["warnings"]]
+    return [_first(run), said, *warned, *event_lines(run), *_broken(summary), *state_lines(summary)]
 
 
 def _first(run: Run) -> str:
@@ -62,6 +63,7 @@ def state_lines(summary: SkinSummary) -> list[str]:
             f"Samples: {data['sent']:,} sent, {data['lost']:,} lost ({share}){_why(data)}."
         )
         lines += latency_lines(data["latency_ms"])
+    lines += command_lines(summary["commands"])
     if len(loads) > 1 and summary["balance_factor"] is not None:
         shown = ", ".join(f"{load:,}" for load in loads[:8]) + (", ..." if len(loads) > 8 else "")
         factor = f"balance factor {summary['balance_factor']:.3f}"
@@ -86,6 +88,28 @@ def latency_lines(latency: Latency) -> list[str]:
         f"From sensor to PC: half within {shown[0]}, 99 % within {shown[1]}, the slowest "
         f"{shown[2]} (samples received)."
     ]
+
+
+def command_lines(commands: Commands) -> list[str]:
+    """What became of the PC's commands; nothing without one."""
+    ratio = commands["loss_ratio"]
+    if ratio is None:
+        return []
+    share = words.share_words(ratio)
+    line = (
+        f"Commands: {commands['sent']:,} sent, for {commands['addressed']:,} cells in all, "
+        f"{commands['lost']:,} not reached ({share}){_missed(commands)}"
+    )
+    half, most = commands["latency_ms"]["p50"], commands["latency_ms"]["max"]
+    if half is None or most is None:
+        return [f"{line}."]
+    took = f"half within {words.ms_words(half)}, the slowest {words.ms_words(most)}"
+    return [f"{line}; {took}."]
+
+
+def _missed(commands: Commands) -> str:
+    lost = [(n, why) for why, n in commands["lost_by"].items() if n]
+    return "".join(f", {n:,} {words.MISSED[why]}" for n, why in sorted(lost, reverse=True))
 
 
 def _why(data: Data) -> str:

@@ -20,14 +20,15 @@ from innervate.live.nodefile import Loaded, address, load
 from innervate.live.notices import Notices
 from innervate.live.receipts import FINAL
 from innervate.live.rotation import Rotation
-from innervate.live.skin import SinkNode
+from innervate.live.skin import CellNode, SinkNode
 
 # Makes the line that a listener gets of what came.
 Form = Callable[[Any], dict[str, Any]]
 
 DRAIN_S = 2.0
 SAVE_S = 10.0
-REQUESTS = ("status", "send", "listen", "cut", "restore", "loose", "locate", "capture", "stop")
+REQUESTS = ("status", "send", "command", "listen", "cut", "restore", "loose", "locate",
+            "capture", "stop")  # fmt: skip
 
 
 def run(path: Path) -> int:
@@ -142,6 +143,8 @@ class Process:
             await tap.serve(self.node, writer)
         elif what == "send":
             await self._send(request, writer)
+        elif what == "command":
+            await writer.line(self._command(request))
         elif what == "listen":
             await self._listen(request, writer)
         elif what in ("cut", "restore", "loose"):
@@ -156,6 +159,15 @@ class Process:
             await writer.line({"ok": True})
         else:
             raise ValueError(f'a request has "do": {", ".join(REQUESTS)}')
+
+    def _command(self, request: dict[str, Any]) -> dict[str, Any]:
+        if not isinstance(self.node, SinkNode):
+            raise ValueError("only the PC of a skin sends commands")
+        cell = request.get("cell")
+        numbers = (request["code"], request.get("value", 0), 0 if cell is None else cell)
+        if not all(isinstance(number, int) for number in numbers):
+            raise ValueError("code, value and cell are whole numbers")
+        return self.node.send_command(numbers[0], numbers[1], cell)._asdict()
 
     def _locate(self, request: dict[str, Any]) -> None:
         if not isinstance(self.node, MeshNode):
@@ -206,11 +218,13 @@ class Process:
         node = self.node
         if isinstance(node, SinkNode):
             return [(node.receive_touch(), _touch_line)]
+        if isinstance(node, CellNode):
+            return [(node.receive_commands(), _command_line)]
         receive_packets = getattr(node, "receive_packets", None)
         if receive_packets is not None:
             return [(receive_packets(), _message_line)]
         if not isinstance(node, MeshNode):
-            raise ValueError("a cell hears nothing for people; listen at the PC")
+            raise ValueError("nothing comes in here for people")
         messages = node.receive_messages(in_order=request.get("in_order"))
         streams: list[tuple[AsyncGenerator[Any, None], Form]] = [(messages, _message_line)]
         if request.get("alarms"):
@@ -232,6 +246,10 @@ def _message_line(message: tuple[int, bytes]) -> dict[str, Any]:
 
 def _alarm_line(alarm: Any) -> dict[str, Any]:
     return {"from": alarm.reporter, "alarm": alarm._asdict()}
+
+
+def _command_line(command: Any) -> dict[str, Any]:
+    return {"from": "pc", "command": command._asdict()}
 
 
 def _touch_line(touch: Any) -> dict[str, Any]:

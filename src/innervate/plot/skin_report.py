@@ -42,6 +42,7 @@ def top(story: Story) -> str:
         f"seed {summary['seed']}"
     )
     parts = [element("p", over, "over"), headline(summary["headline"])]
+    parts += [element("p", f"Warning: {text}.", "status bad") for text in summary["warnings"]]
     parts += [element("p", sentence) for sentence in _sentences(story)]
     if "interrupted_at_s" in summary:
         early = f"Ended early, at {summary['interrupted_at_s']:.3f} s of simulated time."
@@ -144,8 +145,32 @@ def _traffic(story: Story) -> str:
     return section(
         "Load and losses",
         pictures([_figure(panel) for panel in panels if panel is not None], "two")
-        + _latencies(story.summary["data"]),
+        + _latencies(story.summary["data"])
+        + _commands(story.summary["commands"]),
     )
+
+
+def _commands(commands: Mapping[str, Any]) -> str:
+    """What became of the PC's commands."""
+    if not commands["sent"]:
+        return ""
+    rows = [("reached", f"{commands['delivered']:,}")]
+    rows += [
+        (f"not reached: {words.MISSED[why]}", f"{count:,}")
+        for why, count in commands["lost_by"].items()
+    ]
+    rows.append(("on their way at the end", f"{commands['in_flight']:,}"))
+    if commands["delivered"]:
+        times = _times(commands["latency_ms"])
+        names = ("half within", "95 % within", "99 % within", "slowest")
+        rows += [
+            (f"from PC to cell, {name}", took) for name, took in zip(names, times, strict=True)
+        ]
+    text = (
+        f"{words.number_of(commands['sent'], 'command')} of the PC, for "
+        f"{commands['addressed']:,} cells in all; nobody acknowledges one."
+    )
+    return table(("commands down", "cells"), rows) + element("p", text, "note")
 
 
 def _latencies(data: Mapping[str, Any]) -> str:

@@ -35,6 +35,13 @@ def headline_line(found: Mapping[str, object]) -> str:
     return f"{found['level']}: {found['text']}"
 
 
+MISSED = {
+    "off": "switched off",
+    "no_route": "without a way to the PC",
+    "on_the_way": "had a way, but it was lost on it",
+}
+
+
 def ms_words(value_ms: float) -> str:
     """A time: "8.43 ms", "17.0 ms", "1.25 s"."""
     if value_ms >= 1000:

@@ -216,6 +216,20 @@ class EventTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     frames: Frames | None = None
 
 
+class CommandTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """[[command]]: what the PC sends down to a cell, or to all; once, or again and again."""
+
+    at_s: At
+    rate_hz: Annotated[
+        float, Meta(ge=0, le=1000, description="a number of commands per second, 0 (once) to 1000")
+    ] = 0.0
+    cell: CellTable | None = None
+    node: Annotated[str | None, Meta(description='a name like "n1"')] = None
+    random: Annotated[bool, Meta(description="true or left out")] = False
+    code: Annotated[int, Meta(ge=0, le=255, description="a whole number, 0 to 255")] = 0
+    value: Annotated[int, Meta(ge=0, le=65_535, description="a whole number, 0 to 65535")] = 0
+
+
 class ScriptTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """[script]: steps that replace the clock."""
 
@@ -247,4 +261,5 @@ class SkinScenario(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
     data: Annotated[DataTable, Meta(description="a table [data]")] = DataTable()
     touch: Annotated[TouchTable | None, Meta(description="a table [touch]")] = None
     event: Annotated[list[EventTable], Meta(description="tables [[event]]")] = []
+    command: Annotated[list[CommandTable], Meta(description="tables [[command]]")] = []
     script: Annotated[ScriptTable | None, Meta(description="a table [script]")] = None

@@ -9,6 +9,7 @@ from math import ceil, floor
 from innervate.scenario.build import build_graph, check_reach
 from innervate.scenario.load import Scenario
 from innervate.scenario.model import EventTable, ProtocolTable, SkinScenario
+from innervate.scenario.orders import Order, orders
 from innervate.scenario.rules import ONE
 from innervate.scenario.script import Step, steps
 from innervate.scenario.source import Source
@@ -70,6 +71,7 @@ class Plan:
         faults: in order of time, then of the file.
         touch: the touch, or None.
         script: steps that replace the clock; empty = free running.
+        orders: commands of the PC, in order of time.
         depths: hops of every cell to the PC over the whole graph.
     """
 
@@ -90,6 +92,7 @@ class Plan:
     faults: list[Fault] = field(default_factory=list)
     touch: Touch | None = None
     script: tuple[Step, ...] = ()
+    orders: list[Order] = field(default_factory=list)
     depths: list[int] = field(default_factory=list)
 
     @property
@@ -128,6 +131,7 @@ def plan(scenario: Scenario) -> Plan:
         faults=_faults(source, graph, model),
         touch=sample(model.touch, graph, model.duration_s) if model.touch is not None else None,
         script=steps(source, graph, model.script) if model.script is not None else (),
+        orders=orders(source, graph, model),
         depths=depths,
     )
 

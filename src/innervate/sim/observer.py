@@ -16,8 +16,10 @@ from innervate.protocol.skin_words import (
     RULE_FEASIBLE,
     RULE_STRICT,
 )
-from innervate.sim.wires import EARLY, LOOPED, NO_ROUTE
+from innervate.sim.wires import EARLY, NO_ROUTE
 from innervate.sim.world import DEAD
+
+DROPS = NO_ROUTE - DROP_NO_ROUTE  # the counter of a reason to drop stands this far from it
 
 # Codes of the observer's own rows; those below 100 are the protocol's reports.
 UNROUTED = 100  # a = connected cells without a route, from now on
@@ -48,7 +50,7 @@ def note(world, time, node, code, a, b):
 def on_report(world, time, node, code, a, b):
     """A node reported something."""
     if code == REPORT_DROP:
-        world.counters[NO_ROUTE if a == DROP_NO_ROUTE else LOOPED] += 1
+        world.counters[DROPS + a] += 1
         if a == DROP_NO_ROUTE and world.run[0].observe and world.watch.had[node] == 0:
             world.counters[EARLY] += 1
         return

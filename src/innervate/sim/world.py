@@ -126,7 +126,9 @@ class World(NamedTuple):
     trail: Any
     taps: Any  # frames for a capture (see taps.py): what happened to them
     tapped: Any  # ... and they themselves
-    delays: Any  # per interface port the latencies of data: how many, sum, greatest
+    delays: Any  # latencies of data by interface port, then of commands: count, sum, greatest
+    due: Any  # per newest commands of the PC and cell: what is known (see orders.py)
+    due_number: Any  # ... the commands' numbers, -1 none
     delay_counts: Any  # ... and how many in each class (see delays.py)
     touch_x: Any
     touch_y: Any

@@ -45,12 +45,15 @@ export function showNumbers(network) {
     const isOpen = recovery.recovered_ms === null || recovery.recovered_ms === undefined;
     const text = isOpen ? ago(network.now.t_s - recovery.at_s) : duration(recovery.recovered_ms);
     const state = isOpen ? "not yet, " : "";
-    const look = !isKnown ? "" : isOpen ? "open" : unconnected ? "" : "done";
+    const isWhole = !unconnected && !recovery.apart; // else it is good news of the others only
+    const look = !isKnown ? "" : isOpen ? "open" : isWhole ? "done" : "";
     const shown = isKnown || !isOpen ? text : "–";
-    const more = isKnown ? `${recovery.cause}: ${state}${noticed}` : recovery.cause;
+    const cut = recovery.apart ? `${recovery.apart} cut off; the others: ` : "";
+    const more = isKnown ? `${recovery.cause}: ${cut}${state}${noticed}` : recovery.cause;
     if (isKnown && recovery.recovered_ms === 0) {
-      const other = /cable|link/.test(recovery.cause) ? "" : "other ";
-      show("recovery", "–", `${recovery.cause}: no ${other}${WORDS[network.kind]} affected`, "");
+      const whom = recovery.apart ? `${recovery.apart} cut off, no other `
+        : /cable|link/.test(recovery.cause) ? "no " : "no other ";
+      show("recovery", "–", `${recovery.cause}: ${whom}${WORDS[network.kind]} affected`, "");
     } else show("recovery", shown, more, look);
   }
   const isRadio = network.kind === "radio"; // there everybody hears everybody
@@ -60,9 +63,9 @@ export function showNumbers(network) {
   $("recovery").hidden = isRadio;
   const all = network.nodes.filter((node) => node.role !== "sink" && node.role !== "port").length;
   const of = `of ${plural(all, WORDS[network.kind])}`;
-  const cut = apart ? `; ${apart === unconnected ? "cut off" : `${apart} of them cut off`}` : "";
+  const off = apart ? `; ${apart === unconnected ? "cut off" : `${apart} of them cut off`}` : "";
   show("unconnected", isKnown ? String(unconnected) : "–",
-    isKnown ? `${of}${cut}` : "nobody answers", unconnected ? "bad" : "");
+    isKnown ? `${of}${off}` : "nobody answers", unconnected ? "bad" : "");
 }
 
 const WORDS = { skin: "cell", radio: "station", mesh: "node" };
