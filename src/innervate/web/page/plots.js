@@ -90,9 +90,10 @@ export class Plots {
     context.font = FONT;
     context.textAlign = "right";
     for (const v of [0, most]) {
-      const text = value(v, v ? series.unit : "");
-      const fits = context.measureText(text).width <= GUTTER - 8; // the line above has the unit, too
-      word(context, fits ? text : value(v, ""), GUTTER - 5, up(v), colours.soft, colours.panel, FONT);
+      const whole = value(v, v ? series.unit : "");
+      const fits = context.measureText(whole).width <= GUTTER - 8; // the plot's head has the unit
+      const text = fits ? whole : value(v, "");
+      word(context, text, GUTTER - 5, up(v), colours.soft, colours.panel, FONT);
     }
     context.textAlign = "center";
     const many = Math.max(4, Math.floor((width - GUTTER) / 65));
