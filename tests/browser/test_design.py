@@ -63,9 +63,13 @@ def box(page, selector):
 
 def hold(page, t_s):
     """Hold a network at a time; what is shown is of then."""
+    page.locator("#speed").fill("4")  # slow, or it is over before it was looked at
+    if page.locator("#go").inner_text() == "Replay":
+        seek(page, 0)
+        expect(page.locator("#go")).to_have_text(re.compile("^(Play|Pause)$"))
     if page.locator("#go").inner_text() == "Pause":
         page.locator("#go").click()
-    expect(page.locator("#go")).to_have_text(re.compile("Play|Replay"))
+    expect(page.locator("#go")).to_have_text("Play")
     seek(page, t_s)
     expect(page.locator("#clock")).to_have_text(re.compile(rf"^{t_s:.6f} s"))
     page.evaluate("() => new Promise((drawn) => setTimeout(drawn, 300))")  # panels follow slowly
