@@ -78,5 +78,6 @@ def put(item: Any, name: str, given: tuple[int, ...]) -> None:
     """
     length, low, high = RANGES[name]
     if len(given) != max(1, length) or not all(low <= v <= high for v in given):
-        raise ValueError(f"{name} must be {max(1, length)} numbers, {low} to {high}")
+        many = f"{length} numbers, " if length else ""
+        raise ValueError(f"{name} must be {many}{low} to {high}")
     setattr(item, name, list(given) if length else given[0])

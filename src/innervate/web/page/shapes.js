@@ -114,7 +114,8 @@ export const affectedSample = [(context) => {
 
 /** The frames on their way, a shape for each kind; with less motion in the middle of their link. */
 export function flights(context, network, stage, size) {
-  const path = { dot: new Path2D(), square: new Path2D(), diamond: new Path2D() };
+  const path = { dot: new Path2D(), square: new Path2D(), diamond: new Path2D(),
+    down: new Path2D() };
   for (const { a, b, kind, p } of network.now.flights) {
     const from = network.index.get(a);
     const to = network.index.get(b);
@@ -123,6 +124,7 @@ export function flights(context, network, stage, size) {
     const x = stage.x[from] + (stage.x[to] - stage.x[from]) * share;
     const y = stage.y[from] + (stage.y[to] - stage.y[from]) * share;
     if (kind === "alarm") diamond(path.diamond, x, y, size + 4);
+    else if (kind === "command") diamond(path.down, x, y, size + 4);
     else if (kind === "beacon" || kind === "ack") {
       path.dot.moveTo(x + size, y);
       path.dot.arc(x, y, size, 0, 7);
@@ -130,7 +132,8 @@ export function flights(context, network, stage, size) {
   }
   context.lineWidth = 1;
   context.strokeStyle = colours.ground;
-  const fills = [["dot", "ink"], ["square", "accent"], ["diamond", "alarm"]];
+  const fills = [["dot", "ink"], ["square", "accent"], ["diamond", "alarm"],
+    ["down", "accent"]];
   for (const [name, colour] of fills) {
     context.fillStyle = colours[colour];
     context.fill(path[name]);
