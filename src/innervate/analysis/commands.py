@@ -57,7 +57,7 @@ def _open(world: Any, cells: int) -> tuple[dict[int, int], int]:
     """Of the last commands: how many cells did not get one, by state; for how many it flies."""
     missed = dict.fromkeys(REASONS.values(), 0)
     in_flight = 0
-    flying = {number_of(frame, "number") for frame in under_way(world)}
+    flying = {number_of(frame, "sq") for frame in under_way(world)}
     due = np.array(world.due, np.int64)
     for slot, number in enumerate(int(number) for number in world.due_number):
         if number < 0:
