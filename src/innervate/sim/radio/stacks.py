@@ -7,6 +7,7 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 from innervate.protocol import (
+    radio_bounds,
     radio_fields,
     radio_follow,
     radio_idle,
@@ -19,6 +20,7 @@ from innervate.protocol import (
     radio_practical,
     radio_reporter,
     radio_station,
+    radio_times,
     radio_turn,
     radio_window,
 )
@@ -61,8 +63,8 @@ PROTOCOLS: dict[str, Protocol] = {
     "csma-cd-r/practical": Protocol(
         radio_practical,
         (
-            radio_station, radio_modes, radio_idle, radio_turn, radio_reporter, radio_window,
-            radio_follow, radio_practical,
+            radio_station, radio_times, radio_bounds, radio_modes, radio_idle,
+            radio_turn, radio_reporter, radio_window, radio_follow, radio_practical,
         ),
         radio_fields.PRACTICAL,
     ),
@@ -83,7 +85,14 @@ def digest(frame):
     word = frame.kind | (frame.slots << 4) | (frame.source << 16) | (frame.handle << 26)
     word ^= (frame.pos << 42) | (frame.next << 49) | (frame.more << 56) | (frame.ok << 57)
     word ^= (frame.good[0] << 5) ^ (frame.good[1] << 21) ^ (frame.bad[0] << 13)
-    return word ^ (frame.bad[1] << 29) ^ (frame.window << 44) ^ (frame.span << 50)
+    return (
+        word
+        ^ (frame.bad[1] << 29)
+        ^ (frame.window << 44)
+        ^ (frame.span << 50)
+        ^ (frame.wide << 60)
+
+    )
 
 
 def bind(entry: ModuleType) -> Stack:
