@@ -44,7 +44,7 @@ from innervate.protocol.radio_reporter import (
     sent_report,
 )
 from innervate.protocol.radio_station import enqueue, hand_up, leave, reset
-from innervate.protocol.radio_times import dead_after, join_after
+from innervate.protocol.radio_times import dead_after, frame_from, join_after
 from innervate.protocol.radio_turn import enter_turn, send_turn
 from innervate.protocol.radio_window import hear_report, next_deadline, use_slot
 from innervate.protocol.radio_words import CRR, DATA, LEAVE, MAIN, OPEN, PACKET, REPORT
@@ -143,7 +143,7 @@ def carrier_went(station, params, now, length, out):
     elif mode == LEAD:
         burst(station, params, now, length, noise, out)
     elif mode == WINDOW:
-        if noise and length >= 3 * params.slot_us:
+        if noise and length >= frame_from(params, station.used) + params.slot_us:
             station.mode = LOST
             arm(station, now, join_after(params, station.used), out)
         elif not station.armed:

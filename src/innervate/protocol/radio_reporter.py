@@ -21,6 +21,7 @@ from innervate.protocol.radio_modes import (
 )
 from innervate.protocol.radio_station import blank
 from innervate.protocol.radio_times import (
+    frame_from,
     guard,
     join_after,
     least_delay,
@@ -151,7 +152,7 @@ def hear_slot(station, params, now, out):
 
 def burst(station, params, now, length, noise, out):
     """The end of a carrier in our window; a report or turn waits for it."""
-    if noise and length >= 2 * params.slot_us:
+    if noise and length >= frame_from(params, station.used):
         run_together(station, params, length, out)
         overrun(station, params, now, out)
         return

@@ -28,6 +28,11 @@ def minislot(params, wide):
     return params.minislot_us
 
 
+def frame_from(params, wide):
+    """Noise of this length or longer is no minislot's CR-Rs or pulses: it was a frame."""
+    return max(2 * params.slot_us, minislot(params, wide) if wide else 0)
+
+
 def probe(params, wide):
     """u: two openings of this length overlap at every station, whatever their delays."""
     if wide:

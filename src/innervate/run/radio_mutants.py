@@ -14,10 +14,10 @@ MUTANTS = tuple(
     Mutant(*texts)
     for texts in (
         ("minislots that collided do not split",
-         "station.slot = 2 * groups + draw(station, 2)", "station.slot = 2 * groups"),
+         "station.slot = parts * groups + draw(station, parts)", "station.slot = parts * groups"),
         ("a collision's wait is not drawn",
-         "(now + params.ta_us + params.dmax_us + draw(station, bound)) & MASK30",
-         "(now + params.ta_us + params.dmax_us) & MASK30"),
+         "params.ta_us + most_delay(params, station.wide) + draw(station, bound)",
+         "params.ta_us + most_delay(params, station.wide)"),
         ("who was given a place does not note it",
          "                if i == mine and station.mode == WINDOW:\n"
          "                    station.pos = place\n", ""),

@@ -26,7 +26,7 @@ from innervate.protocol import (
 )
 from innervate.protocol.radio_station import copy_frame
 from innervate.scenario.radio_baselines import NUMBERS
-from innervate.sim.baselines import common, contend, slots, station, tree
+from innervate.sim.baselines import common, contend, passing, slots, station, tree
 from innervate.sim.baselines.fields import BASELINE
 
 
@@ -57,7 +57,9 @@ class Protocol(NamedTuple):
 
 
 # One stack for all baselines; a parameter says which.
-BASELINES = Protocol(station, (radio_station, common, contend, slots, tree, station), BASELINE)
+BASELINES = Protocol(
+    station, (radio_station, common, contend, slots, tree, passing, station), BASELINE
+)
 
 PROTOCOLS: dict[str, Protocol] = {
     "csma-cd-r/practical": Protocol(
@@ -86,12 +88,7 @@ def digest(frame):
     word ^= (frame.pos << 42) | (frame.next << 49) | (frame.more << 56) | (frame.ok << 57)
     word ^= (frame.good[0] << 5) ^ (frame.good[1] << 21) ^ (frame.bad[0] << 13)
     return (
-        word
-        ^ (frame.bad[1] << 29)
-        ^ (frame.window << 44)
-        ^ (frame.span << 50)
-        ^ (frame.wide << 60)
-
+        word ^ (frame.bad[1] << 29) ^ (frame.window << 44) ^ (frame.span << 50) ^ (frame.wide << 60)
     )
 
 
