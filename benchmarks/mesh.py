@@ -8,7 +8,7 @@ counts, because other work on the machine only ever slows one down.
 import time
 
 from innervate import scenario
-from innervate.run import run
+from innervate.running import run
 from innervate.sim.mesh.simulate import simulate
 
 NODES = (30, 100, 254)

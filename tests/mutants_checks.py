@@ -39,6 +39,7 @@ def select(protocol):
         history = [random_step(draw) for _ in range(draw.randrange(1, 30))]
         keys = {"rule": draw.choice(RULES), "updates": "periodic", "k": draw.randrange(1, 4)}
         keys |= {"max_depth": draw.choice((3, 64)), "balancing": True, "balance_periods": 90}
+        keys["balance_rule"] = draw.choice(("even", "paper"))
         check_select(history, 0, protocol, seed % 2, **keys)
 
 

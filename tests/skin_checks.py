@@ -20,7 +20,7 @@ from tests.skin_bench import (
 )
 from tests.skin_net import Net
 
-RULES = ("feasible", "strict", "paper")
+RULES = ("feasible", "strict", "paper", "paper-lax")
 UPDATES = ("periodic", "triggered", "wave")
 HALF = 1 << 15
 
@@ -126,9 +126,11 @@ def is_newer(a, b):
     return 0 < (a - b) % 65536 < 32768
 
 
-def spec_candidates(cell, params):
-    """Usable and allowed ports other than the parent, as [skin 4] and E8 print it."""
-    master = cell.parent
+def spec_candidates(cell, params, master):
+    """Usable and allowed ports other than the present master (-1 none), as [skin 4], E8 print it.
+
+    The rule `paper` compares with the number of the present master, as last heard (Alg. 2 l. 6).
+    """
     candidates = []
     for p in range(4):
         usable = cell.dist[p] < params.max_depth and cell.pf[p] < 840 and not cell.child[p]
@@ -137,8 +139,10 @@ def spec_candidates(cell, params):
             allowed = not cell.fd_known or is_newer(cell.sq[p], fd[0])
             allowed = allowed or (cell.sq[p] == fd[0] and cell.dist[p] < fd[1])
         else:
-            allowed = not cell.sq_known or is_newer(cell.sq[p], cell.sq_own)
-            allowed = allowed or (params.rule == 2 and cell.sq[p] == cell.sq_own)
+            present = params.rule == 2 and master != -1
+            least = cell.sq[master] if present else cell.sq_own
+            allowed = not cell.sq_known or is_newer(cell.sq[p], least)
+            allowed = allowed or (params.rule in (2, 4) and cell.sq[p] == least)
         if usable and allowed and p != master:
             candidates.append(p)
     return candidates
@@ -151,7 +155,7 @@ def spec_parents(cell, params, may_balance):
         usable = cell.dist[master] < params.max_depth and cell.pf[master] < 840
         if not usable or cell.child[master]:
             master = -1
-    candidates = [p for p in spec_candidates(cell, params) if p != master]
+    candidates = spec_candidates(cell, params, master)
     current = 255 if master == -1 else cell.dist[master]
     best = min((cell.dist[p] for p in candidates), default=255)
     if best < current:
@@ -159,8 +163,13 @@ def spec_parents(cell, params, may_balance):
     equal = [p for p in candidates if cell.dist[p] == current]
     if may_balance and master != -1 and equal:
         least = min(cell.size[p] for p in equal)
-        if cell.size[master] - least > cell.own_load:
-            return [min(p for p in equal if cell.size[p] == least)]
+        lightest = min(p for p in equal if cell.size[p] == least)
+        gains = cell.size[master] - least > cell.own_load
+        if params.balance_rule:  # Alg. 3 as printed
+            more = least - cell.size[master]
+            gains = more >= 0 and cell.own_load < more
+        if gains:
+            return [lightest]
     return [master]
 
 

@@ -1,40 +1,127 @@
-"""`innervate.run` is one name for the room and for the function, however it was imported."""
+"""What `import innervate` offers: real functions, listed, documented, typed, loaded when asked."""
 
+import inspect
+import pydoc
+import re
 import subprocess
 import sys
 from importlib.metadata import version
+from pathlib import Path
 
 import pytest
 
 import innervate
 
-WAYS = {
-    "lazily": "import innervate; call = innervate.run",
-    "by from": "from innervate import run as call",
-    "the function": "from innervate.run import run as call",
-    "as a module": "import innervate.run as call",
-    "after the room": "import innervate.run; call = innervate.run",
+ROOT = Path(__file__).parents[1]
+FUNCTIONS = ("check", "compare", "load", "load_sweep", "run", "size", "sweep")
+USER_SCRIPT = '''
+"""What somebody may write who has only the documentation."""
+
+import innervate
+
+
+def main() -> None:
+    scenario = innervate.load("setup-1", seed=3, overrides={"protocol.k": 3})
+    print(innervate.check(scenario))
+    run: innervate.Run = innervate.run(scenario, overrides=["duration_s=1"])
+    run.write("runs/a")
+    first = run.skin["recoveries"][0]
+    late: float | None = first["routed_ms"]
+    print(late, run.skin["data"]["lost_by"]["cut"] + 1, run.tables["routes"].collect())
+    summary = run.summary
+    if summary["kind"] == "mesh":
+        ratio: float | None = summary["delivery_ratio"]
+        print(ratio, run.interrupted)
+    found: innervate.Comparison = innervate.compare("runs/a", "runs/b")
+    print(found.same, len(found.notes))
+    done: innervate.Sweep = innervate.sweep("setup-1", vary={"protocol.k": "2..4"}, repeat=2)
+    done.compare("protocol.k", 2, 3, "recoveries.routed_ms")
+    asked = innervate.Question("robot.urdf", "*", ports=(1, 2))
+    print(innervate.size(asked, repeat=2).needed[250.0], innervate.__version__)
+'''
+MISTAKES = {
+    "innervate.rnu('a.toml')": 'Module has no attribute "rnu"',
+    "innervate.run()": 'Missing positional argument "scenario"',
+    "innervate.run('a.toml', seed='x')": 'incompatible type "str"',
+    "innervate.run('a.toml').sumary": '"Run" has no attribute "sumary"',
+    "innervate.compare('a')": "Missing positional argument",
+    "innervate.run('a.toml').skin['cels']": 'has no key "cels"',
+    "innervate.run('a.toml').mesh['nodes'] + 'x'": "Unsupported operand types",
 }
 
 
-@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS.keys())
-def test_run_is_callable(way):
-    code = f"""
-{way}
-import innervate, innervate.run as room
-assert callable(call)
-assert isinstance(room.Run, type)
-try:
-    call("there-is-no-such-file.toml")
-except Exception as error:
-    assert "there-is-no-such-file" in str(error), error
-else:
-    raise SystemExit("a scenario that is not there was run")
-"""
+def type_checked(text, tmp_path):
+    """(exit code, output) of mypy --strict on a script of a user, outside this repository."""
+    script = tmp_path / "script.py"
+    script.write_text(text)
+    cache = ROOT / ".mypy_cache" / "scripts"
+    command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", cache, script.name]
+    done = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+def test_a_users_script_passes_mypy_strict_and_its_mistakes_do_not(tmp_path):
+    assert type_checked(USER_SCRIPT, tmp_path) == (0, "Success: no issues found in 1 source file\n")
+    code, said = type_checked("import innervate\n" + "\n".join(MISTAKES), tmp_path)
+    assert code == 1
+    for line, mistake in enumerate(MISTAKES.values(), 2):
+        assert any(
+            text.startswith(f"script.py:{line}: error:") and mistake in text
+            for text in said.splitlines()
+        ), (line, said)
+
+
+def test_the_readmes_example_passes_mypy_strict(tmp_path):
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    assert blocks
+    for block in blocks:
+        assert type_checked(block, tmp_path)[0] == 0, type_checked(block, tmp_path)[1]
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_what_can_be_called_is_a_function_that_says_how(name):
+    found = getattr(innervate, name)
+    assert inspect.isfunction(found)
+    assert found.__name__ == name
+    said = inspect.signature(found)
+    assert said.parameters
+    assert said.return_annotation is not inspect.Signature.empty
+    page = pydoc.plain(pydoc.render_doc(innervate))
+    assert f"{name}({next(iter(said.parameters))}" in page
+
+
+def test_every_name_is_listed_and_there():
+    assert set(innervate.__all__) <= set(dir(innervate))
+    for name in innervate.__all__:
+        assert getattr(innervate, name) is getattr(innervate, name), name
+    assert set(FUNCTIONS) <= set(innervate.__all__)
+
+
+def test_names_are_listed_before_the_simulator_is_loaded():
+    code = (
+        "import sys, innervate\n"
+        "assert 'run' in dir(innervate) and 'sweep' in dir(innervate)\n"
+        "innervate.check, innervate.load('setup-1'), innervate.ScenarioError\n"
+        "heavy = {'numpy', 'numba', 'polars', 'matplotlib', 'trimesh'} & set(sys.modules)\n"
+        "assert not heavy, heavy\n"
+        "import innervate.running, innervate.sweeping\n"
+        "assert innervate.run is innervate.running.run\n"
+        "assert innervate.sweep is innervate.sweeping.sweep\n"
+    )
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False
     )
-    assert done.returncode == 0, done.stderr + done.stdout
+    assert done.returncode == 0, done.stderr
+
+
+def test_import_alone_loads_nothing():
+    code = "import sys; old = set(sys.modules); import innervate; print(*set(sys.modules) - old)"
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True
+    )
+    assert set(done.stdout.split()) == {"__future__", "innervate"}
 
 
 def test_unknown_attribute_of_the_package():

@@ -1,31 +1,70 @@
 """The networks inside and between robots, from one protocol source.
 
 `innervate.run(scenario)` runs a scenario, given as a file, as a dictionary or built in code;
-`innervate.sweep(scenario, vary=...)` runs it in many variants, many times. The simulator behind
-them is loaded at the first use, so that `import innervate` stays cheap.
+`innervate.sweep(scenario, vary=...)` runs it in many variants, many times;
+`innervate.compare(a, b)` says what differs between two runs, and `innervate.size(question)` how
+many cables a skin needs.
+The simulator behind them is loaded at the first use, so that `import innervate` stays cheap.
 """
 
 from __future__ import annotations
 
 TYPE_CHECKING = False  # `typing` would be the slowest part of this import
 if TYPE_CHECKING:
-    from typing import Any
-
-    from innervate.run import run as run
-    from innervate.sweep import sweep as sweep
+    from innervate.running.compare import Comparison as Comparison
+    from innervate.running.compare import compare as compare
+    from innervate.running.errors import RunError as RunError
+    from innervate.running.run import Run as Run
+    from innervate.running.run import run as run
+    from innervate.scenario import Scenario as Scenario
+    from innervate.scenario import ScenarioError as ScenarioError
+    from innervate.scenario.given import check as check
+    from innervate.scenario.given import load as load
+    from innervate.sweeping.errors import SweepError as SweepError
+    from innervate.sweeping.result import Sweep as Sweep
+    from innervate.sweeping.result import load_sweep as load_sweep
+    from innervate.sweeping.sizing import Answer as Answer
+    from innervate.sweeping.sizing import Question as Question
+    from innervate.sweeping.sizing import size as size
+    from innervate.sweeping.sweep import sweep as sweep
 
 __version__ = "0.1.0"
-__all__ = ["__version__", "run", "sweep"]
+
+# Where each name comes from; the lines above say the same to type checkers.
+_PLACES = {
+    "Answer": "sweeping.sizing",
+    "Comparison": "running.compare",
+    "Question": "sweeping.sizing",
+    "Run": "running.run",
+    "RunError": "running.errors",
+    "Scenario": "scenario",
+    "ScenarioError": "scenario",
+    "Sweep": "sweeping.result",
+    "SweepError": "sweeping.errors",
+    "check": "scenario.given",
+    "compare": "running.compare",
+    "load": "scenario.given",
+    "load_sweep": "sweeping.result",
+    "run": "running.run",
+    "size": "sweeping.sizing",
+    "sweep": "sweeping.sweep",
+}
+__all__ = ["__version__", *_PLACES]
 
 
-def __getattr__(name: str) -> Any:
-    """Load the room `run` or `sweep` when it is first asked for.
+if not TYPE_CHECKING:  # or every name would do, misspelt ones too
 
-    Importing a subpackage sets the attribute of its name, like the module `innervate.run`. That
-    module is therefore callable itself (see its end): one name, whichever way it was imported.
-    """
-    if name in ("run", "sweep"):
+    def __getattr__(name: str) -> object:
+        """Load what stands behind a name when it is first asked for."""
+        if name not in _PLACES:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         from importlib import import_module
 
-        return import_module(f"innervate.{name}")
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        found = getattr(import_module(f"{__name__}.{_PLACES[name]}"), name)
+        globals()[name] = found
+        return found
+
+
+def __dir__() -> list[str]:
+    """Every name, loaded or not."""
+    return sorted({*globals(), *__all__})

@@ -3,10 +3,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from innervate.analysis import radio, radio_air
+from innervate.analysis import radio, radio_air, radio_airtime
+from innervate.plot.radio_words import off_words
 from innervate.protocol.radio_words import CRR, DATA, OPEN, REPORT_BOUNDS, REPORT_LEFT
 from innervate.scenario.radio_plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
+from innervate.sim.build import put
 from innervate.sim.radio import world as w
+from innervate.sim.radio.build import build
 from innervate.sim.radio.loop import ON_CARRIER
 from innervate.sim.radio.simulate import COUNTS
 from tests.radio_runs import radio_plan, run
@@ -31,10 +34,17 @@ def made(packets=(), sent=(), rows=(), ended_us=100_000, **plan):
     plan = radio_plan(n, packet_slots=5, real=(52, 52), **plan)
     return SimpleNamespace(
         plan=plan,
+        world=build(plan, plain=True, checks=False, keep=False, trail=False),
         packets=table(w.PACKET, *packets),
         sent=table(w.SENT, *sent),
         rows=table(w.ROW, *rows),
-        counts=dict.fromkeys(COUNTS, 0) | {"handled": 7, "decoded": 3, "silent": 1},
+        counts=dict.fromkeys(COUNTS, 0)
+        | {
+            "handled": 7,
+            "decoded": 3,
+            "silent": 1,
+            "completed": len(packets),
+        },
         ended_us=ended_us,
         wall_s=0.5,
         fingerprint="0" * 16,
@@ -143,7 +153,7 @@ def test_throughput_over_time():
     steps = radio.airtime_steps(made(packets), 4, 0, 20 * SLOT)
     assert steps.values == pytest.approx([1, 1, 0, 1])
     assert steps.time_us.tolist() == [0, 5 * SLOT, 10 * SLOT, 15 * SLOT]
-    assert radio._spans(made(packets), made(packets).packets)[0].tolist() == [0, 1040, 3120]
+    assert radio_airtime._spans(made(packets), made(packets).packets)[0].tolist() == [0, 1040, 3120]
 
 
 def test_signals_by_hand():
@@ -254,3 +264,63 @@ def test_saturation_as_simulated():
     assert summary["jain_round"] > 0.99
     assert len(summary["order"]) == 400
     assert summary["traffic"] == "saturated"
+
+
+def test_time_switched_off_is_no_delay():
+    # Station 0 is off from 20 to 60 slots; what it offered before or meanwhile has no delay.
+    faults = [
+        RadioFault(at_us=at * SLOT, action=action, node=0, value=0, index=i)
+        for i, (at, action) in enumerate([(20, KILL), (60, JOIN)])
+    ]
+    packets = [
+        packet(0, 20 * SLOT, 0),  # ended as it went off: it was on all the time
+        packet(19 * SLOT, 70 * SLOT, 0),
+        packet(30 * SLOT, 75 * SLOT, 0),
+        packet(60 * SLOT, 80 * SLOT, 0),
+        packet(10 * SLOT, 65 * SLOT, 1),
+    ]
+    result = made(packets, faults=faults, arrivals=[[0] * 4, [0]])
+    assert sorted(radio.delays(result)) == [20, 20, 55]
+    assert radio.summarize(result)["waited_off"] == 2
+    assert radio.summarize(result)["delay_slots"]["max"] == 55
+
+
+def test_throughput_counts_the_time_in_which_nothing_came_through():
+    # Three of 195 packets are delivered in the first 20 slots of 1,000; then nothing any more.
+    packets = [packet(0, end * SLOT, 0) for end in (5, 12, 20)]
+    poisson = made(packets, ended_us=1000 * SLOT, arrivals=[[0] * 195, []], wanted=0)
+    assert radio.throughput(poisson) == pytest.approx(3 * 5 / 1000)
+    assert radio.airtime_steps(poisson, 50).values[1:].max() == 0
+    stuck = made(packets, ended_us=1000 * SLOT, traffic="saturated", wanted=200)
+    assert radio.throughput(stuck) == pytest.approx(3 * 5 / 1000)
+
+
+def test_throughput_ends_with_the_last_packet_that_was_wanted():
+    packets = [packet(0, end * SLOT, end % 2) for end in (5, 20)]
+    done = made(packets, ended_us=1000 * SLOT, traffic="saturated", wanted=2)
+    assert radio.throughput(done) == pytest.approx(2 * 5 / 20)
+    # A disaster is over when nobody who is on waits any more, though who died had a packet.
+    killed = [RadioFault(at_us=1, action=KILL, node=0, value=0, index=0)]
+    over = made(packets[:1], ended_us=1000 * SLOT, faults=killed, arrivals=[[0], [0]], wanted=0)
+    assert radio.throughput(over) == 1.0
+    put(over.world.radios, 1, alive=1, backlog=1)
+    assert radio.throughput(over) == pytest.approx(5 / 1000)
+
+
+def test_packets_of_who_left_are_told_apart():
+    arrivals = [[1000, 300_000], [2000], [3000, 200_000, 400_000]]
+    left = [RadioFault(at_us=100_000, action=LEAVE, node=2, value=0, index=0)]
+    summary = radio.summarize(
+        run(3, packet_slots=5, plain=True, faults=left, arrivals=arrivals, wanted=0, duration_s=0.5)
+    )
+    assert [summary[key] for key in ("offered", "delivered", "pending", "abandoned")] == [
+        6,
+        4,
+        0,
+        2,
+    ]
+    assert off_words(summary)[0].startswith("Not counted: 2 packets of robots that were off or had")
+    assert off_words(summary | {"abandoned": 0, "waited_off": 1}) == [
+        "1 packet waited while its robot was off; delays leave them out."
+    ]
+    assert off_words(summary | {"abandoned": 0}) == []

@@ -54,7 +54,12 @@ def test_by_hand(line):
             "detected_ms": 31.0,
             "converged_ms": 50.5,
             "routed_ms": 50.5,
+            "others_ms": 50.5,
+            "without_way": 0,
             "cut_cells": 2,
+            "cut_off": 0,
+            "cut_off_total": 0,
+            "joined_again": 0,
         }
     ]
     assert start_up(recorded(line, rows)) == {"converged_ms": 6.0, "routed_ms": 6.0}

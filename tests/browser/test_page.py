@@ -21,7 +21,7 @@ def test_it_shows_the_network_and_asks_nobody_else(look, skin):
     expect(page.locator("#name")).to_have_text("a <b>small</b> skin")  # a name is no markup
     expect(page.locator("#connection")).to_have_text("connected")
     expect(page.locator("#unconnected .more")).to_have_text("of 48 cells")
-    expect(page.locator(".plot")).to_have_count(3)
+    expect(page.locator(".plot")).to_have_count(4)
     asked = page.evaluate("performance.getEntriesByType('resource').map((one) => one.name)")
     assert asked
     assert all(address.startswith(skin.partition("?")[0]) for address in asked)
@@ -60,6 +60,33 @@ def test_a_click_touches_a_cell_and_the_pc_receives_it(look, skin):
     expect(page.locator("#selected-facts")).to_have_text("switched off")
     page.locator("#selected-do button", has_text="Revive").click()
     expect(page.locator("#selected-facts")).to_contain_text("through port")
+    click(page, OTHER)  # the middle of a cable: it is one of its cells that is touched
+    expect(page.locator("#selected-facts")).to_contain_text("touched")
+    expect(page.locator("#selected-name")).not_to_contain_text(" - ")
+    page.locator("#selected-do button", has_text="Kill").wait_for()
+    assert page.locator("#log").get_by_text("cable").count() == 0
+    click(page, OTHER)
+    expect(page.locator("#selected-facts")).not_to_contain_text("touched")
+
+
+def test_the_state_of_the_network_is_one_line(look, skin):
+    page = look(skin)
+    level, line = page.locator("#level"), page.locator("#headline")
+    expect(level).to_have_text("✓ ok")
+    expect(line).to_have_text("Every cell has a way to the PC, and no sample was lost.")
+    click(page, "p0 r3 c3")
+    expect(level).to_have_text("! degraded")
+    expect(line).to_contain_text("1 of 48 cells (p0 r3 c3) is switched off")
+    click(page, "p0 r3 c3")
+    expect(page.locator("#selected-facts")).to_contain_text("through port")
+    click(page, CABLE)
+    click(page, "p0 r5 c6 - pc.1")
+    expect(level).to_have_text("✕ down")
+    expect(page.locator("#unconnected .more")).to_have_text("of 48 cells; cut off")
+    for cable in (CABLE, "p0 r5 c6 - pc.1"):
+        click(page, cable)
+    expect(page.locator("#unconnected output")).to_have_text("0")
+    expect(level).to_have_text("! degraded")  # samples were lost
 
 
 def test_keys_alone_cut_and_heal(look, skin):
@@ -71,11 +98,17 @@ def test_keys_alone_cut_and_heal(look, skin):
     for key in ("ArrowRight", "ArrowDown", "Shift+ArrowRight"):
         page.keyboard.press(key)
     expect(page.locator("#selected-name")).to_contain_text(" - ")
-    assert page.locator("#spoken").inner_text().endswith("link, up")
+    spoken = page.locator("#spoken")
+    assert spoken.inner_text().endswith("link, up")
     page.keyboard.press("Enter")
-    expect(page.locator("#selected-facts")).to_have_text("link, cut")
+    expect(spoken).to_have_text(re.compile(r".*link, cut$"))
+    page.locator("#tool").select_option("touch")
+    page.locator("#stage").focus()
+    page.keyboard.press("Enter")  # a finger heals nothing either
+    page.locator("#tool").select_option("cut")
+    page.locator("#stage").focus()
     page.keyboard.press("Enter")
-    expect(page.locator("#selected-facts")).to_have_text("link, up")
+    expect(spoken).to_have_text(re.compile(r".*link, up$"))
 
 
 def test_every_control_has_a_name_and_is_reached_by_tab(look, skin):

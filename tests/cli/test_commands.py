@@ -34,8 +34,11 @@ def test_help_names_every_command(sh, tokens):
 
 def test_run_says_what_happened_and_writes_a_folder(sh):
     assert sh("run", "four.toml") == 0
-    first, event, broken, *_, last = sh.out.splitlines()
+    first, headline, event, broken, *_, last = sh.out.splitlines()
     assert first.startswith("four: 4 cells, 2 interface ports, at most 2 hops deep; 0.4 s")
+    assert (
+        headline == "degraded: 4 of 152 samples were lost (2.63 %); every cell has a way to the PC."
+    )
     assert event.startswith("Cable to interface 1 cut at 0.300 s: noticed after")
     assert broken.startswith("Broken at the end: cable from interface 1 to p0 r0 c3 E, since 0.3")
     assert last == f"Written: {Path('runs/four-1/report.html')}"

@@ -123,6 +123,19 @@ def test_interrupted_runs_end_with_130(sh, monkeypatch):
     assert Path("runs/four-1/summary.json").exists()
 
 
+def test_live_means_nodes_whatever_a_folder_is_called(sh, monkeypatch):
+    monkeypatch.setenv("INNERVATE_RUN", str(Path("nobody").absolute()))
+    assert sh("watch", "live") == 2
+    assert "no node runs here" in sh.err
+    assert "./live" not in sh.err
+    Path("live").mkdir()
+    assert sh("watch", "live") == 2
+    assert "no node runs here" in sh.err
+    assert sh.err.endswith("what is called live here: innervate watch ./live\n")
+    assert sh("watch", "./live") == 2
+    assert "is not a run folder" in sh.err
+
+
 def test_sys_exit_inside_is_kept():
     assert errors.conclude(SystemExit(3)) == 3
     assert errors.conclude(SystemExit()) == 0

@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 
 from innervate.protocol import plain
 from innervate.protocol.skin_fields import FRAME
-from innervate.protocol.skin_words import BEACON, DATA, RESTART
+from innervate.protocol.skin_words import BEACON, COMMAND, DATA, RESTART
 from innervate.wire import skin as wire
 
 Frame = plain.make("Frame", FRAME)
 RANGES = {name: (length, low, high) for name, length, low, high, _unit, _meaning in FRAME}
-KINDS = (BEACON, DATA, RESTART)
+KINDS = (BEACON, DATA, RESTART, COMMAND)
 
 
 def new(kind, **values):
@@ -66,8 +66,14 @@ def test_data_by_hand():
     assert len(wire.encode(data)) == 20
 
 
+def test_command_by_hand():
+    command = new(COMMAND, cell=0x0102, number=0x0304, hops=5, code=6, value=0x0708)
+    assert wire.encode(command) == sealed(bytes.fromhex("40 0102 0304 05 06 0708"))
+    assert len(wire.encode(command)) == 11
+
+
 def test_types_and_sizes_of_the_contract():
-    assert wire.SIZES == {1: 9, 2: 20, 3: 9}
+    assert wire.SIZES == {1: 9, 2: 20, 3: 9, 4: 11}
     bits = wire.KIND_BITS + sum(width for _name, _count, width, _signed in wire.ROUTE)
     assert bits + 8 * wire.CRC_BYTES == 69
 
@@ -81,7 +87,7 @@ def test_layouts_hold_exactly_the_declared_ranges():
             seen.add(name)
             low = -(1 << (bits - 1)) if is_signed else 0
             assert RANGES[name] == (count, low, low + (1 << bits) - 1), name
-    assert seen | {"kind"} == set(RANGES)
+    assert seen | {"kind", "made_at"} == set(RANGES)  # made_at: a run's own
 
 
 @given(frames())
@@ -166,7 +172,7 @@ def test_encoding_too_large_a_value_is_the_callers_mistake(name, value):
         wire.encode(new(BEACON, **{name: value}))
 
 
-@pytest.mark.parametrize("kind", [0, 4, 15])
+@pytest.mark.parametrize("kind", [0, 5, 15])
 def test_encoding_an_unknown_kind_is_the_callers_mistake(kind):
     with pytest.raises(ValueError, match="kind"):
         wire.encode(new(kind))

@@ -13,7 +13,7 @@ from innervate import scenario
 from innervate.cli.app import app
 from innervate.live import nodefile
 from innervate.scenario import model
-from innervate.sweep import make_plan, planfile
+from innervate.sweeping import make_plan, planfile
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"

@@ -9,7 +9,7 @@ import pytest
 
 import innervate
 from innervate.cli import main
-from innervate.sweep.planfile import is_plan
+from innervate.sweeping.planfile import is_plan
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples"
 
@@ -44,7 +44,7 @@ def test_design_questions(path, tmp_path):
     vary = [word for text in SMALL[path.stem] for word in ("--vary", text)]
     small = ("--repeat", "2", "--workers", "1", "--out", str(tmp_path))
     assert main(["sweep", str(path), *vary, *small]) == 0
-    done = innervate.sweep.load(tmp_path)
+    done = innervate.load_sweep(tmp_path)
     assert done.failed.height == 0
     assert {p.stem for p in tmp_path.glob("*.png")} == {plot.name for plot in done.plan.plots}
     ANSWERS[path.stem](done)

@@ -162,6 +162,64 @@ def test_every_field_of_every_type_is_decoded(kind, tmp_path, tshark):
 
 
 @pytest.mark.parametrize("kind", FRAMES)
+def test_every_type_is_found_by_its_name(kind, tmp_path, tshark):
+    """The filters that the documents name: innervate.mesh.alarm and its like."""
+    made = list(FRAMES[kind]())
+    capture = capture_of(tmp_path / "all.pcapng", kind, [data for data, _ in made])
+    layouts = {"skin": skin, "mesh": mesh_payloads, "radio": radio}[kind].LAYOUTS
+    known = {str(number): dissector.abbreviation(name) for number, name, _fields in layouts}
+    known |= {str(mesh_words.ACK): "ack"} if kind == "mesh" else {}
+    for number, name in known.items():
+        lines = tshark(capture, "-Y", f"innervate.{kind}.{name}", "-T", "fields", "-e",
+                       f"innervate.{kind}.kind")  # fmt: skip
+        expected = [1 for _, fields in made if fields.get(f"innervate.{kind}.kind") == [number]]
+        assert lines == [number] * len(expected), name
+
+
+def columns(tshark, capture):
+    """Source, destination and info of every packet, as the list of packets has them."""
+    names = ("%s", "%d", "%i")
+    chosen = ",".join(f'"{name}","{name}"' for name in names)
+    lines = tshark(capture, "-o", f"gui.column.format:{chosen}", "-T", "tabs")
+    # tshark draws an arrow between source and destination.
+    return [tuple(one for part in line.split("\t") if (one := part.strip()) != "\u2192")
+            for line in lines]  # fmt: skip
+
+
+def test_the_list_of_packets_says_who_sends_what_to_whom(tmp_path, tshark):
+    beacon = plain.make("Frame", skin_fields.FRAME)()
+    beacon.kind, beacon.dist, beacon.sq = skin.BEACON, 3, 12
+    cable = pcapng.interface(links.SKIN, "c4 E", "cell 4 port 1; c4 E to c5 W")
+    out, into = pcapng.OUTBOUND, pcapng.INBOUND
+    blocks = [pcapng.section(), cable]
+    blocks += [pcapng.packet(0, at, skin.encode(beacon), way) for at, way in enumerate((out, into))]
+    path = tmp_path / "skin.pcapng"
+    path.write_bytes(b"".join(blocks))
+    sent, came = columns(tshark, path)
+    assert sent == ("c4 E", "c5 W", "beacon: dist 3, sq 12, load 0, size 0, parent 0")
+    assert came == ("c5 W", "c4 E", sent[2])
+    report = plain.make("Frame", radio_fields.FRAME)()
+    report.kind, report.window = radio_words.REPORT, 4
+    data = plain.make("Frame", radio_fields.FRAME)()
+    data.kind, data.source = radio_words.DATA, 7
+    blocks = [pcapng.section(), pcapng.interface(links.RADIO, "station 2", "station 2")]
+    blocks += [pcapng.packet(0, 0, radio.encode(report), out)]
+    blocks += [pcapng.packet(0, 1, radio.encode(data), into)]
+    path.write_bytes(b"".join(blocks))
+    sent, came = columns(tshark, path)
+    assert sent[:2] == ("station 2", "all")
+    assert "window 4" in sent[2]
+    assert came[:2] == ("station 7", "all")
+    alarm, _ = mesh_record(mesh_words.ALARM, 0, [5], bytes([12] + [0] * 17))
+    alarm.link_src, alarm.link_dst, alarm.origin, alarm.dest, alarm.seq = 3, 255, 5, 254, 77
+    capture = capture_of(tmp_path / "mesh.pcapng", "mesh", [mesh.encode(alarm)])
+    ((source, to, info),) = columns(tshark, capture)
+    assert (source, to) == ("node 3", "all")
+    assert info.startswith("alarm: robot 12, ")
+    assert info.endswith("(5 > monitor, seq 77)")
+
+
+@pytest.mark.parametrize("kind", FRAMES)
 def test_damage_is_flagged_as_the_decoders_find_it(kind, tmp_path, tshark):
     wire = {"skin": skin, "mesh": mesh, "radio": radio}[kind]
     fields = {"skin": skin_fields, "mesh": mesh_fields, "radio": radio_fields}[kind].FRAME

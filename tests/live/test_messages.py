@@ -3,7 +3,8 @@ from collections import Counter
 
 import pytest
 
-from innervate.live.messages import BACKLOG, DELIVERED, EXPIRED, HOP_ACKED, REFUSED
+from innervate.live.messages import DELIVERED, EXPIRED, HOP_ACKED, REFUSED
+from innervate.live.turns import MOST
 from tests.live_net import Mesh, until
 
 LINE = [(0, 1), (1, 2), (2, 3)]
@@ -98,7 +99,7 @@ def test_a_standby_takes_over_and_messages_still_arrive():
 def test_more_messages_than_can_wait_are_refused_at_once():
     async def main():
         async with Mesh(2, [(0, 1)]) as mesh:
-            receipts = [mesh.nodes[0].send_message(1, b"") for _ in range(BACKLOG + 100)]
+            receipts = [mesh.nodes[0].send_message(1, b"") for _ in range(MOST + 100)]
             return Counter(receipt.state for receipt in receipts[-50:]), receipts[-1].reason
 
     assert asyncio.run(main()) == ({REFUSED: 50}, "queue full")

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from innervate.cli.live import command_text, touch_text
 from innervate.live.profile import SKIN
 from tests.live_net import Skin, until
 
@@ -60,6 +61,8 @@ def test_the_pc_starts_again_and_everybody_comes_back():
 
 
 def test_a_cell_tells_what_its_sensors_say():
+    began_us = time.time_ns() // 1000
+
     async def main():
         async with Skin(2, 1, [(0, 0)], rate_hz=0.0) as skin:
             touches = skin.pc.receive_touch()
@@ -73,7 +76,11 @@ def test_a_cell_tells_what_its_sensors_say():
             return touch
 
     touch = asyncio.run(main())
-    assert touch == (1, 0, 1, 0, 7, (1, 2, 65_535), -3, (-512, 0, 511))
+    assert touch[:-1] == (1, 0, 1, 0, 7, (1, 2, 65_535), -3, (-512, 0, 511))
+    assert began_us < touch.time_us < time.time_ns() // 1000
+    assert "seq 0, 1 hops, interface 0, proximity 7, force 1 2 65535 mN, 18.5 degC" in (
+        touch_text(touch._asdict())
+    )
 
 
 def test_status_names_the_broken_port():
@@ -105,3 +112,43 @@ def test_whatever_comes_in_is_taken_or_counted_and_never_raises(frames, pc):
         assert dropped + counters["frames"] == len(frames)
 
     asyncio.run(main())
+
+
+def test_a_command_of_the_pc_comes_to_its_cell_once_or_to_all():
+    heard = {}
+
+    async def main():
+        async with Skin(3, 2, [(0, 0), (5, 1)]) as skin:
+            for number, cell in enumerate(skin.cells):
+                heard[number] = []
+                cell.receive_commands(heard[number].append)
+            await until(skin.fresh())
+            await until(lambda: sum(skin.pc.stack.pc.size) == 6)
+            first = skin.pc.send_command(7, 500, cell=4)
+            await until(lambda: heard[4])
+            second = skin.pc.send_command(8)
+            await until(lambda: all(heard.values()) and len(heard[4]) == 2)
+            for wrong in ({"code": 256}, {"code": 1, "value": -1}, {"code": 1, "cell": 65_535}):
+                with pytest.raises(ValueError, match="must be"):
+                    skin.pc.send_command(**wrong)
+            return first, second, skin.cells[4].counters(), skin.pc.counters()
+
+    first, second, at_cell, at_pc = asyncio.run(main())
+    assert first.ports == second.ports == 2
+    assert second.number == first.number + 1
+    alone, everybody = heard[4]
+    assert (alone.number, alone.code, alone.value, alone.to_all) == (first.number, 7, 500, False)
+    assert "for this cell: code 7, value 500" in command_text(alone._asdict())
+    assert (everybody.code, everybody.to_all) == (8, True)
+    assert all(len(told) == 1 for cell, told in heard.items() if cell != 4)
+    assert at_cell["commands received"] == at_pc["commands sent"] == 2
+
+
+def test_a_command_that_nobody_hands_down_is_said():
+    async def main():
+        async with Skin(1, 1, [(0, 0)]) as skin:
+            for path in skin.cables["pc", 0]:
+                path.cut = True
+            return skin.pc.send_command(1)
+
+    assert asyncio.run(main()).ports == 0

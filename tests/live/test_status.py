@@ -10,7 +10,7 @@ from innervate.cli import app, live_status
 from innervate.live import status
 from innervate.live.errors import LiveError
 from innervate.live.up import Network
-from tests.live_net import Skin, until
+from tests.live_net import Mesh, Skin, until
 
 
 def test_a_cells_ports_have_the_names_of_its_sockets_and_a_cut_is_shown():
@@ -66,3 +66,57 @@ def test_two_networks_do_not_share_a_folder(tmp_path):
         with pytest.raises(LiveError, match="another network runs here"):
             asyncio.run(network.up())
     assert network.processes == {}
+
+
+def test_the_first_line_says_whether_all_is_well_with_a_mesh():
+    async def main():
+        async with Mesh(5, [(0, 1), (1, 2), (2, 3), (3, 4), (0, 4)]) as mesh:
+            return [node.status() for node in mesh.nodes]
+
+    told = asyncio.run(main())
+    assert live_status.headline(told, 0) == "ok: All 5 nodes have a way to the gateway."
+    assert live_status.headline(told[:3] + told[4:], 1) == "degraded: 1 of 5 nodes is silent."
+    assert live_status.headline(told[1:], 1).startswith("down: No node leads as gateway")
+    assert live_status.headline([], 5) == "no data: None of the 5 nodes answers."
+
+
+def test_the_first_line_says_whether_all_is_well_with_a_skin():
+    async def main():
+        async with Skin(2, 2, [(0, 0)]) as skin:
+            await until(skin.fresh())
+            await until(lambda: all(cell.status()["parent"] is not None for cell in skin.cells))
+            return [node.status() for node in (*skin.cells, skin.pc)]
+
+    told = asyncio.run(main())
+    assert live_status.headline(told, 0) == "ok: Every cell has a way to the PC."
+    assert live_status.headline(told[1:], 1).startswith(
+        "degraded: 1 of 4 cells (3) does not answer"
+    )
+    assert live_status.headline(told[:-1], 1).startswith("down: The PC ")
+    assert live_status.headline([told[0], {"kind": "mesh"}], 0).startswith("mesh and skin nodes:")
+
+
+def test_nodes_that_were_killed_are_named_and_the_others_are_shown(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("INNERVATE_RUN", str(tmp_path))
+    with socket.socket(socket.AF_UNIX) as sock:  # what a killed process leaves behind
+        sock.bind(str(tmp_path / "n1.sock"))
+
+    async def main():
+        async with Mesh(2, [(0, 1)]) as mesh:
+
+            async def answer(_request, writer):
+                await writer.line(mesh.nodes[0].status())
+
+            server = status.Server(tmp_path / "n0.sock", answer)
+            await server.start()
+            codes = [await asyncio.to_thread(app.main, ["live", "status", *more])
+                     for more in ([], ["--json"], ["n1"])]  # fmt: skip
+            await server.stop()
+            return codes
+
+    assert asyncio.run(main()) == [1, 1, 2]
+    shown = capsys.readouterr()
+    assert shown.out.splitlines()[0] == "down: 1 of 2 nodes is silent."
+    assert "n0: mesh gateway" in shown.out
+    assert shown.err.count("n1: does not answer; its process was killed, or hangs") == 2
+    assert "no node answers here" in shown.err

@@ -51,12 +51,18 @@ MUTANTS = {
         "select",
     ),
     "strict takes an equal number": (
-        "return params.rule == RULE_PAPER and cell.sq[p] == cell.sq_own",
-        "return cell.sq[p] == cell.sq_own",
+        "return params.rule != RULE_STRICT and cell.sq[p] == least",
+        "return cell.sq[p] == least",
         "simulation",
     ),
+    "the printed rule compares with the number of the last choice": (
+        "if params.rule == RULE_PAPER and cell.parent != NONE:", "if params.rule == 9:", "select"
+    ),
+    "the printed Alg. 3 moves as ours does": (
+        "if params.balance_rule == BALANCE_PAPER:", "if params.balance_rule == 9:", "select"
+    ),
     "balancing moves without a gain": (
-        "- cell.size[lightest] > cell.own_load:", "- cell.size[lightest] >= cell.own_load:",
+        "return -more > cell.own_load", "return -more >= cell.own_load",
         "balances",
     ),
     "balancing takes the heaviest": (

@@ -44,7 +44,7 @@ def periods(duration_us):
 # [skin II-B.3, Fig. 5] "The first node which switches its master port is n2, upon receiving a
 # distance of infinity from n1 (c). n4 switches after being informed about the lost route by n3 (d).
 # ... The algorithm converged after (k+3) * T_b"
-@pytest.mark.parametrize("rule", ["feasible", "strict", "paper"])
+@pytest.mark.parametrize("rule", ["feasible", "strict", "paper", "paper-lax"])
 @pytest.mark.parametrize("k", [2, 3, 5, 8])
 def test_figure_5_takes_exactly_k_plus_3_periods(rule, k):
     result = run(
@@ -156,16 +156,25 @@ def test_balancing_evens_the_loads_out():
     assert balance_factor(port_sizes(even)) >= balance_factor(port_sizes(uneven))
 
 
+# E12 "Printed sign: beta falls to 0.67 (setup 5); the correct one ends at 1.000"
+@pytest.mark.parametrize(("rule", "least", "most"), [("even", 0.999, 1.0), ("paper", 0.6, 0.7)])
+def test_algorithm_3_as_printed_unbalances_setup_5(rule, least, most):
+    protocol = {"updates": "periodic", "beacon_hz": 250, "balance_rule": rule}
+    overrides = [*((f"protocol.{key}", value) for key, value in protocol.items())]
+    result = run_bundled("setup-5", [*overrides, ("duration_s", 6.0), ("data.rate_hz", 0)])
+    assert least <= balance_factor(port_sizes(result)) <= most
+
+
 # [skin IV] "guarantees a loop-free convergence by the use of sequence numbers"; E25: FALSE for the
 # rule Sq(new) >= Sq(master), "20 of 20 recoveries of setup 1 had a forwarding loop"
 @pytest.mark.parametrize("updates", ["periodic", "triggered", "wave"])
-def test_recoveries_of_setup_1_loop_under_the_paper_rule_and_under_no_other(updates):
+def test_recoveries_of_setup_1_loop_under_the_papers_rules_and_under_no_other(updates):
     for seed in range(4):
-        for rule in ("feasible", "strict", "paper"):
+        for rule in ("feasible", "strict", "paper", "paper-lax"):
             protocol = {"k": 5, "m": 1, "rule": rule, "updates": updates}
             result = run(setup_1(seed=seed, duration_s=1.3, event=CUT, protocol=protocol))
             loops = loops_closed(result, CUT_US)
-            assert (loops > 0) == (rule == "paper"), f"seed {seed}, {rule}: {loops} loops"
+            assert (loops > 0) == rule.startswith("paper"), f"seed {seed}, {rule}: {loops} loops"
 
 
 # E27 "PC on start listens k periods and continues from the newest Sq heard"; "paper rule repairs

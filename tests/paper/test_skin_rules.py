@@ -8,7 +8,7 @@ from innervate.protocol.skin_words import NONE, ONE, REPORT_BALANCE, REPORT_BROK
 from tests.skin_bench import REAL, OneCell, params_of
 
 W, E, UP, DOWN = range(4)
-RULES = ("feasible", "strict", "paper")
+RULES = ("feasible", "strict", "paper", "paper-lax")
 
 
 def cell_with(*neighbours, **keys):
@@ -93,6 +93,7 @@ def test_e5_when_a_parent_is_lost(why):
     ("rule", "dist", "sq", "chosen"),
     [
         ("paper", 9, 20, True), ("paper", 9, 19, False), ("paper", 0, 19, False),
+        ("paper-lax", 9, 20, True), ("paper-lax", 9, 19, False), ("paper-lax", 0, 19, False),
         ("strict", 9, 20, False), ("strict", 9, 21, True), ("strict", 0, 20, False),
         ("feasible", 9, 20, False), ("feasible", 9, 21, True), ("feasible", 3, 20, False),
         ("feasible", 2, 20, True), ("feasible", 0, 19, False),
@@ -105,6 +106,38 @@ def test_e6_which_port_may_follow_a_lost_parent(rule, dist, sq, chosen):
     bench.hear(E, dist=dist, sq=sq)
     bench.tick()
     assert (bench.parent == E) == chosen
+
+
+# Alg. 2 l. 6 "if Sq(p_m_new) >= Sq(p_m)"; II-B.2 "the sequence number of the current master
+# port": as last heard there. The laxer reading compares with the number that the cell itself
+# announced last, which is older by what came from its parent since.
+@pytest.mark.parametrize(
+    ("rule", "sq", "chosen"),
+    [
+        ("paper", 21, False), ("paper", 22, True), ("paper", 23, True),
+        ("paper-lax", 19, False), ("paper-lax", 20, True), ("paper-lax", 21, True),
+        ("paper-lax", 22, True),
+    ],
+)  # fmt: skip
+def test_the_printed_rule_compares_with_the_present_parents_number(rule, sq, chosen):
+    bench = cell_with((W, 3, 20), rule=rule)
+    assert bench.cell.sq_own == 20
+    bench.hear(W, dist=3, sq=22)
+    bench.hear(E, dist=1, sq=sq)
+    bench.tick()
+    assert (bench.parent == E) == chosen
+
+
+# The same for a port that the load would move to.
+@pytest.mark.parametrize(("rule", "moves"), [("paper", False), ("paper-lax", True)])
+def test_so_it_is_for_balancing(rule, moves):
+    bench = OneCell(rule=rule, balancing=True, balance_periods=1)
+    bench.hear(W, dist=2, sq=20, size=40)
+    bench.tick()
+    bench.hear(W, dist=2, sq=22, size=40)
+    bench.hear(E, dist=2, sq=21, size=5)
+    bench.tick()
+    assert (bench.parent == E) == moves
 
 
 # E7 the printed "else H(p_m) <- infinity" would lose every route without an alternative
@@ -158,6 +191,28 @@ def test_the_first_parent_is_any_of_the_nearest():
         for seed in range(1, 60)
     }
     assert chosen == {W, E, DOWN}
+
+
+# [skin Alg. 3] l. 10 "S(q_i) >= S(p_m) and L < L(q_i) - L(p_m)" as printed, L of the subnetworks
+# (Eq. 2); E11 "take the one q with least S, test once"
+@pytest.mark.parametrize(
+    ("sizes", "load", "expected"),
+    [
+        ((50, 52, 60), 1, E), ((50, 51, 60), 1, W), ((50, 60, 59), 9, W), ((50, 60, 61), 9, E),
+        ((50, 40, 99), 1, W), ((50, 99, 98), 1, UP),
+    ],
+)  # fmt: skip
+def test_algorithm_3_as_printed_moves_load_to_the_larger_subnetwork(sizes, load, expected):
+    bench = OneCell(balancing=True, balance_periods=1, balance_rule="paper")
+    bench.cell.countdown = 5
+    bench.hear(DOWN, dist=9, sq=3, load=load - 1, parent=1)
+    bench.hear(W, dist=2, sq=3, size=sizes[0])
+    bench.tick()
+    bench.hear(E, dist=2, sq=4, size=sizes[1])
+    bench.hear(UP, dist=2, sq=4, size=sizes[2])
+    bench.cell.countdown = 1
+    bench.tick()
+    assert bench.parent == expected
 
 
 # [skin Alg. 3] E11 "take the one q with least S"; E12, E13 "switch iff S(p_m) - S(q) > L(i)"; the

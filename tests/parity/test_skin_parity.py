@@ -13,7 +13,7 @@ from innervate.sim.simulate import InvariantBroken, simulate
 from innervate.wire import skin as wire
 from tests.skin_runs import EVERYTHING, free, keys_of, patch, plain_stack, plan_of, random_events
 
-RULES = ["feasible", "strict", "paper", "static"]
+RULES = ["feasible", "strict", "paper", "paper-lax", "static"]
 SHAPES = [
     patch(3, 3, (0, 1), (2, 1)),
     patch(4, 2, (0, 0)),
@@ -41,6 +41,7 @@ def scenarios(draw):
         "k": draw(st.integers(1, 6)),
         "m": draw(st.integers(1, 4)),
         "balance_periods": draw(st.integers(1, 9)),
+        "balance_rule": draw(st.sampled_from(["even", "paper"])),
         "restart_s": 0.02,
         "gap_us": draw(st.sampled_from([0, 300, 500])),
     }
@@ -59,6 +60,11 @@ def scenarios(draw):
         keys["data"] = {"rate_hz": rate, "queue": draw(st.integers(1, 8))}
         if "patch" in keys and draw(st.booleans()):
             keys["touch"] = TOUCH
+    if draw(st.booleans()):
+        rate = draw(st.sampled_from([0, 20, 900]))
+        whom = draw(st.sampled_from([{}, {"random": True}]))
+        at_s = draw(st.integers(0, 1000)) * keys["duration_s"] / 1001
+        keys["command"] = [{"at_s": at_s, "rate_hz": rate, "code": 7, "value": 65_535, **whom}]
     return keys
 
 
@@ -132,6 +138,7 @@ def through_the_wire(stack):
     def copy_frame(to, frm):
         reason = wire.decode(wire.encode(frm), to)
         assert reason == wire.OK, wire.REASONS[reason]
+        to.made_at = frm.made_at  # the run's own note
 
     return SimpleNamespace(**{**vars(stack), "copy_frame": copy_frame})
 

@@ -57,7 +57,7 @@ def test_hops_follow_the_parents(cut):
 
 def test_worst_and_half_way(cut):
     history = History(cut.result)
-    when, most = history.unrouted_max(300_000, 400_000)
+    when, most = history.lacking_max(300_000, 400_000)
     assert (when, most) == (300_000, cut.summary["recoveries"][0]["cut_cells"])
     half_us, half = history.first_below(when, 400_000, most / 2)
     assert 0 < half <= most / 2

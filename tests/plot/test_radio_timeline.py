@@ -4,6 +4,7 @@ import matplotlib.image
 import pytest
 
 from innervate.analysis import radio
+from innervate.analysis.radio_headline import headline
 from innervate.plot import page, radio_figures, radio_report, radio_scene, radio_timeline, style
 from innervate.plot import radio_words as words
 from innervate.protocol.radio_words import (
@@ -60,25 +61,30 @@ def test_every_run_has_a_report(runs, name, parse):
     parse(radio_timeline.timeline(result))
 
 
-def test_the_headline_says_what_happened(runs):
-    def headline(name):
+def test_the_first_sentence_says_what_happened(runs):
+    def told(name):
         return radio_report.sentences(runs[name], radio.summarize(runs[name]))[0]
 
     slots = radio.summarize(runs["four"])["duration_slots"]
-    assert headline("four") == (
+    assert told("four") == (
         f"4 robots started at once; every packet was delivered {slots:.0f} slots "
         f"({slots * 0.208:.1f} ms) later."
     )
-    assert headline("too short").endswith("no packet was delivered in 0.104 s.")
-    assert "always had something to send; delivered packets filled 9" in headline("saturated")
-    assert headline("arrivals").startswith("3 robots had 4 packets to send; 100 % of them were")
+    assert told("too short").endswith("no packet was delivered in 0.104 s.")
+    assert "always had something to send; delivered packets filled 9" in told("saturated")
+    assert told("arrivals").startswith("3 robots had 4 packets to send; 100 % of them were")
 
 
 def test_packets_lost_silently_are_said_first(runs):
-    summary = radio.summarize(runs["four"]) | {"lost_silently": 2}
+    well = radio_report.body(runs["four"], radio.summarize(runs["four"]))
+    assert '<h1>All 4 packets were delivered.</h1>\n<p class="status">ok</p>' in well
+    facts = radio.facts(runs["four"])._replace(lost_silently=2, delivered=2)
+    lost = headline(facts).as_summary()
+    summary = radio.summarize(runs["four"]) | {"lost_silently": 2, "headline": lost}
     body = radio_report.body(runs["four"], summary)
     assert "Lost silently: 2 packets that nobody received" in body
-    assert 'class="status bad"' in body
+    assert "<h1>2 packets were lost silently" in body
+    assert '<p class="status warn">degraded</p>' in body
 
 
 def test_lanes_show_what_stations_hear(runs, parse, texts):

@@ -12,7 +12,7 @@ from tests.self_contained import TAGS, loads_nothing, plain
 
 SLOTTED = {"kind": "radio", "stations": 5, "seed": 3, "duration_s": 60,
            "traffic": {"kind": "disaster"}, "channel": {"level": "slotted"},
-           "protocol": {"mac": "csma-cd-r", "mode": "paper"}}  # fmt: skip
+           "protocol": {"mac": "csma-cd-r"}}  # fmt: skip
 KINDS = {"skin": SKIN, "mesh": MESH, "radio": RADIO, "slotted": SLOTTED}
 
 

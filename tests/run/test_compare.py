@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from innervate import scenario
-from innervate.run import RunError, compare, run
-from innervate.run.compare import differences
-from innervate.run.skin import trail
-from innervate.run.trail import FIELDS, first_difference
+from innervate.running import RunError, compare, run
+from innervate.running.compare import differences
+from innervate.running.skin import trail
+from innervate.running.trail import FIELDS, first_difference
 from innervate.sim.simulate import simulate
 from innervate.sim.world import TRAIL, row_dtype
 
@@ -29,6 +29,16 @@ def test_the_same_run_twice(written):
     found = compare(written(), written())
     assert found.same
     assert (found.scenario, found.summary, found.divergence, found.notes) == ([], [], None, [])
+
+
+def test_runs_at_hand_are_compared_like_their_folders(four, written):
+    folders = written(), written(seed=2)
+    runs = run(four()), run(four(), seed=2)
+    found, told = compare(*runs), compare(*folders)
+    assert (found.scenario, found.divergence) == (told.scenario, told.divergence)
+    assert (found.summary, found.notes) == (told.summary, told.notes)
+    assert compare(runs[0], folders[0]).same
+    assert not compare(runs[0], folders[1]).same
 
 
 def test_another_seed(written):

@@ -3,8 +3,8 @@ import stat
 
 import pytest
 
-from innervate.run import RunError, default_folder
-from innervate.run.folder import (
+from innervate.running import RunError, default_folder
+from innervate.running.folder import (
     PROVENANCE,
     REQUIRED,
     SCENARIO,

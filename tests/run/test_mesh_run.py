@@ -5,8 +5,8 @@ import pytest
 
 from innervate import run
 from innervate.cli.show import summary_lines
-from innervate.run import compare
-from innervate.run.rooms import room_of
+from innervate.running import compare
+from innervate.running.rooms import room_of
 from innervate.trace import mesh_tables as declared
 from tests.mesh_tables_runs import mesh_tables, without_fence
 
@@ -71,7 +71,8 @@ def test_the_folder_has_every_table(field):
 def test_the_terminal_is_told_the_same(field):
     first, *lines = summary_lines(field)
     assert first.startswith("<field> & more: 32 nodes, 1")
-    assert lines[0].startswith("2 crossings of the fence, and the monitor learned of all")
+    assert lines[0] == f"{field.summary['headline']['level']}: {field.summary['headline']['text']}"
+    assert lines[1].startswith("2 crossings of the fence, and the monitor learned of all")
     assert any(line.startswith("The first round found") for line in lines)
     assert lines[-1].startswith("No message came twice")
 

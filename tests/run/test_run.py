@@ -6,16 +6,9 @@ import sys
 import pytest
 
 import innervate
-import innervate.run as room
 from innervate import scenario
-from innervate.run import Run, RunError, run, skin
+from innervate.running import RunError, run, skin
 from innervate.scenario import ScenarioError
-
-
-def test_the_room_is_a_function_too(four):
-    assert innervate.run is room
-    assert isinstance(innervate.run(four()), Run)
-    assert room.run is run
 
 
 @pytest.mark.parametrize("how", ["dict", "scenario", "file", "path"])

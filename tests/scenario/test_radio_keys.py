@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from innervate.scenario import ScenarioError, check, dump, from_dict, load, loads, plan, template
+from innervate.scenario.check import summary
 from innervate.scenario.radio_plan import JOIN, KILL
 from innervate.scenario.radio_traffic import exponential
 from innervate.trace.streams import stream
@@ -144,3 +145,20 @@ def test_any_value_of_any_key_is_a_scenario_or_one_line(pairs: list[tuple[str, A
 def test_from_a_dict() -> None:
     made = from_dict({"kind": "radio", "stations": 3, "channel": {"tau_us": 104}})
     assert plan(made).delays_us[0][1] == 104
+
+
+def test_a_lone_station_and_hidden_pairs_are_warned_of() -> None:
+    well = check_text("stations = 4")
+    assert "warning" not in well
+    alone = check_text("stations = 1")
+    assert "  warning    One station alone: nobody can receive what it sends." in alone
+    hidden = check_text("stations = 4\n[channel]\nhidden = [[0, 3], [2, 1]]")
+    assert "  warning    Stations that do not hear each other (1 and 2, 0 and 3): packets" in hidden
+    every = [[i, j] for i in range(4) for j in range(i)]
+    assert "(0 and 1, 0 and 2, 1 and 2, 0 and 3, ...)" in check_text(
+        f"stations = 4\n[channel]\nhidden = {every}"
+    )
+
+
+def check_text(text: str) -> str:
+    return summary(loads(f'kind = "radio"\n{text}'))

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import innervate
-from innervate.sweep import SweepError, engines
+from innervate.sweeping import SweepError, engines
 from tests.sweep.conftest import TIMEOUT_S, start, until
 
 pytest.importorskip("distributed")
@@ -93,7 +93,7 @@ def test_a_cluster_that_goes_away_is_one_line_and_loses_nothing(scheduler, worke
 
     with pytest.raises(SweepError, match="what is done is kept"):
         innervate.sweep(four, vary=VARY, out="out", dask=address, progress=stop, repeat=300)
-    before = innervate.sweep.load("out")
+    before = innervate.load_sweep("out")
     assert 10 < before.results.height < 1800
     assert not before.complete
     done = innervate.sweep(four, vary=VARY, out="out", repeat=4, workers=1)

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from innervate.cli import live_table
 from innervate.cli.live_table import LiveTable
-from innervate.sweep.flat import flat
-from innervate.sweep.until import parse
+from innervate.sweeping.flat import flat
+from innervate.sweeping.until import parse
 from tests.sweep.conftest import TIMEOUT_S, environment
 
 VALUES = st.lists(st.floats(1, 100), min_size=3, max_size=30)

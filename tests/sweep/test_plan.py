@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.sweep import SweepError, make_plan
-from innervate.sweep.derive import Formula
-from innervate.sweep.vary import Named, canonical, parse, split, values_of
+from innervate.sweeping import SweepError, make_plan
+from innervate.sweeping.derive import Formula
+from innervate.sweeping.vary import Named, canonical, parse, split, values_of
 
 WORD = st.from_regex(r"[a-z][a-z_]{0,6}", fullmatch=True).filter(
     lambda word: word not in ("true", "false", "inf", "nan")

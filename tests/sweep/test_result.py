@@ -10,7 +10,7 @@ import innervate
 from innervate.analysis.intervals import mean_interval, quantile
 from innervate.cli import main
 from innervate.scenario import ScenarioError
-from innervate.sweep import SweepError, load, make_plan
+from innervate.sweeping import SweepError, load_sweep, make_plan
 
 PLAN = """\
 scenario = "four.toml"
@@ -66,7 +66,7 @@ def test_the_folder_holds_a_plan_that_gives_the_same_table(both):
     again = innervate.sweep("out/sweep.toml", workers=1, out="again")
     assert Path("again/results.parquet").read_bytes() == Path("out/results.parquet").read_bytes()
     assert again.results.equals(polars.read_parquet("out/results.parquet"))
-    assert load("out").results.equals(again.results)
+    assert load_sweep("out").results.equals(again.results)
 
 
 def test_points_are_means_with_students_interval(both):
@@ -189,8 +189,8 @@ def test_the_command_tells_mistakes_in_one_line(four, capsys):
 
 def test_folders_that_are_no_sweeps(four):
     with pytest.raises(SweepError, match="not a finished sweep's folder"):
-        load("nowhere")
+        load_sweep("nowhere")
     innervate.sweep("four.toml", workers=1, out="out")
     Path("out/results.parquet").write_bytes(b"PAR1 not")
     with pytest.raises(SweepError, match="damaged"):
-        load("out")
+        load_sweep("out")

@@ -6,8 +6,8 @@ import pytest
 
 from innervate import scenario
 from innervate.cli import main
-from innervate.sweep import SweepError
-from innervate.sweep.sizing import Question, answer_lines, parse_ports, size
+from innervate.sweeping import SweepError
+from innervate.sweeping.sizing import Question, answer_lines, parse_ports, size
 
 pytest.importorskip("icub_models")
 ICUB = "package:icub-models/iCubGenova02"

@@ -14,10 +14,11 @@ import pytest
 
 import innervate
 from innervate.cli import main
+from innervate.cli.sweeping import headline_lines
 from innervate.scenario import ScenarioError
-from innervate.sweep import SweepError, engines
-from innervate.sweep.flat import flat
-from innervate.sweep.jobs import Jobs
+from innervate.sweeping import SweepError, engines
+from innervate.sweeping.flat import flat
+from innervate.sweeping.jobs import Jobs
 from tests.sweep.conftest import TIMEOUT_S, environment, start, until
 
 VARY = {"protocol.k": [2, 4]}
@@ -44,6 +45,19 @@ def test_other_kinds_go_through_the_same_door(four):
     assert done.failed.height == 0
     assert done.results["stations"].to_list() == [2, 2, 3, 3, 4, 4]
     assert done.results["throughput"].min() > 0
+    assert set(done.results["headline.level"]) == {"ok"}
+    assert headline_lines(done) == []
+
+
+def test_runs_that_are_not_well_are_said(four):
+    vary = {"duration_s": [60, 0.101]}
+    done = innervate.sweep("radio-disaster", vary=vary, repeat=2, workers=1)
+    assert done.results["headline.level"].to_list() == ["ok", "ok", "down", "down"]
+    seed = done.results["seed"][2]
+    assert headline_lines(done) == [
+        f"2 of 4 runs: down; the first, point 1 with seed {seed}: "
+        "Nothing got through; of 10 packets none was delivered."
+    ]
 
 
 def test_a_rows_command_runs_it_again(four, capsys):
@@ -149,7 +163,7 @@ def test_a_read_only_folder_is_one_line(four):
         path.chmod(0o755 if path == four.parent else 0o555)
     before = {path.name: path.read_bytes() for path in Path("fixed").iterdir()}
     code = (  # root may write everywhere, so it becomes nobody once everything is loaded
-        "import os, sys, innervate.sweep.work, innervate.sweep.sweep\n"
+        "import os, sys, innervate.sweeping.work, innervate.sweeping.sweep\n"
         "from innervate.cli import app, main, sweeping\n"
         "main(['sweep', 'four.toml', '--out', 'other', '--workers', '1'])\n"
         "if os.geteuid() == 0: os.setgid(65534); os.setuid(65534)\n"
@@ -189,7 +203,7 @@ def test_a_full_disk_is_one_line_and_loses_nothing(four):
 
 
 def test_sqlites_own_full_disk(tmp_path):
-    from innervate.sweep.work import Outcome
+    from innervate.sweeping.work import Outcome
 
     with Jobs(tmp_path) as jobs:
         jobs._db.execute("PRAGMA max_page_count = 8")
@@ -216,7 +230,7 @@ def test_ctrl_c_keeps_what_is_done(four):
     assert process.returncode == 130
     assert "are kept in out, and the same command goes on" in err
     assert "Traceback" not in err
-    there = innervate.sweep.load("out")
+    there = innervate.load_sweep("out")
     assert 0 < there.results.height < 1200
     assert not there.complete
 

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 import innervate
-from innervate.sweep import conduct
-from innervate.sweep.engines import Here
+from innervate.sweeping import conduct
+from innervate.sweeping.engines import Here
 from tests.sweep.conftest import TIMEOUT_S, start, until
 
 VARY = {"protocol.beacon_hz": [100, 250], "protocol.k": "2..4"}
@@ -83,7 +83,7 @@ def test_any_order_gives_the_same_bytes(four, seed, monkeypatch):
         return {future for future in futures if future.done()}, set()
 
     monkeypatch.setattr(
-        import_module("innervate.sweep.sweep"), "engine", lambda *_: nullcontext(made)
+        import_module("innervate.sweeping.sweep"), "engine", lambda *_: nullcontext(made)
     )
     monkeypatch.setattr(conduct, "wait", settle)
     innervate.sweep(four, vary=VARY, out="other", **rules)

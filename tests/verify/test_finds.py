@@ -1,6 +1,7 @@
 """What the explorer has to find in the published rule, and must not find in the others."""
 
 import tomllib
+from pathlib import Path
 
 import pytest
 
@@ -101,6 +102,14 @@ def test_the_strict_rule_closes_a_loop_when_a_restarted_pc_counts_from_anew(lean
     assert "The PC has listened for a period." in told.sentences
     with pytest.raises(InvariantBroken, match="forwarding loop"):
         simulate(scenario.plan(scenario.loads(told.scenario)))
+
+
+def test_the_documented_story_of_a_restarted_pc_is_as_long_as_documented():
+    made = SkinModel(graphs.parse("triangle"), "strict", "periodic", Budget(counts=3))
+    told = story.tell(explore.explore(made))
+    assert len(told.sentences) == 10
+    page = (Path(__file__).parents[2] / "docs" / "verify.md").read_text(encoding="utf-8")
+    assert "leads through itself:\nten events on the triangle." in page
 
 
 def test_a_beacon_that_is_late_by_more_than_fd_hold_closes_a_loop():

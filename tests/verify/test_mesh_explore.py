@@ -7,7 +7,7 @@ import pytest
 from innervate import scenario
 from innervate.plot import mesh_counterexample
 from innervate.protocol import mesh_words as words
-from innervate.run import mesh_replay
+from innervate.running import mesh_replay
 from innervate.sim.mesh.simulate import simulate
 from innervate.verify import mesh_cases, mesh_fair, mesh_local, mesh_model, mesh_net, mesh_search
 from innervate.verify import mesh_story as story

@@ -2,10 +2,10 @@
 
 import pytest
 
-from innervate.run import radio_grid as grid
-from innervate.run import radio_mutants
-from innervate.run import radio_tree as tree
-from innervate.run.errors import RunError
+from innervate.running import radio_grid as grid
+from innervate.running import radio_mutants
+from innervate.running import radio_tree as tree
+from innervate.running.errors import RunError
 from innervate.verify import mutants
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from innervate import scenario
-from innervate.run import wild
+from innervate.running import wild
 
 
 def test_what_is_drawn_can_nearly_always_be_run():

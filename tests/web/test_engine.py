@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from innervate import scenario
-from innervate.run import run
+from innervate.running import run
 from innervate.web.engine import twin
 from innervate.web.engines import engine_of
 from innervate.web.errors import Refused, WatchError

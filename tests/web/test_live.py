@@ -16,9 +16,7 @@ from innervate.live.up import Network
 from innervate.web import messages
 from innervate.web.errors import Refused, WatchError
 from innervate.web.live import Live, find
-from innervate.web.live_map import Map
 from innervate.web.live_poll import Poller
-from innervate.web.live_state import State
 from innervate.web.serve import serving
 from tests.live_net import Mesh
 from tests.web_page import Page
@@ -119,6 +117,67 @@ def test_a_node_that_stops_is_seen_and_comes_back():
                 await page.until(lambda: "n2 answers again" in page.text())
 
     asyncio.run(main())
+
+
+def test_what_others_do_to_a_network_is_seen_like_what_is_clicked():
+    """Cables cut by hand, a node that ends, and at last all of them."""
+
+    async def main():
+        async with Mesh(4, RING) as mesh, sockets_of(mesh) as paths:
+            source = await asyncio.to_thread(Live, paths)
+            async with serving(source) as served, Page(served.address) as page:
+                await page.until(lambda: page.state.get("headline", {}).get("level") == "ok")
+                assert page.state["headline"]["text"] == "All 4 nodes have a way to the gateway."
+                assert page.state["recovery"] is None
+                for path in mesh.cables[0, 1]:
+                    path.cut = True
+                await page.until(lambda: page.state["recovery"] is not None)
+                assert page.state["recovery"]["cause"] == "link n0 - n1 cut"
+                await page.until(lambda: page.state["recovery"]["recovered_ms"] is not None)
+                assert page.state["since_cut_s"] is not None
+                await page.until(lambda: "link n0 - n1 cut" in page.text())
+                for path in mesh.cables[0, 1]:
+                    path.cut = False
+                await page.until(lambda: "link n0 - n1 put back" in page.text())
+                end(source, paths[2])
+                await page.until(lambda: page.state["headline"]["level"] == "degraded")
+                assert page.state["headline"]["text"] == "1 of 4 nodes is silent."
+                assert page.state["headline"]["nodes"] == [2]
+                cause = "n2 does not answer any more"
+                await page.until(lambda: page.state["recovery"]["cause"] == cause)
+                for path in (paths[0], paths[1], paths[3]):
+                    end(source, path)
+                await page.until(lambda: page.state["headline"]["level"] == "no data")
+                assert page.state["headline"]["text"] == "None of the 4 nodes answers."
+                assert page.state["unconnected"] is None
+                assert page.state["recovery"]["recovered_ms"] is None
+
+    asyncio.run(main())
+
+
+def end(source, path):
+    """As if the process of a socket had ended."""
+    path.rename(path.with_suffix(".aside"))
+    source._poller._lines[source._names.index(path.stem)].drop(gone=True)
+
+
+def test_who_is_slow_once_has_not_ended(monkeypatch):
+    """Node 1 gives no answer in time, once; then twice."""
+    told = {
+        i: {"kind": "mesh", "role": "gateway" if i == 0 else "node", "number": i, "gateway": 0,
+            "onward": [0] if i else [], "paths": [], "counters": {},
+            "neighbours": [{"node": 1 - i, "ports": [0], "suspect": False}]}
+        for i in range(2)
+    }  # fmt: skip
+    answers = [told, {0: told[0]}, told, {0: told[0]}, {0: told[0]}]
+    monkeypatch.setattr(Poller, "ask_all", lambda self, request: dict(answers.pop(0)))
+    source = Live([Path("a"), Path("b")])
+    levels = []
+    while answers:
+        source._poll()
+        source._look()
+        levels.append(source.fields()["headline"]["level"])
+    assert levels == ["ok", "ok", "ok", "down"]
 
 
 def with_processes(plan, cables, do):
@@ -226,57 +285,6 @@ def test_a_mesh_of_processes_loses_a_node_and_has_it_again():
     with_processes(plan, "udp", look)
 
 
-def cell(number, parent, paths):
-    """What a cell of a live skin says; `paths` are (own, far) by path, at ports 0, 1, ..."""
-    return {
-        "kind": "skin", "role": "cell", "number": number, "parent": parent, "load": number + 1,
-        "paths": [{"own": own, "name": far, "port": at, "up": True, "counters": {"received": 1}}
-                  for at, (own, far) in enumerate(paths)],
-        "ports": [{"port": at, "path": at} for at in range(len(paths))], "counters": {},
-    }  # fmt: skip
-
-
-def udp(*ports):
-    return [(f"udp 127.0.0.1:{own}", f"udp 127.0.0.1:{far}") for own, far in ports]
-
-
-def skin_of_three():
-    """PC - c0 - c1, with a second cable between c0 and c1."""
-    pc = cell(0, None, udp((1, 2))) | {"role": "sink", "cells": [2]}
-    del pc["number"]
-    return {
-        0: cell(0, 0, udp((2, 1), (3, 4), (5, 6))),
-        1: cell(1, 1, [*udp((4, 3)), ("udp 0.0.0.0:6", "udp 127.0.0.1:5")]),
-        2: pc,
-    }
-
-
-def test_cables_are_found_by_their_addresses():
-    told = skin_of_three()
-    where = Map(told)
-    assert [place.port for place in where.places] == [-1, -1, 0]
-    found = [(where.number[link.a], where.number[link.b]) for link in where.links]
-    assert found == [(0, 1), (0, 1), (0, 2)]
-    state = State(where, told)
-    assert state.hop.tolist() == [2, 0, -1]
-    assert state.fields()["depth"].tolist() == [1, 2, 0]
-    assert state.fields()["port"].tolist() == [0, 0, 0]
-    assert state.unconnected == 0
-    told[0]["paths"][0]["up"] = False
-    state = State(where, told)
-    assert state.link_up.tolist() == [1, 1, 0]
-    assert state.unconnected == 2
-    assert where.spread().shape == (3, 2)
-
-
-def test_who_is_gone_stays_on_the_map():
-    told = skin_of_three()
-    where = Map(told)
-    left = {i: one for i, one in told.items() if i != 1}
-    assert State(Map(told, where), left).node_up.tolist() == [1, 0, 1]
-    assert Map(told, where).links == where.links
-
-
 def test_a_poller_waits_for_nobody(tmp_path):
     """One that answers, one that is silent, one that talks rubbish, one that is not there."""
     kinds = {"good": b'{"kind": "mesh"}\n', "silent": b"", "rubbish": b"\xff[\n"}
@@ -311,7 +319,7 @@ def test_who_is_not_there_cannot_be_watched(tmp_path, monkeypatch):
 
 
 def test_networks_are_not_mixed(monkeypatch):
-    told = {0: cell(0, None, []), 1: cell(1, None, []) | {"kind": "radio"}}
+    told = {0: {"kind": "skin"}, 1: {"kind": "radio"}}
     monkeypatch.setattr(Poller, "ask_all", lambda self, request: told)
     with pytest.raises(WatchError, match="one network"):
         Live([Path("a"), Path("b")])
@@ -331,17 +339,3 @@ def test_a_group_is_not_cut(monkeypatch):
     source = Live([Path("a"), Path("b"), Path("c")])
     with pytest.raises(Refused, match="same path"):
         source.carry_out(messages.Cut(0))
-
-
-def test_a_radio_team_is_a_ring_of_stations():
-    told = {
-        i: {"kind": "radio", "role": "station", "number": i, "mode": 0, "queued": i,
-            "place": None if i else 4, "paths": [], "counters": {}}
-        for i in range(3)
-    }  # fmt: skip
-    where = Map(told)
-    fields = State(where, {i: told[i] for i in (0, 1)}).fields()
-    assert fields["node_up"].tolist() == [1, 1, 0]
-    assert fields["radio"] == {"now": [0, 4, 0], "turn": [4, -1, -1]}
-    assert fields["unconnected"] == 1  # one that is off
-    assert len({tuple(place) for place in where.spread().round(3).tolist()}) == 3

@@ -5,7 +5,7 @@ import random
 import pytest
 
 from innervate import scenario
-from innervate.run import run
+from innervate.running import run
 from innervate.web import messages as m
 from innervate.web.errors import Refused
 from innervate.web.saving import saved

@@ -16,7 +16,7 @@ import pytest
 import websockets
 
 from innervate import scenario
-from innervate.run import run
+from innervate.running import run
 from innervate.web import hub as hubs
 from innervate.web import server
 from innervate.web.errors import WatchError

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from innervate.analysis.ways import follow, reach
 from innervate.web import history
 from innervate.web.errors import Refused
 from innervate.web.history import LOG, SERIES, TIMELINE, History, Logbook
@@ -15,7 +16,6 @@ from innervate.web.messages import Command, Cut, Go, Pause, Seek, Speed, name_of
 from innervate.web.pace import Pace
 from innervate.web.snapshot import Part, Snapshot, Teller
 from innervate.web.stage import Stage
-from innervate.web.ways import follow, reach
 from tests.web_runs import SKIN, simulated
 
 SCENE = Part({"type": "scene"})

@@ -1,10 +1,12 @@
 """A network's time: held, stepped, taken back, and gone through again in a recorded run."""
 
+import signal
+
 import numpy as np
 import pytest
 
 from innervate import scenario
-from innervate.run import run
+from innervate.running import run
 from innervate.sim.simulate import InvariantBroken
 from innervate.web import messages
 from innervate.web.errors import Refused, WatchError
@@ -117,6 +119,31 @@ def test_a_run_folder_is_shown_as_it_was(kind, tmp_path):
         assert shown["recovered_ms"] == done.summary["recoveries"][0]["routed_ms"]
     with pytest.raises(Refused):
         made.carry_out(messages.Kill(0))
+
+
+def test_of_an_interrupted_run_only_what_was_is_simulated_and_shown(tmp_path, monkeypatch):
+    monkeypatch.setattr("innervate.sim.simulate.SLICE_EVENTS", 2_000)
+
+    def interrupt(now_us, _end_us):
+        if now_us > 200_000:
+            signal.raise_signal(signal.SIGINT)
+
+    event = [{"at_s": 0.9, "action": "cut", "interface": 0}]
+    done = run({**SKIN, "event": event}, out=tmp_path / "run", progress=interrupt)
+    ended_s = done.summary["interrupted_at_s"]
+    assert 0.2 < ended_s < 0.9
+    made = Recorded(tmp_path / "run", plan_of_folder(tmp_path / "run"))
+    reached = []
+    made.replay(lambda now_us, _end_us: reached.append(now_us))
+    assert max(reached) <= 1e6 * ended_s + 1
+    assert made.scene()["duration_s"] == pytest.approx(ended_s, abs=2e-6)
+    assert texts(made)[0] == f"the run was interrupted at {ended_s:g} of 1 s"
+    made.run_to_end()
+    shown = made.fields()
+    assert shown["at_end"]
+    assert shown["t_s"] == pytest.approx(ended_s, abs=2e-6)
+    assert shown["since_cut_s"] is None
+    assert shown["headline"]["level"] == done.summary["headline"]["level"]
 
 
 def test_another_run_than_the_recorded_one_is_refused(tmp_path):

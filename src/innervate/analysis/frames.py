@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from innervate.analysis.latency import latency_by_port, latency_ms
+from innervate.analysis.skin_summary import Data
+from innervate.protocol.skin_words import COMMAND
 from innervate.sim import wires
+from innervate.sim.build import get
 from innervate.sim.wheel import FRESH, NIL
 
 REASONS = {
@@ -58,10 +63,15 @@ def beacon_traffic(result: Any) -> Traffic:
     return _traffic(result, wires.URGENT_BLOCK)
 
 
-def data_summary(result: Any) -> dict[str, Any]:
+def command_traffic(result: Any) -> Traffic:
+    """Commands of the PC on the cables."""
+    return _traffic(result, wires.COMMAND_BLOCK)
+
+
+def data_summary(result: Any) -> Data:
     """Tactile samples from cell to PC: sent, delivered, lost by reason, in flight.
 
-    `loss_ratio` is lost / sent; None if none were sent.
+    `loss_ratio` is lost / sent; None if none were sent. Latencies: see latency.py.
     """
     counters = result.counters
     traffic = data_traffic(result)
@@ -76,7 +86,15 @@ def data_summary(result: Any) -> dict[str, Any]:
         "loss_ratio": lost / sent if sent else None,
         "lost_by": lost_by,
         "in_flight": traffic.flying + traffic.queued,
+        "latency_ms": latency_ms(result),
+        "latency_by_port": latency_by_port(result),
     }
+
+
+def lost_at_start(result: Any) -> int:
+    """Samples lost, for want of a route, by cells that had not had one yet; if observed."""
+    early: int = result.counters[wires.EARLY]
+    return early
 
 
 def check_conserved(result: Any) -> None:
@@ -89,6 +107,7 @@ def check_conserved(result: Any) -> None:
     missing = {
         "data frames": data_traffic(result).missing,
         "beacons": beacon_traffic(result).missing,
+        "commands": command_traffic(result).missing,
         "samples": data["sent"] - data["delivered"] - data["lost"] - data["in_flight"],
     }
     wrong = [f"{count} {name}" for name, count in missing.items() if count]
@@ -114,25 +133,53 @@ def _traffic(result: Any, block: int) -> Traffic:
         arrived=counters[wires.ARRIVED + block],
         lost={name: counters[place + block] for name, place in REASONS.items()},
         flying=_flying(result.world, block),
-        queued=0 if block else _queued(result.world),
+        queued=0 if block == wires.URGENT_BLOCK else _queued(result.world, block),
     )
+
+
+def under_way(world: Any) -> list[Any]:
+    """Commands on a wire or in a queue at the end, as frames."""
+    flying = [world.frames[i] for i in _live(world, wires.COMMAND_BLOCK)]
+    return flying + [frame for frame in queued(world) if number_of(frame, "kind") == COMMAND]
+
+
+def queued(world: Any) -> Iterator[Any]:
+    """The frames that wait at ports at the end."""
+    room = int(get(world.run, 0, "queue_frames"))
+    buffers = world.buffers
+    if isinstance(buffers, list):
+        ends = [end for end, buffer in enumerate(buffers) if buffer.queued]
+    else:
+        ends = np.flatnonzero(buffers["queued"]).tolist()
+    for end in ends:
+        first = int(get(buffers, end, "first"))
+        for i in range(int(get(buffers, end, "queued"))):
+            yield world.queue[end * room + (first + i) % room]
+
+
+def number_of(record: Any, name: str) -> int:
+    """A field of a record, compiled or plain."""
+    return int(record[name] if isinstance(record, np.void) else getattr(record, name))
+
+
+def _queued(world: Any, block: int) -> int:
+    """Frames that wait at ports, of this block."""
+    wanted = block == wires.COMMAND_BLOCK
+    return sum((number_of(frame, "kind") == COMMAND) == wanted for frame in queued(world))
 
 
 def _flying(world: Any, block: int) -> int:
     """Frames on a wire: pool slots in the event queue that arrive somewhere."""
+    return len(_live(world, block))
+
+
+def _live(world: Any, block: int) -> list[int]:
+    """Numbers, in the pool, of the slots of a block's frames on a wire."""
     events = world.wheel.events
-    behind = int(world.wheel.pool[FRESH])
+    first, behind = int(get(world.run, 0, "pool_slots")), int(world.wheel.pool[FRESH])
     if isinstance(events, list):
-        first = int(world.run[0].pool_slots)
-        live = [e for e in events[first:behind] if e.bucket != NIL and e.kind == block]
-        return len(live)
-    first = int(world.run["pool_slots"][0])
-    part = events[first:behind]
-    return int(np.count_nonzero((part["bucket"] != NIL) & (part["kind"] == block)))
-
-
-def _queued(world: Any) -> int:
-    buffers = world.buffers
-    if isinstance(buffers, list):
-        return sum(int(buffer.queued) for buffer in buffers)
-    return int(buffers["queued"].sum())
+        part = enumerate(events[first:behind])
+        return [i for i, e in part if e.bucket != NIL and e.kind == block]
+    there = events[first:behind]
+    found: list[int] = np.flatnonzero((there["bucket"] != NIL) & (there["kind"] == block)).tolist()
+    return found

@@ -7,10 +7,17 @@ sweeps show what that function says; none of them judges by itself.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypedDict
 
 OK, DEGRADED, DOWN, NO_DATA = "ok", "degraded", "down", "no data"
 LEVELS = (OK, DEGRADED, DOWN, NO_DATA)  # from well to worst; no data: nobody answers
+
+
+class HeadlineEntry(TypedDict):
+    """The entry `headline` of a summary: one of LEVELS, and a sentence."""
+
+    level: str
+    text: str
 
 
 class Headline(NamedTuple):
@@ -28,6 +35,16 @@ class Headline(NamedTuple):
     text: str
     nodes: tuple[int, ...] = ()
 
-    def as_summary(self) -> dict[str, Any]:
+    def shown(self) -> dict[str, Any]:
+        """For pages, with the nodes to be marked."""
+        return {**self.as_summary(), "nodes": list(self.nodes)}
+
+    def as_summary(self) -> HeadlineEntry:
         """The entry `headline` of a summary."""
         return {"level": self.level, "text": self.text}
+
+
+def silent(count: int, what: str) -> Headline:
+    """Of a network of which nobody answers; `what` one of them is called."""
+    who = f"None of the {count:,} {what}s answers." if count > 1 else f"The only {what} is silent."
+    return Headline(NO_DATA, who, tuple(range(count)))

@@ -8,6 +8,7 @@ import numpy as np
 
 from innervate.analysis import mesh_network as network
 from innervate.analysis.mesh_alarms import alarms, all_crossings
+from innervate.analysis.mesh_headline import headline, traffic
 from innervate.analysis.mesh_messages import (
     DELIVERED,
     IN_FLIGHT,
@@ -28,6 +29,15 @@ from innervate.analysis.mesh_messages import (
     ratio,
 )
 from innervate.analysis.mesh_paths import UNREACHABLE, Ground
+from innervate.analysis.mesh_reach import of_simulation
+from innervate.analysis.mesh_summary import (
+    AfterDeaths,
+    Connected,
+    Counts,
+    Flow,
+    MeshSummary,
+    Stretch,
+)
 from innervate.protocol.mesh_words import ALARM, ALL, DATA, FLOOD, MONITOR, PARITY
 from innervate.sim.build import get
 
@@ -36,7 +46,7 @@ __all__ = ["alternates", "connected", "flows", "looped", "stretch", "summarize"]
 NONE = 255  # no next hop, no alternate
 
 
-def summarize(result: Any) -> dict[str, Any]:
+def summarize(result: Any) -> MeshSummary:
     """The summary of a run; what never happened is None.
 
     Args:
@@ -48,7 +58,10 @@ def summarize(result: Any) -> dict[str, Any]:
     kinds = network.acked_kinds(result.sent)
     led = network.gateways(result)
     ground = Ground(plan)
-    summary = {
+    crossings = all_crossings(result)
+    again, met = duplicates(result), looped(result)
+    sent = traffic(found, crossings, again, met, plan.faults)
+    summary: MeshSummary = {
         "kind": plan.kind,
         "name": plan.scenario.name,
         "seed": plan.seed,
@@ -57,14 +70,15 @@ def summarize(result: Any) -> dict[str, Any]:
         "events_per_s": round(events / result.wall_s) if result.wall_s > 0 else None,
         "wall_s": round(result.wall_s, 6),
         "fingerprint": result.fingerprint,
+        "headline": headline(of_simulation(result.world, plan), sent).as_summary(),
         "nodes": plan.nodes,
         "links": len(plan.good),
         "discovery": network.discovery(result, kinds),
         "delivery_ratio": delivery_ratio(found),
         "latency_ms": percentiles(latencies_us(found), 1e-3),
-        "alarms": alarms(all_crossings(result)),
-        "duplicates": duplicates(result),
-        "looped": looped(result),
+        "alarms": alarms(crossings),
+        "duplicates": again,
+        "looped": met,
         "control_bytes": network.control_bytes(result, kinds),
         "messages": _counts(found),
         "connected": connected(found, ground),
@@ -83,7 +97,7 @@ def summarize(result: Any) -> dict[str, Any]:
     return summary
 
 
-def _counts(found: Messages) -> dict[str, int]:
+def _counts(found: Messages) -> Counts:
     """Messages to one node by what became of them; broadcasts apart."""
     single = found.only(~found.broadcast)
     counts = np.bincount(single.state, minlength=len(STATE_NAMES)).tolist()
@@ -123,7 +137,7 @@ def _recipient(dest: int, receiver: int, monitor: int) -> int:
     return monitor if receiver == NEVER else receiver
 
 
-def connected(found: Messages, ground: Ground) -> dict[str, Any]:
+def connected(found: Messages, ground: Ground) -> Connected:
     """Messages whose sender and recipient were joined by good links of nodes that were on."""
     decided = counted(found)
     joined = decided.only(_is_connected(decided, ground))
@@ -135,7 +149,7 @@ def connected(found: Messages, ground: Ground) -> dict[str, Any]:
     }
 
 
-def _after_deaths(found: Messages, ground: Ground) -> dict[str, Any] | None:
+def _after_deaths(found: Messages, ground: Ground) -> AfterDeaths | None:
     """The first message of every connected sender after the last death; None without deaths."""
     died = deaths_us(ground.plan)
     if not died:
@@ -145,9 +159,9 @@ def _after_deaths(found: Messages, ground: Ground) -> dict[str, Any] | None:
     return {"first": first, "all": later}
 
 
-def flows(found: Messages, plan: Any) -> list[dict[str, Any]]:
+def flows(found: Messages, plan: Any) -> list[Flow]:
     """Per [[flow]] of the scenario: how many messages, delivered, how fast."""
-    rows = []
+    rows: list[Flow] = []
     for flow in sorted({offer.flow for offer in plan.offers}):
         mine = found.only(found.flow == flow)
         rows.append({
@@ -185,7 +199,7 @@ def looped(result: Any) -> int:
     })  # fmt: skip
 
 
-def stretch(found: Messages, ground: Ground) -> dict[str, float | None]:
+def stretch(found: Messages, ground: Ground) -> Stretch:
     """Hops taken over hops of the shortest path there was, of the messages delivered."""
     came = found.only((found.state == DELIVERED) & ~found.broadcast & (found.hops > 0))
     shares = []

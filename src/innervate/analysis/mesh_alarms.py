@@ -8,6 +8,7 @@ import numpy as np
 
 from innervate.analysis.fence import Edge, crossings, edges_of, margin_cm, overrun_cm, position_cm
 from innervate.analysis.mesh_messages import NEVER, patience_us, percentiles
+from innervate.analysis.mesh_summary import Alarms
 from innervate.protocol.mesh_words import ALARM, CROSS, FLOOD, PREDICT, REPORT_ALARM
 
 
@@ -123,7 +124,7 @@ def _crossing(
     )
 
 
-def alarms(found: list[Crossing]) -> dict[str, Any]:
+def alarms(found: list[Crossing]) -> Alarms:
     """The summary's part on alarms; a crossing that nobody noticed counts as not delivered."""
     decided = [crossing for crossing in found if not crossing.open]
     came = [crossing for crossing in decided if crossing.accepted_us != NEVER]

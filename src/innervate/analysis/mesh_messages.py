@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from innervate.analysis.summary_common import Percentiles
 from innervate.protocol.mesh_words import (
     ALL,
     DATA,
@@ -229,7 +230,7 @@ def give_ups(result: Any) -> dict[str, int]:
     return found
 
 
-def percentiles(values: Any, scale: float = 1.0) -> dict[str, float | None]:
+def percentiles(values: Any, scale: float = 1.0) -> Percentiles:
     """Median, 99th percentile and maximum; None where there is nothing."""
     found = np.asarray(values, np.float64)
     if len(found) == 0:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis.mesh_paths import Ground
+from innervate.analysis.mesh_summary import Airtime, Discovery, Gateway, Suspects
 from innervate.protocol.mesh_words import (
     ACK,
     ACTIVATE,
@@ -70,15 +71,15 @@ def airtime_us(sent: Any) -> Numbers:
     return found
 
 
-def discovery(result: Any, kinds: Numbers) -> dict[str, Any]:
+def discovery(result: Any, kinds: Numbers) -> Discovery:
     """The summary's part on the first discovery round; `kinds` as acked_kinds() has them."""
     rows = result.rows
     begun = rows["time"][rows["code"] == REPORT_ROUND]
     if len(begun) == 0:
-        return dict.fromkeys(
-            ("recall", "complete_s", "tables_s", "airtime_s", "rounds", "responses_s",
-             "tables_airtime_s", "with_tables"),
-        )  # fmt: skip
+        return {
+            "recall": None, "complete_s": None, "tables_s": None, "airtime_s": None,
+            "rounds": None, "responses_s": None, "tables_airtime_s": None, "with_tables": None,
+        }  # fmt: skip
     first, ended = int(begun[0]), int(begun[1]) if len(begun) > 1 else result.ended_us
     graphs = rows["time"][rows["code"] == REPORT_GRAPH]
     sent, spent = result.sent, airtime_us(result.sent)
@@ -121,13 +122,13 @@ def tables(result: Any, since_us: int) -> tuple[int | None, int | None]:
     return len(nodes), int(made["time"][first].max())
 
 
-def gateways(result: Any) -> list[dict[str, Any]]:
+def gateways(result: Any) -> list[Gateway]:
     """Who became gateway, when; and how long later the last node had tables of its epoch."""
     rows = result.rows
     led = rows[(rows["code"] == REPORT_GATEWAY) & (rows["a"] == rows["node"])]
     made = rows[rows["code"] == REPORT_TABLE]
     ground = Ground(result.plan)
-    found = []
+    found: list[Gateway] = []
     for row in led:
         at, epoch = int(row["time"]), int(row["b"])
         mine = made[(made["b"] == epoch) & (made["time"] >= at)]
@@ -143,7 +144,7 @@ def gateways(result: Any) -> list[dict[str, Any]]:
     return found
 
 
-def takeover_s(result: Any, led: list[dict[str, Any]]) -> float | None:
+def takeover_s(result: Any, led: list[Gateway]) -> float | None:
     """From the first death of a gateway to complete tables of its successor; None without."""
     for fault in result.plan.faults:
         before = [gateway for gateway in led if gateway["at_s"] * 1e6 <= fault.at_us]
@@ -154,17 +155,20 @@ def takeover_s(result: Any, led: list[dict[str, Any]]) -> float | None:
     return None
 
 
-def airtime(result: Any, kinds: Numbers) -> dict[str, Any]:
+def airtime(result: Any, kinds: Numbers) -> Airtime:
     """Seconds on the air by use, and the busiest node's share of the run."""
     sent, spent = result.sent, airtime_us(result.sent)
-    found: dict[str, Any] = {
-        f"{use}_s": float(spent[np.isin(kinds, members)].sum() / 1e6)
-        for use, members in USES.items()
-    }
+    used = {use: float(spent[np.isin(kinds, members)].sum() / 1e6) for use, members in USES.items()}
     each = np.bincount(sent["node"], spent, result.plan.nodes)
-    found["busiest"] = int(each.argmax())
-    found["busiest_share"] = float(each.max() / result.ended_us)
-    return found
+    return {
+        "discovery_s": used["discovery"],
+        "tables_s": used["tables"],
+        "messages_s": used["messages"],
+        "alarms_s": used["alarms"],
+        "beacons_s": used["beacons"],
+        "busiest": int(each.argmax()),
+        "busiest_share": float(each.max() / result.ended_us),
+    }
 
 
 def control_bytes(result: Any, kinds: Numbers) -> int:
@@ -172,7 +176,7 @@ def control_bytes(result: Any, kinds: Numbers) -> int:
     return int(result.sent["bytes"][np.isin(kinds, CONTROL)].sum())
 
 
-def suspects(result: Any) -> dict[str, int]:
+def suspects(result: Any) -> Suspects:
     """How often nodes gave up on a neighbour; `wrong`: one that was switched on."""
     rows = result.rows[result.rows["code"] == REPORT_SUSPECT]
     ground = Ground(result.plan)

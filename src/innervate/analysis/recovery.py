@@ -7,56 +7,75 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis.rows import (
+    ApartSteps,
     BrokenChanges,
+    JoinedSteps,
     Marks,
     Numbers,
     UnroutedSteps,
+    apart_steps,
     broken_changes,
+    joined_steps,
     marks,
     parent_changes,
     unrouted_steps,
 )
+from innervate.analysis.skin_summary import Recovery, StartUp
 from innervate.protocol.skin_words import NONE, PORTS
 from innervate.scenario.plan import ACTIONS, CUT, KILL, RESTART, RESTORE, REVIVE, Fault
 
 NOBODY = -1
 
 
-def recoveries(result: Any) -> list[dict[str, Any]]:
+def recoveries(result: Any) -> list[Recovery]:
     """One entry per event of the scenario that happened, in order of time.
 
     `at_s` and `action` say what happened. All `_ms` count from the event and look no further than
-    the next one; None = it did not happen.
+    the next later one; None = it did not happen. Events of one moment share what came of it.
     `detected_ms`: the first end of the link found it broken (p_f >= 1).
     `converged_ms`: the last change of a parent, those for balancing left out.
-    `routed_ms`: the last moment at which a cell physically connected to the PC had no chain of
-    parents over live cables to it; 0.0 if there was none.
+    `routed_ms`: since then every cell that is on had a chain of parents over live cables to the PC;
+    0.0 if none ever lacked one. None while any cell is cut off: no cable joins it with the PC.
+    `others_ms`: the same without the cells that are cut off; None if these are all there are.
+    `without_way`: cells that had none at the end of it although cables join them with the PC.
     `cut_cells`: cells whose chain of parents used the link.
+    `cut_off`: cells that were joined with the PC before and that no cable joins with it since.
+    `cut_off_total`: those, and whoever was so before.
+    `joined_again`: cells that cables join with the PC again.
     """
     at = marks(result)
     changes = parent_changes(result)
     switches = changes.row[~changes.balancing]
     broken, unrouted = broken_changes(result), unrouted_steps(result)
+    apart, joined = apart_steps(result), joined_steps(result)
     faults = {fault.index: fault for fault in result.plan.faults}
-    found = []
+    found: list[Recovery] = []
     for place in np.flatnonzero(at.event != NOBODY).tolist():
         fault = faults[int(at.event[place])]
         window = _window(result, at, place)
         start = int(at.time_us[place])
+        gone, gone_total = _cut_off(apart, window)
+        there_before, there = (_at(joined, row, result.plan.graph.cells) for row in window)
+        others = _routed(unrouted, window, start) if there else None
         found.append(
             {
                 "at_s": start / 1e6,
                 "action": ACTIONS[fault.action],
                 "detected_ms": _since(start, _detected(result, fault, broken, window)),
                 "converged_ms": _since(start, _last(result.rows["time"], switches, window)),
-                "routed_ms": _since(start, _routed(unrouted, window, start)),
+                "routed_ms": _since(start, None if gone_total else others),
+                "others_ms": _since(start, others),
+                "without_way": _at(unrouted, window[1], 0),
                 "cut_cells": _cut_cells(result, at, place, fault),
+                "cut_off": gone,
+                "cut_off_total": gone_total,
+                "joined_again": max(0, there - there_before),
             }
         )
     return found
 
 
-def start_up(result: Any) -> dict[str, Any]:
+def start_up(result: Any) -> StartUp:
     """The same for the beginning: `converged_ms` and `routed_ms` from switching on."""
     at = marks(result)
     if len(at.row) == 0:  # it ran unobserved
@@ -71,9 +90,26 @@ def start_up(result: Any) -> dict[str, Any]:
 
 
 def _window(result: Any, at: Marks, place: int) -> tuple[int, int]:
-    """The rows after a mark and before the next one."""
-    behind = int(at.row[place + 1]) if place + 1 < len(at.row) else len(result.rows)
-    return int(at.row[place]) + 1, behind
+    """The rows after the first mark of a mark's moment and before that of a later moment."""
+    first, after = (
+        int(np.searchsorted(at.time_us, at.time_us[place], side)) for side in ("left", "right")
+    )
+    first = max(first, int(at.event[0] == NOBODY))  # the beginning is no event
+    behind = int(at.row[after]) if after < len(at.row) else len(result.rows)
+    return int(at.row[min(first, place)]) + 1, behind
+
+
+def _at(steps: ApartSteps | JoinedSteps | UnroutedSteps, row: int, otherwise: int) -> int:
+    """What a step function is just before a row."""
+    after = int(np.searchsorted(steps.row, row))
+    return int(steps.cells[after - 1]) if after else otherwise
+
+
+def _cut_off(steps: ApartSteps, window: tuple[int, int]) -> tuple[int, int]:
+    """Cells cut off inside a window, and all that are so at its end."""
+    first, behind = np.searchsorted(steps.row, window).tolist()
+    total = _at(steps, window[1], 0)
+    return min(int(steps.fresh[first:behind].sum()), total), total
 
 
 def _since(start_us: int, time_us: int | None) -> float | None:

@@ -1,4 +1,4 @@
-"""Raw rows of a run as plain arrays: parent changes, cells without a route, loops, broken ports.
+"""Raw rows of a run as plain arrays: parents, cells without a route, cells cut off, loops, ports.
 
 All functions take a `sim.simulate.Result`; times are in us of true time.
 """
@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from innervate.protocol.skin_words import PORTS, REPORT_BALANCE, REPORT_BROKEN, REPORT_PARENT
-from innervate.sim.observer import CUT_OFF, LOOP_CLOSED, LOOP_OPEN, UNROUTED
+from innervate.sim.observer import APART, CUT_OFF, JOINED, LOOP_CLOSED, LOOP_OPEN, UNROUTED
 
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
 NEVER = -1
@@ -37,6 +37,32 @@ class ParentChanges(NamedTuple):
 
 class UnroutedSteps(NamedTuple):
     """How many connected cells have no route: `cells[i]` from `time_us[i]` on (a step function)."""
+
+    row: Numbers
+    time_us: Numbers
+    cells: Numbers
+
+
+class ApartSteps(NamedTuple):
+    """How many cells are cut off, from `time_us[i]` on (a step function).
+
+    A cell is cut off if it is on and no live cable joins it with the PC, over whatever way.
+
+    Attributes:
+        row: place in the run's rows.
+        time_us: when.
+        cells: cut off from then on.
+        fresh: those of them that were not so before.
+    """
+
+    row: Numbers
+    time_us: Numbers
+    cells: Numbers
+    fresh: Numbers
+
+
+class JoinedSteps(NamedTuple):
+    """How many cells live cables join with the PC: `cells[i]` from `time_us[i]` on."""
 
     row: Numbers
     time_us: Numbers
@@ -99,6 +125,18 @@ def unrouted_steps(result: Any) -> UnroutedSteps:
     """How many cells that are physically connected to the PC had no route, over time."""
     at, part = _coded(result, UNROUTED)
     return UnroutedSteps(at, part["time"], part["a"])
+
+
+def apart_steps(result: Any) -> ApartSteps:
+    """How many cells were cut off, over time."""
+    at, part = _coded(result, APART)
+    return ApartSteps(at, part["time"], part["a"], part["b"])
+
+
+def joined_steps(result: Any) -> JoinedSteps:
+    """How many cells live cables joined with the PC, over time."""
+    at, part = _coded(result, JOINED)
+    return JoinedSteps(at, part["time"], part["a"])
 
 
 def broken_changes(result: Any) -> BrokenChanges:

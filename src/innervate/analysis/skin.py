@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.commands import commands_summary
 from innervate.analysis.frames import beacon_share, data_summary
 from innervate.analysis.load import balance_factor, port_loads
+from innervate.analysis.reach import reach, skin_facts
 from innervate.analysis.recovery import recoveries, start_up
 from innervate.analysis.rows import (
     NEVER,
@@ -20,6 +22,8 @@ from innervate.analysis.rows import (
     parent_changes,
     unrouted_steps,
 )
+from innervate.analysis.skin_headline import skin_headline
+from innervate.analysis.skin_summary import BrokenPort, Loops, SkinSummary
 from innervate.protocol.skin_words import ONE, PORTS
 from innervate.sim.world import ALIVE
 from innervate.topology import PORT_NAMES
@@ -42,12 +46,16 @@ __all__ = [
 ]
 
 
-def summarize(result: Any) -> dict[str, Any]:
+def summarize(result: Any) -> SkinSummary:
     """The summary of a run; what never happened is None."""
     plan = result.plan
     events = result.handled + result.arrived
     loads = port_loads(result)
-    summary = {
+    data = data_summary(result)
+    commands = commands_summary(result)
+    facts = skin_facts(result, data, commands)
+    apart = reach(result, facts)
+    summary: SkinSummary = {
         "kind": plan.kind,
         "name": plan.scenario.name,
         "seed": plan.seed,
@@ -56,14 +64,20 @@ def summarize(result: Any) -> dict[str, Any]:
         "events_per_s": round(events / result.wall_s) if result.wall_s > 0 else None,
         "wall_s": round(result.wall_s, 6),
         "fingerprint": result.fingerprint,
+        "headline": skin_headline(facts, plan.graph.label).as_summary(),
         "cells": plan.graph.cells,
         "depth_max": plan.depth_max,
         "start_up": start_up(result),
         "recoveries": recoveries(result),
+        "cut_off": apart["cut_off"],
+        "without_way": apart["without_way"],
+        "switched_off": apart["switched_off"],
+        "lost_at_start": apart["lost_at_start"],
         "loops": loops(result),
         "balance_factor": balance_factor(loads),
         "port_loads": loads,
-        "data": data_summary(result),
+        "data": data,
+        "commands": commands,
         "beacon_share": beacon_share(result),
         "broken": broken_ports(result),
     }
@@ -72,7 +86,7 @@ def summarize(result: Any) -> dict[str, Any]:
     return summary
 
 
-def loops(result: Any) -> dict[str, Any]:
+def loops(result: Any) -> Loops:
     """How many forwarding loops there were, and how long the longest stood (ms)."""
     found = loop_episodes(result)
     ends = np.where(found.closed_us == NEVER, result.ended_us, found.closed_us)
@@ -80,7 +94,7 @@ def loops(result: Any) -> dict[str, Any]:
     return {"episodes": len(ends), "longest_ms": longest}
 
 
-def broken_ports(result: Any) -> list[dict[str, Any]]:
+def broken_ports(result: Any) -> list[BrokenPort]:
     """Ports that carry a cable and are broken at the end, at cells that are on.
 
     `cell` and `port` say where, `to` is the far end of that cable, `since_s` when it was found

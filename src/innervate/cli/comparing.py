@@ -10,7 +10,7 @@ DIFFERENCES_MAX = 40
 
 def compare(first: Path, second: Path) -> int:
     """Say what differs between two runs."""
-    from innervate.run import compare as room
+    from innervate.running import compare as room
 
     found = room(first, second)
     if not found.scenario and found.same:

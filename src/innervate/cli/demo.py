@@ -15,7 +15,8 @@ from innervate.plot import mesh_words, words
 
 if TYPE_CHECKING:
     from innervate.analysis.mesh_alarms import Crossing
-    from innervate.run import Run
+    from innervate.analysis.skin_summary import Recovery
+    from innervate.running import Run
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +62,7 @@ def _skin(seed: int | None, out: Path | None) -> Told:
     print(flush=True)
     run = simulate("demo", [], seed, _part(out, "skin"))
     folder = run.write(_part(out, "skin"))
-    summary, plan = run.summary, run.plan
+    summary, plan = run.skin, run.plan
     graph = plan.graph
     print(
         f"  {graph.cells} cells, {graph.interfaces} cables to the PC, "
@@ -82,7 +83,7 @@ def _skin(seed: int | None, out: Path | None) -> Told:
     return Told(folder / "report.html", run.interrupted)
 
 
-def _steps(recovery: dict[str, float | None], cells: int) -> list[tuple[str, str]]:
+def _steps(recovery: Recovery, cells: int) -> list[tuple[str, str]]:
     """What followed an event, in order of time."""
     cut, settled = recovery["cut_cells"], recovery["converged_ms"]
     steps: list[tuple[float, str]] = []
@@ -90,9 +91,13 @@ def _steps(recovery: dict[str, float | None], cells: int) -> list[tuple[str, str
         steps.append((0.0, f"{cut} of {cells} cells have lost their way to the PC"))
     if recovery["detected_ms"]:
         steps.append((recovery["detected_ms"], "the cell at the cable has noticed"))
-    if recovery["routed_ms"]:
-        steps.append((recovery["routed_ms"], "every cell has a way again"))
-    elif settled:
+    gone, routed = recovery["cut_off"], recovery["others_ms"]
+    if gone:
+        steps.append((0.0, f"{gone} of {cells} cells are cut off: no cable joins them any more"))
+    if routed:
+        whom = "every other cell" if recovery["cut_off_total"] else "every cell"
+        steps.append((routed, f"{whom} has a way again"))
+    elif settled and recovery["routed_ms"] == 0:
         steps.append((settled, "the cells share both cables again; none lost its way meanwhile"))
     return [
         ("at once" if ms == 0 else f"+{words.ms_words(ms)}", what) for ms, what in sorted(steps)
@@ -109,12 +114,12 @@ def _radio(seed: int | None, out: Path | None) -> Told:
     folder = run.write(_part(out, "radio"))
     plan, packets = run.plan, run.result.packets
     start_us = int(packets["offered"].min())
-    order = ", ".join(str(i) for i in run.summary["order"])
+    order = ", ".join(str(i) for i in run.radio["order"])
     firsts = (int(packets["end"].min()), "the first packet has arrived, everybody knows the order")
     for at_us, what in (firsts, (int(packets["end"].max()), "all ten packets have arrived")):
         print(f"  {'+' + words.ms_words((at_us - start_us) / 1e3):>10}   {what}")
     print()
-    print(f"  Order: {order}. {run.summary['lost_silently']} packets lost without their sender "
+    print(f"  Order: {order}. {run.radio['lost_silently']} packets lost without their sender "
           "knowing.")  # fmt: skip
     times = (plan.params["packet_slots"] * plan.params["slot_us"] * plan.stations) / 1e3
     print(f"  The packets alone take {words.ms_words(times)}.")
@@ -131,7 +136,7 @@ def _mesh(seed: int | None, out: Path | None) -> Told:
     print(flush=True)
     run = simulate("mesh-field", [], seed, _part(out, "mesh"))
     folder = run.write(_part(out, "mesh"))
-    summary, plan = run.summary, run.plan
+    summary, plan = run.mesh, run.plan
     reach = 2 * summary["links"] / plan.nodes
     print(f"  {plan.nodes} nodes, each with about {reach:.0f} others in good reach")
     print()
@@ -152,7 +157,7 @@ def _mesh_steps(run: Run) -> list[tuple[str, str]]:
     from innervate.analysis.mesh_alarms import all_crossings
     from innervate.analysis.mesh_messages import NEVER
 
-    summary, plan = run.summary, run.plan
+    summary, plan = run.mesh, run.plan
     steps: list[tuple[float, str, str]] = []
     if summary["discovery"]["tables_s"] is not None:
         at = summary["gateways"][0]["at_s"] + summary["discovery"]["tables_s"]

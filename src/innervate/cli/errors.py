@@ -26,9 +26,9 @@ _EXTRAS = {
 # Errors whose text is one line for the user: module and class, and whose mistake they are.
 _KNOWN = (
     ("innervate.scenario.errors", "ScenarioError", USERS),
-    ("innervate.run.errors", "RunError", USERS),
+    ("innervate.running.errors", "RunError", USERS),
     ("innervate.verify.errors", "VerifyError", USERS),
-    ("innervate.sweep.errors", "SweepError", USERS),
+    ("innervate.sweeping.errors", "SweepError", USERS),
     ("innervate.live.errors", "LiveError", USERS),
     ("innervate.web.errors", "WatchError", USERS),
     ("innervate.export.errors", "ExportError", USERS),

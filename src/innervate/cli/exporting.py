@@ -72,8 +72,8 @@ class _Source:
         self.plan: Any = scenarios.plan(loaded)
 
     def _recorded(self, folder: Path) -> Scenario:
-        from innervate.run import RunError
-        from innervate.run import folder as folders
+        from innervate.running import RunError
+        from innervate.running import folder as folders
 
         summary = folders.read_json(folder, folders.SUMMARY)
         origin = folders.read_json(folder, folders.PROVENANCE)
@@ -145,13 +145,13 @@ class _Source:
     def _tables(self) -> dict[str, Any]:
         """The run's tables: from its folder, or of a run made now, once."""
         if self.folder is None:
-            from innervate import run as room
+            from innervate import running as room
 
             if not hasattr(self, "_run"):
                 with Progress(is_compiled(self.plan)) as progress:
                     self._run = room.run(self.scenario, progress=progress)
             return dict(self._run.tables)
-        from innervate.run import folder as folders
+        from innervate.running import folder as folders
         from innervate.trace import tables
 
         here = self.folder

@@ -5,10 +5,13 @@ from __future__ import annotations
 import asyncio
 import json
 import sys
+from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 from innervate.cli import errors, live_status
 from innervate.live import status
+from innervate.live.errors import LiveError
 
 
 def up(
@@ -29,21 +32,32 @@ def up(
 
 
 def show(names: list[str], as_json: bool) -> int:
-    """What nodes say of themselves."""
+    """What nodes say of themselves; 1 if nobody was named and some do not answer."""
     sockets = [status.find(name) for name in names] if names else status.sockets()
     if not sockets:
         where = f"no node runs here (folder {status.folder()})"
         raise errors.UserError(f"{where}; start one with: innervate live node FILE")
-    told = [status.ask_one(path, {"do": "status"}) for path in sockets]
+    told, silent = [], []
+    for path in sockets:
+        try:
+            told.append(status.ask_one(path, {"do": "status"}))
+        except LiveError:
+            if names:
+                raise
+            silent.append(path.stem)
     if as_json:
         print(json.dumps(told if len(told) != 1 or not names else told[0]))
-        return 0
-    for one in told:
-        for line in live_status.lines(one):
+    else:
+        if not names:
+            print(live_status.headline(told, len(silent)))
+        for one in told:
+            for line in live_status.lines(one):
+                print(line)
+        for line in live_status.broken(told):
             print(line)
-    for line in live_status.broken(told):
-        print(line)
-    return 0
+    for name in silent:
+        print(f"{name}: does not answer; its process was killed, or hangs", file=sys.stderr)
+    return 1 if silent else 0
 
 
 def send(name: str, to: int, text: str, how: dict[str, bool], as_json: bool) -> int:
@@ -72,9 +86,11 @@ def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:
         if as_json:
             print(json.dumps(answer), flush=True)
         else:
-            text = str(answer.get("touch", ""))
+            text = touch_text(answer["touch"]) if "touch" in answer else ""
             if "alarm" in answer:
                 text = f"alarm: {live_status.alarm_text(answer['alarm'])}"
+            if "command" in answer:
+                text = command_text(answer["command"])
             if "payload" in answer:
                 text = bytes.fromhex(answer["payload"]).decode("utf-8", "backslashreplace")
             print(f"{answer['from']}: {text}", flush=True)
@@ -82,6 +98,43 @@ def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:
         if heard == count:
             break
     return 0
+
+
+def command(name: str, code: int, value: int, cell: int | None, as_json: bool) -> int:
+    """Have the PC of a skin send a command down; 0 if somebody was there to hand it down."""
+    request = {"do": "command", "code": code, "value": value, "cell": cell}
+    sent = status.ask_one(status.find(name), request)
+    if as_json:
+        print(json.dumps(sent))
+    elif sent["ports"]:
+        whom = "all cells" if cell is None else f"cell {cell}"
+        print(f"command {sent['number']} to {whom}, by {sent['ports']} interface ports")
+    else:
+        print("nobody is there to hand it down: no cell has the PC as its parent", file=sys.stderr)
+    return 0 if sent["ports"] else 1
+
+
+def command_text(command: dict[str, Any]) -> str:
+    """A command, with the time at which the cell received it."""
+    whom = "all cells" if command["to_all"] else "this cell"
+    return (
+        f"{_time(command['time_us'])} command {command['number']} for {whom}: code "
+        f"{command['code']}, value {command['value']}, {command['hops']} hops"
+    )
+
+
+def _time(time_us: int) -> str:
+    return datetime.fromtimestamp(time_us / 1e6).isoformat(" ", "microseconds")
+
+
+def touch_text(touch: dict[str, Any]) -> str:
+    """A sample, with the time at which the PC received it."""
+    force = " ".join(str(value) for value in touch["force"])
+    return (
+        f"{_time(touch['time_us'])} seq {touch['seq']}, {touch['hops']} hops, "
+        f"interface {touch['port']}, proximity {touch['proximity']}, force {force} mN, "
+        f"{20 + touch['temperature'] / 2:g} degC"
+    )
 
 
 def change(name: str, port: int, what: str) -> int:

@@ -128,9 +128,39 @@ def live_send(
     return command.send(node, to, text, how, json)
 
 
+@live_app.command(name="command")
+def live_command(
+    node: str,
+    code: int,
+    value: int = 0,
+    /,
+    *,
+    cell: int | None = None,
+    json: Json = False,
+) -> int:
+    """Have the PC of a skin send a command down to its cells, over the children of every cell.
+
+    Parameters
+    ----------
+    node
+        Name or socket of the PC.
+    code
+        What to do, 0 to 255; your cells know what it means.
+    value
+        With what, 0 to 65535.
+    cell
+        Number of the cell it is for; all cells if left out.
+    json
+        Print JSON.
+    """
+    from innervate.cli import live as room
+
+    return room.command(node, code, value, cell, json)
+
+
 @live_app.command(name="listen")
 def live_listen(node: str, /, *, count: int = 0, in_order: Json = False, json: Json = False) -> int:
-    """Print messages that come in at a running node, until Ctrl-C.
+    """Print what comes in at a running node, until Ctrl-C: messages, samples, commands.
 
     Parameters
     ----------

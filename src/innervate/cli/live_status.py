@@ -8,6 +8,25 @@ SOCKETS = ("W", "E", "up", "down")
 LOSSES = ("unsent", "dropped", "unplugged")  # a path's counters that somebody should see
 
 
+def headline(told: list[dict[str, Any]], silent: int) -> str:
+    """Is all well with these nodes and `silent` more that do not answer: as pages say it, now."""
+    from innervate.analysis.headline import silent as nobody
+    from innervate.web.live_map import Map
+    from innervate.web.live_state import State
+
+    kinds = {one["kind"] for one in told}
+    if len(kinds) > 1:
+        return f"{' and '.join(sorted(kinds))} nodes: name those of one network to have it judged"
+    found = nobody(silent, "node")
+    if told:
+        unknown = [{"kind": min(kinds), "neighbours": [], "paths": []} for _ in range(silent)]
+        if silent and kinds == {"skin"} and all(one["role"] != "sink" for one in told):
+            unknown[0] |= {"role": "sink", "paths": [{"port": 0, "name": ""}]}  # so that is the PC
+        where = Map(dict(enumerate([*told, *unknown])))
+        found = State(where, dict(enumerate(told))).headline(0.0)
+    return f"{found.level}: {found.text}"
+
+
 def broken(told: list[dict[str, Any]]) -> list[str]:
     """A line for each broken cable; of a cable between two of these nodes, one line for both."""
     found: dict[frozenset[str], list[str]] = {}
@@ -25,6 +44,10 @@ def lines(told: dict[str, Any]) -> list[str]:
     if told["kind"] == "radio":
         told["paths"] = []
     found = [f"{told['name']}: {told['kind']} {told['role']}, up {told['up_s']:g} s, {key}"]
+    state = told.get("state")
+    if state is not None and state["trouble"]:
+        since = "never" if state["written_s"] is None else f"{state['written_s']:g} s ago"
+        found.append(f"  STATE NOT WRITTEN: {state['trouble']}; last {since}, to {state['file']}")
     # A cell's own numbers are those of its sockets; its paths are numbered through.
     cabled = sorted((one for one in told.get("ports", ()) if one["cabled"]),
                     key=lambda one: one["path"])  # fmt: skip
@@ -62,6 +85,9 @@ def _mesh_lines(told: dict[str, Any]) -> list[str]:
         lines.append(f"  neighbour {near['node']} by port {ports}: acknowledged {quality}{suspect}")
     ways = [f"{dest} by {hop[0]}" for dest, hop in told["routes"].items()]
     lines.append(f"  routes: {', '.join(ways) or 'none'}")
+    waiting = ", ".join(f"{count} for {dest}" for dest, count in told.get("waiting", {}).items())
+    if waiting:
+        lines.append(f"  messages that wait: {waiting}")
     if "robot" in told:
         at = told["robot"]["at_cm"]
         place = "no position yet" if at is None else f"at {at[0] / 100:.2f}, {at[1] / 100:.2f} m"

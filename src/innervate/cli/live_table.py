@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 from innervate.analysis.intervals import mean_interval
 
 if TYPE_CHECKING:
-    from innervate.sweep.conduct import Conductor, State
+    from innervate.sweeping.conduct import Conductor, State
 
 LINE_EVERY_S = 10.0
 DRAW_EVERY_S = 0.2

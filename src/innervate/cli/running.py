@@ -10,7 +10,7 @@ from innervate.cli import errors
 from innervate.cli.progress import Progress, is_compiled
 
 if TYPE_CHECKING:
-    from innervate.run import Run
+    from innervate.running import Run
 
 
 def run(
@@ -43,8 +43,8 @@ def simulate(
 
     loaded = scenarios.load(file, sets, seed)
     plan = scenarios.plan(loaded)  # the simulator takes a second to load: mistakes first
-    from innervate import run as room
-    from innervate.run import folder as folders
+    from innervate import running as room
+    from innervate.running import folder as folders
 
     if out is None:
         out = folders.default_folder(loaded.name, loaded.seed)

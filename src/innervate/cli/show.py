@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from innervate.cli import show_mesh, show_radio
 from innervate.plot import words
 
 if TYPE_CHECKING:
-    from innervate.run import Run
+    from innervate.analysis.skin_summary import Commands, Data, Latency, SkinSummary
+    from innervate.running import Run
 
 EVENTS_MAX = 8
 BROKEN_MAX = 5
@@ -16,16 +17,17 @@ BROKEN_MAX = 5
 
 def summary_lines(run: Run) -> list[str]:
     """What a person wants to know first."""
-    summary = run.summary
-    if summary["kind"] == "radio":
+    if run.summary["kind"] == "radio":
         return show_radio.summary_lines(run)
-    if summary["kind"] == "mesh":
+    if run.summary["kind"] == "mesh":
         return show_mesh.summary_lines(run)
-    return [_first(run), *event_lines(run), *_broken(summary), *state_lines(summary)]
+    summary = run.skin
+    said = words.headline_line(summary["headline"])
+    return [_first(run), said, *event_lines(run), *_broken(summary), *state_lines(summary)]
 
 
 def _first(run: Run) -> str:
-    summary, graph = run.summary, run.plan.graph
+    summary, graph = run.skin, run.plan.graph
     length = f"{summary['duration_s']:g} s"
     if "interrupted_at_s" in summary:
         length = f"{summary['interrupted_at_s']:.3g} of {length}"
@@ -40,7 +42,7 @@ def _first(run: Run) -> str:
 
 def event_lines(run: Run) -> list[str]:
     """A sentence for every event of the scenario."""
-    summary, plan = run.summary, run.plan
+    summary, plan = run.skin, run.plan
     pairs = list(zip(plan.faults, summary["recoveries"], strict=False))
     lines = [words.headline(plan.graph, *pair) for pair in pairs[:EVENTS_MAX]]
     if len(pairs) > EVENTS_MAX:
@@ -50,21 +52,23 @@ def event_lines(run: Run) -> list[str]:
     return lines
 
 
-def state_lines(summary: dict[str, Any]) -> list[str]:
+def state_lines(summary: SkinSummary) -> list[str]:
     """Samples, ports, loops."""
     lines = []
     data, loads = summary["data"], summary["port_loads"]
-    if data["sent"]:
+    if data["loss_ratio"] is not None:
         share = words.share_words(data["loss_ratio"])
         lines.append(
             f"Samples: {data['sent']:,} sent, {data['lost']:,} lost ({share}){_why(data)}."
         )
+        lines += latency_lines(data["latency_ms"])
+    lines += command_lines(summary["commands"])
     if len(loads) > 1 and summary["balance_factor"] is not None:
         shown = ", ".join(f"{load:,}" for load in loads[:8]) + (", ..." if len(loads) > 8 else "")
         factor = f"balance factor {summary['balance_factor']:.3f}"
         lines.append(f"Cells behind each interface port: {shown} ({factor}).")
     loops = summary["loops"]
-    if loops["episodes"]:
+    if loops["longest_ms"] is not None:
         longest = words.stood_words(loops["longest_ms"])
         count = words.number_of(loops["episodes"], "forwarding loop")
         lines.append(f"{count}, the longest for {longest}.")
@@ -73,13 +77,47 @@ def state_lines(summary: dict[str, Any]) -> list[str]:
     return lines
 
 
-def _why(data: dict[str, Any]) -> str:
+def latency_lines(latency: Latency) -> list[str]:
+    """How long samples took; nothing without one."""
+    half, nearly, most = latency["p50"], latency["p99"], latency["max"]
+    if half is None or nearly is None or most is None:
+        return []
+    shown = tuple(words.ms_words(value) for value in (half, nearly, most))
+    return [
+        f"From sensor to PC: half within {shown[0]}, 99 % within {shown[1]}, the slowest "
+        f"{shown[2]} (samples received)."
+    ]
+
+
+def command_lines(commands: Commands) -> list[str]:
+    """What became of the PC's commands; nothing without one."""
+    ratio = commands["loss_ratio"]
+    if ratio is None:
+        return []
+    share = words.share_words(ratio)
+    line = (
+        f"Commands: {commands['sent']:,} sent, for {commands['addressed']:,} cells in all, "
+        f"{commands['lost']:,} not reached ({share}){_missed(commands)}"
+    )
+    half, most = commands["latency_ms"]["p50"], commands["latency_ms"]["max"]
+    if half is None or most is None:
+        return [f"{line}."]
+    took = f"half within {words.ms_words(half)}, the slowest {words.ms_words(most)}"
+    return [f"{line}; {took}."]
+
+
+def _missed(commands: Commands) -> str:
+    lost = [(n, why) for why, n in commands["lost_by"].items() if n]
+    return "".join(f", {n:,} {words.MISSED[why]}" for n, why in sorted(lost, reverse=True))
+
+
+def _why(data: Data) -> str:
     """The reasons of lost samples, the greatest first."""
     lost = sorted(((n, why) for why, n in data["lost_by"].items() if n), reverse=True)
     return "".join(f", {n:,} {words.LOST.get(why, why)}" for n, why in lost)
 
 
-def _broken(summary: dict[str, Any]) -> list[str]:
+def _broken(summary: SkinSummary) -> list[str]:
     cables = words.broken_cables(summary["broken"])
     if not cables:
         return ["No cable is broken at the end."]

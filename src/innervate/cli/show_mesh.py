@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING
 from innervate.plot import mesh_words, words
 
 if TYPE_CHECKING:
-    from innervate.run import Run
+    from innervate.running import Run
 
 
 def summary_lines(run: Run) -> list[str]:
     """What a person wants to know first."""
-    return [_first(run), *mesh_words.sentences(run.result, run.summary)]
+    headline = words.headline_line(run.mesh["headline"])
+    return [_first(run), headline, *mesh_words.sentences(run.result, run.summary)]
 
 
 def _first(run: Run) -> str:
-    summary = run.summary
+    summary = run.mesh
     return (
         f"{summary['name']}: {words.number_of(summary['nodes'], 'node')}, "
         f"{words.number_of(summary['links'], 'good link')}; "

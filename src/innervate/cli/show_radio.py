@@ -2,23 +2,34 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from innervate.analysis.radio_state import hidden_pairs
 from innervate.plot import words
-from innervate.plot.radio_words import slots_words
+from innervate.plot.radio_words import off_words, slots_words
+from innervate.scenario.radio_words import warnings
 
 if TYPE_CHECKING:
-    from innervate.run import Run
+    from innervate.analysis.summaries import RadioSummary, SlottedSummary
+    from innervate.running import Run
 
 
 def summary_lines(run: Run) -> list[str]:
     """What a person wants to know first."""
-    summary = run.summary
-    return [_first(run), *result_lines(run), *_noticed(summary)]
+    return [
+        _first(run),
+        words.headline_line(_summary(run)["headline"]),
+        *result_lines(run),
+        *_noticed(run),
+    ]
+
+
+def _summary(run: Run) -> RadioSummary | SlottedSummary:
+    return run.slotted if "level" in run.summary else run.radio
 
 
 def _first(run: Run) -> str:
-    summary, plan = run.summary, run.plan
+    summary, plan = _summary(run), run.plan
     return (
         f"{summary['name']}: {words.number_of(plan.stations, 'station')} on one channel, "
         f"{summary['protocol']}, packets of at most {plan.params['packet_slots']} slots; "
@@ -29,14 +40,14 @@ def _first(run: Run) -> str:
 
 def result_lines(run: Run) -> list[str]:
     """Packets, delays, fairness."""
-    summary = run.summary
-    lines = [_delivered(run)]
+    summary = _summary(run)
+    lines = [_delivered(run), *off_words(summary), *warnings(run.plan)]
     delay = summary["delay_slots"]
-    if delay["p50"] is not None:
+    half, most, longest = delay["p50"], delay["p99"], delay["max"]
+    if half is not None and most is not None and longest is not None:
         lines.append(
-            f"Delay from offer to the end of the frame: half within "
-            f"{slots_words(delay['p50'])}, 99 % within {slots_words(delay['p99'])}, "
-            f"all within {slots_words(delay['max'])}."
+            f"Delay from offer to the end of the frame: half within {slots_words(half)}, "
+            f"99 % within {slots_words(most)}, all within {slots_words(longest)}."
         )
     if summary["throughput"] is not None:
         share = words.share_words(summary["throughput"])
@@ -52,27 +63,18 @@ def result_lines(run: Run) -> list[str]:
 
 
 def _delivered(run: Run) -> str:
-    counts, plan = run.result.counts, run.plan
-    slots = run.summary["duration_slots"]
+    summary, plan = _summary(run), run.plan
+    slots = summary["duration_slots"]
     after = ""
     if slots is not None:
         ms = slots * plan.params["slot_us"] / 1000
         after = f", the last {slots_words(slots)} ({words.ms_words(ms)}) after the first offer"
-    open_ = counts["offers"] - counts["completed"]
-    if open_ and not plan.saturated:
-        return f"{counts['completed']:,} of {counts['offers']:,} packets were delivered{after}."
-    lost = run.summary["lost_silently"]
-    if lost:
-        return (
-            f"{words.number_of(counts['completed'], 'packet')} taken for delivered, {lost:,} of "
-            f"them received by nobody{after}."
-        )
-    return f"{words.number_of(counts['completed'], 'packet')} delivered{after}."
+    return f"{words.number_of(summary['delivered'], 'packet')} delivered{after}."
 
 
-def _noticed(summary: dict[str, Any]) -> list[str]:
-    found = summary.get("bounds_noticed")
-    if not found or not found["count"]:
+def _noticed(run: Run) -> list[str]:
+    summary = _summary(run)
+    if "level" in summary or not summary["bounds_noticed"]["count"] or hidden_pairs(run.plan):
         return []
     return [
         "Delays between stations lie outside the configured bounds; set protocol.tau_bounds_us "

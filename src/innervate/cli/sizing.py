@@ -9,12 +9,12 @@ from innervate.cli import errors
 from innervate.cli.live_table import LiveTable
 
 if TYPE_CHECKING:
-    from innervate.sweep.sizing import Answer
+    from innervate.sweeping.sizing import Answer
 
 
 def size(question: dict[str, Any], how: dict[str, Any]) -> int:
     """Answer how many interface ports a robot's skin needs, with a table and a picture."""
-    from innervate.sweep import sizing
+    from innervate.sweeping import sizing
 
     ports = sizing.parse_ports(question.pop("ports"))
     asked = sizing.Question(ports=ports, **question)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from innervate.analysis.headline import LEVELS
 from innervate.cli import errors
 from innervate.cli.live_table import LiveTable
 
 if TYPE_CHECKING:
-    from innervate.sweep import Sweep, SweepPlan
+    from innervate.sweeping import Sweep, SweepPlan
 
 # What is shown if nobody says: of these, those that the runs have.
 SHOWN = (
@@ -24,7 +25,7 @@ REASONS_MAX = 5
 
 def sweep(file: str, what: dict[str, Any], how: dict[str, Any], show: list[str]) -> int:
     """Run a sweep behind a live table; say what came of it."""
-    from innervate import sweep as room
+    from innervate import sweeping as room
 
     plan: SweepPlan = room.make_plan(file, **what)
     folder = how["out"] or Path("sweeps") / (plan.name or "sweep")
@@ -80,7 +81,24 @@ def result_lines(done: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
     more = len(done.plan.points) - POINTS_MAX
     if more > 0:
         lines.append(f"... and {more} more points")
-    return lines + failed_lines(done)
+    return lines + headline_lines(done) + failed_lines(done)
+
+
+def headline_lines(done: Sweep) -> list[str]:
+    """How many runs are not well, by their headlines, with the first of each level."""
+    table = done.results
+    if "headline.level" not in table.columns:
+        return []
+    lines = []
+    for level in LEVELS[1:]:
+        found = table.filter(table["headline.level"] == level)
+        if found.height:
+            first = found.row(0, named=True)
+            lines.append(
+                f"{found.height} of {table.height} runs: {level}; the first, point "
+                f"{first['point']} with seed {first['seed']}: {first['headline.text']}"
+            )
+    return lines
 
 
 def failed_lines(done: Sweep) -> list[str]:

@@ -19,7 +19,8 @@ class VerifyOptions:
     Parameters
     ----------
     rule
-        Skin: feasible (if left out), strict, paper or all. Radio: practical (if left out) or paper.
+        Skin: feasible (if left out), strict, paper, paper-lax or all. Radio: practical (if left
+        out) or paper.
         Mesh: a failover, search or graph (both if left out), alternate, random or all.
     updates
         periodic, triggered or all.

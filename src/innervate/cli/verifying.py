@@ -156,7 +156,7 @@ def verify(system: str, options: VerifyOptions, as_json: bool, out: Path | None)
 
 def _hunts(system: str) -> list[tuple[Any, Callable[[Any], Any]]]:
     """All mutants of a protocol, or of all three where none was named, and what hunts each."""
-    from innervate.run import radio_mutants
+    from innervate.running import radio_mutants
     from innervate.verify import mesh_mutants, mutants
 
     rooms = {"skin": mutants, "mesh": mesh_mutants, "radio": radio_mutants}

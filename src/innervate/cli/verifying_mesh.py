@@ -116,7 +116,7 @@ def _verdict(done: list[MeshCase], broken: int) -> str:
 def _write(case: MeshCase, out: Path, number: int, quiet: bool) -> None:
     """Scenario, story and picture of a counterexample."""
     from innervate.plot import mesh_counterexample
-    from innervate.run import mesh_replay
+    from innervate.running import mesh_replay
 
     assert case.story is not None
     out.mkdir(parents=True, exist_ok=True)

@@ -11,14 +11,14 @@ from innervate.cli.progress import Display
 
 if TYPE_CHECKING:
     from innervate.cli.verify_options import VerifyOptions
-    from innervate.run.radio_grid import Found, Grid
-    from innervate.run.radio_tree import Grown, Tree
+    from innervate.running.radio_grid import Found, Grid
+    from innervate.running.radio_tree import Grown, Tree
 
 
 def search(options: VerifyOptions, as_json: bool) -> int:
     """Run the grids of 2 stations up to as many as asked for; 1 if something is broken."""
     from innervate.kernel.stop import Stop
-    from innervate.run import radio_grid, radio_tree
+    from innervate.running import radio_grid, radio_tree
 
     wanted = _grids(options.cells or 3, options.rule or "practical")
     done: list[Found | Grown] = []
@@ -56,7 +56,7 @@ def search(options: VerifyOptions, as_json: bool) -> int:
 
 
 def _grids(stations: int, mode: str) -> list[Grid]:
-    from innervate.run.radio_grid import MODES, STATIONS, Grid
+    from innervate.running.radio_grid import MODES, STATIONS, Grid
 
     if stations not in STATIONS:
         raise errors.UserError(f"--cells is 2 to 4 stations for radio, not {stations}")
@@ -73,7 +73,7 @@ def _grids(stations: int, mode: str) -> list[Grid]:
 
 
 def _lines(found: Found) -> list[str]:
-    from innervate.run.radio_grid import WORDS, story
+    from innervate.running.radio_grid import WORDS, story
 
     grid = found.grid
     head = f"{grid.stations} stations, {grid.mode}, turnaround {grid.turnaround_us} us: "
@@ -90,7 +90,7 @@ def _lines(found: Found) -> list[str]:
 
 def _tree(grid: Grid) -> Tree:
     """The tree of draws beside a grid: fewer moments and delays, every answer to a draw."""
-    from innervate.run.radio_tree import Tree
+    from innervate.running.radio_tree import Tree
 
     depth, delays_us = {2: (6, (52, 104)), 3: (4, (104,)), 4: (3, (104,))}[grid.stations]
     return Tree(replace(grid, offers_us=(0, 52), delays_us=delays_us), depth)
@@ -98,7 +98,7 @@ def _tree(grid: Grid) -> Tree:
 
 def tree_line(grown: Grown) -> str:
     """What came of a tree."""
-    from innervate.run.radio_grid import WORDS
+    from innervate.running.radio_grid import WORDS
 
     grid = grown.tree.grid
     head = f"{grid.stations} stations, {grid.mode}, turnaround {grid.turnaround_us} us: "

@@ -13,7 +13,7 @@ from innervate.cli.progress import Display
 def search(seed: int | None, count: int, as_json: bool, out: Path | None) -> int:
     """Run networks `seed`, `seed` + 1, ...; 1 with the first that breaks something."""
     from innervate.kernel.stop import Stop
-    from innervate.run import wild
+    from innervate.running import wild
 
     first, done, broken = seed or 1, 0, None
     with Stop() as stop, Display(as_json) as display:

@@ -44,7 +44,7 @@ def watch(what: str, nodes: list[str], settings: Settings, place: Place) -> int:
 
     if not 0 <= place.port <= 65_535:
         raise errors.UserError(f"--port is 0 to 65535, not {place.port}")
-    is_live = what == LIVE and not Path(what).exists()
+    is_live = what == LIVE  # a folder of that name is ./live
     source: Source
     if settings.speed is not None:
         _check_speed(settings.speed)
@@ -104,8 +104,16 @@ def _recorded(folder: Path, settings: Settings) -> Recorded:
 
 
 def _live(nodes: list[str], settings: Settings) -> Source:
+    from innervate.web.errors import WatchError
     from innervate.web.live import Live, find
 
     if settings.sets or settings.seed is not None or settings.speed is not None:
         raise errors.UserError("nodes run as they are; --set, --seed, --speed are for scenarios")
-    return Live(find(nodes))
+    try:
+        return Live(find(nodes))
+    except WatchError as error:
+        if nodes or not Path(LIVE).exists():
+            raise
+        raise errors.UserError(
+            f"{error}; what is called live here: innervate watch ./live"
+        ) from None

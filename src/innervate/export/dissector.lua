@@ -8,6 +8,10 @@ local bitop = rawget(_G, "bit") or rawget(_G, "bit32")
 -- `wtap` is the older name.
 local encaps = rawget(_G, "wtap_encaps") or rawget(_G, "wtap")
 local protos = {}
+local interface = { name = Field.new("frame.interface_name"),
+  says = Field.new("frame.interface_description"), way = Field.new("frame.packet_flags_direction") }
+local INBOUND, OUTBOUND = 1, 2
+local SAID_MAX = 6 -- numbers of a frame in the list of packets
 
 -- CRC-16/CCITT-FALSE of all bytes but the last two, by a table of every byte's remainder.
 local remainders = {}
@@ -92,6 +96,16 @@ local function show_crc(self, tvb, tree)
   return given == computed
 end
 
+-- A frame in the list of packets: its type and its first numbers.
+local function line(name, fields, found)
+  local said = {}
+  for _, field in ipairs(fields) do
+    local value = field.name ~= "" and field.many == 0 and found and found[field.name]
+    if value and #said < SAID_MAX then said[#said + 1] = string.format("%s %d", field.name, value) end
+  end
+  return #said > 0 and name .. ": " .. table.concat(said, ", ") or name
+end
+
 -- Fields of a kind behind a head of `at` bits; says if they and nothing else are there.
 local function body(self, tvb, tree, kind, at, stop)
   local known = self.kinds[kind]
@@ -99,9 +113,21 @@ local function body(self, tvb, tree, kind, at, stop)
     complain(self, tree, MALFORMED, "Malformed: no frame has this type")
     return "unknown type"
   end
-  local behind, found = read(known.fields, tvb, at, stop, tree)
+  local part = tree:add(known.proto, tvb())
+  local behind, found = read(known.fields, tvb, at, stop, part)
   if not behind then complain(self, tree, MALFORMED, "Malformed: too short for its type") end
-  return known.name, behind, found
+  return line(known.name, known.fields, found), behind, found
+end
+
+-- Where a frame comes from and goes to, as its interface says: "cell 7 port 1; A to B" is A's end of
+-- a cable. On the air only who sends it itself is known so.
+local function ends()
+  local says, way, name = interface.says(), interface.way(), interface.name()
+  way = way and way.value
+  local here, there = (says and tostring(says) or ""):match("; (.+) to (.+)$")
+  if here and way == INBOUND then here, there = there, here end
+  if not here and way ~= INBOUND then here = name and tostring(name) end
+  return here, there
 end
 
 local function skin(self, tvb, tree)
@@ -117,14 +143,14 @@ local function skin(self, tvb, tree)
     complain(self, tree, MALFORMED, "Malformed: too long for its type")
   end
   show_crc(self, tvb, tree)
-  return name
+  return name, ends()
 end
 
 local function radio(self, tvb, tree)
   local size = tvb:len()
   if size == 1 then
     if tvb(0, 1):uint() ~= RADIO_CARRIER then complain(self, tree, MALFORMED, "Malformed: too short") end
-    return "CR-R or pulse"
+    return "CR-R or pulse", (ends()), "all"
   elseif size < 3 then
     complain(self, tree, MALFORMED, "Malformed: too short")
     return "damaged"
@@ -133,14 +159,15 @@ local function radio(self, tvb, tree)
   tree:add(self.version, tvb(0, 1), number(tvb, 0, 4))
   tree:add(self.kind, tvb(0, 1), kind)
   if number(tvb, 0, 4) ~= RADIO_VERSION then complain(self, tree, MALFORMED, "Malformed: version") end
-  local name, behind = body(self, tvb, tree, kind, 8, 8 * size - 16)
+  local name, behind, found = body(self, tvb, tree, kind, 8, 8 * size - 16)
   if behind and behind / 8 < size - 2 then
     local first = math.floor(behind / 8)
     tree:add(self.payload, tvb(first, size - 2 - first))
     if kind == RADIO_REPORT then complain(self, tree, MALFORMED, "Malformed: too long for its type") end
   end
   show_crc(self, tvb, tree)
-  return name
+  local source = found and found.source and string.format("station %d", found.source)
+  return name, source or (ends()), "all"
 end
 
 -- True if bytes `first` to `last` are exactly a payload with these fields.
@@ -166,9 +193,11 @@ local function mesh_payload(self, tvb, tree, known, flags, first, last)
   if not is_whole(known.fields, tvb, first, stop) then
     complain(self, tree, MALFORMED, "Malformed: payload")
   end
-  local part = tree:add(self.body, tvb(first, stop - first), known.name)
-  read(known.fields, tvb, 8 * first, 8 * stop, part)
+  tree:add(self.body, tvb(first, stop - first), known.name):set_hidden()
+  local part = tree:add(known.proto, tvb(first, stop - first))
+  local _, found = read(known.fields, tvb, 8 * first, 8 * stop, part)
   if stop < last then list(self.failed, tvb, stop, last - 1, tree) end
+  return found
 end
 
 local function mesh_flags(item, flags)
@@ -177,6 +206,11 @@ local function mesh_flags(item, flags)
     if bitop.band(flags, flag[1]) ~= 0 then set[#set + 1] = flag[2] end
   end
   if #set > 0 then item:append_text(" (" .. table.concat(set, ", ") .. ")") end
+end
+
+local function node(number)
+  if number == 255 then return "all" end
+  return number == 254 and "monitor" or string.format("%d", number)
 end
 
 local function mesh(self, tvb, tree)
@@ -189,10 +223,11 @@ local function mesh(self, tvb, tree)
   tree:add(self.version, tvb(0, 1), number(tvb, 0, 2))
   tree:add(self.kind, tvb(0, 1), kind)
   if number(tvb, 0, 2) ~= MESH_VERSION then complain(self, tree, MALFORMED, "Malformed: version") end
-  local last, name, found = size - 2, "ack"
+  local last, name, found, info = size - 2, "ack"
   if kind == MESH_ACK then
     local behind
-    behind, found = read(self.ack, tvb, 8, 8 * last, tree)
+    behind, found = read(self.ack, tvb, 8, 8 * last, tree:add(self.hop_ack, tvb()))
+    if found then info = string.format("ack of %d's seq %d", found.origin, found.seq) end
     if behind ~= 8 * last then complain(self, tree, MALFORMED, "Malformed: length of an ack") end
   else
     local known, behind = self.kinds[kind]
@@ -209,7 +244,8 @@ local function mesh(self, tvb, tree)
       else
         list(self.path, tvb, path, first, tree)
         if known then
-          mesh_payload(self, tvb, tree, known, found.flags, first, last)
+          local own = mesh_payload(self, tvb, tree, known, found.flags, first, last)
+          info = line(name, known.fields, own)
         else
           complain(self, tree, MALFORMED, "Malformed: no packet has this type")
         end
@@ -218,8 +254,10 @@ local function mesh(self, tvb, tree)
   end
   show_crc(self, tvb, tree)
   if not found then return name end
-  local to = found.link_dst == 255 and "all" or string.format("%d", found.link_dst)
-  return string.format("%s %d > %s", name, found.link_src, to)
+  if found.dest then
+    info = string.format("%s (%d > %s, seq %d)", info or name, found.origin, node(found.dest), found.seq)
+  end
+  return info, "node " .. node(found.link_src), found.link_dst == 255 and "all" or "node " .. node(found.link_dst)
 end
 
 -- A sealed frame: only who holds the key can say more.
@@ -227,7 +265,7 @@ local function sealed(self, tvb, tree)
   tree:add(self.key, tvb(0, 1), number(tvb, 4, 4))
   tree:add(self.sender, tvb(1, 2), tvb(1, 2):uint())
   tree:add(self.counter, tvb(3, 6), tvb(3, 6):uint64())
-  return string.format("sealed by %d", tvb(1, 2):uint())
+  return string.format("sealed by %d", tvb(1, 2):uint()), ends()
 end
 
 local function define(name, readable, encap, run, layouts)
@@ -254,11 +292,15 @@ local function define(name, readable, encap, run, layouts)
   local names = {}
   for kind, layout in pairs(layouts.kinds) do
     names[kind] = layout.name
-    self.kinds[kind] = { name = layout.name, fields = bind(layout.fields, layout.abbr .. ".") }
+    self.kinds[kind] = { name = layout.name, fields = bind(layout.fields, layout.abbr .. "."),
+      proto = field(ProtoField.none, layout.abbr, layout.name) }
   end
   for kind, other in pairs(layouts.others or {}) do names[kind] = other end
   if layouts.common then self.common = bind(layouts.common, "") end
-  if layouts.ack then self.ack = bind(layouts.ack, "ack.") end
+  if layouts.ack then
+    self.ack = bind(layouts.ack, "ack.")
+    self.hop_ack = field(ProtoField.none, "ack", "ack")
+  end
   self.kind = field(ProtoField.uint8, "kind", "type", base.DEC, names)
   self.version = field(ProtoField.uint8, "version", "version", base.DEC)
   self.crc = field(ProtoField.uint16, "crc", "CRC", base.HEX)
@@ -281,9 +323,11 @@ local function define(name, readable, encap, run, layouts)
     pinfo.cols.protocol = string.upper(name)
     local is_sealed = tvb:len() > SEALED_MIN and tvb(0, 1):uint() >= SEALED_MARK
       and tvb(0, 1):uint() < SEALED_MARK + 16
-    local info = (is_sealed and sealed or run)(self, tvb, tree)
+    local info, from, to = (is_sealed and sealed or run)(self, tvb, tree)
     tree:append_text(", " .. info)
     pinfo.cols.info = info
+    if from then pinfo.cols.src = from end
+    if to then pinfo.cols.dst = to end
     return tvb:len()
   end
   DissectorTable.get("wtap_encap"):add(encap, proto)

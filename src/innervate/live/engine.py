@@ -49,6 +49,12 @@ class Stack(Protocol):
     def decode(self, data: bytes) -> int:
         """Read bytes into `inbox`; 0, or why not."""
 
+    def objection(self, sender: int | None) -> str:
+        """Why the frame in `inbox` cannot be what it says; "" if it can. Changes nothing.
+
+        `sender` is whose seal it came under; None = it came in the clear.
+        """
+
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """The paths on which a frame leaves; None = all of them."""
 
@@ -113,22 +119,29 @@ class Engine:
             self._wake.cancel()
             self._wake = None
 
-    def receive(self, port: int, data: bytes, at: int | None = None) -> int:
-        """Bytes came in on a port; the reason if they are no frame (counted), else 0.
+    def read(self, data: bytes, sender: int | None = None) -> str:
+        """Read received bytes into the inbox: "", or why they are not taken (counted).
+
+        Nothing else changes: what is kept may only change by `receive`, after this said "".
+        `sender` is whose seal they came under; None = they came in the clear.
+        """
+        if self._stopped:
+            return "stopped"
+        reason = self.stack.decode(data)
+        why = self.stack.reasons[reason] if reason else self.stack.objection(sender)
+        if why:
+            self.counters["dropped: " + why] += 1
+        return why
+
+    def receive(self, port: int, at: int | None = None) -> None:
+        """The frame in the inbox came in on a port.
 
         `at` is when, if that is known better than by looking at the clock now.
         """
-        if self._stopped:
-            return 0
-        reason = self.stack.decode(data)
-        if reason:
-            self.counters["dropped: " + self.stack.reasons[reason]] += 1
-            return reason
         now = self._clock() if at is None else at
         self.counters["frames"] += 1
         self.stack.frame(now & MASK30, port)
         self._drain(now)
-        return 0
 
     def call(self, handler: Callable[[int], None], at: int) -> None:
         """Call a handler with the protocol's clock of a moment, and drain what it puts out."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import signal
 import sys
+from collections import Counter
 from collections.abc import AsyncGenerator, Callable
 from pathlib import Path
 from typing import Any
@@ -16,16 +17,18 @@ from innervate.live.messages import MeshNode
 from innervate.live.metrics import MetricsPage
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import Loaded, address, load
+from innervate.live.notices import Notices
 from innervate.live.receipts import FINAL
 from innervate.live.rotation import Rotation
-from innervate.live.skin import SinkNode
+from innervate.live.skin import CellNode, SinkNode
 
 # Makes the line that a listener gets of what came.
 Form = Callable[[Any], dict[str, Any]]
 
 DRAIN_S = 2.0
 SAVE_S = 10.0
-REQUESTS = ("status", "send", "listen", "cut", "restore", "loose", "locate", "capture", "stop")
+REQUESTS = ("status", "send", "command", "listen", "cut", "restore", "loose", "locate",
+            "capture", "stop")  # fmt: skip
 
 
 def run(path: Path) -> int:
@@ -48,11 +51,13 @@ class Process:
         self.rotation = None if sealer is None else Rotation(sealer)
         named = loaded.table.socket
         where = Path(named) if named else status.folder() / f"{loaded.name}.sock"
-        self.server = status.Server(where, self._answer)
+        self.server = status.Server(where, self._answer, self.node.callers)
         self.page: MetricsPage | None = None
         if loaded.table.metrics is not None:
             self.page = MetricsPage(address(loaded.table.metrics, str(loaded.path)), self.node)
         self.ending = asyncio.Event()
+        self.notices = Notices(self._say)
+        self._callers: Counter[str] = Counter()  # as they were told last
 
     async def run(self) -> None:
         """Until a signal says stop."""
@@ -66,10 +71,12 @@ class Process:
                 await self.page.start()
             await self.node.start()
             self._say(self._ready())
+            self._look()
             while not self.ending.is_set():
                 await self._sleep(SAVE_S)
-                if self.node.sealer is not None:
+                if self.node.sealer is not None or self.node.state.trouble:
                     self.node.save(False)
+                self._look()
             if not await self.node.drain(DRAIN_S):
                 self._say("stopped; messages were still under way")
         finally:
@@ -77,6 +84,7 @@ class Process:
             if self.page is not None:
                 await self.page.stop()
             await self.server.stop()
+        self._look()
 
     def reload(self) -> None:
         """SIGHUP: read the file again; keys may be others, all else needs a restart."""
@@ -94,6 +102,19 @@ class Process:
                   and getattr(fresh.table, name) != getattr(self.loaded.table, name)]  # fmt: skip
         restart = f"; restart it for what else has changed: {', '.join(others)}" if others else ""
         self._say(f"keys reloaded: {keys.use} seals after {keys.grace_s:g} s{restart}")
+
+    def _look(self) -> None:
+        """Say what is the matter with the state's file and with callers, once in a while."""
+        state = self.node.state
+        if state.trouble:
+            text = f"{state.path}: cannot be written: {state.trouble}; going on, trying again"
+            self.notices.tell("state", text)
+        else:
+            self.notices.over("state", f"{state.path}: written again")
+        if self.node.callers != self._callers:
+            self._callers = Counter(self.node.callers)
+            counts = ", ".join(f"{what} {count}" for what, count in self._callers.items())
+            self.notices.tell("callers", f"too many callers: {counts} (since the start)")
 
     async def _sleep(self, seconds: float) -> None:
         try:
@@ -122,6 +143,8 @@ class Process:
             await tap.serve(self.node, writer)
         elif what == "send":
             await self._send(request, writer)
+        elif what == "command":
+            await writer.line(self._command(request))
         elif what == "listen":
             await self._listen(request, writer)
         elif what in ("cut", "restore", "loose"):
@@ -136,6 +159,15 @@ class Process:
             await writer.line({"ok": True})
         else:
             raise ValueError(f'a request has "do": {", ".join(REQUESTS)}')
+
+    def _command(self, request: dict[str, Any]) -> dict[str, Any]:
+        if not isinstance(self.node, SinkNode):
+            raise ValueError("only the PC of a skin sends commands")
+        cell = request.get("cell")
+        numbers = (request["code"], request.get("value", 0), 0 if cell is None else cell)
+        if not all(isinstance(number, int) for number in numbers):
+            raise ValueError("code, value and cell are whole numbers")
+        return self.node.send_command(numbers[0], numbers[1], cell)._asdict()
 
     def _locate(self, request: dict[str, Any]) -> None:
         if not isinstance(self.node, MeshNode):
@@ -186,11 +218,13 @@ class Process:
         node = self.node
         if isinstance(node, SinkNode):
             return [(node.receive_touch(), _touch_line)]
+        if isinstance(node, CellNode):
+            return [(node.receive_commands(), _command_line)]
         receive_packets = getattr(node, "receive_packets", None)
         if receive_packets is not None:
             return [(receive_packets(), _message_line)]
         if not isinstance(node, MeshNode):
-            raise ValueError("a cell hears nothing for people; listen at the PC")
+            raise ValueError("nothing comes in here for people")
         messages = node.receive_messages(in_order=request.get("in_order"))
         streams: list[tuple[AsyncGenerator[Any, None], Form]] = [(messages, _message_line)]
         if request.get("alarms"):
@@ -212,6 +246,10 @@ def _message_line(message: tuple[int, bytes]) -> dict[str, Any]:
 
 def _alarm_line(alarm: Any) -> dict[str, Any]:
     return {"from": alarm.reporter, "alarm": alarm._asdict()}
+
+
+def _command_line(command: Any) -> dict[str, Any]:
+    return {"from": "pc", "command": command._asdict()}
 
 
 def _touch_line(touch: Any) -> dict[str, Any]:

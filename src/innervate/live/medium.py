@@ -24,6 +24,11 @@ JOIN_S = 1.0
 LOGGED = 4096  # transmissions
 SLOT_US = 10_000
 TURNAROUND_US = 5_000
+LEASE_US = 2_500_000  # a station that joins no more for so long may come back at another address
+STATIONS = 1024
+SLOTS_MAX = 4095
+HEARD_US = 1 << 28  # nothing is told of what was longer ago: the protocol's clock has 30 bits
+EARLY_US, LATE_US = 1_000_000, 10_000_000  # when a station can have decided, from now
 DELAY_US = 500  # from a station to every other: who has sent listens again before an answer comes
 
 
@@ -50,6 +55,8 @@ class Ear:
 
     Attributes:
         where: its address.
+        joined_at: when it said last that it is there, us.
+        ends: when its newest transmission is over, us.
         plugged: False while its aerial is out: it hears nothing, and nobody hears it.
         deaf_until: it sends, or turns round, until then, us; 0 = it listens.
         candidate: the signal that it may receive, None = none or disturbed.
@@ -57,6 +64,8 @@ class Ear:
     """
 
     where: Any
+    joined_at: int
+    ends: int = 0
     plugged: bool = True
     deaf_until: int = 0
     candidate: Air | None = None
@@ -73,6 +82,7 @@ class Medium:
         log: the newest transmissions: (start, end, station, frame).
         collisions: signals that began while another was on the air.
         late: transmissions that should have begun before they were known here.
+        unsound: datagrams that no station on this channel can have sent.
     """
 
     slot_us: int = SLOT_US
@@ -80,6 +90,7 @@ class Medium:
     log: deque[tuple[int, int, int, bytes]] = field(default_factory=lambda: deque(maxlen=LOGGED))
     collisions: int = 0
     late: int = 0
+    unsound: int = 0
     _ears: dict[int, Ear] = field(default_factory=dict)
     _present: list[Air] = field(default_factory=list)
     _socket: socket.socket | None = None
@@ -119,24 +130,36 @@ class Medium:
 
     def take(self, data: bytes, where: Any) -> None:
         """A station says that it joins, or sends; what is neither is dropped."""
+        done = False
         if data[:1] == b"J" and len(data) == JOIN.size:
-            self._join(JOIN.unpack(data)[1], where)
+            done = self._join(JOIN.unpack(data)[1], where)
         elif data[:1] == b"P" and len(data) == PLUG.size:
             _, station, plugged = PLUG.unpack(data)
-            if station in self._ears and self._ears[station].where == where:
+            if plugged <= 1 and self._is_at(station, where):
                 self._plug(self._ears[station], bool(plugged))
+                done = True
         elif data[:1] == b"T" and len(data) > SEND.size:
             _, station, at, slots = SEND.unpack_from(data)
-            if station in self._ears and self._ears[station].where == where:
-                self._transmit(station, at, slots, data[SEND.size :])
+            if self._is_at(station, where):
+                done = self._transmit(station, at, slots, data[SEND.size :])
+        self.unsound += not done
 
-    def _join(self, station: int, where: Any) -> None:
+    def _is_at(self, station: int, where: Any) -> bool:
+        return station in self._ears and self._ears[station].where == where
+
+    def _join(self, station: int, where: Any) -> bool:
+        """A station joins, again and again, so that a channel started later hears of it, too."""
+        now = clock_us()
         known = self._ears.get(station)
         if known is not None and known.where == where:
-            return  # it joins again and again, so that it is heard by a channel started later
-        self._ears[station] = ear = Ear(where)
+            known.joined_at = now
+            return True
+        if station >= STATIONS or (known is not None and now - known.joined_at < LEASE_US):
+            return False
+        self._ears[station] = ear = Ear(where, now)
         ear.told = self._carrier(ear)
-        self._say(ear, b"R", clock_us(), b"")  # it may have sent when no channel was there
+        self._say(ear, b"R", now, b"")  # it may have sent when no channel was there
+        return True
 
     def _plug(self, ear: Ear, plugged: bool) -> None:
         if plugged == ear.plugged:
@@ -150,21 +173,23 @@ class Medium:
         """What a station hears: somebody, just one."""
         return ear.plugged and bool(self._present), ear.plugged and len(self._present) == 1
 
-    def _transmit(self, station: int, at: int, slots: int, data: bytes) -> None:
+    def _transmit(self, station: int, at: int, slots: int, data: bytes) -> bool:
+        """A station sends: one frame at a time, decided now; False if that cannot be."""
         ear = self._ears[station]
-        start = at + self.turnaround_us
         now = clock_us()
-        if start < now:
-            self.late += 1
-            start = now
+        start = max(now, at + self.turnaround_us)
+        if not -LATE_US <= at - now <= EARLY_US or not 1 <= slots <= SLOTS_MAX or start < ear.ends:
+            return False
+        self.late += start > at + self.turnaround_us
         air = Air(station, start, start + slots * self.slot_us, data)
-        ear.candidate = None
+        ear.candidate, ear.ends = None, air.end
         ear.deaf_until = air.end + self.turnaround_us
         if ear.plugged:
             self.log.append((air.start, air.end, station, data))
             self._later(air.start + DELAY_US, self._begin, air)
             self._later(air.end + DELAY_US, self._end, air)
         self._later(ear.deaf_until, self._ready, station, ear.deaf_until)
+        return True
 
     def _later(self, at: int, what: Any, *args: Any) -> None:
         loop = asyncio.get_running_loop()
@@ -284,6 +309,8 @@ class MediumRadio:
         if heard is None or self._listener is None:
             return
         what, at, cd, voc, frame = heard
+        if abs(at - clock_us()) > HEARD_US:
+            return
         if what == b"R":
             self.mode = "listening"
         if self.mode == "sending":

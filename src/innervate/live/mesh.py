@@ -2,21 +2,32 @@
 
 from __future__ import annotations
 
+import functools
 from collections import Counter
 from typing import Any
 
 from innervate.protocol import mesh, plain
 from innervate.protocol import mesh_fields as fields
-from innervate.protocol.mesh_kept import crowds, is_ahead
-from innervate.protocol.mesh_messages import resolve
-from innervate.protocol.mesh_near import FREE, SUSPECT
-from innervate.protocol.mesh_queue import has_room
-from innervate.protocol.mesh_words import ACK, ACK_WANTED, OWN, TIMERS
+from innervate.protocol.mesh_frames import is_sound
+from innervate.protocol.mesh_near import FREE, SUSPECT, is_strong, is_suspect, place_of
+from innervate.protocol.mesh_route import alternate, planned
+from innervate.protocol.mesh_upward import is_better, is_uplink
+from innervate.protocol.mesh_words import (
+    ACK,
+    ACK_WANTED,
+    ALL,
+    ALTERNATE,
+    SEARCH,
+    TABLE_FREE,
+    TABLES,
+    TIMERS,
+)
 from innervate.protocol.rng import seeded
 from innervate.wire import mesh as wire
 
 CLASSES = (32, 64, 254)
 OUTBOX = 32
+ASKED = 256  # frames that may still be acknowledged: a slow link's acks come late
 RSSI = -50  # of every frame that comes over a cable, dBm
 
 FENCE_WORDS = ("inside", "about to cross", "outside")
@@ -59,6 +70,8 @@ class MeshStack:
         self.places: dict[int, list[int]] = {}  # neighbour: ports, the newest first
         self.asked: Counter[int] = Counter()  # neighbour: frames that it should acknowledge
         self.acked: Counter[int] = Counter()
+        # Who was asked to acknowledge which packet (origin, number): how often it has not.
+        self._unanswered: dict[tuple[int, int, int], int] = {}
 
     def start(self, now: int, cause: int) -> None:
         """Switch on; after a restart with the epoch that was followed before.
@@ -69,14 +82,40 @@ class MeshStack:
         if cause != 0 and self.epoch:
             self.node.known, self.node.epoch = 1, self.epoch
 
+    def objection(self, sender: int | None) -> str:
+        """Why the frame in the inbox cannot be what it says: see Stack."""
+        frame = self.inbox
+        if frame.link_src >= self.params.nodes:
+            return "from no node of ours"
+        if frame.link_src == self.node.number:
+            return "our own"
+        if sender is not None and frame.link_src != sender:
+            return "sealed by another than it is from"
+        if not is_sound(self.params, frame):
+            return "unsound"
+        what = (frame.link_src, frame.origin, frame.seq)
+        is_ack = frame.kind == ACK and frame.link_dst == self.node.number
+        return "ack of nothing" if is_ack and what not in self._unanswered else ""
+
     def frame(self, now: int, port: int) -> None:
-        """The frame in the inbox was received."""
+        """The frame in the inbox was received, and there is no objection to it."""
         self._place(self.inbox.link_src, port)
         if self.inbox.kind != ACK:  # acks tell how loud the frame was that they are for
             self.inbox.rssi = RSSI
         elif self.inbox.link_dst == self.node.number:
-            self.acked[self.inbox.link_src] += 1
+            self._note_answer((self.inbox.link_src, self.inbox.origin, self.inbox.seq))
         mesh.on_frame(self.node, self.gate, self.params, now, 0, self.inbox, self.out)
+
+    def _note_answer(self, what: tuple[int, int, int]) -> None:
+        if self._unanswered[what]:
+            self._unanswered[what] -= 1
+            self.acked[what[0]] += 1
+
+    def _note_question(self, what: tuple[int, int, int]) -> None:
+        self.asked[what[0]] += 1
+        self._unanswered[what] = self._unanswered.pop(what, 0) + 1  # the newest last
+        if len(self._unanswered) > ASKED:
+            del self._unanswered[next(iter(self._unanswered))]
 
     def _place(self, who: int, port: int) -> None:
         known = self.places.setdefault(who, [port])
@@ -101,20 +140,15 @@ class MeshStack:
         """Read bytes into the inbox; 0, or why not."""
         return wire.decode(data, self.inbox)
 
-    def may_send(self, recipient: int) -> bool:
-        """True if the router takes a message of ours, besides what others send through it."""
-        if not has_room(self.node, OWN) or 0 not in self.node.wait_kind:
-            return False
-        dest = resolve(self.node, self.params, recipient)
-        return not is_ahead(self.node, dest) and not crowds(self.node, dest)
-
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """Where a frame leaves: on the path its receiver was heard on last; None = on all.
 
         Tried again, it leaves wherever its receiver was ever heard.
         """
+        if frame.link_dst == ALL:
+            return None
         if frame.flags & ACK_WANTED:
-            self.asked[frame.link_dst] += 1
+            self._note_question((frame.link_dst, frame.origin, frame.seq))
         known = self.places.get(frame.link_dst)
         if known is None:
             return None
@@ -153,9 +187,30 @@ class MeshStack:
             "table": node.version,
             "neighbours": neighbours,
             "routes": routes,
+            "onward": self._onward(),
+            "gives_back": params.mode != TABLE_FREE and params.failover == SEARCH,
             "queue": sum(state != 0 for state in node.q_state),
             "round_trip_ms": round(node.round_trip / 1000, 3),
         }
+
+    def _onward(self) -> list[int]:
+        """Whom a message for the gateway goes to, and to whom next if that one is silent."""
+        node, params = self.node, self.params
+        dest = node.gateway
+        if not node.known or dest == node.number:
+            return []
+        strong = is_strong(node, params, place_of(node, params, dest))
+        tables = params.mode == TABLES
+        up = [k for k in range(params.places) if is_uplink(node, k)]
+        order = functools.cmp_to_key(lambda a, b: -1 if is_better(node, params, a, b) else 1)
+        found = [
+            dest if strong else FREE,
+            planned(node, params, dest) if tables else FREE,
+            alternate(node, params, dest) if tables and params.failover >= ALTERNATE else FREE,
+            *(node.near[k] for k in sorted(up, key=order)),
+        ]
+        answering = [who for who in found if who != FREE and not is_suspect(node, params, who)]
+        return list(dict.fromkeys(answering))
 
     def _robot_status(self) -> dict[str, Any]:
         """Where a robot is, from the fence's origin; nothing of other nodes."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections import Counter, deque
+from collections import Counter
 from collections.abc import AsyncGenerator, Callable
 from typing import Any
 
@@ -13,9 +13,10 @@ from innervate.live.links import Link
 from innervate.live.mesh import Item, MeshStack
 from innervate.live.node import LiveNode
 from innervate.live.order import BEFORE_BYTES, Callback, Message, Orderly
-from innervate.live.receipts import DELIVERED, EXPIRED, FINAL, HOP_ACKED, REFUSED, Receipt
+from innervate.live.receipts import DELIVERED, EXPIRED, HOP_ACKED, REFUSED, Receipt
 from innervate.live.state import State
 from innervate.live.streams import iterate
+from innervate.live.turns import Turns
 from innervate.protocol.arith import MASK16
 from innervate.protocol.mesh_messages import payload_limit, resolve
 from innervate.protocol.mesh_words import (
@@ -26,6 +27,8 @@ from innervate.protocol.mesh_words import (
     IDS,
     MESSAGE,
     MONITOR,
+    NO_ACK,
+    NO_ROUTE,
     ORDERED,
     PRIORITY,
     REPORT_ACCEPTED,
@@ -38,7 +41,6 @@ from innervate.protocol.mesh_words import (
     SAMPLE,
 )
 
-BACKLOG = 4096  # messages that wait for a place in the router
 HANDLES = 65_536
 
 
@@ -76,7 +78,7 @@ class MeshNode(LiveNode):
         ] = {}  # by recipient: our newest message that is to come in order
         self.outcomes: Counter[str] = Counter()
         self.arrived_by: dict[int, list[int]] = {}  # the way of each sender's newest message
-        self._backlog: deque[tuple[int, Any]] = deque()
+        self._turns = Turns(stack)
         self._receipts: dict[int, Receipt] = {}
         self._handle = 0
         self.alarms = Alarms()
@@ -101,7 +103,7 @@ class MeshNode(LiveNode):
             recipient: a node's number; 255 = all, 254 = the monitor (else the gateway).
             payload: at most 90 bytes at an MTU of 127, 27 at 64; two bytes less in order.
             reliable: kept here until its recipient acknowledges it, or 5 retries fail.
-            priority: before other messages.
+            priority: before all other messages that wait here, also to the same recipient in order.
             in_order: recipients may put it in order; None = as the node's file says.
 
         Raises:
@@ -117,7 +119,7 @@ class MeshNode(LiveNode):
             raise ValueError(f"payload of {len(payload)} bytes; at most {most} fit into a frame")
         receipt = Receipt()
         self.outcomes["messages accepted"] += 1
-        if len(self._backlog) >= BACKLOG or self.engine is None:
+        if self.engine is None or not self._turns.has_room(recipient):
             receipt.move(REFUSED, "queue full" if self.engine else "node not started")
             return receipt
         item = Item()
@@ -129,7 +131,7 @@ class MeshNode(LiveNode):
             payload = bytes(BEFORE_BYTES) + payload  # which one is before it is known when it goes
         item.length = len(payload)
         item.body[: len(payload)] = payload
-        self._backlog.append((item.handle, item))
+        self._turns.put(item.handle, item)
         self._feed()
         return receipt
 
@@ -202,8 +204,9 @@ class MeshNode(LiveNode):
         """What is known here, besides how many messages wait and which way they came."""
         return {
             **super().status(),
-            "backlog": len(self._backlog),
-            "under_way": len(self._receipts) - len(self._backlog),
+            "backlog": len(self._turns),
+            "waiting": {str(dest): count for dest, count in self._turns.waiting().items()},
+            "under_way": len(self._receipts) - len(self._turns),
             "out_of_turn": self.orderly.held(),
             "alarms": self.alarms.status(),
             "arrived_by": {str(sender): path for sender, path in self.arrived_by.items()},
@@ -225,6 +228,7 @@ class MeshNode(LiveNode):
                 self.outcomes[f"alarms received: {alarm.kind}"] += 1
                 self._alarmed.append(alarm)
         if kind == DATA:
+            self._turns.heard(frame.origin)
             self.arrived_by[frame.origin] = [*frame.path[: frame.path_len], frame.dest]
             self.outcomes["messages received"] += 1
             body = bytes(frame.body[: frame.length])
@@ -250,14 +254,19 @@ class MeshNode(LiveNode):
         elif code == REPORT_HOP:
             receipt.move(HOP_ACKED)
         elif code == REPORT_ARRIVED:
-            receipt.move(DELIVERED)
+            self._end(a, DELIVERED, is_there=True)
         elif code == REPORT_EXPIRED:
-            receipt.move(EXPIRED, REASONS.get(b, ""))
+            self._end(a, EXPIRED, REASONS.get(b, ""), False if b in IN_VAIN else None)
         else:
-            receipt.move(REFUSED, REASONS.get(b, ""))
-        if receipt.state in FINAL:
-            del self._receipts[a]
-            self.outcomes[f"messages {receipt.state}"] += 1
+            self._end(a, REFUSED, REASONS.get(b, ""))
+
+    def _end(self, handle: int, state: str, reason: str = "", is_there: bool | None = None) -> None:
+        """Nothing changes any more for a message; `is_there`: what that says of its recipient."""
+        receipt = self._receipts.pop(handle, None)
+        self._turns.ended(handle, is_there)
+        if receipt is not None:
+            receipt.move(state, reason)
+            self.outcomes[f"messages {state}"] += 1
 
     def _settled(self) -> None:
         if self._alarmed:
@@ -271,7 +280,7 @@ class MeshNode(LiveNode):
                 for callback in self._callbacks:
                     callback(message.sender, message.payload)
                 self.orderly.take(message)
-        if self._backlog:
+        if self._turns:
             self._feed()
 
     def _feed(self) -> None:
@@ -280,14 +289,17 @@ class MeshNode(LiveNode):
             return
         assert self.engine is not None
         self._feeding = True
-        while self._backlog and self.stack.may_send(self._backlog[0][1].dest):
-            handle, item = self._backlog.popleft()
+        while (waiting := self._turns.take()) is not None:
+            handle, item = waiting
             chained = self._chain(item) if item.flags & ORDERED else None
             self.engine.input(MESSAGE, item)
             if chained is not None and chained[1] == self.stack.node.seq:
                 self._newest[chained[0]] = chained[1]
-            if not item.flags & END_TO_END or item.dest == ALL:
+            if resolve(self.stack.node, self.stack.params, item.dest) == self.stack.node.number:
+                self._end(handle, DELIVERED)  # to ourselves: it was handed up
+            elif not item.flags & END_TO_END or item.dest == ALL:
                 self._receipts.pop(handle, None)  # nobody will tell us more
+                self._turns.ended(handle, None)
         self._feeding = False
 
     def _chain(self, item: Any) -> tuple[int, int]:
@@ -300,6 +312,7 @@ class MeshNode(LiveNode):
         return dest, seq
 
 
+IN_VAIN = (NO_ROUTE, NO_ACK)
 REASONS = {1: "no route", 2: "no acknowledgement", 3: "path full", 4: "no room"}
 
 

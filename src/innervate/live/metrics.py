@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import asyncio
 import re
+import socket
 from collections.abc import Iterator
 
+from innervate.live.door import Bounds, Door
 from innervate.live.errors import LiveError
 from innervate.live.node import LiveNode
 
 REQUEST_MAX = 8192
 ASK_S = 5.0
+FULL = b"HTTP/1.1 503 Service Unavailable\r\nContent-Length: 0\r\nConnection: close\r\n\r\n"
+BOUNDS = Bounds(most=16, burst=8, full=FULL, limit=REQUEST_MAX)
 
 
 class MetricsPage:
@@ -24,7 +28,7 @@ class MetricsPage:
     def __init__(self, where: tuple[str, int], node: LiveNode) -> None:
         self.where = where
         self.node = node
-        self._server: asyncio.Server | None = None
+        self.door: Door | None = None
 
     async def start(self) -> None:
         """Listen.
@@ -33,15 +37,17 @@ class MetricsPage:
             LiveError: the address cannot be used.
         """
         try:
-            self._server = await asyncio.start_server(self._serve, *self.where, limit=REQUEST_MAX)
+            sock = socket.create_server(self.where)
         except OSError as error:
             host, port = self.where
             raise LiveError(f"metrics: cannot use {host}:{port}: {error.strerror}") from None
+        self.door = Door("metrics", sock, self._serve, BOUNDS, self.node.callers)
+        self.door.open()
 
     async def stop(self) -> None:
         """Close."""
-        if self._server is not None:
-            self._server.close()
+        if self.door is not None:
+            self.door.close()
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         try:
@@ -62,8 +68,6 @@ class MetricsPage:
         except (TimeoutError, ConnectionError, asyncio.IncompleteReadError,
                 asyncio.LimitOverrunError):  # fmt: skip
             pass
-        finally:
-            writer.close()
 
 
 def lines(node: LiveNode) -> Iterator[str]:
@@ -72,6 +76,9 @@ def lines(node: LiveNode) -> Iterator[str]:
     label = f'node="{node.name}"'
     yield "# TYPE innervate_up_seconds gauge"
     yield f"innervate_up_seconds{{{label}}} {status['up_s']}"
+    if status["state"] is not None:
+        yield "# TYPE innervate_state_written gauge"
+        yield f"innervate_state_written{{{label}}} {int(not status['state']['trouble'])}"
     yield "# TYPE innervate_events_total counter"
     for what, count in status["counters"].items():
         yield f'innervate_events_total{{{label},what="{_text(what)}"}} {count}'

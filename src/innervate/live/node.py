@@ -30,6 +30,7 @@ class LiveNode:
         paths: all paths, by port.
         reports: how often the protocol reported what, by code.
         taps: who is told of every frame, as it leaves and comes in.
+        callers: how often callers of the node's process could not be let in, and why.
     """
 
     def __init__(
@@ -48,6 +49,7 @@ class LiveNode:
         self.paths: list[Path] = [path for link in links for path in link.paths]
         self.reports: Counter[int] = Counter()
         self.taps: list[Tap] = []
+        self.callers: Counter[str] = Counter()
         self.engine: Engine | None = None
         self.started_at = time.time()
 
@@ -63,6 +65,7 @@ class LiveNode:
         for link in self.links:
             await link.open(self._receive)
         self.save(False)
+        self.state.check_place()
         self.engine.start(0 if self.state.fresh else 1)
 
     async def stop(self) -> None:
@@ -100,9 +103,11 @@ class LiveNode:
         """Cut, restore or loosen ("loose": `loss` of what comes in is lost) a path; the path.
 
         Raises:
-            ValueError: there is no such path.
+            ValueError: there is no such path, or no such share.
         """
         path = self.path_at(port)
+        if not 0 <= loss <= 1:
+            raise ValueError(f"loss must be 0 to 1, the share that is lost, not {loss:g}")
         path.cut, path.loss = what == "cut", loss
         self._tell(time.time_ns(), port, False, b"", f"event: {what}")
         return path
@@ -116,17 +121,21 @@ class LiveNode:
         path.counters["received"] += 1
         path.counters["received bytes"] += len(data)
         at_ns = time.time_ns() if self.taps else 0
+        opened = None
         if self.sealer is not None:
             opened = self.sealer.open(data)
             if opened is None:
                 self._tell(at_ns, path.port, False, data, "seal")
                 return
-            data = opened
+            data = opened.frame
         assert self.engine is not None
-        reason = self.engine.receive(path.port, data)
-        if reason == 0:
+        why = self.engine.read(data, None if opened is None else opened.sender)
+        if not why:
+            if opened is not None and self.sealer is not None:
+                self.sealer.take(opened)
             path.heard_at = clock_us()
-        self._tell(at_ns, path.port, False, data, self.stack.reasons[reason] if reason else "")
+            self.engine.receive(path.port)
+        self._tell(at_ns, path.port, False, data, why)
 
     def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
         data = bare = self.stack.encode(frame)
@@ -156,7 +165,9 @@ class LiveNode:
         strangers = sum(getattr(link, "strangers", 0) for link in self.links)
         if strangers:
             total["dropped: from a stranger"] = strangers
-        return total
+        if self.state.failed:
+            total["state not written"] = self.state.failed
+        return total + self.callers
 
     def status(self) -> dict[str, Any]:
         """What is known here: paths, counters, and what the protocol says of itself."""
@@ -167,6 +178,7 @@ class LiveNode:
             "up_s": round(time.time() - self.started_at, 1),
             "sealed": self.sealer is not None,
             "keys": self._keys_status(),
+            "state": self.state.status(),
             "paths": paths,
             "broken": [path["name"] for path in paths if path["broken"]],
             "counters": dict(sorted(self.counters().items())),

@@ -114,6 +114,7 @@ class Player:
         try:
             async with asyncio.TaskGroup() as group:
                 group.create_task(self._play_events())
+                group.create_task(self._play_orders())
                 for walk in walks:
                     group.create_task(self._walk(walk, f"n{walk.node}"))
         except* LiveError as errors:
@@ -130,6 +131,15 @@ class Player:
                 await self.stage.end_node(event.node, event.what == "leave")
             if event.what in ("revive", "restart", "join"):
                 await self.stage.begin_node(event.node)
+
+    async def _play_orders(self) -> None:
+        """Have the PC of a skin send the scenario's commands."""
+        began = asyncio.get_running_loop().time()
+        for order in getattr(self.plan, "orders", ()):
+            await _sleep_until(began + order.at_us / 1e6)
+            cell = None if order.cell < 0 else order.cell
+            request = {"do": "command", "code": order.code, "value": order.value, "cell": cell}
+            await ask(self.stage.socket("pc"), request)
 
     async def _walk(self, walk: Any, name: str) -> None:
         """Tell a robot where it is, so often as the scenario says; seldom where it stands."""

@@ -37,8 +37,9 @@ RADIO: dict[str, int] = {
 # A skin at 50 Hz; a port is broken after five silent periods [skin 5].
 SKIN: dict[str, int] = {
     "rule": RULE_FEASIBLE, "updates": WAVE, "beacon_us": 20_000, "r_f": 168, "r_r": 168, "k": 5,
-    "max_depth": 64, "seq_every": 5, "balance_periods": 64, "hold_periods": 133, "gap_us": 500,
-    "skip_us": 12_000, "restart_us": 0, "forward_min_us": 0, "forward_max_us": 0,
+    "max_depth": 64, "seq_every": 5, "balance_periods": 64, "balance_rule": 0,
+    "hold_periods": 133, "gap_us": 500, "skip_us": 12_000, "restart_us": 0, "forward_min_us": 0,
+    "forward_max_us": 0,
 }  # fmt: skip
 RANGES = {name: (low, high, unit) for name, _, low, high, unit, _ in PARAMS}
 RADIO_RANGES = {name: (low, high, unit) for name, _, low, high, unit, _ in radio_fields.PARAMS}

@@ -15,7 +15,6 @@ from collections.abc import AsyncGenerator, Callable
 from functools import partial
 from typing import Any, Protocol
 
-from innervate.live.engine import clock_us
 from innervate.live.errors import LiveError
 from innervate.live.links import Path
 from innervate.live.node import LiveNode
@@ -90,6 +89,9 @@ class Aerial(Path):
             self._radio.plug(not cut)
 
 
+TIMING = ("slot_us", "packet_slots", "ta_us", "dmax_us")
+
+
 class StationStack:
     """One station with practical CSMA/CD-R.
 
@@ -140,6 +142,10 @@ class StationStack:
         """Read bytes into the inbox; 0, or why not."""
         return wire.decode(data, self.inbox)
 
+    def objection(self, sender: int | None) -> str:
+        """Frames of the radio do not say who sent them where it matters."""
+        return ""
+
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """There is one channel."""
         return []
@@ -154,6 +160,7 @@ class StationStack:
             "mode": station.mode,
             "place": None if station.pos < 0 else station.pos,
             "queued": station.queued,
+            "timing": {name: getattr(self.params, name) for name in TIMING},
         }
 
 
@@ -177,9 +184,7 @@ class RadioNode(LiveNode):
         self.paths = [Aerial(radio, channel)]
         self.outcomes: Counter[str] = Counter()
         self._packets: dict[int, tuple[bytes, Receipt]] = {}
-        self._order: list[int] = []
         self._handle = 0
-        self._at = 0  # when what is handled now happened
         self._bytes = b""
         self._inbox: list[tuple[int, bytes]] = []
         self._callbacks: list[Callable[[int, bytes], None]] = []
@@ -221,17 +226,15 @@ class RadioNode(LiveNode):
         item = Packet()
         item.slots, item.handle, item.ago = slots, self._handle, 0
         self._packets[self._handle] = (payload, receipt)
-        self._order.append(self._handle)
         self._handle = (self._handle + 1) % HANDLES
         self.outcomes["packets accepted"] += 1
-        self._at = clock_us()
         self.engine.input(PACKET, item)
         return receipt
 
     def on_carrier(self, at: int, cd: bool, voc: bool) -> None:
         """The radio's carrier came or went."""
         assert self.engine is not None
-        self._at = self.paths[0].heard_at = at
+        self.paths[0].heard_at = at
         self.engine.call(lambda now: self.stack.carrier(now, cd, voc), at)
 
     def on_frame(self, at: int, data: bytes) -> None:
@@ -242,10 +245,12 @@ class RadioNode(LiveNode):
         path.counters["received"] += 1
         path.counters["received bytes"] += len(data)
         assert self.engine is not None
-        self._at, self._bytes = at, data
         at_ns = time.time_ns() if self.taps else 0
-        reason = self.engine.receive(0, data, at)
-        self._tell(at_ns, 0, False, data, self.stack.reasons[reason] if reason else "")
+        why = self.engine.read(data)
+        if not why:
+            self._bytes = data
+            self.engine.receive(0, at)
+        self._tell(at_ns, 0, False, data, why)
 
     def status(self) -> dict[str, Any]:
         """What is known here, and what the radio does: "off", "listening" or "sending"."""
@@ -303,7 +308,7 @@ def read_heard(data: bytes) -> tuple[bytes, int, bool, bool, bytes] | None:
     if len(data) < HEARD.size:
         return None
     what, at, cd, voc = HEARD.unpack_from(data)
-    if what not in (b"C", b"R", b"F"):
+    if what not in (b"C", b"R", b"F") or not voc <= cd <= 1:
         return None
     return what, at, bool(cd), bool(voc), data[HEARD.size :]
 

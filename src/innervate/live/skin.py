@@ -3,49 +3,35 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections import Counter
-from collections.abc import AsyncGenerator, Callable
-from typing import Any, NamedTuple
+from collections.abc import AsyncGenerator, Callable, Sequence
+from typing import Any
 
 from innervate.live.keys import Sealer
 from innervate.live.links import Link
 from innervate.live.node import LiveNode
+from innervate.live.skin_items import Command, Frame, Sent, Touch, put
 from innervate.live.state import State
 from innervate.live.streams import iterate
 from innervate.protocol import plain, skin, skin_sink
 from innervate.protocol import skin_fields as fields
 from innervate.protocol.rng import seeded
-from innervate.protocol.skin_words import NONE, ONE, PORTS, REPORT_PARENT, SAMPLE, TIMERS
+from innervate.protocol.skin_words import (
+    EVERYBODY,
+    GIVE,
+    NONE,
+    ONE,
+    PORTS,
+    REPORT_PARENT,
+    SAMPLE,
+    TIMERS,
+)
 from innervate.wire import skin as wire
 
 OUTBOX = 16
 
-Frame = plain.make("Frame", fields.FRAME)
 Params = plain.make("Params", fields.PARAMS)
-
-
-class Touch(NamedTuple):
-    """What a cell measured, as it comes in at the PC.
-
-    Attributes:
-        cell: who measured it.
-        seq: counts the cell's samples, modulo 256.
-        hops: cells that forwarded it.
-        port: interface port of the PC on which it came.
-        proximity: raw, 0 far, to 65535.
-        force: three sensors, mN.
-        temperature: half degrees from 20 degC.
-        accel: along x, y, z, raw, -512 to 511.
-    """
-
-    cell: int
-    seq: int
-    hops: int
-    port: int
-    proximity: int
-    force: tuple[int, int, int]
-    temperature: int
-    accel: tuple[int, int, int]
 
 
 class SkinStack:
@@ -75,6 +61,10 @@ class SkinStack:
     def decode(self, data: bytes) -> int:
         """Read bytes into the inbox; 0, or why not."""
         return wire.decode(data, self.inbox)
+
+    def objection(self, sender: int | None) -> str:
+        """A beacon names nobody: it speaks for the far end of its cable, whoever that is."""
+        return ""
 
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """A port is a path."""
@@ -174,7 +164,7 @@ class SinkStack(SkinStack):
         skin_sink.on_timer(self.pc, self.params, now, timer, self.out)
 
     def input(self, now: int, kind: int, item: Any) -> None:
-        """The PC has nothing to send down."""
+        """A command, to be sent down."""
         skin_sink.on_input(self.pc, self.params, now, kind, item, self.out)
 
     def status(self, now: int) -> dict[str, Any]:
@@ -184,7 +174,7 @@ class SinkStack(SkinStack):
 
 
 class CellNode(LiveNode):
-    """A cell: hands its samples to the skin.
+    """A cell: hands its samples to the skin, gives commands of the PC.
 
     Args:
         name: as shown to people.
@@ -212,6 +202,23 @@ class CellNode(LiveNode):
         self._due = 0.0
         self._beat: asyncio.TimerHandle | None = None
         self._item = Frame()
+        self.outcomes: Counter[str] = Counter()
+        self._inbox: list[Command] = []
+        self._callbacks: list[Callable[[Command], None]] = []
+
+    def receive_commands(
+        self, callback: Callable[[Command], None] | None = None
+    ) -> AsyncGenerator[Command, None]:
+        """Commands for this cell, each once: to a callback, and as an async iterator."""
+        queue: asyncio.Queue[Command] = asyncio.Queue()
+        if callback is None:
+            callback = queue.put_nowait
+        self._callbacks.append(callback)
+        return iterate(queue, self._callbacks, callback)
+
+    def counters(self) -> Counter[str]:
+        """Handler calls, frames dropped by reason, commands received."""
+        return super().counters() + self.outcomes
 
     async def start(self) -> None:
         """Switch on."""
@@ -242,15 +249,23 @@ class CellNode(LiveNode):
         values = {"proximity": (proximity,), "force": force,
                   "temperature": (temperature,), "accel": accel}  # fmt: skip
         for name, given in values.items():
-            length, low, high = RANGES[name]
-            if len(given) != max(1, length) or not all(low <= v <= high for v in given):
-                raise ValueError(f"{name} must be {max(1, length)} numbers, {low} to {high}")
-            setattr(self._item, name, list(given) if length else given[0])
+            put(self._item, name, given)
         self.engine.input(SAMPLE, self._item)
 
     def _reported(self, code: int, a: int, b: int) -> None:
         if code == REPORT_PARENT:
             self.moves += 1
+
+    def _deliver(self, kind: int, frame: Any) -> None:
+        self.outcomes["commands received"] += 1
+        to_all, at_us = frame.cell == EVERYBODY, time.time_ns() // 1000
+        found = Command(frame.number, frame.code, frame.value, to_all, frame.hops, at_us)
+        self._inbox.append(found)
+
+    def _settled(self) -> None:
+        if self._inbox:
+            inbox, self._inbox = self._inbox, []
+            tell(self._callbacks, inbox)
 
     def _sample_again(self) -> None:
         self.sample(force=(self.stack.cell.number, self.stack.cell.seq, 0))
@@ -260,7 +275,7 @@ class CellNode(LiveNode):
 
 
 class SinkNode(LiveNode):
-    """The PC end of a skin: gives tactile frames.
+    """The PC end of a skin: gives tactile frames, sends commands down.
 
     Args:
         name: as shown to people.
@@ -295,8 +310,26 @@ class SinkNode(LiveNode):
         self._callbacks.append(callback)
         return iterate(queue, self._callbacks, callback)
 
+    def send_command(self, code: int, value: int = 0, cell: int | None = None) -> Sent:
+        """Send a command down to a cell, or (None) to all; what it means is the user's.
+
+        Raises:
+            ValueError: a value leaves its range; see Command. Cells are 0 to 65534.
+        """
+        assert self.engine is not None
+        if cell == EVERYBODY:
+            raise ValueError(f"cell must be 0 to {EVERYBODY - 1}; leave it out for all")
+        item = Frame()
+        whom = EVERYBODY if cell is None else cell
+        for name, given in {"code": code, "value": value, "cell": whom}.items():
+            put(item, name, (given,))
+        pc = self.stack.pc
+        self.engine.input(GIVE, item)
+        self.outcomes["commands sent"] += 1
+        return Sent(pc.own[0].command, sum(size > 0 for size in pc.size))
+
     def counters(self) -> Counter[str]:
-        """Handler calls, frames dropped by reason, samples received."""
+        """Handler calls, frames dropped by reason, samples received, commands sent."""
         return super().counters() + self.outcomes
 
     def _deliver(self, kind: int, frame: Any) -> None:
@@ -304,15 +337,17 @@ class SinkNode(LiveNode):
         self._inbox.append(Touch(
             frame.cell, frame.seq, frame.hops, self.stack.port, frame.proximity,
             (frame.force[0], frame.force[1], frame.force[2]), frame.temperature,
-            (frame.accel[0], frame.accel[1], frame.accel[2]),
+            (frame.accel[0], frame.accel[1], frame.accel[2]), time.time_ns() // 1000,
         ))  # fmt: skip
 
     def _settled(self) -> None:
         if self._inbox:
             inbox, self._inbox = self._inbox, []
-            for touch in inbox:
-                for callback in self._callbacks:
-                    callback(touch)
+            tell(self._callbacks, inbox)
 
 
-RANGES = {name: (length, low, high) for name, length, low, high, _, _ in fields.FRAME}
+def tell(callbacks: Sequence[Callable[[Any], None]], items: Sequence[Any]) -> None:
+    """Call everybody with every item."""
+    for item in items:
+        for callback in callbacks:
+            callback(item)

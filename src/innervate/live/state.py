@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
+import time
+from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from innervate.live.errors import LiveError
+from innervate.wire.seal import COUNTER_MAX
+
+SENDER_MAX = 65_535
+# A file that can never be written there, whatever the disk does.
+MISPLACED = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.EACCES, errno.EPERM, errno.ELOOP)
 
 
 class State:
     """A file that is replaced as a whole, so that a power cut leaves the old or the new one.
+
+    A node whose disk is full goes on without it: `write` says so here and raises nothing.
 
     Args:
         path: the file; None = nothing is kept.
@@ -18,46 +29,85 @@ class State:
     Attributes:
         fresh: True if there was no such file: the node runs for the first time.
         counter: frames may be sealed with counters from here on.
-        seen: newest counter per sender.
+        seen: newest counter per sender, for each key (by its mark, see keys.py).
+        seen_before: the same from a file of an older version, which did not say under which key.
         epoch: newest epoch of a gateway that was followed; 0 = none.
+        trouble: why it could not be written, "" = it was when tried last.
+        failed: how often it could not be written.
     """
 
     def __init__(self, path: Path | None) -> None:
         self.path = path
         self.fresh = True
         self.counter = 0
-        self.seen: dict[int, int] = {}
+        self.seen: dict[str, dict[int, int]] = {}
+        self.seen_before: dict[int, int] = {}
         self.epoch = 0
+        self.trouble = ""
+        self.failed = 0
+        self._errno = 0
+        self._written_at: float | None = None
         if path is None or not path.exists():
             return
         try:
             kept = json.loads(path.read_text())
-            self.counter = int(kept["counter"])
-            self.seen = {int(sender): int(count) for sender, count in kept["seen"].items()}
-            self.epoch = int(kept["epoch"]) & 255
+            self.counter = _whole(kept["counter"], COUNTER_MAX)
+            self.epoch = _whole(kept["epoch"], 255)
+            for name, value in kept["seen"].items():
+                if isinstance(value, dict):
+                    self.seen[name] = dict(map(_newest, value, value.values()))
+                else:
+                    self.seen_before.update([_newest(name, value)])
         except (OSError, ValueError, KeyError, TypeError, AttributeError):
             raise LiveError(
-                f"{path}: not a node's state; remove it (its network's key is safe: counters "
-                "then follow the clock)"
+                f"{path}: not a node's state; remove it, and give the network another key if it "
+                "has one, for frames that were sent under this one could be played back"
             ) from None
         self.fresh = False
 
-    def write(self) -> None:
-        """Write the file.
-
-        Raises:
-            LiveError: it cannot be written.
-        """
+    def write(self) -> bool:
+        """Write the file; False if it could not be, with the reason in `trouble`."""
         if self.path is None:
-            return
-        seen = {str(sender): count for sender, count in self.seen.items()}
-        text = json.dumps({"counter": self.counter, "seen": seen, "epoch": self.epoch})
+            return True
+        kept = {"counter": self.counter, "seen": self.seen, "epoch": self.epoch}
         new = self.path.with_name(self.path.name + ".new")
         try:
             with new.open("w") as file:
-                file.write(text)
+                file.write(json.dumps(kept))
                 file.flush()
                 os.fsync(file.fileno())
             os.replace(new, self.path)
         except OSError as error:
-            raise LiveError(f"{self.path}: cannot be written: {error.strerror}") from None
+            with suppress(OSError):
+                new.unlink()
+            self.trouble, self._errno = error.strerror or str(error), error.errno or 0
+            self.failed += 1
+            return False
+        self.trouble, self._written_at = "", time.monotonic()
+        return True
+
+    def check_place(self) -> None:
+        """Refuse a file that could not be written where it is; a full disk is no such reason.
+
+        Raises:
+            LiveError: there is no such folder, or it is not ours.
+        """
+        if self.trouble and self._errno in MISPLACED:
+            raise LiveError(f"{self.path}: cannot be written: {self.trouble}")
+
+    def status(self) -> dict[str, Any] | None:
+        """The file, when it was written last (s ago; None = not by us), and what is the matter."""
+        if self.path is None:
+            return None
+        ago = None if self._written_at is None else round(time.monotonic() - self._written_at, 1)
+        return {"file": str(self.path), "written_s": ago, "trouble": self.trouble}
+
+
+def _newest(sender: str, counter: Any) -> tuple[int, int]:
+    return _whole(int(sender), SENDER_MAX), _whole(counter, COUNTER_MAX)
+
+
+def _whole(value: Any, most: int) -> int:
+    if not isinstance(value, int) or not 0 <= value <= most:
+        raise ValueError(f"{value} is no number from 0 to {most}")
+    return value

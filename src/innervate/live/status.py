@@ -7,14 +7,18 @@ import json
 import os
 import socket
 import tempfile
+from collections import Counter
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from innervate.live.door import Bounds, Door
 from innervate.live.errors import LiveError
 
 LINE_MAX = 65_536
+FULL = b'{"error": "64 are connected to this node already; end a listen or a capture"}\n'
+BOUNDS = Bounds(most=64, burst=64, full=FULL, limit=LINE_MAX)
 ANSWER_S = 5.0
 
 # Answers a request; gets the means to write more lines.
@@ -50,13 +54,14 @@ class Server:
     Args:
         path: the socket; its folder is made, an old socket is replaced.
         handle: answers requests.
+        counts: callers that could not be let in.
     """
 
-    def __init__(self, path: Path, handle: Handler) -> None:
+    def __init__(self, path: Path, handle: Handler, counts: Counter[str] | None = None) -> None:
         self.path = path
+        self._counts = Counter() if counts is None else counts
         self._handle = handle
-        self._server: asyncio.Server | None = None
-        self._open: set[asyncio.StreamWriter] = set()
+        self.door: Door | None = None
 
     async def start(self) -> None:
         """Listen.
@@ -70,33 +75,32 @@ class Server:
                 if answers(self.path):
                     raise LiveError(f"{self.path}: a node with this name runs already; stop it")
                 self.path.unlink()
-            self._server = await asyncio.start_unix_server(self._serve, self.path, limit=LINE_MAX)
-            self.path.chmod(0o600)
+            sock = socket.socket(socket.AF_UNIX)
+            try:
+                sock.bind(str(self.path))
+                self.path.chmod(0o600)
+            except OSError:
+                sock.close()
+                raise
+            self.door = Door("status", sock, self._serve, BOUNDS, self._counts)
+            self.door.open()
         except OSError as error:
             raise LiveError(f"{self.path}: no socket here: {error.strerror or error}") from None
 
     async def stop(self) -> None:
         """Close the socket and every connection."""
-        if self._server is not None:
-            self._server.close()
-            for stream in list(self._open):
-                stream.close()
+        if self.door is not None:
+            self.door.close()
             with suppress(OSError):
                 self.path.unlink()
 
     async def _serve(self, reader: asyncio.StreamReader, stream: asyncio.StreamWriter) -> None:
-        self._open.add(stream)
         writer = Writer(stream)
         try:
             while line := await reader.readline():
                 await answer(line, self._handle, writer)
         except (ConnectionError, ValueError):  # gone, or a line longer than any request
             pass
-        except asyncio.CancelledError:  # the node ends while somebody listens
-            pass
-        finally:
-            self._open.discard(stream)
-            stream.close()
 
 
 async def answer(line: bytes, handle: Handler, writer: Writer) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from innervate.run.errors import RunError
+from innervate.running.errors import RunError
 
 
 class PapersError(RunError):

@@ -34,7 +34,7 @@ def draw(run: Any, figure: str = "recovery", **options: Any) -> Figure:
 
 
 def recovery(run: Any, from_s: float | None = None, to_s: float | None = None) -> Figure:
-    """Connected cells without a route over time, and the scenario's events.
+    """Cells that are on and have no way to the PC over time, and the scenario's events.
 
     Without a time span it shows what happened round the events, else the whole run.
     """
@@ -62,7 +62,7 @@ def _span(run: Any, from_s: float | None, to_s: float | None) -> tuple[float, fl
     found = run.summary["recoveries"]
     low, high = 0.0, end_s
     if found:
-        waits = [one["routed_ms"] or one["converged_ms"] or 0.0 for one in found]
+        waits = [one["others_ms"] or one["converged_ms"] or 0.0 for one in found]
         settled = max(one["at_s"] + wait / 1e3 for one, wait in zip(found, waits, strict=True))
         length = max(settled - found[0]["at_s"], 1e-3)
         low, high = found[0]["at_s"] - 0.3 * length, settled + 0.5 * length

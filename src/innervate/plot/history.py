@@ -45,33 +45,52 @@ class History:
         self._changes = rows.parent_changes(result)
         self._marks = rows.marks(result)
         self._steps = rows.unrouted_steps(result)
+        self._apart = rows.apart_steps(result)
+        self._lacking = self._all_lacking()
         self._faults: dict[int, Fault] = {fault.index: fault for fault in result.plan.faults}
 
     def steps(self) -> tuple[Numbers, Numbers]:
-        """(times in us, connected cells without a route from then on)."""
-        return self._steps.time_us, self._steps.cells
+        """(times in us, cells that are on and have no way to the PC from then on)."""
+        return self._lacking
 
-    def unrouted_max(self, first_us: int, last_us: int) -> tuple[int, int]:
-        """(when, how many) most cells lacked a route, within first_us <= t <= last_us."""
-        inside = (self._steps.time_us >= first_us) & (self._steps.time_us <= last_us)
-        places = np.flatnonzero(inside)
+    def lacking_max(self, first_us: int, last_us: int) -> tuple[int, int]:
+        """(when, how many) most cells lacked a way, within first_us <= t <= last_us."""
+        times, cells = self._lacking
+        places = np.flatnonzero((times >= first_us) & (times <= last_us))
         if len(places) == 0:
-            return first_us, 0
-        worst = places[int(np.argmax(self._steps.cells[places]))]
-        return int(self._steps.time_us[worst]), int(self._steps.cells[worst])
+            return first_us, self.lacking_at(first_us)
+        worst = places[int(np.argmax(cells[places]))]
+        return int(times[worst]), int(cells[worst])
+
+    def lacking_at(self, time_us: int) -> int:
+        """Cells that are on and have no way to the PC at a time, those cut off included."""
+        return self.unrouted_at(time_us) + self.cut_off_at(time_us)
 
     def unrouted_at(self, time_us: int) -> int:
         """Connected cells without a route at a time."""
-        behind = int(np.searchsorted(self._steps.time_us, time_us, "right"))
-        return int(self._steps.cells[behind - 1]) if behind else 0
+        return _step_at(self._steps, time_us)
+
+    def cut_off_at(self, time_us: int) -> int:
+        """Cells that are on, but that no cable joins with the PC at a time."""
+        return _step_at(self._apart, time_us)
 
     def first_below(self, first_us: int, last_us: int, limit: float) -> tuple[int, int]:
-        """(when, how many) no more than `limit` cells lacked a route for the first time."""
-        inside = (self._steps.time_us >= first_us) & (self._steps.time_us <= last_us)
-        places = np.flatnonzero(inside & (self._steps.cells <= limit))
+        """(when, how many) no more than `limit` cells lacked a way for the first time."""
+        times, cells = self._lacking
+        places = np.flatnonzero((times >= first_us) & (times <= last_us) & (cells <= limit))
         if len(places) == 0:
-            return last_us, self.unrouted_at(last_us)
-        return int(self._steps.time_us[places[0]]), int(self._steps.cells[places[0]])
+            return last_us, self.lacking_at(last_us)
+        return int(times[places[0]]), int(cells[places[0]])
+
+    def _all_lacking(self) -> tuple[Numbers, Numbers]:
+        """Cells without a route and cells cut off together, after all that a moment brought."""
+        times = np.union1d(self._steps.time_us, self._apart.time_us)
+        cells = np.zeros(len(times), np.int64)
+        for steps in (self._steps, self._apart):
+            if len(steps.row):
+                behind = np.searchsorted(steps.time_us, times, "right")
+                cells += np.where(behind > 0, steps.cells[behind - 1], 0)
+        return times, cells
 
     def at(self, time_us: int) -> Moment:
         """The skin after everything that happened up to and including `time_us`."""
@@ -129,6 +148,12 @@ class History:
         """A cable is down for as long as it has a reason to be."""
         cable = min(end, self.graph.peer[end])
         reasons[cable] = max(0, reasons.get(cable, 0) + by)
+
+
+def _step_at(steps: rows.UnroutedSteps | rows.ApartSteps, time_us: int) -> int:
+    """What a step function is after all that happened up to a time."""
+    behind = int(np.searchsorted(steps.time_us, time_us, "right"))
+    return int(steps.cells[behind - 1]) if behind else 0
 
 
 def hops_of(moment: Moment, sink: int) -> Numbers:

@@ -17,6 +17,7 @@ from innervate.plot.page import (
     element,
     figure,
     film_controls,
+    headline,
     keys,
     pictures,
     section,
@@ -34,8 +35,8 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
     return "\n".join(
         part
         for part in (
-            _top(result, summary),
-            _field(result, sheet, crossings),
+            top(result, summary),
+            field(result, sheet, crossings),
             _film(result, sheet, crossings),
             _charts(result, summary, crossings),
             _crossings(result, crossings),
@@ -48,32 +49,18 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
     )
 
 
-def _top(result: Any, summary: Mapping[str, Any]) -> str:
+def top(result: Any, summary: Mapping[str, Any]) -> str:
+    """What happened, and the figures to know."""
     model = result.plan.scenario.model
     over = (
         f"{summary['name']}: {words.number_of(summary['nodes'], 'node')}, "
         f"{words.number_of(summary['links'], 'good link')}, radio {model.radio.profile}, "
         f"failover {model.protocol.failover}; seed {summary['seed']}"
     )
-    first, *others = sentences(result, summary)
-    parts = [element("p", over, "over"), element("h1", first)]
-    parts += [element("p", sentence) for sentence in others[:-1]]
-    parts += [_status(summary), tiles(_figures(result, summary))]
+    parts = [element("p", over, "over"), headline(summary["headline"])]
+    parts += [element("p", sentence) for sentence in sentences(result, summary)]
+    parts.append(tiles(_figures(result, summary)))
     return "<header>\n" + "".join(parts) + "</header>"
-
-
-def _status(summary: Mapping[str, Any]) -> str:
-    alarms, doubled = summary["alarms"], summary["duplicates"]
-    missed = alarms["sent"] - alarms["delivered"]
-    if missed:
-        line = f"The monitor never learned of {words.number_of(missed, 'crossing')}."
-        return element("p", line, "status bad")
-    if doubled:
-        line = f"{words.number_of(doubled, 'message')} came twice."
-        return element("p", line, "status bad")
-    if alarms["sent"]:
-        return element("p", "Every crossing came to the monitor; no message came twice.", "status")
-    return element("p", "No message came twice.", "status")
 
 
 def _figures(result: Any, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -108,7 +95,8 @@ def shown_crossing(crossings: list[Crossing]) -> Crossing | None:
     return max(came, key=lambda c: c.accepted_us - c.raised_us, default=None)
 
 
-def _field(result: Any, sheet: Sheet, crossings: list[Crossing]) -> str:
+def field(result: Any, sheet: Sheet, crossings: list[Crossing]) -> str:
+    """The map, with the way of the alarm that took longest."""
     shown = shown_crossing(crossings)
     sent = copies(result, shown) if shown is not None else []
     hops = way(result, shown, sent) if shown is not None else []

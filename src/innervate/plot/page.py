@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
+from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK
 from innervate.plot import theme
 from innervate.plot.svg import Drawing, clean
 
-_STYLE = """
+LEVEL_CLASSES = {OK: "status", DEGRADED: "status warn", DOWN: "status bad", NO_DATA: "status none"}
+
+# Parts of a page, wherever they stand.
+PARTS = """
 *{box-sizing:border-box}
-body{margin:0;background:var(--ground);color:var(--ink);
-font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,sans-serif}
-main{max-width:1060px;margin:0 auto;padding:28px 20px 60px}
 h1{font-size:1.55rem;line-height:1.3;margin:.2em 0 .4em}
 h2{font-size:1.15rem;margin:2.2em 0 .6em;padding-bottom:.3em;border-bottom:1px solid var(--faint)}
 h3{font-size:.95rem;margin:0 0 .1em}
@@ -22,7 +23,9 @@ p{margin:.4em 0}
 .note,figcaption{font-size:.9rem}
 .status{display:inline-block;margin:.6em 0;padding:.35em .8em;border-radius:6px;
 border:1px solid var(--good);color:var(--good);font-weight:600}
+.status.warn{border-color:var(--warn);color:var(--warn)}
 .status.bad{border-color:var(--alarm);color:var(--alarm)}
+.status.none{border-color:var(--soft);color:var(--soft)}
 .status ul{margin:.2em 0;padding-left:1.2em;font-weight:400}
 .tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(140px,1fr));gap:10px;margin:1em 0}
 .tiles div{background:var(--panel);border-radius:8px;padding:10px 14px}
@@ -50,6 +53,11 @@ td:first-child{white-space:nowrap}
 .summary td{overflow-wrap:anywhere;white-space:normal}
 pre{background:var(--panel);border-radius:8px;padding:12px 14px;overflow-x:auto;font-size:.85rem;
 line-height:1.45}
+"""
+_PAGE = """
+body{margin:0;background:var(--ground);color:var(--ink);
+font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,sans-serif}
+main{max-width:1060px;margin:0 auto;padding:28px 20px 60px}
 details{margin:.5em 0}
 summary{cursor:pointer;color:var(--accent)}
 footer{margin-top:3em;color:var(--soft);font-size:.85rem}
@@ -68,7 +76,7 @@ def page(title: str, body: str) -> str:
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{escape(title)}</title>\n<style>{theme.drawing_style()}{_STYLE}</style>\n"
+        f"<title>{escape(title)}</title>\n<style>{theme.drawing_style()}{PARTS}{_PAGE}</style>\n"
         f"</head>\n<body>\n<main>\n{body}\n</main>\n</body>\n</html>\n"
     )
 
@@ -77,6 +85,12 @@ def element(tag: str, text: str, kind: str = "") -> str:
     """An element with text, which is escaped."""
     opening = f'<{tag} class="{kind}">' if kind else f"<{tag}>"
     return f"{opening}{clean(text)}</{tag}>\n"
+
+
+def headline(found: Mapping[str, str]) -> str:
+    """A summary's headline: its sentence, and below it its level, in the level's colour."""
+    level = found["level"]
+    return element("h1", found["text"]) + element("p", level, LEVEL_CLASSES[level])
 
 
 def section(head: str, inside: str) -> str:

@@ -10,9 +10,19 @@ import numpy as np
 
 from innervate.analysis import radio
 from innervate.plot import charts, radio_scene, radio_slotted_report, radio_timeline, svg, words
-from innervate.plot.page import details, element, figure, pictures, section, table, tiles
+from innervate.plot.page import (
+    details,
+    element,
+    figure,
+    headline,
+    pictures,
+    section,
+    table,
+    tiles,
+)
 from innervate.plot.radio_words import (
     fault_words,
+    off_words,
     protocol_words,
     report_kind,
     report_words,
@@ -20,6 +30,7 @@ from innervate.plot.radio_words import (
     slots_words,
     time_words,
 )
+from innervate.scenario.radio_words import warnings
 
 ROWS_MAX = 200
 MARKS_MAX = 8
@@ -28,13 +39,13 @@ STEPS_MAX = 2000  # of a cumulative curve
 
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
-    """Headline, status, numbers and pictures of a radio run, as HTML."""
+    """Headline, numbers and pictures of a radio run, as HTML."""
     if summary.get("level") == "slotted":
         return radio_slotted_report.body(result, summary)
     return "\n".join(
         part
         for part in (
-            _top(result, summary),
+            top(result, summary),
             _timelines(result),
             _charts(result, summary),
             _events(result),
@@ -44,7 +55,8 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
     )
 
 
-def _top(result: Any, summary: Mapping[str, Any]) -> str:
+def top(result: Any, summary: Mapping[str, Any]) -> str:
+    """What happened, and the figures to know."""
     params = result.plan.params
     switch = f"in {words.ms_words(params['ta_us'] / 1e3)}" if params["ta_us"] else "at once"
     over = (
@@ -53,20 +65,25 @@ def _top(result: Any, summary: Mapping[str, Any]) -> str:
         f"{params['packet_slots']} slots of {params['slot_us']} us, radios that switch {switch}; "
         f"seed {summary['seed']}"
     )
-    first, *others = sentences(result, summary)
-    parts = [element("p", over, "over"), element("h1", first)]
-    parts += [element("p", sentence) for sentence in others]
+    parts = [element("p", over, "over"), headline(summary["headline"])]
+    parts += [element("p", sentence) for sentence in sentences(result, summary)]
     if "interrupted_at_s" in summary:
         early = f"Ended early, at {summary['interrupted_at_s']:.3f} s of simulated time."
         parts.append(element("p", early, "status bad"))
-    parts += [_status(summary), tiles(_figures(result, summary))]
+    parts.append(tiles(_figures(result, summary)))
     return "<header>\n" + "".join(parts) + "</header>"
 
 
 def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
-    """What happened, for somebody who knows nothing of it; the first is the headline."""
+    """What happened, for somebody who knows nothing of it."""
     telling = {"saturated": _saturated, "disaster": _disaster}.get(summary["traffic"], _arrivals)
-    return [telling(result, summary), *_collisions(result, summary)]
+    return [
+        telling(result, summary),
+        *off_words(summary),
+        *warnings(result.plan),
+        *_collisions(result, summary),
+        _silence(summary),
+    ]
 
 
 def _disaster(result: Any, summary: Mapping[str, Any]) -> str:
@@ -96,11 +113,14 @@ def _saturated(result: Any, summary: Mapping[str, Any]) -> str:
 
 
 def _arrivals(result: Any, summary: Mapping[str, Any]) -> str:
-    begin = f"{robots(summary['stations'])} had {summary['offered']:,} packets to send"
+    expected = summary["offered"] - summary["abandoned"]
+    begin = f"{robots(summary['stations'])} had {expected:,} packets to send"
     if not summary["delivered"]:
         return f"{begin}; none was delivered."
+    share = words.share_words(summary["delivered"] / expected)
+    if summary["delay_slots"]["p50"] is None:
+        return f"{begin}; {share} of them were delivered."
     half = time_words(summary["delay_slots"]["p50"], result.plan.params["slot_us"])
-    share = words.share_words(summary["delivered"] / summary["offered"])
     return f"{begin}; {share} of them were delivered, half within {half}."
 
 
@@ -117,13 +137,13 @@ def _collisions(result: Any, summary: Mapping[str, Any]) -> list[str]:
     return [f"There were {count:,} collisions, of up to {most} frames at once."]
 
 
-def _status(summary: Mapping[str, Any]) -> str:
+def _silence(summary: Mapping[str, Any]) -> str:
+    """What was lost that nobody knows of."""
     silent = summary["lost_silently"]
-    if silent:
-        who = words.number_of(silent, "packet")
-        line = f"Lost silently: {who} that nobody received, taken for delivered by the sender."
-        return element("p", line, "status bad")
-    return element("p", "No packet was lost silently.", "status")
+    if not silent:
+        return "No packet was lost silently."
+    who = words.number_of(silent, "packet")
+    return f"Lost silently: {who} that nobody received, taken for delivered by the sender."
 
 
 def _figures(result: Any, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -143,6 +163,12 @@ def _figures(result: Any, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     count = words.count_words(summary["events"])
     found.append((took, f"to simulate {result.ended_us / 1e6:.4g} s, {count} events"))
     return found
+
+
+def on_air(result: Any) -> str:
+    """The first collision or transmissions, a lane for each station; "" without any."""
+    shown = radio_scene.scene(result, *radio_scene.resolution(result))
+    return _wide(radio_timeline.draw(shown), "", "") if shown.boxes else ""
 
 
 def _timelines(result: Any) -> str:
@@ -195,7 +221,9 @@ def _listing(result: Any, shown: radio_scene.Scene) -> str:
 def _charts(result: Any, summary: Mapping[str, Any]) -> str:
     if not summary["delivered"]:
         return ""
-    figures = [_over_time(result, summary), _delays(result, summary), _fairness(result, summary)]
+    figures = [_over_time(result, summary), _fairness(result, summary)]
+    if summary["delay_slots"]["p50"] is not None:
+        figures.insert(1, _delays(result, summary))
     return section("How well it went", pictures(figures, "two"))
 
 
@@ -253,7 +281,8 @@ def _fairness(result: Any, summary: Mapping[str, Any]) -> str:
     steady, n = radio.settled(result), result.plan.stations
     if summary["traffic"] == "disaster":
         head = "When each station's packet was delivered"
-        waits = dict(zip(steady["node"].tolist(), radio.delays(result).tolist(), strict=True))
+        who = radio.timed(result)["node"].tolist()
+        waits = dict(zip(who, radio.delays(result).tolist(), strict=True))
         bars = [
             charts.Bar(f"station {i}", waits.get(i, 0.0),
                        slots_words(waits[i]) if i in waits else "never")

@@ -8,25 +8,30 @@ from typing import Any
 import numpy as np
 
 from innervate.plot import charts, words
-from innervate.plot.page import element, figure, pictures, section, tiles
+from innervate.plot.page import element, figure, headline, pictures, section, tiles
 from innervate.plot.radio_words import robots
+from innervate.scenario.radio_words import warnings
 
 STEPS_MAX = 2000
 
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
     """Headline, numbers and pictures, as HTML."""
-    return _top(result, summary) + "\n" + section("How well it went", _charts(result, summary))
+    return top(result, summary) + "\n" + section("How well it went", charts_of(result, summary))
 
 
-def _top(result: Any, summary: Mapping[str, Any]) -> str:
+def top(result: Any, summary: Mapping[str, Any]) -> str:
+    """What happened, and the figures to know."""
     model = result.plan.scenario.model
     over = (
         f"{summary['name']}: the slotted level, a reference model that counts slots; "
         f"{model.protocol.mac}, packets of {result.plan.params['packet_slots']} slots; "
         f"seed {summary['seed']}"
     )
-    if model.traffic.kind == "disaster":
+    if model.traffic.kind == "disaster" and summary["delivered"] < summary["stations"]:
+        count = words.number_of(summary["delivered"], "packet")
+        head = f"{robots(summary['stations'])} started at once; {count} came through in the time."
+    elif model.traffic.kind == "disaster":
         head = (
             f"{robots(summary['stations'])} started at once; every packet was delivered "
             f"{summary['duration_slots']:.4g} slots later."
@@ -39,11 +44,14 @@ def _top(result: Any, summary: Mapping[str, Any]) -> str:
         (f"{summary['jain']:.3f}", "fairness (Jain), 1 is even"),
         (f"{summary['collisions']:,}", "collisions"),
     ]
-    parts = [element("p", over, "over"), element("h1", head), tiles(found)]
+    parts = [element("p", over, "over"), headline(summary["headline"]), element("p", head)]
+    parts += [element("p", warning) for warning in warnings(result.plan)]
+    parts.append(tiles(found))
     return "<header>\n" + "".join(parts) + "</header>"
 
 
-def _charts(result: Any, summary: Mapping[str, Any]) -> str:
+def charts_of(result: Any, summary: Mapping[str, Any]) -> str:
+    """Delays and shares, as figures."""
     figures = []
     delays = np.sort(result.found.delay_slots)
     if len(delays):

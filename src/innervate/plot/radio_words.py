@@ -5,6 +5,7 @@ A protocol whose frames or reports mean something else than the others' adds an 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from innervate.plot.words import ms_words, number_of
@@ -159,6 +160,21 @@ def slots_words(slots: float) -> str:
 def time_words(slots: float, slot_us: int) -> str:
     """A time in both units: "131 slots (27.2 ms)"."""
     return f"{slots_words(slots)} ({ms_words(slots * slot_us / 1e3)})"
+
+
+def off_words(summary: Mapping[str, Any]) -> list[str]:
+    """What became of the packets of robots that were switched off or left, in sentences."""
+    lines = []
+    abandoned, waited = summary.get("abandoned", 0), summary.get("waited_off", 0)
+    if abandoned:
+        whose = "of robots that were off or had left at the end"
+        lines.append(f"Not counted: {number_of(abandoned, 'packet')} {whose}.")
+    if waited:
+        whose = "its robot was" if waited == 1 else "their robots were"
+        lines.append(
+            f"{number_of(waited, 'packet')} waited while {whose} off; delays leave them out."
+        )
+    return lines
 
 
 def robots(count: int) -> str:

@@ -23,7 +23,7 @@ class Reportable(Protocol):
         """Rows and world of the simulation."""
 
     @property
-    def summary(self) -> dict[str, Any]:
+    def summary(self) -> Mapping[str, Any]:
         """The summary."""
 
     @property

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from innervate.plot import svg, words
-from innervate.plot.page import element, figure, keys, pictures, section, table, tiles
+from innervate.plot.page import element, figure, headline, keys, pictures, section, table, tiles
 from innervate.plot.skinmap import CELLS_MAX, shows_depth
 from innervate.plot.story import Panel, Story
 from innervate.plot.theme import SHADES
@@ -22,7 +22,7 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
     return "\n".join(
         part
         for part in (
-            _top(story),
+            top(story),
             _recovery(story),
             _touch(story),
             _traffic(story),
@@ -32,7 +32,8 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
     )
 
 
-def _top(story: Story) -> str:
+def top(story: Story) -> str:
+    """What happened, what is broken, and the figures to know."""
     summary, graph = story.summary, story.graph
     over = (
         f"{summary['name']}: a robot skin of {words.number_of(graph.cells, 'cell')}, "
@@ -40,9 +41,8 @@ def _top(story: Story) -> str:
         f"{words.number_of(summary['depth_max'], 'hop')} deep; {summary['duration_s']:g} s, "
         f"seed {summary['seed']}"
     )
-    sentences = _sentences(story)
-    parts = [element("p", over, "over"), element("h1", sentences[0])]
-    parts += [element("p", sentence) for sentence in sentences[1:]]
+    parts = [element("p", over, "over"), headline(summary["headline"])]
+    parts += [element("p", sentence) for sentence in _sentences(story)]
     if "interrupted_at_s" in summary:
         early = f"Ended early, at {summary['interrupted_at_s']:.3f} s of simulated time."
         parts.append(element("p", early, "status bad"))
@@ -70,7 +70,7 @@ def _broken(summary: Mapping[str, Any]) -> str:
     """Which cable is broken, and since when: the first question of every skin lab."""
     broken = summary["broken"]
     if not broken:
-        return element("p", "No cable is broken at the end.", "status")
+        return element("p", "No cable is broken at the end.")
     lines = words.broken_cables(broken)
     shown = lines[:BROKEN_MAX]
     if len(lines) > BROKEN_MAX:
@@ -86,6 +86,10 @@ def _figures(story: Story) -> list[tuple[str, str]]:
     data, found = summary["data"], []
     if data["sent"]:
         found.append((words.share_words(1 - data["loss_ratio"]), "of the samples not lost"))
+    if data["latency_ms"]["p99"] is not None:
+        half = words.ms_words(data["latency_ms"]["p50"])
+        text = f"from sensor to PC for 99 % of those received, {half} for half"
+        found.append((words.ms_words(data["latency_ms"]["p99"]), text))
     if summary["balance_factor"] is not None and len(summary["port_loads"]) > 1:
         found.append((f"{summary['balance_factor']:.3f}", "balance of the ports, 1 is even"))
     if summary["beacon_share"] is not None:
@@ -105,13 +109,17 @@ def _figures(story: Story) -> list[tuple[str, str]]:
     return found
 
 
-def _recovery(story: Story) -> str:
+def maps(story: Story) -> str:
+    """The skin before, during and after the worst event, and what the colours mean."""
     panels = story.maps()
     columns = "four" if len(panels) > 1 and not story.sheet.wide else "two"
-    maps = pictures([_figure(panel) for panel in panels], columns)
+    return pictures([_figure(panel) for panel in panels], columns) + keys(legend(story))
+
+
+def _recovery(story: Story) -> str:
     charts = [_figure(panel) for panel in (*story.zooms(), *story.overview())]
     head = "The recovery" if story.hero is not None else "The skin"
-    return section(head, maps + keys(legend(story)) + pictures(charts, "two"))
+    return section(head, maps(story) + pictures(charts, "two"))
 
 
 def _touch(story: Story) -> str:
@@ -135,23 +143,68 @@ def _traffic(story: Story) -> str:
     panels: list[Panel | None] = [story.loads(), story.losses()]
     return section(
         "Load and losses",
-        pictures([_figure(panel) for panel in panels if panel is not None], "two"),
+        pictures([_figure(panel) for panel in panels if panel is not None], "two")
+        + _latencies(story.summary["data"])
+        + _commands(story.summary["commands"]),
     )
+
+
+def _commands(commands: Mapping[str, Any]) -> str:
+    """What became of the PC's commands."""
+    if not commands["sent"]:
+        return ""
+    rows = [("reached", f"{commands['delivered']:,}")]
+    rows += [
+        (f"not reached: {words.MISSED[why]}", f"{count:,}")
+        for why, count in commands["lost_by"].items()
+    ]
+    rows.append(("on their way at the end", f"{commands['in_flight']:,}"))
+    if commands["delivered"]:
+        times = _times(commands["latency_ms"])
+        names = ("half within", "95 % within", "99 % within", "slowest")
+        rows += [
+            (f"from PC to cell, {name}", took) for name, took in zip(names, times, strict=True)
+        ]
+    text = (
+        f"{words.number_of(commands['sent'], 'command')} of the PC, for "
+        f"{commands['addressed']:,} cells in all; nobody acknowledges one."
+    )
+    return table(("commands down", "cells"), rows) + element("p", text, "note")
+
+
+def _latencies(data: Mapping[str, Any]) -> str:
+    """How long samples took to every interface port."""
+    ports = [one for one in data["latency_by_port"] if one["samples"]]
+    if not ports:
+        return ""
+    rows = [("all ports", f"{data['delivered']:,}", *_times(data["latency_ms"]))]
+    rows += [
+        (f"port {one['port']}", f"{one['samples']:,}", *_times(one["latency_ms"]))
+        for one in ports[:ROWS_MAX]
+    ]
+    head = ("received at", "samples", "half within", "95 % within", "99 % within", "slowest")
+    text = "How long samples took from the sensor to the PC; lost ones took for ever."
+    return table(head, rows) + element("p", text, "note")
+
+
+def _times(latency: Mapping[str, Any]) -> list[str]:
+    return [words.ms_words(latency[name]) for name in ("p50", "p95", "p99", "max")]
 
 
 def _events(story: Story) -> str:
     rows = []
     for incident in story.incidents[:ROWS_MAX]:
         recovery = incident.recovery
-        times = [_ms(recovery[key]) for key in ("detected_ms", "routed_ms", "converged_ms")]
-        if recovery["routed_ms"] == 0:
+        times = [_ms(recovery[key]) for key in ("detected_ms", "others_ms", "converged_ms")]
+        if recovery["others_ms"] == 0:
             times[1] = "had one all the time"
         what = svg.clean(words.fault_words(story.graph, incident.fault))
-        rows.append((f"{recovery['at_s']:.3f} s", what, str(recovery["cut_cells"]), *times))
+        counts = [f"{recovery[key]:,}" for key in ("cut_cells", "cut_off_total")]
+        rows.append((f"{recovery['at_s']:.3f} s", what, *counts, *times))
     if not rows:
         return ""
-    head = ("at", "what", "cells behind it", "noticed after", "all had a way after",
-            "last change after")  # fmt: skip
+    head = ("at", "what", "cells behind it", "cut off", "noticed after",
+            "all others had a way after", "last change after")  # fmt: skip
     more = len(story.incidents) - len(rows)
     note = element("p", f"And {more} more, in summary.json.", "note") if more > 0 else ""
     return section("Events", table(head, rows) + note)

@@ -51,8 +51,8 @@ class Incident:
 
     @property
     def routed_us(self) -> int:
-        """When all cells had a route again; the last moment before `until_us` if never."""
-        routed_ms = self.recovery["routed_ms"]
+        """When all cells that cables reach had a route again; before `until_us` if never."""
+        routed_ms = self.recovery["others_ms"]
         if routed_ms is None:
             return max(self.at_us, self.until_us - 1)
         return self.at_us + round(1e3 * float(routed_ms))
@@ -98,7 +98,7 @@ class Story:
 
     def headline(self, incident: Incident) -> str:
         """An event and what came of it."""
-        who = words.number_of(self.history.unrouted_at(incident.until_us - 1), "cell")
+        who = words.number_of(incident.recovery["without_way"], "cell")
         still = f"{who} still had no way to the PC {self._then(incident)}"
         return words.headline(self.graph, incident.fault, incident.recovery, still)
 
@@ -122,9 +122,9 @@ class Story:
         hero = self.hero
         if hero is None:
             return []
-        worst_us, most = self.history.unrouted_max(hero.at_us, hero.routed_us)
+        worst_us, most = self.history.lacking_max(hero.at_us, hero.routed_us)
         half_us = self.history.first_below(worst_us, hero.routed_us, most / 2)[0]
-        left = self.history.unrouted_at(hero.routed_us)
+        left = self.history.lacking_at(hero.routed_us)
         return [
             ("Before", hero.at_us - 1),
             ("The worst moment", worst_us),
@@ -133,10 +133,21 @@ class Story:
         ]
 
     def _lacking(self, hero: Incident, time_us: int) -> str:
-        count = self.history.unrouted_at(time_us)
         when = f"{words.ms_words((time_us - hero.at_us) / 1e3)} after the event"
+        return f"{when}: {self._crossed(time_us)}"
+
+    def _crossed(self, time_us: int) -> str:
+        """The cells that a map crosses out, in words."""
+        count, gone = self.history.lacking_at(time_us), self.history.cut_off_at(time_us)
+        off = len(self.history.at(time_us).dead)
         who = words.number_of(count, "cell") if count else "no cell"
-        return f"{when}: {who} without a way"
+        parts = [f"{who} without a way"]
+        if gone:
+            them, it = ("all cut off", "cut off") if gone == count else (f"{gone:,} cut off", "")
+            parts.append(it if count == 1 else them)
+        if off:
+            parts.append(f"{off:,} switched off")
+        return ", ".join(parts)
 
     def _map(self, time_us: int, head: str, text: str = "") -> Panel:
         moment = self.history.at(time_us)
@@ -150,20 +161,21 @@ class Story:
 
     def _is_outage(self, incident: Incident) -> bool:
         lasted_us = incident.routed_us - incident.at_us
-        most = self.history.unrouted_max(incident.at_us, incident.until_us - 1)[1]
+        most = self.history.lacking_max(incident.at_us, incident.until_us - 1)[1]
         return most > 0 and lasted_us >= OUTAGE_US
 
     def _zoom(self, incident: Incident) -> Panel:
         recovery, start = incident.recovery, incident.at_us
         marks = [charts.Mark(0.0, ACTIONS[incident.fault.action])]
         reach = (incident.routed_us - start) / 1e3
-        for key, name in (("detected_ms", "noticed"), ("routed_ms", "all routed")):
+        rest = "all others routed" if recovery["cut_off_total"] else "all routed"
+        for key, name in (("detected_ms", "noticed"), ("others_ms", rest)):
             if recovery[key] is not None and recovery[key] > 0:
                 reach = max(reach, recovery[key])
                 marks.append(charts.Mark(recovery[key], f"{name} {words.ms_words(recovery[key])}"))
         reach = max(reach, 1.0)
         times, cells = self.history.steps()
-        inside = self.history.unrouted_max(start, start + round(1e3 * reach))[1]
+        inside = self.history.lacking_max(start, start + round(1e3 * reach))[1]
         x = charts.Axis(-0.12 * reach, 1.6 * reach, "ms after the event")
         y = charts.Axis(0.0, 1.08 * max(inside, 1))
         label = self.headline(incident)

@@ -17,6 +17,7 @@ _LIGHT = {
     "faint": "#d5dae1",
     "link": "#26303d",
     "alarm": "#c43d00",
+    "warn": "#8a5a00",
     "good": "#00734f",
     "accent": "#0063a6",
 }
@@ -28,6 +29,7 @@ _DARK = {
     "faint": "#37414d",
     "link": "#e3e9f0",
     "alarm": "#ff8a4c",
+    "warn": "#f0c04a",
     "good": "#4fd0a0",
     "accent": "#6db8f2",
 }

@@ -30,6 +30,18 @@ LOST = {
 }
 
 
+def headline_line(found: Mapping[str, object]) -> str:
+    """A summary's headline in a line: "degraded: 1 of 91 messages was not delivered."."""
+    return f"{found['level']}: {found['text']}"
+
+
+MISSED = {
+    "off": "switched off",
+    "no_route": "without a way to the PC",
+    "on_the_way": "had a way, but it was lost on it",
+}
+
+
 def ms_words(value_ms: float) -> str:
     """A time: "8.43 ms", "17.0 ms", "1.25 s"."""
     if value_ms >= 1000:
@@ -96,22 +108,37 @@ def headline(graph: Graph, fault: Fault, recovery: Mapping[str, Any], still: str
 def outcome(recovery: Mapping[str, Any], still: str = "") -> str:
     """What came of an event: noticed when, all routed when.
 
-    `still` says it where not all cells were routed again: "3 cells still had no way at the end".
+    `still` says it where cells that cables reach were not all routed again: "3 cells still had no
+    way at the end".
     """
-    detected, routed = recovery.get("detected_ms"), recovery.get("routed_ms")
+    detected, settled = recovery.get("detected_ms"), recovery.get("converged_ms")
+    routed = recovery.get("others_ms", recovery.get("routed_ms"))
+    gone, all_gone = recovery.get("cut_off", 0), recovery.get("cut_off_total", 0)
     parts = []
     if detected is not None:
         parts.append(f"noticed after {ms_words(detected)}")
-    if routed is None:
-        parts.append(still or "some cells still had no way to the PC by the next event or the end")
-    elif routed > 0:
-        parts.append(f"every cell had a way again after {ms_words(routed)}")
-    else:
-        settled = recovery.get("converged_ms")
-        parts.append("every cell kept its way to the PC")
+    if gone:
+        them, were = ("it", "was") if gone == 1 else ("them", "were")
+        what = f"{were} cut off, as no cable joined {them} with the PC any more"
+        parts.append(f"{number_of(gone, 'cell')} {what}")
+    whom = "every other cell" if all_gone or recovery.get("action") == "kill" else "every cell"
+    if routed is not None and routed > 0:
+        parts.append(f"{whom} had a way again after {ms_words(routed)}")
+    elif routed is not None:
+        parts.append(f"{whom} kept its way to the PC")
         if settled:
             parts.append(f"the last one changed it after {ms_words(settled)}")
+    elif not all_gone or recovery.get("without_way"):
+        parts.append(still or _lacking(recovery.get("without_way")))
+    if all_gone > gone:
+        parts.append(f"{number_of(all_gone - gone, 'cell')} stayed cut off")
     return ", ".join(parts)
+
+
+def _lacking(cells: int | None) -> str:
+    """Cells that a cable path would reach, but that have no way."""
+    who = "some cells" if cells is None else number_of(cells, "cell")
+    return f"{who} still had no way to the PC by the next event or the end"
 
 
 def broken_cables(broken: Iterable[Mapping[str, Any]]) -> list[str]:

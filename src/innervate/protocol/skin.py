@@ -8,6 +8,7 @@ How the parent is chosen stands in skin_route.py.
 from innervate.protocol.arith import MASK30, after, later
 from innervate.protocol.outbox import FLUSH, URGENT, report, send, set_timer
 from innervate.protocol.rng import draw
+from innervate.protocol.skin_down import copy_command, on_command
 from innervate.protocol.skin_route import (
     distance,
     react,
@@ -15,6 +16,7 @@ from innervate.protocol.skin_route import (
 )
 from innervate.protocol.skin_words import (
     BEACON,
+    COMMAND,
     DATA,
     DROP_LOOP,
     DROP_NO_ROUTE,
@@ -53,10 +55,14 @@ def copy_frame(to, frm):
         to.seq = frm.seq
         to.hops = frm.hops
         copy_sample(to, frm)
+    elif kind == COMMAND:
+        copy_command(to, frm)
+        to.hops = frm.hops
 
 
 def copy_sample(to, frm):
-    """Copy what the sensors say."""
+    """Copy what the sensors say, and what a simulation notes of it."""
+    to.made_at = frm.made_at
     to.proximity = frm.proximity
     to.temperature = frm.temperature
     for i in range(3):
@@ -88,6 +94,8 @@ def on_start(cell, params, now, cause, out):
     cell.sent_at = (now - params.gap_us) & MASK30
     cell.soon = 0
     cell.seq = 0
+    cell.last_command = 0
+    cell.commands = 0
     # Children of our former life give us up within k + 1 of their periods: they hear that we have
     # no route, or nothing. Only then may we take one, or it could lead through them. The tick of
     # now is one of ours, and with clocks 5 % off theirs can be k/9 longer than as many of ours.
@@ -108,6 +116,8 @@ def on_frame(cell, params, now, port, frame, out):
             announce_soon(cell, params, now, out)
     elif frame.kind == DATA:
         forward(cell, params, frame, out)
+    elif frame.kind == COMMAND:
+        on_command(cell, params, port, frame, out)
 
 
 def on_timer(cell, params, now, timer, out):

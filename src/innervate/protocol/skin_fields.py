@@ -5,19 +5,30 @@ ports. Record types, plain classes, range checks, trace columns and the docs' ta
 """
 
 FRAME = (
-    ("kind", 0, 0, 15, "type", "1 beacon, 2 data, 3 restart (static rule only)"),
+    ("kind", 0, 0, 15, "type", "1 beacon, 2 data, 3 restart (static rule only), 4 command"),
     ("dist", 0, 0, 255, "hops", "beacon: hops from its sender to the PC; 0 the PC, 255 no route"),
     ("sq", 0, 0, 65535, "number", "beacon: sequence number of the sender's route"),
     ("load", 0, 0, 4095, "cells", "beacon: cells whose data leave through it; 0 never had a route"),
     ("size", 0, 0, 4095, "cells", "beacon: load of the interface port that serves the sender"),
     ("parent", 0, 0, 1, "flag", "beacon: 1 = you, on this cable, are my parent"),
-    ("cell", 0, 0, 65535, "cell", "data: who measured it"),
+    ("cell", 0, 0, 65535, "cell", "data: who measured it; command: who it is for, 65535 all"),
     ("seq", 0, 0, 255, "number", "data: counts the cell's samples"),
-    ("hops", 0, 0, 255, "hops", "data: cells that forwarded it so far"),
+    ("hops", 0, 0, 255, "hops", "data, command: cells that forwarded it so far"),
     ("proximity", 0, 0, 65535, "raw", "data: nearness of an object, 0 far"),
     ("force", 3, 0, 65535, "mN", "data: three force sensors"),
     ("temperature", 0, -128, 127, "0.5 degC", "data: from 20 degC"),
     ("accel", 3, -512, 511, "raw", "data: acceleration along x, y, z"),
+    (
+        "made_at",
+        0,
+        0,
+        1073741823,
+        "us",
+        "when it was measured, or given: a run's own, not sent",
+    ),
+    ("number", 0, 0, 65535, "number", "command: counts the PC's commands"),
+    ("code", 0, 0, 255, "choice", "command: what to do; its meaning is the user's"),
+    ("value", 0, 0, 65535, "raw", "command: with what; its meaning is the user's"),
 )
 
 CELL = (
@@ -49,6 +60,8 @@ CELL = (
     ("choice", 0, -1, 1073741823, "value", "what the next draw shall return; -1 = generate"),
     ("asked", 0, 0, 1073741823, "count", "out of how many the last scripted draw was"),
     ("wait", 0, 0, 1023, "periods", "after a restart, until we may take a parent"),
+    ("last_command", 0, 0, 65535, "number", "the newest command that came"),
+    ("commands", 0, 0, 16777215, "bits", "of it and the 23 before it: 1 = that one came; 0 none"),
 )
 
 SINK = (
@@ -58,6 +71,7 @@ SINK = (
     ("periods", 0, 0, 65535, "periods", "since sq was last counted up"),
     ("listen", 0, 0, 65535, "periods", "left to listen before the first beacon"),
     ("tick_at", 0, 0, 1073741823, "us", "when the next tick is due"),
+    ("command", 0, 0, 65535, "number", "the newest command that was given"),
     ("repair", 0, 0, 1, "flag", "static rule: the network is down for a restart"),
 )
 
@@ -66,7 +80,7 @@ SINK_PORT = (
 )
 
 PARAMS = (
-    ("rule", 0, 0, 3, "choice", "0 feasible, 1 strict, 2 paper, 3 static"),
+    ("rule", 0, 0, 4, "choice", "0 feasible, 1 strict, 2 paper, 3 static, 4 paper-lax"),
     ("updates", 0, 0, 2, "choice", "0 periodic, 1 triggered, 2 wave"),
     ("beacon_us", 0, 100, 1000000, "us", "period T_b of beacons"),
     ("r_f", 0, 1, 1680, "1/840", "penalty of a period without a beacon"),
@@ -75,6 +89,7 @@ PARAMS = (
     ("max_depth", 0, 1, 254, "hops", "MAXD: longer routes are refused"),
     ("seq_every", 0, 1, 255, "periods", "M: the PC counts sq up every M periods"),
     ("balance_periods", 0, 0, 65535, "periods", "between attempts to balance; 0 = never"),
+    ("balance_rule", 0, 0, 1, "choice", "who moves: 0 who evens loads out, 1 as Alg. 3 is printed"),
     ("hold_periods", 0, 1, 65535, "periods", "FD_HOLD: without a route until fd is forgotten"),
     ("gap_us", 0, 0, 1000000, "us", "GAP: least time between triggered beacons"),
     ("skip_us", 0, 0, 1000000, "us", "wave: a tick stays silent this long after a send"),

@@ -2,14 +2,15 @@
 
 A route is safe to take when (sequence number, distance) is nearer than fd, the nearest this cell
 has ever announced: fd of a cell is then always worse than its parent's, so parents never close
-a ring, whatever is lost or late (rule `feasible`). `strict` and `paper` are kept for comparison.
-[skin II-B.1, II-B.2, II-B.4, Alg. 2 and 3, E5-E13, E25]
+a ring, whatever is lost or late (rule `feasible`). `strict`, `paper` and `paper-lax` are kept for
+comparison. [skin II-B.1, II-B.2, II-B.4, Alg. 2 and 3, E5-E13, E25]
 """
 
 from innervate.protocol.arith import later
 from innervate.protocol.outbox import report
 from innervate.protocol.rng import draw
 from innervate.protocol.skin_words import (
+    BALANCE_PAPER,
     INFINITY,
     NONE,
     ONE,
@@ -18,6 +19,7 @@ from innervate.protocol.skin_words import (
     REPORT_PARENT,
     RULE_FEASIBLE,
     RULE_PAPER,
+    RULE_STRICT,
 )
 
 
@@ -30,9 +32,14 @@ def is_allowed(cell, params, p):
     """1 if a usable port may become the parent under the rule [skin II-B.2, E25, F1, F2]."""
     if params.rule == RULE_FEASIBLE:
         return nearer_than_fd(cell, cell.sq[p], cell.dist[p])
-    if cell.sq_known == 0 or later(cell.sq[p], cell.sq_own):
+    if cell.sq_known == 0:
         return True
-    return params.rule == RULE_PAPER and cell.sq[p] == cell.sq_own
+    least = cell.sq_own
+    if params.rule == RULE_PAPER and cell.parent != NONE:
+        least = cell.sq[cell.parent]  # as last heard; sq_own is that of the last choice
+    if later(cell.sq[p], least):
+        return True
+    return params.rule != RULE_STRICT and cell.sq[p] == least
 
 
 def nearer_than_fd(cell, sq, dist):
@@ -77,13 +84,25 @@ def select(cell, params, may_balance, out):
     if best < current:
         cell.parent = pick(cell, params, best, count)
     elif lightest != NONE:
-        if cell.size[cell.parent] - cell.size[lightest] > cell.own_load:
+        if is_worth_moving(cell, params, lightest):
             cell.parent = lightest
             report(out, REPORT_BALANCE, old, lightest)
             old = lightest
     if cell.parent != old:
         report(out, REPORT_PARENT, old, cell.parent)
     adopt(cell)
+
+
+def is_worth_moving(cell, params, p):
+    """1 if a port as near as the parent is to take over our data, to balance [skin II-B.4, E12].
+
+    Moving our load from a port with a to one with b lowers the sum of squares if a - b exceeds it.
+    Alg. 3 has the sign reversed; its L(q) are loads of subnetworks, as Eq. 2 says.
+    """
+    more = cell.size[p] - cell.size[cell.parent]
+    if params.balance_rule == BALANCE_PAPER:
+        return more > cell.own_load
+    return -more > cell.own_load
 
 
 def pick(cell, params, best, count):

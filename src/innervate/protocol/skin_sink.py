@@ -1,13 +1,14 @@
 """The PC end of a skin: one logical node with an interface port per cable [skin 4, E27].
 
 It starts every route (distance 0), counts the sequence number up every M periods, tells each
-port how many cells it serves, and delivers the touch that arrives.
+port how many cells it serves, delivers the touch that arrives, and sends commands down.
 State: `pc.own[0]` (declared as SINK) and `pc.size[port]` (SINK_PORT).
 """
 
 from innervate.protocol.arith import MASK16, MASK30, after, later
 from innervate.protocol.outbox import URGENT, deliver, send, set_timer
 from innervate.protocol.skin import copy_frame
+from innervate.protocol.skin_down import copy_command
 from innervate.protocol.skin_words import BEACON, DATA, TICK
 
 
@@ -19,6 +20,8 @@ def on_start(pc, params, now, cause, out):
     own.periods = 0
     own.listen = params.k
     own.repair = 0
+    # Cells still know our last numbers: begin where they do not end.
+    own.command = (now >> 8) & MASK16
     for p in range(own.ports):
         pc.size[p] = 0
     own.tick_at = now
@@ -78,5 +81,12 @@ def next_tick(pc, params, now, out):
 
 
 def on_input(pc, params, now, kind, item, out):
-    """The PC has nothing to send down."""
-    return
+    """GIVE: a command for a cell or all, to every interface port that has a child [skin II-A]."""
+    own = pc.own[0]
+    own.command = (own.command + 1) & MASK16
+    for p in range(own.ports):
+        if pc.size[p] > 0:
+            frame = out.frame[send(out, p, 0, 0)]
+            copy_command(frame, item)
+            frame.number = own.command
+            frame.hops = 0

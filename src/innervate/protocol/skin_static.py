@@ -11,8 +11,10 @@ from innervate.protocol import skin, skin_sink
 from innervate.protocol.arith import MASK16, MASK30, after, later
 from innervate.protocol.outbox import URGENT, report, send, set_timer
 from innervate.protocol.rng import draw
+from innervate.protocol.skin_down import on_command
 from innervate.protocol.skin_words import (
     BEACON,
+    COMMAND,
     INFINITY,
     NONE,
     ONE,
@@ -32,7 +34,7 @@ def on_start(cell, params, now, cause, out):
 
 
 def on_frame(cell, params, now, port, frame, out):
-    """Keep watch, join the first set-up heard, pass restarts and data on."""
+    """Keep watch, join the first set-up heard, pass restarts, data and commands on."""
     if frame.kind == BEACON:
         cell.dist[port] = frame.dist
         cell.sq[port] = frame.sq
@@ -51,6 +53,8 @@ def on_frame(cell, params, now, port, frame, out):
     elif frame.kind == RESTART:
         if cell.sq_known and frame.sq == cell.sq_own and cell.parent != NONE:
             give_up(cell, out)
+    elif frame.kind == COMMAND:
+        on_command(cell, params, port, frame, out)
     else:
         skin.forward(cell, params, frame, out)
 

@@ -97,8 +97,8 @@ class ProtocolTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     """[protocol] [skin 5]."""
 
     rule: Annotated[
-        Literal["feasible", "strict", "paper", "static"],
-        Meta(description='"feasible", "strict", "paper" or "static"'),
+        Literal["feasible", "strict", "paper", "paper-lax", "static"],
+        Meta(description='"feasible", "strict", "paper", "paper-lax" or "static"'),
     ] = "feasible"
     updates: Annotated[
         Literal["periodic", "triggered", "wave"],
@@ -122,6 +122,9 @@ class ProtocolTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
         Annotated[int, Meta(ge=1, le=65535, description="a whole number of periods, 1 to 65535")]
         | None
     ) = None
+    balance_rule: Annotated[Literal["even", "paper"], Meta(description='"even" or "paper"')] = (
+        "even"
+    )
     max_depth: Annotated[
         int, Meta(ge=1, le=254, description="a whole number of hops, 1 to 254")
     ] = 64
@@ -213,6 +216,20 @@ class EventTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     frames: Frames | None = None
 
 
+class CommandTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """[[command]]: what the PC sends down to a cell, or to all; once, or again and again."""
+
+    at_s: At
+    rate_hz: Annotated[
+        float, Meta(ge=0, le=1000, description="a number of commands per second, 0 (once) to 1000")
+    ] = 0.0
+    cell: CellTable | None = None
+    node: Annotated[str | None, Meta(description='a name like "n1"')] = None
+    random: Annotated[bool, Meta(description="true or left out")] = False
+    code: Annotated[int, Meta(ge=0, le=255, description="a whole number, 0 to 255")] = 0
+    value: Annotated[int, Meta(ge=0, le=65_535, description="a whole number, 0 to 65535")] = 0
+
+
 class ScriptTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """[script]: steps that replace the clock."""
 
@@ -244,4 +261,5 @@ class SkinScenario(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
     data: Annotated[DataTable, Meta(description="a table [data]")] = DataTable()
     touch: Annotated[TouchTable | None, Meta(description="a table [touch]")] = None
     event: Annotated[list[EventTable], Meta(description="tables [[event]]")] = []
+    command: Annotated[list[CommandTable], Meta(description="tables [[command]]")] = []
     script: Annotated[ScriptTable | None, Meta(description="a table [script]")] = None

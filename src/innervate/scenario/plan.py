@@ -9,6 +9,7 @@ from math import ceil, floor
 from innervate.scenario.build import build_graph, check_reach
 from innervate.scenario.load import Scenario
 from innervate.scenario.model import EventTable, ProtocolTable, SkinScenario
+from innervate.scenario.orders import Order, orders
 from innervate.scenario.rules import ONE
 from innervate.scenario.script import Step, steps
 from innervate.scenario.source import Source
@@ -23,7 +24,8 @@ DEPTH_EXPECTED = 32  # MAXD' [skin 4]
 DATA_CELLS_MAX = 65_536
 LOSS_ONE = 32_768
 
-RULES = ("feasible", "strict", "paper", "static")
+RULES = ("feasible", "strict", "paper", "static", "paper-lax")
+BALANCE_RULES = ("even", "paper")
 UPDATES = ("periodic", "triggered", "wave")
 ACTIONS = ("cut", "restore", "kill", "revive", "loose", "restart", "lose")
 CUT, RESTORE, KILL, REVIVE, LOOSE, RESTART, LOSE = range(7)
@@ -69,6 +71,7 @@ class Plan:
         faults: in order of time, then of the file.
         touch: the touch, or None.
         script: steps that replace the clock; empty = free running.
+        orders: commands of the PC, in order of time.
         depths: hops of every cell to the PC over the whole graph.
     """
 
@@ -89,6 +92,7 @@ class Plan:
     faults: list[Fault] = field(default_factory=list)
     touch: Touch | None = None
     script: tuple[Step, ...] = ()
+    orders: list[Order] = field(default_factory=list)
     depths: list[int] = field(default_factory=list)
 
     @property
@@ -127,6 +131,7 @@ def plan(scenario: Scenario) -> Plan:
         faults=_faults(source, graph, model),
         touch=sample(model.touch, graph, model.duration_s) if model.touch is not None else None,
         script=steps(source, graph, model.script) if model.script is not None else (),
+        orders=orders(source, graph, model),
         depths=depths,
     )
 
@@ -151,6 +156,7 @@ def parameters(protocol: ProtocolTable, depth_max: int) -> dict[str, int]:
         "max_depth": protocol.max_depth,
         "seq_every": protocol.m or min(k, 5),
         "balance_periods": balance if protocol.balancing else 0,
+        "balance_rule": BALANCE_RULES.index(protocol.balance_rule),
         "hold_periods": k + 4 * max(depth_max, DEPTH_EXPECTED),
         "gap_us": protocol.gap_us,
         "skip_us": beacon_us * 6 // 10,

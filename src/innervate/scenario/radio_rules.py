@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from innervate.scenario import radio_slotted
 from innervate.scenario.radio_model import RadioEventTable, RadioScenario
 from innervate.scenario.source import Source
 
@@ -19,6 +20,8 @@ def check(source: Source, model: RadioScenario) -> None:
     _traffic(source, model)
     for index, event in enumerate(model.event):
         _event(source, model, index, event)
+    if model.channel.level == "slotted":
+        radio_slotted.check(source, model)
 
 
 def pair(value: int | tuple[int, int]) -> tuple[int, int]:
@@ -54,20 +57,6 @@ def _channel(source: Source, model: RadioScenario) -> None:
             raise source.error(key, _no_station(model, max(a, b)))
         if a == b:
             raise source.error(key, f"station {a} cannot be hidden from itself; name two")
-    if model.channel.level == "slotted":
-        given = [
-            name
-            for name, there in (
-                ("hidden", bool(model.channel.hidden)),
-                ("loss", model.channel.loss > 0),
-            )
-            if there
-        ]
-        if given:
-            message = f'channel.{given[0]} goes with level = "event"; the slotted level has none'
-            raise source.error(("channel", given[0]), message)
-        if model.event:
-            raise source.error(("event", 0), 'events go with level = "event"; leave them out')
 
 
 def _protocol(source: Source, model: RadioScenario) -> None:
@@ -111,7 +100,8 @@ def _traffic(source: Source, model: RadioScenario) -> None:
     if traffic.spread_us and traffic.kind != "disaster":
         message = f'traffic.spread_us goes with kind = "disaster", not "{traffic.kind}"'
         raise source.error(("traffic", "spread_us"), message)
-    if traffic.kind != "saturated" and traffic.start_s >= model.duration_s:
+    begins = traffic.kind != "saturated" and model.channel.level == "event"
+    if begins and traffic.start_s >= model.duration_s:
         message = f"traffic.start_s = {traffic.start_s:g} is after the end ({model.duration_s:g} s)"
         raise source.error(("traffic", "start_s"), message)
 

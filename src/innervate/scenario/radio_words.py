@@ -2,32 +2,67 @@
 
 from __future__ import annotations
 
+from innervate.scenario import radio_slotted
 from innervate.scenario.radio_model import RadioScenario
 from innervate.scenario.radio_plan import RadioFault, RadioPlan
 from innervate.scenario.radio_rules import pair
 
 EVENTS_SHOWN = 12
+PAIRS_SHOWN = 4
 
 
 def describe(made: RadioPlan) -> str:
     """A plan in words, several lines, without a newline at the end."""
     model: RadioScenario = made.scenario.model
-    params = made.params
+    channel, protocol = _used(made)
     lines = [
         f"{made.scenario.name}: a radio scenario of at most {made.duration_us / 1e6:g} s, "
         f"seed {made.seed}",
         f"  stations   {made.stations}, packets of {_range(*pair(model.packet_slots), 'slots')}",
         f"  traffic    {traffic_words(model)}",
-        f"  channel    {model.channel.level} level, {model.channel.bit_rate:,} bit/s, "
-        f"a slot of {params['slot_us']} us, delays of {_range(*pair(model.channel.tau_us), 'us')}, "
-        f"turnaround {params['ta_us'] / 1000:g} ms",
-        f"  protocol   {made.protocol}",
+        f"  channel    {channel}",
+        f"  protocol   {protocol}",
     ]
     lines += [f"  {'event' if i == 0 else '':10} {fault_words(made, fault)}"
               for i, fault in enumerate(made.faults[:EVENTS_SHOWN])]  # fmt: skip
     if len(made.faults) > EVENTS_SHOWN:
         lines.append(f"  {'':10} and {len(made.faults) - EVENTS_SHOWN} more")
+    lines += [f"  warning    {warning}" for warning in warnings(made)]
     return "\n".join(lines)
+
+
+def _used(made: RadioPlan) -> tuple[str, str]:
+    """Channel and protocol: what a run uses of them."""
+    model: RadioScenario = made.scenario.model
+    slot_us = made.params["slot_us"]
+    if model.channel.level == "slotted":
+        return radio_slotted.words(model, slot_us)
+    channel = (
+        f"event level, {model.channel.bit_rate:,} bit/s, a slot of {slot_us} us, "
+        f"delays of {_range(*pair(model.channel.tau_us), 'us')}, "
+        f"turnaround {made.params['ta_us'] / 1000:g} ms"
+    )
+    return channel, made.protocol
+
+
+def warnings(made: RadioPlan) -> list[str]:
+    """What of a plan lies outside the assumptions of all protocols, a sentence each."""
+    found = []
+    if made.stations == 1:
+        found.append("One station alone: nobody can receive what it sends.")
+    hidden = [
+        f"{i} and {j}"
+        for j in range(made.stations)
+        for i in range(j)
+        if made.delays_us[i][j] < 0 or made.delays_us[j][i] < 0
+    ]
+    if hidden:
+        named = ", ".join(hidden[:PAIRS_SHOWN]) + (", ..." if len(hidden) > PAIRS_SHOWN else "")
+        found.append(
+            f"Stations that do not hear each other ({named}): packets may collide unnoticed, "
+            "stations may starve."
+        )
+    return found
 
 
 def traffic_words(model: RadioScenario) -> str:

@@ -6,7 +6,7 @@ from math import ceil
 
 from innervate.scenario.errors import ScenarioError
 from innervate.scenario.lines import Key
-from innervate.scenario.model import EventTable, SkinScenario
+from innervate.scenario.model import CommandTable, EventTable, SkinScenario
 from innervate.scenario.source import Source
 
 ONE = 840  # p_f = 1 in fixed point [skin 5]
@@ -14,6 +14,7 @@ K_MAX = 100
 # sim/clocks.py computes time_us * drift_ppm * 2^30 / 10^6 in 64 bits with sign: duration_s *
 # drift_ppm has to stay below 2^33, less a little for the rounding of the drift.
 DRIFT_S_PPM = 8_000_000_000
+COMMANDS_MAX = 1_000_000
 TARGETS = ("interface", "cell", "link", "node", "pc", "random")
 # Targets each action can have, and the words for them.
 CABLE_ACTIONS = ("cut", "restore", "loose", "lose")
@@ -46,6 +47,7 @@ def check(source: Source, model: SkinScenario) -> None:
         raise source.error(("data", "rate_hz"), "data.rate_hz must be 0 (off) or at least 0.01")
     for index, event in enumerate(model.event):
         _event(source, model, index, event)
+    _commands(source, model)
     if model.touch is not None:
         times = [point[0] for point in model.touch.path]
         for index in range(1, len(times)):
@@ -90,6 +92,9 @@ def _protocol(source: Source, model: SkinScenario) -> None:
     if not protocol.balancing and protocol.balance_periods is not None:
         message = "protocol.balance_periods has no effect with balancing = false; leave one out"
         raise source.error(("protocol", "balance_periods"), message)
+    if not protocol.balancing and protocol.balance_rule != "even":
+        message = "protocol.balance_rule has no effect with balancing = false; leave one out"
+        raise source.error(("protocol", "balance_rule"), message)
     _range(source, ("protocol", "forward_us"), protocol.forward_us)
 
 
@@ -175,6 +180,37 @@ def _amount(source: Source, key: Key, name: str, event: EventTable) -> None:
     if event.action != "lose" and event.frames is not None:
         message = f'{name}.frames goes with "lose", not "{event.action}"'
         raise source.error((*key, "frames"), message)
+
+
+def _commands(source: Source, model: SkinScenario) -> None:
+    count = 0
+    for index, table in enumerate(model.command):
+        key: Key = ("command", index)
+        name = f"command.{index}"
+        given = [t for t in ("cell", "node", "random") if getattr(table, t) not in (None, False)]
+        if len(given) > 1:
+            message = f"{name} has {len(given)} targets: {' and '.join(given)}; keep one"
+            raise source.error((*key, given[1]), message)
+        if table.at_s >= model.duration_s:
+            message = f"{name}.at_s = {table.at_s:g} is not before the end; duration_s is "
+            raise source.error((*key, "at_s"), f"{message}{model.duration_s:g}")
+        if 0 < table.rate_hz < 0.001:
+            message = f"{name}.rate_hz must be 0 (once) or at least 0.001"
+            raise source.error((*key, "rate_hz"), message)
+        if table.cell is not None and table.cell.port is not None:
+            message = f"{name}: a command is for the whole cell; leave port out"
+            raise source.error((*key, "cell"), message)
+        count += commands_of(table, model.duration_s)
+        if count > COMMANDS_MAX:
+            message = f"these are {count:,} commands until the end, of at most {COMMANDS_MAX:,}"
+            raise source.error((*key, "rate_hz"), f"{message}; make {name}.rate_hz smaller")
+
+
+def commands_of(table: CommandTable, duration_s: float) -> int:
+    """How many commands a table makes before the end."""
+    if table.rate_hz == 0:
+        return 1
+    return max(1, ceil((duration_s - table.at_s) * table.rate_hz))
 
 
 def check_kind(source: Source, kind: object, known: list[str]) -> str:

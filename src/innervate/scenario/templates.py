@@ -37,7 +37,7 @@ column = 5
 # b = { patch = 1, row = 0, column = 0 }
 
 [protocol]
-rule = "feasible"             # feasible | strict | paper | static
+rule = "feasible"             # feasible | strict | paper | paper-lax | static
 updates = "wave"              # periodic | triggered | wave
 beacon_hz = 250
 k = 5                         # missed beacons until a port is broken; or r_f and r_r

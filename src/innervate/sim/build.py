@@ -10,9 +10,10 @@ import numpy as np
 
 from innervate.kernel import records
 from innervate.protocol import rng, skin_fields
-from innervate.sim import commands, taps
+from innervate.sim import commands, delays, taps
 from innervate.sim import world as w
 from innervate.sim.loop import BATCH
+from innervate.sim.orders import SLOTS
 from innervate.sim.wheel import BUCKETS, FREE, FRESH, LAST, LEVELS, NIL, PENDING, WORDS
 from innervate.sim.wires import COUNTERS, LOSSY
 
@@ -43,20 +44,24 @@ def build(
     deliveries: bool = False,
     trail: bool = False,
     tap: bool = False,
+    orders: bool = False,
 ) -> w.World:
     """The world of a plan, before its first event.
 
     `deliveries` keeps a row per tactile sample the PC receives, `trail` a row per handler call,
-    `tap` copies of frames as they leave and come in.
+    `tap` copies of frames as they leave and come in. `orders` makes room for commands of the PC
+    even if the plan has none.
     """
     tables = w.Tables(plain)
     graph = plan.graph
     cells, nodes, ends = graph.cells, graph.cells + 1, len(graph.peer)
     tx_slots = nodes * w.TIMER_SLOTS
-    pool_slots = tx_slots + (ends if plan.data_period_us else 0)
+    orders = orders or bool(plan.orders)
+    waits = bool(plan.data_period_us) or orders  # beacons alone never wait
+    pool_slots = tx_slots + (ends if waits else 0)
     limit = max(16, graph.interfaces + 4)
     pool = 2 * ends + BATCH * 16 + 4 * limit
-    queue_frames = ends * plan.queue_frames if plan.data_period_us else 1
+    queue_frames = ends * plan.queue_frames if waits else 1
     # What a batch of events and a command can add: every action empties a queue, the PC goes off.
     burst = (BATCH + 1) * limit * (1 + plan.queue_frames)
     tapped = ROWS + burst if tap else 1
@@ -79,17 +84,18 @@ def build(
         sample=tables.states(skin_fields.FRAME, 1),
         counters=tables.numbers(COUNTERS, 0, np.int64),
         watch=_watch(tables, cells, states),
-        commands=tables.records(w.COMMAND, len(plan.faults) + 1),
+        commands=tables.records(w.COMMAND, len(plan.faults) + len(plan.orders) + 1),
         rows=tables.records(w.ROW, ROWS + 8 * limit, fresh=True),
         deliveries=tables.records(w.DELIVERY, ROWS if deliveries else 1, fresh=True),
         trail=tables.records(w.TRAIL, ROWS if trail else 1, fresh=True),
         taps=tables.records(w.TAP, tapped, fresh=True),
         tapped=tables.states(skin_fields.FRAME, tapped),
+        **_books(tables, plan, orders),
         **_touch(tables, plan),
     )
     _set_run(world, plan, tx_slots, pool_slots)
-    put(world.run, 0, checks=int(checks), watchful=int(checks or trail), broken_at=-1)
-    put(world.run, 0, row_limit=len(world.rows), observe=int(observe or checks))
+    put(world.run, 0, checks=int(checks), watchful=int(checks or trail), broken_at=-1,
+        row_limit=len(world.rows), observe=int(observe or checks))  # fmt: skip
     put(world.run, 0, delivery_limit=ROWS if deliveries else 0, trail_limit=ROWS if trail else 0)
     put(world.run, 0, tap_limit=ROWS if tap else 0)
     put(world.params, 0, **{field[0]: plan.params[field[0]] for field in skin_fields.PARAMS})
@@ -128,6 +134,18 @@ def _outbox(tables: w.Tables, limit: int) -> w.Out:
         action=tables.records(w.ACTION, limit),
         frame=tables.states(skin_fields.FRAME, limit),
     )
+
+
+def _books(tables: w.Tables, plan: Any, orders: bool) -> dict[str, Any]:
+    """What is kept of latencies, and of the PC's commands."""
+    ways = (plan.graph.interfaces if plan.data_period_us else 0) + orders
+    slots = SLOTS if orders else 0
+    return {
+        "delays": tables.records(w.DELAY, ways),
+        "delay_counts": tables.numbers(ways * delays.CLASSES),
+        "due": tables.numbers(slots * plan.graph.cells),
+        "due_number": tables.numbers(slots, NIL),
+    }
 
 
 def _touch(tables: w.Tables, plan: Any) -> dict[str, Any]:
@@ -227,7 +245,9 @@ def _watch(tables: w.Tables, cells: int, states: Any) -> w.Watch:
     return w.Watch(
         port=tables.numbers(cells, NIL),
         routed=tables.numbers(cells),
+        had=tables.numbers(cells),
         joined=tables.numbers(cells),
+        apart=tables.numbers(cells, NIL, np.int64),
         ring=tables.numbers(cells, NIL),
         before=tables.numbers(cells),
         stack=tables.numbers(cells),
@@ -288,17 +308,23 @@ def _set_nodes(world: w.World, plan: Any) -> None:
 
 
 def _set_commands(world: w.World, plan: Any) -> None:
-    put(world.run, 0, commands=len(plan.faults) + 1)
-    put(world.commands, 0, at=0, action=commands.BEGIN, end=NIL, node=NIL, index=NIL)
-    for i, fault in enumerate(plan.faults):
-        value = fault.frames if fault.action == commands.LOSE else fault.loss_q15
-        put(
-            world.commands,
-            i + 1,
-            at=fault.at_us,
-            action=fault.action,
-            end=fault.end,
-            node=fault.node,
-            value=value,
-            index=fault.index,
-        )
+    """What is done to the network from outside, in order of time; faults before commands."""
+    rows = [*map(fault_row, plan.faults), *map(order_row, plan.orders)]
+    rows = [(0, commands.BEGIN, NIL, NIL, 0, NIL), *sorted(rows, key=lambda row: row[0])]
+    put(world.run, 0, commands=len(rows))
+    if isinstance(world.commands, list):
+        for i, row in enumerate(rows):
+            put(world.commands, i, **dict(zip(w.COMMAND, row, strict=True)))
+    else:
+        world.commands[:] = rows
+
+
+def fault_row(fault: Any) -> tuple[int, ...]:
+    """A fault of the plan as a row of `world.COMMAND`."""
+    value = fault.frames if fault.action == commands.LOSE else fault.loss_q15
+    return (fault.at_us, fault.action, fault.end, fault.node, value, fault.index)
+
+
+def order_row(order: Any) -> tuple[int, ...]:
+    """A command of the PC as a row of `world.COMMAND`."""
+    return (order.at_us, commands.GIVE, NIL, order.cell, order.code << 16 | order.value, NIL)

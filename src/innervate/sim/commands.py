@@ -16,6 +16,7 @@ REVIVE = 3
 LOOSE = 4
 RESTART = 5
 LOSE = 6
+GIVE = 7  # no fault: the PC is given a command for cells (see orders.py)
 
 MEMORY_LOST = 1
 

@@ -11,7 +11,7 @@ from innervate.kernel.bits import mix
 from innervate.kernel.tables import fetch
 from innervate.protocol.arith import MASK30
 from innervate.protocol.outbox import DELIVER, REPORT, SEND, SET_TIMER
-from innervate.sim import clocks, commands, rows, touch, wires
+from innervate.sim import clocks, commands, orders, rows, touch, wires
 from innervate.sim import wheel as queue
 from innervate.sim.observer import BROKEN_OUTBOX
 from innervate.sim.wheel import FRESH, LAST, NIL
@@ -51,6 +51,7 @@ class Handlers(NamedTuple):
     on_timer_slot: Callable[..., None]
     on_arrival: Callable[..., None]
     dispatch: Callable[..., None]
+    give_order: Callable[..., None]
     report: Callable[..., None]
     advance: Callable[..., None]
 
@@ -103,10 +104,11 @@ def foresee(world, wheel):
 
 
 def build(stack):
-    """The loop for a stack: an object with start, hear, fire, sample, digest, report, stopped,
-    check, deliver and copy_frame (see skin_stack.py).
+    """The loop for a stack: an object with start, hear, fire, sample, give, digest, report,
+    stopped, check, deliver and copy_frame (see skin_stack.py).
     """
-    start, hear, fire, sample = stack.start, stack.hear, stack.fire, stack.sample
+    start, hear, fire = stack.start, stack.hear, stack.fire
+    sample, give = stack.sample, stack.give
     digest, report, stopped = stack.digest, stack.report, stack.stopped
     check, deliver, copy_frame = stack.check, stack.deliver, stack.copy_frame
 
@@ -137,7 +139,7 @@ def build(stack):
                 report(world, time, node, a, b, c)
             elif kind == DELIVER:
                 mark = mix(mark, digest(out.frame[i]))
-                deliver(world, time, port, out.frame[i])
+                deliver(world, time, node, port, out.frame[i])
         out.count[0] = 0
         run.fingerprint = mark
         if out.overflow[0] and run.broken == 0:
@@ -189,6 +191,7 @@ def build(stack):
             now = clocks.reading(world.clocks[node], time)
             world.counters[OFFERED] += 1
             touch.read_sensors(world, node, time)
+            world.sample[0].made_at = time & MASK30
             sample(world, node, now & MASK30)
             finish(world, node, time, ON_INPUT, 0)
             wait = clocks.true_delay(world, node, time, world.run[0].source_us)
@@ -225,6 +228,14 @@ def build(stack):
         else:
             wires.wire_free(world, slot - run.tx_slots, time, copy_frame)
 
+    def give_order(world, order):
+        """The PC is given a command for cells."""
+        if orders.begin(world, order):
+            node = world.run[0].cells
+            now = clocks.reading(world.clocks[node], order.at)
+            give(world, now & MASK30)
+            finish(world, node, order.at, ON_INPUT, 0)
+
     def advance(world, until, budget):
         """Run up to, not including, time `until` (us), or about `budget` events."""
         run = world.run[0]
@@ -246,10 +257,15 @@ def build(stack):
             if slot == NIL and run.broken == 0:
                 if limit >= until:
                     return
-                commands.obey(world, world.commands[run.next_command], switch_on, stopped)
+                command = world.commands[run.next_command]
+                if command.action == commands.GIVE:
+                    give_order(world, command)
+                else:
+                    commands.obey(world, command, switch_on, stopped)
                 run.next_command += 1
         run.status = BUDGET
 
     return Handlers(
-        drain, look, finish, switch_on, on_timer_slot, on_arrival, dispatch, report, advance
-    )
+        drain, look, finish, switch_on, on_timer_slot, on_arrival, dispatch, give_order, report,
+        advance,
+    )  # fmt: skip

@@ -1,7 +1,8 @@
 """Watches the routes of a skin while it runs: who has one, which loops close, what breaks.
 
-Keeps for every cell whether its chain of parents reaches the PC over live cables. A change costs
-as much as the cells it concerns, so that it can stay on at any size.
+Keeps for every cell whether its chain of parents reaches the PC over live cables, and whether live
+cables join it with the PC at all. A change of a parent costs as much as the cells it concerns, so
+that it can stay on at any size; one of the cables costs as much as there are cells.
 """
 
 from innervate.protocol.skin_words import (
@@ -12,15 +13,21 @@ from innervate.protocol.skin_words import (
     REPORT_BROKEN,
     REPORT_DROP,
     REPORT_PARENT,
-    RULE_PAPER,
+    RULE_FEASIBLE,
+    RULE_STRICT,
 )
-from innervate.sim.wires import LOOPED, NO_ROUTE
+from innervate.sim.wires import EARLY, NO_ROUTE
+from innervate.sim.world import DEAD
+
+DROPS = NO_ROUTE - DROP_NO_ROUTE  # the counter of a reason to drop stands this far from it
 
 # Codes of the observer's own rows; those below 100 are the protocol's reports.
 UNROUTED = 100  # a = connected cells without a route, from now on
 LOOP_OPEN = 101  # a = cells in it
 LOOP_CLOSED = 102  # a = how long it stood, us
 CUT_OFF = 103  # a = index of the scenario's event, b = cells whose chain used the link
+APART = 104  # a = cells that are on and that no live cable joins with the PC, b = those since now
+JOINED = 105  # a = cells that live cables join with the PC, from now on
 
 BROKEN_LOOP = 1
 BROKEN_FEASIBLE = 2
@@ -43,7 +50,9 @@ def note(world, time, node, code, a, b):
 def on_report(world, time, node, code, a, b):
     """A node reported something."""
     if code == REPORT_DROP:
-        world.counters[NO_ROUTE if a == DROP_NO_ROUTE else LOOPED] += 1
+        world.counters[DROPS + a] += 1
+        if a == DROP_NO_ROUTE and world.run[0].observe and world.watch.had[node] == 0:
+            world.counters[EARLY] += 1
         return
     if world.run[0].observe == 0:
         return
@@ -118,6 +127,7 @@ def spread(world, cell, routed):
         if watch.routed[node] == routed:
             continue
         watch.routed[node] = routed
+        watch.had[node] |= routed
         if watch.joined[node]:
             world.run[0].unrouted += 1 - 2 * routed
         for p in range(PORTS):
@@ -143,7 +153,8 @@ def open_loop(world, time, cell):
     run.loops += 1
     run.loops_open += 1
     note(world, time, cell, LOOP_OPEN, length, 0)
-    if run.rule < RULE_PAPER and run.checks and run.broken == 0:
+    loop_free = run.rule == RULE_FEASIBLE or run.rule == RULE_STRICT
+    if loop_free and run.checks and run.broken == 0:
         run.broken = BROKEN_LOOP
         run.broken_node = cell
         run.broken_other = next_hop(world, cell)
@@ -202,7 +213,32 @@ def on_links_changed(world, time, node, index):
         run.unrouted += watch.joined[cell] & (1 - watch.routed[cell])
         lost += watch.before[cell] & (1 - watch.routed[cell])
     note(world, time, node, CUT_OFF, index, lost)
+    note_apart(world, time, node)
     note_unrouted(world, time, node)
+
+
+def note_apart(world, time, node):
+    """After cables or nodes changed: since when which cells are cut off, rows if that changed."""
+    run = world.run[0]
+    watch = world.watch
+    apart = 0
+    fresh = 0
+    joined = 0
+    for cell in range(run.cells):
+        joined += watch.joined[cell]
+        if watch.joined[cell] or world.alive[cell] == DEAD:
+            watch.apart[cell] = NONE
+            continue
+        apart += 1
+        if watch.apart[cell] == NONE:
+            watch.apart[cell] = time
+            fresh += 1
+    if apart != run.apart or fresh > 0:
+        run.apart = apart
+        note(world, time, node, APART, apart, fresh)
+    if joined != run.joined:
+        run.joined = joined
+        note(world, time, node, JOINED, joined, 0)
 
 
 def note_unrouted(world, time, node):
@@ -232,7 +268,7 @@ def trace_cables(world):
     watch = world.watch
     for cell in range(run.cells):
         watch.joined[cell] = 0
-    if world.alive[run.cells] == 2:
+    if world.alive[run.cells] == DEAD:
         return
     count = 0
     for end in range(4 * run.cells, len(world.ends)):

@@ -17,7 +17,7 @@ from innervate.sim import build as builder
 from innervate.sim import loop, script, skin_stack, static_stack, taps
 from innervate.sim import world as w
 from innervate.sim.build import get
-from innervate.sim.wires import ARRIVED, URGENT_BLOCK
+from innervate.sim.wires import ARRIVED, BLOCKS
 
 RULE_STATIC = 3
 SLICE_EVENTS = 1_000_000
@@ -56,21 +56,29 @@ class Result:
 
 def _modules() -> list[ModuleType]:
     from innervate.kernel import invariants
-    from innervate.protocol import arith, outbox, skin, skin_route, skin_sink, skin_static
+    from innervate.protocol import (
+        arith,
+        outbox,
+        skin,
+        skin_down,
+        skin_route,
+        skin_sink,
+        skin_static,
+    )
     from innervate.protocol import rng as generator
-    from innervate.sim import checks, clocks, wheel, wires
+    from innervate.sim import checks, clocks, delays, wheel, wires
 
     return [
-        arith, outbox, generator, skin_route, skin, skin_sink, skin_static,
-        wheel, clocks, wires, invariants, checks, skin_stack, static_stack,
+        arith, outbox, generator, skin_route, skin_down, skin, skin_sink, skin_static,
+        wheel, clocks, wires, delays, invariants, checks, skin_stack, static_stack,
     ]  # fmt: skip
 
 
 def _rare() -> list[ModuleType]:
     """What runs too seldom to be worth copying into every caller."""
-    from innervate.sim import commands, observer, rows, touch
+    from innervate.sim import commands, observer, orders, rows, touch
 
-    return [observer, commands, touch, rows, taps]
+    return [observer, commands, orders, touch, rows, taps]
 
 
 @functools.cache
@@ -163,7 +171,7 @@ def _result(
         wall_s=took_s,
         fingerprint=f"{int(get(world.run, 0, 'fingerprint')) & (1 << 64) - 1:016x}",
         handled=int(get(world.run, 0, "handled")),
-        arrived=int(world.counters[ARRIVED] + world.counters[ARRIVED + URGENT_BLOCK]),
+        arrived=sum(int(world.counters[ARRIVED + block]) for block in BLOCKS),
         interrupted=interrupted,
     )
 

@@ -3,7 +3,8 @@
 from innervate.protocol import skin, skin_sink
 from innervate.protocol.arith import MASK30
 from innervate.protocol.skin import copy_frame
-from innervate.protocol.skin_words import BEACON, DATA, NONE, REPORT_BALANCE, SAMPLE
+from innervate.protocol.skin_words import BEACON, COMMAND, DATA, GIVE, NONE, REPORT_BALANCE, SAMPLE
+from innervate.sim import delays, orders
 from innervate.sim.checks import check_cell, check_route
 from innervate.sim.clocks import reading
 from innervate.sim.observer import follow, on_report
@@ -53,12 +54,20 @@ def sample(world, node, now):
     skin.on_input(cell, params, now, SAMPLE, world.sample[0], world.out)
 
 
+def give(world, now):
+    """Hand the PC a command to send down."""
+    skin_sink.on_input(world.pc, world.params[0], now, GIVE, world.sample[0], world.out)
+
+
 def digest(frame):
     """A frame in one word, for the fingerprint."""
     if frame.kind == DATA:
         word = frame.cell | (frame.seq << 16) | (frame.hops << 24) | (frame.proximity << 32)
         word ^= frame.force[0] * 1000003 + frame.force[1] * 70001 + frame.force[2] * 5003
         return word ^ (frame.accel[2] << 40) ^ (frame.temperature << 20)
+    if frame.kind == COMMAND:
+        word = frame.cell | (frame.number << 16) | (frame.hops << 32) | (frame.kind << 40)
+        return word ^ (frame.code << 44) ^ (frame.value << 48)
     word = frame.dist | (frame.sq << 8) | (frame.load << 24) | (frame.size << 36)
     return word | (frame.parent << 48) | (frame.kind << 49)
 
@@ -82,9 +91,14 @@ def check(world, node):
         check_cell(world, node)
 
 
-def deliver(world, time, port, frame):
-    """The PC's user gets a tactile sample."""
+def deliver(world, time, node, port, frame):
+    """The PC's user gets a tactile sample, or a cell's a command."""
+    if frame.kind == COMMAND:
+        orders.reach(world, time, node, frame)
+        return
     world.counters[DELIVERED] += 1
+    latency_us = (time - frame.made_at) & MASK30
+    delays.note(world, port, latency_us)
     run = world.run[0]
     if run.delivery_limit == 0:
         return
@@ -95,6 +109,7 @@ def deliver(world, time, port, frame):
     row.cell = frame.cell
     row.seq = frame.seq
     row.hops = frame.hops
+    row.latency = latency_us
     row.proximity = frame.proximity
     row.temperature = frame.temperature
     for i in range(3):

@@ -24,10 +24,11 @@ from typing import Any
 
 import numpy as np
 
+from innervate.scenario.radio_slotted import BY_CHANCE
 from innervate.sim import slotted_books as shelf
 from innervate.sim.slotted_books import Books, open_books, schedule
 from innervate.sim.slotted_draws import MEAN_MAX, generator
-from innervate.sim.slotted_drive import BY_CHANCE, MACS, SLOT, USED_BY, Job, Options, drive, loop
+from innervate.sim.slotted_drive import MACS, SLOT, USED_BY, Job, Options, drive, loop
 
 TRAFFIC = {"saturated": shelf.SATURATED, "disaster": shelf.DISASTER, "poisson": shelf.POISSON}
 STATIONS_MAX = 10_000
@@ -69,6 +70,7 @@ def slotted(
     seed: int = 1,
     warmup: float = 0.1,
     load: float | None = None,
+    until_slots: float | None = None,
     plain: bool = False,
     **options: Any,
 ) -> SlottedResult:
@@ -88,6 +90,7 @@ def slotted(
         warmup: share of the successes that is not measured, 0 <= warmup < 1; none in a disaster.
         load: Poisson: packets offered per packet time (T slots) by all stations together, up to
             50; with an infinite population that is fresh packets and retransmissions.
+        until_slots: packets that end later do not count, and the time measured ends there.
         plain: run the same loops uncompiled, with the same result.
         options: what only some protocols have:
             p: slotted-aloha, nonpersistent, p-persistent: probability of sending in a slot,
@@ -125,7 +128,8 @@ def slotted(
             raise ValueError(f"{packets} packets take too long at a load of {load}")
         loop(schedule, plain)(books, generator(seed, f"{name}/arrivals"), interval)
     gap = drive(Job(mac, books, packet_slots, None if stations else load, given, plain))
-    return _measure(books, slot, airtime, gap, warmup, endless=not stations)
+    until = shelf.NEVER if until_slots is None else round(until_slots * slot)
+    return _measure(books, slot, airtime, gap, warmup, until, endless=not stations)
 
 
 def _check(
@@ -173,16 +177,17 @@ def _options(mac: str, stations: int, options: dict[str, Any]) -> Options:
 
 
 def _measure(
-    books: Books, slot: int, airtime: int, gap: int, warmup: float, endless: bool
+    books: Books, slot: int, airtime: int, gap: int, warmup: float, until: int, endless: bool
 ) -> SlottedResult:
-    """Times and shares from what the loop wrote down."""
-    done = int(books.counts[shelf.DONE])
+    """Times and shares from what the loop wrote down, up to a moment."""
+    all_done = int(books.counts[shelf.DONE])
+    done = int(np.searchsorted(books.end[:all_done], until, "right"))
     skipped = int(done * warmup)
     ends, order = books.end[skipped:done], books.station[skipped:done]
     since = int(books.end[skipped - 1]) + gap if skipped else 0
     before = int(books.before[skipped - 1]) if skipped else 0
     last = int(books.end[done - 1]) if done else 0
-    elapsed = last + gap - since
+    elapsed = (last + gap if done == all_done else until) - since
     stations = len(books.offer)
     successes = np.bincount(order, minlength=stations)
     delays = (ends - books.offered[skipped:done]) / slot
@@ -193,11 +198,18 @@ def _measure(
         duration_slots=last / slot,
         successes=successes.tolist(),
         order=order.tolist(),
-        collisions=int(books.counts[shelf.COLLISIONS]) - before,
+        collisions=_collisions(books, done, all_done) - before,
         delay_slots=delays[:0] if endless else delays,
         jain=jain(successes),
         jain_round=_jain_round(order, stations),
     )
+
+
+def _collisions(books: Books, done: int, all_done: int) -> int:
+    """Collisions up to the last success that counts; in a whole run to its end."""
+    if done == all_done:
+        return int(books.counts[shelf.COLLISIONS])
+    return int(books.before[done])
 
 
 def jain(shares: Any) -> float:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from innervate.kernel import door
+from innervate.scenario.radio_slotted import BACKOFF, BY_CHANCE, TURNAROUND
 from innervate.sim import slotted_books as shelf
 from innervate.sim import slotted_chance as chance
 from innervate.sim import slotted_contend as contend
@@ -20,9 +21,6 @@ from innervate.sim.slotted_books import Books, Numbers
 
 SLOT = 208  # the paper's us
 POISSON_TAIL = 1e-12
-TURNAROUND = {"csma-cd-r", "csma-cd-d2", "csma-cd-d2p"}
-BACKOFF = {"csma-cd-d1", "csma-cd-d2", "csma-cd-d2p"}
-BY_CHANCE = {"slotted-aloha", "nonpersistent", "p-persistent"}
 MACS = TURNAROUND | BACKOFF | BY_CHANCE | {"dcf", "tree", "tdma"}
 USED_BY = {
     "p": BY_CHANCE,

@@ -7,6 +7,7 @@ from innervate.protocol.skin_words import SAMPLE
 from innervate.sim.skin_stack import check as check
 from innervate.sim.skin_stack import deliver as deliver
 from innervate.sim.skin_stack import digest as digest
+from innervate.sim.skin_stack import give as give
 from innervate.sim.skin_stack import local
 from innervate.sim.skin_stack import report as report
 from innervate.sim.skin_stack import stopped as stopped

@@ -9,6 +9,7 @@ A cable's `epoch` is odd while it is down; a frame arrives only if the epoch did
 from innervate.protocol.outbox import FLUSH, URGENT
 from innervate.protocol.rng import LOW15, step
 from innervate.protocol.skin import copy_frame as copy_skin_frame
+from innervate.protocol.skin_words import COMMAND
 from innervate.sim import taps
 from innervate.sim import wheel as queue
 from innervate.sim.world import ALIVE
@@ -16,7 +17,7 @@ from innervate.sim.world import ALIVE
 # Kinds of pool slots; an arrival is marked by the block of counters its frame belongs to.
 DELAYED = 1
 
-# Words of `world.counters`; the second block counts urgent frames, the first all others.
+# Words of `world.counters`; in blocks: data, urgent frames, commands.
 SENT = 0
 ARRIVED = 1
 LOST_CUT = 2
@@ -30,11 +31,27 @@ OFFERED = 16
 DELIVERED = 17
 NO_ROUTE = 18
 LOOPED = 19
-COUNTERS = 24
+AGAIN = 20  # a command: dropped because it was here before, given up after too many hops
+TOO_FAR = 21
+EARLY = 22  # of NO_ROUTE: dropped by cells that have not had a route yet, as far as is watched
+GIVEN = 23  # commands given to the PC; who got them: see orders.py
+COMMAND_BLOCK = 24
+BLOCKS = (0, URGENT_BLOCK, COMMAND_BLOCK)
+ADDRESSED = 32
+REACHED = 33
+REPEATED = 34
+STRAY = 35
+MISSED = 36
+COUNTERS = 40
 
 # Bits of `end.impaired`.
 DOWN = 1
 LOSSY = 2
+
+
+def block_of(frame):
+    """The block of counters of a frame that is not urgent."""
+    return COMMAND_BLOCK if frame.kind == COMMAND else 0
 
 
 def tap(world, end, frame, time, out, why):
@@ -49,13 +66,11 @@ def transmit(world, end, frame, time, flags, copy_frame):
     if wire.peer < 0:
         return
     if flags & FLUSH and world.buffers[end].queued > 0:
-        world.counters[LOST_BROKEN] += world.buffers[end].queued
-        taps.keep_queue(world, end, time, taps.BROKEN, copy_skin_frame)
-        world.buffers[end].queued = 0
+        give_up_queue(world, end, time, LOST_BROKEN, taps.BROKEN)
     if flags & URGENT:
         launch(world, end, frame, max(time, wire.busy), URGENT_BLOCK, copy_frame)
     elif wire.waiting == 0 and time >= wire.busy:
-        launch(world, end, frame, time, 0, copy_frame)
+        launch(world, end, frame, time, block_of(frame), copy_frame)
     else:
         enqueue(world, end, frame, time, copy_frame)
 
@@ -64,9 +79,10 @@ def enqueue(world, end, frame, time, copy_frame):
     """Put a frame into its port's drop-tail queue."""
     buffer = world.buffers[end]
     room = world.run[0].queue_frames
-    world.counters[SENT] += 1
+    block = block_of(frame)
+    world.counters[SENT + block] += 1
     if buffer.queued >= room:
-        world.counters[LOST_QUEUE] += 1
+        world.counters[LOST_QUEUE + block] += 1
         tap(world, end, frame, time, 1, taps.QUEUE)
         return
     place = (buffer.first + buffer.queued) % room
@@ -89,8 +105,10 @@ def wire_free(world, end, time, copy_frame):
         queue.insert(world.wheel, slot, wire.busy)
     else:
         room = world.run[0].queue_frames
-        world.counters[SENT] -= 1  # launch counts it again
-        launch(world, end, world.queue[end * room + buffer.first], time, 0, copy_frame)
+        frame = world.queue[end * room + buffer.first]
+        block = block_of(frame)
+        world.counters[SENT + block] -= 1  # launch counts it again
+        launch(world, end, frame, time, block, copy_frame)
         buffer.first = (buffer.first + 1) % room
         buffer.queued -= 1
         if buffer.queued == 0:
@@ -165,9 +183,17 @@ def lands(world, event, node, frame, time):
 
 def drop_queue(world, end, time):
     """Empty a port's queue because its node is switched off."""
+    give_up_queue(world, end, time, LOST_OFF, taps.OFF)
+
+
+def give_up_queue(world, end, time, reason, why):
+    """Lose all that waits at a port."""
     buffer = world.buffers[end]
-    world.counters[LOST_OFF] += buffer.queued
-    taps.keep_queue(world, end, time, taps.OFF, copy_skin_frame)
+    room = world.run[0].queue_frames
+    for i in range(buffer.queued):
+        frame = world.queue[end * room + (buffer.first + i) % room]
+        world.counters[reason + block_of(frame)] += 1
+    taps.keep_queue(world, end, time, why, copy_skin_frame)
     buffer.queued = 0
 
 

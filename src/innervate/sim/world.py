@@ -27,19 +27,23 @@ RUN = (
     "checks", "observe", "watchful", "status", "fingerprint", "handled", "rng",
     "commands", "next_command", "rows", "row_limit", "deliveries", "delivery_limit",
     "trail", "trail_limit", "taps", "tap_limit",
-    "unrouted", "noted", "loops", "loops_open",
+    "unrouted", "noted", "apart", "joined", "loops", "loops_open",
     "broken", "broken_at", "broken_node", "broken_other",
 )  # fmt: skip
 COMMAND = ("at", "action", "end", "node", "value", "index")
 ROW = ("time", "node", "code", "a", "b")
-DELIVERY = ("time", "port", "cell", "seq", "hops", "proximity", "force", "temperature", "accel")
+DELIVERY = (
+    "time", "port", "cell", "seq", "hops", "latency",
+    "proximity", "force", "temperature", "accel",
+)  # fmt: skip
+DELAY = ("count", "sum", "high")
 TRAIL = ("time", "node", "handler", "port", "fingerprint")
 # A frame for a capture: when; when its sender began; whose interface (a cable's end, a node, a
 # station); who sent it (mesh, radio); 1 = it left, 0 = it came in; why it got no further.
 TAP = ("time", "start", "at", "sender", "out", "why")
 ACTION = ("kind", "a", "b", "c")
 WIDE = {"time", "start", "busy", "offset", "rate", "inverse", "source", "at", "fingerprint"} | set(
-    RUN
+    (*RUN, *DELAY)
 )
 
 # States of a node.
@@ -85,7 +89,9 @@ class Watch(NamedTuple):
 
     port: Any  # parent port in force, -1 none
     routed: Any  # 1 = chain of parents reaches the PC over live cables
+    had: Any  # 1 = it did so at some time
     joined: Any  # 1 = physically connected to the PC
+    apart: Any  # since when it is on without being so, us; -1 = it is not
     ring: Any  # start of the forwarding loop the cell is in, -1 none
     before: Any  # `routed` as it was before the present command
     stack: Any
@@ -120,6 +126,10 @@ class World(NamedTuple):
     trail: Any
     taps: Any  # frames for a capture (see taps.py): what happened to them
     tapped: Any  # ... and they themselves
+    delays: Any  # latencies of data by interface port, then of commands: count, sum, greatest
+    due: Any  # per newest commands of the PC and cell: what is known (see orders.py)
+    due_number: Any  # ... the commands' numbers, -1 none
+    delay_counts: Any  # ... and how many in each class (see delays.py)
     touch_x: Any
     touch_y: Any
     touch_span: Any

@@ -88,6 +88,7 @@ RECEIVED = Table(
         Column("cell", "Int32", "cell", "who measured it"),
         Column("seq", "Int16", "number", "counts the cell's samples, 0..255"),
         Column("hops", "Int16", "hops", "cells that forwarded it"),
+        Column("latency_us", "Int64", "us", "since it was measured"),
         Column("proximity", "Int32", "raw", "nearness of an object, 0 far"),
         Column("force_0", "Int32", "mN", "first force sensor"),
         Column("force_1", "Int32", "mN", "second force sensor"),

@@ -28,7 +28,7 @@ def broken(model: system.SkinModel, bound: Any = None) -> str:
         model: what is to be explored.
         bound: the system of a copy of the protocol; None the real one.
     """
-    if model.rule == "paper" or (model.rule == "strict" and model.budget.restart):
+    if model.rule.startswith("paper") or (model.rule == "strict" and model.budget.restart):
         return ""
     if bound is None:
         return _tried(model.rule, model.updates)

@@ -9,15 +9,24 @@ from typing import Any, NamedTuple
 
 from innervate.kernel import records
 from innervate.protocol import skin, skin_fields, skin_sink
-from innervate.protocol.skin_words import NONE, ONE, PORTS
+from innervate.protocol.skin_words import (
+    NONE,
+    ONE,
+    PORTS,
+    RULE_FEASIBLE,
+    RULE_PAPER,
+    RULE_PAPER_LAX,
+    RULE_STRICT,
+)
 from innervate.topology import Graph
 from innervate.verify import skin_check, skin_dead, skin_moves, skin_row, skin_world
 from innervate.verify import skin_world as w
 from innervate.verify.errors import VerifyError
 from innervate.verify.graphs import symmetries
 
-RULES = ("feasible", "strict", "paper")
+RULES = ("feasible", "strict", "paper", "paper-lax")
 UPDATES = ("periodic", "triggered")
+_NUMBERS = dict(zip(RULES, (RULE_FEASIBLE, RULE_STRICT, RULE_PAPER, RULE_PAPER_LAX), strict=True))
 ANY = w.ANY
 FAULTS = ("loss", "cut", "heal", "false", "restart")
 SETTLED_M = 3  # the fair schedule counts the PC's number every so many rounds
@@ -56,7 +65,7 @@ class SkinModel:
 
     Attributes:
         graph: cells, PC and cables.
-        rule: "feasible", "strict" or "paper".
+        rule: one of RULES.
         updates: "periodic" or "triggered".
         budget: how often what may happen.
         hold: FD_HOLD, in periods.
@@ -211,7 +220,7 @@ def first_row(model: SkinModel, system: System) -> list[int]:
 
 def _parameters(model: SkinModel, seq_every: int) -> dict[str, int]:
     return {
-        "rule": RULES.index(model.rule),
+        "rule": _NUMBERS[model.rule],
         "updates": UPDATES.index(model.updates),
         "beacon_us": 4000,
         "r_f": ONE,
@@ -220,6 +229,7 @@ def _parameters(model: SkinModel, seq_every: int) -> dict[str, int]:
         "max_depth": 64,
         "seq_every": seq_every,
         "balance_periods": 0,
+        "balance_rule": 0,
         "hold_periods": hold_periods(model),
         "gap_us": 500,
         "skip_us": 2400,

@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from innervate import __version__
+from innervate.analysis.radio_live import Still
 from innervate.live import status
 from innervate.web.errors import Refused, WatchError
 from innervate.web.history import SERIES, Logbook
-from innervate.web.live_map import Map, Place, Status
+from innervate.web.live_map import Link, Map, Place, Status
 from innervate.web.live_poll import Poller
 from innervate.web.live_state import State
 from innervate.web.messages import Command, Cut, Heal, Kill, Revive, number
@@ -21,6 +22,8 @@ from innervate.web.source import Source
 
 POLL_S = 0.2
 SOON_S = 0.05  # while somebody has no way
+EXPECTED_S = 2.0  # so soon what is asked for is seen
+SLOW = 2  # who gives no answer so often in a row does not answer any more
 STATUS = {"do": "status"}
 
 
@@ -54,18 +57,24 @@ class Live(Source):
         self._poller = Poller(sockets)
         self._began = time.monotonic()
         self._told: dict[int, Status] = {}
+        self._missed: Counter[int] = Counter()  # how often in a row a node gave no answer
+        self._asked_for: dict[Any, float] = {}  # what is cut or put back from here: until when
         self._last: dict[int, Status] = {}  # the newest word of those that do not answer, too
         self._log = Logbook(self.history)
         self._next = 0.0
         self._counters: Counter[str] = Counter()
         self._counted_us = 0
         self._recovery: Recovery | None = None
+        self._still, self._still_ms = Still(), 0.0
         self._poll()
         if not self._told:
             raise WatchError(f"{sockets[0]}: no node answers here; are they still running?")
         kinds = {str(one["kind"]) for one in self._told.values()}
         if len(kinds) > 1:
             raise WatchError(f"{' and '.join(sorted(kinds))} nodes: name those of one network")
+        for i in range(len(sockets)):
+            if i not in self._told:
+                self._log.often("none", 0, f"{self._names[i]}: nobody answers at its socket", "bad")
         self._map = Map(self._last)
         self._off: set[Place] = set()  # cut off whole, from here
         self._state = State(self._map, self._told)
@@ -133,38 +142,93 @@ class Live(Source):
         return max(0.0, self._next - time.monotonic())
 
     def _poll(self) -> None:
-        """Ask everybody; say who went and who came back."""
-        before, self._told = self._told, self._poller.ask_all(STATUS)
+        """Ask everybody; say who went and who came back.
+
+        Who is only slow is taken at the word before, once.
+        """
+        before, told = self._told, self._poller.ask_all(STATUS)
         at_us = self._now_us()
-        for i in before.keys() - self._told.keys():
-            self._log.say(at_us, f"{self._names[i]} does not answer any more", "bad")
-        for i in self._told.keys() - before.keys():
+        self._missed = Counter({i: self._missed[i] + 1 for i in before.keys() - told.keys()})
+        for i, times in self._missed.items():
+            if times < SLOW and not self._poller.is_gone(i):
+                told[i] = before[i]
+        self._told = told
+        went = sorted(before.keys() - told.keys())
+        for i in went:
+            self._log.often("went", at_us, f"{self._names[i]} does not answer any more", "bad")
+        for i in sorted(told.keys() - before.keys()):
             if i in self._last:
-                self._log.say(at_us, f"{self._names[i]} answers again", "good")
-        self._last = {**self._last, **self._told}
+                self._log.often("came", at_us, f"{self._names[i]} answers again", "good")
+        self._last = {**self._last, **told}
+        if went:
+            silent = len(self._last) - len(told)
+            alone = f"{self._names[went[0]]} does not answer any more"
+            self._lose(alone if silent == 1 else f"{silent} nodes do not answer any more")
+
+    def _compare(self, before: State) -> None:
+        """What was cut or put back since `before`, and not from here, is said."""
+        changes: list[tuple[Link | Place, bool]] = [
+            *before.changed_links(self._state),
+            *before.changed_places(self._state),
+        ]
+        cut: list[Link | Place] = []
+        back: list[Link | Place] = []
+        for what, up in changes:
+            if self._asked_for.pop(self._map.key(what), 0.0) < time.monotonic():
+                (back if up else cut).append(what)
+        for what in cut:
+            self._log.often("cut", self._now_us(), self._words(what, False))
+        for what in back:
+            self._log.often("back", self._now_us(), self._words(what, True))
+        if cut:
+            more = f", and {len(cut) - 1} more" if len(cut) > 1 else ""
+            self._lose(self._words(cut[0], False) + more)
+
+    def _words(self, what: Link | Place, up: bool) -> str:
+        """What became of a link, or of a station on its channel."""
+        if isinstance(what, Place):
+            return f"{self._label(what)} {'let back' if up else 'cut off'}"
+        names = f"{self._label(what.a)} - {self._label(what.b)}"
+        return f"link {names} {'put back' if up else 'cut'}"
 
     def _look(self) -> None:
         """Take in what everybody said: who has a way again, a point of the plots."""
-        at_us = self._now_us()
-        self._state = State(self._map, self._told, self._off)
-        lost, recovery = self._state.unconnected, self._recovery
-        if recovery is not None and self._map.kind != "radio":
-            after_ms = round((at_us - recovery.at_us) / 1e3, 1)
-            if recovery.detected_ms is None and lost:
-                recovery.detected_ms = after_ms
-            if recovery.recovered_ms is None and not lost:
-                kept = recovery.detected_ms is None
-                recovery.recovered_ms = 0.0 if kept else after_ms
-                how = "kept its way" if kept else f"has a way again after {after_ms:.0f} ms"
-                self._log.say(at_us, f"every node {how}, as they say", "good")
+        before, self._state = self._state, State(self._map, self._told, self._off)
+        self._compare(before)
+        self._recover()
+        if self._map.kind == "radio":
+            self._still_ms = self._still.note(self._now_us(), self._told.values())
+        at_us, lost = self._now_us(), self._state.unconnected
         total = self._frames()
         took_s = max(1e-3, (at_us - self._counted_us) / 1e6)
         point: dict[str, float | None] = {
             name: round(max(0, total[name] - self._counters[name]) / took_s, 1) for name in total
         }
-        if self._counted_us:
+        if self._counted_us and self._told:
             self.history.add(SERIES, at_us, {"unconnected": float(lost), **point})
         self._counters, self._counted_us = total, at_us
+
+    def _recover(self) -> None:
+        """Note when everybody who can have a way has one again; nothing if nobody answers."""
+        recovery, state = self._recovery, self._state
+        if recovery is None or self._map.kind == "radio" or not self._told:
+            return
+        at_us = self._now_us()
+        after_ms = round((at_us - recovery.at_us) / 1e3, 1)
+        if recovery.detected_ms is None and state.lacking:
+            recovery.detected_ms = after_ms
+        if recovery.recovered_ms is None and not state.lacking:
+            kept = recovery.detected_ms is None
+            recovery.recovered_ms = 0.0 if kept else after_ms
+            how = "kept its way" if kept else f"has a way again after {after_ms:.0f} ms"
+            apart = state.unconnected
+            are = "is" if apart == 1 else "are"
+            who = "every node" if not apart else f"every node but {apart} that {are} cut off"
+            self._log.say(at_us, f"{who} {how}, as they say", "info" if apart else "good")
+
+    def _lose(self, cause: str) -> None:
+        """Something was taken away: a recovery begins."""
+        self._recovery = Recovery(cause, self._now_us())
 
     def _frames(self) -> Counter[str]:
         """Frames received and dropped, by everybody so far."""
@@ -179,7 +243,7 @@ class Live(Source):
 
     def fields(self) -> dict[str, Any]:
         """The state as it was told last."""
-        recovery = self._recovery
+        recovery, headline = self._recovery, self._state.headline(self._still_ms)
         t_s = math.ceil(self._now_us() / 1e5) / 10  # in steps, so that what is idle is told seldom
         return {
             "t_s": t_s,
@@ -187,6 +251,7 @@ class Live(Source):
             "speed": 1.0,
             "at_end": False,
             **self._state.fields(),
+            "headline": headline.shown(),
             "since_cut_s": None if recovery is None else round(t_s - recovery.at_us / 1e6, 6),
             "recovery": None if recovery is None else recovery.shown(),
         }
@@ -223,11 +288,17 @@ class Live(Source):
             if not self._poller.ask({place.node: request}):
                 raise Refused(f"{label} could not be told; does it still run?")
         (self._off.discard if back else self._off.add)(place)
+        self._ask_for(place, *(link for link in self._map.links if place in (link.a, link.b)))
         self._note(f"{label} {'let back' if back else 'cut off'}", back)
+
+    def _ask_for(self, *those: Link | Place) -> None:
+        """What happens to those now was done from here."""
+        until = time.monotonic() + EXPECTED_S
+        self._asked_for.update((self._map.key(what), until) for what in those)
 
     def _note(self, cause: str, heals: bool) -> None:
         if not heals:
-            self._recovery = Recovery(cause, self._now_us())
+            self._lose(cause)
         self._log.say(self._now_us(), cause)
 
     def _cable(self, command: Cut | Heal) -> None:
@@ -245,6 +316,7 @@ class Live(Source):
                 told += len(self._poller.ask({place.node: request}))
         if not told:
             raise Refused("neither end could be told; do they still run?")
+        self._ask_for(link)
         names = f"{self._label(link.a)} - {self._label(link.b)}"
         self._note(f"link {names} {'put back' if heal else 'cut'}", heal)
 

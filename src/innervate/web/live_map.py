@@ -58,9 +58,12 @@ class Map:
         self.number = {place: at for at, place in enumerate(self.places)}
         named = self._meshed(told) if self.kind == "mesh" else self._cabled(told)
         # Two cells can have two cables; two nodes of a mesh hear each other, or not.
-        whole = 2 if self.kind == "mesh" else 4
-        known = {link[:whole]: link for link in (*(before.links if before else ()), *named)}
+        known = {self.key(link): link for link in (*(before.links if before else ()), *named)}
         self.links: list[Link] = sorted(known.values())
+
+    def key(self, what: Link | Place) -> tuple[Any, ...]:
+        """What a link or place is known by: paths of a mesh's link come and go."""
+        return what[:2] if self.kind == "mesh" else tuple(what)
 
     def place(self, index: int, path: int) -> Place:
         """The place that a path of a node belongs to."""

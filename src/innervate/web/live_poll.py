@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 ANSWER_S = 0.5
-AGAIN_S = 2.0  # a node that did not answer is left alone for so long
+AGAIN_S = 2.0  # a node that is not there is left alone for so long
 LINE_MAX = 1 << 20
 
 Answer = dict[str, Any]
@@ -25,6 +25,7 @@ class _Line:
         self.sock: socket.socket | None = None
         self.read = b""
         self.not_before = 0.0
+        self.is_gone = False  # nobody holds the other end; else it may only be slow
 
     def send(self, request: Answer) -> bool:
         """Send a request; False = nobody is there."""
@@ -37,7 +38,7 @@ class _Line:
                 self.sock.connect(str(self.path))
             self.sock.sendall(json.dumps(request).encode() + b"\n")
         except OSError:
-            self.drop()
+            self.drop(gone=True)
             return False
         return True
 
@@ -62,12 +63,13 @@ class _Line:
             raise ValueError
         return answer
 
-    def drop(self) -> None:
+    def drop(self, gone: bool = False) -> None:
         """Hang up: an answer that comes later is not taken for that to another request."""
         if self.sock is not None:
             self.sock.close()
         self.sock, self.read = None, b""
-        self.not_before = time.monotonic() + AGAIN_S
+        self.is_gone = gone
+        self.not_before = time.monotonic() + AGAIN_S if gone else 0.0
 
 
 class Poller:
@@ -100,9 +102,10 @@ class Poller:
                     except (OSError, ValueError):
                         selector.unregister(key.fileobj)
                         waiting.discard(key.data)
-                        line.drop()
+                        line.drop(gone=True)
                         continue
                     if answer is not None:
+                        line.is_gone = False
                         found[key.data] = answer
                         selector.unregister(key.fileobj)
                         waiting.discard(key.data)
@@ -113,6 +116,10 @@ class Poller:
     def ask_all(self, request: Answer) -> dict[int, Answer]:
         """The answers of all nodes to one request."""
         return self.ask(dict.fromkeys(range(len(self._lines)), request))
+
+    def is_gone(self, index: int) -> bool:
+        """True if nobody is at a node's socket; False: it answers, or is only slow."""
+        return self._lines[index].is_gone
 
     def close(self) -> None:
         """Hang up everywhere."""

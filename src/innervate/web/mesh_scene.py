@@ -35,6 +35,7 @@ class Field:
         self._ends = np.array(self.pairs, np.int64).reshape(-1, 2)
         self._wanders = np.array([bool(moving & set(pair)) for pair in self.pairs], np.bool_)
         true_places = is_to_scale(plan, WIDTH)
+        self._to_scale = true_places
         places = plan.positions_cm if true_places else laid_out(plan)
         self._places = np.array(places, np.float64).reshape(-1, 2) * (0.01, -0.01)
 
@@ -51,7 +52,8 @@ class Field:
             {"id": i, "a": a, "b": b, "quality": round(float(min(chance[a, b], chance[b, a])), 3)}
             for i, (a, b) in enumerate(self.pairs)
         ]
-        return {"nodes": nodes, "links": links, "fence": self._fence()}
+        fence = self._fence()
+        return {"nodes": nodes, "links": links, "fence": fence, "metres": self._to_scale}
 
     def _role(self, node: int) -> str:
         plan = self.plan

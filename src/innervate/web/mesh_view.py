@@ -7,19 +7,21 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from innervate.analysis.headline import Headline
+from innervate.analysis.mesh_headline import headline
+from innervate.analysis.mesh_reach import Ways, of_simulation
 from innervate.plot.mesh_words import fault_words
 from innervate.protocol import mesh_words as w
-from innervate.scenario.mesh_plan import CUT, KILL, ONE, QUIET, RESTORE, REVIVE, MeshFault
+from innervate.scenario.mesh_plan import CUT, KILL, QUIET, RESTORE, REVIVE, MeshFault
 from innervate.sim.mesh.build import MACS
 from innervate.sim.mesh.world import ALIVE, DEAD, ON_AIR
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import History
+from innervate.web.mesh_books import Books
 from innervate.web.mesh_scene import Field
-from innervate.web.mesh_ways import hops
 from innervate.web.messages import number
 from innervate.web.view import Memory, View
-from innervate.web.ways import NOWHERE, follow, reach
 
 KINDS = {
     w.REQUEST: "request", w.RESPONSE: "response", w.TABLE: "table", w.TABLE_ACK: "ack",
@@ -31,7 +33,6 @@ ALARMS = {w.PREDICT: "is about to cross", w.CROSS: "has crossed the fence", w.LO
 SMOOTH = 0.3  # share of a new value in a load
 MESSAGES_MAX = 4_096
 FLIGHTS_MAX = 2_000
-HALF = ONE // 2  # a link counts if half the frames come through
 
 
 @dataclass(slots=True)
@@ -44,7 +45,6 @@ class MeshMemory(Memory):
     latency_us: list[int] = field(default_factory=list)
     messages: dict[tuple[int, int], int] = field(default_factory=dict)
     alarms: dict[tuple[int, int], int] = field(default_factory=dict)
-    heard: set[int] = field(default_factory=set)  # who got a message through since the fault
 
 
 class MeshView(View):
@@ -65,6 +65,8 @@ class MeshView(View):
             near[a].append(b)
             near[b].append(a)
         self.near = near
+        self.books = Books(engine)
+        self._found: tuple[int, Ways] | None = None
         if self.plan.mac not in MACS:  # a channel on which everybody hears everybody
             self.can = ("kill", "revive")
 
@@ -80,9 +82,9 @@ class MeshView(View):
     def note(self, rows: Rows) -> None:
         """Take in what happened since the last call."""
         memory, sent = self.memory, rows["sent"]
+        self.books.add(rows)
         np.add.at(memory.air_us, sent["node"], sent["end"] - sent["time"])
         if self.tell_faults():
-            memory.heard.clear()
             self.check()
         for at, node, code, a, b in rows["rows"].tolist():
             self._report(at, node, code, a, b)
@@ -91,8 +93,6 @@ class MeshView(View):
             accepted = memory.messages.pop((int(row["origin"]), int(row["seq"])), None)
             if accepted is not None:
                 memory.latency_us.append(int(row["time"]) - accepted)
-                if memory.fault is not None and accepted > memory.fault.at_us:
-                    memory.heard.add(int(row["origin"]))
         for row in came[came["kind"] == w.ALARM]:
             self._alarm_came(int(row["time"]), int(row["body0"]), int(row["body3"]))
 
@@ -145,37 +145,26 @@ class MeshView(View):
             text = f"all nodes have a way to the gateway again after {after_us / 1e3:.0f} ms"
             self.log.say(self.engine.now_us, text, "good")
 
-    def _live(self) -> Any:
-        """Who hears whom now: a matrix of flags, sender by receiver."""
-        world, count = self.engine.world, self.plan.nodes
-        alive = world.radios["state"] == ALIVE
-        heard = (world.prob.reshape(count, count) >= HALF) & (world.cut.reshape(count, count) == 0)
-        both: Any = heard & heard.T & alive[:, None] & alive[None, :]
-        return both
-
-    def _roots(self) -> Any:
-        """Who leads now."""
-        world, count = self.engine.world, self.plan.nodes
-        return (world.nodes["leading"][:count] == 1) & (world.radios["state"] == ALIVE)
-
-    def _ways(self, live: Any) -> tuple[Any, Any, Any]:
-        """Per node: next hop to the gateway; root and length of the chain over live links."""
-        hop = hops(self.engine.world, self.plan)
-        nodes = np.arange(self.plan.nodes)
-        over = np.where((hop != NOWHERE) & live[nodes, np.maximum(hop, 0)], hop, NOWHERE)
-        return hop, *follow(over, self._roots())
+    def _ways(self) -> Ways:
+        """Who reaches a gateway now."""
+        if self._found is None or self._found[0] != self.engine.now_us:
+            self._found = self.engine.now_us, of_simulation(self.engine.world, self.plan)
+        return self._found[1]
 
     def _lacking(self) -> int:
-        """Nodes that could reach a gateway, and neither do their next hops lead to one, nor has
-        anything that they sent since the fault come through; all while there is no gateway.
-        """
-        live = self._live()
-        if not self._roots().any():
-            return int(self.plan.nodes)
-        _hop, root, _depth = self._ways(live)
-        lacking = reach(live, self._roots()) & (root == NOWHERE)
-        lacking[list(self.memory.heard)] = False
-        return int(np.count_nonzero(lacking))
+        """Nodes that the network could serve and does not; all while there is no gateway."""
+        ways = self._ways()
+        return int(np.count_nonzero(ways.astray if ways.leads.any() else ways.on))
+
+    def headline(self) -> Headline:
+        """Is all well, and if not, what is wrong."""
+        return headline(self._ways(), self.books.traffic(self.is_still))
+
+    def forget(self, memory: Any) -> None:
+        """Go back to a memory."""
+        super().forget(memory)
+        self.books.forget()
+        self._found = None
 
     def points(self) -> dict[str, float | None]:
         """A point of every plot, for now."""
@@ -184,10 +173,8 @@ class MeshView(View):
         share = memory.air_us / took
         memory.load = (1 - SMOOTH) * memory.load + SMOOTH * share
         waited = memory.latency_us
-        _hop, root, _depth = self._ways(self._live())
-        alive = self.engine.world.radios["state"] == ALIVE
         found = {
-            "unconnected": float(np.count_nonzero(alive & (root == NOWHERE))),
+            "unconnected": float(np.count_nonzero(self._ways().without)),
             "latency": round(sum(waited) / len(waited) / 1e3, 2) if waited else None,
             "airtime": round(100 * float(share.sum()), 2),
         }
@@ -197,23 +184,24 @@ class MeshView(View):
 
     def arrays(self, flights: bool) -> dict[str, Any]:
         """The state's fields for nodes and links."""
-        world, live = self.engine.world, self._live()
-        hop, root, depth = self._ways(live)
+        world, ways = self.engine.world, self._ways()
         state = world.radios["state"]
         fields = {
             "node_up": (state != DEAD).astype(np.int64),
             "link_up": self.field.link_up(world),
-            "parent": np.where(self._roots() | (state != ALIVE), NOWHERE, hop),
-            "depth": depth,
+            "parent": ways.hop,
+            "depth": ways.depth,
             "load": np.minimum(self.memory.load, 1.0).round(3),
-            "unconnected": int(np.count_nonzero((state == ALIVE) & (root == NOWHERE))),
+            "unconnected": int(np.count_nonzero(ways.without)),
+            "apart": int(np.count_nonzero(ways.cut_off)),
+            "way": ways.lacks,
             "flights": self._flights() if flights else [],
         }
         if self.field.walks:
             fields["position"] = self.field.positions(world)
         if any(self.plan.robots):
             monitor = self.plan.params["monitor"]
-            roots = np.flatnonzero(self._roots())
+            roots = np.flatnonzero(ways.leads)
             who = roots if monitor == w.MONITOR else [monitor]
             raised = world.nodes["raised"][who][:, : self.plan.nodes]
             robots = np.array(self.plan.robots, np.bool_)

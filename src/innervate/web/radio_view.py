@@ -8,9 +8,20 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from innervate.analysis.headline import Headline
 from innervate.analysis.radio_air import CARRYING
+from innervate.analysis.radio_headline import headline
+from innervate.analysis.radio_state import facts
 from innervate.plot.radio_words import fault_words, protocol_words
-from innervate.protocol.radio_words import CRR, DATA, OPEN, REPORT, REPORT_LEFT, REPORT_STOPPED
+from innervate.protocol.radio_words import (
+    CRR,
+    DATA,
+    OPEN,
+    REPORT,
+    REPORT_BOUNDS,
+    REPORT_LEFT,
+    REPORT_STOPPED,
+)
 from innervate.scenario.radio_plan import JOIN, KILL, RadioFault
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
@@ -32,6 +43,8 @@ class RadioMemory(Memory):
     carried_us: int = 0
     delays_us: list[int] = field(default_factory=list)
     since_us: int = 0
+    delivered_us: int = 0  # when the newest packet was known to be delivered
+    wrong: set[int] = field(default_factory=set)  # who measured a delay outside its bounds
 
 
 class RadioView(View):
@@ -76,6 +89,7 @@ class RadioView(View):
             if fault.action == KILL:
                 self._stop(fault.node, fault.at_us)
         told = rows["rows"]
+        memory.wrong.update(told["node"][told["code"] == REPORT_BOUNDS].tolist())
         told = told[np.isin(told["code"], (REPORT_STOPPED, REPORT_LEFT))]
         for at, node, code, _a, _b in told.tolist():
             if code == REPORT_STOPPED:
@@ -85,6 +99,7 @@ class RadioView(View):
         packets = rows["packets"]
         came = packets[packets["receivers"] > 0]
         memory.carried_us += int(came["slots"].sum()) * int(self.plan.params["slot_us"])
+        memory.delivered_us = max(memory.delivered_us, int(came["time"].max(initial=0)))
         memory.delays_us += (came["end"] - came["offered"]).tolist()
         for row in packets[packets["receivers"] == 0].tolist():
             text = f"station {row[3]}: a packet that nobody received counts as delivered"
@@ -165,6 +180,20 @@ class RadioView(View):
             "unconnected": int(np.count_nonzero(~up)),
             "flights": [],
         }
+
+    def headline(self) -> Headline:
+        """Is all well, and if not, what is wrong."""
+        memory, engine = self.memory, self.engine
+        found = facts(
+            engine.world,
+            self.plan,
+            engine.now_us,
+            memory.delivered_us,
+            faults=engine.given,
+            ended=engine.now_us >= self.plan.duration_us or engine.is_complete(),
+        )
+        wrong = tuple(sorted(memory.wrong))
+        return headline(found._replace(bounds={} if wrong else None, stations_wrong=wrong))
 
     def _turns(self) -> list[int]:
         """Everybody's place in the round; -1 none."""

@@ -6,28 +6,33 @@ scenario and seed give all of it again, on any machine; the fingerprint says tha
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar
 
 from innervate import scenario as scenarios
-from innervate.run import folder as folders
+from innervate.running import folder as folders
 from innervate.scenario import ScenarioError
 from innervate.web.errors import WatchError
 from innervate.web.simulated import Progress, Simulated
 
 
 def plan_of(folder: Path) -> Any:
-    """The plan of a run folder's scenario.
+    """The plan of a run folder's scenario, as far as the run came.
 
     Raises:
         WatchError: its scenario is not there, or cannot be run any more.
         RunError: it is no run folder.
     """
-    folders.read_json(folder, folders.SUMMARY)
+    interrupted_s = folders.read_json(folder, folders.SUMMARY).get("interrupted_at_s")
     try:
-        return scenarios.plan(scenarios.load(folder / folders.SCENARIO))
+        plan = scenarios.plan(scenarios.load(folder / folders.SCENARIO))
     except ScenarioError as error:
         raise WatchError(f"this run cannot be simulated again: {error}") from None
+    if interrupted_s is None:
+        return plan
+    reached_us = round(1e6 * interrupted_s) + 1  # what happened at that moment is shown, too
+    return replace(plan, duration_us=min(plan.duration_us, reached_us))
 
 
 class Recorded(Simulated):
@@ -60,6 +65,9 @@ class Recorded(Simulated):
     def replay(self, progress: Progress = lambda now_us, end_us: None) -> None:
         """Simulate it to its end, see that it is the same, and go back to the beginning.
 
+        Of a run that was interrupted only that is simulated which was then; its last moment was
+        cut short, so that there is no fingerprint to compare.
+
         Raises:
             WatchError: this version of innervate makes another network of it.
         """
@@ -76,5 +84,6 @@ class Recorded(Simulated):
             )
         self.back_to(0)
         if interrupted_s is not None:
-            text = f"the run was interrupted at {interrupted_s:g} s; what follows was not recorded"
+            planned_s = self.plan.scenario.model.duration_s
+            text = f"the run was interrupted at {interrupted_s:g} of {planned_s:g} s"
             self.view.log.say(0, text)

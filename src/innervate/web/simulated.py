@@ -91,6 +91,7 @@ class Simulated(Source):
 
     def fields(self) -> dict[str, Any]:
         """The state now."""
+        self.view.is_still = self.pace.paused or self.at_end
         paced = self.pace.paused or 0 < self.pace.speed <= self.view.slow
         return {
             "t_s": self.engine.now_us / 1e6,

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.ways import NOWHERE, follow
 from innervate.protocol.skin_words import BEACON, DATA
 from innervate.sim import wheel
 from innervate.sim.wires import DELAYED
 from innervate.sim.world import DEAD
 from innervate.topology import PORTS
 from innervate.web.skin_scene import nodes_of_ends
-from innervate.web.ways import NOWHERE, follow
 
 FLIGHTS_MAX = 2_000
 KINDS = {BEACON: "beacon", DATA: "data"}

@@ -7,7 +7,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from innervate.analysis.headline import Headline
 from innervate.analysis.load import balance_factor
+from innervate.analysis.reach import world_facts
+from innervate.analysis.skin_headline import skin_headline
+from innervate.analysis.ways import NOWHERE
 from innervate.plot.words import fault_words, number_of
 from innervate.protocol.skin_words import (
     NONE,
@@ -16,8 +20,9 @@ from innervate.protocol.skin_words import (
     REPORT_PARENT,
 )
 from innervate.scenario import CUT, KILL, LOOSE, RESTORE, REVIVE, Fault
-from innervate.sim.observer import CUT_OFF, LOOP_OPEN, UNROUTED
+from innervate.sim.observer import APART, CUT_OFF, LOOP_OPEN, UNROUTED
 from innervate.sim.wires import (
+    EARLY,
     LOOPED,
     LOST_BROKEN,
     LOST_CUT,
@@ -34,7 +39,6 @@ from innervate.web.messages import Command, Touch, number
 from innervate.web.skin_scene import places
 from innervate.web.skin_state import Cables
 from innervate.web.view import Memory, View
-from innervate.web.ways import NOWHERE
 
 HZ_WITHOUT_DATA = 250.0  # load is shown as if cells sampled so often
 FORCE_FULL_MN = 5_000  # shown as 255
@@ -50,6 +54,8 @@ class SkinMemory(Memory):
     touch: Any = None
     touch_us: Any = None
     counted: tuple[int, int] = field(default=(0, 0))
+    apart_most: int = 0  # most cells that were cut off from the PC at the same time
+    waited: tuple[int, int] = (0, 0)  # samples since the last point, the sum of their latencies, us
 
 
 class SkinView(View):
@@ -94,6 +100,7 @@ class SkinView(View):
         ]
         if self.plan.data_period_us:
             series.append({"id": "loss", "label": "samples lost", "unit": "%"})
+            series.append({"id": "latency", "label": "latency of samples", "unit": "ms"})
         return {
             "nodes": nodes, "links": links, "ports": self.ports, "fence": None, "series": series,
         }  # fmt: skip
@@ -106,6 +113,11 @@ class SkinView(View):
             force = told["force"].mean(axis=1)
             memory.touch[told["cell"]] = np.minimum(255, force * 255 / FORCE_FULL_MN)
             memory.touch_us[told["cell"]] = told["time"]
+            memory.waited = (
+                memory.waited[0] + len(told), memory.waited[1] + int(told["latency"].sum())
+            )  # fmt: skip
+        apart = rows["rows"]["a"][rows["rows"]["code"] == APART]
+        memory.apart_most = max(memory.apart_most, int(apart.max(initial=0)))
         codes = (CUT_OFF, UNROUTED, LOOP_OPEN, REPORT_BROKEN, REPORT_PARENT, REPORT_BALANCE)
         found = rows["rows"]
         found = found[np.isin(found["code"], codes)]
@@ -159,24 +171,43 @@ class SkinView(View):
                 recovery.detected_ms = (at_us - recovery.at_us) / 1e3
         self.log.often("broken", at_us, f"{label} {'found broken' if broken else 'works again'}")
 
+    def headline(self) -> Headline:
+        """Is all well, and if not, what is wrong."""
+        found, most = world_facts(self.engine.world, self.cells), self.memory.apart_most
+        sent, lost = self._samples()
+        early = int(self.engine.world.counters[EARLY])
+        return skin_headline(
+            found._replace(
+                cut_off_before=most if most > len(found.cut_off) else 0,
+                sent=sent - early,
+                lost=lost - early,
+            ),
+            self.plan.graph.label,
+        )
+
+    def _samples(self) -> tuple[int, int]:
+        """Tactile samples so far: taken, lost."""
+        counters = self.engine.world.counters
+        lost = counters[LOST_CUT : LOST_BROKEN + 1].sum() + counters[NO_ROUTE : LOOPED + 1].sum()
+        return int(counters[OFFERED]), int(lost)
+
     def points(self) -> dict[str, float | None]:
         """A point of every plot, for now."""
         ways = self.cables.ways(self.engine.world)
         loads = np.bincount(ways["port"][ways["port"] >= 0], minlength=self.ports)
         balance = balance_factor(loads.tolist())
-        found = {
+        found: dict[str, float | None] = {
             "unconnected": float(ways["unconnected"]),
             "balance": None if balance is None else round(balance, 4),
         }
         if self.plan.data_period_us:
-            counters = self.engine.world.counters
-            lost = (
-                counters[LOST_CUT : LOST_BROKEN + 1].sum() + counters[NO_ROUTE : LOOPED + 1].sum()
-            )
-            now = (int(counters[OFFERED]), int(lost))
+            now = self._samples()
             offered, gone = (a - b for a, b in zip(now, self.memory.counted, strict=True))
             self.memory.counted = now
             found["loss"] = round(100 * gone / offered, 3) if offered else 0.0
+            count, total_us = self.memory.waited
+            self.memory.waited = (0, 0)
+            found["latency"] = round(total_us / count / 1e3, 3) if count else None
         return found
 
     def arrays(self, flights: bool) -> dict[str, Any]:
@@ -192,6 +223,7 @@ class SkinView(View):
             "node_up": np.concatenate([up, none + 1]),
             "link_up": 1 - (world.epoch[self.cables.ends[:, 0]] & 1),
             **ways,
+            "apart": int(np.count_nonzero(np.array(world.watch.apart) >= 0)),
             "load": np.concatenate([load, none]),
             "flights": self.cables.flights(world, self.engine.now_us) if flights else [],
         }

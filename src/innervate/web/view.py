@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from innervate.analysis.headline import Headline
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import SERIES, History, Logbook
@@ -39,6 +40,7 @@ class View(ABC):
     # `check` is called at multiples of this time, us, while somebody has no way; 0 = never.
     check_us: ClassVar[int] = 0
     memory: Any
+    is_still: bool = True  # the network is held, so that there is time to count all anew
 
     def __init__(self, engine: Engine, history: History) -> None:
         self.engine = engine
@@ -61,6 +63,10 @@ class View(ABC):
     @abstractmethod
     def arrays(self, flights: bool) -> dict[str, Any]:
         """The state's fields for nodes and links; `flights` with frames on their way."""
+
+    @abstractmethod
+    def headline(self) -> Headline:
+        """Is all well, and if not, what is wrong."""
 
     @abstractmethod
     def words(self, fault: Any) -> str:
@@ -152,6 +158,7 @@ class View(ABC):
         recovery, fault = self.memory.recovery, self.memory.fault
         return {
             **self.arrays(flights),
+            "headline": self.headline().shown(),
             "since_cut_s": fault and (self.engine.now_us - fault.at_us) / 1e6,
             "recovery": None if recovery is None else recovery.shown(),
         }

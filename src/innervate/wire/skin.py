@@ -3,7 +3,7 @@
 LAYOUTS is the one description: encoder, decoder and whatever else speaks of the bytes read it.
 """
 
-from innervate.protocol.skin_words import BEACON, DATA, RESTART
+from innervate.protocol.skin_words import BEACON, COMMAND, DATA, RESTART
 from innervate.wire.bits import get, put
 from innervate.wire.crc import is_sealed, seal
 from innervate.wire.layout import SPARE, pack, unpack, width
@@ -30,11 +30,20 @@ TOUCH = (
     ("accel", 3, 10, 1),
     (SPARE, 0, 2, 0),
 )
+ORDER = (
+    (SPARE, 0, 4, 0),
+    ("cell", 0, 16, 0),
+    ("number", 0, 16, 0),
+    ("hops", 0, 8, 0),
+    ("code", 0, 8, 0),
+    ("value", 0, 16, 0),
+)
 # A frame: value of the type, name, fields after the type. A restart has the form of a beacon.
 LAYOUTS = (
     (BEACON, "beacon", ROUTE),
     (DATA, "data", TOUCH),
     (RESTART, "restart", ROUTE),
+    (COMMAND, "command", ORDER),
 )
 
 # What decode says: read, or why not. Receivers count by these.

@@ -94,7 +94,10 @@ def measure(case: tuple[int, bool, bool], quick: bool) -> dict[str, list[list[fl
     for k in ks(quick):
         for seed in seeds(quick):
             one = recoveries(simulated(tables(k, *case), seed))[0]
-            times = [one[name] * HZ / 1e3 for name in ("detected_ms", "converged_ms")]
+            detected_ms, converged_ms = one["detected_ms"], one["converged_ms"]
+            assert detected_ms is not None
+            assert converged_ms is not None
+            times = [detected_ms * HZ / 1e3, converged_ms * HZ / 1e3]
             found.setdefault(str(k), []).append(times)
     return found
 

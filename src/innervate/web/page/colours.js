@@ -1,6 +1,7 @@
 // The colours of the style sheet for drawing on a canvas, and light, dark or as the system has it.
 
-const NAMES = ["ground", "panel", "ink", "soft", "faint", "link", "alarm", "good", "accent"];
+const NAMES = ["ground", "panel", "ink", "soft", "faint", "link", "alarm", "warn", "good",
+  "accent"];
 const SHADES = 8;
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const KEY = "innervate-colours";

@@ -4,7 +4,7 @@ import { Controls } from "./controls.js";
 import { setUpKeys } from "./keys.js";
 import { showLegend } from "./legend.js";
 import { Network } from "./network.js";
-import { Card, Log, commandFor, showNumbers } from "./panel.js";
+import { Card, Log, commandFor, showNumbers, showState } from "./panel.js";
 import { Plots } from "./plots.js";
 import { Pointer } from "./pointer.js";
 import { MeshView } from "./mesh.js";
@@ -23,6 +23,7 @@ const $ = (id) => document.getElementById(id);
 let network = null;
 let view = null;
 let plots = null;
+let connected = false;
 let chosenColour = null; // outlives a server that is started anew
 let panelDue = 0;
 let panelStale = false;
@@ -39,7 +40,9 @@ const stage = new Stage($("stage"));
 const log = new Log($("log"));
 const controls = new Controls(send);
 const card = new Card(change);
-const pointer = new Pointer(stage, { select: (what) => card.show(view, what), act });
+const pointer = new Pointer(stage, {
+  select: (what) => card.show(view, what), act, nodesOnly: () => $("tool").value === "touch",
+});
 const timeline = new Timeline($("timeline"));
 const nextTheme = setUpTheme($("theme"), redraw);
 const connection = new Connection(onMessage, onConnection);
@@ -54,7 +57,8 @@ function send(command) {
 function act(what) {
   const tool = $("tool").value;
   if (tool === "look") return;
-  if (tool === "touch" && what.node !== undefined) {
+  if (tool === "touch") {
+    if (network.nodes[what.node]?.role !== "cell") return; // a finger neither cuts nor kills
     const value = network.now.touch[what.node] ? 0 : TOUCHED;
     return send({ do: "touch", node: network.nodes[what.node].id, value });
   }
@@ -77,6 +81,8 @@ function onMessage(message) {
 }
 
 function onConnection(open, refused) {
+  connected = open;
+  panelStale = true;
   $("connection").textContent = open ? "connected" : "not connected";
   $("connection").classList.toggle("lost", !open);
   $("lost").hidden = open;
@@ -216,6 +222,7 @@ function frame(now) {
       panelStale = false;
       panelDue = now + PANEL_MS;
       showNumbers(network);
+      showState(network, connected);
       controls.state(network);
       plots.draw();
       if (pointer.selected) card.show(view, pointer.selected);

@@ -3,12 +3,15 @@ import { colours } from "./colours.js";
 import { Labels } from "./labels.js";
 import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
-import { arrow, boxRound, cross, diamond, flights, stroke, word } from "./shapes.js";
+import {
+  affected, affectedSample, arrow, boxRound, cross, diamond, flights, stroke, word,
+} from "./shapes.js";
 import { symbol } from "./symbols.js";
 import { off, offWord, plural } from "./words.js";
 
 const GOOD = 0.9; // links of this quality are drawn whole, worse ones dashed, poor ones dotted
 const FAIR = 0.6;
+const WAYS = ["", "no way to the gateway", "cut off from the gateway"];
 const CROSS_PX = 7; // round the cross of a cut, where no name goes
 const LINK_PX = 7; // how near a click must be to a link
 const FONT = "12px system-ui, sans-serif";
@@ -36,7 +39,7 @@ export class MeshView {
     const any = (...names) => names.some((name) => changed.has(name));
     const found = [];
     if (any("link_up", "node_up")) found.push(LAYERS.ground);
-    if (any("parent", "node_up", "alarm", "outside")) found.push(LAYERS.lines);
+    if (any("parent", "node_up", "alarm", "outside", "headline")) found.push(LAYERS.lines);
     if (any("flights")) found.push(LAYERS.moving);
     return found;
   }
@@ -76,8 +79,9 @@ export class MeshView {
     const facts = [nodes[i].role];
     if (!now.node_up[i]) return `${nodes[i].role}, ${off(this.network, i)}`;
     const next = this.network.parentOf(i);
-    if (next >= 0) facts.push(`sends to the gateway through ${nodes[next].label}`);
-    else if (nodes[i].role !== "gateway") facts.push("no way to the gateway");
+    const lacks = WAYS[now.way[i]];
+    if (lacks) facts.push(lacks);
+    else if (next >= 0) facts.push(`sends to the gateway through ${nodes[next].label}`);
     if (next >= 0 && now.depth[i] > 0) facts.push(plural(now.depth[i], "hop"));
     if (now.outside[i]) facts.push("outside the fence");
     if (now.alarm[i]) facts.push("alarm");
@@ -94,7 +98,7 @@ export class MeshView {
       symbol(context, 13, 8, role === "monitor" ? 3.5 : 5, role, up);
     };
     const found = [...roles].map((role) => [shape(role), role]);
-    found.push([shape("node", 0), offWord(this.network)]);
+    found.push([shape("node", 0), offWord(this.network)], affectedSample);
     found.push([line("soft", 1.4, []), "good link"], [line("soft", 1.4, [5, 4]), "fair"],
       [line("soft", 1.4, [1.5, 4]), "poor"]);
     found.push([(context) => {
@@ -155,7 +159,7 @@ export class MeshView {
     draw("cut", colours.alarm, 2, [4, 3]);
     stroke(context, colours.ink, 2, fence);
     this.#gaps(context, stage);
-    if (network.scene.source !== "live") this.#measure(context, stage);
+    if (network.scene.metres) this.#measure(context, stage);
   }
 
   #gaps(context, stage) {
@@ -168,7 +172,7 @@ export class MeshView {
     stroke(context, colours.alarm, 3, gaps);
   }
 
-  /** A bar that says how long so many metres are; live nodes do not know where they are. */
+  /** A bar that says how long so many metres are, where nodes are drawn where they are. */
   #measure(context, stage) {
     const most = 130 / stage.scale;
     const ten = 10 ** Math.floor(Math.log10(most));
@@ -200,6 +204,7 @@ export class MeshView {
       if (now.alarm[i]) this.#ring(context, x, y, dot + 6, [], 3);
       else if (now.outside[i]) this.#ring(context, x, y, dot + 6, [4, 3], 2);
     });
+    affected(context, network, stage, dot + 5);
     network.ends.forEach(([a, b], link) => {
       if (!network.isCut(link)) return;
       const [x, y] = [(stage.x[a] + stage.x[b]) / 2, (stage.y[a] + stage.y[b]) / 2];

@@ -1,5 +1,6 @@
 // What the server says of the network: the scene, and the last value of every field of a state.
 
+export const NO_DATA = "no data"; // the level of a network of which nobody answers
 const OUT_OF_RANGE = 2; // in link_up
 const KEPT = 20000; // boxes of the timeline
 const POINTS = 3000; // of a plot
@@ -25,8 +26,8 @@ export class Network {
       t_s: scene.t_s ?? 0, paused: false, speed: 1, at_end: false,
       node_up: none(1), link_up: scene.links.map(() => 1),
       parent: none(-1), port: none(-1), depth: none(-1), load: none(0), touch: none(0),
-      alarm: none(0), outside: none(0), flights: [],
-      since_cut_s: null, recovery: null, unconnected: 0,
+      alarm: none(0), outside: none(0), way: none(0), flights: [],
+      since_cut_s: null, recovery: null, unconnected: 0, apart: 0, headline: null,
     };
     this.radio = { now: none(0), turn: none(-1) };
     this.timeline = [];
@@ -54,6 +55,13 @@ export class Network {
   parentOf(i) {
     const id = this.now.parent[i];
     return id === -1 || id === null ? -1 : (this.index.get(id) ?? -1);
+  }
+
+  /** Nodes that the headline is about, as indices; none where nothing is known of anybody. */
+  affected() {
+    const { headline } = this.now;
+    if (!headline || headline.level === NO_DATA) return [];
+    return headline.nodes.map((id) => this.index.get(id)).filter((i) => i !== undefined);
   }
 
   /** Whether a link is there at all: robots move out of each other's range. */

@@ -1,6 +1,8 @@
 // Numbers, events and what is selected.
+import { NO_DATA } from "./network.js";
 import { ago, clock, duration, offWord, plural } from "./words.js";
 
+const LEVELS = { ok: "✓", degraded: "!", down: "✕", "no data": "?" };
 const MARKS = { info: "·", good: "✓", bad: "✕" };
 const KEPT = 300;
 const $ = (id) => document.getElementById(id);
@@ -12,9 +14,28 @@ function show(id, text, more, state) {
   box.className = `number ${state}`;
 }
 
+/** Is all well, in a line: what the server says, or nothing while it cannot be asked. */
+export function showState(network, connected) {
+  const { headline } = network.now;
+  $("state").hidden = !headline;
+  if (!headline) return;
+  const level = connected ? headline.level : NO_DATA;
+  const text = connected ? headline.text : `Not connected; when last heard of: ${headline.text}`;
+  $("state").className = level.replace(" ", "-");
+  const isSilent = connected && level === NO_DATA && network.scene.source === "live";
+  const link = !connected ? "not connected"
+    : isSilent ? "page connected, nodes silent" : "connected";
+  if ($("connection").textContent !== link) $("connection").textContent = link;
+  $("connection").classList.toggle("lost", !connected || isSilent);
+  const word = `${LEVELS[level] ?? ""} ${level}`; // said anew only when it changes
+  if ($("level").textContent !== word) $("level").textContent = word;
+  if ($("headline").textContent !== text) $("headline").textContent = text;
+}
+
 /** The large numbers: time since the last cut, how long the recovery took, who has no way. */
 export function showNumbers(network) {
-  const { since_cut_s: since, recovery, unconnected } = network.now;
+  const { since_cut_s: since, recovery, unconnected, apart } = network.now;
+  const isKnown = unconnected !== null;
   const none = since === null || since === undefined;
   show("since", none ? "–" : ago(since), none ? "none yet" : "", "");
   if (!recovery) show("recovery", "–", "", "");
@@ -24,7 +45,10 @@ export function showNumbers(network) {
     const isOpen = recovery.recovered_ms === null || recovery.recovered_ms === undefined;
     const text = isOpen ? ago(network.now.t_s - recovery.at_s) : duration(recovery.recovered_ms);
     const state = isOpen ? "not yet, " : "";
-    show("recovery", text, `${recovery.cause}: ${state}${noticed}`, isOpen ? "open" : "done");
+    const look = !isKnown ? "" : isOpen ? "open" : unconnected ? "" : "done";
+    const shown = isKnown || !isOpen ? text : "–";
+    const more = isKnown ? `${recovery.cause}: ${state}${noticed}` : recovery.cause;
+    show("recovery", shown, more, look);
   }
   const isRadio = network.kind === "radio"; // there everybody hears everybody
   const label = isRadio ? offWord(network) : "without a way";
@@ -32,8 +56,10 @@ export function showNumbers(network) {
   $("since").querySelector(".label").textContent = `since the last ${isRadio ? "failure" : "cut"}`;
   $("recovery").hidden = isRadio;
   const all = network.nodes.filter((node) => node.role !== "sink" && node.role !== "port").length;
-  show("unconnected", String(unconnected), `of ${plural(all, WORDS[network.kind])}`,
-    unconnected ? "bad" : "");
+  const of = `of ${plural(all, WORDS[network.kind])}`;
+  const cut = apart ? `; ${apart === unconnected ? "cut off" : `${apart} of them cut off`}` : "";
+  show("unconnected", isKnown ? String(unconnected) : "–",
+    isKnown ? `${of}${cut}` : "nobody answers", unconnected ? "bad" : "");
 }
 
 export const WORDS = { skin: "cell", radio: "station", mesh: "node" };
@@ -102,9 +128,9 @@ export class Card {
     $("selected-name").textContent = name;
     $("selected-facts").textContent = facts;
     this.#buttons(network, what);
-    const said = `${name}: ${facts}`;
-    if (what !== this.what) $("spoken").textContent = said;
-    this.what = what;
+    const state = stateOf(network, what);
+    if (what !== this.what || state !== this.state) $("spoken").textContent = `${name}: ${facts}`;
+    Object.assign(this, { what, state });
   }
 
   /** Buttons are made anew only when there are others: a focused one must not vanish. */
@@ -140,6 +166,13 @@ export class Card {
     if (from === undefined) return `${verb} this link`;
     return `${verb}: ${network.nodes[network.across(link, from)].label}`;
   }
+}
+
+/** What of a node or link is said again when it changes. */
+function stateOf(network, { node, link }) {
+  const { now } = network;
+  if (node !== undefined) return `${now.node_up[node]}`;
+  return `${now.link_up[link]} ${network.isCut(link)}`;
 }
 
 function linkFacts(view, link) {

@@ -13,8 +13,9 @@ const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDo
 export class Pointer {
   /**
    * @param {Stage} stage
-   * @param {{select: Function, act: Function}} told of what is selected ({node} or {link}, or
-   *   null) and of what is to be cut, killed or touched
+   * @param {{select: Function, act: Function, nodesOnly: Function}} told of what is selected
+   *   ({node} or {link}, or null) and of what is to be cut, killed or touched; says whether only
+   *   nodes can be
    */
   constructor(stage, told) {
     Object.assign(this, { stage, told, over: null, selected: null });
@@ -41,7 +42,7 @@ export class Pointer {
       this.moves = stage.moves;
     }
     const node = this.tree.find(x, y, Math.max(view.reach?.(scale) ?? 0.56 * scale, 5));
-    const link = this.#nearestLink(x, y);
+    const link = this.told.nodesOnly?.() ? null : this.#nearestLink(x, y);
     if (node === undefined) return link === null ? null : { link };
     if (link === null) return { node };
     return view.linkFirst?.(node) === false ? { node } : { link };

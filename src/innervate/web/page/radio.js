@@ -1,7 +1,7 @@
 // Stations of a radio channel, around, with what each one does at the moment.
 import { colours } from "./colours.js";
 import { LAYERS } from "./stage.js";
-import { cross, stroke, word } from "./shapes.js";
+import { affected, affectedSample, cross, stroke, word } from "./shapes.js";
 import { boxSamples } from "./timeline.js";
 import { off, offWord } from "./words.js";
 
@@ -41,7 +41,8 @@ export class RadioView {
   }
 
   layersOf(changed) {
-    return changed.has("radio") || changed.has("node_up") ? [LAYERS.ground] : [];
+    const any = ["radio", "node_up", "headline"].some((name) => changed.has(name));
+    return any ? [LAYERS.ground] : [];
   }
 
   linkFirst() {
@@ -73,7 +74,7 @@ export class RadioView {
     const isLive = this.network.scene.source === "live"; // what is asked now and then has no boxes
     const known = isLive ? [0, SENDS, WAITS] : DOING.keys();
     return [...[...known].map((state) => [disc(state), DOING[state].words]),
-      [disc(0, 0), offWord(this.network)], ...(isLive ? [] : boxSamples())];
+      [disc(0, 0), offWord(this.network)], affectedSample, ...(isLive ? [] : boxSamples())];
   }
 
   draw(layer, context, stage) {
@@ -90,6 +91,7 @@ export class RadioView {
       const away = Math.hypot(x - x0, y - y0) || 1;
       this.#name(context, i, x, y, (x - x0) / away, (y - y0) / away, stage.scale);
     });
+    affected(context, this.network, stage, radius + 5);
   }
 
   /** A station's name and its turn, beside it, looking away from the middle. */

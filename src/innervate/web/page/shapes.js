@@ -93,6 +93,25 @@ export function word(context, text, x, y, colour, rim, font = "12px system-ui, s
   context.fillText(text, x, y);
 }
 
+/** Ring the nodes that the headline is about, each so many px wide. */
+export function affected(context, network, stage, size) {
+  const rings = new Path2D();
+  for (const i of network.affected()) {
+    rings.moveTo(stage.x[i] + size, stage.y[i]);
+    rings.arc(stage.x[i], stage.y[i], size, 0, 7);
+  }
+  const colour = network.now.headline?.level === "down" ? colours.alarm : colours.warn;
+  stroke(context, colours.ground, 4, rings);
+  stroke(context, colour, 2, rings, [2, 2]);
+}
+
+/** A sample of that ring for a legend, with what it means. */
+export const affectedSample = [(context) => {
+  const ring = new Path2D();
+  ring.arc(13, 8, 6.5, 0, 7);
+  stroke(context, colours.warn, 2, ring, [2, 2]);
+}, "affected"];
+
 /** The frames on their way, a shape for each kind; with less motion in the middle of their link. */
 export function flights(context, network, stage, size) {
   const path = { dot: new Path2D(), square: new Path2D(), diamond: new Path2D() };

@@ -2,7 +2,9 @@
 import { colours, shade } from "./colours.js";
 import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
-import { boxRound, brick, cross, flights, hexagon, stroke, word } from "./shapes.js";
+import {
+  affected, affectedSample, boxRound, brick, cross, flights, hexagon, stroke, word,
+} from "./shapes.js";
 import { off, offWord, plural } from "./words.js";
 
 const NEAR = 1.6; // cables up to this many pitches long are between neighbours
@@ -38,7 +40,7 @@ export class SkinView {
     const any = (...names) => names.some((name) => changed.has(name));
     const found = [];
     if (any("node_up", "parent", "port", this.colour)) found.push(LAYERS.ground);
-    if (any("node_up", "link_up", "parent", "port")) found.push(LAYERS.lines);
+    if (any("node_up", "link_up", "parent", "port", "headline")) found.push(LAYERS.lines);
     if (any("flights")) found.push(LAYERS.moving);
     return found;
   }
@@ -111,7 +113,7 @@ export class SkinView {
     };
     const found = this.#scale().map(([kind, text]) => [cell(kind), text]);
     found.push([cell("none"), "no way to the PC"], [cell("off"), offWord(this.network)]);
-    found.push([line("link", 2, []), "sends through"]);
+    found.push([line("link", 2, []), "sends through"], affectedSample);
     found.push([(context) => {
       line("alarm", 2.4, [4, 3])(context);
       const gap = new Path2D();
@@ -223,6 +225,7 @@ export class SkinView {
     this.#lacks(context, stage);
     this.#cuts(context, stage);
     this.#plugs(context, stage);
+    affected(context, network, stage, Math.max(3, 0.42 * stage.scale));
   }
 
   #lacks(context, stage) {

@@ -1,0 +1,63 @@
+"""What became of the PC's commands: whom they were for, whom they reached, how long it took."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from innervate.analysis.frames import command_traffic, number_of, under_way
+from innervate.analysis.latency import command_latency_ms
+from innervate.analysis.skin_summary import Commands
+from innervate.sim import orders, wires
+
+# Why a cell that a command was for did not get it, by its state when the command was given.
+REASONS = {"off": orders.WAS_OFF, "no_route": orders.HAD_NO_WAY, "on_the_way": orders.HAD_A_WAY}
+
+
+def commands_summary(result: Any) -> Commands:
+    """Commands from the PC down to the cells."""
+    counters = result.counters
+    missed, in_flight = _open(result)
+    lost_by = {
+        name: counters[wires.MISSED + state - orders.WAS_OFF] + missed[state]
+        for name, state in REASONS.items()
+    }
+    addressed, lost = counters[wires.ADDRESSED], sum(lost_by.values())
+    traffic = command_traffic(result)
+    return {
+        "sent": counters[wires.GIVEN],
+        "addressed": addressed,
+        "delivered": counters[wires.REACHED],
+        "lost": lost,
+        "loss_ratio": lost / addressed if addressed else None,
+        "lost_by": lost_by,
+        "in_flight": in_flight,
+        "repeated": counters[wires.REPEATED],
+        "latency_ms": command_latency_ms(result),
+        "frames": {
+            "sent": traffic.sent,
+            "lost_by": traffic.lost,
+            "duplicates": counters[wires.AGAIN],
+            "too_far": counters[wires.TOO_FAR],
+        },
+    }
+
+
+def _open(result: Any) -> tuple[dict[int, int], int]:
+    """Of the last commands: how many cells did not get one, by state; for how many it flies."""
+    missed = dict.fromkeys(REASONS.values(), 0)
+    in_flight = 0
+    flying = {number_of(frame, "number") for frame in under_way(result.world)}
+    due = np.array(result.world.due, np.int64)
+    cells = result.plan.graph.cells
+    for slot, number in enumerate(int(number) for number in result.world.due_number):
+        if number < 0:
+            continue
+        states = due[slot * cells : (slot + 1) * cells]
+        counts = {state: int(np.count_nonzero(states == state)) for state in missed}
+        if number in flying:
+            in_flight += counts.pop(orders.HAD_A_WAY) + counts.pop(orders.HAD_NO_WAY)
+        for state, count in counts.items():
+            missed[state] += count
+    return missed, in_flight

@@ -1,0 +1,197 @@
+"""Is all well with a mesh, in one sentence: for a finished run, a running one, running nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline
+from innervate.analysis.mesh_alarms import Crossing
+from innervate.analysis.mesh_messages import DELIVERED, NEVER, Messages, counted
+from innervate.analysis.mesh_reach import Ways
+from innervate.scenario.mesh_plan import CUT, JAM, KILL, RESTART
+
+__all__ = ["Traffic", "headline", "traffic"]
+
+
+class Traffic(NamedTuple):
+    """What became of messages and alarms; running nodes do not know, and leave it at nothing.
+
+    Attributes:
+        decided: messages to one node of which it is known what became of them.
+        delivered: of those, how many came.
+        crossings: of the fence, of which it is known whether the monitor learned of them.
+        learned: of those, of how many it did.
+        doubled: messages that came twice.
+        looped: packets that met a node twice on their way.
+        flows: something came since the newest fault, or there was no fault.
+        about: senders of what did not come, and robots that the monitor does not know are out.
+    """
+
+    decided: int = 0
+    delivered: int = 0
+    crossings: int = 0
+    learned: int = 0
+    doubled: int = 0
+    looped: int = 0
+    flows: bool = False
+    about: tuple[int, ...] = ()
+
+
+NOTHING_KNOWN = Traffic()
+
+
+def headline(ways: Ways, traffic: Traffic = NOTHING_KNOWN, absent: str = "off") -> Headline:
+    """The state of a mesh.
+
+    degraded: a message or an alarm was lost or came twice, a packet met a node twice, a node is
+    off, cut off or without a way. down: nobody's messages get through to a gateway, nor did
+    anything come to anybody else since. no data: nobody has heard a gateway yet.
+
+    Args:
+        ways: who reaches the gateway now.
+        traffic: what became of what was sent.
+        absent: what is said of nodes that are missing: "off", "silent".
+    """
+    lost = traffic.crossings + traffic.decided - traffic.learned - traffic.delivered
+    if not (ways.on & ways.joined).any() and not ways.off.any() and not lost:
+        return Headline(NO_DATA, "No node leads as gateway yet.")
+    said = [*_undelivered(traffic), *_apart(ways, absent), *_twice(traffic)]
+    if not said:
+        return Headline(OK, _sentence([*_came(traffic), _reached(ways)]))
+    about = np.flatnonzero(ways.without | ways.off).tolist()
+    nodes = tuple(sorted({*about, *traffic.about}))
+    level = DOWN if _is_down(ways, traffic) else DEGRADED
+    return Headline(level, _sentence([*said, *_came(traffic)]), nodes)
+
+
+def _is_down(ways: Ways, traffic: Traffic) -> bool:
+    """True if nothing gets through: nothing of all that was sent, or nothing from now on."""
+    sent = traffic.decided + traffic.crossings
+    if not ways.on.any() or (sent and not traffic.delivered and not traffic.learned):
+        return True
+    served = ways.on & ~ways.without & ~ways.leads
+    return not served.any() and len(ways.on) > 1 and not traffic.flows
+
+
+def _undelivered(traffic: Traffic) -> list[str]:
+    """What did not come."""
+    found = []
+    unheard = traffic.crossings - traffic.learned
+    if unheard:
+        which = _part(unheard, traffic.crossings, "crossing")
+        found.append(f"the monitor never learned of {which} of the fence")
+    lost = traffic.decided - traffic.delivered
+    if lost:
+        found.append(f"{_part(lost, traffic.decided, 'message')} {_was(lost)} not delivered")
+    return found
+
+
+def _apart(ways: Ways, absent: str) -> list[str]:
+    """Who has no way, is cut off, or off."""
+    count, found = len(ways.on), []
+    if not ways.leads.any():
+        found.append("no node leads as gateway, and what is sent to it does not get through")
+    else:
+        cut, astray = int(ways.cut_off.sum()), int(ways.astray.sum())
+        if cut:
+            found.append(f"{_part(cut, count, 'node')} {_is(cut)} cut off from the gateway: "
+                         f"no link that works leads to {'it' if cut == 1 else 'them'}")  # fmt: skip
+        if astray:
+            found.append(f"{_part(astray, count, 'node')} {_has(astray)} no way to the gateway")
+    off = int(ways.off.sum())
+    if off:
+        found.append(f"{_part(off, count, 'node')} {_is(off)} {absent}")
+    return found
+
+
+def _twice(traffic: Traffic) -> list[str]:
+    found = []
+    if traffic.doubled:
+        found.append(f"{_count(traffic.doubled, 'message')} came twice")
+    if traffic.looped:
+        found.append(f"{_count(traffic.looped, 'packet')} met a node twice on the way")
+    return found
+
+
+def _came(traffic: Traffic) -> list[str]:
+    """What came, as far as it all did."""
+    said = []
+    if traffic.crossings and traffic.crossings == traffic.learned:
+        which = _part(traffic.crossings, traffic.crossings, "crossing")
+        said.append(f"the monitor learned of {which} of the fence")
+    if traffic.decided and traffic.decided == traffic.delivered:
+        which = _part(traffic.decided, traffic.decided, "message")
+        said.append(f"{which} {_was(traffic.decided)} delivered")
+    return said
+
+
+def _reached(ways: Ways) -> str:
+    """That everybody has a way."""
+    count = len(ways.on)
+    if int(ways.on.sum()) < count:  # some have not been switched on yet
+        return "every node that is on has a way to the gateway"
+    return f"all {count} nodes have a way to the gateway" if count > 1 else "the only node leads"
+
+
+def traffic(
+    found: Messages, crossings: Sequence[Crossing], doubled: int, looped: int, faults: Any
+) -> Traffic:
+    """The traffic of a run, so far.
+
+    Args:
+        found: its messages.
+        crossings: its crossings.
+        doubled: deliveries beyond the first.
+        looped: packets that met a node twice.
+        faults: those of its plan.
+    """
+    decided = counted(found)
+    came = decided.state == DELIVERED
+    closed = [crossing for crossing in crossings if not crossing.open]
+    learned = [crossing for crossing in closed if crossing.accepted_us != NEVER]
+    takes = [fault.at_us for fault in faults if fault.action in (KILL, CUT, JAM, RESTART)]
+    late = (found.state == DELIVERED) & (found.offered_us > max(takes, default=NEVER))
+    unheard = {crossing.robot for crossing in closed if crossing.accepted_us == NEVER}
+    return Traffic(
+        decided=len(decided.state),
+        delivered=int(np.count_nonzero(came)),
+        crossings=len(closed),
+        learned=len(learned),
+        doubled=doubled,
+        looped=looped,
+        flows=bool(late.any()),
+        about=tuple(sorted(unheard | set(decided.node[~came].tolist()))),
+    )
+
+
+def _sentence(parts: list[str]) -> str:
+    text = "; ".join(parts)
+    return f"{text[0].upper()}{text[1:]}."
+
+
+def _count(count: int, what: str) -> str:
+    return f"{count:,} {what}{'' if count == 1 else 's'}"
+
+
+def _part(part: int, whole: int, what: str) -> str:
+    """'1 of 91 messages', 'the only crossing', 'both robots', 'all 30 nodes'."""
+    if part < whole:
+        return f"{part:,} of {_count(whole, what)}"
+    if whole > 2:
+        return f"all {_count(whole, what)}"
+    return f"both {what}s" if whole == 2 else f"the only {what}"
+
+
+def _is(count: int) -> str:
+    return "is" if count == 1 else "are"
+
+
+def _was(count: int) -> str:
+    return "was" if count == 1 else "were"
+
+
+def _has(count: int) -> str:
+    return "has" if count == 1 else "have"

@@ -1,0 +1,190 @@
+"""The headline of a radio team, from facts that runs, running simulations and stations all have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any, NamedTuple
+
+from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline
+
+NAMED = 4  # so many robots are named one by one
+ROUNDS = 4  # turns of everybody that may pass before somebody's packet gets through
+BACKOFF_SLOTS = 1024  # ... besides the longest backoff
+
+Stations = tuple[int, ...]
+
+
+class RadioFacts(NamedTuple):
+    """What is known of a team at one moment.
+
+    `offered` = delivered + lost_silently + pending + abandoned + dropped, where all are known.
+
+    Attributes:
+        stations: how many belong to the team.
+        off: who was switched off, died or does not answer.
+        away: who left, or has not joined yet; that is no fault.
+        answering: False = nobody says anything, and nothing is known.
+        offered: packets that were to be sent.
+        delivered: packets that somebody received, as their senders know.
+        pending: packets that wait in robots that are on.
+        abandoned: packets of robots that are off or away.
+        dropped: packets that full queues refused.
+        lost_silently: packets that nobody received and their senders take for delivered.
+        partial: delivered packets that not everybody received who could hear.
+        overdue: pending packets that have waited longer than `patience_ms`, or that a run which
+            was to deliver them all did not deliver.
+        waiting: who has overdue packets.
+        still_ms: how long nothing has been delivered though somebody who is on had a packet.
+        patience_ms: how long that may take, see `patience_us`.
+        hidden: pairs that do not hear each other.
+        bounds: summary's `delay_bounds` where delays were found wrong: "believed_us" and
+            "measured_us", [least, greatest] each; None = nothing was noticed.
+        stations_wrong: who noticed it.
+        ended: nothing more will happen.
+    """
+
+    stations: int
+    off: Stations = ()
+    away: Stations = ()
+    answering: bool = True
+    offered: int = 0
+    delivered: int = 0
+    pending: int = 0
+    abandoned: int = 0
+    dropped: int = 0
+    lost_silently: int = 0
+    partial: int = 0
+    overdue: int = 0
+    waiting: Stations = ()
+    still_ms: float = 0.0
+    patience_ms: float = 1000.0
+    hidden: tuple[tuple[int, int], ...] = ()
+    bounds: Mapping[str, Any] | None = None
+    stations_wrong: Stations = ()
+    ended: bool = False
+
+
+def patience_us(params: Mapping[str, int], stations: int) -> int:
+    """How long a channel on which somebody waits may deliver nothing, us.
+
+    Args:
+        params: `slot_us`, `packet_slots`, `ta_us`, `dmax_us` of the protocol, as in a plan.
+        stations: how many share the channel.
+    """
+    slot_us = params["slot_us"]
+    turn_us = (params["packet_slots"] + 1) * slot_us + 2 * (params["ta_us"] + params["dmax_us"])
+    step_us = max(slot_us, params.get("backoff_us", 0))
+    return ROUNDS * stations * turn_us + max(BACKOFF_SLOTS, params.get("cw_max", 0)) * step_us
+
+
+def headline(facts: RadioFacts) -> Headline:
+    """The state of a team: what a person reads first of it."""
+    if not facts.answering:
+        return Headline(NO_DATA, "No robot answers.", tuple(range(facts.stations)))
+    down, nodes = _down(facts)
+    worse, more = _degraded(facts, told=bool(down))
+    if not (down or worse or facts.offered) and facts.ended:
+        return Headline(NO_DATA, "No packet was offered.")
+    level = DOWN if down else DEGRADED if worse else OK
+    words = "; ".join([*down, *worse, *_counts(facts)])
+    return Headline(level, f"{words[0].upper()}{words[1:]}.", tuple(sorted({*nodes, *more})))
+
+
+def _down(facts: RadioFacts) -> tuple[list[str], tuple[int, ...]]:
+    """Why nothing gets through; who is concerned."""
+    gone = {*facts.off, *facts.away}
+    on = [station for station in range(facts.stations) if station not in gone]
+    if not on:
+        return ["no robot is on"], tuple(range(facts.stations))
+    if len(on) == 1:
+        return [f"robot {on[0]} is alone: nobody can receive its packets"], (on[0],)
+    if facts.pending and facts.still_ms > facts.patience_ms:
+        waits = _count(facts.pending, "packet waits", "packets wait")
+        return [
+            f"nothing has been delivered for {_time(facts.still_ms)} although {waits}"
+        ], facts.waiting
+    if facts.lost_silently and not facts.delivered:
+        return ["not one packet was received"], tuple(on)
+    if facts.ended and facts.pending and not facts.delivered:
+        return ["nothing got through"], facts.waiting or tuple(on)
+    return [], ()
+
+
+def _degraded(facts: RadioFacts, told: bool) -> tuple[list[str], tuple[int, ...]]:
+    """What is lost, late or cut off, the worst first; `told`: that nothing gets through is said."""
+    news: list[str] = []
+    nodes: set[int] = set()
+    if facts.lost_silently:
+        lost = _count(facts.lost_silently, "packet was", "packets were")
+        news.append(f"{lost} lost silently, taken for delivered by the sender")
+    if facts.off and len(facts.off) + len(facts.away) < facts.stations:
+        left = facts.abandoned
+        with_it = f" with {_count(left, 'packet', 'packets')} not sent" if left else ""
+        news.append(f"{_robots(facts.off)} off{with_it}")
+        nodes |= set(facts.off)
+    if facts.dropped:
+        news.append(f"{_count(facts.dropped, 'packet', 'packets')} found a full queue")
+    if facts.overdue and not told:
+        who = _count(facts.overdue, "packet", "packets")
+        ended = "was" if facts.overdue == 1 else "were"
+        news.append(f"{who} {ended} not delivered in time")
+        nodes |= set(facts.waiting)
+    if facts.bounds is not None and not facts.hidden:  # what hidden frames end in is no delay
+        news.append(_wrong(facts.bounds))
+        nodes |= set(facts.stations_wrong)
+    if facts.hidden:
+        pairs = _count(len(facts.hidden), "pair of robots does", "pairs of robots do")
+        news.append(f"{pairs} not hear each other")
+        nodes |= {station for pair in facts.hidden for station in pair}
+    if facts.partial:
+        missed = _count(facts.partial, "packet", "packets")
+        news.append(f"{missed} did not reach every robot")
+    return news, tuple(nodes)
+
+
+def _counts(facts: RadioFacts) -> list[str]:
+    """How many packets came through, of those whose robots stayed."""
+    if not facts.offered:
+        return ["no packet has been offered"]
+    expected = facts.offered - facts.abandoned
+    if not facts.delivered:
+        yet = "was delivered" if facts.ended else "has been delivered yet"
+        return [f"of {_count(expected, 'packet', 'packets')} none {yet}"] if expected else []
+    if facts.delivered == expected:
+        which = "the packet was" if expected == 1 else f"all {expected:,} packets were"
+        return [f"{which} delivered"] if expected else []
+    was = "was" if facts.delivered == 1 else "were"
+    share = f"{facts.delivered:,} of {_count(expected, 'packet', 'packets')} {was} delivered"
+    fresh = facts.pending - facts.overdue
+    if fresh > 0 and facts.pending < expected:
+        share += f", {fresh:,} still waited" if facts.ended else f", {fresh:,} wait"
+    return [share]
+
+
+def _wrong(bounds: Mapping[str, Any]) -> str:
+    """Delays that are not what stations believe."""
+    believed, measured = bounds.get("believed_us"), bounds.get("measured_us")
+    if not believed or not measured:
+        return "delays lie outside what stations believe"
+    return (
+        f"delays of {measured[0]:g} to {measured[1]:g} us were measured where stations believe "
+        f"{believed[0]:g} to {believed[1]:g} us"
+    )
+
+
+def _robots(stations: Iterable[int]) -> str:
+    """Who is: "robot 3 is", "robots 3 and 5 are", "12 robots are"."""
+    who = [str(station) for station in stations]
+    if len(who) == 1:
+        return f"robot {who[0]} is"
+    if len(who) > NAMED:
+        return f"{len(who)} robots are"
+    return f"robots {', '.join(who[:-1])} and {who[-1]} are"
+
+
+def _count(count: int, one: str, many: str) -> str:
+    return f"{count:,} {one if count == 1 else many}"
+
+
+def _time(value_ms: float) -> str:
+    return f"{value_ms / 1000:.3g} s" if value_ms >= 1000 else f"{value_ms:.3g} ms"

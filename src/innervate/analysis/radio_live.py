@@ -1,0 +1,66 @@
+"""What is known of running stations at one moment, from what they say of themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from innervate.analysis.radio_headline import RadioFacts, Stations, patience_us
+
+
+class Still:
+    """Since when running stations deliver nothing though somebody has a packet."""
+
+    def __init__(self) -> None:
+        self._since_us: int | None = None
+        self._delivered = -1
+
+    def note(self, now_us: int, told: Iterable[Mapping[str, Any]]) -> float:
+        """Take in what they say now; how long nothing has been delivered, ms."""
+        stations = list(told)
+        delivered = sum(int(one["counters"].get("packets delivered", 0)) for one in stations)
+        waits = any(one.get("queued", 0) for one in stations)
+        if self._since_us is None or delivered != self._delivered:
+            self._since_us = now_us
+        still_ms = (now_us - self._since_us) / 1e3 if waits else 0.0
+        self._since_us = self._since_us if waits else None
+        self._delivered = delivered
+        return still_ms
+
+
+def of_stations(
+    told: Mapping[int, Mapping[str, Any]],
+    stations: int,
+    off: Stations,
+    still_ms: float,
+    params: Mapping[str, int],
+) -> RadioFacts:
+    """The facts of running stations, from what they say of themselves.
+
+    Args:
+        told: by index what those say that answer, as `innervate live status --json` shows it.
+        stations: how many are known.
+        off: who does not answer, or is off the channel.
+        still_ms: how long nobody has reported a delivery though somebody had a packet.
+        params: of the protocol.
+    """
+    count = {name: 0 for name in ("packets accepted", "packets delivered")}
+    for one in told.values():
+        for name in count:
+            count[name] += int(one.get("counters", {}).get(name, 0))
+    accepted, delivered = count.values()
+    abandoned = sum(int(told[i].get("queued", 0)) for i in off if i in told)
+    queued = {i: int(one.get("queued", 0)) for i, one in told.items() if i not in off}
+    patience_ms = patience_us(params, stations) / 1e3
+    return RadioFacts(
+        stations=stations,
+        off=off,
+        answering=bool(told),
+        offered=accepted,
+        delivered=delivered,
+        pending=accepted - delivered - abandoned,
+        abandoned=abandoned,
+        waiting=tuple(i for i in sorted(queued) if queued[i]) if still_ms > patience_ms else (),
+        still_ms=still_ms,
+        patience_ms=patience_ms,
+    )

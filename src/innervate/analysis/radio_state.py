@@ -1,0 +1,119 @@
+"""What is known of a simulated radio team at one moment: while it runs, and when it has ended."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from innervate.analysis.radio_headline import RadioFacts, Stations, patience_us
+from innervate.scenario.radio_plan import JOIN
+from innervate.sim.build import get
+from innervate.sim.radio.world import RING
+
+
+def facts(
+    world: Any,
+    plan: Any,
+    now_us: int,
+    delivered_us: int,
+    *,
+    faults: Iterable[Any] = (),
+    ended: bool = False,
+) -> RadioFacts:
+    """The facts of a simulation's world; `bounds` are not in it.
+
+    Args:
+        world: of the event level, arrays or lists.
+        plan: what is simulated.
+        now_us: the moment.
+        delivered_us: when the newest packet was known to be delivered; 0 = none yet.
+        faults: what was done to the team besides the plan's own.
+        ended: nothing more will happen.
+    """
+    count = plan.stations
+    on, off, away = _presence(world, plan, now_us)
+    since = switched_on(count, [*plan.faults, *faults], now_us)
+    waits = {i: waiting(world, i, since[i]) for i in range(count)}
+    patience = patience_us(plan.params, count)
+    goal = ended and not plan.saturated and plan.wanted > 0
+    overdue = {
+        i: len(waits[i]) if goal else sum(now_us - at > patience for at in waits[i]) for i in on
+    }
+    run = {name: int(get(world.run, 0, name)) for name in _COUNTS}
+    oldest = min((waits[i][0] for i in on if waits[i]), default=now_us)
+    return RadioFacts(
+        stations=count,
+        off=off,
+        away=away,
+        offered=run["offers"],
+        delivered=run["completed"] - run["silent"],
+        pending=sum(len(waits[i]) for i in on),
+        abandoned=sum(len(waits[i]) for i in (*off, *away)),
+        dropped=run["dropped"],
+        lost_silently=run["silent"],
+        partial=run["partial"],
+        overdue=sum(overdue.values()),
+        waiting=tuple(i for i in on if overdue[i]),
+        still_ms=max(0, now_us - max(oldest, delivered_us)) / 1e3,
+        patience_ms=patience / 1e3,
+        hidden=hidden_pairs(plan),
+        ended=ended,
+    )
+
+
+def pending(world: Any, stations: int) -> int:
+    """Packets that wait in robots that are on."""
+    return sum(
+        int(get(world.radios, i, "backlog"))
+        for i in range(stations)
+        if get(world.radios, i, "alive")
+    )
+
+
+_COUNTS = ("offers", "completed", "silent", "dropped", "partial")
+
+
+def _presence(world: Any, plan: Any, now_us: int) -> tuple[list[int], Stations, Stations]:
+    """Who is on, who was switched off, who left or has not come yet."""
+    if now_us == 0:  # everybody begins at 0
+        absent = {i for i, flag in enumerate(plan.absent) if flag}
+        return [i for i in range(plan.stations) if i not in absent], (), tuple(sorted(absent))
+    found: dict[str, list[int]] = {"on": [], "off": [], "away": []}
+    for i in range(plan.stations):
+        alive, leaving = (int(get(world.radios, i, name)) for name in ("alive", "leaving"))
+        found["on" if alive else "away" if leaving else "off"].append(i)
+    return found["on"], tuple(found["off"]), tuple(found["away"])
+
+
+def switched_on(count: int, faults: Iterable[Any], now_us: int) -> list[int]:
+    """Per robot, when it was switched on last, us."""
+    since = [0] * count
+    for fault in faults:
+        if fault.action == JOIN and fault.at_us <= now_us:
+            since[fault.node] = max(since[fault.node], fault.at_us)
+    return since
+
+
+def waiting(world: Any, station: int, since_us: int = 0) -> list[int]:
+    """Since when each packet in a robot could have been sent, us, the oldest first.
+
+    Args:
+        world: of the event level.
+        station: whose.
+        since_us: when it was switched on last.
+    """
+    radio = {name: int(get(world.radios, station, name)) for name in ("backlog", "fresh")}
+    first = radio["fresh"] - radio["backlog"]
+    places = [station * RING + ((first + i) & (RING - 1)) for i in range(radio["backlog"])]
+    return [max(int(world.offered[at]), since_us) for at in places]
+
+
+def hidden_pairs(plan: Any) -> tuple[tuple[int, int], ...]:
+    """Pairs that do not hear each other, the smaller number first."""
+    delays = plan.delays_us
+    return tuple(
+        (i, j)
+        for i in range(plan.stations)
+        for j in range(i + 1, plan.stations)
+        if delays[i][j] < 0 or delays[j][i] < 0
+    )

@@ -1,0 +1,82 @@
+"""Which cells have no way to the PC at the end of a run: cut off, seeking one, switched off."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from innervate.analysis.frames import lost_at_start
+from innervate.analysis.rows import apart_steps, marks
+from innervate.analysis.skin_headline import SkinFacts
+from innervate.analysis.skin_summary import Apart, Commands, Data, Reach
+from innervate.sim.world import DEAD
+
+LABELS_MAX = 100
+
+
+def skin_facts(result: Any, data: Data, commands: Commands) -> SkinFacts | None:
+    """What a headline is made of; None of a run that nobody observed.
+
+    Samples that cells took before they had a way for the first time do not count.
+
+    Args:
+        result: of the run.
+        data: its `data_summary`.
+        commands: its `commands_summary`.
+    """
+    if len(marks(result).row) == 0:
+        return None
+    most = int(apart_steps(result).cells.max(initial=0))
+    facts = world_facts(result.world, result.plan.graph.cells)
+    return facts._replace(
+        cut_off_before=most if most > len(facts.cut_off) else 0,
+        sent=data["sent"] - lost_at_start(result),
+        lost=data["lost"] - lost_at_start(result),
+        missed=commands["lost_by"]["on_the_way"],
+    )
+
+
+def world_facts(world: Any, cells: int) -> SkinFacts:
+    """What an observed simulation says of its cells at the moment it stands at, data left out."""
+    watch = world.watch
+    alive, apart = np.array(world.alive), np.array(watch.apart)
+    cut_off = apart >= 0
+    seeking = (np.array(watch.joined) == 1) & (np.array(watch.routed) == 0)
+    return SkinFacts(
+        cells=cells,
+        off=np.flatnonzero(alive[:cells] == DEAD).tolist(),
+        cut_off=np.flatnonzero(cut_off).tolist(),
+        seeking=np.flatnonzero(seeking).tolist(),
+        never=np.flatnonzero(seeking & (np.array(watch.had) == 0)).tolist(),
+        since_s=int(apart[cut_off].min()) / 1e6 if cut_off.any() else None,
+        pc_off=int(alive[cells]) == DEAD,
+    )
+
+
+def reach(result: Any, facts: SkinFacts | None) -> Reach:
+    """Entries of a summary on cells that have no way to the PC at the end of a run.
+
+    `cut_off`: cells that are on and that no cable joins with the PC any more: `cells` how many,
+    `labels` which (at most 100), `since_s` when the first of them was cut off, `most` how many
+    there were at the worst moment. `without_way`: cells that cables join with the PC but that have
+    no chain of parents to it; `never` of them never had one. `switched_off`: cells that are off.
+    `lost_at_start`: samples lost before their cell had a way for the first time. All None of a run
+    that nobody observed.
+    """
+    if facts is None:
+        return {
+            "cut_off": None, "without_way": None, "switched_off": None, "lost_at_start": None,
+        }  # fmt: skip
+    label = result.plan.graph.label
+
+    def counted(nodes: Any) -> Apart:
+        return {"cells": len(nodes), "labels": [label(node) for node in nodes[:LABELS_MAX]]}
+
+    most = max(len(facts.cut_off), facts.cut_off_before)
+    return {
+        "cut_off": {**counted(facts.cut_off), "since_s": facts.since_s, "most": most},
+        "without_way": {**counted(facts.seeking), "never": len(facts.never)},
+        "switched_off": counted(facts.off),
+        "lost_at_start": lost_at_start(result),
+    }

@@ -1,0 +1,144 @@
+"""A skin's headline: who has a way to the PC, who has none, and whether a cable could give one.
+
+From plain facts, so that a finished run, a simulation under way and running nodes can all ask.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from typing import NamedTuple
+
+from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline
+
+NAMED_MAX = 3
+
+
+class SkinFacts(NamedTuple):
+    """What is known of a skin at one moment. A cell is in at most one of the first four lists.
+
+    Attributes:
+        cells: how many there are; they are numbered 0 .. cells - 1.
+        off: cells that are switched off.
+        silent: running nodes only: cells that do not answer, so that nothing is known of them.
+        cut_off: cells that are on, but that no live cable joins with the PC, over whatever way.
+        seeking: cells that are on and that cables join with the PC, but that have no way to it.
+        never: those of `seeking` that have not had a way since they were first switched on.
+        since_s: when the first of `cut_off` was cut off; None = unknown.
+        pc_off: the PC is switched off, or does not answer.
+        cut_off_before: most cells that were cut off at the same time and are not any more; a live
+            page, which shows the moment, leaves it at 0.
+        sent: tactile samples that cells took once they had had a way; 0 without data.
+        lost: those of them that were lost.
+        missed: cells, over all commands of the PC, that had a way and did not get one for them.
+    """
+
+    cells: int
+    off: Collection[int] = ()
+    silent: Collection[int] = ()
+    cut_off: Collection[int] = ()
+    seeking: Collection[int] = ()
+    never: Collection[int] = ()
+    since_s: float | None = None
+    pc_off: bool = False
+    cut_off_before: int = 0
+    sent: int = 0
+    lost: int = 0
+    missed: int = 0
+
+
+def skin_headline(facts: SkinFacts | None, label: Callable[[int], str] = str) -> Headline:
+    """The state of a skin in a word and a sentence.
+
+    ok: every cell has a way to the PC, and no sample or command was lost. down: no cell has a way.
+    no data: no cell answers. degraded: everything between.
+
+    Args:
+        facts: what is known; None = nothing, as nobody watched.
+        label: a cell's name, for sentences about few of them.
+    """
+    if facts is None:
+        return Headline(NO_DATA, "Nobody watched who had a way to the PC.")
+    if facts.cells and len(facts.silent) == facts.cells:
+        return Headline(NO_DATA, "No cell answers: nothing is known of the skin.")
+    troubled = (*facts.cut_off, *facts.seeking, *facts.silent, *facts.off)
+    with_way = 0 if facts.pc_off else facts.cells - len(troubled)
+    said = [*_reasons(facts, label), *_before(facts), *_samples(facts), *_commands(facts)]
+    ending = _others(facts, with_way, bool(troubled))
+    text = "; ".join([*said, ending] if said and ending else said or [ending])
+    level = DOWN if not with_way else DEGRADED if said else OK
+    return Headline(level, f"{text[0].upper()}{text[1:]}.", tuple(sorted(map(int, troubled))))
+
+
+def _reasons(facts: SkinFacts, label: Callable[[int], str]) -> list[str]:
+    """Why cells have no way, the worst reason first."""
+    found = []
+    if facts.pc_off:
+        found.append("the PC is switched off: no cell has a way to it")
+    elif facts.cut_off:
+        since = "" if facts.since_s is None else f" since {facts.since_s:.3f} s"
+        who, verb, them = _who(facts, facts.cut_off, label)
+        why = f"no cable joins {them} with the PC any more"
+        found.append(f"{who} {verb} cut off{since}: {why}")
+    old = [cell for cell in facts.seeking if cell not in set(facts.never)]
+    if facts.never:
+        none = len(facts.never) == facts.cells
+        who = "no cell ever" if none else f"{_who(facts, facts.never, label)[0]} never"
+        found.append(f"{who} got a way to the PC")
+    if old and not facts.pc_off:
+        who, verb, them = _who(facts, old, label)
+        have = "has" if verb == "is" else "have"
+        found.append(f"{who} {have} no way to the PC, although cables join {them} with it")
+    if facts.silent:
+        who, verb, _ = _who(facts, facts.silent, label)
+        found.append(f"{who} {'does' if verb == 'is' else 'do'} not answer")
+    if facts.off:
+        who, verb, _ = _who(facts, facts.off, label)
+        found.append(f"{who} {verb} switched off")
+    return found
+
+
+def _who(
+    facts: SkinFacts, nodes: Collection[int], label: Callable[[int], str]
+) -> tuple[str, str, str]:
+    """(some cells in words, the verb, the pronoun): "2 of 20 cells (n1, n2)", "are", "them"."""
+    if len(nodes) == facts.cells:
+        return (f"all {facts.cells:,} cells", "are", "them") if facts.cells > 1 else (
+            "the only cell", "is", "it")  # fmt: skip
+    names = ", ".join(label(node) for node in sorted(nodes))
+    shown = f" ({names})" if len(nodes) <= NAMED_MAX else ""
+    verb, them = ("is", "it") if len(nodes) == 1 else ("are", "them")
+    return f"{len(nodes):,} of {facts.cells:,} cells{shown}", verb, them
+
+
+def _before(facts: SkinFacts) -> list[str]:
+    if not facts.cut_off_before:
+        return []
+    few = f"{facts.cut_off_before:,} of {facts.cells:,} cells"
+    who = f"all {facts.cells:,} cells" if facts.cut_off_before == facts.cells else few
+    verb = "was" if facts.cut_off_before == 1 else "were"
+    return [f"{who} {verb} cut off from the PC for a time"]
+
+
+def _samples(facts: SkinFacts) -> list[str]:
+    if not facts.lost:
+        return []
+    share = 100 * facts.lost / facts.sent if facts.sent else 100.0
+    shown = f"{share:.3g} %" if share >= 0.001 else "less than 0.001 %"
+    verb = "was" if facts.lost == 1 else "were"
+    return [f"{facts.lost:,} of {facts.sent:,} samples {verb} lost ({shown})"]
+
+
+def _commands(facts: SkinFacts) -> list[str]:
+    if not facts.missed:
+        return []
+    return [f"commands did not reach cells that had a way, {facts.missed:,} times"]
+
+
+def _others(facts: SkinFacts, with_way: int, some: bool) -> str:
+    """Those that have a way; nothing to say if there is none."""
+    if not with_way:
+        return ""
+    if not some:
+        kept = ", and no sample was lost" if facts.sent and not facts.lost else ""
+        return f"every cell has a way to the PC{kept}"
+    return f"{'every' if with_way > 1 else 'the'} other cell has a way to the PC"

@@ -1,0 +1,45 @@
+"""What the summaries of all kinds of networks have in common.
+
+A key's unit is the end of its name: `_s` seconds, `_ms` milliseconds, `_slots` slots of the
+channel, `_m` metres; `ratio`, `share` and `recall` are 0 .. 1. What never happened is None.
+"""
+
+from __future__ import annotations
+
+from typing import NotRequired, TypedDict
+
+from innervate.analysis.headline import HeadlineEntry
+
+
+class Common(TypedDict):
+    """The keys that every run's summary has.
+
+    Attributes:
+        name: the scenario's.
+        seed: the root seed, 0 .. 2^63-1.
+        duration_s: simulated time that was asked for.
+        events: handler calls and frames that arrived.
+        events_per_s: events per second of wall time; None if it took no time.
+        wall_s: how long the simulation took.
+        headline: is all well, in a sentence.
+        fingerprint: 16 hexadecimal digits, the same only for the same run, event by event.
+        interrupted_at_s: simulated time at which it was ended early; missing if it was not.
+    """
+
+    name: str
+    seed: int
+    duration_s: float
+    events: int
+    events_per_s: int | None
+    wall_s: float
+    fingerprint: str
+    headline: HeadlineEntry
+    interrupted_at_s: NotRequired[float]
+
+
+class Percentiles(TypedDict):
+    """Median, 99th percentile and maximum, in the unit of the key that holds them."""
+
+    p50: float | None
+    p99: float | None
+    max: float | None

@@ -1,0 +1,122 @@
+"""Lets so many callers in that a node never runs out of files or of time, whoever calls."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections import Counter
+from collections.abc import Awaitable, Callable
+from contextlib import suppress
+from typing import NamedTuple
+
+BACKLOG = 100
+REST_S = 0.05  # nobody is let in for so long once a burst was; frames have their turn
+SPENT_S = 1.0  # the same when files have run out
+CLOSE_S = 1.0  # a caller that does not read what it asked for has so long
+
+# Serves one caller, and does not raise.
+Serve = Callable[[asyncio.StreamReader, asyncio.StreamWriter], Awaitable[None]]
+
+
+class Bounds(NamedTuple):
+    """How much a door stands.
+
+    Attributes:
+        most: callers that may be in at once.
+        burst: how many are let in, or turned away, before a rest of 50 ms.
+        full: what those are told that are one too many; then they are hung up on.
+        limit: bytes that a caller may send without the end of a line.
+    """
+
+    most: int
+    burst: int
+    full: bytes
+    limit: int
+
+
+class Door:
+    """A listening socket with a bound on who is in at once, and on how fast they come in.
+
+    Args:
+        name: what is counted begins so.
+        sock: bound; it listens from `open` on.
+        serve: is given each caller that is let in.
+        bounds: how much it stands.
+        counts: callers that were one too many, and how often files had run out.
+    """
+
+    def __init__(
+        self, name: str, sock: socket.socket, serve: Serve, bounds: Bounds, counts: Counter[str]
+    ) -> None:
+        self._name = name
+        self._sock = sock
+        self._serve = serve
+        self._bounds = bounds
+        self._counts = counts
+        self._inside: set[asyncio.Task[None]] = set()
+        self._rest: asyncio.TimerHandle | None = None
+        self._loop = asyncio.get_running_loop()
+
+    def open(self) -> None:
+        """Listen."""
+        self._sock.setblocking(False)
+        self._sock.listen(BACKLOG)
+        self._loop.add_reader(self._sock.fileno(), self._knock)
+
+    def close(self) -> None:
+        """Listen no more; whoever is in is hung up on."""
+        if self._sock.fileno() < 0:
+            return
+        self._loop.remove_reader(self._sock.fileno())
+        if self._rest is not None:
+            self._rest.cancel()
+        self._sock.close()
+        for task in self._inside:
+            task.cancel()
+
+    def _knock(self) -> None:
+        for _ in range(self._bounds.burst):
+            try:
+                caller, _ = self._sock.accept()
+            except (BlockingIOError, ConnectionError):
+                return
+            except OSError:
+                self._counts[f"{self._name}: no files left"] += 1
+                self._pause(SPENT_S)
+                return
+            caller.setblocking(False)
+            if len(self._inside) < self._bounds.most:
+                task = self._loop.create_task(self._let_in(caller))
+                self._inside.add(task)
+                task.add_done_callback(self._inside.discard)
+            else:
+                self._counts[f"{self._name}: turned away"] += 1
+                with caller, suppress(OSError):
+                    caller.send(self._bounds.full)
+        self._pause(REST_S)
+
+    def _pause(self, seconds: float) -> None:
+        self._loop.remove_reader(self._sock.fileno())
+        self._rest = self._loop.call_later(seconds, self._go_on)
+
+    def _go_on(self) -> None:
+        self._loop.add_reader(self._sock.fileno(), self._knock)
+
+    async def _let_in(self, caller: socket.socket) -> None:
+        reader = asyncio.StreamReader(self._bounds.limit, self._loop)
+        protocol = asyncio.StreamReaderProtocol(reader, loop=self._loop)
+        try:
+            transport, _ = await self._loop.connect_accepted_socket(lambda: protocol, caller)
+        except OSError:
+            caller.close()
+            return
+        writer = asyncio.StreamWriter(transport, protocol, reader, self._loop)
+        try:
+            await self._serve(reader, writer)
+            writer.close()
+            async with asyncio.timeout(CLOSE_S):
+                await writer.wait_closed()
+        except (OSError, TimeoutError, asyncio.CancelledError):  # gone, or the node ends
+            pass
+        finally:
+            transport.abort()

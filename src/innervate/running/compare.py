@@ -1,0 +1,203 @@
+"""What differs between two run folders: scenario, summary, and the first event that differs."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from innervate import scenario as scenarios
+from innervate.running import folder as folders
+from innervate.running.errors import RunError
+from innervate.running.rooms import room_of
+from innervate.running.run import Run
+from innervate.running.trail import first_difference
+from innervate.scenario import ScenarioError
+
+# What says nothing about the trajectory.
+_ASIDE = ("wall_s", "events_per_s")
+
+Difference = tuple[str, Any, Any]
+Side = str | os.PathLike[str] | Run
+
+
+@dataclass(frozen=True, slots=True)
+class Divergence:
+    """The first handler call that differs between two runs.
+
+    Attributes:
+        time_s: when, the earlier of the two.
+        a, b: the call in either run, in words; "nothing more" where one had ended.
+        same_call: the same call in both, but with another outcome.
+    """
+
+    time_s: float
+    a: str
+    b: str
+    same_call: bool
+
+    def __str__(self) -> str:
+        if self.same_call:
+            return f"{self.a}: the same call, but another outcome"
+        return f"{self.a} against {self.b}"
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Two runs side by side.
+
+    Attributes:
+        scenario: (dotted key, value in a, value in b) of all keys that differ; None = not set.
+        summary: the same for the summary, without what depends on the machine.
+        divergence: the first handler call that differs; None if none does.
+        notes: what to know besides, a sentence each.
+    """
+
+    scenario: list[Difference]
+    summary: list[Difference]
+    divergence: Divergence | None
+    notes: list[str]
+
+    @property
+    def same(self) -> bool:
+        """True if both runs were the same, event by event."""
+        return self.divergence is None and not self.summary
+
+
+def compare(a: Side, b: Side) -> Comparison:
+    """What differs between two runs; if they differ, both are simulated again to find where.
+
+    Args:
+        a: a run, or the folder of one.
+        b: another.
+
+    Raises:
+        RunError: one of them is not a run folder, or damaged.
+    """
+    one, other = _side(a), _side(b)
+    divergence = None
+    if one.fingerprint != other.fingerprint or one.ended_us != other.ended_us:
+        divergence = _diverge(one, other)
+    return Comparison(
+        scenario=differences(one.tables, other.tables),
+        summary=differences(one.trajectory, other.trajectory),
+        divergence=divergence,
+        notes=_notes(one, other),
+    )
+
+
+def _side(given: Side) -> _Recorded:
+    return _Done(given) if isinstance(given, Run) else _Recorded(Path(given))
+
+
+def differences(a: Any, b: Any, key: str = "") -> list[Difference]:
+    """All leaves in which two nested structures differ, by dotted key, in the order of `a`."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        names = [*a, *(name for name in b if name not in a)]
+        pairs = [(f"{key}.{n}" if key else n, a.get(n), b.get(n)) for n in names]
+    elif isinstance(a, list) and isinstance(b, list) and any(isinstance(x, dict) for x in a + b):
+        longest = max(len(a), len(b))
+        left, right = (x + [None] * (longest - len(x)) for x in (a, b))
+        pairs = [(f"{key}.{i}", left[i], right[i]) for i in range(longest)]
+    else:
+        return [] if a == b else [(key, a, b)]
+    return [found for pair in pairs for found in differences(pair[1], pair[2], pair[0])]
+
+
+class _Recorded:
+    """What a run folder says."""
+
+    def __init__(self, folder: Path) -> None:
+        self.called = str(folder)
+        if not folder.is_dir():
+            raise RunError(f"{folder} is not a run folder: there is no such folder")
+        self.summary = folders.read_json(folder, folders.SUMMARY)
+        self.provenance = folders.read_json(folder, folders.PROVENANCE)
+        folders.check_tables(folder, self.provenance.get("tables_sha256"))
+        path = folder / folders.SCENARIO
+        try:
+            self.tables = tomllib.loads(path.read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            raise RunError(f"{folder} is not a run folder: it has no {path.name}") from None
+        except (OSError, ValueError):
+            raise RunError(f"{path} is damaged; run the scenario again") from None
+        self._folder = folder
+
+    @property
+    def fingerprint(self) -> Any:
+        """Of its events."""
+        return self.summary.get("fingerprint")
+
+    @property
+    def trajectory(self) -> dict[str, Any]:
+        """The summary without what depends on the machine."""
+        return {name: value for name, value in self.summary.items() if name not in _ASIDE}
+
+    @property
+    def ended_us(self) -> int:
+        """Simulated time the run came to, us."""
+        ended = self.summary.get("interrupted_at_s", self.summary.get("duration_s"))
+        if not isinstance(ended, int | float):
+            raise RunError(f"{self.called}: its summary is damaged; run the scenario again")
+        return round(1e6 * ended)
+
+    def plan(self) -> Any:
+        """The plan of its scenario."""
+        try:
+            made = scenarios.plan(scenarios.load(self._folder / folders.SCENARIO))
+        except ScenarioError as error:
+            raise RunError(f"its scenario cannot be run any more: {error}") from None
+        return made
+
+
+class _Done(_Recorded):
+    """The same of a run that is at hand."""
+
+    def __init__(self, run: Run) -> None:
+        self.called = repr(run)
+        self.summary = dict(run.summary)
+        self.provenance = run.provenance
+        self.tables = tomllib.loads(scenarios.dump(run.scenario))
+        self._run = run
+
+    def plan(self) -> Any:
+        """The plan it was run with."""
+        return self._run.plan
+
+
+def _diverge(a: _Recorded, b: _Recorded) -> Divergence | None:
+    plans = a.plan(), b.plan()
+    rows = first_difference(
+        *(
+            room_of(plan.kind).trail(plan, min(run.ended_us, plan.duration_us))
+            for plan, run in zip(plans, (a, b), strict=True)
+        )
+    )
+    if rows is None:
+        return None
+    words = [_in_words(plan, row) for plan, row in zip(plans, rows, strict=True)]
+    times = [int(row["time"]) for row in rows if row is not None]
+    return Divergence(min(times) / 1e6, words[0], words[1], words[0] == words[1])
+
+
+def _in_words(plan: Any, row: Any) -> str:
+    """A row of the trail: "2.016000 s, p0 r3 c4: beacon period"."""
+    if row is None:
+        return "nothing more"
+    return f"{int(row['time']) / 1e6:.6f} s, {room_of(plan.kind).call_words(plan, row)}"
+
+
+def _notes(a: _Recorded, b: _Recorded) -> list[str]:
+    notes = []
+    for key in ("innervate", "commit", "packages", "python"):
+        one, other = a.provenance.get(key), b.provenance.get(key)
+        if one != other:
+            notes.append(f"{key} differs: {one} and {other}")
+    if "slotted" in (a.summary.get("level"), b.summary.get("level")):
+        notes.append("a run on the slotted level has no events to compare")
+    for run in (a, b):
+        if "interrupted_at_s" in run.summary:
+            notes.append(f"{run.called} was interrupted at {run.ended_us / 1e6:g} s")
+    return notes

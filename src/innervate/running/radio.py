@@ -1,0 +1,119 @@
+"""What is particular to radio runs: the simulation, the summary, the tables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from innervate.analysis import radio as analysis
+from innervate.analysis.radio_summary import RadioSummary, SlottedSummary
+from innervate.protocol.radio_words import CLOCK, LEAVE, MAIN, RESULT
+from innervate.running import radio_slotted
+from innervate.sim.loop import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
+from innervate.sim.radio import simulate as simulator
+from innervate.sim.radio.loop import ON_CARRIER
+from innervate.trace import radio_tables
+from innervate.trace.tables import Table
+
+Columns = dict[str, Any]
+
+
+def simulate(
+    plan: Any,
+    *,
+    plain: bool,
+    checks: bool,
+    received: bool | None,
+    progress: Callable[[int, int], None] | None,
+) -> Any:
+    """Run a radio plan, on the level it asks for; `received` is for skins."""
+    if _is_slotted(plan):
+        return radio_slotted.simulate(plan, plain)
+    return simulator.simulate(plan, plain=plain, checks=checks, progress=progress)
+
+
+def _is_slotted(plan: Any) -> bool:
+    return bool(plan.scenario.model.channel.level == "slotted")
+
+
+def summarize(result: Any) -> RadioSummary | SlottedSummary:
+    """The summary of a run; what never happened is None."""
+    if _is_slotted(result.plan):
+        return radio_slotted.summarize(result)
+    return analysis.summarize(result)
+
+
+def tables_of(result: Any) -> tuple[Table, ...]:
+    """The tables of a run; the slotted level has none."""
+    return () if _is_slotted(result.plan) else radio_tables.TABLES
+
+
+def columns(table: Table, result: Any) -> Columns:
+    """One array for every column of a table."""
+    made = _MAKERS[table.name](result)
+    # Fields of rows lie apart in memory; polars wants each in one piece.
+    return {name: np.ascontiguousarray(values) for name, values in made.items()}
+
+
+def _packets(result: Any) -> Columns:
+    rows = result.packets
+    return {
+        "station": rows["node"],
+        "offered_us": rows["offered"],
+        "ended_us": rows["end"],
+        "known_us": rows["time"],
+        **{name: rows[name] for name in ("handle", "slots", "tries", "receivers", "listeners")},
+    }
+
+
+def _sent(result: Any) -> Columns:
+    rows = result.sent
+    return {
+        "start_us": rows["time"],
+        "end_us": rows["end"],
+        "station": rows["node"],
+        "position": rows["pos"],
+        "packets": rows["count"],
+        **{name: rows[name] for name in ("kind", "slots", "next", "handle")},
+    }
+
+
+def _reports(result: Any) -> Columns:
+    rows = result.rows
+    return {
+        "time_us": rows["time"],
+        "station": rows["node"],
+        **{name: rows[name] for name in ("code", "a", "b")},
+    }
+
+
+_MAKERS = {
+    radio_tables.PACKETS.name: _packets,
+    radio_tables.SENT.name: _sent,
+    radio_tables.REPORTS.name: _reports,
+}
+
+
+def trail(plan: Any, until_us: int) -> Iterator[Any]:
+    """The trail of a plan: structured arrays with the fields of trail.FIELDS."""
+    if _is_slotted(plan):
+        return  # it has no handler calls
+    shorter = replace(plan, duration_us=until_us)
+    yield simulator.simulate(shorter, checks=False, keep=False, trail=True).trail
+
+
+def call_words(plan: Any, row: Any) -> str:
+    """A row of the trail in words: "station 3: carrier came"."""
+    handler, port = int(row["handler"]), int(row["port"])
+    given = {LEAVE: "is to leave", RESULT: "is told who received its packet", CLOCK: "is told time"}
+    what = {
+        ON_START: "switched on",
+        ON_FRAME: f"received a frame of type {port}",
+        ON_TIMER: "a wait is over" if port == MAIN else "its minislot",
+        ON_INPUT: given.get(port, "was offered a packet"),
+        ON_CARRIER: ("hears nothing", "", "hears several", "hears one")[port & 3],
+    }[handler]
+    return f"station {int(row['node'])}: {what}"

@@ -1,0 +1,48 @@
+"""The radio's search can fail: copies of the protocol with a small mistake in each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from innervate.running import radio_grid as grid
+from innervate.running import radio_tree as tree
+from innervate.verify.mutants import Catch, Mutant, copies
+
+RUNS = 120
+
+MUTANTS = tuple(
+    Mutant(*texts)
+    for texts in (
+        ("minislots that collided do not split",
+         "station.slot = parts * groups + draw(station, parts)", "station.slot = parts * groups"),
+        ("a collision's wait is not drawn",
+         "params.ta_us + most_delay(params, station.wide) + draw(station, bound)",
+         "params.ta_us + most_delay(params, station.wide)"),
+        ("who was given a place does not note it",
+         "                if i == mine and station.mode == WINDOW:\n"
+         "                    station.pos = place\n", ""),
+        ("nothing is ever proved",
+         "        prove(station, out)\n    station.heard = 1\n",
+         "        station.heard = 1\n    station.heard = 1\n"),
+    )
+)  # fmt: skip
+
+
+def trees() -> Iterator[tree.Tree]:
+    """What each mutant is tried on, smallest first."""
+    for stations, turnaround_us in ((2, 0), (3, 0), (3, 2000)):
+        made = grid.Grid(stations, "practical", turnaround_us, offers_us=(0, 52))
+        yield tree.Tree(made, depth=5)
+
+
+def hunt(mutant: Mutant) -> Catch:
+    """Try a mutant on all trees until something is broken."""
+    (entry,) = copies(mutant, "radio_practical")
+    runs = 0
+    for one in trees():
+        found = tree.search(one, entry, RUNS)
+        runs += found.runs
+        if found.broken:
+            where = f"{one.grid.stations} stations, turnaround {one.grid.turnaround_us} us"
+            return Catch(mutant, grid.WORDS[min(found.broken)], where, runs)
+    return Catch(mutant, "", "", runs)

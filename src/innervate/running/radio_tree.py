@@ -1,0 +1,185 @@
+"""Radio, every draw: each choice that stations make at random is tried with each of its values.
+
+As radio_grid.py, but uncompiled, and what a draw gives is no part of the grid: a run asks, every
+answer becomes a branch, whichever station asks, and whenever. Draws out of few are tried with all
+values, draws of a time with the first, the middle and the last of its range. Behind `depth` draws
+every station goes on with a generator of its own.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from innervate.kernel.wall import wall_s
+from innervate.protocol import rng
+from innervate.running import radio_grid as grid
+from innervate.sim.build import get, put
+from innervate.sim.radio import build as builder
+from innervate.sim.radio import loop, stacks
+from innervate.sim.radio import world as w
+from innervate.sim.world import row_dtype
+
+FEW = 6
+ROOM = 512  # frames and reports of a run; a few stations need some dozens
+
+
+@dataclass(frozen=True, slots=True)
+class Tree:
+    """What is tried.
+
+    Attributes:
+        grid: stations, mode, times; its draws and parts do not count.
+        depth: how many draws of a run, in the order of their asking, become branches.
+    """
+
+    grid: grid.Grid
+    depth: int = 6
+
+
+@dataclass(slots=True)
+class Grown:
+    """What came of a tree.
+
+    Attributes:
+        tree: what was tried.
+        runs: how many.
+        deepest: most draws in one run.
+        wall_s: how long that took.
+        broken: what is broken and how often.
+        first: for each of these the first point and the values that its draws gave.
+        ended: "complete", "limit" or "interrupted".
+    """
+
+    tree: Tree
+    runs: int
+    deepest: int
+    wall_s: float
+    broken: dict[int, int]
+    first: dict[int, tuple[grid.Point, tuple[int, ...]]]
+    ended: str
+
+    def as_dict(self) -> dict[str, Any]:
+        """For --json."""
+        return {
+            "tree": asdict(self.tree),
+            "runs": self.runs,
+            "deepest": self.deepest,
+            "wall_s": round(self.wall_s, 3),
+            "ended": self.ended,
+            "broken": {grid.WORDS[code]: count for code, count in self.broken.items()},
+        }
+
+
+class Asked:
+    """Answers draws from a script, notes out of how many they were."""
+
+    def __init__(self, depth: int) -> None:
+        self.depth = depth
+        self.script: tuple[int, ...] = ()
+        self.ranges: list[int] = []
+        self.own = rng.seeded(1)
+        self.answer = 0
+
+    def begin(self, script: tuple[int, ...]) -> None:
+        """A run begins."""
+        self.script, self.ranges, self.own, self.answer = script, [], rng.seeded(7), 0
+
+    def ask(self, count: int) -> None:
+        """A station draws out of so many."""
+        place = len(self.ranges)
+        if place < self.depth:
+            self.ranges.append(count)
+            self.answer = values(count)[self.script[place] if place < len(self.script) else 0]
+        else:
+            self.own = rng.step(self.own)
+            self.answer = self.own % count
+
+
+def values(count: int) -> list[int]:
+    """What is tried of a draw out of so many."""
+    return list(range(count)) if count <= FEW else [0, count // 2, count - 1]
+
+
+def scripted(station: Any, asked: Asked) -> None:
+    """Let a plain station's draws be answered; its record is as it was."""
+    kind = type(station)
+    members = {
+        "__slots__": (),
+        "choice": property(lambda _: asked.answer, lambda *_: None),
+        "asked": property(lambda _: 0, lambda _, count: asked.ask(count) if count else None),
+    }
+    station.__class__ = type(kind.__name__, (kind,), members)
+
+
+def search(
+    tree: Tree,
+    entry: ModuleType | None = None,
+    limit: int = 0,
+    progress: Callable[[Grown], bool] | None = None,
+) -> Grown:
+    """All runs of a tree, or the first `limit`; `entry` a copy of the protocol to run."""
+    shared = grid.base_plan(tree.grid)
+    stack = stacks.bind(entry or stacks.PROTOCOLS[shared.protocol].entry)
+    advance = loop.build(stack)[-1]
+    asked, grown = Asked(tree.depth), Grown(tree, 0, 0, 0.0, {}, {}, "interrupted")
+    started = wall_s()
+    for point in _points(tree.grid):
+        plan = grid.plan_of(shared, tree.grid, point)
+        todo: list[tuple[int, ...]] = [()]
+        while todo:
+            script = todo.pop()
+            broken = _run(plan, advance, asked, script)
+            todo += _branches(script, asked.ranges)
+            grown.runs += 1
+            grown.deepest = max(grown.deepest, len(asked.ranges))
+            grown.wall_s = wall_s() - started
+            if broken:
+                grown.broken[broken] = grown.broken.get(broken, 0) + 1
+                grown.first.setdefault(broken, (point, script))
+            if grown.runs == limit:
+                grown.ended = "limit"
+                return grown
+            if progress is not None and grown.runs % 20 == 0 and progress(grown):
+                return grown
+    grown.ended = "complete"
+    return grown
+
+
+def _points(made: grid.Grid) -> Iterator[grid.Point]:
+    """All offers and delays."""
+    pairs = made.stations * (made.stations - 1) // 2
+    for offers in itertools.product(made.offers_us, repeat=made.stations - 1):
+        for delays in itertools.product(made.delays_us, repeat=pairs):
+            yield grid.Point((0, *offers), delays, ())
+
+
+def _branches(script: tuple[int, ...], ranges: list[int]) -> list[tuple[int, ...]]:
+    """The scripts that differ from a run's in one later draw."""
+    found = []
+    for at in range(len(script), len(ranges)):
+        zeros = script + (0,) * (at - len(script))
+        found += [(*zeros, value) for value in range(1, len(values(ranges[at])))]
+    return found
+
+
+def _run(plan: Any, advance: Callable[..., None], asked: Asked, script: tuple[int, ...]) -> int:
+    """One run; what is broken, 0 nothing."""
+    world = builder.build(plan, plain=True, checks=True, keep=True, trail=False, room=ROOM)
+    for station in world.stations:
+        scripted(station, asked)
+        put([station], 0, rng=1)
+    asked.begin(script)
+    try:
+        advance(world, plan.duration_us, grid.EVENTS)
+    except (ArithmeticError, IndexError, ValueError):
+        return grid.INVARIANT  # a mutant's value that fits nowhere
+    rows = world.sent[: int(get(world.run, 0, "sent"))]
+    sent = np.array([tuple(getattr(row, f) for f in w.SENT) for row in rows],
+                    row_dtype(w.SENT, w.WIDE))  # fmt: skip
+    return grid.judge(world, plan, sent)

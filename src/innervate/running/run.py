@@ -1,0 +1,202 @@
+"""run(scenario) -> Run: simulate a scenario, sum it up, write its folder."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from innervate import scenario as scenarios
+from innervate.analysis.summaries import (
+    MeshSummary,
+    RadioSummary,
+    SkinSummary,
+    SlottedSummary,
+    Summary,
+)
+from innervate.analysis.touch import WINDOW_S, Image, received_image
+from innervate.running import folder as folders
+from innervate.running.rooms import room_of
+from innervate.scenario import Scenario
+from innervate.scenario.given import Changes, Given, load
+from innervate.trace import tables
+from innervate.trace.provenance import provenance
+
+if TYPE_CHECKING:
+    import polars
+
+Progress = Callable[[int, int], None]
+
+
+@dataclass(eq=False, repr=False)
+class Run:
+    """A scenario that was run.
+
+    Attributes:
+        scenario: as resolved.
+        plan: its whole numbers; a Plan, RadioPlan or MeshPlan.
+        result: the simulation's rows and its world at the end: a Result, RadioResult or MeshResult.
+        summary: what a person wants to know; `skin`, `radio`, `slotted` and `mesh` are the same
+            with its keys known to type checkers and editors.
+        checks: the invariant checkers were on.
+    """
+
+    scenario: Scenario
+    plan: Any
+    result: Any
+    summary: Summary
+    checks: bool = True
+    written: Path | None = field(default=None)
+
+    def __repr__(self) -> str:
+        """Short: what ran, and its fingerprint."""
+        return f"Run({self.scenario.name!r}, seed={self.plan.seed}, {self.result.fingerprint})"
+
+    @cached_property
+    def tables(self) -> dict[str, polars.LazyFrame]:
+        """The run's tables by name: of a skin routes, links, outages, loops, received; of a
+        radio team packets, transmissions, reports; of a mesh messages, crossings, deliveries,
+        transmissions, rounds, reports.
+        """
+        room = room_of(self.plan.kind)
+        return {
+            table.name: tables.frame(table, room.columns(table, self.result)).lazy()
+            for table in room.tables_of(self.result)
+        }
+
+    @cached_property
+    def provenance(self) -> dict[str, Any]:
+        """Version, commit, seeds, package versions, fingerprint."""
+        return provenance(
+            scenario_toml=scenarios.dump(self.scenario),
+            seeds=[self.plan.seed],
+            fingerprint=self.result.fingerprint,
+            wall_s=self.summary["wall_s"],
+            checks=self.checks,
+            interrupted=self.result.interrupted,
+        )
+
+    @property
+    def skin(self) -> SkinSummary:
+        """The summary of a skin's run; AttributeError if it is of another kind."""
+        if self.summary["kind"] != "skin":
+            raise self._other("skin")
+        return self.summary
+
+    @property
+    def radio(self) -> RadioSummary:
+        """The summary of a radio team's run; AttributeError if it is of another kind."""
+        if self.summary["kind"] != "radio" or "level" in self.summary:
+            raise self._other("radio")
+        return self.summary
+
+    @property
+    def slotted(self) -> SlottedSummary:
+        """The summary of a run of the slotted channel; AttributeError if it is of another kind."""
+        if self.summary["kind"] != "radio" or "level" not in self.summary:
+            raise self._other("slotted")
+        return self.summary
+
+    @property
+    def mesh(self) -> MeshSummary:
+        """The summary of a mesh's run; AttributeError if it is of another kind."""
+        if self.summary["kind"] != "mesh":
+            raise self._other("mesh")
+        return self.summary
+
+    def _other(self, wanted: str) -> AttributeError:
+        own = "slotted" if "level" in self.summary else self.summary["kind"]
+        return AttributeError(f"this run has no summary {wanted!r}; run.{own} is its summary")
+
+    @property
+    def interrupted(self) -> bool:
+        """True if it was ended early; all it holds is then of the time until there."""
+        return bool(self.result.interrupted)
+
+    def received_image(self, time_s: float, window_s: float = WINDOW_S) -> Image:
+        """Force and proximity per cell as the PC had them at a time (see analysis/touch.py)."""
+        return received_image(self.result, time_s, window_s)
+
+    def _repr_html_(self) -> str:
+        """In a notebook: the headline, the figures to know, and a picture."""
+        shown: str = import_module("innervate.plot.notebook").render(self.result, self.summary)
+        return shown
+
+    def plot(self, figure: str = "", **options: Any) -> Any:
+        """A matplotlib figure of the run; `innervate.plot.figures` says which there are."""
+        name = "figures" if self.plan.kind == "skin" else f"{self.plan.kind}_figures"
+        drawn = (figure,) if figure else ()
+        return import_module(f"innervate.plot.{name}").draw(self, *drawn, **options)
+
+    def report(self) -> str:
+        """The run's report, one page of HTML."""
+        page: str = import_module("innervate.plot.report").render(self)
+        return page
+
+    def write(self, folder: str | os.PathLike[str] | None = None, report: bool = True) -> Path:
+        """Write the run folder, whole or not at all; the default is runs/<name>-<seed>.
+
+        Raises:
+            RunError: the folder holds something else or cannot be written.
+        """
+        if folder is None:
+            folder = folders.default_folder(self.scenario.name, self.plan.seed)
+        with folders.replacing(folder) as fresh:
+            text = scenarios.dump(self.scenario)
+            (fresh / folders.SCENARIO).write_text(text, encoding="utf-8")
+            room = room_of(self.plan.kind)
+            for table in room.tables_of(self.result):
+                if table is not tables.RECEIVED or self.result.received_kept:
+                    tables.write(table, room.columns(table, self.result), fresh)
+            if report:
+                (fresh / folders.REPORT).write_text(self.report(), encoding="utf-8")
+            folders.write_json(fresh / folders.SUMMARY, self.summary)
+            origin = self.provenance | {"tables_sha256": folders.digests(fresh)}
+            folders.write_json(fresh / folders.PROVENANCE, origin)
+        self.written = Path(folder)
+        return self.written
+
+
+def run(
+    scenario: Given,
+    *,
+    seed: int | None = None,
+    overrides: Changes = (),
+    out: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+    checks: bool = True,
+    received: bool | None = None,
+    plain: bool = False,
+) -> Run:
+    """Run a scenario.
+
+    Args:
+        scenario: a file, a bundled name ("setup-1"), a Scenario, or tables as in a file.
+        seed: in place of the scenario's.
+        overrides: "a.b=c" texts, or a mapping from dotted keys to values.
+        out: folder to write; nothing is written without one (see Run.write).
+        progress: called now and then with (time_us, duration_us).
+        checks: invariant checkers on.
+        received: keep every sample the PC received; None = unless there are very many.
+        plain: run uncompiled, slow; for comparison.
+
+    Raises:
+        ScenarioError: the scenario is not valid.
+        RunError: `out` cannot be written; found out before the simulation.
+        InvariantBroken: a checker found what must not happen.
+        FramesLost: frames are not accounted for.
+    """
+    made = load(scenario, seed=seed, overrides=overrides)
+    plan = scenarios.plan(made)
+    if out is not None:
+        folders.check_target(out)
+    room = room_of(plan.kind)
+    result = room.simulate(plan, plain=plain, checks=checks, received=received, progress=progress)
+    done = Run(made, plan, result, room.summarize(result), checks)
+    if out is not None:
+        done.write(out)
+    return done

@@ -1,0 +1,53 @@
+"""A scenario however it is given: a file, a bundled name, tables, or one that is loaded."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from innervate.scenario.check import summary
+from innervate.scenario.emit import dump
+from innervate.scenario.load import Scenario, from_dict, loads
+from innervate.scenario.load import load as load_file
+
+Given = str | os.PathLike[str] | Scenario | dict[str, Any]
+Changes = Iterable[str] | Mapping[str, Any]
+
+
+def load(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) -> Scenario:
+    """The scenario meant by a file, a bundled name, tables or a Scenario, validated.
+
+    Args:
+        scenario: a file, a bundled name ("setup-1"), tables as in a file, or a Scenario.
+        seed: in place of the scenario's, 0 .. 2^63-1.
+        overrides: "a.b=c" texts, or a mapping from dotted keys to values.
+
+    Raises:
+        ScenarioError: it is not valid; one line that says what to change.
+    """
+    changes: list[str | tuple[str, Any]] = (
+        list(overrides.items()) if isinstance(overrides, Mapping) else list(overrides)
+    )
+    if isinstance(scenario, dict):
+        return from_dict(scenario, changes, seed)
+    if not isinstance(scenario, Scenario):
+        return load_file(scenario, changes, seed)
+    if seed is None and not changes:
+        return scenario
+    text, source = dump(scenario), scenario.source
+    return loads(text, changes, seed, source.path, source.folder)
+
+
+def check(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) -> str:
+    """What a scenario holds, in the lines that `innervate check` prints; nothing is run.
+
+    Args:
+        scenario: as for load().
+        seed: in place of the scenario's.
+        overrides: "a.b=c" texts, or a mapping from dotted keys to values.
+
+    Raises:
+        ScenarioError: it cannot be run as written.
+    """
+    return summary(load(scenario, seed=seed, overrides=overrides))

@@ -1,0 +1,61 @@
+"""Commands that the PC sends down to the cells: [[command]] tables as orders at their times."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from innervate.scenario.build import cell_at
+from innervate.scenario.model import CommandTable, SkinScenario
+from innervate.scenario.rules import commands_of
+from innervate.scenario.source import Source
+from innervate.topology import Graph
+from innervate.trace.streams import stream
+
+ALL = -1
+CELLS_MAX = 65_535  # 65535 in a command means all
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """One command.
+
+    Attributes:
+        at_us: when the PC is told to send it, true time, us.
+        cell: whom it is for; ALL = every cell.
+        code: what is to be done, 0..255.
+        value: its argument, 0..65535.
+    """
+
+    at_us: int
+    cell: int
+    code: int
+    value: int
+
+
+def orders(source: Source, graph: Graph, model: SkinScenario) -> list[Order]:
+    """All commands of a scenario, in order of time, then of the file.
+
+    Raises:
+        ScenarioError: no such cell, or too many cells to be told apart.
+    """
+    if model.command and graph.cells > CELLS_MAX:
+        message = f"{graph.cells:,} cells cannot be sent commands: one numbers {CELLS_MAX:,}"
+        raise source.error(("command", 0), f"{message}; leave [[command]] out")
+    found: list[Order] = []
+    for index, table in enumerate(model.command):
+        cell = _cell(source, graph, index, table)
+        draw = stream(model.seed, f"command/{index}")
+        first_us = round(table.at_s * 1e6)
+        for i in range(commands_of(table, model.duration_s)):
+            at_us = first_us + (round(i * 1e6 / table.rate_hz) if i else 0)
+            whom = draw.draw(graph.cells) if table.random else cell
+            found.append(Order(max(at_us, 1), whom, table.code, table.value))
+    return sorted(found, key=lambda order: order.at_us)
+
+
+def _cell(source: Source, graph: Graph, index: int, table: CommandTable) -> int:
+    if table.cell is not None:
+        return cell_at(source, graph, table.cell, ("command", index, "cell"))
+    if table.node is not None:
+        return cell_at(source, graph, table.node, ("command", index, "node"))
+    return ALL

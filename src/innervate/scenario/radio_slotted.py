@@ -1,0 +1,82 @@
+"""Which settings the slotted level of the radio uses; all others are refused there.
+
+The slotted level counts slots: whole collisions, no delays, no events. A setting that it has no use
+for would be read and never asked again, so a scenario that changes one is refused.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from innervate.scenario.radio_model import (
+    ChannelTable,
+    MediumAccessTable,
+    RadioScenario,
+    TrafficTable,
+)
+from innervate.scenario.source import Source
+
+TURNAROUND = frozenset({"csma-cd-r", "csma-cd-d2", "csma-cd-d2p"})
+BACKOFF = frozenset({"csma-cd-d1", "csma-cd-d2", "csma-cd-d2p"})
+BY_CHANCE = frozenset({"slotted-aloha", "nonpersistent", "p-persistent"})
+
+# What only some protocols use there.
+USED_BY = {
+    ("protocol", "p"): BY_CHANCE,
+    ("protocol", "reading"): frozenset({"csma-cd-r"}),
+    ("protocol", "backoff_slots"): BACKOFF,
+    ("channel", "turnaround_us"): TURNAROUND,
+}
+# What none uses.
+UNUSED = (
+    *(("protocol", name) for name in ("mode", "tau_bounds_us", "turns", "per_turn", "wait_us",
+                                      "cw_min", "cw_max")),
+    *(("channel", name) for name in ("tau_us", "loss", "hidden")),
+    *(("traffic", name) for name in ("spread_us", "start_s")),
+)  # fmt: skip
+_DEFAULTS: dict[str, Any] = {
+    "protocol": MediumAccessTable(),
+    "channel": ChannelTable(),
+    "traffic": TrafficTable(),
+}
+
+
+def check(source: Source, model: RadioScenario) -> None:
+    """Raise ScenarioError at the first setting that a slotted run would ignore."""
+    mac = model.protocol.mac
+    for key in UNUSED:
+        if _is_changed(model, key):
+            name = ".".join(key)
+            message = f'{name} goes with level = "event"; the slotted level has no use for it'
+            raise source.error(key, message)
+    for key, macs in USED_BY.items():
+        if mac not in macs and _is_changed(model, key):
+            message = (
+                f"{'.'.join(key)} goes with {', '.join(sorted(macs))} on the slotted level; "
+                f"{mac} has no use for it there"
+            )
+            raise source.error(key, message)
+    if isinstance(model.packet_slots, tuple) and len(set(model.packet_slots)) > 1:
+        message = 'a range of packet_slots goes with level = "event"; the slotted level takes one'
+        raise source.error(("packet_slots",), message)
+    if model.event:
+        raise source.error(("event", 0), 'events go with level = "event"; leave them out')
+
+
+def _is_changed(model: RadioScenario, key: tuple[str, str]) -> bool:
+    table, name = key
+    return bool(getattr(getattr(model, table), name) != getattr(_DEFAULTS[table], name))
+
+
+def words(model: RadioScenario, slot_us: int) -> tuple[str, str]:
+    """(channel, protocol) of a slotted run in words: only what it uses."""
+    protocol, mac = model.protocol, model.protocol.mac
+    channel = f"slotted level, {model.channel.bit_rate:,} bit/s, a slot of {slot_us} us"
+    if mac in TURNAROUND:
+        channel += f", turnaround {model.channel.turnaround_us / 1000:g} ms"
+    used = [
+        f"{name.replace('_', ' ')} {getattr(protocol, name)}"
+        for (table, name), macs in USED_BY.items()
+        if table == "protocol" and mac in macs
+    ]
+    return channel, ", ".join([mac, *used])

@@ -1,0 +1,254 @@
+"""Who runs the batches: this process, threads, worker processes, or a Dask cluster.
+
+All are executors of the standard library's kind, behind one function, `engine()`.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor, Executor, Future
+from contextlib import contextmanager, suppress
+from importlib import import_module
+from types import ModuleType
+from typing import Any
+
+from innervate.sweeping.errors import SweepError
+
+KINDS = ("processes", "threads", "here")
+_CONNECT_S = 10
+_ASK_EVERY_S = 2.0
+
+
+class Engine:
+    """Takes batches.
+
+    Attributes:
+        workers: batches it runs at the same time.
+        ahead: batches to hand out at most, so that nobody waits for the next one.
+        died: errors of a batch whose worker died.
+        lost: errors of a batch when the whole engine is gone.
+        falls_together: when a worker dies, all batches under way are lost with it.
+    """
+
+    workers = 1
+    ahead = 1
+    died: tuple[type[BaseException], ...] = ()
+    lost: tuple[type[BaseException], ...] = ()
+    falls_together = False
+
+    def submit(self, work: Callable[..., Any], *args: Any) -> Future[Any]:
+        """Run `work(*args)` some time."""
+        raise NotImplementedError
+
+    def renew(self) -> None:
+        """Make it fit for work again after a worker died."""
+
+    def close(self) -> None:
+        """End it without waiting for what it was given."""
+
+
+class Here(Engine):
+    """This process and thread: `submit` comes back when the work is done."""
+
+    def submit(self, work: Callable[..., Any], *args: Any) -> Future[Any]:
+        """Run `work(*args)` now."""
+        future: Future[Any] = Future()
+        try:
+            future.set_result(work(*args))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+class Pool(Engine):
+    """Threads or processes of this machine."""
+
+    died = (BrokenExecutor,)
+    falls_together = True
+
+    def __init__(self, make: Callable[[], Executor], workers: int) -> None:
+        self.workers = workers
+        self.ahead = 2 * workers
+        self._make = make
+        self._pool = self._start()
+
+    def _start(self) -> Executor:
+        """A pool that works; found out now, lest every run be taken for one that kills workers.
+
+        Raises:
+            SweepError: its workers die before they have done anything.
+        """
+        pool = self._make()
+        try:
+            with _main_hidden():
+                pool.submit(os.getpid).result()
+        except (BrokenExecutor, OSError) as error:
+            message = "no worker can be started here; use --workers 1, or --engine threads"
+            raise SweepError(message) from error
+        return pool
+
+    def submit(self, work: Callable[..., Any], *args: Any) -> Future[Any]:
+        """Run `work(*args)` on a worker."""
+        try:
+            with _main_hidden():
+                return self._pool.submit(work, *args)
+        except BrokenExecutor as error:
+            future: Future[Any] = Future()
+            future.set_exception(error)
+            return future
+
+    def renew(self) -> None:
+        """New workers in place of those that died and of those beside them."""
+        self.close()
+        self._pool = self._start()
+
+    def close(self) -> None:
+        """End the workers, whatever they are at."""
+        processes = list((getattr(self._pool, "_processes", None) or {}).values())
+        self._pool.shutdown(wait=False, cancel_futures=True)
+        for process in processes:
+            with suppress(OSError, ValueError):
+                process.terminate()
+
+
+class Cluster(Engine):
+    """A Dask cluster that is running already."""
+
+    def __init__(self, address: str) -> None:
+        distributed: Any = import_module("distributed")
+        closed: Any = import_module("distributed.comm.core").CommClosedError
+
+        try:
+            self._client: Any = distributed.Client(
+                address, timeout=_CONNECT_S, set_as_default=False
+            )
+        except (OSError, ValueError, ImportError) as error:
+            why = str(error).splitlines()[0] if str(error) else type(error).__name__
+            raise SweepError(
+                f"--dask {address}: no scheduler answers there ({why}); start one with: "
+                "dask scheduler"
+            ) from None
+        self.died = (distributed.KilledWorker,)
+        self.lost = (closed, TimeoutError)
+        self._asked_s, self._threads = -math.inf, 1
+        # Its clients log with tracebacks what is told here in one line.
+        for name in ("distributed", "distributed.client", "distributed.core"):
+            logging.getLogger(name).setLevel(logging.CRITICAL)
+        self._pool = self._client.get_executor(pure=False)
+
+    @property
+    def workers(self) -> int:  # type: ignore[override]
+        """Threads of all workers at present; they may come and go."""
+        now = time.monotonic()
+        if now - self._asked_s > _ASK_EVERY_S:
+            self._asked_s = now
+            self._threads = max(1, sum(self._client.nthreads().values()))
+        return self._threads
+
+    @property
+    def ahead(self) -> int:  # type: ignore[override]
+        """Two batches a thread."""
+        return 2 * self.workers
+
+    def submit(self, work: Callable[..., Any], *args: Any) -> Future[Any]:
+        """Run `work(*args)` on the cluster."""
+        future: Future[Any] = self._pool.submit(work, *args)
+        return future
+
+    def close(self) -> None:
+        """Take back what was handed out, and go."""
+        with suppress(Exception):
+            self._pool.shutdown(wait=False)
+        with suppress(Exception):
+            self._client.close(timeout=5)
+
+
+@contextmanager
+def engine(kind: str = "processes", workers: int | None = None, dask: str = "") -> Iterator[Engine]:
+    """An engine, ended when the block is left.
+
+    Args:
+        kind: "processes", "threads" or "here"; processes with one worker are "here".
+        workers: how many at the same time, from 1; None = one for every core.
+        dask: address of a Dask scheduler; the cluster is used instead of this machine.
+
+    Raises:
+        SweepError: no such kind, or no scheduler at the address.
+    """
+    if kind not in KINDS:
+        raise SweepError(f'no engine "{kind}"; there are {", ".join(KINDS)}')
+    count = cores() if workers is None else workers
+    if count < 1:
+        raise SweepError(f"{count} workers cannot run anything; give at least 1")
+    if dask:
+        made: Engine = Cluster(dask)
+    elif kind == "here" or (kind == "processes" and count == 1):
+        made = Here()
+    else:
+        make = _threads if kind == "threads" else _processes
+        made = Pool(lambda: make(count), count)
+    try:
+        yield made
+    finally:
+        made.close()
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:  # not on every system
+        return os.cpu_count() or 1
+
+
+def _threads(count: int) -> Executor:
+    from concurrent.futures import ThreadPoolExecutor
+
+    return ThreadPoolExecutor(count)
+
+
+def _processes(count: int) -> Executor:
+    """Workers forked from a server that has loaded the simulator, once for all of them."""
+    from concurrent.futures import ProcessPoolExecutor
+
+    known = multiprocessing.get_all_start_methods()
+    context = multiprocessing.get_context("forkserver" if "forkserver" in known else "spawn")
+    if "forkserver" in known:
+        context.set_forkserver_preload(["innervate.sweeping.work"])
+    return ProcessPoolExecutor(count, mp_context=context, initializer=_settle)
+
+
+@contextmanager
+def _main_hidden() -> Iterator[None]:
+    """While a worker may be started: it would import the caller's script, and needs it for nothing.
+
+    So a script that sweeps needs no `if __name__ == "__main__":`, and may come from a pipe.
+    """
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = main
+
+
+def _settle() -> None:
+    """A worker's start: Ctrl-C is the sweep's affair; if that is killed, so is the worker."""
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        threading.Thread(target=_follow, args=(parent,), daemon=True).start()
+
+
+def _follow(parent: Any) -> None:
+    parent.join()
+    os._exit(1)

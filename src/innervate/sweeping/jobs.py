@@ -1,0 +1,171 @@
+"""The job table: what was run, in SQLite beside the results.
+
+A run stands in it once it is done, in the same moment as its figures; whatever does not stand in
+it has still to be run. One process writes; a second one that tries is told so.
+"""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from innervate.sweeping.errors import SweepError
+from innervate.sweeping.work import Outcome
+
+SCHEMA = 1
+FILE = "jobs.sqlite"
+_TABLES = """
+CREATE TABLE IF NOT EXISTS meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS places (id INTEGER PRIMARY KEY, facts TEXT UNIQUE NOT NULL);
+CREATE TABLE IF NOT EXISTS runs (
+    point TEXT NOT NULL, repeat INTEGER NOT NULL, seed INTEGER NOT NULL,
+    state TEXT NOT NULL CHECK (state IN ('done', 'failed')),
+    figures TEXT, reason TEXT NOT NULL,
+    wall_s REAL NOT NULL, began_s REAL NOT NULL, place INTEGER NOT NULL REFERENCES places (id),
+    PRIMARY KEY (point, repeat)
+) WITHOUT ROWID;
+"""
+_INSERT = "INSERT OR IGNORE INTO runs VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"
+
+
+class Stored(NamedTuple):
+    """A run of the table: its figures, or why it failed; and what it took, where."""
+
+    seed: int
+    figures: dict[str, Any] | None
+    reason: str
+    wall_s: float
+    began_s: float
+    place: int
+
+
+class Jobs:
+    """An open job table; use it as a context manager.
+
+    Args:
+        folder: where it lies, made if it is not there; None keeps it in memory.
+
+    Raises:
+        SweepError: it cannot be written, is damaged, or somebody else is at work on it.
+    """
+
+    def __init__(self, folder: Path | None) -> None:
+        self._name = ":memory:" if folder is None else str(folder / FILE)
+        with self._errors():
+            self._db = sqlite3.connect(self._name, timeout=0.2, isolation_level=None)
+        try:
+            with self._errors():
+                self._db.execute("PRAGMA locking_mode = EXCLUSIVE")
+                self._db.execute("PRAGMA journal_mode = WAL")
+                self._db.execute("PRAGMA synchronous = NORMAL")
+                self._db.execute("BEGIN EXCLUSIVE")
+                for statement in filter(str.strip, _TABLES.split(";")):
+                    self._db.execute(statement)
+                self._db.execute("COMMIT")
+        except BaseException:
+            self._db.close()
+            raise
+
+    def __enter__(self) -> Jobs:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._db.close()
+
+    @contextmanager
+    def _errors(self) -> Iterator[None]:
+        """SQLite's errors in one line each."""
+        try:
+            yield
+        except sqlite3.Error as error:
+            raise SweepError(_in_words(self._name, error)) from error
+
+    def claim(self, identity: Mapping[str, str]) -> None:
+        """Begin a sweep of this identity here, or go on with it.
+
+        Raises:
+            SweepError: what is here is another one's; it says what differs.
+        """
+        wanted = {"schema": str(SCHEMA), **identity}
+        with self._errors():
+            found = dict(self._db.execute("SELECT name, value FROM meta"))
+            if not found:
+                self._db.executemany("INSERT INTO meta VALUES (?, ?)", wanted.items())
+                return
+        differs = [name for name, value in wanted.items() if found.get(name) != value]
+        if differs:
+            folder = Path(self._name).parent
+            raise SweepError(
+                f"{' and '.join(differs)} changed since the sweep in {folder} was begun; "
+                "undo the change, or begin a new one elsewhere with --out"
+            )
+
+    def add(self, outcomes: Iterable[Outcome], place: str) -> None:
+        """Keep these, all or none.
+
+        Raises:
+            SweepError: the disk is full, ...; what was kept before is not touched.
+        """
+        with self._errors():
+            self._db.execute("BEGIN")
+            try:
+                self._db.execute("INSERT OR IGNORE INTO places (facts) VALUES (?)", (place,))
+                row = self._db.execute("SELECT id FROM places WHERE facts = ?", (place,))
+                (number,) = row.fetchone()
+                self._db.executemany(
+                    _INSERT,
+                    [
+                        (o.point, o.repeat, o.seed, "failed" if o.row is None else "done", o.row,
+                         o.reason, o.wall_s, o.began_s, number)
+                        for o in outcomes
+                    ],
+                )  # fmt: skip
+                self._db.execute("COMMIT")
+            except BaseException:
+                if self._db.in_transaction:
+                    self._db.execute("ROLLBACK")
+                raise
+
+    def forget_failed(self) -> int:
+        """Forget the failed runs, so that they are run again; how many."""
+        with self._errors():
+            return self._db.execute("DELETE FROM runs WHERE state = 'failed'").rowcount
+
+    def runs(self, point: str, behind: int) -> dict[int, Stored]:
+        """The runs of a point, by repeat, those before `behind`."""
+        query = (
+            "SELECT repeat, seed, figures, reason, wall_s, began_s, place FROM runs "
+            "WHERE point = ? AND repeat < ? ORDER BY repeat"
+        )
+        with self._errors():
+            rows = self._db.execute(query, (point, behind)).fetchall()
+        return {
+            repeat: Stored(seed, None if text is None else json.loads(text), *rest)
+            for repeat, seed, text, *rest in rows
+        }
+
+    def places(self) -> dict[int, dict[str, Any]]:
+        """What is known of the machines and processes, by number."""
+        with self._errors():
+            rows = self._db.execute("SELECT id, facts FROM places").fetchall()
+        return {number: json.loads(facts) for number, facts in rows}
+
+
+def _in_words(name: str, error: sqlite3.Error) -> str:
+    code = getattr(error, "sqlite_errorname", "") or ""
+    if code.startswith(("SQLITE_BUSY", "SQLITE_LOCKED")):
+        return f"another sweep is at work in {Path(name).parent}; wait for it, or choose --out"
+    if code.startswith(("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_PERM")):
+        return f"{name} cannot be written; choose another folder with --out"
+    if code.startswith(("SQLITE_FULL", "SQLITE_IOERR")):
+        return (
+            f"{name}: no space left on the disk, or it fails; make room and give the same "
+            "command again, what is done is kept"
+        )
+    if code.startswith(("SQLITE_NOTADB", "SQLITE_CORRUPT")):
+        return f"{name} is no job table, or damaged; move it away or choose another --out"
+    return f"{name}: {error}"

@@ -1,0 +1,219 @@
+"""What a sweep came to: its tables as polars frames, means with intervals, pairs, figures."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from innervate.analysis.intervals import mean_interval, quantile
+from innervate.sweeping import tables
+from innervate.sweeping.errors import SweepError
+from innervate.sweeping.plan import SweepPlan
+from innervate.trace.provenance import SCHEMA
+from innervate.trace.sources import stamp
+
+if TYPE_CHECKING:
+    import polars
+
+LEVEL = 0.95
+
+
+@dataclass(eq=False, repr=False)
+class Sweep:
+    """A sweep that was run.
+
+    Attributes:
+        plan: what was wanted.
+        results: a row for every run, by point and repeat: settings, seed, status, reason, the
+            command that runs it again, and all figures of its summary.
+        timings: how long every run took, and where.
+        complete: nothing is missing.
+        ran: runs that were done now rather than earlier.
+        written: the folder, if there is one.
+    """
+
+    plan: SweepPlan
+    results: polars.DataFrame
+    timings: polars.DataFrame
+    complete: bool = True
+    ran: int = 0
+    written: Path | None = field(default=None)
+
+    def __repr__(self) -> str:
+        """Short: how much there is."""
+        count = len(self.plan.points)
+        return f"Sweep({self.plan.name!r}, {count} points, {self.results.height} runs)"
+
+    @property
+    def failed(self) -> polars.DataFrame:
+        """The rows of the runs that failed."""
+        return self.results.filter(self.results["status"] == "failed")
+
+    @property
+    def measures(self) -> list[str]:
+        """Columns of the results that are figures."""
+        return tables.measures(self.results, self.plan.keys)
+
+    @property
+    def provenance(self) -> dict[str, Any]:
+        """What the results come from."""
+        return {
+            "schema": SCHEMA,
+            "sources": stamp("running"),
+            "identity": self.plan.identity(),
+            "runs": self.results.height,
+            "failed": self.failed.height,
+            "complete": self.complete,
+        }
+
+    def points(self, measures: str | Iterable[str] = (), level: float = LEVEL) -> polars.DataFrame:
+        """A row for every point and measure: runs, mean, its interval (low, high), quantiles.
+
+        Args:
+            measures: which; all if left out.
+            level: of Student's confidence interval.
+
+        Raises:
+            SweepError: no such measure.
+        """
+        wanted = [measures] if isinstance(measures, str) else list(measures)
+        for name in wanted:
+            self._check(name)
+        return tables.points(self.results, self.plan.points, wanted or self.measures, level)
+
+    def quantiles(self, measure: str, shares: Sequence[float]) -> polars.DataFrame:
+        """A row for every point: the measure's quantiles, in columns q0.5, q0.95, ...
+
+        Raises:
+            SweepError: no such measure, or a share outside 0..1.
+        """
+        self._check(measure)
+        if not all(0 <= share <= 1 for share in shares):
+            raise SweepError("shares of quantiles lie between 0 and 1")
+        rows = []
+        for point in self.plan.points:
+            values = self._values(point.index, measure)
+            found = {f"q{s:g}": quantile(values, s) if values else None for s in shares}
+            rows.append({"point": point.index, **point.columns, "runs": len(values)} | found)
+        return tables.frame(rows)
+
+    def compare(
+        self, key: str, one: Any, other: Any, measure: str, level: float = LEVEL
+    ) -> polars.DataFrame:
+        """Two variants on common seeds: a row for every setting of the rest, `other` minus `one`.
+
+        Differences are taken run by run, which is much sharper than two intervals side by side;
+        the sweep must have been made with this key `paired`.
+
+        Args:
+            key: in which the two differ.
+            one: its value in one variant.
+            other: its value in the other.
+            measure: what is compared.
+            level: of the interval.
+
+        Returns:
+            Columns: the other keys, pairs, mean_one, mean_other, difference, low, high.
+
+        Raises:
+            SweepError: the key is not varied, not paired, has no such value; no such measure.
+        """
+        self._check(measure)
+        if key not in self.plan.keys:
+            raise SweepError(f"{key} is not varied; {', '.join(self.plan.keys)} are")
+        sides: list[dict[str, Any]] = [{}, {}]
+        for point in self.plan.points:
+            for side, value in zip(sides, (one, other), strict=True):
+                if point.columns[key] == value:
+                    side[point.stream] = point
+        for side, value in zip(sides, (one, other), strict=True):
+            if not side:
+                raise SweepError(f"no point has {key}={value}")
+        common = [stream for stream in sides[0] if stream in sides[1]]
+        if not common:
+            raise SweepError(f"{key} is not paired; sweep with paired={key!r} (--paired {key})")
+        rows = []
+        for stream in common:
+            a, b = (side[stream] for side in sides)
+            rest = {k: v for k, v in a.columns.items() if k != key}
+            rows.append(rest | self._pairs(a.index, b.index, measure, level))
+        return tables.frame(rows)
+
+    def plot(self, x: str, y: str, by: str = "", kind: str = "band", title: str = "") -> Any:
+        """A matplotlib figure: means of `y` over `x` with bands, a line for each value of `by`.
+
+        Args:
+            x: a varied key, or a measure (then every run is a dot).
+            y: a measure.
+            by: another varied key; of a heat map the second axis.
+            kind: "band" or "heat".
+            title: above it.
+
+        Raises:
+            SweepError: no such column, or nothing to draw.
+        """
+        room: Any = import_module("innervate.plot.sweeps")
+        for name in filter(None, (x, y, by)):
+            self._check(name)
+        numbers = [*self.measures, *self.plan.keys]
+        if y not in numbers or kind not in room.KINDS or (kind == "heat" and not by):
+            raise SweepError(
+                f"a figure takes a measure as y, kind {' or '.join(room.KINDS)}, heat also by"
+            )
+        is_key = x in self.plan.keys
+        return room.draw(self.results.to_dict(as_series=False), x, y, by, kind, title, is_key)
+
+    def _pairs(self, a: int, b: int, measure: str, level: float) -> dict[str, Any]:
+        one, other = (self._by_repeat(index, measure) for index in (a, b))
+        both = [repeat for repeat in one if repeat in other]
+        names = ("mean_one", "mean_other", "difference", "low", "high")
+        if not both:
+            return {"pairs": 0} | dict.fromkeys(names)
+        found = mean_interval([other[r] - one[r] for r in both], level)
+        means = (sum(side[r] for r in both) / len(both) for side in (one, other))
+        return {"pairs": len(both)} | dict(zip(names, (*means, *found), strict=True))
+
+    def _by_repeat(self, index: int, measure: str) -> dict[int, float]:
+        mine = self.results.filter(self.results["point"] == index)
+        rows = zip(mine["repeat"].to_list(), mine[measure].to_list(), strict=True)
+        return {repeat: value for repeat, value in rows if value is not None}
+
+    def _values(self, index: int, measure: str) -> list[float]:
+        return list(self._by_repeat(index, measure).values())
+
+    def _check(self, name: str) -> None:
+        if name not in self.results.columns:
+            near = [c for c in self.results.columns if c.split(".")[-1] == name.split(".")[-1]]
+            some = near or self.measures
+            raise SweepError(f'there is no column "{name}"; there are {", ".join(some[:8])}, ...')
+
+
+def load_sweep(folder: str | os.PathLike[str]) -> Sweep:
+    """A sweep from its folder; nothing is run.
+
+    Raises:
+        SweepError: it is no sweep's folder, or damaged.
+    """
+    import polars
+
+    from innervate.sweeping.sweep import make_plan
+
+    path = Path(folder)
+    try:
+        origin = json.loads((path / "provenance.json").read_text(encoding="utf-8"))
+        results, timings = (
+            polars.read_parquet(path / name) for name in (tables.RESULTS, tables.TIMINGS)
+        )
+        complete = bool(origin["complete"])
+    except FileNotFoundError as error:
+        name = Path(str(error.filename or "")).name or tables.RESULTS
+        raise SweepError(f"{path} is not a finished sweep's folder: it has no {name}") from None
+    except (OSError, ValueError, KeyError, TypeError, polars.exceptions.PolarsError):
+        raise SweepError(f"{path} is damaged; give its sweep again") from None
+    plan = make_plan(path / "sweep.toml")
+    return Sweep(plan, results, timings, complete, written=path)

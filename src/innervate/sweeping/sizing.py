@@ -1,0 +1,275 @@
+"""How many interface ports a robot's skin needs: a sweep over ports, sample rates and cuts."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import polars
+
+from innervate import scenario as scenarios
+from innervate.scenario import ScenarioError
+from innervate.sweeping.errors import SweepError
+from innervate.sweeping.plan import SweepPlan
+from innervate.sweeping.result import Sweep
+from innervate.sweeping.sweep import Progress, make_plan, sweep
+from innervate.sweeping.vary import Named
+from innervate.topology import TopologyError, cells_from_urdf
+from innervate.topology.body import joining_reach
+from innervate.topology.cover import has_surface
+from innervate.topology.urdf import find_urdf, read_links
+
+PORTS_MAX = 8
+PITCH_MM = 25.0
+REACH_PITCHES = 1.6  # cables to the nearest neighbours, some 1 to 1.5 pitches away
+LOSS_MAX = 0.01
+RECOVERY_MS_MAX = 50.0
+SETTLED_S = 1.0
+DURATION_S = 2.0
+LOST = "lost_on_the_way"
+RECOVERY = "recoveries.routed_ms"
+INNER, OUTER = "between cells", "to the PC"
+_CUT_AT_S = [SETTLED_S, SETTLED_S + 0.1]
+CUTS = (
+    Named(INNER, [{"at_s": _CUT_AT_S, "action": "cut", "random": "link"}]),
+    Named(OUTER, [{"at_s": _CUT_AT_S, "action": "cut", "random": "interface"}]),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """What is asked.
+
+    Attributes:
+        urdf: a file, or "package:<distribution>/<robot>".
+        links: pattern for the links that carry skin.
+        rates_hz: samples per second and cell.
+        ports: numbers of interface ports to try, in order.
+        pitch_mm: distance of cells on links that have a shape; None = 25 mm.
+        reach_mm: longest cable between cells; None = as long as it takes to join all.
+        loss_max: share of samples that may be lost, by the upper end of its interval.
+        recovery_ms_max: time until all cells have a way again, by the upper end of its interval.
+    """
+
+    urdf: str
+    links: str
+    rates_hz: tuple[float, ...] = (250.0,)
+    ports: tuple[int, ...] = tuple(range(1, PORTS_MAX + 1))
+    pitch_mm: float | None = None
+    reach_mm: float | None = None
+    loss_max: float = LOSS_MAX
+    recovery_ms_max: float = RECOVERY_MS_MAX
+
+
+@dataclass(eq=False, repr=False)
+class Answer:
+    """What came out.
+
+    Attributes:
+        question: as asked, pitch and reach filled in.
+        cells: how many there are.
+        frames: they are the robot's own skin frames, rather than points on its surface.
+        sweep: the runs.
+        table: a row for every rate and number of ports: means with 95 % intervals, and `enough`.
+        needed: for every rate the fewest ports that are enough; None if none of those tried is.
+        where: for every number of ports the names of the cells that they are on.
+    """
+
+    question: Question
+    cells: int
+    frames: bool
+    sweep: Sweep
+    table: polars.DataFrame
+    needed: dict[float, int | None]
+    where: dict[int, list[str]]
+
+
+def size(
+    question: Question,
+    *,
+    repeat: int = 20,
+    seed: int = 1,
+    out: str | os.PathLike[str] | None = None,
+    workers: int | None = None,
+    dask: str = "",
+    progress: Progress | None = None,
+) -> Answer:
+    """Answer a question by simulation; the other arguments are those of sweep().
+
+    Raises:
+        SweepError: nothing to place cells on, or no ports or rates to try.
+        ScenarioError: the skin cannot be built.
+    """
+    asked, frames, names = _placed(question)
+    plan = plan_of(asked, frames, repeat, seed)
+    done = sweep(plan, out=out, workers=workers, dask=dask, follow=(RECOVERY,), progress=progress)
+    table = judged(asked, done)
+    needed = {
+        rate: min(table.filter((table["rate_hz"] == rate) & table["enough"])["ports"], default=None)
+        for rate in asked.rates_hz
+    }
+    where = {ports: _where(plan, ports) for ports in asked.ports}
+    return Answer(asked, len(names), frames, done, table, needed, where)
+
+
+def _placed(question: Question) -> tuple[Question, bool, list[str]]:
+    """The question with pitch and reach filled in; are the cells frames; their names."""
+    if not question.ports or not question.rates_hz:
+        raise SweepError("name at least one number of ports and one rate")
+    try:
+        path = find_urdf(question.urdf, Path())
+        links = read_links(path, question.links)
+        frames = question.pitch_mm is None and not any(map(has_surface, links))
+        pitch = None if frames else question.pitch_mm or PITCH_MM
+        names, places = cells_from_urdf(question.urdf, question.links, Path(), pitch)
+    except TopologyError as error:
+        raise SweepError(str(error)) from None
+    reach = question.reach_mm
+    if reach is None:
+        least = joining_reach(places) * 1.001
+        reach = round(max(least, REACH_PITCHES * pitch if pitch else 0.0) + 0.05, 1)
+    made = Question(question.urdf, question.links, question.rates_hz, question.ports, pitch, reach,
+                    question.loss_max, question.recovery_ms_max)  # fmt: skip
+    return made, frames, names
+
+
+def plan_of(question: Question, frames: bool, repeat: int, seed: int) -> SweepPlan:
+    """The sweep that answers a question: ports x rates x what is cut."""
+    body: dict[str, Any] = {"urdf": question.urdf, "links": question.links,
+                            "reach_mm": question.reach_mm}  # fmt: skip
+    if not frames:
+        body["pitch_mm"] = question.pitch_mm
+    tables = {
+        "kind": "skin",
+        "name": "size",
+        "duration_s": DURATION_S,
+        "body": body | {"interfaces": question.ports[0]},
+        "data": {"rate_hz": question.rates_hz[0]},
+    }
+    vary = {
+        "data.rate_hz": list(question.rates_hz),
+        "body.interfaces": list(question.ports),
+        "event": list(CUTS),
+    }
+    return make_plan(tables, vary=vary, repeat=repeat, seed=seed, paired=("body.interfaces",))
+
+
+def judged(question: Question, done: Sweep) -> polars.DataFrame:
+    """A row for every rate and number of ports; `enough` if loss and recovery are small enough.
+
+    `loss` counts samples lost on the way: full queues, the cut cable, loops. Those that a cell
+    took while it had no route count as recovery time, and before its first route not at all.
+    """
+    reasons = [c for c in done.results.columns if c.startswith("data.lost_by.")]
+    kept = [c for c in reasons if not c.endswith(".no_route")]
+    if not kept:
+        raise SweepError(f"no run succeeded: {done.failed['reason'][0]}")
+    lost = sum((done.results[c] for c in kept[1:]), done.results[kept[0]])
+    frame = done.results.with_columns((lost / done.results["data.sent"]).alias(LOST))
+    points = Sweep(done.plan, frame, done.timings).points((LOST, RECOVERY))
+    found = {
+        (r["data.rate_hz"], r["body.interfaces"], r["event"], r["measure"]): r
+        for r in points.iter_rows(named=True)
+    }
+    rows = [
+        _row(question, rate, ports, found) for rate in question.rates_hz for ports in question.ports
+    ]
+    return polars.DataFrame(rows, infer_schema_length=None)
+
+
+def _row(question: Question, rate: float, ports: int, found: dict[Any, Any]) -> dict[str, Any]:
+    row: dict[str, Any] = {"rate_hz": rate, "ports": ports}
+    enough = True
+    for cut, short in ((INNER, "cell"), (OUTER, "pc")):
+        alone = cut == OUTER and ports == 1  # nobody has a way any more; there is nothing to judge
+        for name, measure, most in (
+            ("loss", LOST, question.loss_max),
+            ("recovery_ms", RECOVERY, question.recovery_ms_max),
+        ):
+            one = found[rate, ports, cut, measure]
+            for part in ("mean", "low", "high", "max"):
+                value = None if alone else one[part]
+                row[f"{name}_{short}_{part}"] = None if value is None else float(value)
+            # With one port less the rest may be too few to carry all; that is no failure.
+            if not alone and not (name == "loss" and cut == OUTER):
+                enough &= one["high"] is not None and one["high"] <= most
+    return row | {"enough": enough}
+
+
+def _where(plan: SweepPlan, ports: int) -> list[str]:
+    """The names of the cells that the interface ports are on."""
+    try:
+        made = scenarios.plan(plan.base.scenario([("body.interfaces", ports)]))
+    except ScenarioError:
+        return []
+    return cells_with_ports(made.graph)
+
+
+def cells_with_ports(graph: Any) -> list[str]:
+    """The names of the cells that a graph's interface ports are on, by port."""
+    return [graph.label(cell) for cell in graph.neighbours(graph.sink)]
+
+
+def answer_lines(answer: Answer) -> list[str]:
+    """The answer for people: a table, then how many ports, and where."""
+    asked = answer.question
+    kind = "skin frames of the robot" if answer.frames else f"cells {asked.pitch_mm:g} mm apart"
+    lines = [
+        f"{answer.cells} {kind}, cables of at most {asked.reach_mm:g} mm",
+        "",
+        f"{'rate':>8} {'ports':>5}  {'lost on the way':>16}  {'recovery, ms':>15}  "
+        f"{'after a port, ms':>16}  enough",
+    ]
+    for row in answer.table.iter_rows(named=True):
+        cells = (_share(row, "loss_cell"), _span(row, "recovery_ms_cell"),
+                 _span(row, "recovery_ms_pc"))  # fmt: skip
+        lines.append(
+            f"{row['rate_hz']:>5g} Hz {row['ports']:>5}  {cells[0]:>16}  {cells[1]:>15}  "
+            f"{cells[2]:>16}  {'yes' if row['enough'] else 'no'}"
+        )
+    lines.append("")
+    limits = f"{100 * asked.loss_max:g} % lost, ways back in {asked.recovery_ms_max:g} ms"
+    for rate, ports in answer.needed.items():
+        if ports is None:
+            most = max(asked.ports)
+            lines.append(f"{rate:g} Hz: none of up to {most} ports is enough for {limits}.")
+        else:
+            places = ", ".join(answer.where[ports])
+            verb = "ports are" if ports > 1 else "port is"
+            lines.append(f"{rate:g} Hz: {ports} {verb} enough for {limits}, on {places}.")
+    if 1 in answer.needed.values():
+        lines.append("With a single port a cut of its cable silences all cells; two recover.")
+    return lines
+
+
+def _share(row: dict[str, Any], name: str) -> str:
+    mean = row[f"{name}_mean"]
+    if mean is None:
+        return "-"
+    half = (row[f"{name}_high"] - row[f"{name}_low"]) / 2
+    return f"{100 * mean:.2f} +- {100 * half:.2f} %"
+
+
+def _span(row: dict[str, Any], name: str) -> str:
+    mean = row[f"{name}_mean"]
+    if mean is None:
+        return "-"
+    half = (row[f"{name}_high"] - row[f"{name}_low"]) / 2
+    return f"{mean:.1f} +- {half:.1f}"
+
+
+def parse_ports(text: str) -> tuple[int, ...]:
+    """Numbers of ports: "1..8" or "1,2,4".
+
+    Raises:
+        SweepError: it is neither.
+    """
+    from innervate.sweeping.planfile import listed
+
+    found: Sequence[Any] = listed(text, "--ports")
+    if not all(isinstance(n, int) and not isinstance(n, bool) and n >= 1 for n in found):
+        raise SweepError(f'--ports must be whole numbers from 1, like 1..8, not "{text[:40]}"')
+    return tuple(sorted(set(found)))

@@ -1,0 +1,274 @@
+"""sweep(scenario, vary=...) -> Sweep: plan, run what is missing, write the tables."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from innervate import scenario as scenarios
+from innervate.scenario import Scenario, ScenarioError
+from innervate.sweeping import planfile, tables
+from innervate.sweeping.base import PLAN_FILE, Source, base_of
+from innervate.sweeping.conduct import Conductor
+from innervate.sweeping.derive import Formula
+from innervate.sweeping.engines import engine
+from innervate.sweeping.errors import SweepError
+from innervate.sweeping.jobs import FILE, Jobs
+from innervate.sweeping.plan import REPEAT_MAX, SweepPlan
+from innervate.sweeping.result import Sweep
+from innervate.sweeping.until import parse as parse_until
+from innervate.sweeping.vary import Axis, axis, parse
+from innervate.trace.provenance import checkout
+
+REPEAT_UNTIL = 1000  # repeats at most, with `until`, if nobody says
+BATCH = 10
+CHECKED_MAX = 20  # points looked at before the first run, for one that is valid
+Vary = Iterable[str] | Mapping[str | tuple[str, ...], Any]
+Progress = Callable[[Conductor], None]
+
+
+def sweep(
+    scenario: Source | SweepPlan,
+    *,
+    vary: Vary = (),
+    overrides: Iterable[str] | Mapping[str, Any] = (),
+    derive: Mapping[str, str] | None = None,
+    repeat: int | None = None,
+    seed: int | None = None,
+    until: str | Iterable[str] = (),
+    batch: int | None = None,
+    paired: str | Iterable[str] = (),
+    out: str | os.PathLike[str] | None = None,
+    workers: int | None = None,
+    kind: str = "processes",
+    dask: str = "",
+    retry: bool = False,
+    follow: Iterable[str] = (),
+    progress: Progress | None = None,
+) -> Sweep:
+    """Run a scenario for every combination of some settings, each many times.
+
+    Args:
+        scenario: a plan file, or what `innervate.run` takes, or a SweepPlan.
+        vary: what is varied: {"protocol.k": [2, 3], ("a", "b"): [(1, 10), (2, 20)]}, values also
+            as "2..8"; or texts like those of --vary. The last one changes fastest.
+        overrides: scenario keys that are other than in the file, for every run.
+        derive: keys that follow from others, {"duration_s": "2 + 100 / protocol.beacon_hz"}.
+        repeat: runs of every point, each with a seed of its own; 1, or at most 1,000 with `until`.
+        seed: root seed in place of the scenario's.
+        until: "recoveries.routed_ms.ci=5%": a point ends when the 95 % interval of its mean is
+            that narrow to either side; several must all be met.
+        batch: repeats between two decisions of `until`; 10.
+        paired: keys whose variants are compared on the same seeds; "all" = every point has them.
+        out: folder to write, or to go on in; without one everything stays in memory.
+        workers: how many at the same time; None = one for every core; 1 = here, without processes.
+        kind: "processes", "threads" or "here".
+        dask: address of a Dask scheduler to use instead of this machine.
+        retry: run again what failed.
+        follow: measures that `progress` wants to see the values of.
+        progress: called now and then with the Conductor.
+
+    Raises:
+        SweepError: the plan cannot be kept, or the folder not used; one line.
+        ScenarioError: no point of it is a valid scenario.
+        KeyboardInterrupt: Ctrl-C; with `out` what was done is kept, and the same call goes on.
+    """
+    if isinstance(scenario, SweepPlan):
+        plan = scenario
+    else:
+        plan = make_plan(
+            scenario, vary=vary, overrides=overrides, derive=derive, repeat=repeat, seed=seed,
+            until=until, batch=batch, paired=paired,
+        )  # fmt: skip
+    plan = _checked(plan)
+    folder = None if out is None else Path(out)
+    if folder is not None:
+        _prepare(folder)
+    with Jobs(folder) as jobs:
+        jobs.claim(plan.identity())
+        if folder is not None:
+            _describe(plan, folder)
+        if retry:
+            jobs.forget_failed()
+        with engine(kind, workers, dask) as made:
+            return _conduct(Conductor(plan, jobs, made, tuple(follow), progress), jobs, folder)
+
+
+def _conduct(conductor: Conductor, jobs: Jobs, folder: Path | None) -> Sweep:
+    """Run it; the tables are written in any case, with what there is."""
+    try:
+        conductor.run()
+    finally:
+        done = _result(conductor.plan, jobs, conductor)
+        if folder is not None:
+            _write(done, folder)
+    return done
+
+
+def make_plan(
+    scenario: Source,
+    *,
+    vary: Vary = (),
+    overrides: Iterable[str] | Mapping[str, Any] = (),
+    derive: Mapping[str, str] | None = None,
+    repeat: int | None = None,
+    seed: int | None = None,
+    until: str | Iterable[str] = (),
+    batch: int | None = None,
+    paired: str | Iterable[str] = (),
+) -> SweepPlan:
+    """The plan that these describe (see sweep()); what they say goes before a plan file's.
+
+    Raises:
+        SweepError, ScenarioError: see sweep().
+    """
+    file, source = _plan_file(scenario)
+    base = base_of(source, overrides)
+    axes, derived = _axes(vary), dict(derive or {})
+    rules, pairs = _texts(until), _texts(paired)
+    if file is not None:
+        given = {key for one in axes for key in one.keys} | {key for key, _ in base.settings}
+        label = str(scenario)
+        axes = tuple(
+            one for one in planfile.axes_of(file, label) if given.isdisjoint(one.keys)
+        ) + axes  # fmt: skip
+        kept = tuple((k, v) for k, v in planfile.leaves(file.set) if k not in given)
+        base = replace(base, settings=(*kept, *base.settings))
+        derived = {k: str(v) for k, v in planfile.leaves(file.derive) if k not in given} | derived
+        rules = rules or _texts(file.until)
+        pairs = pairs or _texts(file.paired)
+        repeat = repeat if repeat is not None else file.repeat
+        batch = batch if batch is not None else file.batch
+        seed = seed if seed is not None else file.seed
+    repeat = repeat if repeat is not None else REPEAT_UNTIL if rules else 1
+    counts = {"repeat": repeat, "batch": BATCH if batch is None else batch}
+    for name, count in counts.items():
+        if not 1 <= count <= REPEAT_MAX:
+            raise SweepError(f"{name} must be a whole number from 1 to {REPEAT_MAX}, not {count}")
+    plan = SweepPlan(
+        base=base,
+        axes=axes,
+        derived=tuple((k, Formula(text, f"derive {k}")) for k, text in derived.items()),
+        until=tuple(parse_until(rule) for rule in rules),
+        root=-1 if seed is None else seed,
+        paired=pairs,
+        name=(file.name if file is not None else "") or Path(base.file).stem,
+        plots=tuple(file.plot) if file is not None else (),
+        **counts,
+    )
+    return plan
+
+
+def _plan_file(scenario: Source) -> tuple[planfile.PlanFile | None, Source]:
+    """The plan file, if it is one, and the scenario that it or the caller names."""
+    if isinstance(scenario, dict | Scenario):
+        return None, scenario
+    text, label, folder = scenarios.read(scenario)
+    if not planfile.is_plan(text):
+        return None, scenario
+    file = planfile.read(text, label)
+    return file, planfile.scenario_of(file, folder)
+
+
+def _axes(vary: Vary) -> tuple[Axis, ...]:
+    if isinstance(vary, str):
+        return (parse(vary),)
+    if not isinstance(vary, Mapping):
+        return tuple(parse(text) for text in vary)
+    made = []
+    for key, values in vary.items():
+        if isinstance(key, str):
+            steps = [(value,) for value in planfile.listed(values, f"vary {key}")]
+            made.append(axis((key,), steps, f"vary {key}"))
+        else:
+            made.append(axis(tuple(key), [tuple(step) for step in values], f"vary {key}"))
+    return tuple(made)
+
+
+def _texts(given: str | Iterable[str]) -> tuple[str, ...]:
+    return (given,) if isinstance(given, str) else tuple(given)
+
+
+def _checked(plan: SweepPlan) -> SweepPlan:
+    """The plan, if one of its first points at least can be loaded; seed and paths filled in.
+
+    Points that cannot be run are rows with their reason; if there are no others, something in the
+    plan itself is wrong, a key's name for one.
+    """
+    wrong: ScenarioError | None = None
+    for point in plan.points[:CHECKED_MAX]:
+        try:
+            base = plan.base.anywhere(point.settings)
+            root = base.scenario(point.settings).seed if plan.root < 0 else plan.root
+        except ScenarioError as error:
+            wrong = wrong or error
+        else:
+            return replace(plan, base=base, root=root)
+    assert wrong is not None
+    raise wrong
+
+
+def _prepare(folder: Path) -> None:
+    """Make the folder, unless something else is in it.
+
+    Raises:
+        SweepError: it cannot be used.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        names = {entry.name for entry in folder.iterdir()}
+    except OSError as error:
+        why = error.strerror or type(error).__name__
+        raise SweepError(f"{folder} cannot be used: {why}; choose another with --out") from None
+    if names and FILE not in names:
+        raise SweepError(f"{folder} is no sweep's folder and not empty; choose another --out")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise SweepError(f"no permission to write in {folder}; choose another --out")
+
+
+def _describe(plan: SweepPlan, folder: Path) -> None:
+    """Put the scenario and the plan beside the job table."""
+    with _writing(folder):
+        tables.write_bytes(plan.base.text.encode(), folder / plan.base.file)
+        tables.write_bytes(planfile.dump(plan).encode(), folder / PLAN_FILE)
+
+
+def _result(plan: SweepPlan, jobs: Jobs, conductor: Conductor) -> Sweep:
+    repeats = [state.goal for state in conductor.states]
+    return Sweep(
+        plan=plan,
+        results=tables.results(plan, jobs, repeats),
+        timings=tables.timings(plan, jobs, repeats),
+        complete=all(state.finished for state in conductor.states),
+        ran=conductor.ran,
+    )
+
+
+def _write(done: Sweep, folder: Path) -> None:
+    """Write the tables, and what is known of where they come from."""
+    commit, modified = checkout()
+    origin = done.provenance | {"commit": commit, "modified": modified}
+    with _writing(folder):
+        tables.write(done.results, folder / tables.RESULTS)
+        tables.write(done.timings, folder / tables.TIMINGS)
+        tables.write(done.points(), folder / tables.POINTS)
+        text = json.dumps(origin, indent=2, ensure_ascii=False)
+        tables.write_bytes(text.encode() + b"\n", folder / "provenance.json")
+    done.written = folder
+
+
+@contextmanager
+def _writing(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        why = error.strerror or type(error).__name__
+        raise SweepError(
+            f"{folder} cannot be written: {why}; what is done is kept in {FILE}, give the same "
+            "command again"
+        ) from error

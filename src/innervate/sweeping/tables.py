@@ -1,0 +1,159 @@
+"""The tables of a sweep: results, timings, figures of every point; same runs, same bytes.
+
+`results` has nothing in it of machines, clocks and order of work; all that is in `timings`.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from innervate.analysis.intervals import mean_interval, quantile
+from innervate.sweeping.jobs import Jobs
+from innervate.sweeping.plan import Point, SweepPlan
+
+if TYPE_CHECKING:
+    import polars
+
+RESULTS = "results.parquet"
+TIMINGS = "timings.parquet"
+POINTS = "points.parquet"
+FIRST = ("point", "repeat", "seed")
+AFTER = ("status", "reason", "command")
+
+
+def results(plan: SweepPlan, jobs: Jobs, repeats: Sequence[int]) -> polars.DataFrame:
+    """One row for every run, by point and repeat.
+
+    Args:
+        plan: of the sweep.
+        jobs: the runs.
+        repeats: how many runs of every point belong to it; those that are missing are left out.
+    """
+    rows: list[dict[str, Any]] = []
+    for point, count in zip(plan.points, repeats, strict=True):
+        for repeat, run in jobs.runs(point.digest, count).items():
+            head = {"point": point.index, "repeat": repeat, "seed": run.seed} | point.columns
+            tail = {
+                "status": "failed" if run.figures is None else "done",
+                "reason": run.reason,
+                "command": plan.base.command(point.settings, run.seed),
+            }
+            figures = {k: v for k, v in (run.figures or {}).items() if k not in head}
+            rows.append(head | tail | figures)
+    return frame(rows, (*FIRST, *plan.keys, *AFTER))
+
+
+def timings(plan: SweepPlan, jobs: Jobs, repeats: Sequence[int]) -> polars.DataFrame:
+    """How long every run took, when it began, and where it was."""
+    places = jobs.places()
+    rows = [
+        {"point": point.index, "repeat": repeat, "wall_s": run.wall_s, "began_s": run.began_s}
+        | places[run.place]
+        for point, count in zip(plan.points, repeats, strict=True)
+        for repeat, run in jobs.runs(point.digest, count).items()
+    ]
+    return frame(rows, ("point", "repeat", "wall_s", "began_s"))
+
+
+def frame(rows: Sequence[dict[str, Any]], first: Iterable[str] = ()) -> polars.DataFrame:
+    """A frame of rows that need not have the same keys: null where one is missing.
+
+    Columns stand in the order of `first`, then in the order in which rows bring them. A column of
+    whole numbers is Int64, of numbers Float64, of truths Boolean, else String.
+    """
+    import polars
+
+    names = list(dict.fromkeys([*first, *(key for row in rows for key in row)]))
+    columns = {name: [row.get(name) for row in rows] for name in names}
+    return polars.DataFrame([_series(name, values) for name, values in columns.items()])
+
+
+def _series(name: str, values: list[Any]) -> polars.Series:
+    import polars
+
+    kinds = {type(value) for value in values if value is not None}
+    if kinds and kinds <= {bool}:
+        return polars.Series(name, values, polars.Boolean)
+    if kinds and kinds <= {int}:
+        return polars.Series(name, values, polars.Int64)
+    if kinds and kinds <= {int, float}:
+        numbers = [None if value is None else float(value) for value in values]
+        return polars.Series(name, numbers, polars.Float64)
+    texts = [
+        value if value is None or type(value) is str else json.dumps(value) for value in values
+    ]
+    return polars.Series(name, texts, polars.String)
+
+
+def measures(table: polars.DataFrame, keys: Iterable[str]) -> list[str]:
+    """The columns of the results that hold figures, in order."""
+    import polars
+
+    aside = {*FIRST, *AFTER, *keys}
+    return [
+        name
+        for name, kind in table.schema.items()
+        if name not in aside and kind in (polars.Int64, polars.Float64)
+    ]
+
+
+def points(
+    table: polars.DataFrame, plan_points: Sequence[Point], wanted: Sequence[str], level: float
+) -> polars.DataFrame:
+    """For every point and measure: runs with a value, mean, interval, median, extremes.
+
+    Args:
+        table: the results.
+        plan_points: of the sweep.
+        wanted: which measures.
+        level: of the confidence interval, as a share.
+    """
+    rows = []
+    parts = table.partition_by("point", as_dict=True)
+    for point in plan_points:
+        mine = parts.get((point.index,), table.clear()).to_dict(as_series=False)
+        for name in wanted:
+            values = [value for value in mine[name] if value is not None]
+            head = {"point": point.index, **point.columns, "measure": name, "runs": len(values)}
+            rows.append(head | _figures(values, level))
+    keys = plan_points[0].columns if plan_points else ()
+    return frame(rows, ("point", *keys, "measure", "runs", *_figures([], level)))
+
+
+def _figures(values: list[float], level: float) -> dict[str, float | None]:
+    names = ("mean", "low", "high", "min", "p05", "p50", "p95", "max")
+    if not values:
+        return dict.fromkeys(names)
+    found = mean_interval(values, level)
+    quantiles = (quantile(values, share) for share in (0.0, 0.05, 0.5, 0.95, 1.0))
+    return dict(zip(names, (*map(float, found), *map(float, quantiles)), strict=True))
+
+
+def write(table: polars.DataFrame, path: Path) -> None:
+    """Write a table as Parquet, whole or not at all.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    packed = io.BytesIO()  # written by ourselves, a full disk is an OSError that says so
+    table.write_parquet(packed, compression="zstd", statistics=True, row_group_size=1 << 16)
+    write_bytes(bytes(packed.getbuffer()), path)
+
+
+def write_bytes(content: bytes, path: Path) -> None:
+    """Put a file in the place of an older one, whole or not at all.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    fresh = path.with_name(f".{path.name}.part")
+    try:
+        fresh.write_bytes(content)
+        os.replace(fresh, path)
+    finally:
+        fresh.unlink(missing_ok=True)

@@ -1,0 +1,57 @@
+"""The Python example of docs/live.md does what it says, beside a gateway that has just started."""
+
+import asyncio
+import re
+from pathlib import Path
+
+from innervate.live.build import build
+from innervate.live.nodefile import load
+from tests.live.test_process import free_port
+
+PAGE = Path(__file__).parents[2] / "docs" / "live.md"
+NODE = """
+kind = "mesh"
+number = {number}
+nodes = 4
+role = "{role}"
+
+[[link]]
+kind = "udp"
+bind = "127.0.0.1:{own}"
+peers = ["127.0.0.1:{other}"]
+"""
+
+
+def test_the_documented_node_waits_for_its_table_and_delivers(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    own, other = free_port(), free_port()
+    Path("n0.toml").write_text(NODE.format(number=0, role="node", own=own, other=other))
+    Path("n3.toml").write_text(NODE.format(number=3, role="gateway", own=other, other=own))
+    asyncio.run(asyncio.wait_for(_beside(_snippet()), 60))
+    assert capsys.readouterr().out.splitlines() == ["delivered", "3 b'hello'"]
+
+
+def _snippet():
+    (code,) = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    names = {}
+    exec(code, names)
+    return names["main"]
+
+
+async def _beside(snippet):
+    """Run it until its message was answered, beside node 3, which starts at the same moment."""
+    async with build(load(Path("n3.toml"))) as far:
+        running = asyncio.create_task(snippet())
+        sender, payload = await anext(far.receive_messages())
+        assert await far.send_message(sender, payload).wait() == "delivered"
+        await asyncio.sleep(0)  # lets the example print what it was given
+        running.cancel()
+        await asyncio.gather(running, return_exceptions=True)
+
+
+def test_commands_of_pages_are_marked_as_such():
+    for page in (PAGE.parents[1] / "README.md", *PAGE.parent.glob("*.md")):
+        for block in re.findall(r"```console\n(.*?)```", page.read_text("utf-8"), re.DOTALL):
+            bare = [line for line in block.splitlines() if re.match(r"(innervate|make|pip) ", line)]
+            assert not bare, (page.name, bare)
