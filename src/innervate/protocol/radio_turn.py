@@ -40,8 +40,9 @@ from innervate.protocol.rng import draw
 
 FAILS_MOST = 3  # packets without proof, then we leave the round
 PASS_SLOTS = 3  # a turn without a packet
-CREDIT_KEEPS = 2  # so many turns with a packet keep the place once without
-CREDIT_MOST = 3
+CREDIT = 3  # turns without a packet that one with a packet earns; the first earns one
+CREDIT_MOST = 9
+CROWD_WAITS = 4  # quarters of a station: somebody mostly waits for a window
 
 
 def enter_turn(station, params, now, cur, out):
@@ -91,6 +92,11 @@ def quit_round(station, params, now, out):
     schedule(station, now, out)
 
 
+def is_due(station, params):
+    """1 if a window for newcomers is due behind this round."""
+    return station.turns + 1 >= params.turns or station.crowd >= CROWD_WAITS
+
+
 def send_turn(station, params, now, out):
     """Send our packets; the last of a round opens a window for newcomers now and then."""
     report(out, REPORT_TURN, station.pos, 0)
@@ -100,11 +106,11 @@ def send_turn(station, params, now, out):
     behind = following(station, station.pos)
     alone = behind == station.pos or behind == NONE
     if count:
-        station.credit = min(station.credit + 1, CREDIT_MOST)
+        station.credit = min(station.credit + (CREDIT if station.credit else 1), CREDIT_MOST)
     else:
         station.credit = station.credit - 1
         frame.slots = PASS_SLOTS
-    more = station.queued > count or (station.credit >= CREDIT_KEEPS and not alone)
+    more = station.queued > count or (station.credit and not alone)
     frame.pos = station.pos
     frame.more = 1 if more else 0
     frame.ok = station.last_ok
@@ -113,7 +119,7 @@ def send_turn(station, params, now, out):
     longest = most_delay(params, station.used)
     limit = params.ta_us + 2 * longest + guard(params, station.used)
     size = wanted_window(station, params)
-    opens = alone or (wraps and (not more or station.turns + 1 >= params.turns))
+    opens = alone or (wraps and (not more or is_due(station, params)))
     station.named = NONE if alone else behind
     if opens:
         frame.next = ALONE if alone else station.pos

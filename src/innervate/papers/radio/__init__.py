@@ -10,7 +10,7 @@ AUTHORS = "D.-H. Kim, J.-H. Kim"
 # beyond it.
 FIGURES = (
     "fig1", "fig4_5", "limits", "fig6_7", "quadratic", "fig12", "ties", "silent", "capture",
-    "fairness", "practical", "turnaround",
+    "fairness", "practical", "turnaround", "delay",
 )  # fmt: skip
 
 
