@@ -78,14 +78,6 @@ PRACTICAL = (
     ("credit", 0, 0, 15, "turns", "with a packet, less those without: a place is kept for a while"),
     ("joined", 0, 0, 1023, "stations", "that were given a place since the last window was opened"),
     ("crowd", 0, 0, 1023, "quarters", "of a station: how many mostly wait for a window"),
-    (
-        "gap",
-        0,
-        0,
-        268435455,
-        "us",
-        "kept free behind the last frame, others may have begun unheard",
-    ),
     ("wide", 0, 0, 3, "doublings", "of the greatest configured delay that we believe in"),
     ("used", 0, 0, 3, "doublings", "... that this sequence allows for"),
 )

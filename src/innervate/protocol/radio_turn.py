@@ -40,8 +40,8 @@ from innervate.protocol.rng import draw
 
 FAILS_MOST = 3  # packets without proof, then we leave the round
 PASS_SLOTS = 3  # a turn without a packet
-CREDIT = 3  # turns without a packet that one with a packet earns; the first earns one
-CREDIT_MOST = 9
+CREDIT = 2  # turns without a packet that one with a packet earns; the first earns one
+CREDIT_MOST = 4
 CROWD_WAITS = 4  # quarters of a station: somebody mostly waits for a window
 
 
