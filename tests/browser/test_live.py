@@ -6,10 +6,11 @@ import signal
 import socket
 import subprocess
 import sys
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 
 import pytest
 
+from innervate.live import status
 from tests.browser_net import WAIT_MS, click, expect, serving
 
 pytestmark = pytest.mark.slow
@@ -114,6 +115,29 @@ def test_a_node_is_killed_and_started_and_the_page_finds_its_server_again(look, 
         finally:
             node.terminate()
             node.wait(timeout=20)
+
+
+def test_what_was_not_clicked_is_seen_and_that_nobody_answers_is_said(look, short, monkeypatch):
+    network, nothing = ExitStack(), "\u2013"
+    here = network.enter_context(up(MESH, short, monkeypatch))
+    with network, serving("live") as address:
+        page = look(address)
+        level, line = page.locator("#level"), page.locator("#headline")
+        expect(level).to_have_text("✓ ok")
+        expect(line).to_have_text("All 5 nodes have a way to the gateway.")
+        for path in status.ask_one(here / "n4.sock", {"do": "status"})["paths"]:
+            status.ask_one(here / "n4.sock", {"do": "cut", "port": path["port"]})
+        expect(page.locator("#log")).to_contain_text("link n2 - n4 cut")
+        expect(page.locator("#recovery .more")).to_contain_text("link n2 - n4 cut")
+        expect(page.locator("#since output")).not_to_have_text(nothing)
+        expect(level).to_have_text("! degraded")
+        expect(line).to_contain_text("1 of 5 nodes is cut off from the gateway")
+        network.close()
+        expect(level).to_have_text("? no data")
+        expect(line).to_have_text("None of the 5 nodes answers.")
+        expect(page.locator("#unconnected output")).to_have_text(nothing)
+        expect(page.locator("#connection")).to_have_text("page connected, nodes silent")
+        assert page.locator(".number.done").count() == 0
 
 
 def pid_of(file, folder):

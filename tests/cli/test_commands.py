@@ -73,6 +73,9 @@ def test_compare_names_what_differs(sh):
     sh("run", "four.toml", "--out", "one")
     sh("run", "four.toml", "--out", "two", "--set", "protocol.k=3")
     assert sh("compare", "one", "two") == 0
+    for name in ("one", "two"):
+        headline = json.loads(Path(name, "summary.json").read_text())["headline"]
+        assert f"{name}: {headline['level']}: {headline['text']}\n" in sh.out
     assert "protocol.k  not set -> 3" in sh.out
     assert "recoveries.0.detected_ms" in sh.out
     assert "First event that differs:" in sh.out

@@ -186,6 +186,7 @@ def test_a_flood_of_callers_leaves_a_node_its_files_and_a_short_log(tmp_path):
         assert flood(port, 1.0) > 100
         told = node.told()
         assert told["counters"]["metrics: turned away"] > 0
+        assert told["counters"]["metrics: made to wait"] > 0
         assert told["state"]["trouble"] == ""
         page = f"http://127.0.0.1:{port}/metrics"
 

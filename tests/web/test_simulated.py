@@ -13,6 +13,7 @@ from innervate.web.history import LOG, SERIES, TIMELINE
 from innervate.web.simulated import Simulated
 from innervate.web.skin_scene import places
 from innervate.web.snapshot import Part, Snapshot, Teller
+from tests.skin_runs import patch
 from tests.web_runs import KINDS, MESH, RADIO, SKIN, go_to, simulated
 
 ROLES = {"cell", "sink", "port", "node", "gateway", "standby", "robot", "post", "monitor",
@@ -119,6 +120,16 @@ def test_the_recovery_is_that_of_the_batch_run(event):
     assert made.fields()["since_cut_s"] == pytest.approx(0.5)
 
 
+@pytest.mark.parametrize("column", [2, 5])
+def test_the_log_does_not_say_that_all_have_a_way_while_cells_are_cut_off(column):
+    kill = {"at_s": 0.5, "action": "kill", "cell": {"row": 0, "column": column}}
+    made = simulated(patch(6, 1, (0, 0), event=[kill], duration_s=0.7), speed=0)
+    made.run_to_end()
+    told = texts(made)
+    assert not [text for text in told if text.startswith("all cells have a way again")]
+    assert made.fields()["recovery"]["apart"] == 5 - column
+
+
 def test_what_disturbs_nobody_is_over_at_once():
     made = simulated(SKIN)
     go_to(made, 0.5)
@@ -159,6 +170,7 @@ def test_who_is_behind_a_dead_node_of_a_mesh_is_cut_off_until_it_is_back():
     state = made.fields()
     assert (state["unconnected"], state["apart"]) == (2, 2)
     assert state["recovery"]["recovered_ms"] == 0.0  # there is nothing that it could do
+    assert state["recovery"]["apart"] == 2
     made.carry_out(messages.Revive(1))
     made.run_to_end()
     assert (made.fields()["unconnected"], made.fields()["apart"]) == (0, 0)
@@ -259,6 +271,7 @@ def test_a_cell_alone_has_recovered_when_it_is_back():
     made.carry_out(messages.Revive(1))
     made.run_to_end()
     assert made.fields()["recovery"]["cause"] == "cell p0 r0 c1 switched off"
+    assert made.fields()["recovery"]["apart"] == 1  # for good, had it not been let back
     assert made.fields()["unconnected"] == 0
 
 

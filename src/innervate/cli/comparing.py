@@ -10,9 +10,13 @@ DIFFERENCES_MAX = 40
 
 def compare(first: Path, second: Path) -> int:
     """Say what differs between two runs."""
+    from innervate.plot.words import headline_line
     from innervate.running import compare as room
 
     found = room(first, second)
+    for name, headline in zip((first, second), found.headlines, strict=True):
+        if headline is not None:
+            print(f"{name}: {headline_line(headline)}")
     if not found.scenario and found.same:
         print("The two runs are the same, event by event.")
     _print("Scenario", found.scenario)

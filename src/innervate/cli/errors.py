@@ -95,6 +95,16 @@ def say(text: str) -> None:
         print(f"innervate: {text}", file=sys.stderr, flush=True)
 
 
+def check_seconds(option: str, value: float) -> None:
+    """Refuse what is no time to wait.
+
+    Raises:
+        UserError: negative, or no number.
+    """
+    if not 0 <= value < float("inf"):
+        raise UserError(f"{option} must be a number of seconds from 0, not {value:g}")
+
+
 def _missing(error: Any) -> str:
     """An argument that was left out."""
     command = " ".join(error.command_chain or ())

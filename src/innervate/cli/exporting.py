@@ -88,6 +88,7 @@ class _Source:
     def write(self, wanted: Wanted) -> None:
         """Write all that is wanted."""
         plan = self.plan
+        self._check(wanted)
         if wanted.graph is not None:
             from innervate.export import graphs
 
@@ -108,9 +109,19 @@ class _Source:
         if wanted.rerun is not None:
             from innervate.export import rrd
 
-            rrd.check(plan)  # before anything is simulated for it
             count = rrd.write(plan, self._frames(), wanted.rerun)
             print(f"Written: {wanted.rerun}, {count} rows; look at it with: rerun {wanted.rerun}")
+
+    def _check(self, wanted: Wanted) -> None:
+        """What cannot be written is said before anything is simulated for it."""
+        if wanted.mcap is not None:
+            import mcap.writer  # noqa: F401 - a missing package is said by errors.main
+        if wanted.rerun is not None:
+            from innervate.export import rrd
+
+            rrd.check(self.plan)
+        if wanted.pcapng is not None:
+            self._window(wanted)
 
     def _capture(self, wanted: Wanted) -> None:
         from innervate.export import capture

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+from itertools import takewhile
 from pathlib import Path
 
 from innervate import scenario
@@ -10,18 +12,23 @@ from innervate.cli.errors import UserError
 
 
 def scenarios() -> int:
-    """List the bundled scenarios, a line each: what the file's first comment says."""
+    """List the bundled scenarios, a line each: the first sentence of the file's first comment."""
     files = scenario.bundled()
     width = max(len(name) for name in files)
     for name, path in files.items():
-        print(f"{name:<{width}}  {_first_comment(path)}")
+        print(f"{name:<{width}}  {_first_sentence(path)}")
     return 0
 
 
-def _first_comment(path: Path) -> str:
-    with path.open(encoding="utf-8") as file:
-        line = file.readline().strip()
-    return line.lstrip("# ") if line.startswith("#") else ""
+def _first_sentence(path: Path) -> str:
+    """Of the comment that a file begins with."""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    comment = " ".join(line.lstrip("# ") for line in takewhile(_is_comment, lines))
+    return re.split(r"(?<=\.) (?=[A-Z])", comment, maxsplit=1)[0]
+
+
+def _is_comment(line: str) -> bool:
+    return line.startswith("#")
 
 
 def new(

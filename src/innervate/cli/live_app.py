@@ -63,7 +63,7 @@ def live_up(
     folder
         Where node files, logs and sockets go; a temporary one if left out.
     for_
-        End after so many seconds.
+        End after so many seconds; 0 = never.
     json
         Say where the nodes are as JSON.
     """
@@ -71,6 +71,7 @@ def live_up(
 
     if netns and pty:
         raise errors.UserError("--netns and --pty exclude each other; name one")
+    errors.check_seconds("--for", for_)
     cables = "netns" if netns else "pty" if pty else "udp"
     return command.up(file, set_ or [], cables, sealed, folder, for_, json)
 
@@ -193,10 +194,11 @@ def live_capture(
     out
         The capture; it can be read while it grows. Standard output if left out.
     for_
-        End after so many seconds.
+        End after so many seconds; 0 = never.
     """
     from innervate.cli import capturing as command
 
+    errors.check_seconds("--for", for_)
     return command.capture(list(nodes), out, for_)
 
 

@@ -47,7 +47,10 @@ def simulate(
     from innervate.running import folder as folders
 
     if out is None:
-        out = folders.default_folder(loaded.name, loaded.seed)
+        out = folders.free_folder(loaded)
+        taken = folders.default_folder(loaded.name, loaded.seed)
+        if out != taken:
+            errors.say(f"{taken} holds a run of other settings, which is kept; writing {out}")
     folders.check_target(out)
     with Progress(is_compiled(plan), quiet) as progress:
         return room.run(loaded, progress=progress)

@@ -15,7 +15,9 @@ if TYPE_CHECKING:
 def size(question: dict[str, Any], how: dict[str, Any]) -> int:
     """Answer how many interface ports a robot's skin needs, with a table and a picture."""
     from innervate.sweeping import sizing
+    from innervate.sweeping.sized import answer_lines
 
+    _check(question)
     ports = sizing.parse_ports(question.pop("ports"))
     asked = sizing.Question(ports=ports, **question)
     folder = how.pop("out") or Path("sweeps") / f"size-{Path(asked.urdf).stem}"
@@ -27,23 +29,43 @@ def size(question: dict[str, Any], how: dict[str, Any]) -> int:
             errors.say(f"interrupted; {table.words}; they are kept in {folder}, and the same "
                        "command goes on from there")  # fmt: skip
             return errors.INTERRUPTED
-    for line in sizing.answer_lines(answer):
+    for line in answer_lines(answer):
         print(line)
     print(f"Drawn: {draw(answer, folder)}")
     return 0
 
 
+# What options of the command set in scenarios, each with its least and greatest value.
+RANGES = {
+    "rates_hz": ("--rate", 0.01, 10_000),
+    "pitch_mm": ("--pitch", 0.5, 100_000),
+    "reach_mm": ("--reach", 0.001, 100_000),
+    "loss_max": ("--loss", 0, 1),
+    "recovery_ms_max": ("--recovery", 0.001, 1e9),
+}
+
+
+def _check(question: dict[str, Any]) -> None:
+    """Say what is wrong by the names of the options, not by those of scenario keys."""
+    for key, (option, low, high) in RANGES.items():
+        given = question.get(key)
+        for value in given if isinstance(given, tuple | list) else (given,):
+            if value is not None and not low <= value <= high:
+                scale = 100 if key == "loss_max" else 1  # given in per cent
+                raise errors.UserError(
+                    f"{option} must be {scale * low:g} to {scale * high:g}, not {scale * value:g}"
+                )
+
+
 def draw(answer: Answer, folder: Path) -> Path:
     """The picture in the sweep's folder, with the ports that the hardest rate needs."""
-    from innervate import scenario as scenarios
     from innervate.plot import sizing as figure
     from innervate.plot import style
     from innervate.plot.words import number_of
 
     asked = answer.question
-    ports = max(n or max(asked.ports) for n in answer.needed.values())
-    base = answer.sweep.plan.base
-    graph = scenarios.plan(base.scenario([("body.interfaces", ports)])).graph
+    ports = max(n or max(answer.graphs) for n in answer.needed.values())
+    graph = answer.graphs[ports]
     columns = answer.table.to_dict(as_series=False)
     limits = (asked.loss_max, asked.recovery_ms_max)
     with style.house():

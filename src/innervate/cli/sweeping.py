@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 # What is shown if nobody says: of these, those that the runs have.
 SHOWN = (
-    "recoveries.routed_ms", "data.loss_ratio",
+    "recoveries.routed_ms", "cut_off.most", "data.loss_ratio",
     "throughput", "delay_slots.p50",
     "delivery_ratio", "latency_ms.p50",
 )  # fmt: skip
@@ -59,6 +59,11 @@ def draw_plots(done: Sweep, folder: Path) -> list[Path]:
         name = plot.name or f"plot-{number}"
         with style.house():
             drawn = done.plot(plot.x, plot.y, plot.by, plot.kind, plot.title)
+            over = done.averaged(plot.x, plot.by) if plot.x in done.plan.keys else {}
+            if over:
+                keys = ", ".join(over)
+                errors.say(f"{name}: means over all values of {keys}; to tell them apart, name "
+                           "one as by, or fix the others with --set")  # fmt: skip
             paths.append(style.save(drawn, folder, name)[0])
     return paths
 

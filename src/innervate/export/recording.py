@@ -11,6 +11,8 @@ from typing import Any
 import innervate
 from innervate.export import files, scenes, schemas
 from innervate.export.scenes import Channel, Message, stamp
+from innervate.scenario import mesh_words, radio_words
+from innervate.scenario.check import words as skin_words
 from innervate.trace import mesh_tables, radio_tables, tables
 
 TABLES = {"skin": tables.TABLES, "mesh": mesh_tables.TABLES, "radio": radio_tables.TABLES}
@@ -91,17 +93,17 @@ def events(plan: Any) -> Iterator[Message]:
         yield fault.at_us, {
             "timestamp": stamp(fault.at_us),
             "level": WARNING if action in HARM else INFORMATION,
-            "message": _sentence(told[fault.index]),
+            "message": _sentence(plan, fault),
             "name": "scenario", "file": "", "line": 0,
         }  # fmt: skip
 
 
-def _sentence(event: Any) -> str:
-    """An event as it stands in the scenario, without its time."""
-    import msgspec
-
-    keys = msgspec.to_builtins(event)
-    what = keys.pop("action")
-    keys.pop("at_s", None)
-    some = ", ".join(f"{key} {value}" for key, value in keys.items() if value not in (None, False))
-    return f"{what} {some}" if some else str(what)
+def _sentence(plan: Any, fault: Any) -> str:
+    """What was done to whom, drawn ones by their names, without its time."""
+    if plan.kind == "skin":
+        text = skin_words(plan.graph, fault)
+    else:
+        words: Any = {"mesh": mesh_words, "radio": radio_words}[plan.kind]
+        text = words.fault_words(plan, fault)
+    said: str = text.partition(" s ")[2]
+    return said

@@ -1,7 +1,7 @@
 """The compile door: which plain functions Numba may compile, and where compiled code is kept.
 
 Numba's own cache does not notice an edit in another file, so the cache folder carries a hash of
-every source that can end up in compiled code, and of the compiler's version.
+every source that can end up in compiled code, of where it lies, and of the compiler's version.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from innervate.kernel.whole import as_one
 
 SOURCE_ROOMS = ("protocol", "kernel", "sim", "verify")
 FOLDERS_KEPT = 4
+ROOT = Path(__file__).resolve().parent.parent
 
 _registered: set[Callable[..., Any]] = set()
 
@@ -48,11 +49,14 @@ def register_functions(*functions: Callable[..., Any], hot: bool = True) -> None
             _registered.add(function)
 
 
-def source_hash() -> str:
-    """Hash of all sources that compiled code can come from, and of the tools that compile it."""
-    root = Path(__file__).resolve().parent.parent
+def source_hash(root: Path = ROOT) -> str:
+    """Hash of all sources that compiled code can come from, of what compiles it, and of where.
+
+    Numba takes nothing from its cache that was compiled from files elsewhere: of the same version
+    in another environment nothing is compiled yet.
+    """
     digest = hashlib.blake2b(digest_size=10)
-    digest.update(f"{sys.version_info[:3]} {numba.__version__}".encode())
+    digest.update(f"{root}\0{sys.version_info[:3]} {numba.__version__}".encode())
     for path in sorted(p for room in SOURCE_ROOMS for p in (root / room).rglob("*.py")):
         digest.update(path.relative_to(root).as_posix().encode())
         digest.update(path.read_bytes())

@@ -42,7 +42,8 @@ class Door:
         sock: bound; it listens from `open` on.
         serve: is given each caller that is let in.
         bounds: how much it stands.
-        counts: callers that were one too many, and how often files had run out.
+        counts: callers that were one too many; how often a burst made others wait, and how often
+            files had run out.
     """
 
     def __init__(
@@ -93,6 +94,7 @@ class Door:
                 self._counts[f"{self._name}: turned away"] += 1
                 with caller, suppress(OSError):
                     caller.send(self._bounds.full)
+        self._counts[f"{self._name}: made to wait"] += 1
         self._pause(REST_S)
 
     def _pause(self, seconds: float) -> None:

@@ -22,28 +22,32 @@ UNITS = {"_ms": "ms", "_s": "s", "_us": "us", "_hz": "Hz", "_m": "m", "_slots": 
 
 
 def draw(
-    columns: Columns, x: str, y: str, by: str, kind: str, title: str, over_settings: bool
+    columns: Columns, x: str, y: str, by: str, kind: str, title: str, over: Mapping[str, int] | None
 ) -> Figure:
     """A figure of runs.
 
     Args:
         columns: of the results, one value a run.
-        x: what goes to the right: a setting, or (not over_settings) a measure.
+        x: what goes to the right: a setting, or (over is None) a measure.
         y: what goes up, or the shade of a heat map.
         by: what tells lines apart, or what goes up in a heat map; "" = one line.
         kind: "band" or "heat".
         title: above it.
-        over_settings: `x` has few values with many runs each, so means and intervals are drawn.
+        over: `x` is a setting, so that means and intervals are drawn; what else was varied, and
+            is averaged over: how many values of each.
     """
     with style.house():
         made, (ax,) = style.panels(style.COLUMN_IN, 2.5)
         if kind == "heat":
             _heat(made, ax, columns, x, y, by)
-        elif over_settings:
+        elif over is not None:
             _bands(ax, columns, x, y, by)
         else:
             _dots(ax, columns, x, y, by)
         ax.set_title(title)
+        if over:
+            several = ", ".join(f"{count} values of {key}" for key, count in over.items())
+            ax.set_xlabel(f"{ax.get_xlabel()}\nmeans over {several}, all varied alike")
         return made
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from innervate import scenario as scenarios
+from innervate.analysis.headline import HeadlineEntry
 from innervate.running import folder as folders
 from innervate.running.errors import RunError
 from innervate.running.rooms import room_of
@@ -53,12 +54,14 @@ class Comparison:
         summary: the same for the summary, without what depends on the machine.
         divergence: the first handler call that differs; None if none does.
         notes: what to know besides, a sentence each.
+        headlines: of both runs, as in their summaries; None of a run made before there were any.
     """
 
     scenario: list[Difference]
     summary: list[Difference]
     divergence: Divergence | None
     notes: list[str]
+    headlines: tuple[HeadlineEntry | None, HeadlineEntry | None]
 
     @property
     def same(self) -> bool:
@@ -85,6 +88,7 @@ def compare(a: Side, b: Side) -> Comparison:
         summary=differences(one.trajectory, other.trajectory),
         divergence=divergence,
         notes=_notes(one, other),
+        headlines=(one.summary.get("headline"), other.summary.get("headline")),
     )
 
 

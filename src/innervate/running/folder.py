@@ -13,7 +13,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from innervate import scenario as scenarios
 from innervate.running.errors import RunError
+from innervate.scenario import Scenario, ScenarioError
 from innervate.trace import mesh_tables, radio_tables, tables
 
 SCENARIO = "scenario.toml"
@@ -25,6 +27,7 @@ TABLES = (*tables.TABLES, *radio_tables.TABLES, *mesh_tables.TABLES)
 TABLE_FILES = tuple(f"{table.name}.parquet" for table in TABLES)
 KNOWN = frozenset({*REQUIRED, REPORT, *TABLE_FILES})
 
+FOLDERS_MAX = 1000  # beyond, the last is replaced
 _UNSUITABLE = re.compile(r"[^\w.+-]+")
 
 
@@ -32,6 +35,26 @@ def default_folder(name: str, seed: int) -> Path:
     """Where a run goes if nobody says: runs/<name>-<seed>."""
     plain = _UNSUITABLE.sub("-", name).strip("-.")[:80] or "skin"
     return Path("runs") / f"{plain}-{seed}"
+
+
+def free_folder(scenario: Scenario) -> Path:
+    """Where a run goes if nobody says, past folders that hold runs of other settings.
+
+    runs/<name>-<seed>, or with -2, -3, ... behind it. A run of the same settings is replaced.
+    """
+    first = default_folder(scenario.name, scenario.seed)
+    for number in range(1, FOLDERS_MAX + 1):
+        folder = first if number == 1 else first.with_name(f"{first.name}-{number}")
+        if not (folder / SCENARIO).is_file() or _is_run_of(folder, scenario):
+            return folder
+    return folder
+
+
+def _is_run_of(folder: Path, scenario: Scenario) -> bool:
+    try:
+        return scenarios.dump(scenarios.load(folder / SCENARIO)) == scenarios.dump(scenario)
+    except ScenarioError:  # of another version, or damaged: no run of this one
+        return False
 
 
 def check_target(folder: str | os.PathLike[str]) -> Path:

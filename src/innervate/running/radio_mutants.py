@@ -22,8 +22,8 @@ MUTANTS = tuple(
          "                if i == mine and station.mode == WINDOW:\n"
          "                    station.pos = place\n", ""),
         ("nothing is ever proved",
-         "        prove(station, out)\n    station.heard = 1\n",
-         "        station.heard = 1\n    station.heard = 1\n"),
+         "    if count:\n        delivered(station, count, out)\n",
+         "    if count < 0:\n        delivered(station, count, out)\n"),
     )
 )  # fmt: skip
 

@@ -138,13 +138,14 @@ class Run:
         return page
 
     def write(self, folder: str | os.PathLike[str] | None = None, report: bool = True) -> Path:
-        """Write the run folder, whole or not at all; the default is runs/<name>-<seed>.
+        """Write the run folder, whole or not at all; the default is runs/<name>-<seed>,
+        or runs/<name>-<seed>-2, ... where a run of other settings is.
 
         Raises:
             RunError: the folder holds something else or cannot be written.
         """
         if folder is None:
-            folder = folders.default_folder(self.scenario.name, self.plan.seed)
+            folder = folders.free_folder(self.scenario)
         with folders.replacing(folder) as fresh:
             text = scenarios.dump(self.scenario)
             (fresh / folders.SCENARIO).write_text(text, encoding="utf-8")

@@ -91,7 +91,7 @@ class Pool(Engine):
             with _main_hidden():
                 pool.submit(os.getpid).result()
         except (BrokenExecutor, OSError) as error:
-            message = "no worker can be started here; use --workers 1, or --engine threads"
+            message = "no worker can be started here; use --workers 1"
             raise SweepError(message) from error
         return pool
 

@@ -165,8 +165,22 @@ class Sweep:
             raise SweepError(
                 f"a figure takes a measure as y, kind {' or '.join(room.KINDS)}, heat also by"
             )
-        is_key = x in self.plan.keys
-        return room.draw(self.results.to_dict(as_series=False), x, y, by, kind, title, is_key)
+        over = self.averaged(x, by) if x in self.plan.keys else None
+        return room.draw(self.results.to_dict(as_series=False), x, y, by, kind, title, over)
+
+    def averaged(self, x: str, by: str = "") -> dict[str, int]:
+        """Over what else a figure of x and by takes its means: varied keys, how many values."""
+        shown = [key for key in (x, by) if key]
+        found: dict[str, int] = {}
+        for key in self.plan.keys:
+            values: dict[tuple[Any, ...], set[str]] = {}
+            for point in self.plan.points:
+                place = tuple(point.columns[name] for name in shown)
+                values.setdefault(place, set()).add(repr(point.columns[key]))
+            most = max(map(len, values.values()), default=0)
+            if key not in shown and most > 1:
+                found[key] = most
+        return found
 
     def _pairs(self, a: int, b: int, measure: str, level: float) -> dict[str, Any]:
         one, other = (self._by_repeat(index, measure) for index in (a, b))

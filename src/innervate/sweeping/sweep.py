@@ -87,15 +87,15 @@ def sweep(
         )  # fmt: skip
     plan = _checked(plan)
     folder = None if out is None else Path(out)
-    if folder is not None:
-        _prepare(folder)
-    with Jobs(folder) as jobs:
-        jobs.claim(plan.identity())
+    with engine(kind, workers, dask) as made:  # one that cannot be leaves no folder behind
         if folder is not None:
-            _describe(plan, folder)
-        if retry:
-            jobs.forget_failed()
-        with engine(kind, workers, dask) as made:
+            _prepare(folder)
+        with Jobs(folder) as jobs:
+            jobs.claim(plan.identity())
+            if folder is not None:
+                _describe(plan, folder)
+            if retry:
+                jobs.forget_failed()
             return _conduct(Conductor(plan, jobs, made, tuple(follow), progress), jobs, folder)
 
 

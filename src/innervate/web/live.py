@@ -214,6 +214,7 @@ class Live(Source):
         if recovery is None or self._map.kind == "radio" or not self._told:
             return
         at_us = self._now_us()
+        recovery.cut_off(state.unconnected - state.lacking)
         after_ms = round((at_us - recovery.at_us) / 1e3, 1)
         if recovery.detected_ms is None and state.lacking:
             recovery.detected_ms = after_ms

@@ -136,7 +136,10 @@ class MeshView(View):
     def check(self) -> None:
         """Look whether the network has got over the newest fault."""
         recovery = self.memory.recovery
-        if recovery is None or recovery.recovered_ms is not None or self._lacking():
+        if recovery is None or recovery.recovered_ms is not None:
+            return
+        recovery.cut_off(int(np.count_nonzero(self._ways().cut_off)))
+        if self._lacking():
             return
         after_us = self.engine.now_us - recovery.at_us
         kept = after_us <= 1

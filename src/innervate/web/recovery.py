@@ -14,7 +14,9 @@ class Recovery:
         cause: in words.
         at_us: when.
         detected_ms: the first who noticed, from there.
-        recovered_ms: everybody has a way again since then; None = not yet.
+        recovered_ms: everybody has a way again since then; None = not yet. Who is cut off, so that
+            nothing leads to it whatever anybody does, does not count.
+        apart: how many were cut off at worst.
         closed: something else was done since everybody had: this does not change any more.
     """
 
@@ -22,11 +24,16 @@ class Recovery:
     at_us: int
     detected_ms: float | None = None
     recovered_ms: float | None = None
+    apart: int = 0
     closed: bool = False
 
     def close(self) -> None:
         """Something that takes nothing away is done to the network."""
         self.closed = self.recovered_ms is not None
+
+    def cut_off(self, nodes: int) -> None:
+        """So many are cut off now."""
+        self.apart = max(self.apart, nodes)
 
     def shown(self) -> dict[str, Any]:
         """For pages."""
@@ -35,4 +42,5 @@ class Recovery:
             "at_s": self.at_us / 1e6,
             "detected_ms": self.detected_ms,
             "recovered_ms": self.recovered_ms,
+            "apart": self.apart,
         }

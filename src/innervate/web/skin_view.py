@@ -54,6 +54,7 @@ class SkinMemory(Memory):
     touch: Any = None
     touch_us: Any = None
     counted: tuple[int, int] = field(default=(0, 0))
+    apart: int = 0  # cells that are cut off from the PC now
     apart_most: int = 0  # most cells that were cut off from the PC at the same time
     waited: tuple[int, int] = (0, 0)  # samples since the last point, the sum of their latencies, us
 
@@ -116,14 +117,14 @@ class SkinView(View):
             memory.waited = (
                 memory.waited[0] + len(told), memory.waited[1] + int(told["latency"].sum())
             )  # fmt: skip
-        apart = rows["rows"]["a"][rows["rows"]["code"] == APART]
-        memory.apart_most = max(memory.apart_most, int(apart.max(initial=0)))
-        codes = (CUT_OFF, UNROUTED, LOOP_OPEN, REPORT_BROKEN, REPORT_PARENT, REPORT_BALANCE)
+        codes = (APART, CUT_OFF, UNROUTED, LOOP_OPEN, REPORT_BROKEN, REPORT_PARENT, REPORT_BALANCE)
         found = rows["rows"]
         found = found[np.isin(found["code"], codes)]
         for at, node, code, a, b in found.tolist():
             if code == CUT_OFF and a >= 0:
                 self._fault(a, b)
+            elif code == APART:
+                self._apart(a)
             elif code == UNROUTED:
                 self._unrouted(at, a)
             elif code == REPORT_BROKEN:
@@ -134,12 +135,21 @@ class SkinView(View):
                 label = self.plan.graph.label(node)
                 self.log.often("lost", at, f"{label} lost its parent", "bad")
 
+    def _apart(self, cells: int) -> None:
+        """So many cells are cut off from the PC from now on."""
+        memory = self.memory
+        memory.apart, memory.apart_most = cells, max(memory.apart_most, cells)
+        if memory.recovery is not None:
+            memory.recovery.cut_off(cells)
+
     def _fault(self, index: int, cut_off: int) -> None:
         """A mark of the observer: something was done to the skin."""
         given = index - len(self.plan.scenario.model.event)
         fault = self._planned[index] if given < 0 else self.engine.given[given]
         self.begin_fault(fault)
         recovery = self.memory.recovery
+        if recovery is not None:
+            recovery.cut_off(self.memory.apart)
         if self.memory.unrouted == 0 and self.takes(fault) and recovery is not None:
             recovery.recovered_ms = 0.0
         if cut_off:
@@ -154,10 +164,11 @@ class SkinView(View):
             recovery.recovered_ms = None if cells else (at_us - recovery.at_us) / 1e3
             recovery.closed = cells == 0 and memory.event_us > recovery.at_us
         after_us = at_us - memory.event_us
-        if cells == 0:
+        if cells == 0 and memory.apart < self.cells:
+            who = "all other cells" if memory.apart else "all cells"
             what = "again after" if memory.settled else "after"
-            self.log.often("routed", at_us, f"all cells have a way {what} {after_us / 1e3:.1f} ms",
-                           "good")  # fmt: skip
+            self.log.often("routed", at_us, f"{who} have a way {what} {after_us / 1e3:.1f} ms",
+                           "info" if memory.apart else "good")  # fmt: skip
             memory.settled = True
 
     def _broken(self, at_us: int, end: int, broken: int) -> None:

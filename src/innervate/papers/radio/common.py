@@ -144,9 +144,9 @@ LOOKS = {
     "csma-cd-d2": Look("CSMA/CD D2", style.VERMILION, "-", "s"),
     "csma-cd-d2p": Look("CSMA/CD D2'", style.ORANGE, _MIXED, "D"),
     "dcf": Look("802.11 DCF", style.PURPLE, "-", "v"),
-    "p-persistent": Look("CSMA, p = 1/n", style.PURPLE, _DOT, "P"),
+    "p-persistent": Look("CSMA, p = 1/n", style.WINE, _DOT, "P"),
     "tree": Look("tree splitting", style.SOFT, _MIXED, "X"),
-    "slotted-aloha": Look("slotted ALOHA", style.SOFT, "-", "*"),
+    "slotted-aloha": Look("slotted ALOHA", style.BROWN, "-", "*"),
     "tdma": Look("bound: TDMA", style.BLACK, _DOT, ""),
     "practical": Look("practical mode, event level", style.BLACK, "-", "o"),
 }
@@ -161,6 +161,27 @@ def line(ax: Axes, look: Look, x: Sequence[float], y: Any, marks: Iterable[float
         x, y, color=look.colour, ls=look.dash, marker=look.marker or None, markevery=where,
         label=look.name, ms=3, lw=1.1,
     )  # fmt: skip
+
+
+SPREAD = (5, 95)  # percentiles of the runs
+
+
+def bars(ax: Axes, look: Look, x: Sequence[float], runs: Any) -> None:
+    """A curve of means with bars from 5 to 95 % of the runs; `runs` has a row for each x."""
+    means = [float(np.mean(some)) for some in runs]
+    low, high = (
+        np.array([np.percentile(some, share) for some in runs]) - means for share in SPREAD
+    )
+    ax.errorbar(
+        x, means, yerr=[np.maximum(-low, 0), np.maximum(high, 0)], color=look.colour, ls=look.dash,
+        marker=look.marker or None, ms=3, lw=1.1, elinewidth=0.8, capsize=1.5, label=look.name,
+    )  # fmt: skip
+
+
+def band(ax: Axes, look: Look, x: Sequence[float], runs: Any) -> None:
+    """From 5 to 95 % of the runs, as a band behind a curve."""
+    low, high = (np.percentile(runs, share, axis=1) for share in SPREAD)
+    ax.fill_between(x, low, high, color=look.colour, alpha=0.18, lw=0)
 
 
 def stations_axis(ax: Axes, ticks: Sequence[int] = (2, 5, 10, 20, 50, 100)) -> None:

@@ -19,6 +19,7 @@ LOADS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
 LIGHT = ("csma-cd-d1", "csma-cd-d2", RESERVED)
 EVENT = ("paper", "practical")
 SHARES = (50, 95, 99)
+FILLS = (style.INK, style.SOFT, style.FAINT, style.INK)
 WAITS = ("50 %", "95 %", "99 %", "longest")
 NAMES = {"paper": "CSMA/CD-R, event level", "practical": "practical mode, event level"}
 
@@ -94,7 +95,7 @@ def longest(order: list[int]) -> float:
 
 def draw(results: Results, quick: bool) -> Figure:
     """Delay percentiles in saturation; 95th percentile over the load."""
-    figure, (left, right) = style.panels(style.WIDE_IN, 3.0, 1, 2, width_ratios=(1.25, 1))
+    figure, (left, right) = style.panels(style.WIDE_IN, 3.3, 1, 2, width_ratios=(1.25, 1))
     rows: list[tuple[str, list[float]]] = [
         (LOOKS[mac].name if mac != RESERVED else "CSMA/CD-R, slotted",
          results[_key(mac, None, quick)]["delay"])
@@ -106,14 +107,14 @@ def draw(results: Results, quick: bool) -> Figure:
     for place, (_, values) in enumerate(rows):
         left.plot([values[0], values[-1]], [place, place], color=style.SOFT, lw=0.8)
         for i, value in enumerate(values):
-            left.plot(value, place, style.MARKERS[i], color=style.SERIES[i], ms=4,
+            left.plot(value, place, style.MARKERS[i], color=style.INK, mfc=FILLS[i], ms=4,
                       label=WAITS[i] if place == 0 else None)  # fmt: skip
     left.set_xscale("log")
     left.set_yticks(range(len(rows)), [name for name, _ in rows])
     left.set_ylim(len(rows) - 0.4, -0.6)
     left.set_xlabel("wait for the next packet to get through (slots)")
     left.set_title(f"a  saturation, n = {N}, T = {SIZE}")
-    left.legend(loc="lower left")
+    left.legend(loc="upper center", bbox_to_anchor=(0.4, -0.19), ncols=4, columnspacing=1)
     _loads(right, results, quick)
     return figure
 

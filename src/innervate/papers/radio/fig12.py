@@ -1,20 +1,26 @@
-"""Fig. 12: five real robots, T = 25. The text leaves three readings of T; all of them."""
+"""Fig. 12: five real robots, T = 25. The text leaves three readings of T; all of them.
+
+Whatever T contains, a radio that sends a CR-R switches for it, too: X2, in which the 25 slots of a
+packet hold its switching, therefore gives the CR-Rs the paper's 20 slots as well.
+"""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from innervate.papers.experiment import FAILS, Claim, Experiment, Point, Results, verdict
+from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
 from innervate.papers.radio.common import (
     LOOKS,
     RESERVED,
     TURNAROUND,
     TURNAROUND_US,
     Curve,
+    Options,
+    bars,
     joined,
     percent,
 )
@@ -26,40 +32,59 @@ NS = (2, 3, 4, 5)
 MACS = (RESERVED, "csma-cd-d2", "csma-cd-d2p")
 
 
+SWITCHING = 20  # slots, "20 slots for transitions" (section 4)
+
+
 class Reading(NamedTuple):
-    """What T = 25 is [radio Q16]: slots on air, and whether a hand-over costs 2 ms besides."""
+    """What T = 25 is [radio Q16].
+
+    Attributes:
+        name, words: as in the table.
+        size: slots on the air.
+        turnaround: a hand-over costs 2 ms besides.
+        report: slots of switching that the CR-Rs cost, where no turnaround does.
+    """
 
     name: str
     words: str
     size: int
     turnaround: bool
+    report: int = 0
 
 
 SIMULATED = Reading("simulation", "T = 25, no turnaround (Fig. 5)", 25, False)
 READINGS = (
     Reading("X1", "25 slots on air, 2 ms per hand-over", 25, True),
-    Reading("X2", "25 slots, switching contained", 25, False),
+    Reading("X2", "switching in the 25 slots, 20 slots for the CR-Rs", 25, False, SWITCHING),
     Reading("X3", "5 slots on air, 2 ms per hand-over", 5, True),
 )
 
 
 def curve(mac: str, reading: Reading, traffic: str, quick: bool) -> Curve:
-    """The slotted level with that turnaround."""
-    options = (("turnaround_slots", TURNAROUND),) if reading.turnaround else ()
+    """The slotted level with that switching."""
+    options: Options = (("turnaround_slots", TURNAROUND),) if reading.turnaround else ()
+    if reading.report and mac == RESERVED:
+        options = (("window", reading.size + reading.report),)
     if traffic == "disaster":
         return Curve(mac, reading.size, traffic, NS, 200 if quick else 2000, options=options)
     seeds = 1 if mac == RESERVED else (5 if quick else 40)
     return Curve(mac, reading.size, traffic, NS, seeds, 4000 if quick else 10_000, options)
 
 
-def channel(reading: Reading, n: int, quick: bool, mode: str = "practical") -> Channel:
-    """The event level with that turnaround."""
+def channel(
+    reading: Reading, n: int, quick: bool, mode: str = "practical", traffic: str = "saturated"
+) -> Channel:
+    """The event level with that turnaround; there X2 has none, not for CR-Rs either."""
     ta = TURNAROUND_US if reading.turnaround else 0
-    return Channel(mode, n, reading.size, ta, "saturated", packets=40 if quick else 200)
+    packets = 1 if traffic == "disaster" else 40 if quick else 200
+    return Channel(mode, n, reading.size, ta, traffic, packets=packets)
+
+
+DISASTERS = range(1, 21)  # event-level disasters each
 
 
 def seeds(quick: bool) -> range:
-    """Event-level runs each."""
+    """Event-level runs each, saturated."""
     return range(1, 3 if quick else 11)
 
 
@@ -71,11 +96,19 @@ def points(quick: bool) -> list[Point]:
         for mac in MACS
         for traffic in ("saturated", "disaster")
     ]
-    return made + [
+    made += [
+        curve(RESERVED, SIMULATED, traffic, quick).point() for traffic in ("saturated", "disaster")
+    ]
+    made += [
         channel(reading, n, quick, mode).point(seeds(quick))
         for reading in READINGS
         for n in NS
         for mode in ("practical", "paper")
+    ]
+    return made + [
+        channel(reading, n, quick, traffic="disaster").point(DISASTERS)
+        for reading in READINGS
+        for n in NS
     ]
 
 
@@ -92,7 +125,8 @@ def draw(results: Results, quick: bool) -> Figure:
     axes[0].set_ylim(0, 1.04)
     axes[3].set_ylabel("$T_D$ (slots)")
     axes[3].set_ylim(0)
-    axes[4].legend(loc="upper left")
+    axes[5].set_ylim(0)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
 
 
@@ -100,20 +134,14 @@ def _panel(
     ax: Axes, results: Results, quick: bool, reading: Reading, traffic: str, name: str
 ) -> None:
     for mac in MACS:
-        look = LOOKS[mac]
-        ax.plot(NS, curve(mac, reading, traffic, quick).mean(results, name), color=look.colour,
-                ls=look.dash, marker=look.marker, label=look.name)  # fmt: skip
-    plain = curve(RESERVED, READINGS[1], traffic, quick).mean(results, name)
+        bars(ax, LOOKS[mac], NS, curve(mac, reading, traffic, quick).all(results, name))
+    plain = curve(RESERVED, SIMULATED, traffic, quick).mean(results, name)
     ax.plot(NS, plain, color=style.BLUE, ls=style.DASHES[2], lw=0.9,
             label="CSMA/CD-R simulated, T = 25")  # fmt: skip
-    if name == "throughput":
-        values = [
-            np.mean(results[channel(reading, n, quick).key_of(seeds(quick))][name]) for n in NS
-        ]
-        look = LOOKS["practical"]
-        ax.plot(NS, values, color=look.colour, ls=look.dash, marker="X", ms=4, label=look.name)
-        if reading is READINGS[2]:
-            ax.legend(loc="upper left", handles=[ax.lines[-1]])
+    many = seeds(quick) if traffic == "saturated" else DISASTERS
+    found = [results[channel(reading, n, quick, traffic=traffic).key_of(many)][name] for n in NS]
+    look = LOOKS["practical"]
+    bars(ax, look, NS, found)
 
 
 def judge(results: Results, quick: bool) -> list[Claim]:
@@ -138,32 +166,50 @@ def _arithmetic() -> Claim:
     )
 
 
+def is_similar_but_poorer(found: Any, plain: Any, longer: Any, shorter: Any) -> bool:
+    """Poorer at every n, and similar: S above half, rising, and T_D less than twice.
+
+    Args:
+        found: S over n, of the reading.
+        plain: S over n, of the simulation.
+        longer: T_D over n, of the reading.
+        shorter: T_D over n, of the simulation.
+    """
+    found, plain, longer, shorter = map(np.asarray, (found, plain, longer, shorter))
+    poorer = bool((found < plain - 1e-9).all() and (longer > shorter + 1e-9).all())
+    rising = bool((np.diff(found) > 0).all())
+    return poorer and rising and bool((found > plain / 2).all() and (longer < 2 * shorter).all())
+
+
 def _reading(results: Results, quick: bool, reading: Reading) -> Claim:
-    plain = curve(RESERVED, READINGS[1], "saturated", quick).mean(results, "throughput")
+    plain, shorter = (
+        curve(RESERVED, SIMULATED, traffic, quick).mean(results, name)
+        for traffic, name in (("saturated", "throughput"), ("disaster", "duration"))
+    )
     found = curve(RESERVED, reading, "saturated", quick).mean(results, "throughput")
     longer = curve(RESERVED, reading, "disaster", quick).mean(results, "duration")
-    shorter = curve(RESERVED, READINGS[1], "disaster", quick).mean(results, "duration")
-    poorer = bool((found < plain - 1e-9).all())
-    similar = bool((found > plain / 2).all() and (np.diff(found) > 0).all())
     words = (
-        f"S {joined(f'{s:.3f}' for s in found)} against {joined(f'{s:.3f}' for s in plain)} of the "
-        f"simulation, n = 2..5; T_D at n = 5 {longer[-1]:.0f} against {shorter[-1]:.0f} slots"
+        f"n = 2..5: S {joined(f'{s:.3f}' for s in found)} against "
+        f"{joined(f'{s:.3f}' for s in plain)} of the simulation; T_D "
+        f"{joined(f'{t:.0f}' for t in longer)} against {joined(f'{t:.0f}' for t in shorter)} "
+        f"slots, {100 * (longer[-1] / shorter[-1] - 1):+.0f} % at n = 5"
     )
     reasons = {
         "X1": f"at n = 5 {percent(found[-1] / plain[-1])} of the simulation's S: the turnaround is "
         "paid at the opening, the reservation and every turn",
-        "X2": "the switching is in T already, so that nothing gets poorer; of T only 3 slots in 25 "
-        f"are data, S of data {3 / 25 * found[-1]:.3f} at n = 5",
-        "X3": f"poorer, but not similar: {percent(found[-1] / plain[-1])} of the simulation's S at "
-        "n = 5",
+        "X2": f"{percent(found[-1] / plain[-1])} of the simulation's S at n = 5: packets hold "
+        "their switching, the CR-Rs of a resolution pay theirs; of T only 3 slots in 25 are data, "
+        f"S of data {3 / 25 * found[-1]:.3f}",
+        "X3": f"not similar: {percent(found[-1] / plain[-1])} of the simulation's S at n = 5, and "
+        "T_D shorter, as packets are",
     }
-    passed = poorer and similar
+    passed = is_similar_but_poorer(found, plain, longer, shorter)
     return Claim(
         "12",
         f"{reading.name} ({reading.words}): results are similar to the simulation (S above half of "
-        "it, rising), but poorer",
+        "it, rising, T_D less than twice), but poorer",
         words,
-        verdict(True, "Q16") if passed else FAILS,
+        verdict(passed, "Q16"),
         reasons[reading.name] + ". The figure's image is not available to compare with",
     )
 
@@ -216,7 +262,8 @@ EXPERIMENT = Experiment(
     "fig12",
     "Fig. 12: five robots, three readings",
     "The paper's figure is not available as an image; its text leaves three readings of T = 25 "
-    "(Q16). Slotted level with a turnaround of 2 ms; black: practical mode on the event level.",
+    "(Q16). Slotted level with its switching; black: practical mode on the event level, whose "
+    "X2 has no switching at all. Bars: from 5 to 95 % of the runs.",
     points,
     draw,
     judge,

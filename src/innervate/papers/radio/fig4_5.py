@@ -16,6 +16,7 @@ from innervate.papers.radio.common import (
     SIZES,
     WHOLE,
     Curve,
+    band,
     first_from,
     joined,
     line,
@@ -70,6 +71,8 @@ def _panel(ax: Axes, results: Results, quick: bool, size: int) -> None:
         one, look = curve(mac, size, quick), LOOKS[mac]
         values = one.mean(results, "throughput")
         line(ax, look, one.ns, values)
+        if mac in CONTENDING:
+            band(ax, look, one.ns, one.all(results, "throughput"))
         ends.append((float(values[-1]), look.name, look.colour))
     end_labels(ax, ends)
 
@@ -222,7 +225,7 @@ EXPERIMENT = Experiment(
     "fig4_5",
     "Figs. 4, 5: throughput in saturation",
     "Slotted level, the order after a collision given (Q3). D1: a collision costs one slot; D2: a "
-    "whole packet; D2': D2 whose winner draws a backoff too. Grey and purple: other protocols.",
+    "whole packet; D2': D2 whose winner draws a backoff too. Means; bands: 5 to 95 % of the runs.",
     points,
     draw,
     judge,

@@ -16,6 +16,7 @@ from innervate.papers.radio.common import (
     SIZES,
     WHOLE,
     Curve,
+    band,
     first_from,
     joined,
     line,
@@ -69,6 +70,8 @@ def _whole(ax: Axes, results: Results, quick: bool, size: int) -> None:
         one, look = curve(mac, size, quick), LOOKS[mac]
         values = one.mean(results, "duration")
         line(ax, look, one.ns, values)
+        if mac in CONTENDING:
+            band(ax, look, one.ns, one.all(results, "duration"))
         ends.append((float(values[-1]), look.name, look.colour))
     end_labels(ax, ends)
 
@@ -78,6 +81,8 @@ def _few(ax: Axes, results: Results, quick: bool, size: int) -> None:
         one = curve(mac, size, quick)
         values = one.mean(results, "duration")
         line(ax, LOOKS[mac], one.ns[:9], values[:9], marks=range(2, 11))
+        if mac in CONTENDING:
+            band(ax, LOOKS[mac], one.ns[:9], one.all(results, "duration")[:9])
     ax.set_ylim(0)
     ax.set_xticks(range(2, 11))
     ax.set_xlabel("stations n")
@@ -171,8 +176,8 @@ def _large(results: Results, quick: bool) -> Claim:
 EXPERIMENT = Experiment(
     "fig6_7",
     "Figs. 6, 7: total duration of a disaster",
-    "Slotted level: all stations have one packet at time 0. Means of all runs. Above: all protocols"
-    ", both axes logarithmic; below: the same at small n.",
+    "Slotted level: all stations have one packet at time 0. Means; bands: 5 to 95 % of the runs. "
+    "Above: all protocols, both axes logarithmic; below: the same at small n.",
     points,
     draw,
     judge,

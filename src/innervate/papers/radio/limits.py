@@ -24,6 +24,7 @@ from innervate.sim.slotted_drive import SLOT
 
 SETTLED = {5: 0.83, 25: 0.96}
 REACHED = {5: 0.825, 25: 0.955}  # what is rounded to it
+COLOURS = (style.BLUE, style.SKY)  # readings A and B, as in Figs. 4 to 7
 NS = (*range(2, 31), *range(35, 100, 5), *range(100, 401), 500, 700, 1000)
 CHAIN = 20  # robots that end more than a slot apart
 
@@ -60,10 +61,10 @@ def draw(results: Results, quick: bool) -> Figure:
     for ax, letter, size in zip(axes, "ab", SIZES, strict=True):
         for i, reading in enumerate("AB"):
             one = curve(reading, size)
-            ax.plot(NS, one.mean(results, "throughput"), color=style.SERIES[i],
+            ax.plot(NS, one.mean(results, "throughput"), color=COLOURS[i],
                     ls=style.DASHES[i], label=f"CSMA/CD-R, reading {reading}")  # fmt: skip
             n = reached(results, reading, size)
-            ax.plot([n], [REACHED[size]], style.MARKERS[i], color=style.SERIES[i],
+            ax.plot([n], [REACHED[size]], style.MARKERS[i], color=COLOURS[i],
                     label=f"rounds to {SETTLED[size]} from n = {n}")  # fmt: skip
         limit = forms.slotted_bound(size)
         ax.axhline(limit, color=style.BLACK, lw=0.8, ls="--", label=f"T / (T + 1) = {limit:.4f}")

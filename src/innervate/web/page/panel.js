@@ -45,9 +45,11 @@ export function showNumbers(network) {
     const isOpen = recovery.recovered_ms === null || recovery.recovered_ms === undefined;
     const text = isOpen ? ago(network.now.t_s - recovery.at_s) : duration(recovery.recovered_ms);
     const state = isOpen ? "not yet, " : "";
-    const look = !isKnown ? "" : isOpen ? "open" : unconnected ? "" : "done";
+    const isWhole = !unconnected && !recovery.apart; // else it is good news of the others only
+    const look = !isKnown ? "" : isOpen ? "open" : isWhole ? "done" : "";
     const shown = isKnown || !isOpen ? text : "–";
-    const more = isKnown ? `${recovery.cause}: ${state}${noticed}` : recovery.cause;
+    const cut = recovery.apart ? `${recovery.apart} cut off; the others: ` : "";
+    const more = isKnown ? `${recovery.cause}: ${cut}${state}${noticed}` : recovery.cause;
     show("recovery", shown, more, look);
   }
   const isRadio = network.kind === "radio"; // there everybody hears everybody
@@ -57,9 +59,9 @@ export function showNumbers(network) {
   $("recovery").hidden = isRadio;
   const all = network.nodes.filter((node) => node.role !== "sink" && node.role !== "port").length;
   const of = `of ${plural(all, WORDS[network.kind])}`;
-  const cut = apart ? `; ${apart === unconnected ? "cut off" : `${apart} of them cut off`}` : "";
+  const off = apart ? `; ${apart === unconnected ? "cut off" : `${apart} of them cut off`}` : "";
   show("unconnected", isKnown ? String(unconnected) : "–",
-    isKnown ? `${of}${cut}` : "nobody answers", unconnected ? "bad" : "");
+    isKnown ? `${of}${off}` : "nobody answers", unconnected ? "bad" : "");
 }
 
 export const WORDS = { skin: "cell", radio: "station", mesh: "node" };

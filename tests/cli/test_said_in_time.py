@@ -1,0 +1,115 @@
+"""What cannot be done is said before anything is done, and by the name that the user gave it."""
+
+import builtins
+import re
+import shutil
+
+import pytest
+
+from innervate import scenario
+from innervate.cli import errors, exporting, files, live_app, sizing
+from innervate.export import recording
+from innervate.kernel import door
+from innervate.running import folder as folders
+from innervate.sweeping import SweepError, sweep
+from tests.skin_runs import line, patch, plan_of
+
+TABLES = line(3, duration_s=0.05)
+
+
+def test_compiled_code_of_the_same_sources_elsewhere_does_not_count(tmp_path):
+    for room in door.SOURCE_ROOMS:
+        shutil.copytree(door.ROOT / room, tmp_path / room)
+    assert door.source_hash(tmp_path) != door.source_hash()
+    assert door.source_hash(tmp_path) == door.source_hash(tmp_path)
+
+
+@pytest.mark.parametrize("seconds", [-3.0, float("nan"), float("inf")])
+def test_live_commands_end_after_a_time_that_can_be(seconds):
+    for command in (lambda: live_app.live_up("line", for_=seconds),
+                    lambda: live_app.live_capture(for_=seconds)):  # fmt: skip
+        with pytest.raises(errors.UserError, match="--for must be a number of seconds from 0"):
+            command()
+
+
+def test_a_missing_package_is_said_before_the_simulation(monkeypatch, tmp_path):
+    real = builtins.__import__
+
+    def without_mcap(name, *rest, **more):
+        if name.startswith("mcap"):
+            raise ModuleNotFoundError("No module named 'mcap'", name="mcap")
+        return real(name, *rest, **more)
+
+    monkeypatch.setattr(builtins, "__import__", without_mcap)
+    monkeypatch.setattr(exporting._Source, "_frames", lambda _self: pytest.fail("simulated"))
+    with pytest.raises(ModuleNotFoundError, match="mcap"):
+        exporting.export("line", [], None, exporting.Wanted(mcap=tmp_path / "run.mcap"), False)
+
+
+def test_every_bundled_scenario_has_a_whole_sentence(capsys):
+    files.scenarios()
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == len(scenario.bundled())
+    for text in lines:
+        assert re.fullmatch(r"[\w-]+ +[A-Z].*\.", text), text
+    assert "exactly d-1 periods after the first has noticed." in "\n".join(lines)
+
+
+def test_the_log_of_a_recording_says_whom(tmp_path):
+    event = [{"at_s": [0.01, 0.04], "action": "kill", "random": "cell"},
+             {"at_s": 0.04, "action": "cut", "interface": 0}]  # fmt: skip
+    plan = plan_of(patch(3, 2, (0, 0), duration_s=0.05, event=event))
+    told = [content["message"] for _, content in recording.events(plan)]
+    who = plan.graph.label(next(fault.node for fault in plan.faults if fault.node >= 0))
+    assert told == [f"kill {who}", f"cut pc.0 - {plan.graph.label_end(plan.graph.peer[24])}"]
+
+
+def test_a_sweep_that_cannot_start_leaves_no_folder(tmp_path):
+    target = tmp_path / "sweep"
+    with pytest.raises(SweepError, match="0 workers cannot run anything"):
+        sweep(TABLES, vary={"protocol.k": [2, 3]}, out=target, workers=0)
+    assert not target.exists()
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"rates_hz": (250.0, -1.0)}, "--rate must be 0.01 to 10000, not -1"),
+        ({"reach_mm": 0.0}, "--reach must be 0.001 to 100000, not 0"),
+        ({"pitch_mm": 0.0}, "--pitch must be 0.5 to 100000, not 0"),
+        ({"loss_max": 2.0}, "--loss must be 0 to 100, not 200"),
+        ({"recovery_ms_max": -1.0}, "--recovery must be 0.001 to 1e+09, not -1"),
+    ],
+)
+def test_size_names_the_option(given, message):
+    with pytest.raises(errors.UserError, match=re.escape(message)):
+        sizing.size({"urdf": "none.urdf", "links": "*", "ports": "1", **given}, {})
+
+
+def test_a_run_of_other_settings_is_kept(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+    def free(**keys):
+        return folders.free_folder(scenario.from_dict({**TABLES, "name": "a", **keys}))
+
+    first = free()
+    assert first.as_posix() == "runs/a-1"
+    first.mkdir(parents=True)
+    (first / folders.SCENARIO).write_text(
+        scenario.dump(scenario.from_dict({**TABLES, "name": "a"})), encoding="utf-8"
+    )
+    assert free() == first  # the same again is replaced
+    assert free(duration_s=0.06).as_posix() == "runs/a-1-2"
+    (first / folders.SCENARIO).write_text("no scenario", encoding="utf-8")
+    assert free().as_posix() == "runs/a-1-2"
+
+
+def test_a_figure_of_a_sweep_says_over_what_it_takes_means():
+    done = sweep(TABLES, vary={"protocol.k": [2, 3], "protocol.beacon_hz": [100, 200]}, workers=1)
+    assert done.averaged("protocol.k") == {"protocol.beacon_hz": 2}
+    assert done.averaged("protocol.k", "protocol.beacon_hz") == {}
+    measure = "start_up.routed_ms"
+    drawn = done.plot("protocol.k", measure)
+    assert "means over 2 values of protocol.beacon_hz" in drawn.axes[0].get_xlabel()
+    alone = done.plot("protocol.k", measure, by="protocol.beacon_hz")
+    assert "means over" not in alone.axes[0].get_xlabel()
