@@ -11,6 +11,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from innervate.papers.mesh import readings as mesh_readings
+from innervate.papers.radio import readings as radio_readings
+from innervate.papers.skin import readings as skin_readings
 from innervate.protocol import mesh_fields, radio_fields, skin_fields
 from innervate.trace import mesh_tables, radio_tables, tables
 from innervate.wire import layout, mesh, mesh_payloads, radio, skin
@@ -30,6 +33,16 @@ def field_table(fields: Iterable[tuple[str, object, int, int, str, str]]) -> str
         many = {0: "", "ports": " per port"}.get(length, f", {length} of them")  # type: ignore[call-overload]
         rows.append(f"| `{name}` | {low} .. {high}{many} | {unit} | {meaning} |")
     return "\n".join(rows)
+
+
+def reading_table(readings: dict[str, str]) -> str:
+    """Labels of readings and their sentences as a Markdown table."""
+    rows = [f"| {label} | {_cell(sentence)} |" for label, sentence in readings.items()]
+    return "\n".join(["| label | what it says |", "|---|---|", *rows])
+
+
+def _cell(text: str) -> str:
+    return text.replace("*", "\\*").replace("|", "\\|").replace("_", "\\_")
 
 
 def run_tables(given: Iterable[tables.Table]) -> str:
@@ -112,6 +125,9 @@ PARTS = (
     ("wire.md", "wire-radio", lambda: layout_tables(radio.LAYOUTS, meanings(radio_fields.FRAME))),
     ("reading-a-report.md", "tables", lambda: run_tables(tables.TABLES)),
     ("reading-a-report.md", "radio-tables", lambda: run_tables(radio_tables.TABLES)),
+    ("readings.md", "skin-readings", lambda: reading_table(skin_readings.READINGS)),
+    ("readings.md", "radio-readings", lambda: reading_table(radio_readings.READINGS)),
+    ("readings.md", "mesh-readings", lambda: reading_table(mesh_readings.READINGS)),
     ("reading-a-report.md", "mesh-tables", lambda: run_tables(mesh_tables.TABLES)),
 )
 

@@ -61,6 +61,8 @@ def test_all_is_well():
         ({"off": (1, 3), "delivered": 6, "abandoned": 4},
          {"away": (1, 3), "delivered": 6, "abandoned": 4},
          DEGRADED, "Robots 1 and 3 are off with 4 packets not sent; all 6 packets were", (1, 3)),
+        ({"off": (1,), "away": (3,), "delivered": 6, "abandoned": 4}, {}, DEGRADED,
+         "Robot 1 is off; all 6 packets were delivered.", (1,)),
         ({"dropped": 1, "delivered": 9}, {}, DEGRADED, "1 packet found a full queue; 9 of 10", ()),
         ({"delivered": 9, "pending": 1, "overdue": 1, "waiting": (2,)},
          {"delivered": 9, "pending": 1}, DEGRADED,

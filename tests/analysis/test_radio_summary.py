@@ -3,7 +3,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import innervate
 from innervate.analysis import radio, radio_air, radio_airtime
+from innervate.cli.show import summary_lines
+from innervate.plot import report
 from innervate.plot.radio_words import off_words
 from innervate.protocol.radio_words import CRR, DATA, OPEN, REPORT_BOUNDS, REPORT_LEFT
 from innervate.scenario.radio_plan import FADE, GARBLE, JOIN, KILL, LEAVE, RadioFault
@@ -324,3 +327,29 @@ def test_packets_of_who_left_are_told_apart():
         "1 packet waited while its robot was off; delays leave them out."
     ]
     assert off_words(summary | {"abandoned": 0}) == []
+
+
+@pytest.mark.parametrize(
+    ("tables", "level", "warning"),
+    [
+        ({"stations": 1}, "down", "One station alone: nobody can receive what it sends."),
+        ({"stations": 3, "channel": {"hidden": [[0, 2]]}}, "d",
+         "Stations that do not hear each other (0 and 2): packets may collide unnoticed, stations "
+         "may starve."),
+        ({"stations": 1, "channel": {"level": "slotted"}}, "down",
+         "One station alone: nobody can receive what it sends."),
+        ({"stations": 3}, "ok", ""),
+    ],
+)  # fmt: skip
+def test_summary_terminal_and_report_say_the_same(tables, level, warning):
+    done = innervate.run({"kind": "radio", "duration_s": 0.4} | tables, plain=True)
+    head = done.summary["headline"]
+    assert head["level"].startswith(level)
+    lines, page = summary_lines(done), report.render(done)
+    assert f"{head['level']}: {head['text']}" in lines
+    assert f"<h1>{head['text']}</h1>" in page
+    beginnings = ("One station alone", "Stations that do not hear")
+    assert [line for line in lines if line.startswith(beginnings)] == [warning] * bool(warning)
+    assert [text for text in beginnings if text in page] == [
+        text for text in beginnings if warning.startswith(text)
+    ]

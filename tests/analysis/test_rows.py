@@ -80,3 +80,8 @@ def test_unrouted_ends_as_the_world_says(looping):
     assert steps.cells[0] == 99
     assert steps.cells[-1] == int(looping.world.run["unrouted"][0])
     assert (np.diff(steps.cells) != 0).all()
+
+
+def test_values_after_rows():
+    steps = rows.UnroutedSteps(*(np.array(x) for x in ([2, 5], [10, 20], [7, 3])))
+    assert rows.values_at(steps, np.array([0, 2, 4, 5, 9])).tolist() == [0, 7, 7, 3, 3]

@@ -94,7 +94,8 @@ def test_a_recording_tells_the_states_of_a_skin(runs, tmp_path):
     assert at == done.plan.duration_us * 1000
     parents = dict(frames["routes"].select("cell", "new").iter_rows())
     assert last["parent_port"] == [parents.get(cell, -1) for cell in range(done.plan.graph.cells)]
-    assert last["unrouted"] == frames["outages"]["unrouted"][-1]
+    for name in ("unrouted", "cut_off"):
+        assert last[name] == frames["outages"][name][-1]
     assert sum(hops < 0 for hops in last["hops"]) <= last["unrouted"] + 1  # a dead cell, too
     assert max(max(one["force_mn"]) for _, one in found["/touch"]) > 0
     cells = next(one for one in found["/scene"][0][1]["entities"] if one["id"] == "cells")

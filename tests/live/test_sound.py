@@ -156,6 +156,42 @@ def test_what_is_sealed_by_one_and_from_another_changes_nothing():
     assert sent == dropped
 
 
+@pytest.mark.parametrize("count", [1000, pytest.param(100_000, marks=pytest.mark.slow)])
+def test_no_window_moves_by_what_is_not_genuine_or_was_seen(count):
+    async def main():
+        mesh, samples, _ = await network_and_frames(sealed=True)
+        node, chance, taken = mesh.nodes[ME], random.Random(7), []
+        there = mesh.cables[0, 1][0]  # the path of node 0 to us
+        send, there.send = there.send, taken.append
+        receipts = [mesh.nodes[0].send_message(ME, b"%d" % k) for k in range(20)]
+        await until(lambda: len(taken) > 5)
+        there.send = send
+        assert {await receipt.wait() for receipt in receipts} == {DELIVERED}
+        for path in node.paths:
+            path.send = lambda data: None
+        for data in taken:  # sealed and never seen: these are genuine
+            before = kept(node)
+            node._receive(node.paths[0], data)
+            assert kept(node) != before
+        for _ in range(count):
+            data = bytearray(chance.choice(taken))
+            shape = chance.randrange(4)
+            if shape == 0:
+                data = chance.randbytes(chance.randrange(26, 160))
+                data = bytes([0xC1, 0, chance.randrange(4)]) + data
+            elif shape == 1:
+                data = mutated(chance, samples)  # in the clear
+            elif shape == 2:
+                data[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
+            before = kept(node)
+            node._receive(chance.choice(node.paths), bytes(data))
+            assert kept(node) == before, bytes(data).hex()
+        await mesh.__aexit__()
+        return len(taken)
+
+    assert asyncio.run(main()) > 5
+
+
 def test_an_ack_counts_once_and_only_for_what_was_asked():
     async def main():
         async with Mesh(2, [(0, 1)]) as mesh:

@@ -120,3 +120,16 @@ def test_nodes_that_were_killed_are_named_and_the_others_are_shown(tmp_path, mon
     assert "n0: mesh gateway" in shown.out
     assert shown.err.count("n1: does not answer; its process was killed, or hangs") == 2
     assert "no node answers here" in shown.err
+
+
+def test_a_node_that_was_started_again_has_a_status_before_it_hears_a_gateway():
+    async def main():
+        node = Mesh(2, [(0, 1)]).nodes[1]
+        node.state.fresh, node.stack.epoch = False, 79
+        async with node:
+            return node.status()
+
+    told = asyncio.run(main())
+    assert (told["epoch"], told["gateway"], told["onward"]) == (79, None, [])
+    assert "  gateway none yet, epoch 79, table 0" in live_status.lines(told)
+    assert live_status.headline([told], 0) == "no data: No node leads as gateway yet."

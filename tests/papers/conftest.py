@@ -7,7 +7,7 @@ from innervate.papers.book import RESULTS
 from innervate.papers.store import Store, stamp
 
 # Quick enough for every run of the tests; fig10 and eq7 are run in small or as `slow`.
-CHEAP = ("fig5", "fig6", "fig8b", "eq9", "fig11", "loop")
+CHEAP = ("startup", "fig5", "fig6", "eq3", "delay", "fig8b", "eq9", "fig11", "loop")
 
 
 def read(folder, quick, names, paper=skin):

@@ -1,3 +1,4 @@
+import re
 import sys
 from types import ModuleType
 
@@ -15,6 +16,7 @@ class Toy:
         self.ran = []
         module = ModuleType("innervate.papers.toy")
         module.TITLE, module.AUTHORS, module.FIGURES = "Toys & <b>", "A. Nobody", ("a", "b")
+        module.READINGS = {"Q1": "A sentence on <this>."}
         module.experiment, module.warm_up = self.experiment, lambda: None
         monkeypatch.setitem(sys.modules, "innervate.papers.toy", module)
         monkeypatch.setattr(book, "PAPERS", ("skin", "toy"))
@@ -31,7 +33,8 @@ class Toy:
             return figure
 
         def judge(results, quick):
-            return [Claim(name, f"the claim | of {name}", str(results[keys[0]]), HOLDS, "<why>")]
+            said = f"the claim | of {name}"
+            return [Claim(name, said, str(results[keys[0]]), HOLDS, "<why>, Q1 and Q2")]
 
         return Experiment(name, f"Figure {name}", "A caption & more", points, draw, judge)
 
@@ -59,7 +62,9 @@ def test_the_page_stands_alone(toy, tmp_path):
     text = main("toy", tmp_path).read_text()
     assert text.count('src="data:image/svg+xml;base64,') == 2
     assert text.count("src=") == 2
-    assert "href=" not in text
+    assert set(re.findall('href="(.)', text)) == {"#"}
+    assert '<dt id="Q1">Q1</dt><dd>A sentence on &lt;this&gt;.</dd>' in text
+    assert 'id="Q2"' not in text
     assert "Toys &amp; &lt;b&gt;" in text
     assert "&lt;why&gt;" in text
     assert "<why>" not in text
@@ -69,7 +74,7 @@ def test_the_tables_hold_every_claim(toy, tmp_path):
     main("toy", tmp_path)
     rows = (tmp_path / "papers-toy.csv").read_text().splitlines()
     assert rows[0] == "figure,claim,measurement,verdict,reason"
-    assert rows[1:] == ["a,the claim | of a,2,holds,<why>", "b,the claim | of b,2,holds,<why>"]
+    assert rows[1:] == [f'{name},the claim | of {name},2,holds,"<why>, Q1 and Q2"' for name in "ab"]
     text = (tmp_path / "papers-toy.md").read_text()
     assert "the claim \\| of a" in text
     assert "2 claims: 2 hold" in text

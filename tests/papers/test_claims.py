@@ -1,11 +1,13 @@
 """What must come out of the figures, in quick mode; the bars with real seeds are in test_bars."""
 
+import re
+
 import numpy as np
 import pytest
 
 from innervate.papers.experiment import FAILS, HOLDS
-from innervate.papers.skin import arm, eq7, fig8a, fig10, modes, steady
-from innervate.papers.skin.common import Case, measure_recoveries, seeds_of
+from innervate.papers.skin import arm, eq7, fig8a, fig8b, fig10_runs, modes, steady
+from innervate.papers.skin.common import RULES, Case, measure_recoveries, seeds_of
 
 
 def verdicts(made, name):
@@ -29,14 +31,57 @@ def test_fig5_tells_the_captions_story(made):
     ]  # fmt: skip
 
 
-def test_fig6_finds_the_loose_cable_only_with_the_second_setting(made):
-    assert all(v.startswith("holds") for v in verdicts(made, "fig6"))
+def test_fig6_finds_a_loose_cable_sooner_or_later_and_a_rarely_missing_one_never(made):
+    calm, rare, alert, *rest = made.claims["fig6"]
+    assert calm.verdict == FAILS  # within 8 s most cables are found, within the picture's 0.5 s few
+    assert "20 % lost" in calm.claim
+    shares = [int(share) for share, _ in re.findall(r"(\d+) % in ([\d.]+) s", calm.measurement)]
+    assert shares == sorted(shares)
+    assert shares[0] <= 20 < 40 <= shares[1]
+    assert all(claim.verdict.startswith("holds") for claim in (rare, alert, *rest))
 
 
-def test_fig8b_the_printed_rule_is_slower(made):
-    feasible, _, printed, _ = made.claims["fig8b"]
-    assert "rule feasible" in feasible.measurement
+def test_fig8b_the_printed_rule_is_slower_and_more_so_than_its_laxer_reading(made):
+    feasible, _, printed, _, lax, _ = made.claims["fig8b"]
+    assert [claim.claim.split(":")[0] for claim in (feasible, printed, lax)] == [
+        "rule feasible", "printed rule", "printed rule, laxer reading",
+    ]  # fmt: skip
+    assert printed.verdict == lax.verdict == FAILS
+    off = {
+        rule: np.mean([
+            np.nanmean(fig8b.converged(made.values, True, setup, k, rule, 1)) - k
+            for setup, _ in fig8b.SETUPS for k in fig8b.KS
+        ])
+        for rule in ("paper", "paper-lax")
+    }  # fmt: skip
+    assert off["paper"] > off["paper-lax"] + 2
+
+
+def test_algorithm_3_as_printed_unbalances(made):
+    printed, *_ = made.claims["eq3"]
     assert printed.verdict == FAILS
+    assert "setup 5 0.67" in printed.measurement
+
+
+def test_balancing_settles_up_to_a_rate_and_hunts_beyond_it(made):
+    stable = {
+        claim.claim.split("every ")[1].split(" periods")[0]: claim.verdict
+        for claim in made.claims["eq3"]
+        if "stable balancing" in claim.claim
+    }
+    assert {rate for rate, verdict in stable.items() if verdict == FAILS} == {"8", "2"}
+    assert len(stable) == 4
+
+
+def test_start_up_takes_max_h_periods_and_one(made):
+    assert all(v == "holds with reading E20, E27" for v in verdicts(made, "startup"))
+    assert "lock-step: max(H) +1.00 to +1.00 T" in made.claims["startup"][0].measurement
+
+
+def test_samples_are_faster_than_the_papers_6_ms(made):
+    (claim,) = made.claims["delay"]
+    assert claim.verdict == FAILS
+    assert 0.6 < float(claim.measurement.split(" ms")[0]) < 0.8
 
 
 def test_eq9_the_printed_numbers_are_ten_times_too_high(made):
@@ -52,8 +97,8 @@ def test_fig11_the_arm_hardly_notices(made):
 
 
 def test_the_printed_rule_loops_and_the_others_do_not(made):
-    printed, cured, slower = made.claims["loop"]
-    assert printed.verdict == FAILS
+    printed, lax, cured, slower = made.claims["loop"]
+    assert printed.verdict == lax.verdict == FAILS
     assert printed.measurement.startswith("5 of 5")
     assert cured.verdict == HOLDS
     assert slower.verdict == FAILS
@@ -98,7 +143,7 @@ def test_waves_are_near_the_floor():
 
 
 def test_random_cables_cut_off_few():
-    found = measure_recoveries(eq7.case("setup-3", eq7.RULES[0], "random link"), seeds_of(3))
+    found = measure_recoveries(eq7.case("setup-3", RULES[0], "random link"), seeds_of(3))
     bound = (eq7.depth("setup-3") + eq7.K) * 4
     assert all(ms is None or ms <= bound for ms in found["converged_ms"])
 
@@ -109,8 +154,8 @@ def test_waves_take_the_shortest_ways():
 
 def test_static_trees_lose_more_than_balanced_ones():
     seeds = (1, 2, 3)
-    trees = [fig10.measure("setup-5", fig10.STATIC, seed, 1.0) for seed in seeds]
-    balanced = fig10.measure("setup-5", fig10.DYNAMIC._replace(settle_s=20.0), 1, 1.0)
+    trees = [fig10_runs.measure("setup-5", fig10_runs.STATIC, seed, 1.0) for seed in seeds]
+    balanced = fig10_runs.measure("setup-5", fig10_runs.DYNAMIC._replace(settle_s=20.0), 1, 1.0)
     assert all(sum(run["loads"]) == 144 for run in (*trees, balanced))
     assert balanced["beta"] > sum(tree["beta"] for tree in trees) / len(seeds)
     assert 0.05 < balanced["loss"] < sum(tree["loss"] for tree in trees) / len(seeds)

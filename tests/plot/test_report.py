@@ -123,6 +123,25 @@ def test_unusual_runs(tables, changes):
     read(report.render(run(wanted)))
 
 
+def test_captions_count_the_cells_that_are_crossed_out(tables, parse):
+    both = [{"at_s": 0.3, "action": "cut", "interface": i} for i in (0, 1)]
+    done = run(tables(event=both))
+    text = read(report.render(done))
+    assert "All 30 cells are cut off since 0.300 s: no cable joins them with the PC" in text
+    assert "down" in text
+    assert "kept its way" not in text
+    worst = Story(done.result, done.summary).maps()[1]
+    assert worst.text.endswith("30 cells without a way, all cut off")
+    assert sum(node.get("class") == "none" for node in parse(worst.drawing).iter()) == 30
+
+
+def test_a_cell_that_is_off_is_told_in_captions(tables):
+    event = [{"at_s": 0.3, "action": "kill", "cell": {"row": 5, "column": 3}}]
+    done = run(tables(event=event))
+    captions = [panel.text for panel in Story(done.result, done.summary).maps()]
+    assert captions[-1].endswith("no cell without a way, 1 switched off")
+
+
 def test_free_graphs(tables):
     links = [{"a": "left", "b": "pc.0"}, {"a": "left", "b": "right"}, {"a": "right", "b": "pc.1"}]
     wanted = tables(link=links, event=[{"at_s": 0.3, "action": "cut", "link": ["left", "right"]}])

@@ -62,6 +62,31 @@ def test_outcomes():
     )
 
 
+def recovery(**keys):
+    """What followed a cut that harmed nobody, with some changes."""
+    found = {"action": "cut", "detected_ms": None, "converged_ms": None, "routed_ms": 0.0}
+    found |= {"others_ms": 0.0, "without_way": 0, "cut_off": 0, "cut_off_total": 0}
+    return found | keys
+
+
+@pytest.mark.parametrize(("changes", "said"), [
+    ({}, "every cell kept its way to the PC"),
+    ({"routed_ms": None, "others_ms": None, "cut_off": 9, "cut_off_total": 9},
+     "9 cells were cut off, as no cable joined them with the PC any more"),
+    ({"routed_ms": None, "cut_off": 1, "cut_off_total": 1},
+     "1 cell was cut off, as no cable joined it with the PC any more, "
+     "every other cell kept its way to the PC"),
+    ({"routed_ms": None, "others_ms": 17.0, "cut_off": 2, "cut_off_total": 5},
+     "2 cells were cut off, as no cable joined them with the PC any more, "
+     "every other cell had a way again after 17.0 ms, 3 cells stayed cut off"),
+    ({"routed_ms": None, "others_ms": None, "without_way": 4},
+     "4 cells still had no way to the PC by the next event or the end"),
+    ({"action": "kill"}, "every other cell kept its way to the PC"),
+])  # fmt: skip
+def test_cells_that_are_cut_off_are_told_from_those_with_a_way(changes, said):
+    assert words.outcome(recovery(**changes)) == said
+
+
 def test_a_broken_cable_is_named_once():
     both = [
         {"cell": "p0 r0 c0", "port": "E", "since_s": 1.5, "to": "p0 r0 c1 W"},

@@ -143,3 +143,12 @@ def test_differences_by_dotted_key():
         ("list.1", {"u": 2}, None),
         ("gone", 0, None),
     ]
+
+
+def test_a_run_that_is_not_well_is_called_so_whether_or_not_the_two_differ(written):
+    cut = [{"at_s": 0.3, "action": "cut", "interface": i} for i in (0, 1)]
+    found = compare(written(event=cut), written(event=cut))
+    assert found.same
+    assert found.headlines[0] == found.headlines[1]
+    assert found.headlines[0]["level"] == "down"
+    assert found.headlines[0]["text"].startswith("All 4 cells are cut off since 0.300 s: no cable")

@@ -36,7 +36,11 @@ WRONG = [
      '"static", not "feasable"; did you mean "feasible"?'),
     ("k = 3", "max_depth = 2", "17: p0 r0 c3 is 3 hops from the PC but protocol.max_depth is 2; "
      "add an interface or raise protocol.max_depth"),
-    ("2.0", "5.0", "20: event.0.at_s = 5 is after the end; duration_s is 4"),
+    ("2.0", "5.0", "20: event.0.at_s = 5 is outside the run; duration_s is 4"),
+    ("2.0", "4.0", "20: event.0.at_s = 4 is the end of the run, so it would never happen; make it "
+     "earlier, or duration_s longer"),
+    ("2.0", "[1.0, 4.0]", "20: event.0.at_s = 4 is the end of the run, so it would never happen; "
+     "make it earlier, or duration_s longer"),
     ("2.0", "-1", "20: event.0.at_s must be a number of seconds from 0, not -1"),
     ("2.0", "[3.0, 1.0]", "20: event.0.at_s must be [least, most], not [3, 1]"),
     ("interface = 1", "interface = 2", "22: event.0: there is no interface 2; they are 0 to 1"),

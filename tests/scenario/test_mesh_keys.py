@@ -80,6 +80,7 @@ MISTAKES = (
     ("from = 5", "from = 5\nbytes = 91", "17: flow.0.bytes must be"),
     ("from = 5", "from = 5\nevery_s = 1\nrate_hz = 1", "18: flow.0.every_s and rate_hz say the"),
     ("from = 5", "from = 5\nevery_s = 0.0001\nstart_s = 0", "more than 500,000 messages"),
+    ("at_s = 10.0", "at_s = 60.0", "20: event.0.at_s = 60 is the end of the run, so it would"),
     ("at_s = 10.0", "at_s = 61.0", "20: event.0.at_s = 61 is outside the run"),
     ("at_s = 10.0", "at_s = [9, 8]", "20: event.0.at_s must be [from, to], not [9, 8]"),
     ('"kill"', '"cut"', '22: event.0: "cut" takes link = ["n1", "n2"] or random = 1, not node'),

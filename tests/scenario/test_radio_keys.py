@@ -40,6 +40,7 @@ MISTAKES = (
     ("[52, 104]", "0", "6: channel.tau_us must be 1 to 1000 microseconds, not 0"),
     ("station = 2", "station = 4", "11: there is no station 4; they are numbered 0 to 3"),
     ("station = 2", 'station = "any"', '11: event.0.station must be a station from 0, or "random"'),
+    ("at_s = 1.0", "at_s = 60.0", "9: event.0.at_s = 60 is the end of the run, so it would never"),
     ("at_s = 1.0", "at_s = 99.0", "9: event.0.at_s = 99 is outside the run; duration_s is 60"),
     ('"kill"', '"kil"', '10: event.0.action must be "join", "leave", "kill"'),
     ("station = 2", "station = 2\nframes = 3", '12: event.0.frames goes with "garble" and "fade"'),

@@ -7,7 +7,8 @@ import pytest
 from innervate import scenario
 from innervate.cli import main
 from innervate.sweeping import SweepError
-from innervate.sweeping.sizing import Question, answer_lines, parse_ports, size
+from innervate.sweeping.sized import answer_lines
+from innervate.sweeping.sizing import Question, parse_ports, size
 
 pytest.importorskip("icub_models")
 ICUB = "package:icub-models/iCubGenova02"
@@ -18,8 +19,8 @@ def test_the_icubs_forearm_needs_more_ports_at_higher_rates():
     asked = Question(ICUB, "r_forearm_skin_*", (100.0, 1000.0), (1, 2, 3))
     answer = size(asked, repeat=4)
     assert (answer.cells, answer.frames) == (24, True)
-    assert answer.needed[100.0] == 1
-    assert answer.needed[1000.0] in (2, 3)
+    assert answer.carries[100.0] == 1
+    assert answer.carries[1000.0] in (2, 3)
     fast = answer.table.filter(answer.table["rate_hz"] == 1000)
     # 24 cells send 24,000 samples a second, a cable carries 16,667 frames.
     assert fast["loss_cell_mean"][0] == pytest.approx(1 - 16_667 / 24_000, abs=0.05)
@@ -29,6 +30,28 @@ def test_the_icubs_forearm_needs_more_ports_at_higher_rates():
     assert [len(cells) for cells in answer.where.values()] == [1, 2, 3]
     two = answer.table.filter(answer.table["ports"] == 2)
     assert all(0 < ms < 50 for ms in two["recovery_ms_pc_mean"])
+
+
+def test_a_number_of_ports_is_enough_only_if_every_single_failure_heals():
+    asked = Question("package:example-robot-data/go2", "*calf*", ports=(2, 3), pitch_mm=25.0)
+    answer = size(asked, repeat=6)
+    two, three = answer.table.iter_rows(named=True)
+    assert (two["within"], two["enough"], two["isolated_max"]) == (True, False, answer.cells // 2)
+    assert (three["within"], three["enough"], three["isolated_max"]) == (True, True, 0)
+    assert answer.needed == {250.0: 3}
+    lines = answer_lines(answer)
+    assert "250 Hz: 3 ports are enough" in lines[-3]
+    assert "every single failure of a cable or cell heals" in lines[-3]
+    assert lines[-2].startswith("With 2 ports 6 single failures cut off cells for good: cable ")
+    assert "(44 cells)" in lines[-2]
+
+
+def test_if_no_number_of_ports_heals_the_answer_says_who_isolates_whom():
+    answer = size(Question(ICUB, "r_forearm_skin_*", (100.0,), (2,)), repeat=6)
+    assert answer.needed == {100.0: None}
+    lines = answer_lines(answer)
+    assert "100 Hz: none of up to 2 ports is enough: 2 ports are enough for 1 % lost" in lines[-3]
+    assert "cell r_forearm_skin_24 (3 cells)" in lines[-2]
 
 
 def test_ports_of_the_variants_are_compared_on_the_same_seeds():

@@ -1,6 +1,8 @@
 """Cells on surfaces: even, on the surface, where the URDF puts it."""
 
 import math
+import re
+import sys
 from itertools import combinations
 
 import pytest
@@ -83,6 +85,66 @@ def test_a_mesh_that_is_not_there(robot, tmp_path):
     (tmp_path / "tile.stl").unlink()
     with pytest.raises(TopologyError, match=r"tile\.stl is not there"):
         cells_from_urdf(robot, "tile", None, 10.0)
+
+
+def robot_of(folder, shape):
+    path = folder / "one.urdf"
+    path.write_text(
+        f'<robot name="r"><link name="arm"><visual><geometry>{shape}</geometry></visual>'
+        '</link><link name="frame"/></robot>'
+    )
+    return str(path)
+
+
+@pytest.mark.parametrize("shape", [
+    '<sphere radius="0"/>', '<sphere radius="-1"/>', "<sphere/>", '<sphere radius="big"/>',
+    '<box size="1 1"/>', '<box size="1 0 1"/>', '<cylinder radius="1" length="nan"/>',
+])  # fmt: skip
+def test_shapes_without_a_size_are_refused_by_the_links_name(tmp_path, shape):
+    with pytest.raises(TopologyError, match=r"link arm has a .* above 0"):
+        cells_from_urdf(robot_of(tmp_path, shape), "*", None, 10.0)
+
+
+def collada(folder, unit_m="1"):
+    """A box of 200 units as a Collada file."""
+    trimesh = pytest.importorskip("trimesh")
+    pytest.importorskip("collada")
+    text = trimesh.exchange.dae.export_collada(trimesh.creation.box(extents=[200] * 3)).decode()
+    unit = f'<unit name="one" meter="{unit_m}"/>'
+    asset = re.sub(r"<unit [^>]*/>", "", text).replace("</asset>", f"{unit}</asset>")
+    assert unit in asset
+    (folder / "box.dae").write_text(asset)
+    return '<mesh filename="box.dae" scale="1 1 1"/>'
+
+
+def test_collada_meshes_are_read_in_their_own_unit(tmp_path):
+    shape = collada(tmp_path, "0.001")
+    names, places = cells_from_urdf(robot_of(tmp_path, shape), "*", None, 50.0)
+    assert len(names) > 40
+    assert max(abs(x) for place in places for x in place) == pytest.approx(100)
+
+
+def test_a_collada_mesh_names_the_package_that_is_missing(tmp_path, monkeypatch):
+    shape = collada(tmp_path)
+    monkeypatch.setitem(sys.modules, "collada", None)
+    with pytest.raises(TopologyError, match=r"box\.dae of link arm .* pip install pycollada"):
+        cells_from_urdf(robot_of(tmp_path, shape), "*", None, 50.0)
+
+
+def test_links_whose_shapes_cannot_be_read_are_named(tmp_path):
+    path = robot_of(tmp_path, '<mesh filename="arm.step"/>')
+    with pytest.raises(TopologyError, match=r"no shape of arm can be read \(meshes: \.step\)"):
+        cells_from_urdf(path, "*", None, 50.0)
+
+
+@pytest.mark.parametrize(("robot", "links"), [("kinova", 11), ("anymal-kinova", 35)])
+def test_robots_whose_links_have_collada_meshes_only(robot, links):
+    pytest.importorskip("collada")
+    try:
+        names, _ = cells_from_urdf(f"package:example-robot-data/{robot}", "*", None, 60.0)
+    except TopologyError as error:
+        pytest.skip(str(error)) if "not installed" in str(error) else pytest.fail(str(error))
+    assert len({name.rpartition("_")[0] for name in names}) >= links - 4  # some are too small
 
 
 def test_thinning_keeps_all_that_are_far_apart():

@@ -13,6 +13,7 @@ from innervate.web.history import LOG, SERIES, TIMELINE
 from innervate.web.simulated import Simulated
 from innervate.web.skin_scene import places
 from innervate.web.snapshot import Part, Snapshot, Teller
+from tests.skin_runs import patch
 from tests.web_runs import KINDS, MESH, RADIO, SKIN, go_to, simulated
 
 ROLES = {"cell", "sink", "port", "node", "gateway", "standby", "robot", "post", "monitor",
@@ -117,6 +118,16 @@ def test_the_recovery_is_that_of_the_batch_run(event):
         0.5, recovery["detected_ms"], recovery["routed_ms"],
     )  # fmt: skip
     assert made.fields()["since_cut_s"] == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("column", [2, 5])
+def test_the_log_does_not_say_that_all_have_a_way_while_cells_are_cut_off(column):
+    kill = {"at_s": 0.5, "action": "kill", "cell": {"row": 0, "column": column}}
+    made = simulated(patch(6, 1, (0, 0), event=[kill], duration_s=0.7), speed=0)
+    made.run_to_end()
+    told = texts(made)
+    assert not [text for text in told if text.startswith("all cells have a way again")]
+    assert made.fields()["recovery"]["apart"] == 5 - column
 
 
 def test_what_disturbs_nobody_is_over_at_once():

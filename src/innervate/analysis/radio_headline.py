@@ -118,7 +118,7 @@ def _degraded(facts: RadioFacts, told: bool) -> tuple[list[str], tuple[int, ...]
         lost = _count(facts.lost_silently, "packet was", "packets were")
         news.append(f"{lost} lost silently, taken for delivered by the sender")
     if facts.off and len(facts.off) + len(facts.away) < facts.stations:
-        left = facts.abandoned
+        left = 0 if facts.away else facts.abandoned  # else nobody can say whose they are
         with_it = f" with {_count(left, 'packet', 'packets')} not sent" if left else ""
         news.append(f"{_robots(facts.off)} off{with_it}")
         nodes |= set(facts.off)

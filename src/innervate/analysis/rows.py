@@ -139,6 +139,12 @@ def joined_steps(result: Any) -> JoinedSteps:
     return JoinedSteps(at, part["time"], part["a"])
 
 
+def values_at(steps: UnroutedSteps | ApartSteps | JoinedSteps, at: Numbers) -> Numbers:
+    """What a step function is after each of these rows; 0 before its first step."""
+    after = np.searchsorted(steps.row, at, "right")
+    return np.append(steps.cells, 0)[after - 1]
+
+
 def broken_changes(result: Any) -> BrokenChanges:
     """Ports found broken, and working again."""
     at, part = _coded(result, REPORT_BROKEN)

@@ -25,6 +25,7 @@ from innervate.analysis.rows import (
 from innervate.analysis.skin_headline import skin_headline
 from innervate.analysis.skin_summary import BrokenPort, Loops, SkinSummary
 from innervate.protocol.skin_words import ONE, PORTS
+from innervate.scenario.skin_words import warnings
 from innervate.sim.world import ALIVE
 from innervate.topology import PORT_NAMES
 
@@ -65,6 +66,7 @@ def summarize(result: Any) -> SkinSummary:
         "wall_s": round(result.wall_s, 6),
         "fingerprint": result.fingerprint,
         "headline": skin_headline(facts, plan.graph.label).as_summary(),
+        "warnings": warnings(plan),
         "cells": plan.graph.cells,
         "depth_max": plan.depth_max,
         "start_up": start_up(result),

@@ -212,6 +212,7 @@ class SkinSummary(Common, Reach):
     """The summary of a skin's run.
 
     Attributes:
+        warnings: what makes the scenario weaker than it looks, as `check` says it.
         cells: how many there are.
         depth_max: hops of the deepest cell to the PC, by breadth-first search.
         start_up: from switching on.
@@ -226,6 +227,7 @@ class SkinSummary(Common, Reach):
     """
 
     kind: Literal["skin"]
+    warnings: list[str]
     cells: int
     depth_max: int
     start_up: StartUp

@@ -23,7 +23,8 @@ def summary_lines(run: Run) -> list[str]:
         return show_mesh.summary_lines(run)
     summary = run.skin
     said = words.headline_line(summary["headline"])
-    return [_first(run), said, *event_lines(run), *_broken(summary), *state_lines(summary)]
+    warned = [f"Warning: {text}." for text in summary["warnings"]]
+    return [_first(run), said, *warned, *event_lines(run), *_broken(summary), *state_lines(summary)]
 
 
 def _first(run: Run) -> str:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 def size(question: dict[str, Any], how: dict[str, Any]) -> int:
     """Answer how many interface ports a robot's skin needs, with a table and a picture."""
     from innervate.sweeping import sizing
+    from innervate.sweeping.sized import answer_lines
 
     _check(question)
     ports = sizing.parse_ports(question.pop("ports"))
@@ -28,7 +29,7 @@ def size(question: dict[str, Any], how: dict[str, Any]) -> int:
             errors.say(f"interrupted; {table.words}; they are kept in {folder}, and the same "
                        "command goes on from there")  # fmt: skip
             return errors.INTERRUPTED
-    for line in sizing.answer_lines(answer):
+    for line in answer_lines(answer):
         print(line)
     print(f"Drawn: {draw(answer, folder)}")
     return 0
@@ -58,15 +59,13 @@ def _check(question: dict[str, Any]) -> None:
 
 def draw(answer: Answer, folder: Path) -> Path:
     """The picture in the sweep's folder, with the ports that the hardest rate needs."""
-    from innervate import scenario as scenarios
     from innervate.plot import sizing as figure
     from innervate.plot import style
     from innervate.plot.words import number_of
 
     asked = answer.question
-    ports = max(n or max(asked.ports) for n in answer.needed.values())
-    base = answer.sweep.plan.base
-    graph = scenarios.plan(base.scenario([("body.interfaces", ports)])).graph
+    ports = max(n or max(answer.graphs) for n in answer.needed.values())
+    graph = answer.graphs[ports]
     columns = answer.table.to_dict(as_series=False)
     limits = (asked.loss_max, asked.recovery_ms_max)
     with style.house():

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 # What is shown if nobody says: of these, those that the runs have.
 SHOWN = (
-    "recoveries.routed_ms", "data.loss_ratio",
+    "recoveries.routed_ms", "cut_off.most", "data.loss_ratio",
     "throughput", "delay_slots.p50",
     "delivery_ratio", "latency_ms.p50",
 )  # fmt: skip

@@ -69,6 +69,7 @@ def _cells(at: int, now: States) -> Any:
     return {
         "timestamp": stamp(at),
         "unrouted": now.unrouted,
+        "cut_off": now.cut_off,
         "parent_port": list(now.parent),
         "hops": now.hops,
     }

@@ -76,7 +76,7 @@ LOG = record(
 CELLS = record(
     "innervate.Cells",
     "all cells at a moment; lists in order of the cells' numbers",
-    timestamp=TIME, unrouted=WHOLE, parent_port=array(WHOLE), hops=array(WHOLE),
+    timestamp=TIME, unrouted=WHOLE, cut_off=WHOLE, parent_port=array(WHOLE), hops=array(WHOLE),
 )  # fmt: skip
 TOUCH = record(
     "innervate.Touch",

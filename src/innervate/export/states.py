@@ -16,7 +16,8 @@ class States:
     Attributes:
         parent: per cell the port of its parent, -1 none.
         hops: per cell hops to the PC, -1 without a chain of parents that leads there.
-        unrouted: how many cells had no route, by the run's own account.
+        unrouted: how many cells that cables reached had no route, by the run's own account.
+        cut_off: how many cells were on, but joined with the PC by no cable.
         force: per cell the mean force, mN, that the PC received last.
         proximity: the same of its proximity.
         heard: per cell when that was, us.
@@ -28,13 +29,14 @@ class States:
         self.plan, self.graph, self.step_us = plan, plan.graph, step_us
         cells = self.graph.cells
         self.parent = [-1] * cells
-        self.unrouted = 0
+        self.unrouted = self.cut_off = 0
         self.force, self.proximity = [0] * cells, [0] * cells
         self.heard = [-TOUCH_WINDOW_US - 1] * cells
         self.hops: list[int] = []
         self.places = places_m(self.graph)
         self.routes = iter(tables["routes"].select("time_us", "cell", "new").iter_rows())
-        self.outages = iter(tables["outages"].iter_rows())
+        some = ("time_us", "unrouted", "cut_off")
+        self.outages = iter(tables["outages"].select(*some).iter_rows())
         self.samples: Iterator[tuple[int, ...]] = iter(())
         if "received" in tables:
             forces = ("force_0", "force_1", "force_2")
@@ -64,8 +66,8 @@ class States:
     def _route(self, _time: int, cell: int, new: int) -> None:
         self.parent[cell] = new
 
-    def _outage(self, _time: int, unrouted: int) -> None:
-        self.unrouted = unrouted
+    def _outage(self, _time: int, unrouted: int, cut_off: int) -> None:
+        self.unrouted, self.cut_off = unrouted, cut_off
 
     def _feel(self, time: int, cell: int, proximity: int, *forces: int) -> None:
         self.heard[cell], self.proximity[cell] = time, proximity

@@ -181,7 +181,7 @@ class MeshStack:
             "number": node.number,
             **self._robot_status(),
             "role": "gateway" if node.leading else "standby" if node.rank >= 0 else "node",
-            "gateway": node.gateway if node.known else None,
+            "gateway": node.gateway if node.known and node.gateway != ALL else None,
             "epoch": node.epoch,
             "round": node.round,
             "table": node.version,
@@ -197,7 +197,7 @@ class MeshStack:
         """Whom a message for the gateway goes to, and to whom next if that one is silent."""
         node, params = self.node, self.params
         dest = node.gateway
-        if not node.known or dest == node.number:
+        if not node.known or dest in (ALL, node.number):  # started again, the epoch is all we know
             return []
         strong = is_strong(node, params, place_of(node, params, dest))
         tables = params.mode == TABLES

@@ -86,7 +86,9 @@ def main(
     some = names if len(names) < len(paper.FIGURES) else []
     words = ["innervate papers", system, *(["--quick"] if quick else [])]
     command = " ".join([*words, *(f"--only {name}" for name in some)])
-    heading = output.Heading(system, paper.TITLE, paper.AUTHORS, quick, mark, redraw, command)
+    heading = output.Heading(
+        system, paper.TITLE, paper.AUTHORS, quick, mark, redraw, command, paper.READINGS
+    )
     return output.write(folder, heading, experiments, book.claims, time.perf_counter() - started)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
+from math import inf
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -70,6 +71,23 @@ class Experiment:
     points: Callable[[bool], list[Point]]
     draw: Callable[[Results, bool], Figure]
     judge: Callable[[Results, bool], list[Claim]]
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """The values that a verdict accepts, both ends included."""
+
+    low: float = -inf
+    high: float = inf
+
+    def has(self, *values: float) -> bool:
+        """True if all lie inside, and there is one; what never happened (NaN) does not."""
+        return bool(values) and all(self.low <= value <= self.high for value in values)
+
+
+def about(value: float) -> Span:
+    """What counts as "about" a value: no more than a quarter off, up or down."""
+    return Span(0.75 * value, 1.25 * value)
 
 
 def reading(*errata: str) -> str:

@@ -6,8 +6,9 @@ import base64
 import csv
 import io
 import platform
+import re
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple, dataclass, fields
+from dataclasses import astuple, dataclass, field, fields
 from importlib import metadata
 from pathlib import Path
 
@@ -18,12 +19,37 @@ from innervate.plot.svg import clean
 from innervate.trace.provenance import checkout
 
 PACKAGES = ("numba", "numpy", "matplotlib")
-_LAYOUT = (
-    "<style>figure img{display:block;max-width:100%;height:auto;background:#fff;border-radius:6px;"
-    "padding:8px;margin:.5em 0}figure{margin:1.6em 0}.claims td{min-width:14em;white-space:normal}"
-    ".claims td:nth-child(3){min-width:7em}"
-    ".good{color:var(--good)}.bad{color:var(--alarm)}</style>"
-)
+_LAYOUT = """<style>
+figure img{display:block;width:100%;height:auto;background:#fff;border-radius:6px;padding:8px;
+margin:.5em 0}
+figure.narrow img{max-width:640px}
+figure{margin:1.2em 0}
+a{color:var(--accent)}
+.contents{columns:2 22em;padding:0;margin:.8em 0}
+.contents li{list-style:none;margin:.25em 0;break-inside:avoid}
+.failed{padding-left:1.2em}
+.failed li{margin:.3em 0}
+.good{color:var(--good)}
+.bad{color:var(--alarm)}
+table.claims{width:100%}
+.claims td{white-space:normal;overflow-wrap:anywhere}
+.claims td:first-child{white-space:normal;min-width:8.5em}
+.readings dt{font-weight:600;margin-top:.6em}
+.readings dd{margin:0 0 0 0}
+.readings :target,section:target h2{background:var(--panel)}
+@media (max-width:760px){
+figure{overflow-x:auto}
+figure:not(.narrow) img{min-width:640px}
+.claims,.claims tbody,.claims tr,.claims td{display:block}
+.claims tr:first-child{display:none}
+.claims tr{border:1px solid var(--faint);border-radius:8px;padding:.5em .8em;margin:.7em 0}
+.claims td{border:0;padding:.15em 0}
+.claims td:nth-child(2){font-weight:600}
+.claims td:nth-child(3)::before{content:"measured: ";color:var(--soft)}
+.claims td:nth-child(4):not(:empty)::before{content:"why: ";color:var(--soft)}
+}
+</style>"""
+NARROW_PT = 400  # a figure of one column is not blown up
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +60,7 @@ class Heading:
         stamp: hash of the sources the results depend on.
         redraw: results of other sources were allowed.
         command: the line that does it again.
+        readings: what the labels in claims and reasons mean, a sentence each.
     """
 
     system: str
@@ -43,6 +70,7 @@ class Heading:
     stamp: str
     redraw: bool
     command: str
+    readings: Mapping[str, str] = field(default_factory=dict)
 
 
 def write(
@@ -137,23 +165,107 @@ def as_page(
         page.element("p", f"{heading.authors}, redrawn by innervate", "over"),
         page.element("h1", heading.title),
         page.element("p", summary(rows)),
+        _failed(experiments, claims, heading.readings),
+        page.section("Contents", _contents(experiments, claims, heading.readings)),
     ]
     for experiment in experiments:
-        image = (folder / f"{experiment.name}.svg").read_bytes()
-        coded = base64.b64encode(image).decode()
         inside = (
-            f'<figure><img alt="{clean(experiment.title)}" '
-            f'src="data:image/svg+xml;base64,{coded}">\n'
-            + page.element("figcaption", experiment.caption)
-            + "</figure>\n"
-            + _table(claims[experiment.name])
+            _figure(folder, experiment)
+            + _table(claims[experiment.name], heading.readings)
             + _simulated(experiment, heading.quick)
         )
-        parts.append(page.section(experiment.title, inside))
+        parts.append(_anchored(experiment.name, page.section(experiment.title, inside)))
+    parts.append(_anchored("readings", page.section("Readings", _readings(rows, heading))))
     origin_rows = [[clean(key), clean(value)] for key, value in origin.items()]
     again = page.element("pre", heading.command, "command")
     parts.append(page.section("Run it again", again + page.table(("", ""), origin_rows)))
     return page.page(f"innervate: papers {heading.system}", "\n".join(parts))
+
+
+def _anchored(name: str, section: str) -> str:
+    return section.replace("<section>", f'<section id="{clean(name)}">', 1)
+
+
+def _figure(folder: Path, experiment: Experiment) -> str:
+    image = (folder / f"{experiment.name}.svg").read_bytes()
+    coded = base64.b64encode(image).decode()
+    width = re.search(rb'width="([\d.]+)pt"', image)
+    narrow = width is not None and float(width[1]) < NARROW_PT
+    return (
+        f'<figure{" class=narrow" * narrow}><img alt="{clean(experiment.title)}" '
+        f'src="data:image/svg+xml;base64,{coded}">\n'
+        + page.element("figcaption", experiment.caption)
+        + "</figure>\n"
+    )
+
+
+def failing_first(rows: Sequence[Claim]) -> list[Claim]:
+    """Claims that do not hold, then the others, each in the order they came."""
+    return sorted(rows, key=lambda row: row.verdict != FAILS)
+
+
+def _failed(
+    experiments: Sequence[Experiment],
+    claims: Mapping[str, Sequence[Claim]],
+    readings: Mapping[str, str],
+) -> str:
+    """What does not hold, each with a link to its figure."""
+    items = [
+        f'<li><a href="#{clean(experiment.name)}">{clean(row.figure)}</a>: '
+        f"{linked(row.claim, readings)}</li>"
+        for experiment in experiments
+        for row in claims[experiment.name]
+        if row.verdict == FAILS
+    ]
+    inside = f'<ul class="failed">{"".join(items)}</ul>\n' if items else ""
+    return page.section("Does not hold", inside)
+
+
+def _contents(
+    experiments: Sequence[Experiment],
+    claims: Mapping[str, Sequence[Claim]],
+    readings: Mapping[str, str],
+) -> str:
+    items = []
+    for experiment in experiments:
+        rows = claims[experiment.name]
+        bad = sum(row.verdict == FAILS for row in rows)
+        words = f'<span class="good">{len(rows) - bad} hold</span>'
+        words += f', <span class="bad">{bad} not</span>' if bad else ""
+        title = clean(experiment.title)
+        items.append(f'<li><a href="#{clean(experiment.name)}">{title}</a>: {words}</li>')
+    if readings:
+        items.append('<li><a href="#readings">Readings</a>: what the labels mean</li>')
+    return f'<ul class="contents">{"".join(items)}</ul>\n'
+
+
+def linked(text: str, readings: Mapping[str, str]) -> str:
+    """Text as HTML, in which every label of a reading is a link to its sentence."""
+
+    def link(found: re.Match[str]) -> str:
+        label = found[0]
+        return f'<a href="#{label}">{label}</a>' if label in readings else label
+
+    return re.sub(r"\b[A-Z]\d+\b", link, clean(text))
+
+
+def _readings(rows: Sequence[Claim], heading: Heading) -> str:
+    """The sentences of the labels that the claims use; nothing if they use none."""
+    said = " ".join(f"{row.claim} {row.measurement} {row.verdict} {row.reason}" for row in rows)
+    used = set(re.findall(r"\b[A-Z]\d+\b", said))
+    items = [
+        f'<dt id="{label}">{label}</dt><dd>{linked(sentence, _others(heading.readings, used))}</dd>'
+        for label, sentence in heading.readings.items()
+        if label in used
+    ]
+    if not items:
+        return ""
+    note = page.element("p", "All labels: docs/readings.md.", "note")
+    return f'<dl class="readings">{"".join(items)}</dl>\n{note}'
+
+
+def _others(readings: Mapping[str, str], used: set[str]) -> dict[str, str]:
+    return {label: sentence for label, sentence in readings.items() if label in used}
 
 
 def _simulated(experiment: Experiment, quick: bool) -> str:
@@ -163,17 +275,18 @@ def _simulated(experiment: Experiment, quick: bool) -> str:
     return page.details(head, page.element("pre", "\n".join(keys)))
 
 
-def _table(rows: Sequence[Claim]) -> str:
+def _table(rows: Sequence[Claim], readings: Mapping[str, str]) -> str:
     cells = [
         [
-            clean(row.claim),
-            clean(row.measurement),
-            f'<b class="{"bad" if row.verdict == FAILS else "good"}">{clean(row.verdict)}</b>',
-            clean(row.reason),
+            f'<b class="{"bad" if row.verdict == FAILS else "good"}">'
+            f"{linked(row.verdict, readings)}</b>",
+            linked(row.claim, readings),
+            linked(row.measurement, readings),
+            linked(row.reason, readings),
         ]
-        for row in rows
+        for row in failing_first(rows)
     ]
-    return page.table(("claim", "measured", "verdict", "why"), cells, "claims")
+    return page.table(("verdict", "claim", "measured", "why"), cells, "claims")
 
 
 def _put(path: Path, text: str) -> None:

@@ -42,6 +42,7 @@ def top(story: Story) -> str:
         f"seed {summary['seed']}"
     )
     parts = [element("p", over, "over"), headline(summary["headline"])]
+    parts += [element("p", f"Warning: {text}.", "status bad") for text in summary["warnings"]]
     parts += [element("p", sentence) for sentence in _sentences(story)]
     if "interrupted_at_s" in summary:
         early = f"Ended early, at {summary['interrupted_at_s']:.3f} s of simulated time."

@@ -89,7 +89,7 @@ PARAMS = (
     ("max_depth", 0, 1, 254, "hops", "MAXD: longer routes are refused"),
     ("seq_every", 0, 1, 255, "periods", "M: the PC counts sq up every M periods"),
     ("balance_periods", 0, 0, 65535, "periods", "between attempts to balance; 0 = never"),
-    ("balance_rule", 0, 0, 1, "choice", "who moves: 0 who evens loads out, 1 as Alg. 3 is printed"),
+    ("balance_rule", 0, 0, 1, "choice", "who moves: 0 to even loads out, 1 as Alg. 3 is printed"),
     ("hold_periods", 0, 1, 65535, "periods", "FD_HOLD: without a route until fd is forgotten"),
     ("gap_us", 0, 0, 1000000, "us", "GAP: least time between triggered beacons"),
     ("skip_us", 0, 0, 1000000, "us", "wave: a tick stays silent this long after a send"),

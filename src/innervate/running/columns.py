@@ -42,8 +42,13 @@ def _links(result: Any) -> Columns:
 
 
 def _outages(result: Any) -> Columns:
-    steps = rows.unrouted_steps(result)
-    return {"time_us": steps.time_us, "unrouted": steps.cells}
+    lost, apart = rows.unrouted_steps(result), rows.apart_steps(result)
+    at = np.union1d(lost.row, apart.row)
+    return {
+        "time_us": result.rows["time"][at],
+        "unrouted": rows.values_at(lost, at),
+        "cut_off": rows.values_at(apart, at),
+    }
 
 
 def _loops(result: Any) -> Columns:

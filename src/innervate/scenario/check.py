@@ -9,6 +9,7 @@ from innervate.scenario import mesh_planning, mesh_words, radio_planning, radio_
 from innervate.scenario.load import Scenario, load
 from innervate.scenario.overrides import Override
 from innervate.scenario.plan import ACTIONS, LOSS_ONE, RULES, UPDATES, Fault, Plan, plan
+from innervate.scenario.skin_words import port_rate, warnings
 from innervate.topology import Graph
 
 EVENTS_SHOWN = 12
@@ -44,7 +45,13 @@ def describe(made: Plan) -> str:
     cables = sum(1 for _ in graph.links())
     ports = f"{graph.interfaces} interface port{'s' if graph.interfaces != 1 else ''}"
     rate_hz = made.scenario.model.data.rate_hz
-    data = f"{rate_hz:g} Hz per cell" if made.data_period_us else "off"
+    data = "off"
+    if made.data_period_us:
+        room = graph.interfaces * port_rate(made)
+        data = (
+            f"{rate_hz:g} Hz per cell, {graph.cells * rate_hz:,.0f} samples a second; "
+            f"{ports} carr{'y' if graph.interfaces != 1 else 'ies'} at most {room:,.0f}"
+        )
     lines = [
         f"{made.scenario.name}: a {made.kind} scenario of {made.duration_us / 1e6:g} s, "
         f"seed {made.seed}",
@@ -65,6 +72,7 @@ def describe(made: Plan) -> str:
               for i, fault in enumerate(made.faults[:EVENTS_SHOWN])]  # fmt: skip
     if len(made.faults) > EVENTS_SHOWN:
         lines.append(f"  {'':10} and {len(made.faults) - EVENTS_SHOWN} more")
+    lines += [f"  warning    {text}" for text in warnings(made)]
     return "\n".join(lines)
 
 

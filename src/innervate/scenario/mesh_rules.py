@@ -7,6 +7,7 @@ from innervate.scenario.mesh_events import LINK_ACTIONS
 from innervate.scenario.mesh_model import MeshEventTable, MeshScenario
 from innervate.scenario.mesh_nodes import NODES_MAX, RESERVED, too_many
 from innervate.scenario.source import Source, shown
+from innervate.scenario.times import check_end
 
 POWERS = ("mean_degree", "reach_m", "tx_dbm")
 
@@ -143,7 +144,7 @@ def _flow(source: Source, model: MeshScenario, index: int) -> None:
     if flow.to == "all" and flow.reliable:
         message = f"{name} goes to all, and nobody acknowledges a broadcast; leave reliable out"
         raise source.error((*key, "reliable"), message)
-    if flow.start_s is not None and flow.start_s > model.duration_s:
+    if flow.start_s is not None and flow.start_s >= model.duration_s:
         message = f"{name}.start_s = {flow.start_s:g} is after the end ({model.duration_s:g} s)"
         raise source.error((*key, "start_s"), message)
     if flow.stop_s is not None and flow.start_s is not None and flow.stop_s <= flow.start_s:
@@ -167,12 +168,10 @@ def _event(source: Source, model: MeshScenario, index: int, event: MeshEventTabl
     if times[0] > times[1]:
         message = f"{name}.at_s must be [from, to], not [{times[0]:g}, {times[1]:g}]"
         raise source.error((*key, "at_s"), message)
-    if not times[0] >= 0 or times[1] > model.duration_s:
-        wrong = times[0] if not times[0] >= 0 else times[1]
-        raise source.error(
-            (*key, "at_s"),
-            f"{name}.at_s = {wrong:g} is outside the run; duration_s is {model.duration_s:g}",
-        )
+    if not times[0] >= 0:
+        message = f"{name}.at_s must be a number of seconds from 0, not {times[0]:g}"
+        raise source.error((*key, "at_s"), message)
+    check_end(source, index, times[1], model.duration_s)
     given = [t for t in ("node", "link", "random") if getattr(event, t) is not None]
     wanted = "link" if event.action in LINK_ACTIONS else "node"
     words = 'link = ["n1", "n2"] or random = 1' if wanted == "link" else "node = 3 or random = 1"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from innervate.scenario import radio_slotted
 from innervate.scenario.radio_model import RadioEventTable, RadioScenario
 from innervate.scenario.source import Source
+from innervate.scenario.times import check_end
 
 PACKET_SLOTS = (3, 250)
 DELAY_US = (1, 1000)
@@ -113,12 +114,10 @@ def _event(source: Source, model: RadioScenario, index: int, event: RadioEventTa
     if times[0] > times[1]:
         message = f"{name}.at_s must be [from, to], not [{times[0]:g}, {times[1]:g}]"
         raise source.error((*key, "at_s"), message)
-    if not times[0] >= 0 or times[1] > model.duration_s:
-        wrong = times[0] if not times[0] >= 0 else times[1]
-        raise source.error(
-            (*key, "at_s"),
-            f"{name}.at_s = {wrong:g} is outside the run; duration_s is {model.duration_s:g}",
-        )
+    if not times[0] >= 0:
+        message = f"{name}.at_s must be a number of seconds from 0, not {times[0]:g}"
+        raise source.error((*key, "at_s"), message)
+    check_end(source, index, times[1], model.duration_s)
     station = event.station
     if isinstance(station, str):
         if station != "random":

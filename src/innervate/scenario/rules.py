@@ -8,6 +8,7 @@ from innervate.scenario.errors import ScenarioError
 from innervate.scenario.lines import Key
 from innervate.scenario.model import CommandTable, EventTable, SkinScenario
 from innervate.scenario.source import Source
+from innervate.scenario.times import check_end
 
 ONE = 840  # p_f = 1 in fixed point [skin 5]
 K_MAX = 100
@@ -142,11 +143,7 @@ def _event(source: Source, model: SkinScenario, index: int, event: EventTable) -
     if earliest < 0:
         message = f"{name}.at_s must be a number of seconds from 0, not {earliest:g}"
         raise source.error((*key, "at_s"), message)
-    if latest > model.duration_s:
-        raise source.error(
-            (*key, "at_s"),
-            f"{name}.at_s = {latest:g} is after the end; duration_s is {model.duration_s:g}",
-        )
+    check_end(source, index, latest, model.duration_s)
     given = [t for t in TARGETS if getattr(event, t) is not None and getattr(event, t) is not False]
     allowed, words = _TARGETS_OF[event.action]
     if not given:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,10 +17,11 @@ from innervate.sweeping.plan import SweepPlan
 from innervate.sweeping.result import Sweep
 from innervate.sweeping.sweep import Progress, make_plan, sweep
 from innervate.sweeping.vary import Named
-from innervate.topology import TopologyError, cells_from_urdf
+from innervate.topology import Graph, TopologyError, cells_from_urdf
 from innervate.topology.body import joining_reach
 from innervate.topology.cover import has_surface
 from innervate.topology.urdf import find_urdf, read_links
+from innervate.topology.weak import Weak, weak_points
 
 PORTS_MAX = 8
 PITCH_MM = 25.0
@@ -30,7 +31,8 @@ RECOVERY_MS_MAX = 50.0
 SETTLED_S = 1.0
 DURATION_S = 2.0
 LOST = "lost_on_the_way"
-RECOVERY = "recoveries.routed_ms"
+RECOVERY = "recoveries.others_ms"
+UNHEALED = "recoveries.without_way"
 INNER, OUTER = "between cells", "to the PC"
 _CUT_AT_S = [SETTLED_S, SETTLED_S + 0.1]
 CUTS = (
@@ -51,7 +53,8 @@ class Question:
         pitch_mm: distance of cells on links that have a shape; None = 25 mm.
         reach_mm: longest cable between cells; None = as long as it takes to join all.
         loss_max: share of samples that may be lost, by the upper end of its interval.
-        recovery_ms_max: time until all cells have a way again, by the upper end of its interval.
+        recovery_ms_max: time until all cells that cables still reach have a way again, by the upper
+            end of its interval.
     """
 
     urdf: str
@@ -73,9 +76,13 @@ class Answer:
         cells: how many there are.
         frames: they are the robot's own skin frames, rather than points on its surface.
         sweep: the runs.
-        table: a row for every rate and number of ports: means with 95 % intervals, and `enough`.
+        table: a row for every rate and number of ports: means with 95 % intervals; `isolated_max`,
+            how many cells a single failure can cut off for good; `within`, loss and recovery are
+            small enough; `enough`, they are and no single failure cuts off cells.
         needed: for every rate the fewest ports that are enough; None if none of those tried is.
-        where: for every number of ports the names of the cells that they are on.
+        carries: for every rate the fewest ports that are `within`; None if none is.
+        graphs: the skin for every number of ports that there is room for.
+        weak: for every number of ports the cables and cells whose loss cuts off others.
     """
 
     question: Question
@@ -84,7 +91,14 @@ class Answer:
     sweep: Sweep
     table: polars.DataFrame
     needed: dict[float, int | None]
-    where: dict[int, list[str]]
+    carries: dict[float, int | None]
+    graphs: dict[int, Graph]
+    weak: dict[int, list[Weak]]
+
+    @property
+    def where(self) -> dict[int, list[str]]:
+        """For every number of ports the names of the cells that they are on."""
+        return {ports: cells_with_ports(graph) for ports, graph in self.graphs.items()}
 
 
 def size(
@@ -106,13 +120,18 @@ def size(
     asked, frames, names = _placed(question)
     plan = plan_of(asked, frames, repeat, seed)
     done = sweep(plan, out=out, workers=workers, dask=dask, follow=(RECOVERY,), progress=progress)
-    table = judged(asked, done)
-    needed = {
-        rate: min(table.filter((table["rate_hz"] == rate) & table["enough"])["ports"], default=None)
-        for rate in asked.rates_hz
-    }
-    where = {ports: _where(plan, ports) for ports in asked.ports}
-    return Answer(asked, len(names), frames, done, table, needed, where)
+    made = {ports: _graph(plan, ports) for ports in asked.ports}
+    graphs = {ports: graph for ports, graph in made.items() if graph is not None}
+    weak = {ports: weak_points(graph) for ports, graph in graphs.items()}
+    table = judged(asked, done, weak)
+    needed, carries = (
+        {
+            rate: min(table.filter((table["rate_hz"] == rate) & table[word])["ports"], default=None)
+            for rate in asked.rates_hz
+        }
+        for word in ("enough", "within")
+    )
+    return Answer(asked, len(names), frames, done, table, needed, carries, graphs, weak)
 
 
 def _placed(question: Question) -> tuple[Question, bool, list[str]]:
@@ -157,8 +176,11 @@ def plan_of(question: Question, frames: bool, repeat: int, seed: int) -> SweepPl
     return make_plan(tables, vary=vary, repeat=repeat, seed=seed, paired=("body.interfaces",))
 
 
-def judged(question: Question, done: Sweep) -> polars.DataFrame:
-    """A row for every rate and number of ports; `enough` if loss and recovery are small enough.
+def judged(question: Question, done: Sweep, weak: Mapping[int, Sequence[Weak]]) -> polars.DataFrame:
+    """A row for every rate and number of ports.
+
+    `within` if loss and recovery are small enough and every cell that cables still reached got a
+    way again; `enough` if besides no single failure cuts off cells for good.
 
     `loss` counts samples lost on the way: full queues, the cut cable, loops. Those that a cell
     took while it had no route count as recovery time, and before its first route not at all.
@@ -174,15 +196,25 @@ def judged(question: Question, done: Sweep) -> polars.DataFrame:
         (r["data.rate_hz"], r["body.interfaces"], r["event"], r["measure"]): r
         for r in points.iter_rows(named=True)
     }
-    rows = [
-        _row(question, rate, ports, found) for rate in question.rates_hz for ports in question.ports
-    ]
+    unhealed = {
+        (r["data.rate_hz"], r["body.interfaces"], r["event"])
+        for r in frame.filter(frame[UNHEALED] > 0).iter_rows(named=True)
+    }
+    rows = []
+    for rate in question.rates_hz:
+        for ports in question.ports:
+            row = _row(question, rate, ports, found)
+            within = row["within"] and not any((rate, ports, cut.name) in unhealed for cut in CUTS)
+            alone = weak.get(ports)  # None if there is no room for so many
+            worst = None if alone is None else max((one.isolated for one in alone), default=0)
+            rows.append(row | {"isolated_max": worst, "within": within,
+                               "enough": within and worst == 0})  # fmt: skip
     return polars.DataFrame(rows, infer_schema_length=None)
 
 
 def _row(question: Question, rate: float, ports: int, found: dict[Any, Any]) -> dict[str, Any]:
     row: dict[str, Any] = {"rate_hz": rate, "ports": ports}
-    enough = True
+    within = True
     for cut, short in ((INNER, "cell"), (OUTER, "pc")):
         alone = cut == OUTER and ports == 1  # nobody has a way any more; there is nothing to judge
         for name, measure, most in (
@@ -195,70 +227,22 @@ def _row(question: Question, rate: float, ports: int, found: dict[Any, Any]) -> 
                 row[f"{name}_{short}_{part}"] = None if value is None else float(value)
             # With one port less the rest may be too few to carry all; that is no failure.
             if not alone and not (name == "loss" and cut == OUTER):
-                enough &= one["high"] is not None and one["high"] <= most
-    return row | {"enough": enough}
+                within &= one["high"] is not None and one["high"] <= most
+    return row | {"within": within}
 
 
-def _where(plan: SweepPlan, ports: int) -> list[str]:
-    """The names of the cells that the interface ports are on."""
+def _graph(plan: SweepPlan, ports: int) -> Graph | None:
+    """The skin with so many interface ports; None if there is no room for them."""
     try:
-        made = scenarios.plan(plan.base.scenario([("body.interfaces", ports)]))
+        made: Graph = scenarios.plan(plan.base.scenario([("body.interfaces", ports)])).graph
     except ScenarioError:
-        return []
-    return cells_with_ports(made.graph)
+        return None
+    return made
 
 
 def cells_with_ports(graph: Any) -> list[str]:
     """The names of the cells that a graph's interface ports are on, by port."""
     return [graph.label(cell) for cell in graph.neighbours(graph.sink)]
-
-
-def answer_lines(answer: Answer) -> list[str]:
-    """The answer for people: a table, then how many ports, and where."""
-    asked = answer.question
-    kind = "skin frames of the robot" if answer.frames else f"cells {asked.pitch_mm:g} mm apart"
-    lines = [
-        f"{answer.cells} {kind}, cables of at most {asked.reach_mm:g} mm",
-        "",
-        f"{'rate':>8} {'ports':>5}  {'lost on the way':>16}  {'recovery, ms':>15}  "
-        f"{'after a port, ms':>16}  enough",
-    ]
-    for row in answer.table.iter_rows(named=True):
-        cells = (_share(row, "loss_cell"), _span(row, "recovery_ms_cell"),
-                 _span(row, "recovery_ms_pc"))  # fmt: skip
-        lines.append(
-            f"{row['rate_hz']:>5g} Hz {row['ports']:>5}  {cells[0]:>16}  {cells[1]:>15}  "
-            f"{cells[2]:>16}  {'yes' if row['enough'] else 'no'}"
-        )
-    lines.append("")
-    limits = f"{100 * asked.loss_max:g} % lost, ways back in {asked.recovery_ms_max:g} ms"
-    for rate, ports in answer.needed.items():
-        if ports is None:
-            most = max(asked.ports)
-            lines.append(f"{rate:g} Hz: none of up to {most} ports is enough for {limits}.")
-        else:
-            places = ", ".join(answer.where[ports])
-            verb = "ports are" if ports > 1 else "port is"
-            lines.append(f"{rate:g} Hz: {ports} {verb} enough for {limits}, on {places}.")
-    if 1 in answer.needed.values():
-        lines.append("With a single port a cut of its cable silences all cells; two recover.")
-    return lines
-
-
-def _share(row: dict[str, Any], name: str) -> str:
-    mean = row[f"{name}_mean"]
-    if mean is None:
-        return "-"
-    half = (row[f"{name}_high"] - row[f"{name}_low"]) / 2
-    return f"{100 * mean:.2f} +- {100 * half:.2f} %"
-
-
-def _span(row: dict[str, Any], name: str) -> str:
-    mean = row[f"{name}_mean"]
-    if mean is None:
-        return "-"
-    half = (row[f"{name}_high"] - row[f"{name}_low"]) / 2
-    return f"{mean:.1f} +- {half:.1f}"
 
 
 def parse_ports(text: str) -> tuple[int, ...]:

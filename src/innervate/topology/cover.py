@@ -8,7 +8,8 @@ also lie on walls inside of it, if it has some.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from importlib.util import find_spec
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -18,9 +19,11 @@ from innervate.topology.errors import TopologyError
 from innervate.topology.urdf import Link, Vector, moved, read_links
 
 SUFFIXES = (".stl", ".obj", ".ply", ".off", ".glb")
+COLLADA = ".dae"  # takes pycollada; such a mesh is read where a link has no other shape
 SEED = 1
 DRAWN = 25  # points a square of the pitch; with more, hardly any more are kept
 CELLS_MAX = 5000
+NAMED_MAX = 8  # links in a message
 Cell = tuple[str, Vector, Vector]  # its name, place in mm, direction of its surface
 
 
@@ -40,7 +43,8 @@ def cells_on_surfaces(path: Path, pattern: str, pitch_mm: float) -> tuple[list[s
         pitch_mm: least distance between two cells of a link, > 0.
 
     Raises:
-        TopologyError: no link matches, none has a shape that can be read, or too many cells.
+        TopologyError: no link matches, none has a shape, one has only shapes that cannot be read,
+            or too many cells.
     """
     found = _all_cells(path, pattern, pitch_mm)
     return [name for name, _, _ in found], [place for _, place, _ in found]
@@ -55,15 +59,32 @@ def surfaces(path: Path, pattern: str) -> Iterator[Any]:
     """Shapes (trimesh) of the links that match, mm, in the root's frame: those that can be read.
 
     Raises:
-        TopologyError: no link matches, or a mesh is missing.
+        TopologyError: no link matches, or a mesh is missing or broken.
     """
     for link in read_links(path, pattern):
         yield from _meshes(path, link)
 
 
+def _say_unreadable(path: Path, links: Sequence[Link]) -> None:
+    """Raise if some links have a shape, but none that can be read: they would carry no cells."""
+    lost = [link for link in links if has_surface(link) and not _parts(link)]
+    if lost:
+        names = ", ".join(link.name for link in lost[:NAMED_MAX])
+        more = f" and {len(lost) - NAMED_MAX} more" if len(lost) > NAMED_MAX else ""
+        meshes = (part.get("filename", "") for link in lost for part in link.element.iter("mesh"))
+        kinds = ", ".join(sorted({Path(mesh).suffix or "no suffix" for mesh in meshes}))
+        raise TopologyError(
+            f"{path.name}: no shape of {names}{more} can be read (meshes: {kinds or 'none'}); "
+            f"convert them to one of {', '.join((*SUFFIXES, COLLADA))}, or choose other links",
+            "links",
+        )
+
+
 def _all_cells(path: Path, pattern: str, pitch_mm: float) -> list[Cell]:
     found: list[Cell] = []
-    for link in read_links(path, pattern):
+    links = read_links(path, pattern)
+    _say_unreadable(path, links)
+    for link in links:
         for number, (place, normal) in enumerate(_cells(path, link, pitch_mm)):
             found.append((f"{link.name}_{number}", place, normal))
         if len(found) > CELLS_MAX:
@@ -79,7 +100,10 @@ def _cells(path: Path, link: Link, pitch_mm: float) -> Iterator[tuple[Vector, Ve
     for mesh in _meshes(path, link):
         from trimesh.sample import sample_surface
 
-        wanted = math.ceil(DRAWN * float(mesh.area) / pitch_mm**2)
+        area = float(mesh.area)
+        if not 0 < area < math.inf:
+            raise TopologyError(f"a mesh of link {link.name} has no surface", "urdf")
+        wanted = math.ceil(DRAWN * area / pitch_mm**2)
         if wanted > DRAWN * CELLS_MAX:
             message = f"a pitch of {pitch_mm:g} mm is too fine for link {link.name}; take a wider"
             raise TopologyError(message, "pitch_mm")
@@ -106,23 +130,29 @@ def thinned(points: list[Vector], pitch_mm: float) -> list[Vector]:
 
 def _meshes(path: Path, link: Link) -> Iterator[Any]:
     """The shapes of a link, mm, in the root's frame: those to see if they can be read."""
-    for kind in ("visual", "collision"):
-        parts = [part for part in link.element.findall(kind) if _readable(part)]
-        if parts:
-            for part in parts:
-                mesh = _shape(path, link, part)
-                turn, place = moved(link.turn, link.place, part.find("origin"), link.name)
-                frame = [[*row, at] for row, at in zip(turn, place, strict=True)]
-                mesh.apply_transform([*frame, [0, 0, 0, 1]])
-                mesh.apply_scale(1000)
-                yield mesh
-            return
+    for part in _parts(link):
+        mesh = _shape(path, link, part)
+        turn, place = moved(link.turn, link.place, part.find("origin"), link.name)
+        frame = [[*row, at] for row, at in zip(turn, place, strict=True)]
+        mesh.apply_transform([*frame, [0, 0, 0, 1]])
+        mesh.apply_scale(1000)
+        yield mesh
 
 
-def _readable(part: Element) -> bool:
+def _parts(link: Link) -> list[Element]:
+    """The shapes of a link that are used: to see or else for collisions, in Collada only if all."""
+    for suffixes in (SUFFIXES, (*SUFFIXES, COLLADA)):
+        for kind in ("visual", "collision"):
+            parts = [part for part in link.element.findall(kind) if _readable(part, suffixes)]
+            if parts:
+                return parts
+    return []
+
+
+def _readable(part: Element, suffixes: tuple[str, ...]) -> bool:
     mesh = part.find("geometry/mesh")
     if mesh is not None:
-        return mesh.get("filename", "").lower().endswith(SUFFIXES)
+        return mesh.get("filename", "").lower().endswith(suffixes)
     return any(part.find(f"geometry/{shape}") is not None for shape in _SOLIDS)
 
 
@@ -139,24 +169,50 @@ def _shape(path: Path, link: Link, part: Element) -> Any:
         )
         return _SOLIDS[name](trimesh.creation, _sizes(solid, link))
     file = find_mesh(mesh.get("filename", ""), path)
+    if file.suffix.lower() == COLLADA and find_spec("collada") is None:
+        message = f"{file.name} of link {link.name} is a Collada mesh, which takes pycollada"
+        raise TopologyError(f"{message}; install it with: pip install pycollada", "urdf")
     try:
         made: Any = trimesh.load(file, force="mesh")
     except Exception as error:  # whatever a reader of a dozen formats may raise
         raise TopologyError(
             f"{file.name} of link {link.name} is no mesh: {error}", "urdf"
         ) from None
-    made.apply_scale([float(word) for word in mesh.get("scale", "1 1 1").split()])
+    if file.suffix.lower() == COLLADA:
+        made.apply_scale(_metres(file))
+    made.apply_scale(_numbers(mesh.get("scale", "1 1 1"), 3, mesh, link))
     return made
 
 
+def _metres(file: Path) -> float:
+    """Of a Collada file, the length that its numbers count in, m; trimesh leaves that to us."""
+    import collada
+
+    unit = collada.Collada(str(file), ignore=[collada.common.DaeError]).assetInfo.unitmeter
+    return 1.0 if unit is None else float(unit)
+
+
 def _sizes(solid: Element, link: Link) -> dict[str, list[float]]:
+    """The sizes of a solid shape, all of them above 0."""
+    wanted = _SIZES[solid.tag]
+    return {key: _numbers(solid.get(key, ""), count, solid, link) for key, count in wanted.items()}
+
+
+def _numbers(text: str, count: int, element: Element, link: Link) -> list[float]:
+    """So many numbers above 0 (a mesh's scale may mirror it)."""
     try:
-        return {key: [float(word) for word in text.split()] for key, text in solid.attrib.items()}
+        found = [float(word) for word in text.split()]
     except ValueError:
-        message = f"link {link.name} has a {solid.tag} whose size is no number"
-        raise TopologyError(message, "urdf") from None
+        found = []
+    least = -math.inf if element.tag == "mesh" else 0.0
+    if len(found) != count or not all(least < x < math.inf and x for x in found):
+        what = f"{count} numbers" if count > 1 else "a number"
+        message = f'link {link.name} has a {element.tag} of size "{text}"; it takes {what} above 0'
+        raise TopologyError(message, "urdf")
+    return found
 
 
+_SIZES = {"box": {"size": 3}, "cylinder": {"radius": 1, "length": 1}, "sphere": {"radius": 1}}
 _SOLIDS: dict[str, Any] = {
     "box": lambda make, size: make.box(extents=size["size"]),
     "cylinder": lambda make, size: make.cylinder(size["radius"][0], size["length"][0]),

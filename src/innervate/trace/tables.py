@@ -61,11 +61,14 @@ LINKS = Table(
 )
 OUTAGES = Table(
     "outages",
-    "the number of cells without a route changed",
+    "the number of cells without a route, or of cells cut off, changed",
     (
         _TIME,
         Column(
             "unrouted", "Int32", "cells", "cells connected to the PC without a route, from now on"
+        ),
+        Column(
+            "cut_off", "Int32", "cells", "cells on that no cable joins with the PC, from now on"
         ),
     ),
 )

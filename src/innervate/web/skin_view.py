@@ -164,10 +164,11 @@ class SkinView(View):
             recovery.recovered_ms = None if cells else (at_us - recovery.at_us) / 1e3
             recovery.closed = cells == 0 and memory.event_us > recovery.at_us
         after_us = at_us - memory.event_us
-        if cells == 0:
+        if cells == 0 and memory.apart < self.cells:
+            who = "all other cells" if memory.apart else "all cells"
             what = "again after" if memory.settled else "after"
-            self.log.often("routed", at_us, f"all cells have a way {what} {after_us / 1e3:.1f} ms",
-                           "good")  # fmt: skip
+            self.log.often("routed", at_us, f"{who} have a way {what} {after_us / 1e3:.1f} ms",
+                           "info" if memory.apart else "good")  # fmt: skip
             memory.settled = True
 
     def _broken(self, at_us: int, end: int, broken: int) -> None:

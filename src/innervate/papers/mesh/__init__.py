@@ -3,6 +3,7 @@
 from importlib import import_module
 
 from innervate.papers.experiment import Experiment
+from innervate.papers.mesh.readings import READINGS as READINGS
 
 TITLE = "Routing tables from a gateway, and a virtual fence"
 AUTHORS = "The routing part of a design of a virtual fence for robots"

@@ -3,6 +3,7 @@
 from importlib import import_module
 
 from innervate.papers.experiment import Experiment
+from innervate.papers.radio.readings import READINGS as READINGS
 
 TITLE = "CSMA/CD-R for a wireless multi-robot communication"
 AUTHORS = "D.-H. Kim, J.-H. Kim"

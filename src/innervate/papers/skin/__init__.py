@@ -3,12 +3,14 @@
 from importlib import import_module
 
 from innervate.papers.experiment import Experiment
+from innervate.papers.skin.readings import READINGS as READINGS
 
 TITLE = "A robust and efficient dynamic network protocol for a large-scale artificial robotic skin"
 AUTHORS = "C. Bader, F. Bergner, G. Cheng"
 # One module each, in the order of the paper; the last two are beyond it.
 FIGURES = (
-    "fig5", "fig6", "fig8a", "fig8b", "eq7", "fig10", "eq9", "fig11", "loop", "modes",
+    "startup", "fig5", "fig6", "eq3", "delay", "fig8a", "fig8b", "eq7", "at_most", "fig10", "eq9",
+    "fig11", "loop", "modes",
 )  # fmt: skip
 
 

@@ -15,6 +15,13 @@ from innervate.papers.experiment import Point, Results
 from innervate.scenario import Plan
 from innervate.sim.simulate import Result, simulate
 
+# Rules of which several figures show the recoveries, with their M (0 = min(k, 5)), and their names.
+RULES = (("feasible", 0), ("paper", 1), ("paper-lax", 1))
+RULE_NAMES = {
+    "feasible": "rule feasible",
+    "paper": "printed rule",
+    "paper-lax": "printed rule, laxer reading",
+}
 SETTLE_PERIODS = 60  # until nothing changes any more: listening, the deepest cell, its fresh number
 DRAWN_PERIODS = 5  # the cut comes at a random moment of these
 WATCH_PERIODS = 100

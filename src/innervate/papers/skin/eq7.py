@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -9,15 +10,22 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate import scenario
-from innervate.papers.experiment import FAILS, Claim, Experiment, Point, Results, verdict
-from innervate.papers.skin.common import Case, percent, recovery_point, seeds_of
+from innervate.papers.experiment import Claim, Experiment, Point, Results, Span, verdict
+from innervate.papers.skin.common import (
+    RULE_NAMES,
+    RULES,
+    Case,
+    percent,
+    recovery_point,
+    seeds_of,
+)
 from innervate.plot import style
 
 SETUPS = tuple(f"setup-{i}" for i in range(1, 9))
-RULES = (("feasible", 0), ("paper", 1))
 HZ = 250
 K = 3
 BAND = 3
+ALL = Span(1.0, 1.0)  # share of the failures: a bound has no exceptions
 # ceil(h/2) where the interfaces lie opposite each other.
 HALF = {"setup-1": 7, "setup-2": 5, "setup-3": 4, "setup-4": 3}
 
@@ -29,12 +37,14 @@ def seeds(quick: bool, cut: str) -> range:
     return seeds_of(4 if quick else 40)
 
 
+@cache
 def cuts(setup: str) -> list[str]:
     """A random cable, and every interface port of the setup that leaves another one."""
     ports = len(scenario.load(setup).model.interface)
     return ["random link", *(f"interface {i}" for i in range(ports))]
 
 
+@cache
 def depth(setup: str) -> int:
     """The deepest cell of a setup, d_m."""
     return int(scenario.plan(scenario.load(setup)).depth_max)
@@ -46,7 +56,7 @@ def case(setup: str, rule: tuple[str, int], cut: str) -> Case:
 
 
 def points(quick: bool) -> list[Point]:
-    """All setups, all cuts, both rules."""
+    """All setups, all cuts, all rules."""
     return [
         recovery_point(case(setup, rule, cut), seeds(quick, cut))
         for rule in RULES
@@ -69,18 +79,17 @@ def ratios(results: Results, quick: bool, setup: str, rule: tuple[str, int], kin
 
 
 def draw(results: Results, quick: bool) -> Figure:
-    """Every failure as a dot over the bound of its setup, both rules."""
-    figure, axes = style.panels(style.WIDE_IN, 2.8, 1, 2, sharey=True)
-    for ax, letter, rule in zip(axes, "ab", RULES, strict=True):
+    """Every failure as a dot over the bound of its setup, a panel a rule."""
+    figure, axes = style.panels(style.WIDE_IN, 3.2, 1, len(RULES), sharey=True)
+    for ax, letter, rule in zip(axes, "abc", RULES, strict=True):
         _panel(ax, results, quick, rule)
-        name = "rule feasible" if rule[0] == "feasible" else "printed rule"
-        ax.set_title(f"{letter}  {name}, k = {K}")
+        ax.set_title(f"{letter}  {RULE_NAMES[rule[0]]}")
     axes[0].set_ylabel("convergence (periods)")
     axes[0].set_yscale("log")
     axes[0].set_yticks([2, 5, 10, 20, 50, 100], ["2", "5", "10", "20", "50", "100"])
     axes[0].minorticks_off()
     axes[0].set_ylim(1.5, 140)
-    axes[0].legend(loc="upper left")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return figure
 
 
@@ -126,7 +135,7 @@ def _panel(ax: Axes, results: Results, quick: bool, rule: tuple[str, int]) -> No
 
 
 def judge(results: Results, quick: bool) -> list[Claim]:
-    """Bounded, for both rules; a mean for interface cables."""
+    """Bounded, for all rules; a mean for interface cables."""
     return [
         *(_bound(results, quick, rule, band) for rule in RULES for band in (BAND, 0)),
         _mean(results, quick),
@@ -148,19 +157,26 @@ def _bound(results: Results, quick: bool, rule: tuple[str, int], band: int) -> C
     over = _all(results, quick, rule, ("random", "interface"))
     share = float((over[:, 0] <= band).mean())
     routed = float((over[:, 1] <= band).mean())
-    worst = float(over[:, 0].max())
-    words = f"rule {rule[0]}: {percent(share, 1)} of {len(over)} failures, worst {worst:+.1f} T"
-    words += f"; routed within it: {percent(routed, 1)}"
-    claim = "Eq. 7: any single failure converges within (d_m + k) T"
+    last = ratios(results, quick, SETUPS[-1], rule, "interface")[:, 0] - depth(SETUPS[-1]) - K
+    words = (
+        f"{percent(share, 1)} of {len(over)} failures (setup 8, interface "
+        f"cables: {(last <= band).sum()} of {len(last)}), mean {over[:, 0].mean():+.1f} T, 95 % "
+        f"within {np.percentile(over[:, 0], 95):+.1f} T, worst {over[:, 0].max():+.1f} T; routed "
+        f"within it: {percent(routed, 1)}"
+    )
+    claim = (
+        f"{RULE_NAMES[rule[0]]}: any single failure converges within (d_m + k) T (k = {K}, {HZ} Hz)"
+    )
     claim += f" + {band} T" if band else ", without the error bar"
-    if rule[0] == "paper":
-        reason = (
-            "E26: with M = 1 parents go on changing long after every cell has a route again "
-            "(phases drift, a nearer port is allowed now and then), so the last one comes late"
-        )
-    else:
+    if rule[0] == "feasible":
         reason = "with d_m the deepest cell of the setup (E22), not ceil(h/2)"
-    return Claim("Eq. 7", claim, words, verdict(share == 1.0, "E21", "E22"), reason)
+    else:
+        reason = (
+            "E25: recoveries count up round loops; E26: with M = 1 parents go on changing long "
+            "after every cell has a route again (phases drift, a nearer port is allowed now and "
+            "then), so the last one comes late"
+        )
+    return Claim("Eq. 7", claim, words, verdict(ALL.has(share), "E21", "E22"), reason)
 
 
 def _mean(results: Results, quick: bool) -> Claim:
@@ -170,9 +186,9 @@ def _mean(results: Results, quick: bool) -> Claim:
     above = float((over > 0).mean())
     return Claim(
         "Eq. 7",
-        "a bound also with d_m = ceil(h/2) (setups 1-4, interface cables)",
+        "rule feasible: a bound also with d_m = ceil(h/2) (setups 1-4, interface cables)",
         f"{percent(above)} of {len(over)} failures above it, mean {over.mean():+.2f} T",
-        verdict(above == 0.0) if above == 0 else FAILS,
+        verdict(ALL.has(1 - above)),
         "E21: a mean with a band, not a bound: half of all recoveries are slower than the mean",
     )
 
