@@ -138,7 +138,7 @@ def test_every_control_has_a_name_and_is_reached_by_tab(look, skin):
 def test_pause_step_and_speed(look, skin):
     page = look(skin)
     page.keyboard.press("Space")
-    expect(page.locator("#go")).to_have_text("Go")
+    expect(page.locator("#go")).to_have_text("Play")
     before = text(page, "#clock")
     page.locator("#step").click()
     expect(page.locator("#clock")).not_to_have_text(before)
@@ -165,7 +165,7 @@ def test_scrubbing_leads_back(look, skin):
 def test_two_pages_see_the_same(look, skin):
     one, other = look(skin), look(skin, colours="dark")
     one.locator("#go").click()
-    expect(other.locator("#go")).to_have_text("Go")
+    expect(other.locator("#go")).to_have_text("Play")
     click(other, OTHER)
     click(one, "p0 r2 c3")
     expect(other.locator("#selected-facts")).to_have_text("link, off at one end")
@@ -183,10 +183,10 @@ def test_dark_as_the_system_has_it_or_as_chosen(look, skin):
     ground = "() => getComputedStyle(document.documentElement).backgroundColor"
     assert page.evaluate(ground) == "rgb(18, 22, 28)"
     page.locator("#theme").click()
-    expect(page.locator("#theme")).to_have_text("Light")
+    expect(page.locator("#theme")).to_have_text("Theme: light")
     assert page.evaluate(ground) == "rgb(255, 255, 255)"
     page.reload()
-    expect(page.locator("#theme")).to_have_text("Light")
+    expect(page.locator("#theme")).to_have_text("Theme: light")
     page.keyboard.press("t")
     assert page.evaluate(ground) == "rgb(18, 22, 28)"
 

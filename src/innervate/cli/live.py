@@ -27,8 +27,9 @@ def up(
     from innervate import scenario as scenarios
     from innervate.live import run_up as room
 
-    plan = scenarios.plan(scenarios.load(file, sets))
-    return asyncio.run(room.run(plan, folder, cables, sealed, for_s, as_json))
+    loaded = scenarios.load(file, sets)
+    plan, text = scenarios.plan(loaded), scenarios.dump(loaded)
+    return asyncio.run(room.run(plan, folder, cables, sealed, for_s, as_json, text))
 
 
 def show(names: list[str], as_json: bool) -> int:

@@ -12,9 +12,10 @@ from innervate import __version__
 from innervate.analysis.radio_live import Still
 from innervate.live import status
 from innervate.web.errors import Refused, WatchError
-from innervate.web.history import SERIES, Logbook
+from innervate.web.history import LOSS, RETURN, SERIES, Logbook
 from innervate.web.live_map import Link, Map, Place, Status
 from innervate.web.live_poll import Poller
+from innervate.web.live_scene import drawn
 from innervate.web.live_state import State
 from innervate.web.messages import Command, Cut, Heal, Kill, Revive, number
 from innervate.web.recovery import Recovery
@@ -76,18 +77,27 @@ class Live(Source):
             if i not in self._told:
                 self._log.often("none", 0, f"{self._names[i]}: nobody answers at its socket", "bad")
         self._map = Map(self._last)
+        self._drawn = drawn(sockets, self._map.kind)
         self._off: set[Place] = set()  # cut off whole, from here
         self._state = State(self._map, self._told)
         self.can = self._possible()
 
     def scene(self) -> dict[str, Any]:
         """Who answered, and who is linked with whom as they say."""
-        places = self._map.spread().round(3).tolist()
+        known = self._drawn
+        names = [self._label(place) for place in self._map.places]
+        as_drawn = known is not None and all(name in known.places for name in names)
+        places = (
+            [known.places[name] for name in names]
+            if known is not None and as_drawn
+            else self._map.spread().round(3).tolist()
+        )
         nodes = []
         for at, (place, (x, y)) in enumerate(zip(self._map.places, places, strict=True)):
             node = {
                 "id": at,
-                "label": self._label(place),
+                "label": names[at],
+                "also": known.labels.get(names[at], "") if known is not None else "",
                 "x": x,
                 "y": y,
                 "role": self._role(place),
@@ -106,9 +116,12 @@ class Live(Source):
             {"id": "dropped", "label": "frames dropped, all nodes", "unit": "per s"},
         ]
         return {
-            "kind": self._map.kind, "name": "live", "source": "live", "version": __version__,
+            "kind": self._map.kind, "name": known.name if known is not None else "live",
+            "source": "live", "version": __version__,
             "can": list(self.can), "duration_s": None, "t_s": self._now_us() / 1e6,
-            "nodes": nodes, "links": links, "fence": None, "series": series,
+            "nodes": nodes, "links": links, "series": series,
+            "fence": known.fence if known is not None and as_drawn else None,
+            "metres": known is not None and as_drawn and known.metres,
             "ports": sum(place.port >= 0 for place in self._map.places),
         }  # fmt: skip
 
@@ -300,7 +313,7 @@ class Live(Source):
     def _note(self, cause: str, heals: bool) -> None:
         if not heals:
             self._lose(cause)
-        self._log.say(self._now_us(), cause)
+        self._log.say(self._now_us(), cause, mark=RETURN if heals else LOSS)
 
     def _cable(self, command: Cut | Heal) -> None:
         at = number("link", command.link, len(self._map.links))
