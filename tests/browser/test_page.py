@@ -48,6 +48,20 @@ def test_a_click_kills_a_cell_and_the_next_revives_it(look, skin):
     expect(page.locator("#selected-facts")).to_contain_text("through port")
 
 
+def test_a_command_is_sent_to_the_selected_cell(look, skin):
+    page = look(skin)
+    page.locator("#tool").select_option("look")
+    click(page, "p0 r4 c1")
+    page.locator("#command-code").fill("3")
+    page.locator("#command-value").fill("500")
+    page.locator("#command-send", has_text="Send to this cell").click()
+    expect(page.locator("#log")).to_contain_text("came to p0 r4 c1 after")
+    expect(page.locator("#selected-facts")).to_contain_text("came")
+    page.locator("#command-code").fill("256")
+    page.locator("#command-send").click()  # refused by the field itself
+    expect(page.locator("#log")).not_to_contain_text("not a command")
+
+
 def test_a_click_touches_a_cell_and_the_pc_receives_it(look, skin):
     page = look(skin)
     page.locator("#tool").select_option("touch")

@@ -17,7 +17,7 @@ from innervate.web.live_map import Link, Map, Place, Status
 from innervate.web.live_poll import Poller
 from innervate.web.live_scene import drawn
 from innervate.web.live_state import State
-from innervate.web.messages import Command, Cut, Heal, Kill, Revive, number
+from innervate.web.messages import Command, Cut, Give, Heal, Kill, Revive, number
 from innervate.web.recovery import Recovery
 from innervate.web.source import Source
 
@@ -272,7 +272,30 @@ class Live(Source):
 
     def _possible(self) -> tuple[str, ...]:
         nodes = ("kill", "revive") if any(one.get("paths") for one in self._last.values()) else ()
-        return (*(("cut", "heal") if self._map.links else ()), *nodes)
+        down = ("command",) if self._map.kind == "skin" and self._pc() is not None else ()
+        return (*(("cut", "heal") if self._map.links else ()), *nodes, *down)
+
+    def _pc(self) -> int | None:
+        """Which node is the PC of a skin."""
+        found = (i for i, one in self._last.items() if one.get("role") == "sink")
+        return next(found, None)
+
+    def _give(self, command: Give) -> None:
+        """Have the PC send a command down."""
+        pc, cell, whom = self._pc(), None, "all cells"
+        assert pc is not None
+        if command.node is not None:
+            place = self._map.places[number("node", command.node, len(self._map.places))]
+            if place.port >= 0:
+                raise Refused("this is a port of the PC; commands are for cells")
+            cell, whom = int(self._last[place.node]["number"]), self._label(place)
+        request = {"do": "command", "code": command.code, "value": command.value, "cell": cell}
+        answer = self._poller.ask({pc: request}).get(pc)
+        if answer is None or "error" in answer:
+            raise Refused(f"the PC did not take it: {(answer or {}).get('error', 'no answer')}")
+        if not answer["ports"]:
+            raise Refused("no cell has the PC as its parent: nobody hands it down")
+        self._log.say(self._now_us(), f"command {answer['number']} sent to {whom}")
 
     def do(self, command: Command) -> dict[str, Any] | None:
         """Have drivers drop what comes over a link, or over all paths of a node; or take it again.
@@ -284,6 +307,8 @@ class Live(Source):
             self._plug(place, isinstance(command, Revive))
         elif isinstance(command, Cut | Heal):
             self._cable(command)
+        elif isinstance(command, Give) and "command" in self.can:
+            self._give(command)
         else:
             raise Refused("not possible here")
         self._next = 0.0

@@ -1,5 +1,6 @@
 // The page of `innervate watch`: takes in what the server says, shows it, and sends back commands.
 import { setUpTheme } from "./colours.js";
+import { CommandBox } from "./command.js";
 import { Controls } from "./controls.js";
 import { setUpKeys } from "./keys.js";
 import { showLegend } from "./legend.js";
@@ -42,7 +43,7 @@ let slowest = 0;
 const stage = new Stage($("stage"));
 const log = new Log($("log"));
 const controls = new Controls(send);
-const card = new Card(change);
+const card = new Card(change, new CommandBox(send));
 const pointer = new Pointer(stage, {
   select: (what) => card.show(view, what), act, nodesOnly: () => $("tool").value === "touch",
   over: (what, place) => tip.show(view, what, place, deed),

@@ -117,9 +117,13 @@ export class Log {
 
 /** What is selected: its name, what is known of it, and a button for all that can be done. */
 export class Card {
-  /** @param {(what: object) => void} change cuts, kills, heals or revives something */
-  constructor(change) {
+  /**
+   * @param {(what: object) => void} change cuts, kills, heals or revives something
+   * @param {CommandBox} command
+   */
+  constructor(change, command) {
     this.change = change;
+    this.command = command;
     this.shown = "";
   }
 
@@ -141,6 +145,7 @@ export class Card {
     $("selected-name").textContent = name;
     $("selected-facts").textContent = facts;
     this.#buttons(network, what);
+    this.command.show(network, what);
     const state = stateOf(network, what);
     if (what !== this.what || state !== this.state) $("spoken").textContent = `${name}: ${facts}`;
     Object.assign(this, { what, state });

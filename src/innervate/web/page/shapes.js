@@ -140,7 +140,7 @@ export function flights(context, network, stage, size) {
 export function flightSample(kind, words) {
   return [(context) => {
     const path = new Path2D();
-    addFrame(path, kind, 13, 8, kind === "alarm" ? 2 : 4);
+    addFrame(path, kind, 13, 8, ["alarm", "command"].includes(kind) ? 2 : 4);
     context.fillStyle = colours[frameColour(kind)];
     context.fill(path);
   }, words];
@@ -151,7 +151,7 @@ function frameColour(kind) {
 }
 
 function addFrame(path, kind, x, y, size) {
-  if (kind === "alarm") diamond(path, x, y, size + 4);
+  if (kind === "alarm" || kind === "command") diamond(path, x, y, size + 4);
   else if (kind === "beacon" || kind === "ack") {
     path.moveTo(x + size, y);
     path.arc(x, y, size, 0, 7);

@@ -94,10 +94,11 @@ export class SkinView {
     if (!this.isCell[i]) return "the PC";
     if (!now.node_up[i]) return off(this.network, i);
     const touched = now.touch[i] ? `, touched ${now.touch[i]} of 255` : "";
-    if (!this.#isRouted(i)) return `no way to the PC${touched}`;
+    const told = now.told[i] >= 0 ? `, command ${now.told[i]} came` : "";
+    if (!this.#isRouted(i)) return `no way to the PC${touched}${told}`;
     const hops = now.depth[i] >= 0 ? `${plural(now.depth[i], "hop")} to the PC, ` : "";
     const load = now.load[i] ? `, load ${Math.round(100 * now.load[i])} %` : "";
-    return `${hops}through port ${now.port[i]}${load}${touched}`;
+    return `${hops}through port ${now.port[i]}${load}${touched}${told}`;
   }
 
   legend() {
@@ -118,6 +119,7 @@ export class SkinView {
     found.push([line("link", 2, []), "sends through"], affectedSample);
     if (this.network.scene.source !== "live") {
       found.push(flightSample("beacon", "beacon"), flightSample("data", "sample to the PC"));
+      if (this.network.can.has("command")) found.push(flightSample("command", "command down"));
     }
     found.push([(context) => {
       line("alarm", 2.4, [4, 3])(context);
