@@ -5,10 +5,12 @@ import pytest
 import innervate
 from innervate.scenario import ScenarioError, from_dict
 from innervate.scenario.check import summary as check
-from innervate.scenario.radio_model import MACS, ChannelTable, MediumAccessTable, TrafficTable
-from innervate.scenario.radio_slotted import UNUSED, USED_BY
+from innervate.scenario.radio_model import MACS as EVERY_MAC
+from innervate.scenario.radio_model import ChannelTable, MediumAccessTable, TrafficTable
+from innervate.scenario.radio_slotted import EVENT_ONLY, UNUSED, USED_BY
 from innervate.sim.slotted_drive import USED_BY as OPTIONS
 
+MACS = [mac for mac in EVERY_MAC if mac not in EVENT_ONLY]
 # Another value of every key whose table says what a protocol does.
 OTHER = {
     "protocol": {
@@ -113,3 +115,9 @@ def test_the_time_of_a_scenario_ends_a_slotted_run():
     none = innervate.run(scenario("csma-cd-r", **tables, duration_s=0.001), plain=True).summary
     assert none["headline"]["level"] == "down"
     assert none["throughput"] == 0
+
+
+@pytest.mark.parametrize("mac", EVENT_ONLY)
+def test_what_the_slotted_level_does_not_have_is_refused(mac):
+    with pytest.raises(ScenarioError, match=f"{mac} goes with level"):
+        from_dict({"kind": "radio", "channel": {"level": "slotted"}, "protocol": {"mac": mac}})

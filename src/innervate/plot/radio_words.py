@@ -27,6 +27,7 @@ from innervate.protocol.radio_words import (
     REPORT_SKIPPED,
     REPORT_STOPPED,
     REPORT_TURN,
+    REPORT_WIDER,
 )
 from innervate.scenario.radio_plan import FADE, GARBLE, JOIN, KILL, LEAVE
 
@@ -75,6 +76,8 @@ PROTOCOLS = {
     "dcf": "802.11 DCF",
     "tree": "binary tree splitting",
     "tdma": "TDMA",
+    "token-ring": "token ring",
+    "polling": "polling",
 }
 
 # What the numbers of a turn mean (a and b of REPORT_TURN).
@@ -91,6 +94,7 @@ REPORTS = {
     REPORT_LEFT: "left",
     REPORT_SKIPPED: "own place in the round passed over",
     REPORT_STOPPED: "own transmission broken off",
+    REPORT_WIDER: "greater delays are believed in from now on",
 }
 _REASONS = {
     NO_PROOF: "nobody confirmed it",

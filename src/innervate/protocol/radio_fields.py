@@ -19,6 +19,7 @@ FRAME = (
     ("window", 0, 0, 63, "minislots", "report: size of the window that follows; 0 none"),
     ("span", 0, 0, 1023, "minislots", "report: what those without a minislot draw from"),
     ("split", 0, 0, 1, "flag", "report: collided ones split, two minislots each, ahead of others"),
+    ("wide", 0, 0, 3, "doublings", "open, report: of the greatest delay that is believed in"),
 )
 
 PACKET = (
@@ -74,6 +75,11 @@ PRACTICAL = (
     ("bad", 2, 0, 65535, "bits", "reporter: minislots with noise"),
     ("rest", 0, 0, 1023, "minislots", "reporter: drawn from but not yet opened"),
     ("opener", 0, 0, 1, "flag", "reporter: this window follows our opening"),
+    ("credit", 0, 0, 15, "turns", "with a packet, less those without: a place is kept for a while"),
+    ("joined", 0, 0, 1023, "stations", "that were given a place since the last window was opened"),
+    ("crowd", 0, 0, 1023, "quarters", "of a station: how many mostly wait for a window"),
+    ("wide", 0, 0, 3, "doublings", "of the greatest configured delay that we believe in"),
+    ("used", 0, 0, 3, "doublings", "... that this sequence allows for"),
 )
 
 PAPER = (

@@ -2,6 +2,7 @@
 
 from innervate.protocol.arith import MASK30, after
 from innervate.protocol.outbox import report
+from innervate.protocol.radio_bounds import TRIP, adopt, notice
 from innervate.protocol.radio_idle import rest
 from innervate.protocol.radio_modes import (
     clear_round,
@@ -9,44 +10,53 @@ from innervate.protocol.radio_modes import (
     following,
     is_over,
     prove,
+    window_of,
 )
-from innervate.protocol.radio_reporter import lead
+from innervate.protocol.radio_reporter import lead_first
+from innervate.protocol.radio_times import guard, join_after, least_delay, most_delay
 from innervate.protocol.radio_turn import enter_turn
 from innervate.protocol.radio_window import enter_window
 from innervate.protocol.radio_words import (
-    ALONE,
     HEARD_TAIL,
+    LONE_WINDOWS,
+    NEXT_NONE,
     NO_PROOF,
     NONE,
     POSITIONS,
-    REPORT_BOUNDS,
     REPORT_COLLISION,
     REPORT_SKIPPED,
+    WINDOWS,
 )
 
 TURNS_COUNTED = 65535
+TRIP_MOST = 1 << 20  # us; longer ones are clocks that wrapped
 
 
 def hear_open(station, params, now, frame, out):
     """Somebody opens a sequence: whatever we followed before is over."""
     if station.pending:
         disprove(station, NO_PROOF, out)
+    adopt(station, params, frame, out)
     clear_round(station)
     station.collided = 0
     station.tail = 0
     station.last_ok = 1
     station.slot = NONE
+    station.joined = 0
     if frame.more:
         station.live[0] = 1
         station.cur = 0
-    enter_window(station, params, now, 1, 1, 1, 1, out)
+    size = 1
+    if LONE_WINDOWS <= frame.next < NEXT_NONE:
+        size = window_of(frame.next)
+    enter_window(station, params, now, size, size, size, 1, out)
 
 
 def hear_data(station, params, now, frame, out):
     """A turn of somebody else: proof for the turn before it, and whose turn is next."""
     sender = frame.pos
     behind = frame.next
-    if sender >= POSITIONS or (behind >= POSITIONS and behind != ALONE):
+    if sender >= POSITIONS or behind == NEXT_NONE:
         return
     if station.pending:
         settle(station, params, now, frame, out)
@@ -56,8 +66,11 @@ def hear_data(station, params, now, frame, out):
     station.slot = NONE
     station.turns = min(station.turns + 1, TURNS_COUNTED)
     station.live[sender] = frame.more
-    lone = behind == ALONE
-    opens = behind == sender
+    lone = behind >= LONE_WINDOWS
+    opens = behind == sender or behind >= WINDOWS
+    size = 1
+    if WINDOWS <= behind < NEXT_NONE:
+        size = window_of(behind)
     if station.pos != NONE:
         skipped = lone or station.pos == sender
         if not skipped and not opens:
@@ -67,14 +80,16 @@ def hear_data(station, params, now, frame, out):
             station.pos = NONE
     if lone:
         clear_round(station)
+        station.joined = 0
         station.live[sender] = frame.more
         if frame.more:
             station.cur = sender
-        enter_window(station, params, now, 1, 1, 1, 1, out)
+        enter_window(station, params, now, size, size, size, 1, out)
     elif opens:
         station.turns = 0
+        station.joined = 0
         station.cur = following(station, sender)
-        enter_window(station, params, now, 1, 1, 1, 0, out)
+        enter_window(station, params, now, size, size, size, 0, out)
     else:
         station.live[behind] = 1
         enter_turn(station, params, now, behind, out)
@@ -83,12 +98,13 @@ def hear_data(station, params, now, frame, out):
 def settle(station, params, now, frame, out):
     """Our packets are delivered iff the station we named says so at its first chance."""
     start = (now - frame.slots * params.slot_us) & MASK30
-    trip = (start - station.end - params.ta_us) & MASK30
-    if frame.ok and frame.pos == station.named and after(station.until, start):
-        if station.next == frame.pos and (
-            trip + 1 < 2 * params.dmin_us or trip > 2 * params.dmax_us
-        ):
-            report(out, REPORT_BOUNDS, trip // 2, 2)
+    trip = (start - station.end - params.ta_us - guard(params, station.used)) & MASK30
+    good = frame.ok and frame.pos == station.named
+    if good and station.next == frame.pos:
+        least = 2 * least_delay(params, station.used)
+        if trip + 1 < least or trip > 2 * most_delay(params, station.used):
+            notice(station, params, min(trip // 2, TRIP_MOST), TRIP, out)
+    if good and after(station.until, start):
         prove(station, out)
     else:
         disprove(station, NO_PROOF, out)
@@ -96,24 +112,24 @@ def settle(station, params, now, frame, out):
 
 def sent_data(station, params, now, out):
     """Our turn is over and the radio listens again."""
-    opens = station.next == ALONE or station.next == station.pos
-    ack = 1 if station.next == ALONE else 0
+    opens = station.next == station.pos or station.next >= WINDOWS
+    size = 1
+    if WINDOWS <= station.next < NEXT_NONE:
+        size = window_of(station.next)
+    alone = station.next >= LONE_WINDOWS
     if not station.live[station.pos]:
         station.pos = NONE
     if station.cd:
         report(out, REPORT_COLLISION, 0, 0)
         disprove(station, HEARD_TAIL, out)
-        if station.next == ALONE:
-            rest(station, now, params.join_us)
+        if alone:
+            rest(station, now, join_after(params, station.used))
         else:
             enter_turn(station, params, now, station.cur, out)
     elif opens:
         station.turns = 0
         station.opener = 0
-        station.rest = 0
-        station.span = 1
-        station.split = 0
-        lead(station, params, now, 1, ack, out)
+        lead_first(station, params, now, size, 1 if alone else 0, out)
     else:
         station.turns = min(station.turns + 1, TURNS_COUNTED)
         enter_turn(station, params, now, station.cur, out)

@@ -2,15 +2,36 @@
 
 from innervate.protocol.arith import MASK30, after
 from innervate.protocol.outbox import report
-from innervate.protocol.radio_modes import IDLE, SEND_OPEN, arm, clear_round, disprove
+from innervate.protocol.radio_bounds import BEHIND, notice
+from innervate.protocol.radio_modes import (
+    IDLE,
+    SEND_OPEN,
+    arm,
+    clear_round,
+    code_for,
+    disprove,
+    wanted_window,
+)
 from innervate.protocol.radio_station import blank, load_packets
+from innervate.protocol.radio_times import (
+    guard,
+    join_after,
+    least_delay,
+    minislot,
+    most_delay,
+    probe,
+    retry_within,
+    split_into,
+)
 from innervate.protocol.radio_words import (
+    ALONE,
     HEARD_TAIL,
+    LONE_WINDOWS,
     NONE,
     NOT_HEARD,
     OPEN,
-    REPORT_BOUNDS,
     REPORT_COLLISION,
+    WINDOWS,
 )
 from innervate.protocol.rng import draw
 
@@ -26,7 +47,7 @@ def boot(station, params, now, cause, out):
     station.opener = 0
     station.slot = NONE
     if cause:
-        wait = params.join_us
+        wait = join_after(params, station.wide)
     rest(station, now, wait)
     schedule(station, now, out)
 
@@ -35,12 +56,14 @@ def rest(station, now, wait_us):
     """Leave the sequence; a new one may be opened `wait_us` from now."""
     clear_round(station)
     station.mode = IDLE
+    station.credit = 0
     station.pending = 0
     station.act = 0
     station.armed = 0
     station.tail = 0
     station.collided = 0
     station.last_ok = 0
+    station.used = station.wide
     station.at = (now + wait_us) & MASK30
 
 
@@ -56,6 +79,12 @@ def schedule(station, now, out):
         arm(station, now, wait, out)
 
 
+def over(station, params, now, out):
+    """The sequence has ended, as all who followed it know: whoever has a packet may open."""
+    rest(station, now, guard(params, station.used) + 1)
+    schedule(station, now, out)
+
+
 def offered(station, params, now, out):
     """A packet came; in an idle channel it goes out at once."""
     if station.mode == IDLE and not station.armed:
@@ -68,7 +97,7 @@ def open_now(station, params, now, out):
     if station.queued == 0 or station.cd:
         return
     frame = blank(out)
-    probe_slots = (params.probe_us + params.slot_us - 1) // params.slot_us
+    probe_slots = (probe(params, station.wide) + params.slot_us - 1) // params.slot_us
     count = 0
     frame.slots = probe_slots
     if not station.collided:
@@ -76,7 +105,16 @@ def open_now(station, params, now, out):
         frame.slots = max(frame.slots, probe_slots)
     frame.kind = OPEN
     frame.pos = 0
+    frame.next = ALONE
+    size = wanted_window(station, params)
+    if count == 0 and split_into(params) > 2:
+        size = max(size, 2)  # there was a collision: more than one will ask
+    if size > 1:
+        frame.next = code_for(size) + LONE_WINDOWS - WINDOWS
+    station.next = frame.next
     frame.more = 1 if station.queued > count else 0
+    frame.wide = station.wide
+    station.used = station.wide
     station.pending = count
     station.named = NONE
     clear_round(station)
@@ -103,19 +141,21 @@ def retry(station, params, now, tail, out):
 
 def wait_again(station, params, now, out):
     """Those who collided go first: their set shrinks with every try."""
-    bound = params.retry_us
+    bound = retry_within(params, station.wide)
     for _ in range(min(max(station.lonely - LONELY_FREE, 0), LONELY_MOST)):
         bound = bound * 2
-    station.at = (now + params.ta_us + params.dmax_us + draw(station, bound)) & MASK30
+    wait = params.ta_us + most_delay(params, station.wide) + draw(station, bound)
+    station.at = (now + wait) & MASK30
     schedule(station, now, out)
 
 
 def notice_late_answer(station, params, out):
     """Nobody answered our opening in its window, but somebody does right behind it."""
-    close = station.end + params.ta_us + 2 * params.dmin_us + 2 * params.minislot_us
+    slot = minislot(params, station.wide)
+    close = station.end + params.ta_us + 2 * least_delay(params, station.wide) + 2 * slot
     late = (station.rise - close) & MASK30
-    if station.lonely >= 2 and late < 2 * params.minislot_us:
-        report(out, REPORT_BOUNDS, params.dmax_us + late // 2, 3)
+    if station.lonely >= 2 and late < 2 * slot:
+        notice(station, params, most_delay(params, station.wide) + late // 2, BEHIND, out)
 
 
 def heard_noise(station, params, now, length, out):
@@ -128,5 +168,6 @@ def heard_noise(station, params, now, length, out):
         station.collided = 1
     else:
         notice_late_answer(station, params, out)
-    station.at = (now + params.join_us + draw(station, params.retry_us)) & MASK30
+    wait = join_after(params, station.wide)
+    station.at = (now + wait + draw(station, retry_within(params, station.wide))) & MASK30
     schedule(station, now, out)

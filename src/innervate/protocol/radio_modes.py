@@ -3,12 +3,14 @@
 from innervate.protocol.arith import MASK30
 from innervate.protocol.outbox import report, set_timer
 from innervate.protocol.radio_station import delivered
+from innervate.protocol.radio_times import split_into
 from innervate.protocol.radio_words import (
     ACT,
     MAIN,
     NONE,
     POSITIONS,
     REPORT_FAILED,
+    WINDOWS,
 )
 
 # Listening.
@@ -23,6 +25,8 @@ SEND_OPEN = 5
 SEND_DATA = 6
 SEND_REPORT = 7
 SEND_SLOT = 8
+CROWD_MOST = 1023
+STEPS = 3  # sizes of announced windows
 
 
 def arm(station, now, delay_us, out):
@@ -62,6 +66,30 @@ def is_over(first, last, place):
     if first < last:
         return first < place < last
     return place > first or place < last
+
+
+def window_of(code):
+    """How many minislots the window has that a code in `next` announces: 3, 6 or 12."""
+    return 3 << ((code - WINDOWS) % STEPS)
+
+
+def code_for(minislots):
+    """The code of the smallest such window that is no smaller, or of the largest."""
+    code = WINDOWS
+    while code < WINDOWS + STEPS - 1 and window_of(code) < minislots:
+        code = code + 1
+    return code
+
+
+def wanted_window(station, params):
+    """How many minislots suit those who mostly wait for a window."""
+    return 3 * station.crowd * split_into(params) // 16
+
+
+def note_joined(station):
+    """A window is over, with all that followed from it: how many wait for the next?"""
+    station.crowd = min(station.crowd // 2 + 2 * station.joined, CROWD_MOST)
+    station.joined = 0
 
 
 def prove(station, out):

@@ -15,7 +15,14 @@ from innervate.protocol.radio_follow import (
     sent_data,
     silent_turn,
 )
-from innervate.protocol.radio_idle import boot, heard_noise, offered, open_now, retry, schedule
+from innervate.protocol.radio_idle import (
+    boot,
+    heard_noise,
+    offered,
+    open_now,
+    retry,
+    schedule,
+)
 from innervate.protocol.radio_modes import (
     CARRIERS,
     IDLE,
@@ -29,9 +36,16 @@ from innervate.protocol.radio_modes import (
     WINDOW,
     arm,
 )
-from innervate.protocol.radio_reporter import burst, end_of_window, hear_slot, opened, sent_report
+from innervate.protocol.radio_reporter import (
+    burst,
+    end_of_window,
+    hear_slot,
+    opened,
+    sent_report,
+)
 from innervate.protocol.radio_station import enqueue, hand_up, leave, reset
-from innervate.protocol.radio_turn import enter_turn
+from innervate.protocol.radio_times import dead_after, frame_from, join_after
+from innervate.protocol.radio_turn import enter_turn, send_turn
 from innervate.protocol.radio_window import hear_report, next_deadline, use_slot
 from innervate.protocol.radio_words import CRR, DATA, LEAVE, MAIN, OPEN, PACKET, REPORT
 
@@ -39,6 +53,7 @@ from innervate.protocol.radio_words import CRR, DATA, LEAVE, MAIN, OPEN, PACKET,
 def on_start(station, params, now, cause, out):
     """Switch on and listen first: a sequence may be under way."""
     reset(station)
+    station.wide = 0
     boot(station, params, now, cause, out)
 
 
@@ -57,7 +72,8 @@ def on_frame(station, params, now, port, frame, out):
     if frame.kind == CRR:
         hear_slot(station, params, now, out)
     elif frame.kind == DATA:
-        hand_up(frame, out)
+        if frame.count:
+            hand_up(frame, out)
         hear_data(station, params, now, frame, out)
     elif frame.kind == OPEN:
         if frame.count:
@@ -83,9 +99,10 @@ def on_carrier(station, params, now, cd, voc, out):
             carrier_went(station, params, now, (now - station.rise) & MASK30, out)
         return
     station.cd = cd
-    station.rise = now
     station.decoded = 0
-    if not cd:
+    if cd:
+        station.rise = now
+    else:
         station.fall = now
     if mode == SEND_OPEN:
         if cd:
@@ -126,18 +143,18 @@ def carrier_went(station, params, now, length, out):
     elif mode == LEAD:
         burst(station, params, now, length, noise, out)
     elif mode == WINDOW:
-        if noise and length >= 3 * params.slot_us:
+        if noise and length >= frame_from(params, station.used) + params.slot_us:
             station.mode = LOST
-            arm(station, now, params.join_us, out)
+            arm(station, now, join_after(params, station.used), out)
         elif not station.armed:
             enter_turn(station, params, now, station.cur, out)
     elif mode == TURN:
         if noise and length >= 3 * params.slot_us:
             garbled_turn(station, params, now, out)
         else:
-            arm(station, now, params.dead_us, out)
+            arm(station, now, dead_after(params, station.used), out)
     elif mode == LOST:
-        arm(station, now, params.join_us, out)
+        arm(station, now, join_after(params, station.used), out)
 
 
 def on_timer(station, params, now, timer, out):
@@ -157,6 +174,9 @@ def on_timer(station, params, now, timer, out):
             silent_turn(station, params, now, out)
         elif mode == LOST:
             boot(station, params, now, 0, out)
-    elif station.act and mode == WINDOW:
+    elif station.act:
         station.act = 0
-        use_slot(station, params, out)
+        if mode == WINDOW:
+            use_slot(station, params, out)
+        elif mode == TURN and not station.cd and station.cur == station.pos:
+            send_turn(station, params, now, out)

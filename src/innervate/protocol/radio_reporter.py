@@ -7,26 +7,38 @@ larger span. Splitting instead of drawing anew costs 2.3 minislots for each stat
 """
 
 from innervate.protocol.arith import MASK30, after
-from innervate.protocol.outbox import report
-from innervate.protocol.radio_idle import rest, retry, schedule
+from innervate.protocol.radio_bounds import EARLY, LATE, TOGETHER, notice
+from innervate.protocol.radio_idle import over, rest, retry, schedule
 from innervate.protocol.radio_modes import (
     LEAD,
     SEND_REPORT,
     arm,
     clear_round,
     disprove,
+    note_joined,
     prove,
+    window_of,
 )
 from innervate.protocol.radio_station import blank
+from innervate.protocol.radio_times import (
+    frame_from,
+    guard,
+    join_after,
+    least_delay,
+    minislot,
+    most_delay,
+    retry_within,
+    split_into,
+)
 from innervate.protocol.radio_turn import enter_turn
 from innervate.protocol.radio_words import (
     MINISLOTS,
+    NEXT_NONE,
     NO_PROOF,
     NONE,
     NOT_HEARD,
     POSITIONS,
     REPORT,
-    REPORT_BOUNDS,
 )
 from innervate.protocol.rng import draw
 
@@ -66,27 +78,41 @@ def lead(station, params, now, window, ack, out):
     for i in range(2):
         station.good[i] = 0
         station.bad[i] = 0
-    length = params.ta_us + 2 * params.dmin_us + (window + ack) * params.minislot_us
     station.ref = station.end
+    length = window_start(station, params) + (window + ack) * minislot(params, station.used)
     arm(station, station.end, length, out)
+
+
+def window_start(station, params):
+    """Since the end of our frame until the first minislot's first CR-R can be heard."""
+    return params.ta_us + 2 * least_delay(params, station.used) + guard(params, station.used)
 
 
 def opened(station, params, now, out):
     """Our opening is out and nobody else is heard: lead the first window."""
     station.opener = 1
+    size = 1
+    if station.next < NEXT_NONE:
+        size = window_of(station.next)
+    lead_first(station, params, now, size, 1, out)
+
+
+def lead_first(station, params, now, window, ack, out):
+    """Lead a window that no report announced."""
     station.rest = 0
-    station.span = 1
+    station.span = window
     station.split = 0
-    lead(station, params, now, 1, 1, out)
+    station.joined = 0
+    lead(station, params, now, window, ack, out)
 
 
 def minislot_of(station, params, rise):
     """The minislot, from 0 with that for pulses, in which a burst began; -1 outside."""
-    start = station.ref + params.ta_us + 2 * params.dmin_us
+    start = station.ref + window_start(station, params)
     since = (rise - start) & MASK30
     if not after(rise, start & MASK30):
         return -1
-    place = since // params.minislot_us
+    place = since // minislot(params, station.used)
     if place >= station.window + station.ack:
         return -1
     return place
@@ -97,14 +123,15 @@ def check_bounds(station, params, rise, out):
 
     What came at another time may have answered somebody else: it proves nothing.
     """
-    start = (station.ref + params.ta_us + 2 * params.dmin_us) & MASK30
+    start = (station.ref + window_start(station, params)) & MASK30
+    least = least_delay(params, station.used)
     if not after(rise, start):
-        delay = params.dmin_us - ((start - rise) & MASK30) // 2
-        report(out, REPORT_BOUNDS, max(delay, 0), 0)
+        delay = least - ((start - rise) & MASK30) // 2
+        notice(station, params, max(delay, 0), EARLY, out)
         return False
-    within = ((rise - start) & MASK30) % params.minislot_us
-    if within > 2 * (params.dmax_us - params.dmin_us):
-        report(out, REPORT_BOUNDS, params.dmin_us + within // 2, 1)
+    within = ((rise - start) & MASK30) % minislot(params, station.used)
+    if within > 2 * (most_delay(params, station.used) - least):
+        notice(station, params, least + within // 2, LATE, out)
         return False
     return True
 
@@ -125,7 +152,7 @@ def hear_slot(station, params, now, out):
 
 def burst(station, params, now, length, noise, out):
     """The end of a carrier in our window; a report or turn waits for it."""
-    if noise and length >= 2 * params.slot_us:
+    if noise and length >= frame_from(params, station.used):
         run_together(station, params, length, out)
         overrun(station, params, now, out)
         return
@@ -148,7 +175,8 @@ def run_together(station, params, length, out):
         if station.opener:
             station.lonely = min(station.lonely + 1, 31)
         if not station.opener or station.lonely >= LONELY_NOTICE:
-            report(out, REPORT_BOUNDS, params.dmin_us + (length - params.slot_us) // 2, 4)
+            delay = least_delay(params, station.used) + (length - params.slot_us) // 2
+            notice(station, params, delay, TOGETHER, out)
 
 
 def overrun(station, params, now, out):
@@ -173,14 +201,19 @@ def close(station, params, now, out):
             retry(station, params, now, 0, out)
         else:
             disprove(station, NOT_HEARD, out)
-            rest(station, now, params.join_us + draw(station, params.retry_us))
+            wait = join_after(params, station.used)
+            rest(station, now, wait + draw(station, retry_within(params, station.used)))
             schedule(station, now, out)
         return
     good = count_bits(station.good, station.window)
     bad = count_bits(station.bad, station.window)
     if good + bad == 0 and station.rest == 0:
         station.opener = 0
-        enter_turn(station, params, now, station.cur, out)
+        note_joined(station)
+        if station.cur == NONE and station.pending == 0:
+            over(station, params, now, out)
+        else:
+            enter_turn(station, params, now, station.cur, out)
     else:
         send_report(station, params, now, good, bad, out)
 
@@ -191,22 +224,35 @@ def send_report(station, params, now, good, bad, out):
         disprove(station, NO_PROOF, out)
     frame = blank(out)
     frame.kind = REPORT
-    frame.slots = REPORT_SLOTS + (station.window + 4) // 5
-    base = free_places(station, good)
+    wants = station.queued and station.pos == NONE
+    own = 1 if wants and station.window < MINISLOTS else 0
+    frame.slots = REPORT_SLOTS + (station.window + own + 4) // 5
+    base = free_places(station, good + own)
     if base == NONE:
         good = 0
+        own = 0
         base = 0
         for i in range(2):
             station.good[i] = 0
+    if own:
+        # A minislot that nobody could use: all give it a place, and we know whose that is.
+        set_bit(station.good, station.window)
+        station.pos = base + good
+    good = good + own
     for i in range(2):
         frame.good[i] = station.good[i]
         frame.bad[i] = station.bad[i]
+    station.joined = station.joined + good
     frame.base = base
     for i in range(good):
         station.live[base + i] = 1
     if station.cur == NONE and good:
         station.cur = base
-    plan_window(station, good, bad)
+    plan_window(station, split_into(params), good - own, bad)
+    frame.wide = station.wide
+    station.used = station.wide
+    if station.window == 0:
+        note_joined(station)
     frame.window = station.window
     frame.span = station.span
     frame.split = 1 if station.split else 0
@@ -241,7 +287,7 @@ def free_places(station, count):
     return NONE
 
 
-def plan_window(station, good, bad):
+def plan_window(station, parts, good, bad):
     """The next window: collided minislots split, and more of the span; or all is drawn anew."""
     window = station.window
     span = station.rest
@@ -252,17 +298,17 @@ def plan_window(station, good, bad):
     elif first and 2 * bad > window and good + bad == window:
         span = GROWTH * station.span
         station.split = 0
-    elif 2 * bad > MINISLOTS:
+    elif parts * bad > MINISLOTS:
         span = 3 * bad + span
         station.split = 0
     else:
         station.split = bad
     span = min(span, SPAN_MOST)
-    fresh = min(span, MINISLOTS - 2 * station.split)
+    fresh = min(span, MINISLOTS - parts * station.split)
     if bad == window and station.split == 0:
         fresh = min(fresh, PROBE_WINDOW)
     station.span = span
-    station.window = 2 * station.split + fresh
+    station.window = parts * station.split + fresh
     station.rest = span - fresh
 
 

@@ -25,6 +25,7 @@ def copy_frame(to, frm):
     to.window = frm.window
     to.span = frm.span
     to.split = frm.split
+    to.wide = frm.wide
     for i in range(2):
         to.good[i] = frm.good[i]
         to.bad[i] = frm.bad[i]
@@ -80,6 +81,7 @@ def blank(out):
     frame.window = 0
     frame.span = 0
     frame.split = 0
+    frame.wide = 0
     for i in range(2):
         frame.good[i] = 0
         frame.bad[i] = 0

@@ -11,20 +11,38 @@ from innervate.protocol.radio_modes import (
     SEND_DATA,
     TURN,
     arm,
+    arm_act,
+    code_for,
     disprove,
     following,
+    wanted_window,
+    window_of,
 )
 from innervate.protocol.radio_station import blank, load_packets
+from innervate.protocol.radio_times import (
+    dead_after,
+    guard,
+    join_after,
+    minislot,
+    most_delay,
+    retry_within,
+)
 from innervate.protocol.radio_words import (
     ALONE,
     DATA,
+    LONE_WINDOWS,
     NO_PROOF,
     NONE,
     REPORT_TURN,
+    WINDOWS,
 )
 from innervate.protocol.rng import draw
 
 FAILS_MOST = 3  # packets without proof, then we leave the round
+PASS_SLOTS = 3  # a turn without a packet
+CREDIT = 2  # turns without a packet that one with a packet earns; the first earns one
+CREDIT_MOST = 4
+CROWD_WAITS = 4  # quarters of a station: somebody mostly waits for a window
 
 
 def enter_turn(station, params, now, cur, out):
@@ -37,8 +55,14 @@ def enter_turn(station, params, now, cur, out):
     if cur == station.pos:
         if station.pending:
             disprove(station, NO_PROOF, out)
-        if station.queued == 0 or station.fails >= FAILS_MOST:
+        wait = guard(params, station.used)
+        passes = station.queued == 0 and station.credit == 0
+        if passes or station.fails >= FAILS_MOST:
             quit_round(station, params, now, out)
+        elif wait:
+            station.mode = TURN
+            station.armed = 0
+            arm_act(station, now, wait, out)
         else:
             send_turn(station, params, now, out)
         return
@@ -46,14 +70,15 @@ def enter_turn(station, params, now, cur, out):
     if station.cd:
         station.armed = 0
     else:
-        arm(station, now, params.dead_us, out)
+        arm(station, now, dead_after(params, station.used), out)
 
 
 def finish(station, params, now, out):
-    """The round is over for all who followed it; those who did not wait longer to open."""
+    """The round seems to be over; whoever knows more than we do goes first."""
     if station.pending:
         disprove(station, NO_PROOF, out)
-    rest(station, now, params.dead_us + draw(station, params.retry_us))
+    wait = dead_after(params, station.used) + draw(station, retry_within(params, station.used))
+    rest(station, now, wait)
     schedule(station, now, out)
 
 
@@ -62,8 +87,14 @@ def quit_round(station, params, now, out):
     station.live[station.pos] = 0
     station.pos = NONE
     station.fails = 0
-    rest(station, now, params.join_us + draw(station, params.retry_us))
+    wait = join_after(params, station.used) + draw(station, retry_within(params, station.used))
+    rest(station, now, wait)
     schedule(station, now, out)
+
+
+def is_due(station, params):
+    """1 if a window for newcomers is due behind this round."""
+    return station.turns + 1 >= params.turns or station.crowd >= CROWD_WAITS
 
 
 def send_turn(station, params, now, out):
@@ -72,25 +103,35 @@ def send_turn(station, params, now, out):
     frame = blank(out)
     count = load_packets(station, frame, params.per_turn)
     frame.kind = DATA
-    more = station.queued > count
+    behind = following(station, station.pos)
+    alone = behind == station.pos or behind == NONE
+    if count:
+        station.credit = min(station.credit + (CREDIT if station.credit else 1), CREDIT_MOST)
+    else:
+        station.credit = station.credit - 1
+        frame.slots = PASS_SLOTS
+    more = station.queued > count or (station.credit and not alone)
     frame.pos = station.pos
     frame.more = 1 if more else 0
     frame.ok = station.last_ok
-    behind = following(station, station.pos)
-    alone = behind == station.pos or behind == NONE
     wraps = behind <= station.pos
     station.end = (now + params.ta_us + frame.slots * params.slot_us) & MASK30
-    limit = params.ta_us + 2 * params.dmax_us
-    if alone:
-        frame.next = ALONE
-        station.named = NONE
-    elif wraps and (not more or station.turns + 1 >= params.turns):
-        frame.next = station.pos
-        station.named = behind
-        limit = limit + params.ta_us + 3 * params.dmax_us + params.minislot_us
+    longest = most_delay(params, station.used)
+    limit = params.ta_us + 2 * longest + guard(params, station.used)
+    size = wanted_window(station, params)
+    opens = alone or (wraps and (not more or is_due(station, params)))
+    station.named = NONE if alone else behind
+    if opens:
+        frame.next = ALONE if alone else station.pos
+        if size > 1:
+            frame.next = code_for(size)
+            size = window_of(frame.next)
+            if alone:
+                frame.next = frame.next + LONE_WINDOWS - WINDOWS
+        length = max(size, 1) * minislot(params, station.used)
+        limit = limit + params.ta_us + 3 * longest + length
     else:
         frame.next = behind
-        station.named = behind
     station.next = frame.next
     station.until = (station.end + limit) & MASK30
     station.pending = count

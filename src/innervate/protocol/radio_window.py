@@ -1,14 +1,18 @@
 """Practical CSMA/CD-R, windows of somebody else: ask for a place in a minislot, read the report."""
 
+from innervate.protocol.radio_bounds import adopt
+from innervate.protocol.radio_idle import over
 from innervate.protocol.radio_modes import (
     SEND_SLOT,
     WINDOW,
     arm,
     arm_act,
     disprove,
+    note_joined,
 )
 from innervate.protocol.radio_reporter import bit
 from innervate.protocol.radio_station import send_crr
+from innervate.protocol.radio_times import guard, least_delay, minislot, most_delay, split_into
 from innervate.protocol.radio_turn import enter_turn
 from innervate.protocol.radio_words import (
     MINISLOTS,
@@ -36,12 +40,14 @@ def enter_window(station, params, now, window, fresh, span, ack, out):
         place = draw(station, span)
         if place < fresh:
             station.slot = window - fresh + place
+    wait = guard(params, station.used)
     if station.slot != NONE and wants:
-        arm_act(station, now, (station.slot + ack) * params.minislot_us, out)
+        arm_act(station, now, wait + (station.slot + ack) * minislot(params, station.used), out)
     elif ack:
-        arm_act(station, now, 0, out)
-    last = (window + ack - 1) * params.minislot_us
-    arm(station, now, params.ta_us + last + 2 * params.dmax_us - params.dmin_us + 1, out)
+        arm_act(station, now, wait, out)
+    last = (window + ack - 1) * minislot(params, station.used)
+    farthest = 2 * most_delay(params, station.used) - least_delay(params, station.used)
+    arm(station, now, wait + params.ta_us + last + farthest + 1, out)
 
 
 def use_slot(station, params, out):
@@ -54,8 +60,10 @@ def use_slot(station, params, out):
 def expect_report(station, params, out):
     """Set the second deadline: a report, if there is one, has begun by then."""
     station.heard = 2
-    length = 2 * params.ta_us + (station.window + station.ack) * params.minislot_us
-    arm(station, station.ref, length + 2 * params.dmax_us + params.bit_us, out)
+    length = (station.window + station.ack) * minislot(params, station.used)
+    length = length + 2 * params.ta_us + 2 * most_delay(params, station.used) + params.bit_us
+    length = length + guard(params, station.used)
+    arm(station, station.ref, length, out)
 
 
 def next_deadline(station, params, now, out):
@@ -66,6 +74,15 @@ def next_deadline(station, params, now, out):
     if station.heard == 1:
         expect_report(station, params, out)
     elif not station.cd:
+        go_on(station, params, now, out)
+
+
+def go_on(station, params, now, out):
+    """The window has ended without a report."""
+    note_joined(station)
+    if station.cur == NONE and station.pending == 0:
+        over(station, params, now, out)
+    else:
         enter_turn(station, params, now, station.cur, out)
 
 
@@ -73,8 +90,10 @@ def hear_report(station, params, now, frame, out):
     """Which minislots are turns now, and what follows."""
     if station.pending:
         disprove(station, NO_PROOF, out)
+    adopt(station, params, frame, out)
     mine = station.slot
     station.slot = NONE
+    parts = split_into(params)
     places = 0
     groups = 0
     for i in range(MINISLOTS):
@@ -89,8 +108,11 @@ def hear_report(station, params, now, frame, out):
             places = places + 1
         elif bit(frame.bad, i):
             if i == mine and station.mode == WINDOW and frame.split:
-                station.slot = 2 * groups + draw(station, 2)
+                station.slot = parts * groups + draw(station, parts)
             groups = groups + 1
+    station.joined = station.joined + places
+    if frame.window == 0:
+        note_joined(station)
     station.turns = 0
     station.last_ok = 0
     station.collided = 0
@@ -100,7 +122,7 @@ def hear_report(station, params, now, frame, out):
     if frame.window:
         fresh = frame.window
         if frame.split:
-            fresh = fresh - 2 * groups
+            fresh = fresh - parts * groups
         enter_window(station, params, now, frame.window, fresh, frame.span, 0, out)
     else:
         enter_turn(station, params, now, station.cur, out)

@@ -22,6 +22,10 @@ POSITIONS = 120  # places in a round of turns; what 7 bits of a header leave
 MINISLOTS = 32  # in one window; two bits for each must fit into a report
 NONE = -1
 ALONE = 127  # in `next`: nobody else has a turn
+WINDOWS = 120  # in `next`: a window of several minislots follows, then the next place's turn
+LONE_WINDOWS = 123  # ... and nobody else has a place; up to 125
+NEXT_NONE = 126  # in `next`: not used
+WIDE_MOST = 3  # doublings of the greatest delay that stations go to by themselves
 TURNS_MOST = 4095  # paper mode: more turns or CR-Rs than that are not counted
 
 # Reports: (code, a, b).
@@ -37,6 +41,7 @@ REPORT_SKIPPED = 9  # own place in the round was passed over
 
 REPORT_COUNT = 10  # the window closes: a CR-Rs behind our own, b in all (paper)
 REPORT_STOPPED = 11  # own transmission is broken off here (full duplex)
+REPORT_WIDER = 12  # delays up to a us are believed from now on; b = 1: somebody else said so
 
 # Roles of REPORT_ROLE.
 NOBODY = 0  # in no resolution

@@ -17,7 +17,7 @@ import numpy as np
 from innervate import scenario as scenarios
 from innervate.kernel.wall import wall_s
 from innervate.protocol import rng
-from innervate.protocol.radio_words import DATA
+from innervate.protocol.radio_words import DATA, WINDOWS
 from innervate.running.errors import RunError
 from innervate.sim.build import get, put
 from innervate.sim.loop import BROKEN
@@ -27,7 +27,6 @@ from innervate.sim.radio import simulate as simulator
 STATIONS = (2, 3, 4)
 MODES = ("practical", "paper")
 HORIZON_S = 2.0
-ALONE = 127
 EVENTS = 1 << 20
 DEADLOCK, OVERLAP, ORDER, SILENT, INVARIANT = range(1, 6)
 FRAMES = {1: "a CR-R", 2: "its packet", 3: "an opening", 4: "a report"}
@@ -219,7 +218,8 @@ def check_turns(sent: Any, protocol: str) -> int:
     if protocol.endswith("practical"):
         for before, after in itertools.pairwise(data):
             named = int(before["next"])
-            if named not in (ALONE, int(before["pos"])) and named != int(after["pos"]):
+            opens = named >= WINDOWS or named == int(before["pos"])
+            if not opens and named != int(after["pos"]):
                 return ORDER
     return 0
 

@@ -14,16 +14,16 @@ MUTANTS = tuple(
     Mutant(*texts)
     for texts in (
         ("minislots that collided do not split",
-         "station.slot = 2 * groups + draw(station, 2)", "station.slot = 2 * groups"),
+         "station.slot = parts * groups + draw(station, parts)", "station.slot = parts * groups"),
         ("a collision's wait is not drawn",
-         "(now + params.ta_us + params.dmax_us + draw(station, bound)) & MASK30",
-         "(now + params.ta_us + params.dmax_us) & MASK30"),
+         "params.ta_us + most_delay(params, station.wide) + draw(station, bound)",
+         "params.ta_us + most_delay(params, station.wide)"),
         ("who was given a place does not note it",
          "                if i == mine and station.mode == WINDOW:\n"
          "                    station.pos = place\n", ""),
         ("nothing is ever proved",
-         "        prove(station, out)\n    station.heard = 1\n",
-         "        station.heard = 1\n    station.heard = 1\n"),
+         "    if count:\n        delivered(station, count, out)\n",
+         "    if count < 0:\n        delivered(station, count, out)\n"),
     )
 )  # fmt: skip
 

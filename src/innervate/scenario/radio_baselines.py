@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 # How stations know their protocol (params.mac); 0 is CSMA/CD-R.
-D1, D2, D2P, DCF, ALOHA, NONPERSISTENT, P_PERSISTENT, TDMA, TREE = range(1, 10)
+D1, D2, D2P, DCF, ALOHA, NONPERSISTENT, P_PERSISTENT, TDMA, TREE, TOKEN_RING, POLLING = range(1, 12)
 NUMBERS = {
     "csma-cd-d1": D1,
     "csma-cd-d2": D2,
@@ -14,12 +14,15 @@ NUMBERS = {
     "p-persistent": P_PERSISTENT,
     "tdma": TDMA,
     "tree": TREE,
+    "token-ring": TOKEN_RING,
+    "polling": POLLING,
 }
 NONE = {
     "mac": 0, "stations": 1, "oracle": 0, "full_duplex": 0, "period_us": 0, "gap_us": 0,
     "answer_us": 0, "backoff_us": 208, "cw_min": 32, "cw_max": 1024, "p_q15": 3277,
 }  # fmt: skip
 ONE_Q15 = 32_768
+TOKEN_SLOTS = 2  # token ring: the token; polling: a poll
 ANSWER_SLOTS = 2  # DCF: a one-byte answer and the idle slot before it
 
 

@@ -13,11 +13,11 @@ from innervate.scenario.model import SCHEMA, Micros
 
 MACS = (
     "csma-cd-r", "csma-cd-d1", "csma-cd-d2", "csma-cd-d2p", "slotted-aloha", "nonpersistent",
-    "p-persistent", "dcf", "tree", "tdma",
+    "p-persistent", "dcf", "tree", "tdma", "token-ring", "polling",
 )  # fmt: skip
 Mac = Literal[
     "csma-cd-r", "csma-cd-d1", "csma-cd-d2", "csma-cd-d2p", "slotted-aloha", "nonpersistent",
-    "p-persistent", "dcf", "tree", "tdma",
+    "p-persistent", "dcf", "tree", "tdma", "token-ring", "polling",
 ]  # fmt: skip
 Station = Annotated[int, Meta(ge=0, le=1022, description="a station, counted from 0")]
 

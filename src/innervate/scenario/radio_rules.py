@@ -91,8 +91,10 @@ def _protocol(source: Source, model: RadioScenario) -> None:
                 f"practical mode has {POSITIONS} places in a round, too few for {model.stations} "
                 "stations",
             )
-    if protocol.per_turn > 1 and not practical:
-        message = 'protocol.per_turn goes with csma-cd-r in mode = "practical"'
+    if protocol.per_turn > 1 and not (practical or protocol.mac in radio_slotted.EVENT_ONLY):
+        message = (
+            'protocol.per_turn goes with csma-cd-r in mode = "practical", token-ring and polling'
+        )
         raise source.error(("protocol", "per_turn"), message)
 
 

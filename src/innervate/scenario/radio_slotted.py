@@ -27,6 +27,7 @@ USED_BY = {
     ("protocol", "backoff_slots"): BACKOFF,
     ("channel", "turnaround_us"): TURNAROUND,
 }
+EVENT_ONLY = ("token-ring", "polling")
 # What none uses.
 UNUSED = (
     *(("protocol", name) for name in ("mode", "tau_bounds_us", "turns", "per_turn", "wait_us",
@@ -44,6 +45,9 @@ _DEFAULTS: dict[str, Any] = {
 def check(source: Source, model: RadioScenario) -> None:
     """Raise ScenarioError at the first setting that a slotted run would ignore."""
     mac = model.protocol.mac
+    if mac in EVENT_ONLY:
+        message = f'{mac} goes with level = "event"; the slotted level has none'
+        raise source.error(("protocol", "mac"), message)
     for key in UNUSED:
         if _is_changed(model, key):
             name = ".".join(key)

@@ -96,7 +96,8 @@ loss = 0.0                    # share of frames that a receiver cannot read
 
 [protocol]
 mac = "csma-cd-r"             # csma-cd-d1 | csma-cd-d2 | csma-cd-d2p | slotted-aloha | dcf |
-                              # nonpersistent | p-persistent | tree | tdma
+                              # nonpersistent | p-persistent | tree | tdma |
+                              # token-ring | polling
 mode = "practical"            # practical | paper
 # per_turn = 4                # packets a station sends in one turn
 # turns = 20                  # turns between two windows for newcomers

@@ -7,11 +7,11 @@ from innervate.papers.radio.readings import READINGS as READINGS
 
 TITLE = "CSMA/CD-R for a wireless multi-robot communication"
 AUTHORS = "D.-H. Kim, J.-H. Kim"
-# One module each: figures in the order of the paper, what was found about them, and the last two
-# beyond it.
+# One module each: figures in the order of the paper, what was found about them, and the last
+# three beyond it.
 FIGURES = (
     "fig1", "fig4_5", "limits", "fig6_7", "quadratic", "fig12", "ties", "silent", "members",
-    "capture", "fairness", "practical", "turnaround",
+    "capture", "fairness", "practical", "turnaround", "delay",
 )  # fmt: skip
 
 

@@ -1,13 +1,15 @@
 """A station of any baseline; params.mac says which. One stack, so that it compiles once.
 
-CSMA/CD and DCF stand in contend.py, ALOHA, CSMA and TDMA in slots.py, splitting in tree.py.
+CSMA/CD and DCF stand in contend.py, ALOHA, CSMA and TDMA in slots.py, splitting in tree.py, token
+ring and polling in passing.py.
 """
 
 from innervate.protocol.radio_station import enqueue, hand_up, leave, reset
-from innervate.protocol.radio_words import CLOCK, DATA, FORCE, LEAVE, MAIN, PACKET, RESULT
+from innervate.protocol.radio_words import CLOCK, FORCE, LEAVE, MAIN, PACKET, RESULT
 from innervate.scenario.radio_baselines import DCF as LAST_WITHOUT_CLOCK
+from innervate.scenario.radio_baselines import TOKEN_RING
 from innervate.scenario.radio_baselines import TREE as TREE_MAC
-from innervate.sim.baselines import contend, slots, tree
+from innervate.sim.baselines import contend, passing, slots, tree
 from innervate.sim.baselines.common import LISTEN, SEND, STOPPED, TOLD
 
 
@@ -19,6 +21,8 @@ def on_start(station, params, now, cause, out):
     station.tries = 0
     if params.mac <= LAST_WITHOUT_CLOCK:
         contend.begin(station, params, now, out)
+    elif params.mac >= TOKEN_RING:
+        passing.begin(station, params, now, out)
 
 
 def on_input(station, params, now, kind, item, out):
@@ -27,7 +31,7 @@ def on_input(station, params, now, kind, item, out):
         if enqueue(station, item, out) and station.queued == 1:
             if params.mac <= LAST_WITHOUT_CLOCK:
                 contend.offer(station, params, now, out)
-            elif params.mac != TREE_MAC:
+            elif params.mac < TREE_MAC:
                 slots.offer(station, params, now, out)
     elif kind == LEAVE:
         leave(station, out)
@@ -35,6 +39,8 @@ def on_input(station, params, now, kind, item, out):
         slots.set_clock(station, now, item, out)
         if params.mac == TREE_MAC:
             tree.begin(station, params, now, out)
+    elif kind == RESULT and params.mac >= TOKEN_RING:
+        passing.told(station, 1 if item.handle > 0 else 0, out)
     elif kind == RESULT and station.mode == TOLD:
         received = 1 if item.handle > 0 else 0
         if params.mac <= LAST_WITHOUT_CLOCK:
@@ -49,8 +55,10 @@ def on_frame(station, params, now, port, frame, out):
     """A packet was received whole; the carrier's end is reported after it."""
     station.decoded = 1
     station.heard = tree.READ
-    if frame.kind == DATA:
+    if frame.count:
         hand_up(frame, out)
+    if params.mac >= TOKEN_RING:
+        passing.heard(station, params, now, frame, out)
 
 
 def on_carrier(station, params, now, cd, voc, out):
@@ -69,6 +77,8 @@ def on_carrier(station, params, now, cd, voc, out):
         station.decoded = 0
         if params.mac <= LAST_WITHOUT_CLOCK:
             contend.ready(station, params, now, out)
+        elif params.mac >= TOKEN_RING:
+            passing.ready(station, params, now, out)
         else:
             tree.ready(station)
     elif params.mac <= LAST_WITHOUT_CLOCK:
@@ -76,6 +86,11 @@ def on_carrier(station, params, now, cd, voc, out):
             contend.rise(station, params, now, out)
         elif went:
             contend.fall(station, params, now, out)
+    elif params.mac >= TOKEN_RING:
+        if came:
+            passing.rise(station)
+        elif went:
+            passing.fall(station, params, now, out)
     elif params.mac != TREE_MAC:
         if came:
             slots.rise(station, params)
@@ -92,6 +107,8 @@ def on_timer(station, params, now, timer, out):
         station.armed = 0
         if params.mac <= LAST_WITHOUT_CLOCK:
             contend.fire(station, params, now, out)
+        elif params.mac >= TOKEN_RING:
+            passing.fire(station, params, now, out)
         elif params.mac == TREE_MAC:
             tree.fire(station, params, now, out)
         else:

@@ -7,6 +7,7 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 from innervate.protocol import (
+    radio_bounds,
     radio_fields,
     radio_follow,
     radio_idle,
@@ -19,12 +20,13 @@ from innervate.protocol import (
     radio_practical,
     radio_reporter,
     radio_station,
+    radio_times,
     radio_turn,
     radio_window,
 )
 from innervate.protocol.radio_station import copy_frame
 from innervate.scenario.radio_baselines import NUMBERS
-from innervate.sim.baselines import common, contend, slots, station, tree
+from innervate.sim.baselines import common, contend, passing, slots, station, tree
 from innervate.sim.baselines.fields import BASELINE
 
 
@@ -55,14 +57,16 @@ class Protocol(NamedTuple):
 
 
 # One stack for all baselines; a parameter says which.
-BASELINES = Protocol(station, (radio_station, common, contend, slots, tree, station), BASELINE)
+BASELINES = Protocol(
+    station, (radio_station, common, contend, slots, tree, passing, station), BASELINE
+)
 
 PROTOCOLS: dict[str, Protocol] = {
     "csma-cd-r/practical": Protocol(
         radio_practical,
         (
-            radio_station, radio_modes, radio_idle, radio_turn, radio_reporter, radio_window,
-            radio_follow, radio_practical,
+            radio_station, radio_times, radio_bounds, radio_modes, radio_idle,
+            radio_turn, radio_reporter, radio_window, radio_follow, radio_practical,
         ),
         radio_fields.PRACTICAL,
     ),
@@ -83,7 +87,9 @@ def digest(frame):
     word = frame.kind | (frame.slots << 4) | (frame.source << 16) | (frame.handle << 26)
     word ^= (frame.pos << 42) | (frame.next << 49) | (frame.more << 56) | (frame.ok << 57)
     word ^= (frame.good[0] << 5) ^ (frame.good[1] << 21) ^ (frame.bad[0] << 13)
-    return word ^ (frame.bad[1] << 29) ^ (frame.window << 44) ^ (frame.span << 50)
+    return (
+        word ^ (frame.bad[1] << 29) ^ (frame.window << 44) ^ (frame.span << 50) ^ (frame.wide << 60)
+    )
 
 
 def bind(entry: ModuleType) -> Stack:

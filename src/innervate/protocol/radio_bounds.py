@@ -1,0 +1,31 @@
+"""Practical CSMA/CD-R: delays that the configured bounds exclude, and what a station does then.
+
+It says so, believes in wider bounds from then on, and tells the others in its openings and reports.
+"""
+
+from innervate.protocol.outbox import report
+from innervate.protocol.radio_times import most_delay, wider_for
+from innervate.protocol.radio_words import REPORT_BOUNDS, REPORT_WIDER, WIDE_MOST
+
+# Which bound does not hold: b of REPORT_BOUNDS.
+EARLY = 0  # a CR-R came before it could
+LATE = 1  # ... later than it could
+TRIP = 2  # a hand-over took too short or too long
+BEHIND = 3  # an answer came behind the window
+TOGETHER = 4  # CR-Rs of two minislots ran together
+
+
+def notice(station, params, delay, which, out):
+    """A delay of `delay` us lies outside what we believe: say so, and believe in more."""
+    report(out, REPORT_BOUNDS, delay, which)
+    if station.wide < WIDE_MOST:
+        station.wide = wider_for(params, station.wide, delay)
+        report(out, REPORT_WIDER, most_delay(params, station.wide), 0)
+
+
+def adopt(station, params, frame, out):
+    """An opening or a report says what its sequence allows for: never believe in less."""
+    station.used = frame.wide
+    if frame.wide > station.wide:
+        station.wide = frame.wide
+        report(out, REPORT_WIDER, most_delay(params, station.wide), 1)

@@ -1,0 +1,84 @@
+"""Times of practical CSMA/CD-R that follow from what stations believe of their delays.
+
+`wide` is 0 while the configured bounds are believed. Each step above it doubles the greatest delay
+and gives up the least: a sequence then takes longer and bears delays that the bounds exclude.
+"""
+
+from innervate.protocol.radio_words import WIDE_MOST
+
+LONGEST_US = (1 << 28) - 1
+
+
+def least_delay(params, wide):
+    """The least delay believed in, us."""
+    if wide:
+        return 1
+    return params.dmin_us
+
+
+def most_delay(params, wide):
+    """The greatest, us."""
+    return params.dmax_us << wide
+
+
+def minislot(params, wide):
+    """w: a CR-R, twice the spread of the delays, and a bit."""
+    if wide:
+        return params.slot_us + 2 * (most_delay(params, wide) - 1) + params.bit_us
+    return params.minislot_us
+
+
+def frame_from(params, wide):
+    """Noise of this length or longer is no minislot's CR-Rs or pulses: it was a frame."""
+    return max(2 * params.slot_us, minislot(params, wide) if wide else 0)
+
+
+def probe(params, wide):
+    """u: two openings of this length overlap at every station, whatever their delays."""
+    if wide:
+        length = max(2 * params.slot_us, 3 * most_delay(params, wide) + params.slot_us)
+        return params.ta_us + length
+    return params.probe_us
+
+
+def retry_within(params, wide):
+    """Wr: colliders wait less than this."""
+    if wide:
+        return 6 * (params.ta_us + most_delay(params, wide)) + params.slot_us
+    return params.retry_us
+
+
+def join_after(params, wide):
+    """J: longer than any silence in a sequence."""
+    if wide:
+        longest = max(retry_within(params, wide) + 2 * minislot(params, wide),
+                      33 * minislot(params, wide))  # fmt: skip
+        return min(2 * params.ta_us + longest + 3 * params.slot_us, LONGEST_US)
+    return params.join_us
+
+
+def dead_after(params, wide):
+    """D: silence after which a turn is given up."""
+    if wide:
+        return 2 * params.ta_us + 4 * most_delay(params, wide) + minislot(params, wide)
+    return params.dead_us
+
+
+def split_into(params):
+    """Minislots for each that collided: the slower the radio, the dearer another window."""
+    if params.ta_us > 2 * params.minislot_us:
+        return 4
+    return 2
+
+
+def guard(params, wide):
+    """What a turn waits so that it cannot overtake the one before at a third station."""
+    return max(0, most_delay(params, wide) - 2 * least_delay(params, wide) - params.ta_us)
+
+
+def wider_for(params, wide, delay):
+    """How wide the bounds have to be for a delay of so many us; always more than `wide`."""
+    found = wide + 1
+    while found < WIDE_MOST and most_delay(params, found) < delay:
+        found = found + 1
+    return min(found, WIDE_MOST)
