@@ -28,7 +28,7 @@ def at(page: Any, t_s: float) -> None:
     """Hold the network at a time."""
     if page.locator("#go").inner_text() == "Pause":
         page.locator("#go").click()
-        expect(page.locator("#go")).to_have_text("Go")
+        expect(page.locator("#go")).to_have_text("Play")
     seek(page, t_s)
     expect(page.locator("#clock")).to_contain_text(f"{t_s:.6f} s", timeout=WAIT_MS)
 

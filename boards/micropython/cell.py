@@ -16,6 +16,7 @@ MASK30 = (1 << 30) - 1  # the protocol's clock; ticks_us wraps there, or at a mu
 HALF30 = 1 << 29
 SEND = 1  # actions and flags: protocol/outbox.py
 SET_TIMER = 2
+DELIVER = 3
 REPORT = 4
 URGENT = 1
 FLUSH = 2
@@ -82,11 +83,15 @@ class Cell:
         sense: called with a frame to fill with what the sensors say; None = no sensors.
         sample_us: between two samples.
         ticks_us: the clock, us, wrapping at a multiple of 2^30.
+        obey: called with a frame's code and value for every command of the PC; None = nobody obeys.
     """
 
-    def __init__(self, number, uarts, seed, sense=None, sample_us=0, ticks_us=time.ticks_us):
+    def __init__(
+        self, number, uarts, seed, sense=None, sample_us=0, ticks_us=time.ticks_us, obey=None
+    ):
         self.ports = [uart and Port(uart) for uart in uarts]
         self.sense = sense
+        self.obey = obey
         self.sample_us = sample_us
         self.ticks_us = ticks_us
         self.state = records.State()
@@ -160,6 +165,8 @@ class Cell:
                     port.pump()
             elif act.kind == SET_TIMER:
                 self.due[act.a] = act.b
+            elif act.kind == DELIVER and self.obey:
+                self.obey(out.frame[i].dist, out.frame[i].proximity)
             elif act.kind == REPORT and act.a == 1:
                 self.moves += 1
         out.clear()

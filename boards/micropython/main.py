@@ -20,6 +20,10 @@ def sense(frame):
     frame.proximity = 0
 
 
+def obey(code, value):
+    """Do what the PC commands; what code and value mean is yours."""
+
+
 def opened(wanted):
     """A UART that never waits."""
     if wanted is None:
@@ -30,7 +34,7 @@ def opened(wanted):
 
 # Mixed, as generators that begin near each other draw alike; 0 and the fixed point are no states.
 seed = (NUMBER + 1) * 334_214_459 % 1_072_496_638 + 1
-cell = Cell(NUMBER, [opened(wanted) for wanted in UARTS], seed, sense, SAMPLE_US)
+cell = Cell(NUMBER, [opened(wanted) for wanted in UARTS], seed, sense, SAMPLE_US, obey=obey)
 cell.start()
 while True:
     cell.poll()

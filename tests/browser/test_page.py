@@ -48,6 +48,20 @@ def test_a_click_kills_a_cell_and_the_next_revives_it(look, skin):
     expect(page.locator("#selected-facts")).to_contain_text("through port")
 
 
+def test_a_command_is_sent_to_the_selected_cell(look, skin):
+    page = look(skin)
+    page.locator("#tool").select_option("look")
+    click(page, "p0 r4 c1")
+    page.locator("#command-code").fill("3")
+    page.locator("#command-value").fill("500")
+    page.locator("#command-send", has_text="Send to this cell").click()
+    expect(page.locator("#log")).to_contain_text("came to p0 r4 c1 after")
+    expect(page.locator("#selected-facts")).to_contain_text("came")
+    page.locator("#command-code").fill("256")
+    page.locator("#command-send").click()  # refused by the field itself
+    expect(page.locator("#log")).not_to_contain_text("not a command")
+
+
 def test_a_click_touches_a_cell_and_the_pc_receives_it(look, skin):
     page = look(skin)
     page.locator("#tool").select_option("touch")
@@ -138,7 +152,7 @@ def test_every_control_has_a_name_and_is_reached_by_tab(look, skin):
 def test_pause_step_and_speed(look, skin):
     page = look(skin)
     page.keyboard.press("Space")
-    expect(page.locator("#go")).to_have_text("Go")
+    expect(page.locator("#go")).to_have_text("Play")
     before = text(page, "#clock")
     page.locator("#step").click()
     expect(page.locator("#clock")).not_to_have_text(before)
@@ -165,7 +179,7 @@ def test_scrubbing_leads_back(look, skin):
 def test_two_pages_see_the_same(look, skin):
     one, other = look(skin), look(skin, colours="dark")
     one.locator("#go").click()
-    expect(other.locator("#go")).to_have_text("Go")
+    expect(other.locator("#go")).to_have_text("Play")
     click(other, OTHER)
     click(one, "p0 r2 c3")
     expect(other.locator("#selected-facts")).to_have_text("link, off at one end")
@@ -183,10 +197,10 @@ def test_dark_as_the_system_has_it_or_as_chosen(look, skin):
     ground = "() => getComputedStyle(document.documentElement).backgroundColor"
     assert page.evaluate(ground) == "rgb(18, 22, 28)"
     page.locator("#theme").click()
-    expect(page.locator("#theme")).to_have_text("Light")
+    expect(page.locator("#theme")).to_have_text("Theme: light")
     assert page.evaluate(ground) == "rgb(255, 255, 255)"
     page.reload()
-    expect(page.locator("#theme")).to_have_text("Light")
+    expect(page.locator("#theme")).to_have_text("Theme: light")
     page.keyboard.press("t")
     assert page.evaluate(ground) == "rgb(18, 22, 28)"
 

@@ -67,7 +67,7 @@ def test_data_by_hand():
 
 
 def test_command_by_hand():
-    command = new(COMMAND, cell=0x0102, number=0x0304, hops=5, code=6, value=0x0708)
+    command = new(COMMAND, cell=0x0102, sq=0x0304, hops=5, dist=6, proximity=0x0708)
     assert wire.encode(command) == sealed(bytes.fromhex("40 0102 0304 05 06 0708"))
     assert len(wire.encode(command)) == 11
 

@@ -38,6 +38,11 @@ def folder_of(path, files, number, uarts):
     """A board's folder, with main.py changed as a maker does."""
     main = files["main.py"].decode().replace("NUMBER = 1", f"NUMBER = {number}")
     main = re.sub(r"UARTS = \(\n.*?\n\)", f"UARTS = {uarts!r}", main, flags=re.DOTALL)
+    # What the PC commands comes back as what the cell feels.
+    main = main.replace("frame.proximity = 0", "frame.proximity = told[0]")
+    words = '"""Do what the PC commands; what code and value mean is yours."""\n'
+    assert words in main
+    main = "told = [0]\n" + main.replace(words, words + "    told[0] = code + value\n")
     machine = (nodejs.HERE / "machine.py").read_bytes()
     nodejs.write(path, {**files, "main.py": main.encode(), "machine.py": machine})
     return path
@@ -68,6 +73,11 @@ def test_two_boards_and_a_pc_on_serial_cables(tmp_path, files):
         with board(near, *cables.devices[1:3]), board(far, cables.devices[3]):
             await pc.start()
             await until(lambda: len(heard[8]) >= FAR_SAMPLES and pc.status()["cells"] == [2])
+            pc.send_command(3, 500, cell=8)
+            await until(lambda: heard[8][-1].proximity == 503)
+            assert heard[7][-1].proximity == 0
+            pc.send_command(4, 96)
+            await until(lambda: heard[7][-1].proximity == heard[8][-1].proximity == 100)
             cables.cut = {1}
             count = len(heard[8])
             await until(lambda: pc.status()["cells"] == [1])

@@ -41,7 +41,7 @@ class Cells:
     def put(self, number, cell=EVERYBODY, at=0, hops=0):
         """A command comes to a cell from outside."""
         frame = Frame()
-        frame.kind, frame.cell, frame.number, frame.hops = COMMAND, cell, number, hops
+        frame.kind, frame.cell, frame.sq, frame.hops = COMMAND, cell, number, hops
         self.wires.append((at, PORTS - 1, frame))
 
     def run(self, choose):
@@ -58,7 +58,7 @@ class Cells:
                 if act.kind == SEND and (node, act.a) in self.peer:
                     self.wires.append((*self.peer[node, act.a], kept))
                 elif act.kind == DELIVER:
-                    self.came.append((node, kept.number))
+                    self.came.append((node, kept.sq))
             self.out.count[0] = 0
 
 
@@ -144,14 +144,14 @@ class Pc:
     def give(self):
         """(port, number) of every copy of a command."""
         item = Frame()
-        item.cell, item.code, item.value = 7, 3, 500
+        item.cell, item.dist, item.proximity = 7, 3, 500
         skin_sink.on_input(self.pc, self.params, 0, GIVE, item, self.out)
         acts = [(self.out.action[i], self.out.frame[i]) for i in range(self.out.count[0])]
         self.out.count[0] = 0
         assert all(act.kind != REPORT for act, _ in acts)
-        assert all((f.kind, f.cell, f.code, f.value, f.hops) == (COMMAND, 7, 3, 500, 0)
+        assert all((f.kind, f.cell, f.dist, f.proximity, f.hops) == (COMMAND, 7, 3, 500, 0)
                    for _, f in acts)  # fmt: skip
-        return [(act.a, frame.number) for act, frame in acts]
+        return [(act.a, frame.sq) for act, frame in acts]
 
 
 def test_the_pc_sends_a_command_to_every_child_with_a_number_of_its_own():

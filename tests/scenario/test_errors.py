@@ -32,8 +32,10 @@ WRONG = [
     ("k = 3", "k = 3\nr_f = 0.2", "18: protocol.k and protocol.r_f say the same thing twice; "
      "leave one out"),
     ("k = 3", "r_f = 2.2", "17: protocol.r_f must be at most 2.0, not 2.2"),
-    ("k = 3", 'rule = "feasable"', '17: protocol.rule must be "feasible", "strict", "paper" or '
-     '"static", not "feasable"; did you mean "feasible"?'),
+    ("k = 3", 'rule = "feasable"', '17: protocol.rule must be "feasible", "strict", "paper", '
+     '"paper-lax" or "static", not "feasable"; did you mean "feasible"?'),
+    ("k = 3", 'balancing = false\nbalance_rule = "paper"', "18: protocol.balance_rule has no "
+     "effect with balancing = false; leave one out"),
     ("k = 3", "max_depth = 2", "17: p0 r0 c3 is 3 hops from the PC but protocol.max_depth is 2; "
      "add an interface or raise protocol.max_depth"),
     ("2.0", "5.0", "20: event.0.at_s = 5 is outside the run; duration_s is 4"),

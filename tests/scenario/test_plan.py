@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from innervate.protocol import skin_fields
+from innervate.protocol import skin_fields, skin_words
 from innervate.scenario import (
     CUT,
     KILL,
@@ -48,6 +48,13 @@ def test_parameters(small: str) -> None:
     assert (made["forward_min_us"], made["forward_max_us"]) == (0, 2000)
     assert params(small, "protocol.balancing=false")["balance_periods"] == 0
     assert params(small, "protocol.balance_periods=7")["balance_periods"] == 7
+    assert params(small)["balance_rule"] == skin_words.BALANCE_EVEN
+    assert params(small, "protocol.balance_rule=paper")["balance_rule"] == skin_words.BALANCE_PAPER
+    for rule, number in (
+        ("paper", skin_words.RULE_PAPER),
+        ("paper-lax", skin_words.RULE_PAPER_LAX),
+    ):
+        assert params(small, f"protocol.rule={rule}")["rule"] == number
     assert params(small, "protocol.k=94")["seq_every"] == 5
     assert params(small, "protocol.m=1")["seq_every"] == 1
     assert params(small, "protocol.beacon_hz=30")["beacon_us"] == 33333

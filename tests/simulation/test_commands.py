@@ -6,6 +6,7 @@ from innervate import scenario
 from innervate.analysis.commands import commands_summary
 from innervate.analysis.frames import check_conserved
 from innervate.analysis.rows import parent_changes
+from innervate.analysis.skin import summarize
 from innervate.sim.orders import ORDER_CAME, ORDER_GIVEN
 from tests.skin_runs import line, patch, plan_of, run
 
@@ -61,11 +62,14 @@ def test_who_is_not_reached_is_counted_by_what_ailed_it():
                                                       {"row": 0, "column": 3}]},
     ]  # fmt: skip
     keys["command"] = [{"at_s": SETTLED_S + 0.0001}, {"at_s": 0.45}]
-    _, commands = simulated(keys)
+    result, commands = simulated(keys)
     balance(commands)
     # Cell 5 is off; 3 and 4 had a way as the first was given, and none any more for the second.
     assert commands["lost_by"] == {"off": 2, "no_route": 2, "on_the_way": 2}
     assert commands["delivered"] == 6
+    headline = summarize(result)["headline"]
+    assert headline["level"] == "degraded"
+    assert "commands did not reach cells that had a way, 2 times" in headline["text"]
 
 
 def test_before_anybody_has_a_way_nobody_is_reached():

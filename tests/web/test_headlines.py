@@ -70,3 +70,11 @@ def test_a_mesh_that_has_just_begun_is_neither_well_nor_lost():
     assert made.fields()["headline"]["level"] == "no data"
     go_to(made, 4.0)
     assert made.fields()["headline"]["level"] == "ok"
+
+
+def test_a_plain_run_of_a_mesh_has_the_headline_of_the_compiled_one():
+    event = [{"at_s": 1.5, "action": "kill", "node": 3}]
+    few = {**MESH, "nodes": 6, "radio": {"mean_degree": 4}, "duration_s": 2.0, "event": event}
+    compiled, plain = run(few), run(few, plain=True)
+    assert compiled.summary["headline"] == plain.summary["headline"]
+    assert "1 of 6 nodes is off" in plain.summary["headline"]["text"]

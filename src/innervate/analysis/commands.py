@@ -18,7 +18,7 @@ REASONS = {"off": orders.WAS_OFF, "no_route": orders.HAD_NO_WAY, "on_the_way": o
 def commands_summary(result: Any) -> Commands:
     """Commands from the PC down to the cells."""
     counters = result.counters
-    missed, in_flight = _open(result)
+    missed, in_flight = _open(result.world, result.plan.graph.cells)
     lost_by = {
         name: counters[wires.MISSED + state - orders.WAS_OFF] + missed[state]
         for name, state in REASONS.items()
@@ -44,14 +44,22 @@ def commands_summary(result: Any) -> Commands:
     }
 
 
-def _open(result: Any) -> tuple[dict[int, int], int]:
+def missed_on_the_way(world: Any, cells: int) -> int:
+    """How often, so far, a command did not reach a cell that had a way as it was given."""
+    if not world.counters[wires.GIVEN]:
+        return 0
+    still, _ = _open(world, cells)
+    settled = world.counters[wires.MISSED + orders.HAD_A_WAY - orders.WAS_OFF]
+    return int(settled) + still[orders.HAD_A_WAY]
+
+
+def _open(world: Any, cells: int) -> tuple[dict[int, int], int]:
     """Of the last commands: how many cells did not get one, by state; for how many it flies."""
     missed = dict.fromkeys(REASONS.values(), 0)
     in_flight = 0
-    flying = {number_of(frame, "number") for frame in under_way(result.world)}
-    due = np.array(result.world.due, np.int64)
-    cells = result.plan.graph.cells
-    for slot, number in enumerate(int(number) for number in result.world.due_number):
+    flying = {number_of(frame, "sq") for frame in under_way(world)}
+    due = np.array(world.due, np.int64)
+    for slot, number in enumerate(int(number) for number in world.due_number):
         if number < 0:
             continue
         states = due[slot * cells : (slot + 1) * cells]

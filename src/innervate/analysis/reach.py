@@ -6,16 +6,17 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.commands import missed_on_the_way
 from innervate.analysis.frames import lost_at_start
 from innervate.analysis.rows import apart_steps, marks
 from innervate.analysis.skin_headline import SkinFacts
-from innervate.analysis.skin_summary import Apart, Commands, Data, Reach
+from innervate.analysis.skin_summary import Apart, Data, Reach
 from innervate.sim.world import DEAD
 
 LABELS_MAX = 100
 
 
-def skin_facts(result: Any, data: Data, commands: Commands) -> SkinFacts | None:
+def skin_facts(result: Any, data: Data) -> SkinFacts | None:
     """What a headline is made of; None of a run that nobody observed.
 
     Samples that cells took before they had a way for the first time do not count.
@@ -23,7 +24,6 @@ def skin_facts(result: Any, data: Data, commands: Commands) -> SkinFacts | None:
     Args:
         result: of the run.
         data: its `data_summary`.
-        commands: its `commands_summary`.
     """
     if len(marks(result).row) == 0:
         return None
@@ -33,7 +33,6 @@ def skin_facts(result: Any, data: Data, commands: Commands) -> SkinFacts | None:
         cut_off_before=most if most > len(facts.cut_off) else 0,
         sent=data["sent"] - lost_at_start(result),
         lost=data["lost"] - lost_at_start(result),
-        missed=commands["lost_by"]["on_the_way"],
     )
 
 
@@ -51,6 +50,7 @@ def world_facts(world: Any, cells: int) -> SkinFacts:
         never=np.flatnonzero(seeking & (np.array(watch.had) == 0)).tolist(),
         since_s=int(apart[cut_off].min()) / 1e6 if cut_off.any() else None,
         pc_off=int(alive[cells]) == DEAD,
+        missed=missed_on_the_way(world, cells),
     )
 
 

@@ -53,8 +53,7 @@ def summarize(result: Any) -> SkinSummary:
     events = result.handled + result.arrived
     loads = port_loads(result)
     data = data_summary(result)
-    commands = commands_summary(result)
-    facts = skin_facts(result, data, commands)
+    facts = skin_facts(result, data)
     apart = reach(result, facts)
     summary: SkinSummary = {
         "kind": plan.kind,
@@ -79,7 +78,7 @@ def summarize(result: Any) -> SkinSummary:
         "balance_factor": balance_factor(loads),
         "port_loads": loads,
         "data": data,
-        "commands": commands,
+        "commands": commands_summary(result),
         "beacon_share": beacon_share(result),
         "broken": broken_ports(result),
     }

@@ -27,8 +27,9 @@ def up(
     from innervate import scenario as scenarios
     from innervate.live import run_up as room
 
-    plan = scenarios.plan(scenarios.load(file, sets))
-    return asyncio.run(room.run(plan, folder, cables, sealed, for_s, as_json))
+    loaded = scenarios.load(file, sets)
+    plan, text = scenarios.plan(loaded), scenarios.dump(loaded)
+    return asyncio.run(room.run(plan, folder, cables, sealed, for_s, as_json, text))
 
 
 def show(names: list[str], as_json: bool) -> int:
@@ -108,7 +109,8 @@ def command(name: str, code: int, value: int, cell: int | None, as_json: bool) -
         print(json.dumps(sent))
     elif sent["ports"]:
         whom = "all cells" if cell is None else f"cell {cell}"
-        print(f"command {sent['number']} to {whom}, by {sent['ports']} interface ports")
+        ports = f"{sent['ports']} interface port{'s' if sent['ports'] > 1 else ''}"
+        print(f"command {sent['number']} to {whom}, by {ports}")
     else:
         print("nobody is there to hand it down: no cell has the PC as its parent", file=sys.stderr)
     return 0 if sent["ports"] else 1

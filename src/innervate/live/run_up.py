@@ -19,8 +19,9 @@ from innervate.live.up import Network
 
 
 async def run(
-    plan: Any, folder: Path | None, cables: str, sealed: bool, for_s: float, as_json: bool
-) -> int:
+    plan: Any, folder: Path | None, cables: str, sealed: bool, for_s: float, as_json: bool,
+    scenario: str = "",
+) -> int:  # fmt: skip
     """Bring a scenario up and keep it until Ctrl-C, SIGTERM or the time is over; 0."""
     own = folder is None
     folder = Path(tempfile.mkdtemp(prefix="innervate-")) if folder is None else folder.absolute()
@@ -34,6 +35,8 @@ async def run(
     began = time.monotonic()
     try:
         await network.up()
+        if scenario:  # for whoever draws a map of the nodes
+            (folder / "scenario.toml").write_text(scenario, encoding="utf-8")
         _announce(network, time.monotonic() - began, as_json)
         await _until(ending, asyncio.create_task(player.play()), for_s)
     finally:

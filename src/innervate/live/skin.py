@@ -259,7 +259,7 @@ class CellNode(LiveNode):
     def _deliver(self, kind: int, frame: Any) -> None:
         self.outcomes["commands received"] += 1
         to_all, at_us = frame.cell == EVERYBODY, time.time_ns() // 1000
-        found = Command(frame.number, frame.code, frame.value, to_all, frame.hops, at_us)
+        found = Command(frame.sq, frame.dist, frame.proximity, to_all, frame.hops, at_us)
         self._inbox.append(found)
 
     def _settled(self) -> None:
@@ -321,8 +321,10 @@ class SinkNode(LiveNode):
             raise ValueError(f"cell must be 0 to {EVERYBODY - 1}; leave it out for all")
         item = Frame()
         whom = EVERYBODY if cell is None else cell
-        for name, given in {"code": code, "value": value, "cell": whom}.items():
-            put(item, name, (given,))
+        for name, called, given in (
+            ("dist", "code", code), ("proximity", "value", value), ("cell", "cell", whom),
+        ):  # fmt: skip
+            put(item, name, (given,), called)
         pc = self.stack.pc
         self.engine.input(GIVE, item)
         self.outcomes["commands sent"] += 1

@@ -70,13 +70,14 @@ class Sent(NamedTuple):
     ports: int
 
 
-def put(item: Any, name: str, given: tuple[int, ...]) -> None:
-    """Set a field of a frame record.
+def put(item: Any, name: str, given: tuple[int, ...], called: str = "") -> None:
+    """Set a field of a frame record; `called` is its name for the user, if it has another.
 
     Raises:
         ValueError: a value leaves its range.
     """
     length, low, high = RANGES[name]
     if len(given) != max(1, length) or not all(low <= v <= high for v in given):
-        raise ValueError(f"{name} must be {max(1, length)} numbers, {low} to {high}")
+        many = f"{length} numbers, " if length else ""
+        raise ValueError(f"{called or name} must be {many}{low} to {high}")
     setattr(item, name, list(given) if length else given[0])

@@ -6,9 +6,9 @@ How the parent is chosen stands in skin_route.py.
 """
 
 from innervate.protocol.arith import MASK30, after, later
-from innervate.protocol.outbox import FLUSH, URGENT, report, send, set_timer
+from innervate.protocol.outbox import FLUSH, URGENT, deliver, report, send, set_timer
 from innervate.protocol.rng import draw
-from innervate.protocol.skin_down import copy_command, on_command
+from innervate.protocol.skin_down import take_first
 from innervate.protocol.skin_route import (
     distance,
     react,
@@ -18,8 +18,11 @@ from innervate.protocol.skin_words import (
     BEACON,
     COMMAND,
     DATA,
+    DROP_AGAIN,
     DROP_LOOP,
     DROP_NO_ROUTE,
+    DROP_TOO_FAR,
+    EVERYBODY,
     INFINITY,
     LOAD_MAX,
     MEMORY_LOST,
@@ -50,14 +53,11 @@ def copy_frame(to, frm):
     to.load = load
     to.size = size
     to.parent = parent
-    if kind == DATA:
+    if kind == DATA or kind == COMMAND:
         to.cell = frm.cell
+        to.hops = frm.hops
         to.seq = frm.seq
-        to.hops = frm.hops
         copy_sample(to, frm)
-    elif kind == COMMAND:
-        copy_command(to, frm)
-        to.hops = frm.hops
 
 
 def copy_sample(to, frm):
@@ -117,7 +117,7 @@ def on_frame(cell, params, now, port, frame, out):
     elif frame.kind == DATA:
         forward(cell, params, frame, out)
     elif frame.kind == COMMAND:
-        on_command(cell, params, port, frame, out)
+        hand_down(cell, params, port, frame, out)
 
 
 def on_timer(cell, params, now, timer, out):
@@ -154,6 +154,27 @@ def forward(cell, params, frame, out):
         onward = out.frame[send(out, cell.parent, 0, 0)]
         copy_frame(onward, frame)
         onward.hops = frame.hops + 1
+
+
+def hand_down(cell, params, port, frame, out):
+    """A command: for us, for our children, or for both [skin II-A].
+
+    A cell knows its children, and not who is behind them: a command for one cell goes to all of
+    them as well, and ends where it is for.
+    """
+    if not take_first(cell, frame.sq):
+        report(out, REPORT_DROP, DROP_AGAIN, 0)
+        return
+    if frame.cell == EVERYBODY or frame.cell == cell.number:
+        copy_frame(out.frame[deliver(out, COMMAND)], frame)
+    if frame.hops >= params.max_depth:
+        report(out, REPORT_DROP, DROP_TOO_FAR, 0)
+    elif frame.cell != cell.number:
+        for p in range(PORTS):
+            if p != port and cell.child[p] and cell.pf[p] < ONE:
+                onward = out.frame[send(out, p, 0, 0)]
+                copy_frame(onward, frame)
+                onward.hops = frame.hops + 1
 
 
 def hear(cell, params, port, beacon, out):

@@ -6,15 +6,22 @@ ports. Record types, plain classes, range checks, trace columns and the docs' ta
 
 FRAME = (
     ("kind", 0, 0, 15, "type", "1 beacon, 2 data, 3 restart (static rule only), 4 command"),
-    ("dist", 0, 0, 255, "hops", "beacon: hops from its sender to the PC; 0 the PC, 255 no route"),
-    ("sq", 0, 0, 65535, "number", "beacon: sequence number of the sender's route"),
+    (
+        "dist",
+        0,
+        0,
+        255,
+        "hops",
+        "beacon: to the PC; 0 the PC, 255 no route; command: its code",
+    ),
+    ("sq", 0, 0, 65535, "number", "beacon: of the sender's route; command: counts the PC's"),
     ("load", 0, 0, 4095, "cells", "beacon: cells whose data leave through it; 0 never had a route"),
     ("size", 0, 0, 4095, "cells", "beacon: load of the interface port that serves the sender"),
     ("parent", 0, 0, 1, "flag", "beacon: 1 = you, on this cable, are my parent"),
     ("cell", 0, 0, 65535, "cell", "data: who measured it; command: who it is for, 65535 all"),
     ("seq", 0, 0, 255, "number", "data: counts the cell's samples"),
     ("hops", 0, 0, 255, "hops", "data, command: cells that forwarded it so far"),
-    ("proximity", 0, 0, 65535, "raw", "data: nearness of an object, 0 far"),
+    ("proximity", 0, 0, 65535, "raw", "data: nearness of an object, 0 far; command: its value"),
     ("force", 3, 0, 65535, "mN", "data: three force sensors"),
     ("temperature", 0, -128, 127, "0.5 degC", "data: from 20 degC"),
     ("accel", 3, -512, 511, "raw", "data: acceleration along x, y, z"),
@@ -26,9 +33,6 @@ FRAME = (
         "us",
         "when it was measured, or given: a run's own, not sent",
     ),
-    ("number", 0, 0, 65535, "number", "command: counts the PC's commands"),
-    ("code", 0, 0, 255, "choice", "command: what to do; its meaning is the user's"),
-    ("value", 0, 0, 65535, "raw", "command: with what; its meaning is the user's"),
 )
 
 CELL = (

@@ -8,8 +8,7 @@ State: `pc.own[0]` (declared as SINK) and `pc.size[port]` (SINK_PORT).
 from innervate.protocol.arith import MASK16, MASK30, after, later
 from innervate.protocol.outbox import URGENT, deliver, send, set_timer
 from innervate.protocol.skin import copy_frame
-from innervate.protocol.skin_down import copy_command
-from innervate.protocol.skin_words import BEACON, DATA, TICK
+from innervate.protocol.skin_words import BEACON, COMMAND, DATA, TICK
 
 
 def on_start(pc, params, now, cause, out):
@@ -84,9 +83,10 @@ def on_input(pc, params, now, kind, item, out):
     """GIVE: a command for a cell or all, to every interface port that has a child [skin II-A]."""
     own = pc.own[0]
     own.command = (own.command + 1) & MASK16
+    item.kind = COMMAND
     for p in range(own.ports):
         if pc.size[p] > 0:
             frame = out.frame[send(out, p, 0, 0)]
-            copy_command(frame, item)
-            frame.number = own.command
+            copy_frame(frame, item)
+            frame.sq = own.command
             frame.hops = 0

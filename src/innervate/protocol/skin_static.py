@@ -11,7 +11,6 @@ from innervate.protocol import skin, skin_sink
 from innervate.protocol.arith import MASK16, MASK30, after, later
 from innervate.protocol.outbox import URGENT, report, send, set_timer
 from innervate.protocol.rng import draw
-from innervate.protocol.skin_down import on_command
 from innervate.protocol.skin_words import (
     BEACON,
     COMMAND,
@@ -54,7 +53,7 @@ def on_frame(cell, params, now, port, frame, out):
         if cell.sq_known and frame.sq == cell.sq_own and cell.parent != NONE:
             give_up(cell, out)
     elif frame.kind == COMMAND:
-        on_command(cell, params, port, frame, out)
+        skin.hand_down(cell, params, port, frame, out)
     else:
         skin.forward(cell, params, frame, out)
 

@@ -48,8 +48,8 @@ def begin(world, order):
         note(world, order.at, run.cells, ORDER_GIVEN, number, order.node)
     item = world.sample[0]
     item.cell = EVERYBODY if order.node == NONE else order.node
-    item.code = order.value >> 16
-    item.value = order.value & MASK16
+    item.dist = order.value >> 16
+    item.proximity = order.value & MASK16
     item.made_at = order.at & MASK30
     if world.alive[run.cells] == ALIVE:
         return True
@@ -73,9 +73,9 @@ def settle(world, slot):
 def reach(world, time, node, frame):
     """A command came to a cell's user."""
     run = world.run[0]
-    slot = frame.number % SLOTS
+    slot = frame.sq % SLOTS
     place = slot * run.cells + node
-    if world.due_number[slot] != frame.number or world.due[place] == NOT_MEANT:
+    if world.due_number[slot] != frame.sq or world.due[place] == NOT_MEANT:
         world.counters[STRAY] += 1
         return
     if world.due[place] == CAME:
@@ -86,4 +86,4 @@ def reach(world, time, node, frame):
     latency_us = (time - frame.made_at) & MASK30
     delays.note(world, len(world.delays) - 1, latency_us)
     if run.observe:
-        note(world, time, node, ORDER_CAME, frame.number, latency_us)
+        note(world, time, node, ORDER_CAME, frame.sq, latency_us)

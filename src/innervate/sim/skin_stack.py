@@ -66,8 +66,8 @@ def digest(frame):
         word ^= frame.force[0] * 1000003 + frame.force[1] * 70001 + frame.force[2] * 5003
         return word ^ (frame.accel[2] << 40) ^ (frame.temperature << 20)
     if frame.kind == COMMAND:
-        word = frame.cell | (frame.number << 16) | (frame.hops << 32) | (frame.kind << 40)
-        return word ^ (frame.code << 44) ^ (frame.value << 48)
+        word = frame.cell | (frame.sq << 16) | (frame.hops << 32) | (frame.kind << 40)
+        return word ^ (frame.dist << 44) ^ (frame.proximity << 48)
     word = frame.dist | (frame.sq << 8) | (frame.load << 24) | (frame.size << 36)
     return word | (frame.parent << 48) | (frame.kind << 49)
 

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from innervate.scenario import LOSE
+from innervate.scenario.orders import Order
 from innervate.scenario.radio_plan import KILL, LEAVE
 from innervate.sim import build as skin_build
 from innervate.sim import loop as skin_loop
@@ -27,6 +27,7 @@ from innervate.web.errors import WatchError
 from innervate.web.touching import Finger
 
 CELLS_MAX = 20_000
+ORDERS_CELLS_MAX = 2_000  # of a skin without data or commands of its own: they need room to wait
 
 Loop = Callable[[Any, int, int], None]
 
@@ -58,6 +59,21 @@ class SkinEngine(Engine):
     tables: ClassVar[tuple[str, ...]] = ("rows", "deliveries")
     finger: Finger | None = None  # once a hand has touched the skin
 
+    def __init__(self, plan: Any) -> None:
+        self.orders: list[Order] = []  # given by hand
+        super().__init__(plan)
+
+    @property
+    def takes_orders(self) -> bool:
+        """Is there room for commands of the PC?"""
+        known = bool(self.plan.orders) or self.plan.data_period_us > 0
+        return known or self.plan.graph.cells <= ORDERS_CELLS_MAX
+
+    def give(self, order: Order) -> None:
+        """Have the PC send a command, not before `earliest_us`."""
+        self.orders.append(order)
+        self._schedule_row(skin_build.order_row(order))
+
     def touch(self, cell: int | None) -> None:
         """Touch a cell from now on, or none."""
         if self.finger is None:
@@ -68,6 +84,9 @@ class SkinEngine(Engine):
     def back_to(self, mark: Mark) -> None:
         """Go back to a moment that was remembered; what was touched later is touched again."""
         super().back_to(mark)
+        for order in self.orders:
+            if order.at_us >= self.now_us:
+                self._schedule_row(skin_build.order_row(order))
         if self.finger is not None:
             self.world = self.finger.into(self.world)
 
@@ -89,7 +108,8 @@ class SkinEngine(Engine):
         return skin.compiled_loop(self.plan.params["rule"] == skin.RULE_STATIC)
 
     def _build(self) -> Any:
-        return skin_build.build(self.plan, deliveries=self.plan.data_period_us > 0)
+        kept = self.plan.data_period_us > 0
+        return skin_build.build(self.plan, deliveries=kept, orders=self.takes_orders)
 
     def _clock(self) -> int:
         return int(self.world.wheel.clock[wheel.NOW])
@@ -102,8 +122,9 @@ class SkinEngine(Engine):
         return skin.story(self.plan, self.world)
 
     def _schedule(self, fault: Any) -> None:
-        value = fault.frames if fault.action == LOSE else fault.loss_q15
-        row = (fault.at_us, fault.action, fault.end, fault.node, value, fault.index)
+        self._schedule_row(skin_build.fault_row(fault))
+
+    def _schedule_row(self, row: tuple[int, ...]) -> None:
         self.world, _ = with_command(self.world, "at", row)
 
 

@@ -10,6 +10,7 @@ import threading
 from bisect import bisect_right
 from typing import Any, NamedTuple
 
+LOSS, RETURN = "loss", "return"  # something was taken from the network, or given back to it
 LOG, SERIES, TIMELINE, BACK = "log", "series", "timeline", "back"
 # How many items of a stream are kept; who comes later, or falls behind that far, misses the oldest.
 MOST = {LOG: 2_000, SERIES: 40_000, TIMELINE: 20_000, BACK: 1_000}
@@ -73,9 +74,11 @@ class Logbook:
         self._history = history
         self._written: dict[str, int] = {}
 
-    def say(self, at_us: int, text: str, level: str = "info") -> None:
-        """A line; `level` is info, good or bad."""
+    def say(self, at_us: int, text: str, level: str = "info", mark: str = "") -> None:
+        """A line; `level` is info, good or bad; `mark`, LOSS or RETURN, is shown in plots."""
         line = {"type": "log", "t_s": at_us / 1e6, "text": text, "level": level}
+        if mark:
+            line["mark"] = mark
         self._history.add(LOG, at_us, line)
 
     def often(self, kind: str, at_us: int, text: str, level: str = "info") -> None:

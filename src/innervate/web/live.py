@@ -12,11 +12,12 @@ from innervate import __version__
 from innervate.analysis.radio_live import Still
 from innervate.live import status
 from innervate.web.errors import Refused, WatchError
-from innervate.web.history import SERIES, Logbook
+from innervate.web.history import LOSS, RETURN, SERIES, Logbook
 from innervate.web.live_map import Link, Map, Place, Status
 from innervate.web.live_poll import Poller
+from innervate.web.live_scene import drawn
 from innervate.web.live_state import State
-from innervate.web.messages import Command, Cut, Heal, Kill, Revive, number
+from innervate.web.messages import Command, Cut, Give, Heal, Kill, Revive, number
 from innervate.web.recovery import Recovery
 from innervate.web.source import Source
 
@@ -76,18 +77,27 @@ class Live(Source):
             if i not in self._told:
                 self._log.often("none", 0, f"{self._names[i]}: nobody answers at its socket", "bad")
         self._map = Map(self._last)
+        self._drawn = drawn(sockets, self._map.kind)
         self._off: set[Place] = set()  # cut off whole, from here
         self._state = State(self._map, self._told)
         self.can = self._possible()
 
     def scene(self) -> dict[str, Any]:
         """Who answered, and who is linked with whom as they say."""
-        places = self._map.spread().round(3).tolist()
+        known = self._drawn
+        names = [self._label(place) for place in self._map.places]
+        as_drawn = known is not None and all(name in known.places for name in names)
+        places = (
+            [known.places[name] for name in names]
+            if known is not None and as_drawn
+            else self._map.spread().round(3).tolist()
+        )
         nodes = []
         for at, (place, (x, y)) in enumerate(zip(self._map.places, places, strict=True)):
             node = {
                 "id": at,
-                "label": self._label(place),
+                "label": names[at],
+                "also": known.labels.get(names[at], "") if known is not None else "",
                 "x": x,
                 "y": y,
                 "role": self._role(place),
@@ -106,9 +116,12 @@ class Live(Source):
             {"id": "dropped", "label": "frames dropped, all nodes", "unit": "per s"},
         ]
         return {
-            "kind": self._map.kind, "name": "live", "source": "live", "version": __version__,
+            "kind": self._map.kind, "name": known.name if known is not None else "live",
+            "source": "live", "version": __version__,
             "can": list(self.can), "duration_s": None, "t_s": self._now_us() / 1e6,
-            "nodes": nodes, "links": links, "fence": None, "series": series,
+            "nodes": nodes, "links": links, "series": series,
+            "fence": known.fence if known is not None and as_drawn else None,
+            "metres": known is not None and as_drawn and known.metres,
             "ports": sum(place.port >= 0 for place in self._map.places),
         }  # fmt: skip
 
@@ -259,7 +272,30 @@ class Live(Source):
 
     def _possible(self) -> tuple[str, ...]:
         nodes = ("kill", "revive") if any(one.get("paths") for one in self._last.values()) else ()
-        return (*(("cut", "heal") if self._map.links else ()), *nodes)
+        down = ("command",) if self._map.kind == "skin" and self._pc() is not None else ()
+        return (*(("cut", "heal") if self._map.links else ()), *nodes, *down)
+
+    def _pc(self) -> int | None:
+        """Which node is the PC of a skin."""
+        found = (i for i, one in self._last.items() if one.get("role") == "sink")
+        return next(found, None)
+
+    def _give(self, command: Give) -> None:
+        """Have the PC send a command down."""
+        pc, cell, whom = self._pc(), None, "all cells"
+        assert pc is not None
+        if command.node is not None:
+            place = self._map.places[number("node", command.node, len(self._map.places))]
+            if place.port >= 0:
+                raise Refused("this is a port of the PC; commands are for cells")
+            cell, whom = int(self._last[place.node]["number"]), self._label(place)
+        request = {"do": "command", "code": command.code, "value": command.value, "cell": cell}
+        answer = self._poller.ask({pc: request}).get(pc)
+        if answer is None or "error" in answer:
+            raise Refused(f"the PC did not take it: {(answer or {}).get('error', 'no answer')}")
+        if not answer["ports"]:
+            raise Refused("no cell has the PC as its parent: nobody hands it down")
+        self._log.say(self._now_us(), f"command {answer['number']} sent to {whom}")
 
     def do(self, command: Command) -> dict[str, Any] | None:
         """Have drivers drop what comes over a link, or over all paths of a node; or take it again.
@@ -271,6 +307,8 @@ class Live(Source):
             self._plug(place, isinstance(command, Revive))
         elif isinstance(command, Cut | Heal):
             self._cable(command)
+        elif isinstance(command, Give) and "command" in self.can:
+            self._give(command)
         else:
             raise Refused("not possible here")
         self._next = 0.0
@@ -300,7 +338,7 @@ class Live(Source):
     def _note(self, cause: str, heals: bool) -> None:
         if not heals:
             self._lose(cause)
-        self._log.say(self._now_us(), cause)
+        self._log.say(self._now_us(), cause, mark=RETURN if heals else LOSS)
 
     def _cable(self, command: Cut | Heal) -> None:
         at = number("link", command.link, len(self._map.links))

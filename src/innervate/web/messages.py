@@ -51,6 +51,14 @@ class Touch(_Command, frozen=True, tag="touch"):
     value: Level
 
 
+class Give(_Command, frozen=True, tag="command"):
+    """Have the PC of a skin send a command to a cell, or (without node) to all."""
+
+    code: Level
+    value: Annotated[int, msgspec.Meta(ge=0, le=65_535)] = 0
+    node: Number | None = None
+
+
 class Pause(_Command, frozen=True, tag="pause"):
     """Hold the network's time."""
 
@@ -79,8 +87,8 @@ class Save(_Command, frozen=True, tag="save"):
     """Give back the scenario with all that was done to it as events."""
 
 
-Command = Cut | Heal | Kill | Revive | Touch | Pause | Go | Step | Speed | Seek | Save
-NAMES = "cut, heal, kill, revive, touch, pause, go, step, speed, seek, save"
+Command = Cut | Heal | Kill | Revive | Touch | Give | Pause | Go | Step | Speed | Seek | Save
+NAMES = "cut, heal, kill, revive, touch, command, pause, go, step, speed, seek, save"
 _DECODER = msgspec.json.Decoder(Command)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis.ways import NOWHERE, follow
-from innervate.protocol.skin_words import BEACON, DATA
+from innervate.protocol.skin_words import BEACON, COMMAND, DATA
 from innervate.sim import wheel
 from innervate.sim.wires import DELAYED
 from innervate.sim.world import DEAD
@@ -15,7 +15,7 @@ from innervate.topology import PORTS
 from innervate.web.skin_scene import nodes_of_ends
 
 FLIGHTS_MAX = 2_000
-KINDS = {BEACON: "beacon", DATA: "data"}
+KINDS = {BEACON: "beacon", DATA: "data", COMMAND: "command"}
 
 
 class Cables:

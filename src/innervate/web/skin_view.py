@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
+from msgspec import to_builtins
 
 from innervate.analysis.headline import Headline
 from innervate.analysis.load import balance_factor
@@ -21,6 +22,7 @@ from innervate.protocol.skin_words import (
 )
 from innervate.scenario import CUT, KILL, LOOSE, RESTORE, REVIVE, Fault
 from innervate.sim.observer import APART, CUT_OFF, LOOP_OPEN, UNROUTED
+from innervate.sim.orders import ORDER_CAME, ORDER_GIVEN
 from innervate.sim.wires import (
     EARLY,
     LOOPED,
@@ -31,11 +33,12 @@ from innervate.sim.wires import (
 )
 from innervate.sim.world import DEAD
 from innervate.topology import PORTS
+from innervate.web import giving
 from innervate.web.engine import Engine, Rows
 from innervate.web.engines import SkinEngine
 from innervate.web.errors import Refused
 from innervate.web.history import History
-from innervate.web.messages import Command, Touch, number
+from innervate.web.messages import Command, Give, Touch, number
 from innervate.web.skin_scene import places
 from innervate.web.skin_state import Cables
 from innervate.web.view import Memory, View
@@ -56,6 +59,8 @@ class SkinMemory(Memory):
     counted: tuple[int, int] = field(default=(0, 0))
     apart: int = 0  # cells that are cut off from the PC now
     apart_most: int = 0  # most cells that were cut off from the PC at the same time
+    given: dict[int, giving.Given] = field(default_factory=dict)
+    told: Any = None  # per cell the newest command that came, -1 none
     waited: tuple[int, int] = (0, 0)  # samples since the last point, the sum of their latencies, us
 
 
@@ -76,9 +81,12 @@ class SkinView(View):
         )
         self._planned = {fault.index: fault for fault in self.plan.faults}
         touch_us = np.full(self.cells, -STALE_US, np.int64)
-        self.memory = SkinMemory(touch=np.zeros(self.cells, np.int64), touch_us=touch_us)
+        self.memory = SkinMemory(touch=np.zeros(self.cells, np.int64), touch_us=touch_us,
+                                 told=np.full(self.cells, -1))  # fmt: skip
         if self.plan.data_period_us:
             self.can = (*self.can, "touch")
+        if isinstance(engine, SkinEngine) and engine.takes_orders:
+            self.can = (*self.can, "command")
 
     def scene(self) -> dict[str, Any]:
         """Nodes, links and what else stands still."""
@@ -117,7 +125,8 @@ class SkinView(View):
             memory.waited = (
                 memory.waited[0] + len(told), memory.waited[1] + int(told["latency"].sum())
             )  # fmt: skip
-        codes = (APART, CUT_OFF, UNROUTED, LOOP_OPEN, REPORT_BROKEN, REPORT_PARENT, REPORT_BALANCE)
+        codes = (APART, CUT_OFF, UNROUTED, LOOP_OPEN, REPORT_BROKEN, REPORT_PARENT, REPORT_BALANCE,
+                 ORDER_GIVEN, ORDER_CAME)  # fmt: skip
         found = rows["rows"]
         found = found[np.isin(found["code"], codes)]
         for at, node, code, a, b in found.tolist():
@@ -127,6 +136,11 @@ class SkinView(View):
                 self._apart(a)
             elif code == UNROUTED:
                 self._unrouted(at, a)
+            elif code == ORDER_GIVEN:
+                memory.given[a] = giving.begin(self.log, self.plan.graph, at, a, b)
+            elif code == ORDER_CAME and a in memory.given:
+                memory.told[node] = a
+                giving.reached(self.log, self.plan.graph, memory.given[a], at, a, node)
             elif code == REPORT_BROKEN:
                 self._broken(at, PORTS * node + a, b)
             elif code == LOOP_OPEN:
@@ -238,6 +252,8 @@ class SkinView(View):
             "load": np.concatenate([load, none]),
             "flights": self.cables.flights(world, self.engine.now_us) if flights else [],
         }
+        if "command" in self.can:
+            fields["told"] = np.concatenate([memory.told, none - 1])
         if self.plan.data_period_us:
             heard = self.engine.now_us - memory.touch_us < STALE_US
             fields["touch"] = np.concatenate([np.where(heard, memory.touch, 0), none])
@@ -245,6 +261,10 @@ class SkinView(View):
 
     def apply(self, command: Command) -> None:
         """Have a command happen at the earliest moment."""
+        if isinstance(command, Give) and "command" in self.can:
+            assert isinstance(self.engine, SkinEngine)
+            self.engine.give(giving.order_of(command, self.engine.earliest_us, self.cells))
+            return
         if not isinstance(command, Touch):
             super().apply(command)
             return
@@ -255,10 +275,15 @@ class SkinView(View):
         self.log.often("touch", self.engine.now_us, what)
 
     def extra(self) -> dict[str, Any]:
-        """The touch, as a hand has led it."""
+        """The touch, as a hand has led it, and the commands that were given by hand."""
         assert isinstance(self.engine, SkinEngine)
-        finger = self.engine.finger
-        return {} if finger is None else {"touch": finger.table()}
+        finger, orders = self.engine.finger, self.engine.orders
+        found: dict[str, Any] = {} if finger is None else {"touch": finger.table()}
+        if orders:
+            told = to_builtins(self.plan.scenario.model.command)
+            told += [giving.table(order, self._target(order.cell)) for order in orders]
+            found["command"] = told
+        return found
 
     def words(self, fault: Any) -> str:
         """A fault in words."""
@@ -307,8 +332,15 @@ class SkinView(View):
         if cell == graph.sink:
             return {"pc": True}
         port = {} if fault.end < 0 else {"port": fault.end % PORTS}
+        return {**self._target(cell), **port}
+
+    def _target(self, cell: int) -> dict[str, Any]:
+        """A cell as a scenario names it; nothing for all of them."""
+        if cell < 0:
+            return {}
+        graph = self.plan.graph
         patch = graph.patch_of(cell)
         if patch < 0:
-            return {"node": graph.label(cell), **port}
+            return {"node": graph.label(cell)}
         row, column = graph.patches[patch].row_column(cell)
-        return {"cell": {"patch": patch, "row": row, "column": column}, **port}
+        return {"cell": {"patch": patch, "row": row, "column": column}}

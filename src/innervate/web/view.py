@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from innervate.analysis.headline import Headline
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
-from innervate.web.history import SERIES, History, Logbook
+from innervate.web.history import LOSS, RETURN, SERIES, History, Logbook
 from innervate.web.messages import Command, Cut, Heal, Kill, Revive
 from innervate.web.recovery import Recovery
 
@@ -140,7 +140,7 @@ class View(ABC):
         elif memory.recovery is not None:
             memory.recovery.close()
         self.log.calm()
-        self.log.say(fault.at_us, cause)
+        self.log.say(fault.at_us, cause, mark=LOSS if self.takes(fault) else RETURN)
 
     def tell_faults(self) -> list[Any]:
         """Begin all faults that have happened and were not told yet; them, in order of time."""

@@ -33,10 +33,10 @@ TOUCH = (
 ORDER = (
     (SPARE, 0, 4, 0),
     ("cell", 0, 16, 0),
-    ("number", 0, 16, 0),
+    ("sq", 0, 16, 0),
     ("hops", 0, 8, 0),
-    ("code", 0, 8, 0),
-    ("value", 0, 16, 0),
+    ("dist", 0, 8, 0),
+    ("proximity", 0, 16, 0),
 )
 # A frame: value of the type, name, fields after the type. A restart has the form of a beacon.
 LAYOUTS = (

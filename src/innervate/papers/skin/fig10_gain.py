@@ -59,7 +59,7 @@ def _gain(results: Results, quick: bool, setup: str) -> Claim:
         "10",
         f"setup {setup[-1]}: about 10 points less loss than the static tree (the mean "
         f"{_points(TEN_POINTS.low)} to {_points(TEN_POINTS.high)})",
-        f"{_points(found.mean())} points less: static {percent(mean.value, 1)} (95 % interval "
+        f"{100 * found.mean():.2f} points less: static {percent(mean.value, 1)} (95 % interval "
         f"{percent(mean.low, 1)} to {percent(mean.high, 1)}) over {len(found)} trees, dynamic "
         f"{percent(float(static.mean() - found.mean()), 1)}; by tree: median {_points(middle)}, "
         f"5 to 95 % {_points(low)} to {_points(high)}",

@@ -59,8 +59,7 @@ export function setUpTheme(button, onChange) {
   const show = () => {
     const is = choice === "auto" ? (dark.matches ? "dark" : "light") : choice;
     document.documentElement.dataset.theme = is;
-    button.textContent = choice[0].toUpperCase() + choice.slice(1);
-    button.setAttribute("aria-label", `Colours: ${choice}`);
+    button.textContent = `Theme: ${choice}`;
     read();
     onChange();
   };

@@ -41,9 +41,12 @@ export class Controls {
   state(network) {
     const { paused, at_end: atEnd, t_s } = network.now;
     this.paused = paused;
-    $("go").textContent = paused ? "Go" : "Pause";
-    $("go").disabled = atEnd && !network.can.has("seek");
-    $("step").disabled = !paused;
+    this.again = atEnd && network.can.has("seek");
+    $("go").textContent = this.again ? "Replay" : paused ? "Play" : "Pause";
+    $("go").disabled = atEnd && !this.again;
+    $("go").classList.toggle("again", this.again);
+    $("transport").classList.toggle("ended", atEnd);
+    $("step").disabled = !paused || atEnd;
     if (network.now.speed !== this.speed || !$("speed-text").textContent) {
       this.speed = network.now.speed;
       $("speed").value = speedIndex(this.speed);
@@ -57,8 +60,12 @@ export class Controls {
     if (atEnd) $("clock").textContent += " – end";
   }
 
+  /** Pause, go on, or begin anew at the end. */
   toggle() {
-    this.send({ do: this.paused ? "go" : "pause" });
+    if (this.again) {
+      this.send({ do: "seek", t_s: 0 });
+      if (this.paused) this.send({ do: "go" });
+    } else this.send({ do: this.paused ? "go" : "pause" });
   }
 
   /** Slower (-1) or faster (1). */

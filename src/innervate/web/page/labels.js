@@ -27,12 +27,16 @@ export class Labels {
       const left = x + dx * far + (dx < 0 ? -wide : dx ? 0 : -wide / 2);
       const top = y + dy * far + (dy < 0 ? -high : dy ? 0 : -high / 2);
       const box = [left, top, left + wide, top + high];
-      if (this.#isFree(box)) {
-        this.block(...box);
-        return [left + 2, top + high / 2];
-      }
+      if (this.claim(...box)) return [left + 2, top + high / 2];
     }
     return null;
+  }
+
+  /** Take a box, if it is free and in sight. */
+  claim(...box) {
+    if (!this.#isFree(box)) return false;
+    this.block(...box);
+    return true;
   }
 
   #isFree([x0, y0, x1, y1]) {

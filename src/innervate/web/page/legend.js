@@ -1,12 +1,14 @@
 // The legend: a sample of everything that can be seen, with its meaning.
 
+import { eventSamples } from "./plots.js";
+
 const WIDE = 26;
 const HIGH = 16;
 
 /** Show a view's legend: pairs of a function that draws a sample, and words. */
 export function showLegend(list, view) {
   const ratio = Math.min(devicePixelRatio, 2);
-  list.replaceChildren(...view.legend().map(([draw, text]) => {
+  list.replaceChildren(...[...view.legend(), ...eventSamples()].map(([draw, text]) => {
     const item = document.createElement("li");
     const canvas = document.createElement("canvas");
     canvas.width = WIDE * ratio;

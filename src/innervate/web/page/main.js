@@ -1,5 +1,6 @@
 // The page of `innervate watch`: takes in what the server says, shows it, and sends back commands.
 import { setUpTheme } from "./colours.js";
+import { CommandBox } from "./command.js";
 import { Controls } from "./controls.js";
 import { setUpKeys } from "./keys.js";
 import { showLegend } from "./legend.js";
@@ -13,6 +14,7 @@ import { SkinView } from "./skin.js";
 import { Connection, TOKEN } from "./socket.js";
 import { LAYERS, Stage } from "./stage.js";
 import { Timeline } from "./timeline.js";
+import { Tip } from "./tip.js";
 
 const VIEWS = { skin: SkinView, mesh: MeshView, radio: RadioView };
 const SOURCES = { simulation: "simulation", run: "recorded run", live: "live nodes" };
@@ -28,9 +30,11 @@ let chosenColour = null; // outlives a server that is started anew
 let panelDue = 0;
 let panelStale = false;
 
-/** For whoever measures: `innervate.fps`, the slowest drawing of the last second, and where on the
- * page a node or link is, by its name. */
-const speedometer = { fps: 0, frames: 0, states: 0, slowest_ms: 0, at: placeOf };
+/** For whoever measures: `innervate.fps`, the slowest drawing of the last second, where on the page
+ * a node or link is, by its name, and the moments that plots mark. */
+const speedometer = {
+  fps: 0, frames: 0, states: 0, slowest_ms: 0, at: placeOf, marks: () => network.marks,
+};
 window.innervate = speedometer;
 let second = performance.now();
 let counted = 0;
@@ -39,10 +43,12 @@ let slowest = 0;
 const stage = new Stage($("stage"));
 const log = new Log($("log"));
 const controls = new Controls(send);
-const card = new Card(change);
+const card = new Card(change, new CommandBox(send));
 const pointer = new Pointer(stage, {
   select: (what) => card.show(view, what), act, nodesOnly: () => $("tool").value === "touch",
+  over: (what, place) => tip.show(view, what, place, deed),
 });
+const tip = new Tip(stage.box);
 const timeline = new Timeline($("timeline"));
 const nextTheme = setUpTheme($("theme"), redraw);
 const connection = new Connection(onMessage, onConnection);
@@ -65,6 +71,14 @@ function act(what) {
   change(what);
 }
 
+/** What a click on something would do, as a verb; "" nothing. */
+function deed(what) {
+  const tool = $("tool").value;
+  if (tool === "look" || !pointer.isLarge()) return "";
+  if (tool === "touch") return network.nodes[what.node]?.role === "cell" ? "touches" : "";
+  return Card.deed(network, what);
+}
+
 /** Cut, kill, heal or revive something, whatever a click does. */
 function change(what) {
   const command = commandFor(network, what);
@@ -74,7 +88,7 @@ function change(what) {
 function onMessage(message) {
   if (message.type === "scene") showScene(message);
   else if (message.type === "state" && network) takeIn(message);
-  else if (message.type === "log") log.add(message);
+  else if (message.type === "log") takeLine(message);
   else if (message.type === "error") log.add({ text: message.text, level: "bad" });
   else if (message.type === "end") log.add({ text: message.text, level: "info" });
   else if (message.type === "saved") download(message.toml);
@@ -162,6 +176,12 @@ function takeIn(state) {
   panelStale = true;
 }
 
+function takeLine(line) {
+  log.add(line);
+  network?.note(line);
+  panelStale = true;
+}
+
 function placeOf(name) {
   const { left, top } = stage.box.getBoundingClientRect();
   const what = whatIs(name);
@@ -192,6 +212,7 @@ function setColour(name) {
 }
 
 $("colour").addEventListener("change", () => setColour($("colour").value));
+$("unselect").addEventListener("click", () => pointer.select(null));
 $("zoom-in").addEventListener("click", () => stage.zoomBy(1.5));
 $("zoom-out").addEventListener("click", () => stage.zoomBy(1 / 1.5));
 $("zoom-fit").addEventListener("click", () => stage.fit());
@@ -226,6 +247,7 @@ function frame(now) {
       controls.state(network);
       plots.draw();
       if (pointer.selected) card.show(view, pointer.selected);
+      tip.refresh(view);
     }
     slowest = Math.max(slowest, performance.now() - before);
   }

@@ -4,7 +4,7 @@ import { Labels } from "./labels.js";
 import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
 import {
-  affected, affectedSample, arrow, boxRound, cross, diamond, flights, stroke, word,
+  affected, affectedSample, arrow, boxRound, cross, flightSample, flights, stroke, word,
 } from "./shapes.js";
 import { symbol } from "./symbols.js";
 import { off, offWord, plural } from "./words.js";
@@ -13,7 +13,7 @@ const GOOD = 0.9; // links of this quality are drawn whole, worse ones dashed, p
 const FAIR = 0.6;
 const WAYS = ["", "no way to the gateway", "cut off from the gateway"];
 const CROSS_PX = 7; // round the cross of a cut, where no name goes
-const LINK_PX = 7; // how near a click must be to a link
+const LINK_PX = 5; // how near a click must be to a link
 const FONT = "12px system-ui, sans-serif";
 
 /** Draws a mesh on a stage. */
@@ -66,7 +66,7 @@ export class MeshView {
   linkDistance(stage, link, x, y) {
     if (!this.network.isThere(link)) return Infinity;
     const [a, b] = this.network.ends[link];
-    const away = distance(stage.x[a], stage.y[a], stage.x[b], stage.y[b], x, y);
+    const away = distance(stage.x[a], stage.y[a], stage.x[b], stage.y[b], x, y, 0.15, 0.85);
     return away <= LINK_PX ? away : Infinity;
   }
 
@@ -112,14 +112,12 @@ export class MeshView {
       arrow(path, 0, 8, 26, 8, 1);
       stroke(context, colours.accent, 2.4, path);
     }, "way to the gateway"]);
+    if (this.network.scene.source !== "live") {
+      found.push(flightSample("ack", "ack or beacon"), flightSample("data", "message or table"));
+    }
     if (!this.network.scene.fence) return found;
     found.push([line("ink", 2, []), "fence"]);
-    found.push([(context) => {
-      const path = new Path2D();
-      diamond(path, 13, 8, 6);
-      context.fillStyle = colours.alarm;
-      context.fill(path);
-    }, "alarm on its way"]);
+    if (this.network.scene.source !== "live") found.push(flightSample("alarm", "alarm on its way"));
     return found;
   }
 

@@ -4,6 +4,7 @@ export const NO_DATA = "no data"; // the level of a network of which nobody answ
 const OUT_OF_RANGE = 2; // in link_up
 const KEPT = 20000; // boxes of the timeline
 const POINTS = 3000; // of a plot
+const MARKS = 500;
 
 /** One network as it is looked at: a scene and what became of it. */
 export class Network {
@@ -26,13 +27,13 @@ export class Network {
       t_s: scene.t_s ?? 0, paused: false, speed: 1, at_end: false,
       node_up: none(1), link_up: scene.links.map(() => 1),
       parent: none(-1), port: none(-1), depth: none(-1), load: none(0), touch: none(0),
-      alarm: none(0), outside: none(0), way: none(0), flights: [],
+      told: none(-1), alarm: none(0), outside: none(0), way: none(0), flights: [],
       since_cut_s: null, recovery: null, unconnected: 0, apart: 0, headline: null,
     };
     this.radio = { now: none(0), turn: none(-1) };
     this.timeline = [];
     this.series = new Map(scene.series.map((one) => [one.id, []]));
-    this.cuts_s = [];
+    this.marks = { loss: [], return: [] }; // when something was taken away, or given back, s
   }
 
   /** Take in a state message. Returns the names of what it changed, `back_s` if time went back. */
@@ -47,8 +48,14 @@ export class Network {
       if (this.timeline.length > KEPT) this.timeline.splice(0, this.timeline.length - KEPT / 2);
     }
     for (const [id, points] of Object.entries(series ?? {})) this.#addPoints(id, points);
-    this.#noteCut();
     return new Set(Object.keys(state));
+  }
+
+  /** Keep the moment of a log line that plots are to show. */
+  note({ mark, t_s }) {
+    if (!this.marks[mark]) return;
+    this.marks[mark].push(t_s);
+    if (this.marks[mark].length > MARKS) this.marks[mark].shift();
   }
 
   /** The node that stands for an id of `parent`, as an index, or -1. */
@@ -93,19 +100,13 @@ export class Network {
     if (kept.length > POINTS) kept.splice(0, kept.length - POINTS / 2);
   }
 
-  #noteCut() {
-    const { since_cut_s: since, t_s } = this.now;
-    if (since === null || since === undefined) return;
-    const at = t_s - since;
-    if (!this.cuts_s.length || Math.abs(this.cuts_s.at(-1) - at) > 1e-6) this.cuts_s.push(at);
-    if (this.cuts_s.length > 200) this.cuts_s.shift();
-  }
-
   #forgetAfter(t_s) {
     this.timeline = this.timeline.filter((box) => box.to_s <= t_s);
     for (const [id, points] of this.series) {
       this.series.set(id, points.filter(([at]) => at <= t_s));
     }
-    this.cuts_s = this.cuts_s.filter((at) => at <= t_s);
+    for (const [name, times] of Object.entries(this.marks)) {
+      this.marks[name] = times.filter((at) => at < t_s);
+    }
   }
 }

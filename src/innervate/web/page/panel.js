@@ -50,7 +50,11 @@ export function showNumbers(network) {
     const shown = isKnown || !isOpen ? text : "–";
     const cut = recovery.apart ? `${recovery.apart} cut off; the others: ` : "";
     const more = isKnown ? `${recovery.cause}: ${cut}${state}${noticed}` : recovery.cause;
-    show("recovery", shown, more, look);
+    if (isKnown && recovery.recovered_ms === 0) {
+      const whom = recovery.apart ? `${recovery.apart} cut off, no other `
+        : /cable|link/.test(recovery.cause) ? "no " : "no other ";
+      show("recovery", "–", `${recovery.cause}: ${whom}${WORDS[network.kind]} affected`, "");
+    } else show("recovery", shown, more, look);
   }
   const isRadio = network.kind === "radio"; // there everybody hears everybody
   const label = isRadio ? offWord(network) : "without a way";
@@ -64,7 +68,7 @@ export function showNumbers(network) {
     isKnown ? `${of}${off}` : "nobody answers", unconnected ? "bad" : "");
 }
 
-export const WORDS = { skin: "cell", radio: "station", mesh: "node" };
+const WORDS = { skin: "cell", radio: "station", mesh: "node" };
 
 /** Events, the newest at the end; it follows them unless the reader scrolled up. */
 export class Log {
@@ -113,10 +117,23 @@ export class Log {
 
 /** What is selected: its name, what is known of it, and a button for all that can be done. */
 export class Card {
-  /** @param {(what: object) => void} change cuts, kills, heals or revives something */
-  constructor(change) {
+  /**
+   * @param {(what: object) => void} change cuts, kills, heals or revives something
+   * @param {CommandBox} command
+   */
+  constructor(change, command) {
     this.change = change;
+    this.command = command;
     this.shown = "";
+  }
+
+  /** What a click on something does, as a verb: "kills"; "" nothing. */
+  static deed(network, what) {
+    const command = commandFor(network, what);
+    if (!command) return "";
+    const isOff = network.scene.source === "live" && what.node !== undefined;
+    return { cut: "cuts", heal: "heals", kill: isOff ? "cuts off" : "kills",
+      revive: isOff ? "lets back" : "revives" }[command.do];
   }
 
   /** Show {node} or {link} of a view's network, or nothing. */
@@ -124,12 +141,11 @@ export class Card {
     $("selection").hidden = !what;
     if (!what) return void (this.shown = "");
     const { network } = view;
-    const isNode = what.node !== undefined;
-    const name = isNode ? network.nodes[what.node].label : network.linkName(what.link);
-    const facts = isNode ? view.facts(what.node) : linkFacts(view, what.link);
+    const { name, facts } = told(view, what);
     $("selected-name").textContent = name;
     $("selected-facts").textContent = facts;
     this.#buttons(network, what);
+    this.command.show(network, what);
     const state = stateOf(network, what);
     if (what !== this.what || state !== this.state) $("spoken").textContent = `${name}: ${facts}`;
     Object.assign(this, { what, state });
@@ -168,6 +184,14 @@ export class Card {
     if (from === undefined) return `${verb} this link`;
     return `${verb}: ${network.nodes[network.across(link, from)].label}`;
   }
+}
+
+/** The name of {node} or {link}, and what is known of it. */
+export function told(view, { node, link }) {
+  const { label, also } = view.network.nodes[node] ?? {};
+  return node !== undefined
+    ? { name: also ? `${label} (${also})` : label, facts: view.facts(node) }
+    : { name: view.network.linkName(link), facts: linkFacts(view, link) };
 }
 
 /** What of a node or link is said again when it changes. */

@@ -1,12 +1,22 @@
 // Small plots of what is measured over time: load, loss, latency.
 import { colours } from "./colours.js";
 import { prepared, stroke, word } from "./shapes.js";
-import { value } from "./words.js";
+import { ticks, value } from "./words.js";
 
 const SPAN_S = 10; // of the network's time, at most
 const LEAST_S = 0.05;
 const FEW = 40; // points that are marked one by one
-const SIDE_PX = 10;
+const GUTTER = 46; // px on the left, for values
+const SIDE = 14;
+const HEAD = 8;
+const FOOT = 18; // px below, for times
+const FONT = "11px system-ui, sans-serif";
+
+/** What happened to the network, as upright lines: by the log's marks. */
+const EVENTS = {
+  loss: { colour: "alarm", dash: [4, 3], words: "in plots: cut or switched off" },
+  return: { colour: "good", dash: [1.5, 2.5], words: "put back" },
+};
 
 /** One small plot for each series of a scene. */
 export class Plots {
@@ -51,17 +61,9 @@ export class Plots {
     const span = Math.max(LEAST_S, to - from);
     const shown = points.filter(([t, v], i) => v !== null && (points[i + 1]?.[0] ?? t) >= from);
     const most = nice(Math.max(0, ...shown.map(([, v]) => v)));
-    const across = (t) => SIDE_PX + ((t - from) / span) * (width - 2 * SIDE_PX);
-    const up = (v) => height - 6 - (v / most) * (height - 14);
-    const lines = new Path2D(`M${SIDE_PX} ${up(0)}H${width - SIDE_PX}M${SIDE_PX} ${up(most)}`
-      + `H${width - SIDE_PX}`);
-    stroke(context, colours.faint, 1, lines);
-    const cuts = new Path2D();
-    for (const t of this.network.cuts_s.filter((at) => at >= from)) {
-      cuts.moveTo(across(t), 4);
-      cuts.lineTo(across(t), height - 6);
-    }
-    stroke(context, colours.alarm, 1.2, cuts, [4, 3]);
+    const across = (t) => GUTTER + ((t - from) / span) * (width - GUTTER - SIDE);
+    const up = (v) => height - FOOT - (v / most) * (height - FOOT - HEAD);
+    this.#scales(context, { width, height, up, across, most, from, to: from + span, series });
     const curve = new Path2D();
     const marks = shown.map(([t, v]) => [across(Math.max(t, from)), up(v)]);
     marks.forEach((at, i) => curve[i ? "lineTo" : "moveTo"](...at));
@@ -71,33 +73,47 @@ export class Plots {
     }
     context.lineJoin = "round";
     stroke(context, colours.accent, 1.8, curve);
-    this.#most(context, width, up(most), value(most, series.unit), marks);
+    for (const [name, look] of Object.entries(EVENTS)) {
+      const path = new Path2D();
+      for (const t of this.network.marks[name].filter((at) => at >= from)) {
+        path.moveTo(across(t), 2);
+        path.lineTo(across(t), height - FOOT);
+      }
+      stroke(context, colours[look.colour], 1.8, path, look.dash);
+    }
   }
 
-  /** What the upper line stands for; the lower one is 0. It stands where no curve is, if it can. */
-  #most(context, width, y, text, marks) {
-    const font = "10px system-ui, sans-serif";
-    context.font = font;
-    const wide = context.measureText(text).width + 8;
-    const places = [SIDE_PX, width / 2 - wide / 2, width - SIDE_PX - wide];
-    const high = (x) => Math.min(...heights(marks, x - 6, x + wide));
-    const free = places.find((x) => high(x) > y + 16) ?? SIDE_PX;
-    context.textAlign = "left";
-    word(context, text, free, y + 8, colours.soft, colours.panel, font);
+  /** Values in the gutter on the left, times below. */
+  #scales(context, { width, height, up, across, most, from, to, series }) {
+    const lines = new Path2D(`M${GUTTER} ${up(0)}H${width - SIDE}M${GUTTER} ${up(most)}`
+      + `H${width - SIDE}`);
+    context.font = FONT;
+    context.textAlign = "right";
+    for (const v of [0, most]) {
+      const whole = value(v, v ? series.unit : "");
+      const fits = context.measureText(whole).width <= GUTTER - 8; // the plot's head has the unit
+      const text = fits ? whole : value(v, "");
+      word(context, text, GUTTER - 5, up(v), colours.soft, colours.panel, FONT);
+    }
+    context.textAlign = "center";
+    const many = Math.max(4, Math.floor((width - GUTTER) / 65));
+    for (const [t_s, text] of ticks(from, to, many)) {
+      const x = across(t_s);
+      lines.moveTo(x, up(0));
+      lines.lineTo(x, up(0) + 3);
+      const half = 0.5 * context.measureText(text).width;
+      if (x - half < GUTTER - 12 || x + half > width) continue;
+      word(context, text, x, height - 6, colours.soft, colours.panel, FONT);
+    }
+    stroke(context, colours.faint, 1, lines);
   }
 }
 
-/** How high a curve gets between two places, y in px: its points there and where it enters. */
-function heights(marks, left, right) {
-  const found = [Infinity];
-  marks.forEach(([x, y], i) => {
-    if (x >= left && x <= right) found.push(y);
-    const [x1, y1] = marks[i + 1] ?? [x, y];
-    for (const edge of [left, right]) {
-      if (x < edge && edge < x1) found.push(y + ((edge - x) / (x1 - x)) * (y1 - y));
-    }
-  });
-  return found;
+/** Samples of the events in plots, for the legend. */
+export function eventSamples() {
+  return Object.values(EVENTS).map(({ colour, dash, words }) => [(context) => {
+    stroke(context, colours[colour], 1.8, new Path2D("M13 0v16"), dash);
+  }, words]);
 }
 
 /** The next round number at or above a value. */

@@ -13,23 +13,24 @@ const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDo
 export class Pointer {
   /**
    * @param {Stage} stage
-   * @param {{select: Function, act: Function, nodesOnly: Function}} told of what is selected
-   *   ({node} or {link}, or null) and of what is to be cut, killed or touched; says whether only
-   *   nodes can be
+   * @param {{select: Function, act: Function, nodesOnly: Function, over: Function}} told of what
+   *   is selected ({node} or {link}, or null), of what is to be cut, killed or touched, and of what
+   *   the mouse is over; says whether only nodes can be
    */
   constructor(stage, told) {
     Object.assign(this, { stage, told, over: null, selected: null });
     const { box } = stage;
     stage.marks = (context) => this.#draw(context);
     box.addEventListener("pointermove", (event) => this.#hover(event));
-    box.addEventListener("pointerleave", () => this.#setOver(null));
+    box.addEventListener("pointerleave", () => this.#setOver(null, [0, 0]));
     box.addEventListener("click", (event) => this.#click(event));
     box.addEventListener("keydown", (event) => this.#key(event));
     box.addEventListener("focus", () => this.#focus());
   }
 
   forget() {
-    this.over = this.selected = this.moves = null;
+    this.selected = this.moves = null;
+    this.#setOver(null, [0, 0]);
   }
 
   /** The node or link at a place of the stage in px, or null. */
@@ -70,10 +71,17 @@ export class Pointer {
   #hover(event) {
     if (event.pointerType === "touch") return;
     const { left, top } = this.stage.box.getBoundingClientRect();
-    this.#setOver(event.buttons ? null : this.find(event.clientX - left, event.clientY - top));
+    const place = [event.clientX - left, event.clientY - top];
+    this.#setOver(event.buttons ? null : this.find(...place), place);
   }
 
-  #setOver(what) {
+  /** Whether a node is large enough on the screen that a click does more than select. */
+  isLarge(least = MOUSE_PX) {
+    return this.stage.view.size(this.stage.scale) >= least;
+  }
+
+  #setOver(what, place) {
+    this.told.over(what, place);
     const same = what?.node === this.over?.node && what?.link === this.over?.link;
     this.over = what;
     if (!same) this.stage.touch(LAYERS.marks);
@@ -84,7 +92,7 @@ export class Pointer {
     const what = this.find(event.clientX - left, event.clientY - top);
     this.select(what);
     const least = event.pointerType === "touch" ? TOUCH_PX : MOUSE_PX;
-    if (what && this.stage.view.size(this.stage.scale) >= least) this.told.act(what);
+    if (what && this.isLarge(least)) this.told.act(what);
   }
 
   #focus() {

@@ -1,5 +1,6 @@
 // Stations of a radio channel, around, with what each one does at the moment.
 import { colours } from "./colours.js";
+import { Labels } from "./labels.js";
 import { LAYERS } from "./stage.js";
 import { affected, affectedSample, cross, stroke, word } from "./shapes.js";
 import { boxSamples } from "./timeline.js";
@@ -17,14 +18,15 @@ const [SENDS, WAITS] = [1, 4];
 const RING_PX = 15;
 const NAME_PX = 13; // from a station to its name: the ring round what is selected lies between
 const WORDS_PX = 55; // from this radius on there is room for words in the middle
-const TURNS_PX = 34; // from this distance on there is room for turns below names
+const LINE_PX = 13;
+const FONT = "12px system-ui, sans-serif";
 
 /** Draws stations round a circle on a stage. */
 export class RadioView {
   constructor(network) {
     this.network = network;
     this.colour = "";
-    this.margin = [76, 44];
+    this.margin = [76, 52];
     const count = network.nodes.length;
     network.place = network.nodes.map((_, i) => {
       const turn = (2 * Math.PI * i) / count - Math.PI / 2;
@@ -84,29 +86,33 @@ export class RadioView {
     const [x0, y0] = stage.of([0, 0]);
     const radius = 0.5 * this.size(stage.scale);
     this.#waves(context, stage, x0, y0);
-    nodes.forEach((node, i) => {
-      const [x, y] = [stage.x[i], stage.y[i]];
-      this.#disc(context, x, y, radius, radio.now[i], now.node_up[i]);
-      if (radius < 6) return;
-      const away = Math.hypot(x - x0, y - y0) || 1;
-      this.#name(context, i, x, y, (x - x0) / away, (y - y0) / away, stage.scale);
+    nodes.forEach((_, i) => {
+      this.#disc(context, stage.x[i], stage.y[i], radius, radio.now[i], now.node_up[i]);
     });
+    if (radius >= 6) this.#names(context, stage, x0, y0);
     affected(context, this.network, stage, radius + 5);
   }
 
-  /** A station's name and its turn, beside it, looking away from the middle. */
-  #name(context, i, x, y, dx, dy, scale) {
-    const radius = 0.5 * this.size(scale);
-    const apart = (2 * Math.PI * scale) / this.network.nodes.length;
-    const turn = this.network.radio.turn[i];
-    const lines = [short(this.network.nodes[i].label)];
-    if (turn > 0 && apart >= TURNS_PX) lines.push(`turn ${turn}`);
-    context.textAlign = dx > 0.3 ? "left" : dx < -0.3 ? "right" : "center";
-    const middle = y + dy * (radius + NAME_PX + (lines.length > 1 ? 8 : 2));
-    const beside = x + dx * (radius + NAME_PX);
-    lines.forEach((text, n) => {
-      const shift = 13 * (n - (lines.length - 1) / 2);
-      word(context, text, beside, middle + shift, colours.soft, colours.ground);
+  /** Stations' names beside them, looking away from the middle; their turns if all find room. */
+  #names(context, stage, x0, y0) {
+    const { nodes, radio } = this.network;
+    const radius = 0.5 * this.size(stage.scale);
+    const room = new Labels(context, stage.width, stage.height);
+    nodes.forEach((_, i) => room.block(stage.x[i] - radius, stage.y[i] - radius,
+      stage.x[i] + radius, stage.y[i] + radius));
+    context.font = FONT;
+    const names = nodes.map(({ label }) => [short(label)]);
+    const whole = names.map((lines, i) => (
+      radio.turn[i] > 0 ? [...lines, `turn ${radio.turn[i]}`] : lines));
+    const place = (lines, i) => placed(context, stage, i, lines, x0, y0, radius);
+    const fits = whole.every((lines, i) => room.claim(...place(lines, i).box));
+    (fits ? whole : names).forEach((lines, i) => {
+      const { align, x, y } = place(lines, i);
+      context.textAlign = align;
+      lines.forEach((text, n) => {
+        const shift = LINE_PX * (n - (lines.length - 1) / 2);
+        word(context, text, x, y + shift, colours.soft, colours.ground, FONT);
+      });
     });
   }
 
@@ -123,6 +129,10 @@ export class RadioView {
       senders.length > 1 ? [6, 4] : []);
     if (stage.scale < WORDS_PX) return;
     const text = ["channel free", "one sends", "several send"][Math.min(2, senders.length)];
+    context.font = "600 13px system-ui, sans-serif";
+    const wide = context.measureText(text).width + 10;
+    context.fillStyle = colours.ground; // lines to the middle end before the words
+    context.fillRect(x0 - wide / 2, y0 - 10, wide, 20);
     context.textAlign = "center";
     word(context, text, x0, y0, senders.length > 1 ? colours.alarm : colours.ink, colours.ground,
       "600 13px system-ui, sans-serif");
@@ -146,6 +156,19 @@ export class RadioView {
       context.fillText(DOING[state].sign, x, y + 0.5);
     }
   }
+}
+
+/** Where lines beside a station stand, and the box that they fill. */
+function placed(context, stage, i, lines, x0, y0, radius) {
+  const away = Math.hypot(stage.x[i] - x0, stage.y[i] - y0) || 1;
+  const [dx, dy] = [(stage.x[i] - x0) / away, (stage.y[i] - y0) / away];
+  const wide = Math.max(...lines.map((text) => context.measureText(text).width));
+  const high = LINE_PX * lines.length;
+  const x = stage.x[i] + dx * (radius + NAME_PX);
+  const y = stage.y[i] + dy * (radius + NAME_PX + (lines.length > 1 ? 8 : 2));
+  const align = dx > 0.3 ? "left" : dx < -0.3 ? "right" : "center";
+  const left = x - { left: 0, center: 0.5, right: 1 }[align] * wide;
+  return { align, x, y, box: [left - 2, y - high / 2, left + wide + 2, y + high / 2] };
 }
 
 function short(label) {

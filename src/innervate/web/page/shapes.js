@@ -114,7 +114,7 @@ export const affectedSample = [(context) => {
 
 /** The frames on their way, a shape for each kind; with less motion in the middle of their link. */
 export function flights(context, network, stage, size) {
-  const path = { dot: new Path2D(), square: new Path2D(), diamond: new Path2D() };
+  const paths = new Map();
   for (const { a, b, kind, p } of network.now.flights) {
     const from = network.index.get(a);
     const to = network.index.get(b);
@@ -122,24 +122,44 @@ export function flights(context, network, stage, size) {
     const share = CALM.matches ? 0.5 : p;
     const x = stage.x[from] + (stage.x[to] - stage.x[from]) * share;
     const y = stage.y[from] + (stage.y[to] - stage.y[from]) * share;
-    if (kind === "alarm") diamond(path.diamond, x, y, size + 4);
-    else if (kind === "beacon" || kind === "ack") {
-      path.dot.moveTo(x + size, y);
-      path.dot.arc(x, y, size, 0, 7);
-    } else path.square.rect(x - size, y - size, 2 * size, 2 * size);
+    const colour = frameColour(kind);
+    if (!paths.has(colour)) paths.set(colour, new Path2D());
+    addFrame(paths.get(colour), kind, x, y, size);
   }
   context.lineWidth = 1;
   context.strokeStyle = colours.ground;
-  const fills = [["dot", "ink"], ["square", "accent"], ["diamond", "alarm"]];
-  for (const [name, colour] of fills) {
+  for (const colour of ["ink", "accent", "alarm"]) { // what matters most lies on top
+    if (!paths.has(colour)) continue;
     context.fillStyle = colours[colour];
-    context.fill(path[name]);
-    context.stroke(path[name]);
+    context.fill(paths.get(colour));
+    context.stroke(paths.get(colour));
   }
 }
 
+/** A sample of a frame for a legend, with what it means. */
+export function flightSample(kind, words) {
+  return [(context) => {
+    const path = new Path2D();
+    addFrame(path, kind, 13, 8, ["alarm", "command"].includes(kind) ? 2 : 4);
+    context.fillStyle = colours[frameColour(kind)];
+    context.fill(path);
+  }, words];
+}
+
+function frameColour(kind) {
+  return { alarm: "alarm", beacon: "ink", ack: "ink" }[kind] ?? "accent";
+}
+
+function addFrame(path, kind, x, y, size) {
+  if (kind === "alarm" || kind === "command") diamond(path, x, y, size + 4);
+  else if (kind === "beacon" || kind === "ack") {
+    path.moveTo(x + size, y);
+    path.arc(x, y, size, 0, 7);
+  } else path.rect(x - size, y - size, 2 * size, 2 * size);
+}
+
 /** Add a square on its corner: an alarm on its way. */
-export function diamond(path, x, y, size) {
+function diamond(path, x, y, size) {
   path.moveTo(x, y - size);
   path.lineTo(x + size, y);
   path.lineTo(x, y + size);

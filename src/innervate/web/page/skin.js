@@ -3,12 +3,13 @@ import { colours, shade } from "./colours.js";
 import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
 import {
-  affected, affectedSample, boxRound, brick, cross, flights, hexagon, stroke, word,
+  affected, affectedSample, boxRound, brick, cross, flightSample, flights, hexagon, stroke, word,
 } from "./shapes.js";
 import { off, offWord, plural } from "./words.js";
 
 const NEAR = 1.6; // cables up to this many pitches long are between neighbours
 const PORT_COLOURS = 8;
+const LINK_PX = 6; // a click is at most so far from the middle of a cable that it cuts
 const FEW = 0.1; // up to this share of cells is painted over one by one
 const BRICKS_PX = 5; // below this pitch hexagons are squares
 const WORDS_PX = 22; // from this pitch on cells bear a number
@@ -66,8 +67,9 @@ export class SkinView {
     const [x0, y0, x1, y1] = [stage.x[a], stage.y[a], stage.x[b], stage.y[b]];
     const long = Math.hypot(x1 - x0, y1 - y0) / stage.scale;
     const isNear = long <= NEAR;
-    const away = distance(x0, y0, x1, y1, x, y, isNear ? 0.42 : 0.25, isNear ? 0.58 : 0.75);
-    return away <= (isNear ? 0.2 * stage.scale : 4) ? away : Infinity;
+    const away = distance(x0, y0, x1, y1, x, y, isNear ? 0.5 : 0.3, isNear ? 0.5 : 0.7);
+    const reach = isNear ? Math.max(3, Math.min(0.14 * stage.scale, LINK_PX)) : 4;
+    return away <= reach ? away : Infinity;
   }
 
   /** How a cell looks: "off", "none" (no way), or a family of colours and a number in it. */
@@ -92,10 +94,11 @@ export class SkinView {
     if (!this.isCell[i]) return "the PC";
     if (!now.node_up[i]) return off(this.network, i);
     const touched = now.touch[i] ? `, touched ${now.touch[i]} of 255` : "";
-    if (!this.#isRouted(i)) return `no way to the PC${touched}`;
+    const told = now.told[i] >= 0 ? `, command ${now.told[i]} came` : "";
+    if (!this.#isRouted(i)) return `no way to the PC${touched}${told}`;
     const hops = now.depth[i] >= 0 ? `${plural(now.depth[i], "hop")} to the PC, ` : "";
     const load = now.load[i] ? `, load ${Math.round(100 * now.load[i])} %` : "";
-    return `${hops}through port ${now.port[i]}${load}${touched}`;
+    return `${hops}through port ${now.port[i]}${load}${touched}${told}`;
   }
 
   legend() {
@@ -114,6 +117,10 @@ export class SkinView {
     const found = this.#scale().map(([kind, text]) => [cell(kind), text]);
     found.push([cell("none"), "no way to the PC"], [cell("off"), offWord(this.network)]);
     found.push([line("link", 2, []), "sends through"], affectedSample);
+    if (this.network.scene.source !== "live") {
+      found.push(flightSample("beacon", "beacon"), flightSample("data", "sample to the PC"));
+      if (this.network.can.has("command")) found.push(flightSample("command", "command down"));
+    }
     found.push([(context) => {
       line("alarm", 2.4, [4, 3])(context);
       const gap = new Path2D();

@@ -1,7 +1,7 @@
 // The running timeline of a radio channel: a lane for each station, boxes for what it sent.
 import { colours } from "./colours.js";
 import { cross, prepared, stroke, word } from "./shapes.js";
-import { clock } from "./words.js";
+import { ticks } from "./words.js";
 
 const LEFT = 74;
 const TOP = 8;
@@ -72,18 +72,15 @@ export class Timeline {
 
   #ticks(from, to, across, bottom) {
     const { context } = this;
-    const rough = (to - from) / 4;
-    const ten = 10 ** Math.floor(Math.log10(rough));
-    const step = ten * (rough >= 5 * ten ? 5 : rough >= 2 * ten ? 2 : 1);
     const lines = new Path2D();
     context.textAlign = "center";
-    for (let n = Math.max(0, Math.ceil(from / step)); n * step <= to; n++) {
-      const x = across(n * step);
+    for (const [t_s, text] of ticks(from, to, 6)) {
+      const x = across(t_s);
       lines.moveTo(x, TOP);
       lines.lineTo(x, bottom + 4);
       const right = across(to);
       if (x > LEFT + 20 && x < right - 20) {
-        word(context, tick(n * step, step), x, bottom + 13, colours.soft, colours.ground,
+        word(context, text, x, bottom + 13, colours.soft, colours.ground,
           "11px system-ui, sans-serif");
       }
     }
@@ -141,10 +138,4 @@ export function boxSamples() {
       context.fillText(look.letter, 13, 16 - high / 2);
     }
   }, look.words]);
-}
-
-function tick(t_s, step) {
-  if (step >= 1) return clock(t_s);
-  const digits = Math.max(0, -Math.floor(Math.log10(step * 1000)));
-  return `${(1000 * t_s).toFixed(digits)} ms`;
 }

@@ -51,6 +51,25 @@ export function speedIndex(v) {
   return apart.indexOf(Math.min(...apart));
 }
 
+/** Round times between two, each with its name: at most about `many` of them. */
+export function ticks(from, to, many) {
+  const rough = (to - from) / many;
+  const ten = 10 ** Math.floor(Math.log10(rough));
+  const step = ten * [1, 2, 5, 10].find((n) => n * ten >= 0.999 * rough);
+  const found = [];
+  for (let n = Math.max(0, Math.ceil(from / step - 1e-9)); n * step <= to * (1 + 1e-12); n++) {
+    found.push([n * step, tick(n * step, step)]);
+  }
+  return found;
+}
+
+function tick(t_s, step) {
+  if (step >= 1) return t_s < 100 ? `${t_s.toFixed(0)} s` : clock(t_s, 0);
+  if (t_s >= 1) return `${t_s.toFixed(Math.max(0, -Math.floor(Math.log10(step) + 1e-9)))} s`;
+  const digits = Math.max(0, -Math.floor(Math.log10(step * 1000) + 1e-9));
+  return `${(1000 * t_s).toFixed(digits)} ms`;
+}
+
 /** What a node is that is not there: live ones go on running while they are cut off. */
 export function off(network, i) {
   if (network.scene.source !== "live") return "switched off";

@@ -1,0 +1,279 @@
+"""How the page is laid out and drawn: phones, large screens, plots, the end of a run, the mouse."""
+
+import re
+from contextlib import ExitStack
+
+import pytest
+
+from tests.browser_net import PHONE, SKIN, click, expect, place, seek, serving
+
+CABLE = "p0 r0 c2 - pc.0"
+CELL = "p0 r3 c3"
+SHORT = (
+    SKIN.replace("duration_s = 60", "duration_s = 3")
+    + """
+[[event]]
+at_s = 1
+action = "cut"
+interface = 1
+[[event]]
+at_s = 2
+action = "restore"
+interface = 1
+"""
+)
+RING = """
+kind = "radio"
+duration_s = 5
+stations = 20
+[traffic]
+kind = "saturated"
+"""
+SCENARIOS = {
+    "skin": (SKIN, "--speed", 0.1),
+    "short": (SHORT, "--speed", 0.5),
+    "ring": (RING, "--speed", 0.01),
+}
+# What is written on canvases, as [text, x0, y0, x1, y1] in px of the canvas; the last drawing.
+WRITTEN = """
+window.written = new Map();
+const put = CanvasRenderingContext2D.prototype.fillText;
+CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+  const { width } = this.measureText(text);
+  const left = x - { left: 0, start: 0, center: 0.5, right: 1 }[this.textAlign] * width;
+  if (!window.written.has(this.canvas)) window.written.set(this.canvas, []);
+  window.written.get(this.canvas).push([text, left, y - 6, left + width, y + 6]);
+  return put.apply(this, arguments);
+};
+const clear = CanvasRenderingContext2D.prototype.clearRect;
+CanvasRenderingContext2D.prototype.clearRect = function () {
+  window.written.set(this.canvas, []);
+  return clear.apply(this, arguments);
+};
+"""
+WORDS_OF = """(selector) => {
+  const canvases = [...document.querySelectorAll(selector)];
+  return canvases.map((one) => (window.written.get(one) ?? []).filter(([text]) => text !== ""));
+}"""
+
+
+def box(page, selector):
+    return page.locator(selector).bounding_box()
+
+
+def hold(page, t_s):
+    """Hold a network at a time; what is shown is of then."""
+    page.locator("#speed").fill("4")  # slow, or it is over before it was looked at
+    if page.locator("#go").inner_text() == "Replay":
+        seek(page, 0)
+        expect(page.locator("#go")).to_have_text(re.compile("^(Play|Pause)$"))
+    if page.locator("#go").inner_text() == "Pause":
+        page.locator("#go").click()
+    expect(page.locator("#go")).to_have_text("Play")
+    seek(page, t_s)
+    expect(page.locator("#clock")).to_have_text(re.compile(rf"^{t_s:.6f} s"))
+    page.evaluate("() => new Promise((drawn) => setTimeout(drawn, 300))")  # panels follow slowly
+
+
+def end(page):
+    """Bring a network to its end."""
+    hold(page, 2.9)
+    page.locator("#speed").fill("9")
+    page.locator("#go").click()
+    expect(page.locator("#go")).to_have_text("Replay")
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory):
+    """Addresses by what is shown there: a server for each, for all tests of this file."""
+    folder = tmp_path_factory.mktemp("design")
+    with ExitStack() as open_:
+        kept = {}
+
+        def address(name):
+            if name not in kept:
+                text, *options = SCENARIOS[name]
+                (folder / f"{name}.toml").write_text(text)
+                kept[name] = open_.enter_context(serving(folder / f"{name}.toml", *options))
+            return kept[name]
+
+        yield address
+
+
+@pytest.fixture
+def skin(served):
+    """A skin that tests leave as they found it."""
+    return served("skin")
+
+
+@pytest.fixture
+def short(served):
+    """A skin of three seconds, with a cut and its repair."""
+    return served("short")
+
+
+def test_a_phone_has_the_map_at_once_and_the_play_bar_always(look, skin):
+    page = look(skin, PHONE, has_touch=True, is_mobile=True)
+    assert box(page, "#stage")["y"] < 200
+    for down in (0, 10_000):
+        page.evaluate("(y) => scrollTo(0, y)", down)
+        bar = box(page, "#transport")
+        assert bar["y"] + bar["height"] <= PHONE["height"]
+        assert bar["y"] > PHONE["height"] - 120
+        for control in ("#go", "#step", "#seek", "#speed", "#clock"):
+            assert 0 <= box(page, control)["x"] < PHONE["width"]
+            assert box(page, control)["y"] >= bar["y"]
+    last = box(page, "#events")
+    assert last["y"] + last["height"] <= box(page, "#dock")["y"]  # nothing ends behind the bar
+
+
+def test_a_phone_shows_what_is_selected_above_the_play_bar(look, skin):
+    page = look(skin, PHONE, has_touch=True, is_mobile=True)
+    page.locator("#tool").select_option("look")
+    page.evaluate("scrollTo(0, 0)")
+    before = box(page, "#stage")
+    page.touchscreen.tap(*place(page, CELL))
+    expect(page.locator("#selected-name")).to_have_text(CELL)
+    sheet, bar = box(page, "#selection"), box(page, "#transport")
+    assert sheet["y"] + sheet["height"] <= bar["y"]
+    assert sheet["y"] >= before["y"] + before["height"]  # it hides nothing of the map
+    assert box(page, "#stage") == before
+    page.locator("#unselect").tap()
+    expect(page.locator("#selection")).to_be_hidden()
+
+
+def test_plots_have_a_time_axis_and_values_in_a_gutter(look, short):
+    page = look(short)
+    page.add_init_script(WRITTEN)
+    page.reload()
+    hold(page, 2.5)
+    for words in page.evaluate(WORDS_OF, ".plot canvas"):
+        values = [one for one in words if one[3] < 46]
+        times = [one for one in words if re.fullmatch(r"[\d.]+ m?s", one[0]) and one[1] > 30]
+        assert "0" in [text for text, *_ in values]
+        assert {"1 s", "2 s"} <= {text for text, *_ in times}
+        assert all(left >= 0 for _, left, *_ in words)
+        assert len(values) == 2
+        assert overlapping(words) == []
+
+
+def test_losses_and_returns_are_marked_also_for_who_comes_later(look, short):
+    page = look(short)
+    end(page)
+    other = look(short)
+    for one in (page, other):
+        expect(one.locator("#log")).to_contain_text("put back")
+        assert one.evaluate("innervate.marks()") == {"loss": [1], "return": [2]}
+        expect(one.locator("#legend")).to_contain_text("put back")
+    seek(page, 1.5)
+    expect(page.locator("#go")).not_to_have_text("Replay")
+    page.wait_for_function("() => innervate.marks().return.length === 0")
+    assert page.evaluate("innervate.marks()")["loss"] == [1]
+
+
+def test_the_end_is_said_and_replayed(look, short):
+    page = look(short)
+    end(page)
+    expect(page.locator("#clock")).to_contain_text("end")
+    expect(page.locator("#step")).to_be_disabled()
+    page.locator("#speed").fill("4")  # slow, or it is over before it was looked at
+    expect(page.locator("#speed-text")).to_have_text("0.02x")
+    page.locator("#go").click()
+    expect(page.locator("#go")).to_have_text("Pause")
+    expect(page.locator("#clock")).to_have_text(re.compile(r"^[012]\.\d+ s"))
+    page.keyboard.press("Space")
+    expect(page.locator("#go")).to_have_text("Play")
+
+
+def test_every_kind_of_frame_has_its_sample_in_the_legend(look, skin):
+    page = look(skin)
+    legend = page.locator("#legend")
+    for words in ("beacon", "sample to the PC", "in plots: cut or switched off"):
+        expect(legend).to_contain_text(words)
+
+
+def test_a_cut_that_nobody_needed_says_so(look, skin):
+    page = look(skin)
+    for cable in ("p0 r2 c3 - p0 r2 c4", "p0 r4 c0 - p0 r4 c1", "p0 r1 c6 - p0 r1 c7"):
+        click(page, cable)
+        expect(page.locator("#selected-facts")).to_have_text("link, cut")
+        expect(page.locator("#recovery")).not_to_have_class("number open")
+        said = page.locator("#recovery .more").inner_text()
+        click(page, cable)
+        expect(page.locator("#selected-facts")).to_have_text("link, up")
+        if "no cell affected" in said:
+            return
+    raise AssertionError("every one of these cables was on somebody's way")
+
+
+def test_the_mouse_is_told_what_lies_under_it_and_what_a_click_would_do(look, skin):
+    page = look(skin)
+    tip = page.locator("#tip")
+    expect(tip).to_be_hidden()
+    page.mouse.move(*place(page, CELL))
+    expect(tip).to_contain_text(CELL)
+    expect(tip).to_contain_text("through port")
+    expect(tip).to_contain_text("a click kills it")
+    page.mouse.move(*place(page, CABLE))
+    expect(tip).to_contain_text("link, up")
+    expect(tip).to_contain_text("a click cuts it")
+    page.locator("#tool").select_option("look")
+    page.mouse.move(*place(page, CELL))
+    expect(tip).to_contain_text(CELL)
+    expect(tip).not_to_contain_text("a click")
+    page.mouse.move(2, 2)
+    expect(tip).to_be_hidden()
+
+
+def test_a_click_that_misses_the_middle_of_a_cable_does_not_cut_it(look, skin):
+    page = look(skin)
+    page.locator("#tool").select_option("look")
+    (ax, ay), (bx, by) = place(page, "p0 r3 c3"), place(page, "p0 r3 c4")
+    away = ((bx - ax) ** 2 + (by - ay) ** 2) ** 0.5
+    for share, aside, hit in ((0.5, 0, True), (0.3, 0, False), (0.5, 0.2 * away, False)):
+        page.mouse.click(ax + share * (bx - ax), ay + share * (by - ay) + aside)
+        name = page.locator("#selected-name")
+        wanted = "p0 r3 c3 - p0 r3 c4" if hit else re.compile(r"^p0 r\d c\d$")
+        expect(name).to_have_text(wanted)
+
+
+def test_a_large_screen_is_used(look, skin):
+    small, large = (
+        look(skin, {"width": 1200, "height": 760}),
+        look(skin, {"width": 1920, "height": 1080}),
+    )
+    for selector in ("#stage", "#plots", "#numbers", "#log"):
+        assert box(large, selector)["width"] > 1.4 * box(small, selector)["width"]
+    font = "(one) => parseFloat(getComputedStyle(one).fontSize)"
+    for selector in ("body", "#since output", "#legend"):
+        assert large.locator(selector).evaluate(font) > small.locator(selector).evaluate(font)
+    assert large.evaluate("document.documentElement.scrollHeight") == 1080
+
+
+@pytest.mark.parametrize(
+    "size", [{"width": 1200, "height": 760}, {"width": 1920, "height": 1080}, PHONE]
+)
+def test_names_in_a_ring_of_twenty_keep_apart(look, served, size):
+    page = look(served("ring"), size)
+    page.add_init_script(WRITTEN)
+    page.reload()
+    hold(page, 0.05)
+    (words, *_) = page.evaluate(WORDS_OF, "#stage canvas")
+    names = [one for one in words if re.match(r"\d+$|turn \d+$", one[0])]
+    assert {text for text, *_ in names} >= {str(i) for i in range(20)}
+    assert overlapping(names) == []
+    stage = box(page, "#stage")
+    assert all(
+        left >= 0 and right <= stage["width"] and top >= 0 and low <= stage["height"]
+        for _, left, top, right, low in names
+    )
+
+
+def overlapping(words):
+    """Pairs of texts that lie on each other."""
+    return [
+        (a[0], b[0])
+        for i, a in enumerate(words)
+        for b in words[:i]
+        if a[1] < b[3] and b[1] < a[3] and a[2] < b[4] and b[2] < a[4]
+    ]
