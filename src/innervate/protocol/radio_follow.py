@@ -5,10 +5,12 @@ from innervate.protocol.outbox import report
 from innervate.protocol.radio_bounds import TRIP, adopt, notice
 from innervate.protocol.radio_idle import rest
 from innervate.protocol.radio_modes import (
+    LEAD,
     clear_round,
     disprove,
     following,
     is_over,
+    note_joined,
     prove,
     window_of,
 )
@@ -60,6 +62,8 @@ def hear_data(station, params, now, frame, out):
         return
     if station.pending:
         settle(station, params, now, frame, out)
+    if station.mode == LEAD:
+        note_joined(station)  # the next turn has begun: nobody used our window
     station.collided = 0
     station.tail = 0
     station.last_ok = 1
