@@ -14,7 +14,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from innervate.sweep.planfile import is_plan
+from innervate.sweeping.planfile import is_plan
 
 import innervate
 from innervate import scenario as scenarios
