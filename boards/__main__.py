@@ -26,7 +26,7 @@ def cell_files(params: dict[str, int]) -> dict[str, bytes]:
     """Path and content of everything that a cell needs; main.py stays readable."""
     role = ROLES["skin"]
     sources = {
-        "node": join.joined(role.entry),
+        "node": join.fixed(join.joined(role.entry), params),
         "records": records.module_source(
             params, State=role.state, Params=role.params, Frame=role.frame
         ),

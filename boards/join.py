@@ -10,10 +10,18 @@ from __future__ import annotations
 import ast
 import importlib
 import inspect
+import operator
+from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
+from innervate.protocol.skin_fields import NOTED
+
 ROOM = "innervate.protocol."
+_COMPARE: dict[type, Callable[[Any, Any], bool]] = {
+    ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Lt: operator.lt, ast.LtE: operator.le,
+    ast.Gt: operator.gt, ast.GtE: operator.ge,
+}  # fmt: skip
 HEADER = "# Made from {}: see boards/join.py.\n"
 
 
@@ -51,6 +59,8 @@ def reached(entry: str) -> list[ModuleType]:
 def functions(*entries: str) -> dict[str, str]:
     """Name and source of every function that the entries' functions can reach, callees first.
 
+    What is noted for simulations only is left out.
+
     Args:
         entries: modules of the protocol room, like "skin".
     """
@@ -66,7 +76,7 @@ def functions(*entries: str) -> dict[str, str]:
                 known = _values(module, names)
                 node.name = names[module.__name__, node.name]
                 node.body = node.body[1:] or [ast.Pass()]  # without its docstring
-                made = ast.fix_missing_locations(_Names(known).visit(node))
+                made = ast.fix_missing_locations(_Unnoted().visit(_Names(known).visit(node)))
                 found[made.name] = ast.unparse(made)
     return found
 
@@ -74,6 +84,15 @@ def functions(*entries: str) -> dict[str, str]:
 def joined(*entries: str) -> str:
     """The same as the text of one module."""
     return HEADER.format(", ".join(entries)) + "\n".join(functions(*entries).values()) + "\n"
+
+
+class _Unnoted(ast.NodeTransformer):
+    """Leaves out assignments to fields that only a simulation fills in."""
+
+    def visit_Assign(self, node: ast.Assign) -> Any:
+        (target,) = node.targets
+        noted = isinstance(target, ast.Attribute) and target.attr in NOTED
+        return None if noted else node
 
 
 class _Short(ast.NodeTransformer):
@@ -106,7 +125,7 @@ class _Short(ast.NodeTransformer):
 
 
 class _Fixed(ast.NodeTransformer):
-    """Puts numbers for the attributes of `params`."""
+    """Puts numbers for the attributes of `params`; only handlers are still given it."""
 
     def __init__(self, params: dict[str, int]) -> None:
         self.params = params
@@ -117,10 +136,61 @@ class _Fixed(ast.NodeTransformer):
         self.generic_visit(node)
         return node
 
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
+        if not node.name.startswith("on_"):
+            node.args.args = [arg for arg in node.args.args if arg.arg != "params"]
+        self.generic_visit(node)
+        return node
+
+    def visit_Call(self, node: ast.Call) -> ast.Call:
+        node.args = [a for a in node.args if not isinstance(a, ast.Name) or a.id != "params"]
+        self.generic_visit(node)
+        return node
+
+
+class _Pruned(ast.NodeTransformer):
+    """Leaves out what constants decide: branches never taken, conditions that are known."""
+
+    def visit_Compare(self, node: ast.Compare) -> ast.expr:
+        self.generic_visit(node)
+        if len(node.ops) == 1 and isinstance(node.left, ast.Constant):
+            right, compare = node.comparators[0], _COMPARE.get(type(node.ops[0]))
+            if isinstance(right, ast.Constant) and compare is not None:
+                return ast.Constant(bool(compare(node.left.value, right.value)))
+        return node
+
+    def visit_BoolOp(self, node: ast.BoolOp) -> ast.expr:
+        self.generic_visit(node)
+        decides = isinstance(node.op, ast.Or)  # `x or True`, `x and False`
+        left: list[ast.expr] = []
+        for value in node.values:
+            if not isinstance(value, ast.Constant):
+                left.append(value)
+            elif bool(value.value) is decides:
+                left.append(value)
+                break
+        if not left:
+            return ast.Constant(not decides)
+        node.values = left
+        return node if len(left) > 1 else left[0]
+
+    def visit_IfExp(self, node: ast.IfExp) -> ast.expr:
+        self.generic_visit(node)
+        if isinstance(node.test, ast.Constant):
+            return node.body if node.test.value else node.orelse
+        return node
+
+    def visit_If(self, node: ast.If) -> Any:
+        self.generic_visit(node)
+        if isinstance(node.test, ast.Constant):
+            return (node.body if node.test.value else node.orelse) or ast.Pass()
+        return node
+
 
 def fixed(source: str, params: dict[str, int]) -> str:
-    """The same source for given parameters."""
-    return ast.unparse(_Fixed(params).visit(ast.parse(source)))
+    """The same source for given parameters, without what they rule out."""
+    made = _Pruned().visit(_Fixed(params).visit(ast.parse(source)))
+    return ast.unparse(ast.fix_missing_locations(made))
 
 
 LETTERS = "abcdefghijklmnopqrstuvwxyz"

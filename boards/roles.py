@@ -48,9 +48,12 @@ def _mesh_kinds() -> Kinds:
     return {mesh_words.ACK: _wire(mesh.HOP_ACK), **dict.fromkeys(mesh.FIELDS, packet)}
 
 
+# A frame as it is sent.
+SKIN_FRAME = tuple(field for field in skin_fields.FRAME if field[0] not in skin_fields.NOTED)
+
 ROLES = {
     "skin": Role(
-        "skin", skin_fields.CELL, skin_fields.PARAMS, skin_fields.FRAME, skin_fields.FRAME,
+        "skin", skin_fields.CELL, skin_fields.PARAMS, SKIN_FRAME, SKIN_FRAME,
         {kind: _wire(fields) for kind, fields in skin.FIELDS.items()}, 12, True,
     ),
     "csma": Role(

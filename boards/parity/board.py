@@ -36,7 +36,8 @@ def add_rest():
     import records
 
     player = player, records.Params(), Outbox(records.Frame, layouts.ROOM)
-    del records.Params.__init__
+    if layouts.PARAMS:
+        del records.Params.__init__
 
 
 def read():

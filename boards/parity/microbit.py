@@ -141,6 +141,10 @@ class Microbit:
         return bytes(heard)
 
 
+# Commands of the PC: they do not fit beside the rest, and the calls that are played have none.
+LEFT_OUT = ("hand_down", "take_first")
+
+
 class Names:
     """Short names: every name costs a board memory, in functions and in objects."""
 
@@ -148,7 +152,8 @@ class Names:
         self.params = params
         declared = (name for fields in (role.state, role.frame) for name, *_ in fields)
         attributes = sorted({*declared, *OUTBOX})
-        self.functions = join.functions(role.entry)
+        found = join.functions(role.entry)
+        self.functions = {name: found[name] for name in found if name not in LEFT_OUT}
         inner = [name for name in self.functions if not name.startswith("on_")]
         self.short = {name: join.short(i) for i, name in enumerate(attributes)}
         self.short |= {name: join.short(i + 26) for i, name in enumerate(inner)}

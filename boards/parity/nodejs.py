@@ -88,10 +88,15 @@ def _install(folder: Path) -> None:
             made.rename(folder)
 
 
-def files_of(role: Role) -> dict[str, bytes]:
-    """What a node of this role needs, as files."""
+def files_of(role: Role, params: dict[str, int] | None = None) -> dict[str, bytes]:
+    """What a node of this role needs, as files.
+
+    With `params` it is made for these, as a maker's cell is: it has no record of them.
+    """
+    node = join.joined(role.entry)
+    role = role if params is None else role._replace(params=())
     sources = {
-        "node": join.joined(role.entry),
+        "node": node if params is None else join.fixed(node, params),
         "records": records_of(role),
         "layouts": layouts_of(role),
         "board": join.one_text(*(path.read_text() for path in HARNESS)),
@@ -132,9 +137,10 @@ def encoded(number: int) -> bytes:
             return bytes(out)
 
 
-def script_of(transcript: Transcript) -> bytes:
+def script_of(transcript: Transcript, with_params: bool = True) -> bytes:
     """Parameters and calls, as `board.play` reads them."""
-    numbers = [*transcript.params, *(word for row in transcript.calls for word in row), replay.END]
+    params = transcript.params if with_params else []
+    numbers = [*params, *(word for row in transcript.calls for word in row), replay.END]
     return b"".join(map(encoded, numbers))
 
 
@@ -174,7 +180,10 @@ def play(transcript: Transcript) -> Played:
         BoardMissing, BoardFailed: see run().
     """
     role = transcript.role
-    files = {**files_of(role), "transcript": script_of(transcript)}
+    names = [name for name, *_ in role.params]
+    params = dict(zip(names, transcript.params, strict=True)) if role.in_ram else None
+    script = script_of(transcript, with_params=params is None)
+    files = {**files_of(role, params), "transcript": script}
     cap = ["=filling.reserve:16384", *FILL, "=filling.give_back"]
     scripts = [
         "import board", "=board.used", "import node", "=board.used",

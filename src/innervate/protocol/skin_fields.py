@@ -35,6 +35,9 @@ FRAME = (
     ),
 )
 
+# Fields of a frame that only a simulation fills in, for its books: not sent, not on boards.
+NOTED = frozenset({"made_at"})
+
 CELL = (
     ("dist", 4, 0, 255, "hops", "per port: distance last heard"),
     ("sq", 4, 0, 65535, "number", "per port: sequence number last heard"),
