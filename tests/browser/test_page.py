@@ -52,6 +52,7 @@ def test_a_command_is_sent_to_the_selected_cell(look, skin):
     page = look(skin)
     page.locator("#tool").select_option("look")
     click(page, "p0 r4 c1")
+    page.locator("#command summary").click()
     page.locator("#command-code").fill("3")
     page.locator("#command-value").fill("500")
     page.locator("#command-send", has_text="Send to this cell").click()

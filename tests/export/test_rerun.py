@@ -157,7 +157,7 @@ def test_a_mesh_shows_its_robot_its_dead_and_its_alarms(mesh):
     assert shown(found, out["crossed_us"] + 100_000, "/robots/n8", "Points3D:colors") == [ALARM]
     told = {text: when for when, (text,) in found["/events", "TextLog:text"]}
     assert told["n8 left the fence"] == out["crossed_us"]
-    assert told["kill node 4"] == 9_000_000
+    assert told["kill n4"] == 9_000_000
     assert len(only(found, "/field/links", "LineStrips3D:strips")) == sum(
         8 not in pair for pair in done.plan.good
     )

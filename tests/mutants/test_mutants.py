@@ -114,7 +114,9 @@ MUTANTS = {
     "news does not keep the gap": (
         "at = (cell.sent_at + params.gap_us) & MASK30", "at = cell.sent_at", "gap"
     ),
-    "hops are not counted": ("onward.hops = frame.hops + 1", "onward.hops = frame.hops", "data"),
+    "hops are not counted": (
+        "onward.hops = frame.hops + 1\n\n\ndef hand", "onward.hops = frame.hops\n\n\ndef hand", "data"
+    ),
     "samples are not counted on": (
         "cell.seq = (cell.seq + 1) & 255", "cell.seq = cell.seq & 255", "data"
     ),

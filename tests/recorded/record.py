@@ -14,11 +14,10 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from innervate.sweeping.planfile import is_plan
-
 import innervate
 from innervate import scenario as scenarios
 from innervate.papers import PAPERS, book
+from innervate.sweeping.planfile import is_plan
 
 HERE = Path(__file__).resolve().parent
 RUNS, TABLES = HERE / "runs.json", HERE / "papers"

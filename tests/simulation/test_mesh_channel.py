@@ -8,7 +8,7 @@ import pytest
 from innervate import run as run_scenario
 from innervate.protocol.mesh_words import ACK, ALARM, DATA, REPORT_HOP
 from innervate.protocol.radio_words import QUEUE
-from innervate.scenario import load, plan
+from innervate.scenario import ScenarioError, load, plan
 from innervate.scenario.mesh_plan import KILL, RESTART, REVIVE, MeshFault, Offer
 from innervate.scenario.radio_baselines import NUMBERS
 from innervate.sim.mesh import channel, over_channel
@@ -165,7 +165,17 @@ def test_the_bundled_team_delivers_everything_and_its_alarm():
     assert result.tables["transmissions"].collect().height > 500
 
 
-@pytest.mark.parametrize("mac", [m for m in NUMBERS if m != "csma-cd-d1"])
+# Those whose stations have to be there all the time to hand on a token or to ask are not offered.
+HANDED_ON = ("token-ring", "polling")
+
+
+@pytest.mark.parametrize("mac", HANDED_ON)
+def test_a_mesh_does_not_hand_on_the_right_to_send(mac):
+    with pytest.raises(ScenarioError, match="radio.mac must be"):
+        team_plan(f"radio.mac={mac}")
+
+
+@pytest.mark.parametrize("mac", [m for m in NUMBERS if m not in ("csma-cd-d1", *HANDED_ON)])
 def test_an_alarm_arrives_over_every_medium_access(mac):
     result = simulate(team_plan(f"radio.mac={mac}"), plain=True)
     assert len(result.delivered[result.delivered["kind"] == ALARM])

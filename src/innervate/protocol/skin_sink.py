@@ -8,7 +8,7 @@ State: `pc.own[0]` (declared as SINK) and `pc.size[port]` (SINK_PORT).
 from innervate.protocol.arith import MASK16, MASK30, after, later
 from innervate.protocol.outbox import URGENT, deliver, send, set_timer
 from innervate.protocol.skin import copy_frame
-from innervate.protocol.skin_words import BEACON, COMMAND, DATA, TICK
+from innervate.protocol.skin_words import BEACON, COMMAND, DATA, GIVE, TICK
 
 
 def on_start(pc, params, now, cause, out):
@@ -81,6 +81,8 @@ def next_tick(pc, params, now, out):
 
 def on_input(pc, params, now, kind, item, out):
     """GIVE: a command for a cell or all, to every interface port that has a child [skin II-A]."""
+    if kind != GIVE:
+        return
     own = pc.own[0]
     own.command = (own.command + 1) & MASK16
     item.kind = COMMAND

@@ -68,7 +68,9 @@ def take(station, params, now, out):
     if params.mac == TOKEN_RING:
         grant(station, params, now, follower(station, params, station.number), params.per_turn, out)
     elif station.number == 0:
-        grant(station, params, now, follower(station, params, station.step), params.per_turn, out)
+        follows = follower(station, params, station.step)
+        most = params.per_turn if follows == 1 else 0  # once a round, as everybody
+        grant(station, params, now, follows, most, out)
     elif station.queued:
         grant(station, params, now, -1, params.per_turn, out)
 
