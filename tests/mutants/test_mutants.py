@@ -115,7 +115,9 @@ MUTANTS = {
         "at = (cell.sent_at + params.gap_us) & MASK30", "at = cell.sent_at", "gap"
     ),
     "hops are not counted": (
-        "onward.hops = frame.hops + 1\n\n\ndef hand", "onward.hops = frame.hops\n\n\ndef hand", "data"
+        "onward.hops = frame.hops + 1\n\n\ndef hand",
+        "onward.hops = frame.hops\n\n\ndef hand",
+        "data",
     ),
     "samples are not counted on": (
         "cell.seq = (cell.seq + 1) & 255", "cell.seq = cell.seq & 255", "data"

@@ -171,7 +171,7 @@ HANDED_ON = ("token-ring", "polling")
 
 @pytest.mark.parametrize("mac", HANDED_ON)
 def test_a_mesh_does_not_hand_on_the_right_to_send(mac):
-    with pytest.raises(ScenarioError, match="radio.mac must be"):
+    with pytest.raises(ScenarioError, match=r"radio\.mac must be"):
         team_plan(f"radio.mac={mac}")
 
 

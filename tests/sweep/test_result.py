@@ -148,7 +148,8 @@ def test_the_command_runs_a_plan_and_draws_its_figures(four, capsys):
     assert main(["sweep", "both.toml", "--repeat", "2", "--workers", "1"]) == 0
     out = capsys.readouterr().out
     head, *rows = out.splitlines()
-    assert head.split()[-2:] == ["recoveries.routed_ms", "data.loss_ratio"]
+    measures = ["recoveries.routed_ms", "cut_off.most", "data.loss_ratio"]
+    assert head.split()[-3:] == measures
     assert len(rows) == 8 + 3
     folder = Path("sweeps/both")
     assert (folder / "ways-back.png").stat().st_size > 5_000
