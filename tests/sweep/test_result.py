@@ -150,7 +150,9 @@ def test_the_command_runs_a_plan_and_draws_its_figures(four, capsys):
     head, *rows = out.splitlines()
     measures = ["recoveries.routed_ms", "cut_off.most", "data.loss_ratio"]
     assert head.split()[-3:] == measures
-    assert len(rows) == 8 + 3
+    said = rows[8:]  # below the table
+    assert len(said) == 3 + 1
+    assert [line for line in said if "runs: degraded" in line]
     folder = Path("sweeps/both")
     assert (folder / "ways-back.png").stat().st_size > 5_000
     assert (folder / "plot-1.svg").exists()
