@@ -117,9 +117,8 @@ def facts(result: Any) -> radio_headline.RadioFacts:
     noticed = bounds_noticed(result)["stations"]
     if not noticed:
         return known
-    params, measured = result.plan.params, [one["delay_us"] for one in noticed]
-    limits = [min(one["min"] for one in measured), max(one["max"] for one in measured)]
-    bounds = {"believed_us": [params["dmin_us"], params["dmax_us"]], "measured_us": limits}
+    params = result.plan.params
+    bounds = {"believed_us": [params["dmin_us"], params["dmax_us"]]}
     wrong = tuple(one["station"] for one in noticed)
     return known._replace(bounds=bounds, stations_wrong=wrong)
 
@@ -205,7 +204,8 @@ def fifo(result: Any) -> float | None:
 def bounds_noticed(result: Any) -> BoundsNoticed:
     """How often stations noticed a pair delay outside the configured bounds; who, and how long.
 
-    `stations` has for each its number, how often, and the least and greatest delay it measured.
+    `stations` has for each its number, how often, and the least and greatest of what it took for
+    the delay; it is a guess: a CR-R that comes too early looks late in the minislot before its own.
     """
     rows = result.rows[result.rows["code"] == REPORT_BOUNDS]
     measured = rows["a"].astype(np.float64)

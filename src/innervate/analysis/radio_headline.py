@@ -37,8 +37,8 @@ class RadioFacts(NamedTuple):
         still_ms: how long nothing has been delivered though somebody who is on had a packet.
         patience_ms: how long that may take, see `patience_us`.
         hidden: pairs that do not hear each other.
-        bounds: summary's `delay_bounds` where delays were found wrong: "believed_us" and
-            "measured_us", [least, greatest] each; None = nothing was noticed.
+        bounds: where delays were found wrong, "believed_us": [least, greatest]; None = nothing was
+            noticed.
         stations_wrong: who noticed it.
         ended: nothing more will happen.
     """
@@ -162,14 +162,15 @@ def _counts(facts: RadioFacts) -> list[str]:
 
 
 def _wrong(bounds: Mapping[str, Any]) -> str:
-    """Delays that are not what stations believe."""
-    believed, measured = bounds.get("believed_us"), bounds.get("measured_us")
-    if not believed or not measured:
+    """Delays that are not what stations believe.
+
+    What a station took for the delay is not told: a CR-R that comes too early looks late in the
+    minislot before its own.
+    """
+    believed = bounds.get("believed_us")
+    if not believed:
         return "delays lie outside what stations believe"
-    return (
-        f"delays of {measured[0]:g} to {measured[1]:g} us were measured where stations believe "
-        f"{believed[0]:g} to {believed[1]:g} us"
-    )
+    return f"delays lie outside the {believed[0]:g} to {believed[1]:g} us that stations believe"
 
 
 def _robots(stations: Iterable[int]) -> str:
