@@ -25,7 +25,7 @@ EXAMPLES = HERE.parents[1] / "examples"
 OF_THE_MACHINE = ("wall_s", "events_per_s")
 
 # Run uncompiled as well: those that take seconds that way. The compiled runs hold the others, and
-# tests/parity holds every loop plain against compiled.
+# test_parity.py of each network holds every loop plain against compiled.
 PLAIN = (
     "line", "loop-three", "loop-five", "setup-4", "demo",
     "radio-disaster", "radio-figure-1", "radio-saturated", "radio-churn",
