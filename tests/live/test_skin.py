@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from innervate.cli.live import command_text, touch_text
-from innervate.live.profile import SKIN
+from innervate.networks.skin.live.parameters import SKIN
 from tests.live_net import Skin, until
 
 # Detection takes k periods, then the news runs; a busy machine may double that.

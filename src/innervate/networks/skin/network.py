@@ -6,6 +6,7 @@ NETWORK = Network(
     "skin",
     __package__,
     link_type=147,
+    key_kind=2,
     rank=0,
     model="scenario.model:SkinScenario",
     check="scenario.rules:check",
@@ -27,4 +28,10 @@ NETWORK = Network(
     scenes="export.scenes:channels",
     has_places="export.rrd:has_places",
     rerun_parts="export.rrd:parts",
+    node_file="live.nodefile:SkinFile",
+    live_node="live.build:build",
+    deployment="live.deployment:SkinDeployment",
+    live_words="live.words",
+    live_view="view.live:SkinLiveView",
+    recovery="export.recovery",
 )
