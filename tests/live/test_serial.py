@@ -11,7 +11,7 @@ from innervate.live.serial_cables import Cables
 from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
-from tests.live_net import until
+from tests.live.net import until
 
 PARAMS = mesh_parameters(2, {"ack_us": 30_000, "e2e_us": 300_000})
 

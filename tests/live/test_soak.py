@@ -13,7 +13,7 @@ import pytest
 from innervate.live.keys import Sealer
 from innervate.live.receipts import DELIVERED, EXPIRED
 from innervate.live.state import State
-from tests.live_net import Mesh
+from tests.live.net import Mesh
 
 GRID = [
     (0, 1),

@@ -20,8 +20,8 @@ from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import Frame, MeshStack
 from innervate.networks.mesh.protocol.constants import ACK, ALL, SOURCE_ROUTE
+from tests.live.net import Mesh, Skin, until
 from tests.live.test_fuzz import crc
-from tests.live_net import Mesh, Skin, until
 
 HOP_ACK_OF_255 = bytes.fromhex("50ff0100000000e5b7")
 KEY = bytes(range(32))

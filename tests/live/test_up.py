@@ -14,7 +14,7 @@ from innervate.live import play, status
 from innervate.live.errors import LiveError
 from innervate.live.up import Network
 from innervate.networks.mesh.live import walks
-from tests.live_net import until
+from tests.live.net import until
 
 FIRST_S = 40.0
 YARD = {
