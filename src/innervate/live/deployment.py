@@ -9,7 +9,6 @@ from collections.abc import Coroutine
 from pathlib import Path
 from typing import Any, Protocol
 
-from innervate.live.errors import LiveError
 from innervate.network import networks
 from innervate.scenario.actions import ON_LINKS
 
@@ -39,8 +38,7 @@ class Deployment:
     """The nodes of a plan and their cables.
 
     Args:
-        plan: with `nodes`, how many there are, `cables`, ((node, port), (node, port)) of each,
-            and `params` of the protocol.
+        plan: of nodes over cables: with `graph` (topology.Graph) and `params` of the protocol.
 
     Attributes:
         names: every node's name, by number.
@@ -52,6 +50,7 @@ class Deployment:
 
     def __init__(self, plan: Any) -> None:
         self.plan = plan
+        self._ends: list[tuple[int, int]] = []
         self.names, self.links = self.layout()
 
     def layout(self) -> tuple[list[str], Pairs]:
@@ -60,8 +59,19 @@ class Deployment:
         Raises:
             LiveError: there are no live nodes for such a plan.
         """
-        links = [(here[0], there[0]) for here, there in self.plan.cables]
-        return [f"n{i}" for i in range(self.plan.nodes)], links
+        return [f"n{i}" for i in range(self.plan.graph.cells)], self.cables()
+
+    def cables(self) -> Pairs:
+        """The cables of the plan's graph, as pairs of nodes; notes their ends."""
+        graph = self.plan.graph
+        self._ends = [(end, other) for end, other in enumerate(graph.peer) if end < other]
+        return [(graph.node_of(end), graph.node_of(other)) for end, other in self._ends]
+
+    def port_of(self, number: int, cable: int) -> int:
+        """The port of a node that a cable is plugged into."""
+        graph = self.plan.graph
+        return next(int(graph.port_of(end)) for end in self._ends[cable]
+                    if graph.node_of(end) == number)  # fmt: skip
 
     def check(self, cables: str, sealed: bool) -> None:
         """Refuse cables ("udp", "pty" or "netns") or seals that such nodes do not have.
@@ -72,8 +82,7 @@ class Deployment:
 
     def in_order(self, number: int, cables: list[int]) -> list[int]:
         """A node's cables in the order of its paths."""
-        ends = self.plan.cables
-        return sorted(cables, key=lambda k: dict(ends[k])[number])
+        return cables
 
     def file(self, number: int, cables: list[int]) -> tuple[Table, dict[str, Table]]:
         """What is particular to a node's file: keys and tables, but for its links.
@@ -82,7 +91,8 @@ class Deployment:
             number: the node.
             cables: of its paths, in order.
         """
-        return {"nodes": len(self.names)}, {"protocol": dict(self.plan.params)}
+        ports = [self.port_of(number, k) for k in cables]
+        return {"ports": ports}, {"protocol": dict(self.plan.params)}
 
     def word(self, fault: Any) -> str:
         """What an event of the plan does."""
@@ -96,11 +106,7 @@ class Deployment:
         """
         if self.word(fault) not in ON_LINKS:
             return -1
-        pair = tuple(sorted((fault.node, fault.other)))
-        if pair not in self.links:
-            a, b = (self.names[node] for node in pair)
-            raise LiveError(f"event.{fault.index}: no cable joins {a} and {b}; name a good link")
-        return self.links.index((pair[0], pair[1]))
+        return next(k for k, ends in enumerate(self._ends) if fault.end in ends)
 
     def others(self, stage: Stage) -> list[Coroutine[Any, Any, None]]:
         """What a scenario has done beside its events, to be run with them."""

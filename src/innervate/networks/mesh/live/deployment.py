@@ -8,6 +8,7 @@ from typing import Any
 from innervate.live.deployment import Deployment, Pairs, Stage, Table
 from innervate.live.errors import LiveError
 from innervate.networks.mesh.live import walks
+from innervate.scenario.actions import ON_LINKS
 
 # They follow from the file itself, or stand in its [fence].
 NOT_IN_FILES = ("nodes", "width", "row", "told", "places", "points", "px", "py", "after")
@@ -25,10 +26,6 @@ class MeshDeployment(Deployment):
         if cables == "pty":
             raise LiveError("--pty joins the cells of a skin; mesh nodes take --netns or UDP")
 
-    def in_order(self, number: int, cables: list[int]) -> list[int]:
-        """A node of a mesh has no ports of its own."""
-        return cables
-
     def file(self, number: int, cables: list[int]) -> tuple[Table, dict[str, Table]]:
         """See Deployment."""
         plan, rank = self.plan, self.plan.ranks[number]
@@ -43,6 +40,16 @@ class MeshDeployment(Deployment):
         if rings:
             tables["fence"] = {"polygon": rings[0], "holes": rings[1:]}
         return head, tables
+
+    def cable_of(self, fault: Any) -> int:
+        """See Deployment."""
+        if self.word(fault) not in ON_LINKS:
+            return -1
+        pair = (min(fault.node, fault.other), max(fault.node, fault.other))
+        if pair not in self.links:
+            a, b = (self.names[node] for node in pair)
+            raise LiveError(f"event.{fault.index}: no cable joins {a} and {b}; name a good link")
+        return self.links.index(pair)
 
     def others(self, stage: Stage) -> list[Coroutine[Any, Any, None]]:
         """Robots say where they are; that has no end."""

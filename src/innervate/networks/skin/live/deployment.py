@@ -8,8 +8,6 @@ from typing import Any
 
 from innervate.live.deployment import Deployment, Pairs, Stage, Table
 from innervate.live.play import ask, sleep_until
-from innervate.networks.skin.protocol.constants import PORTS
-from innervate.scenario.actions import ON_LINKS
 
 
 class SkinDeployment(Deployment):
@@ -17,15 +15,13 @@ class SkinDeployment(Deployment):
 
     def layout(self) -> tuple[list[str], Pairs]:
         """See Deployment."""
-        graph = self.plan.graph
-        links, self._ends, self._cable_of_end = cables_of(graph)
-        return [*(f"c{i}" for i in range(graph.cells)), "pc"], links
+        return [*(f"c{i}" for i in range(self.plan.graph.cells)), "pc"], self.cables()
 
     def in_order(self, number: int, cables: list[int]) -> list[int]:
         """The PC's are in order of its interface ports; a cell's file names its ports."""
         if number < self.plan.graph.cells:
             return cables
-        return sorted(cables, key=lambda k: self._ends[k][1])
+        return sorted(cables, key=lambda k: self.port_of(number, k))
 
     def file(self, number: int, cables: list[int]) -> tuple[Table, dict[str, Table]]:
         """See Deployment."""
@@ -33,12 +29,8 @@ class SkinDeployment(Deployment):
         if number == plan.graph.cells:
             return {"role": "sink"}, tables
         rate_hz = 1e6 / plan.data_period_us if plan.data_period_us else 0.0
-        ports = [self._ends[k][self.links[k].index(number)] for k in cables]
+        ports = [self.port_of(number, k) for k in cables]
         return {"role": "cell", "ports": ports, "rate_hz": rate_hz}, tables
-
-    def cable_of(self, fault: Any) -> int:
-        """See Deployment."""
-        return self._cable_of_end[fault.end] if self.word(fault) in ON_LINKS else -1
 
     def others(self, stage: Stage) -> list[Coroutine[Any, Any, None]]:
         """The PC sends the scenario's commands."""
@@ -51,23 +43,3 @@ class SkinDeployment(Deployment):
             cell = None if order.cell < 0 else order.cell
             request = {"do": "command", "code": order.code, "value": order.value, "cell": cell}
             await ask(stage.socket("pc"), request)
-
-
-def cables_of(
-    graph: Any,
-) -> tuple[list[tuple[int, int]], list[tuple[int, int]], dict[int, int]]:
-    """Cables of a skin: pairs of nodes, the port at either end; and the cable of every end."""
-    links: list[tuple[int, int]] = []
-    ends: list[tuple[int, int]] = []
-    cable_of: dict[int, int] = {}
-    sockets = PORTS * graph.cells
-    for end, other in enumerate(graph.peer):
-        if end < other:
-            here = (end // PORTS, end % PORTS)
-            there = (other // PORTS, other % PORTS)
-            if other >= sockets:
-                there = (graph.cells, other - sockets)
-            cable_of[end] = cable_of[other] = len(links)
-            links.append((here[0], there[0]))
-            ends.append((here[1], there[1]))
-    return links, ends, cable_of
