@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from typing import Any
 
-# What every node says of itself; what else its status has was declared by its protocol.
-COMMON = frozenset((
-    "name", "up_s", "sealed", "keys", "state", "paths", "broken", "counters", "kind", "role",
-    "number",
-))  # fmt: skip
+from innervate.network import networks
+
 
 
 def lines(told: dict[str, Any]) -> list[str]:
-    """What is particular to a node's status, line by line."""
-    own = [f"{name} {value}" for name, value in told.items() if name not in COMMON]
-    return [f"  {', '.join(own)}"] if own else []
+    """The declared fields of a node's state, with their units."""
+    units = {name: unit for name, _length, _low, _high, unit, _meaning
+             in networks()[told["kind"]].fields.STATE}  # fmt: skip
+    own = [f"{name} {_shown(value)} {units[name]}" for name, value in told["fields"].items()]
+    return [f"  {', '.join(own)}"]
+
+
+def _shown(value: Any) -> str:
+    return " ".join(map(str, value)) if isinstance(value, list) else str(value)
 
 
 def ports(told: dict[str, Any]) -> list[str]:

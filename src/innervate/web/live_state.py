@@ -145,5 +145,7 @@ class State:
         }
 
     def more(self) -> dict[str, Any]:
-        """Fields that only this network has."""
-        return {}
+        """Fields that only this network has: what its nodes declare and say of themselves."""
+        said = [self.word(place, "fields", {}) for place in self.map.places]
+        names = {name for one in said for name, value in one.items() if isinstance(value, int)}
+        return {"fields": {name: [one.get(name) for one in said] for name in sorted(names)}}
