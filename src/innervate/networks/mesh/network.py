@@ -30,4 +30,5 @@ NETWORK = Network(
     deployment="live.deployment:MeshDeployment",
     live_words="live.words",
     live_view="view.live:MeshLiveView",
+    papers="papers",
 )

@@ -27,4 +27,5 @@ NETWORK = Network(
     deployment="live.deployment:RadioDeployment",
     live_words="live.words",
     live_view="view.live:RadioLiveView",
+    papers="papers",
 )

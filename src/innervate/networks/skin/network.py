@@ -34,4 +34,5 @@ NETWORK = Network(
     live_words="live.words",
     live_view="view.live:SkinLiveView",
     recovery="export.recovery",
+    papers="papers",
 )
