@@ -62,7 +62,7 @@ DEFAULTS = {
     "unwatchable": "innervate.network:nothing_against_it",
     "engine": "innervate.web.engine:Engine",
     "anchor": "innervate.network:nothing_to_anchor",
-    "node_file": "innervate.live.nodefile:NodeFile",
+    "node_file": "innervate.live.declared:DeclaredFile",
     "live_node": "innervate.live.declared:build",
     "deployment": "innervate.live.deployment:Deployment",
     "live_words": "innervate.live.words",

@@ -7,7 +7,6 @@ from typing import Any
 from innervate.network import networks
 
 
-
 def lines(told: dict[str, Any]) -> list[str]:
     """The declared fields of a node's state, with their units."""
     units = {name: unit for name, _length, _low, _high, unit, _meaning
