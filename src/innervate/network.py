@@ -47,7 +47,7 @@ PARTS = {
     "scene": "(plan): what a page draws once",
     "protocol": "module: on_start, on_frame, on_timer, on_input of a node; OUTBOX, TIMERS",
     "fields": "module: PARAMS, STATE, FRAME: the declared fields of its protocol",
-    "frames": "module: encode, decode, REASONS: the bytes of its frames",
+    "frames": "module: LAYOUTS, KIND_BITS of its frames; encode, decode, REASONS if it has own",
     "node_file": "live.nodefile.NodeFile: the keys of its node files",
     "live_node": "(nodefile.Loaded) -> live.node.LiveNode: the node of a node file",
     "deployment": "class: live.deployment.Deployment, how a plan becomes node files and cables",

@@ -27,6 +27,7 @@ from innervate.live.parameters import check_parameters
 from innervate.live.state import State
 from innervate.live.streams import Stream, iterate
 from innervate.network import Network, networks
+from innervate.wire.frames import REASONS, Codec
 
 FOR_EVER_US = 1 << 62  # protocols that do not say when a path is broken never call one so
 OUTBOX = 16
@@ -57,9 +58,12 @@ class DeclaredStack:
     ) -> None:
         self.network = network
         self.number = number
-        self._do, self._frames, fields = network.protocol, network.frames, network.fields
+        self._do, fields = network.protocol, network.fields
+        layout = network.frames  # a module that has its own functions, or only layouts
+        own = hasattr(layout, "encode")
+        self._frames = layout if own else Codec(layout.LAYOUTS, layout.KIND_BITS)
         self.timers: int = self._do.TIMERS
-        self.reasons: tuple[str, ...] = self._frames.REASONS
+        self.reasons: tuple[str, ...] = layout.REASONS if own else REASONS
         self.params = plain.make("Params", fields.PARAMS)()
         for name, value in params.items():
             setattr(self.params, name, value)
@@ -224,9 +228,7 @@ def build(loaded: Loaded) -> DeclaredNode:
             f"{loaded.path}: ports must name the node's port of each of its {paths} paths, "
             "each once"
         )
-    stack = DeclaredStack(
-        network, table.number, dict(table.protocol), secrets.randbits(60), ports
-    )
+    stack = DeclaredStack(network, table.number, dict(table.protocol), secrets.randbits(60), ports)
     return DeclaredNode(loaded.name, stack, links, sealer_of(loaded, state), state)
 
 
