@@ -19,7 +19,7 @@ from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.wire import crc, seal
 from innervate.wire.bits import put
 from innervate.wire.layout import REST, SPARE
-from tests.tshark_runs import fields_of, tshark
+from tests.export.tshark_runs import fields_of, tshark
 
 __all__ = ["tshark"]
 EACH = 6  # frames of every type
