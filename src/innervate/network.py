@@ -7,12 +7,17 @@ loads only what it needs; one that a network leaves out is the default for any n
 
 from __future__ import annotations
 
+import os
 import pkgutil
+import sys
 from functools import cache
 from importlib import import_module
+from importlib.metadata import entry_points
+from pathlib import Path
 from typing import Any
 
-HOME = "innervate.networks"
+HOME = GROUP = "innervate.networks"
+FOLDERS = "INNERVATE_NETWORKS"
 
 # Every part that a network can have, and what it is. Those with a default may be left out.
 PARTS = {
@@ -40,6 +45,7 @@ PARTS = {
     "engine": "class: web.engine.Engine, or what can do more",
     "view": "class: what the live page shows of its simulation (web/view.py)",
     "scene": "(plan): what a page draws once",
+    "papers": "module: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up",
 }
 DEFAULTS = {
     "scenes": "innervate.network:nothing_to_show",
@@ -48,6 +54,10 @@ DEFAULTS = {
     "engine": "innervate.web.engine:Engine",
     "anchor": "innervate.network:nothing_to_anchor",
 }
+
+
+class NetworkError(Exception):
+    """A network that was named cannot be loaded."""
 
 
 class Network:
@@ -119,13 +129,56 @@ def no_places(plan: Any) -> bool:
 
 @cache
 def networks() -> dict[str, Network]:
-    """All kinds of networks by name: every folder of `networks` with a `network.py` in it."""
+    """All kinds of networks by name, in the order of their ranks.
+
+    They are the toolkit's own (every folder of `innervate.networks` with a `network.py`), those of
+    installed packages (entry points of the group `innervate.networks`, each a `Network`), and
+    those in the folders that the environment names in INNERVATE_NETWORKS, separated as in PATH:
+    each folder is a package with a `network.py` in it, whose `NETWORK` says what it is.
+
+    Raises:
+        NetworkError: one that was named cannot be loaded, or a name is taken twice.
+    """
     home = import_module(HOME)
     found = [import_module(f"{HOME}.{folder.name}.network").NETWORK
              for folder in pkgutil.iter_modules(home.__path__) if folder.ispkg]  # fmt: skip
-    return {network.name: network for network in sorted(found, key=lambda n: n.rank)}
+    found += [_entry(point) for point in entry_points(group=GROUP)]
+    folders = os.environ.get(FOLDERS, "").split(os.pathsep)
+    found += [_in_folder(Path(folder)) for folder in folders if folder]
+    made: dict[str, Network] = {}
+    for network in sorted(found, key=lambda n: n.rank):
+        if made.setdefault(network.name, network) is not network:
+            other = made[network.name].package
+            raise NetworkError(f"{network.package} and {other} are both called {network.name!r}")
+    return made
+
+
+def _entry(point: Any) -> Network:
+    try:
+        return _checked(point.load(), point.value)
+    except (ImportError, AttributeError) as error:
+        message = f"the installed network {point.name} cannot be loaded: {error}"
+        raise NetworkError(message) from error
+
+
+def _in_folder(folder: Path) -> Network:
+    if not (folder / "network.py").is_file():
+        raise NetworkError(f"{FOLDERS}: {folder} holds no network.py")
+    where = str(folder.resolve().parent)
+    if where not in sys.path:
+        sys.path.append(where)
+    try:
+        return _checked(import_module(f"{folder.resolve().name}.network").NETWORK, str(folder))
+    except (ImportError, AttributeError) as error:
+        raise NetworkError(f"{FOLDERS}: {folder} cannot be loaded: {error}") from error
+
+
+def _checked(found: Any, where: str) -> Network:
+    if not isinstance(found, Network):
+        raise NetworkError(f"{where} is no Network: {type(found).__name__}")
+    return found
 
 
 def _absolute(package: str, place: str) -> str:
     """A place within a network's package, or one that is named in full."""
-    return place if place.startswith("innervate.") else f"{package}.{place}"
+    return place if place.startswith("innervate.") or not package else f"{package}.{place}"

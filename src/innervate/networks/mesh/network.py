@@ -24,4 +24,5 @@ NETWORK = Network(
     scenes="export.scenes:channels",
     has_places="export.rrd:has_places",
     rerun_parts="export.rrd:parts",
+    papers="papers",
 )

@@ -21,4 +21,5 @@ NETWORK = Network(
     tables="tables:TABLES",
     capture="export.capture",
     graph="export.graph:graph",
+    papers="papers",
 )
