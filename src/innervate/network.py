@@ -174,7 +174,8 @@ def _entry(point: Any) -> Network:
     try:
         return _checked(point.load(), point.value)
     except (ImportError, AttributeError) as error:
-        raise NetworkError(f"the installed network {point.name} cannot be loaded: {error}") from error
+        message = f"the installed network {point.name} cannot be loaded: {error}"
+        raise NetworkError(message) from error
 
 
 def _in_folder(folder: Path) -> Network:
