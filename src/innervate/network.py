@@ -7,12 +7,17 @@ loads only what it needs; one that a network leaves out is the default for any n
 
 from __future__ import annotations
 
+import os
 import pkgutil
+import sys
 from functools import cache
 from importlib import import_module
+from importlib.metadata import entry_points
+from pathlib import Path
 from typing import Any
 
-HOME = "innervate.networks"
+HOME = GROUP = "innervate.networks"
+FOLDERS = "INNERVATE_NETWORKS"
 
 # Every part that a network can have, and what it is. Those with a default may be left out.
 PARTS = {
@@ -40,6 +45,16 @@ PARTS = {
     "engine": "class: web.engine.Engine, or what can do more",
     "view": "class: what the live page shows of its simulation (web/view.py)",
     "scene": "(plan): what a page draws once",
+    "protocol": "module: on_start, on_frame, on_timer, on_input of a node; OUTBOX, TIMERS",
+    "fields": "module: PARAMS, STATE, FRAME: the declared fields of its protocol",
+    "frames": "module: LAYOUTS, KIND_BITS of its frames; encode, decode, REASONS if it has own",
+    "node_file": "live.nodefile.NodeFile: the keys of its node files",
+    "live_node": "(nodefile.Loaded) -> live.node.LiveNode: the node of a node file",
+    "deployment": "class: live.deployment.Deployment, how a plan becomes node files and cables",
+    "live_words": "module: lines, ports, heard: what its running nodes say, for people",
+    "live_view": "class: web.live_view.LiveView, its running nodes on the page",
+    "recovery": "module: recoveries, line, NOTHING: how it healed, from a capture",
+    "papers": "module: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up",
 }
 DEFAULTS = {
     "scenes": "innervate.network:nothing_to_show",
@@ -47,7 +62,16 @@ DEFAULTS = {
     "unwatchable": "innervate.network:nothing_against_it",
     "engine": "innervate.web.engine:Engine",
     "anchor": "innervate.network:nothing_to_anchor",
+    "node_file": "innervate.live.declared:DeclaredFile",
+    "live_node": "innervate.live.declared:build",
+    "deployment": "innervate.live.deployment:Deployment",
+    "live_words": "innervate.live.words",
+    "live_view": "innervate.web.live_view:LiveView",
 }
+
+
+class NetworkError(Exception):
+    """A network that was named cannot be loaded."""
 
 
 class Network:
@@ -59,12 +83,14 @@ class Network:
         rank: its place in lists for people.
         link_type: of its frames in captures: LINKTYPE_USER0 .. USER15 = 147 .. 162, which pcapng
             keeps for private use.
+        key_kind: its number under a seal, 1 .. 255: what is sealed for one is not taken by another.
         **parts: where each part stands: "module" or "module:name".
     """
 
     def __init__(
-        self, name: str, package: str, rank: int = 100, link_type: int = 162, **parts: str
-    ) -> None:
+        self, name: str, package: str, rank: int = 100, link_type: int = 162, key_kind: int = 255,
+        **parts: str,
+    ) -> None:  # fmt: skip
         for part in parts:
             if part not in PARTS:
                 raise TypeError(f"network {name}: no part {part!r}; there are {', '.join(PARTS)}")
@@ -72,6 +98,7 @@ class Network:
         self.package = package
         self.rank = rank
         self.link_type = link_type
+        self.key_kind = key_kind
         self.parts = {
             **DEFAULTS,
             **{part: _absolute(package, place) for part, place in parts.items()},
@@ -119,13 +146,56 @@ def no_places(plan: Any) -> bool:
 
 @cache
 def networks() -> dict[str, Network]:
-    """All kinds of networks by name: every folder of `networks` with a `network.py` in it."""
+    """All kinds of networks by name, in the order of their ranks.
+
+    They are the toolkit's own (every folder of `innervate.networks` with a `network.py`), those of
+    installed packages (entry points of the group `innervate.networks`, each a `Network`), and
+    those in the folders that the environment names in INNERVATE_NETWORKS, separated as in PATH:
+    each folder is a package with a `network.py` in it, whose `NETWORK` says what it is.
+
+    Raises:
+        NetworkError: one that was named cannot be loaded, or a name is taken twice.
+    """
     home = import_module(HOME)
     found = [import_module(f"{HOME}.{folder.name}.network").NETWORK
              for folder in pkgutil.iter_modules(home.__path__) if folder.ispkg]  # fmt: skip
-    return {network.name: network for network in sorted(found, key=lambda n: n.rank)}
+    found += [_entry(point) for point in entry_points(group=GROUP)]
+    folders = os.environ.get(FOLDERS, "").split(os.pathsep)
+    found += [_in_folder(Path(folder)) for folder in folders if folder]
+    made: dict[str, Network] = {}
+    for network in sorted(found, key=lambda n: n.rank):
+        if made.setdefault(network.name, network) is not network:
+            other = made[network.name].package
+            raise NetworkError(f"{network.package} and {other} are both called {network.name!r}")
+    return made
+
+
+def _entry(point: Any) -> Network:
+    try:
+        return _checked(point.load(), point.value)
+    except (ImportError, AttributeError) as error:
+        message = f"the installed network {point.name} cannot be loaded: {error}"
+        raise NetworkError(message) from error
+
+
+def _in_folder(folder: Path) -> Network:
+    if not (folder / "network.py").is_file():
+        raise NetworkError(f"{FOLDERS}: {folder} holds no network.py")
+    where = str(folder.resolve().parent)
+    if where not in sys.path:
+        sys.path.append(where)
+    try:
+        return _checked(import_module(f"{folder.resolve().name}.network").NETWORK, str(folder))
+    except (ImportError, AttributeError) as error:
+        raise NetworkError(f"{FOLDERS}: {folder} cannot be loaded: {error}") from error
+
+
+def _checked(found: Any, where: str) -> Network:
+    if not isinstance(found, Network):
+        raise NetworkError(f"{where} is no Network: {type(found).__name__}")
+    return found
 
 
 def _absolute(package: str, place: str) -> str:
     """A place within a network's package, or one that is named in full."""
-    return place if place.startswith("innervate.") else f"{package}.{place}"
+    return place if place.startswith("innervate.") or not package else f"{package}.{place}"

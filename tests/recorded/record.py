@@ -16,7 +16,7 @@ from typing import Any
 
 import innervate
 from innervate import scenario as scenarios
-from innervate.papers import PAPERS, book
+from innervate.papers import book
 from innervate.sweeping.planfile import is_plan
 
 HERE = Path(__file__).resolve().parent
@@ -100,7 +100,7 @@ def _runs(check: bool) -> list[str]:
 def _papers(check: bool) -> list[str]:
     lost = []
     TABLES.mkdir(exist_ok=True)
-    for system in PAPERS:
+    for system in book.papers():
         print(f"papers {system}", flush=True)
         with tempfile.TemporaryDirectory() as folder:
             text = table(system, Path(folder))

@@ -5,7 +5,7 @@ A change that is meant to alter runs records anew: python -m tests.recorded.reco
 
 import pytest
 
-from innervate.papers import PAPERS
+from innervate.papers import book
 from tests.recorded import record
 
 SOURCES = record.sources()
@@ -51,7 +51,7 @@ def test_a_plain_run_is_as_recorded(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("system", list(PAPERS))
+@pytest.mark.parametrize("system", book.papers())
 def test_a_papers_table_is_as_recorded(system, tmp_path):
     kept = (record.TABLES / f"{system}.csv").read_text(encoding="utf-8")
     assert not record.differences(
