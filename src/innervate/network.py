@@ -130,7 +130,7 @@ def nothing_to_anchor(tables: dict[str, Any], source: Any) -> None:
 
 
 def nothing_against_it(plan: Any) -> str:
-    """Any plan will do."""
+    """Why a plan cannot be watched: "", for any plan will do."""
     return ""
 
 

@@ -46,7 +46,7 @@ def measure_round(testbed: MeshTestbed, seed: int) -> dict[str, Any]:
 
 
 def crossings(quick: bool) -> range:
-    """Those of the figure."""
+    """Seeds of the crossings: those of the figure of alarms."""
     return alarms.seeds_of(quick)
 
 

@@ -49,7 +49,7 @@ SETTINGS = (ALONE, ONE, SECOND, SILENT, BUSY)
 
 
 def make_testbed(setting: Setting) -> MeshTestbed:
-    """Networks with these standbys."""
+    """Networks with a setting's standbys that run until the table after next."""
     more: Options = (("standby", list(setting.standbys)),) if setting.standbys else ()
     return MeshTestbed(duration_s=DIES_S + PERIOD_S + AFTER_S + 3, more=more)
 
@@ -103,7 +103,7 @@ def _what(setting: Setting) -> str:
 
 
 def told(results: Results, setting: Setting, seeds: range) -> list[dict[str, Any]]:
-    """What its runs gave."""
+    """What was measured of a setting, one dict for each seed."""
     runs: list[dict[str, Any]] = results[make_testbed(setting).key_of(_what(setting), seeds)]
     return runs
 
@@ -114,7 +114,7 @@ def takeovers(runs: list[dict[str, Any]]) -> list[float]:
 
 
 def points(quick: bool) -> list[Point]:
-    """Every setting."""
+    """A point for each setting of standbys."""
     return [point(setting, seeds_of(quick)) for setting in SETTINGS]
 
 

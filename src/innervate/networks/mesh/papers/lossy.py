@@ -104,7 +104,7 @@ def points(quick: bool) -> list[Point]:
 
 
 def told(results: Results, rule: Rule, loss: int, quick: bool) -> list[dict[str, Any]]:
-    """What its runs gave."""
+    """What was measured of a rule at a loss in percent, one dict for each seed."""
     runs: list[dict[str, Any]] = results[
         make_testbed(rule).key_of(f"lossy {loss} %", seeds_of(quick))
     ]
@@ -161,7 +161,7 @@ def draw(results: Results, quick: bool) -> Figure:
 
 
 def judge(results: Results, quick: bool) -> list[Claim]:
-    """One transmission; three; ours."""
+    """Claims on tables under loss: one transmission, three of them, our rules."""
     rows = []
     for rule, words in (
         (DOCUMENT, '"If A does not get an ack from B for this packet, then A updates its routing '

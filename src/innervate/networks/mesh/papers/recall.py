@@ -24,13 +24,13 @@ WORDS = {"tree": "once a round", "each": "to every request", "list": "once, with
 
 
 def make_testbed(reading: str, jitter_ms: int = USUAL_MS, nodes: int = 30) -> MeshTestbed:
-    """One round, then nothing."""
+    """Networks that run one discovery round of a reading, and send nothing."""
     protocol = (("discovery", reading), ("jitter_s", jitter_ms / 1000))
     return MeshTestbed(nodes=nodes, protocol=protocol, duration_s=8.0)
 
 
 def measure(of: MeshTestbed, seed: int) -> dict[str, Any]:
-    """The first round."""
+    """What the first round found of the links, and what it cost in airtime and time."""
     found = summarize(of.run(seed))["discovery"]
     return {name: found[name] for name in ("recall", "airtime_s", "with_tables", "tables_s")}
 

@@ -79,7 +79,7 @@ def point(of: MeshTestbed, dead: int, seeds: range) -> Any:
 
 
 def told(results: Results, of: MeshTestbed, dead: int, seeds: range) -> list[dict[str, Any]]:
-    """What its runs gave."""
+    """What was measured with so many dead, one dict for each seed."""
     runs: list[dict[str, Any]] = results[of.key_of(f"{dead} dead", seeds)]
     return runs
 

@@ -90,7 +90,7 @@ def _degrees(quick: bool) -> tuple[int, ...]:
 
 
 def points(quick: bool) -> list[Point]:
-    """Readings over the degree."""
+    """A point for each reading of discovery and mean degree."""
     return [
         make_testbed(reading, degree).point("ways by tables", seeds_of(quick), measure)
         for reading in READINGS
@@ -99,13 +99,13 @@ def points(quick: bool) -> list[Point]:
 
 
 def told(results: Results, of: MeshTestbed, quick: bool) -> list[dict[str, Any]]:
-    """What its runs gave."""
+    """What was measured of these networks, one dict for each seed."""
     runs: list[dict[str, Any]] = results[of.key_of("ways by tables", seeds_of(quick))]
     return runs
 
 
 def mean(results: Results, reading: str, degree: int, quick: bool) -> float:
-    """Mean stretch."""
+    """Hops by tables over hops of the shortest path, mean over all seeds."""
     return float(
         np.mean([run["stretch"] for run in told(results, make_testbed(reading, degree), quick)])
     )
@@ -120,7 +120,7 @@ def shares(results: Results, reading: str, degree: int, quick: bool) -> Any:
 
 
 def draw(results: Results, quick: bool) -> Figure:
-    """Stretch; alternates."""
+    """Stretch over the mean degree, and beside it what kinds of alternates there are."""
     figure, (left, right) = style.panels(style.WIDE_IN, 2.6, 1, 2, width_ratios=(1, 1.25))
     degrees = _degrees(quick)
     for i, reading in enumerate(READINGS):

@@ -68,7 +68,7 @@ class MeshTestbed:
         return plan
 
     def run(self, seed: int) -> MeshResult:
-        """One run."""
+        """Simulate the network of a seed to its end, compiled."""
         return simulate(self.plan(seed))
 
     def point(

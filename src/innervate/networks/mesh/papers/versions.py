@@ -37,7 +37,7 @@ SCHEMES = (
 
 
 def seeds_of(quick: bool) -> range:
-    """Fifteen robots each."""
+    """Seeds of the networks, each of which has fifteen robots."""
     return FEW if quick else TOPOLOGIES
 
 

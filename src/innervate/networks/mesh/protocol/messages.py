@@ -110,7 +110,7 @@ def on_message(node, params, now, item, out):
 
 
 def hand_up_own(node, item, out):
-    """A message to ourselves."""
+    """Deliver a message to ourselves at once; its number is its handle."""
     frame = out.frame[deliver(out, DATA)]
     frame.kind = DATA
     frame.flags = 0

@@ -15,7 +15,7 @@ Flag = Annotated[bool, Meta(description="true or false")]
 
 
 class MeshProtocolTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """[protocol]: the router's settings."""
+    """[protocol] of a mesh: discovery, failover, retransmission, timers."""
 
     discovery: Annotated[
         Literal["list", "tree", "each"], Meta(description='"list", "tree" or "each"')

@@ -124,7 +124,7 @@ def _outbox(tables: Tables, limit: int, frame: Any) -> Out:
 
 
 def _medium(tables: Tables, plan: Any) -> dict[str, Any]:
-    """Tables of the medium."""
+    """Tables of the ideal or fading medium: frames in the air, powers between nodes."""
     n, radio = plan.nodes, plan.radio
     places = min(PLACES_PER_NODE * n + 64, queue.PLACES_MAX)
     if plan.mac not in MACS:

@@ -129,7 +129,7 @@ def build(stack, layer):
     dispatch_below = above.dispatch
 
     def switch_on(world, node, time, cause):
-        """A node starts."""
+        """A node starts, for the first time or again; with MEMORY_LOST its record is wiped."""
         radio = world.radios[node]
         if cause == MEMORY_LOST:
             wipe(world, node)

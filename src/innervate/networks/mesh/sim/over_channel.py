@@ -129,7 +129,7 @@ def layer(handlers):
     start_station = handlers.switch_on
 
     def step(world, time):
-        """The channel's next event."""
+        """Handle the next event of the channel below, at `time`, us."""
         below = world.below
         handled = below.run[0].handled
         key = below.heap.keys[0] if below.heap.size[0] > 0 else heap.LAST
@@ -141,7 +141,7 @@ def layer(handlers):
         world.run[0].handled += below.run[0].handled - handled
 
     def down(stack):
-        """What the router calls."""
+        """The functions by which a router hands frames to a channel below."""
         digest, copy_frame, frame_bytes = stack.digest, stack.copy_frame, stack.frame_bytes
 
         def hand_down(world, node, frame, _attempt, urgent, time, _now):

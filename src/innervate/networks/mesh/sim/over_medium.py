@@ -61,11 +61,11 @@ def due(_world):
 
 
 def step(_world, _time):
-    """Do it."""
+    """Nothing: no channel with events of its own lies below."""
 
 
 def down(stack):
-    """What the router calls."""
+    """The functions by which a router hands frames to CSMA and the medium."""
     mac_start, mac_fire, mac_give = stack.mac_start, stack.mac_fire, stack.mac_give
     mac_carrier, digest, copy_frame = stack.mac_carrier, stack.digest, stack.copy_frame
     frame_bytes = stack.frame_bytes

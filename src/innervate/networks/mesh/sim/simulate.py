@@ -149,7 +149,7 @@ def simulate(
 
 
 class MeshSimulation(Field):
-    """A mesh under way."""
+    """A mesh that is simulated in slices: its plan, its world, its loop."""
 
     wide = w.WIDE
     tables: ClassVar[Mapping[str, tuple[str, ...]]] = {

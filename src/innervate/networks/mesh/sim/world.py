@@ -45,7 +45,7 @@ TIMERS = mesh_const.TIMERS + csma.TIMERS
 
 
 class World(NamedTuple):
-    """All of it."""
+    """All tables of a simulated mesh, as the loop takes them."""
 
     run: Any
     heap: Heap

@@ -105,11 +105,11 @@ class Nets:
     # Keeping states.
 
     def pack(self, net: Net) -> bytes:
-        """A state as bytes."""
+        """A state as bytes of fixed length, to be looked up."""
         return self.form.pack(*net.nodes, *net.lags, *net.left, *net.ticks, net.offered, net.got)
 
     def unpack(self, row: bytes) -> Net:
-        """... and back."""
+        """The state that `pack` made these bytes of."""
         n, w = self.n, self.form.unpack(row)
         left = (w[2 * n], w[2 * n + 1], w[2 * n + 2], w[2 * n + 3])
         return Net(w[:n], w[n : 2 * n], left, w[2 * n + 4 : 3 * n + 4], w[-2], w[-1])

@@ -229,7 +229,7 @@ class MeshView(View):
         return found[:FLIGHTS_MAX]
 
     def words(self, fault: Any) -> str:
-        """A fault in words."""
+        """What a fault does, as "node 3 dies"."""
         return fault_words(self.plan, fault)
 
     def takes(self, fault: Any) -> bool:

@@ -56,7 +56,7 @@ def bit(words, place):
 
 
 def set_bit(words, place):
-    """Set it."""
+    """Set the bit of a minislot in a mask of two 16-bit words."""
     words[place >> 4] = words[place >> 4] | (1 << (place & 15))
 
 

@@ -17,7 +17,7 @@ def least_delay(params, wide):
 
 
 def most_delay(params, wide):
-    """The greatest, us."""
+    """The greatest delay believed in, us."""
     return params.dmax_us << wide
 
 

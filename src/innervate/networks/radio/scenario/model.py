@@ -73,7 +73,7 @@ class ChannelTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
 
 
 class MediumAccessTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """[protocol] [radio 4, 9]."""
+    """[protocol] of a radio: which protocol, and its settings [radio 4, 9]."""
 
     mac: Annotated[
         Mac, Meta(description=", ".join(f'"{mac}"' for mac in MACS[:-1]) + f' or "{MACS[-1]}"')

@@ -116,7 +116,7 @@ class Job:
 
     @property
     def packet(self) -> int:
-        """Airtime of a packet."""
+        """How long a packet is on the air, ticks."""
         return self.packet_slots * SLOT
 
     @property

@@ -9,7 +9,7 @@ from innervate.topology import PORT_NAMES
 
 
 def graph(plan: Any) -> Graph:
-    """A plan's network."""
+    """A plan's cells with places in mm and hops, and its cables."""
     cells = plan.graph
     nodes: list[Node] = []
     for cell, (x, y) in enumerate(cells.layout()):

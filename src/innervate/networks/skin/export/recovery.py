@@ -100,7 +100,7 @@ class Watcher:
         self._newest: dict[str, int | None] = {}  # number of the newest sample that came in
 
     def take(self, packet: Packet) -> None:
-        """The next packet."""
+        """The next packet of a capture, in order of time: an event or a beacon."""
         if self._first_ns < 0:
             self._first_ns = packet.time_ns
         self._last_ns = packet.time_ns
