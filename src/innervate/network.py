@@ -22,32 +22,63 @@ PARTS = {
     "describe": "(plan) -> str: the scenario in a few lines, without running it",
     "fault_words": '(plan, fault) -> str: "at 2 s cut pc.1 - p0 r16 c7 down"',
     "actions": "tuple of str: what can be done to it while it runs, in the order of their numbers",
+    "harm": "tuple of str: those of the actions that make it worse",
     "template": "str: a commented scenario to start from",
     "anchor": "(tables, source): makes relative paths in a scenario's tables absolute",
     "run": "module: simulate, summarize, tables_of, written_of, columns, trail, call_words",
     "tables": "tuple of Table: all tables that its runs can have",
     "received_image": "(result, time_s, window_s): what was felt, as it was received",
     "report": "(result, summary) -> str: the body of its report, HTML",
+    "notebook": "(result, summary) -> str: the same for a notebook, its top and a picture",
     "figures": "module: draw(run, figure) -> a matplotlib figure",
     "summary_lines": "(run) -> list of str: what a person wants to know first",
-    "capture": "module: LATE_US, refusal, interfaces, numbers, frames, simulate",
+    "without_events": '(summary) -> str: why a run has no events to compare; "" if it has',
+    "loop_name": '(plan) -> str: the compiled loop that it runs on; "" = it needs no compiling',
+    "demo": "module: SCENARIO, INTRODUCTION, LOOK, NEXT, lines(run): its chapter of `demo`",
+    "sizing": "module: Question, parse_ports, size, RECOVERY: what `size` answers",
+    "measured_template": "(name, network, link types, least quality) -> str: of what was measured",
+    "capture": "module: LATE_US, refusal, interfaces, numbers, frames, simulate; if absent, any "
+    "network of cables with `frames` has one (export/cabled.py)",
+    "frames": "module: LAYOUTS, KIND_BITS, encode, decode: its frames as bytes",
+    "frame_fields": "tuple: declarations of a frame's fields, with meanings",
+    "interface_words": 'dict: what captures call a node, by its role; others are a "node"',
+    "dissector": "() -> export.dissector.Frames: its frames for Wireshark, from `frames` if absent",
+    "fit": "module: Reader, tables_of, named, named_again: a scenario out of a capture",
+    "unfit": "str: why no scenario comes out of its captures",
+    "log": "module: looks_like_one(path), measure(path): what `fit` reads besides captures",
     "graph": "(plan) -> export.graphs.Graph: its network as a graph",
     "scenes": "(plan, tables) -> list of export.scenes.Channel: what a recording shows in space",
     "has_places": "(plan) -> bool: its nodes lie somewhere in space",
     "rerun_parts": "(rerun, plan, tables) -> export.rrd_parts.Parts: a run in space",
-    "simulation": "(plan) -> sim.driver.Simulation: the network as it is watched, not yet begun",
+    "simulation": "(plan) -> sim.driver.Simulation: the network as it is watched, not yet begun; "
+    "for the default `run` also by name plain, checks, observe, deliveries, trail, tap",
     "unwatchable": '(plan) -> str: why it cannot be watched; "" if it can',
     "engine": "class: web.engine.Engine, or what can do more",
     "view": "class: what the live page shows of its simulation (web/view.py)",
     "scene": "(plan): what a page draws once",
 }
 DEFAULTS = {
+    "run": "innervate.running.simulating",
+    "tables": "innervate.running.simulating:TABLES",
+    "report": "innervate.plot.body:body",
+    "notebook": "innervate.plot.body:notebook",
+    "figures": "innervate.plot.figures",
+    "summary_lines": "innervate.plot.lines:summary_lines",
+    "graph": "innervate.export.cabled:graph",
     "scenes": "innervate.network:nothing_to_show",
     "has_places": "innervate.network:no_places",
     "unwatchable": "innervate.network:nothing_against_it",
     "engine": "innervate.web.engine:Engine",
     "anchor": "innervate.network:nothing_to_anchor",
+    "interface_words": "innervate.network:NO_WORDS",
+    "unfit": "innervate.network:UNFIT",
+    "without_events": "innervate.network:nothing_against_it",
+    "loop_name": "innervate.network:no_name",
 }
+
+
+NO_WORDS: dict[str, str] = {}
+UNFIT = "links of this kind of network are not measured"
 
 
 class Network:
@@ -102,8 +133,13 @@ def nothing_to_anchor(tables: dict[str, Any], source: Any) -> None:
     """A scenario without relative paths."""
 
 
-def nothing_against_it(plan: Any) -> str:
-    """Any plan will do."""
+def nothing_against_it(_given: Any) -> str:
+    """Any plan or run will do."""
+    return ""
+
+
+def no_name(plan: Any) -> str:
+    """A loop that needs no compiling, as far as is known."""
     return ""
 
 

@@ -205,7 +205,8 @@ def test_the_list_of_packets_says_who_sends_what_to_whom(tmp_path, tshark):
     report.kind, report.window = radio_words.REPORT, 4
     data = plain.make("Frame", radio_fields.FRAME)()
     data.kind, data.source = radio_words.DATA, 7
-    blocks = [pcapng.section(), pcapng.interface(networks()["radio"].link_type, "station 2", "station 2")]
+    station = pcapng.interface(networks()["radio"].link_type, "station 2", "station 2")
+    blocks = [pcapng.section(), station]
     blocks += [pcapng.packet(0, 0, radio.encode(report), out)]
     blocks += [pcapng.packet(0, 1, radio.encode(data), into)]
     path.write_bytes(b"".join(blocks))

@@ -18,6 +18,7 @@ from innervate.sim.cables.loop import BATCH
 from innervate.sim.cables.wires import COUNTERS, LOSSY
 from innervate.sim.tables import ACTION, TAP, Out, Tables, _longer, get, put, uniform
 from innervate.sim.wheel import BUCKETS, FREE, FRESH, LAST, LEVELS, NIL, PENDING, WORDS
+from innervate.topology.layout import cell_places
 
 ROWS = 1 << 16
 CELL_BYTES = 256  # whole cache lines
@@ -140,7 +141,7 @@ def _touch(tables: Tables, plan: Any) -> dict[str, Any]:
     """Tables of the synthetic touch, empty without one."""
     touch = plan.touch
     span = (touch.radius_um, touch.force_mn, touch.step_us) if touch else (0, 0, 1)
-    places = [round(1000 * x) for place in plan.graph.layout() for x in place] if touch else ()
+    places = [round(1000 * x) for place in cell_places(plan.graph) for x in place] if touch else ()
     return {
         "touch_x": _numbers(tables, touch.x_um if touch else ()),
         "touch_y": _numbers(tables, touch.y_um if touch else ()),
