@@ -8,7 +8,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from tests.browser_net import serving
+from tests.browser.servers import serving
 
 CELLS = {1_000: (40, 25), 4_000: (80, 50)}
 SPEED = 0.02

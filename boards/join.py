@@ -17,7 +17,6 @@ from typing import Any
 
 from innervate.networks.skin.protocol.fields import NOTED
 
-ROOM = "innervate.protocol."
 _COMPARE: dict[type, Callable[[Any, Any], bool]] = {
     ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Lt: operator.lt, ast.LtE: operator.le,
     ast.Gt: operator.gt, ast.GtE: operator.ge,

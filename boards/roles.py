@@ -60,8 +60,7 @@ SKIN_FRAME = tuple(field for field in skin_fields.FRAME if field[0] not in skin_
 ROLES = {
     "skin": Role(
         "innervate.networks.skin.protocol.cell",
-        skin_fields.CELL, skin_fields.PARAMS, skin_fields.FRAME, skin_fields.FRAME,
-        "skin", skin_fields.CELL, skin_fields.PARAMS, SKIN_FRAME, SKIN_FRAME,
+        skin_fields.CELL, skin_fields.PARAMS, SKIN_FRAME, SKIN_FRAME,
         {kind: _wire(fields) for kind, fields in skin.FIELDS.items()}, 12, True,
     ),
     "csma": Role(

@@ -11,21 +11,22 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from innervate.networks.skin.tables import TABLES
-from innervate.networks.mesh.papers import readings as mesh_readings
-from innervate.networks.radio.papers import readings as radio_readings
-from innervate.networks.skin.papers import readings as skin_readings
-from innervate.networks.mesh.protocol import fields as mesh_fields
-from innervate.networks.radio.protocol import fields as radio_fields
-from innervate.networks.skin.protocol import fields as skin_fields
+from innervate.networks.mesh import frames as mesh
+from innervate.networks.mesh import payloads as mesh_payloads
 from innervate.networks.mesh import tables as mesh_tables
+from innervate.networks.mesh.meanings import MEANINGS
+from innervate.networks.mesh.papers import readings as mesh_readings
+from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.radio import frames as radio
 from innervate.networks.radio import tables as radio_tables
+from innervate.networks.radio.papers import readings as radio_readings
+from innervate.networks.radio.protocol import fields as radio_fields
+from innervate.networks.skin import frames as skin
+from innervate.networks.skin.papers import readings as skin_readings
+from innervate.networks.skin.protocol import fields as skin_fields
+from innervate.networks.skin.tables import TABLES
 from innervate.trace import tables
 from innervate.wire import layout
-from innervate.networks.mesh import frames as mesh, payloads as mesh_payloads
-from innervate.networks.radio import frames as radio
-from innervate.networks.skin import frames as skin
-from innervate.networks.mesh.meanings import MEANINGS
 
 FOLDER = Path(__file__).resolve().parent
 PICTURE = FOLDER / "images" / "recovery.svg"
@@ -168,9 +169,9 @@ def draw() -> None:
     """The README's picture: four moments of the bundled scenario `demo`."""
     import innervate
     from innervate.networks.skin.plot import map as skinmap
-    from innervate.plot import svg, theme
     from innervate.networks.skin.plot.report import legend
     from innervate.networks.skin.plot.story import Story
+    from innervate.plot import svg, theme
 
     done = innervate.run("demo")
     story = Story(done.result, done.summary)
@@ -210,9 +211,9 @@ def draw_mesh() -> None:
     from innervate.networks.mesh.analysis.alarms import all_crossings
     from innervate.networks.mesh.analysis.way import copies, way
     from innervate.networks.mesh.plot import map as mesh_map
-    from innervate.plot import theme
     from innervate.networks.mesh.plot.report import shown_crossing
     from innervate.networks.mesh.plot.sheet import Sheet
+    from innervate.plot import theme
 
     result = innervate.run(MESH_SCENARIO).result
     crossings = all_crossings(result)

@@ -16,7 +16,7 @@ from typing import Any
 from PIL import Image
 from playwright.sync_api import expect, sync_playwright
 
-from tests.browser_net import PHONE, click, seek, serving
+from tests.browser.servers import PHONE, click, seek, serving
 
 FOLDER = Path(__file__).resolve().parent / "images"
 FINE = 1.5  # px of the picture per px of the page

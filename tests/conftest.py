@@ -7,6 +7,7 @@ from functools import cache
 
 import pytest
 
+pytest_plugins = ["tests.fixtures.papers", "tests.fixtures.plots", "tests.fixtures.scenarios"]
 NEEDS = {
     "needs_root": "root",
     "needs_netns": "network namespaces",

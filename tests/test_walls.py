@@ -42,6 +42,7 @@ def test_contracts_are_kept():
 
 
 # A file, an import it must not have, and the contract that says so.
+ROOMS = ("__init__.py", "attic.py")  # rooms that no layer is for
 BREACHES = {
     "upwards": ("trace/bad.py", "import innervate.scenario", "layers"),
     "sideways": ("topology/bad.py", "import innervate.trace", "layers"),
@@ -50,13 +51,41 @@ BREACHES = {
     "matplotlib": ("analysis/bad.py", "from matplotlib import pyplot", "matplotlib"),
     "web server elsewhere": ("running/bad.py", "import uvicorn", "web"),
     "Dask elsewhere": ("sweeping/bad.py", "import distributed", "dask"),
-    "clock in a protocol": ("protocol/bad.py", "import time", "protocol"),
+    "clock in a protocol": ("networks/mesh/protocol/bad.py", "import time", "protocol"),
     "clock in sim": ("sim/bad.py", "import time", "sim"),
-    "bytes in sim": ("sim/bad.py", "import innervate.wire.skin", "sim"),
+    "bytes in sim": ("sim/bad.py", "import innervate.wire.bits", "sim"),
+    "a network in the spine": ("web/bad.py", "import innervate.networks.skin.frames", "spine"),
+    "a network, indirectly": ("kernel/bad.py", "import innervate.networks.mesh", "spine"),
+    "upwards in a network": (
+        "networks/skin/scenario/bad.py",
+        "import innervate.networks.skin.analysis.rows",
+        "networks",
+    ),
+    "a network's room without a layer": ("networks/radio/attic.py", "import ast", "networks"),
+    "a skin that knows a mesh": (
+        "networks/skin/analysis/bad.py",
+        "import innervate.networks.mesh.frames",
+        "apart",
+    ),
+    "a skin that knows a radio": (
+        "networks/skin/analysis/bad.py",
+        "import innervate.networks.radio.frames",
+        "skin-radio",
+    ),
+    "a mesh that knows a skin": (
+        "networks/mesh/analysis/bad.py",
+        "import innervate.networks.skin.frames",
+        "mesh-skin",
+    ),
     "numpy on the wire": ("wire/bad.py", "import numpy", "bare"),
 }
 NAMES = {
     "layers": "Rooms import only",
+    "spine": "The spine names",
+    "networks": "A network's rooms",
+    "apart": "Networks do not",
+    "skin-radio": "Skin and radio",
+    "mesh-skin": "A mesh does not",
     "numba": "Numba stays",
     "matplotlib": "matplotlib is",
     "dask": "Dask is one engine",
@@ -67,19 +96,35 @@ NAMES = {
 }
 
 
-@pytest.mark.parametrize("breach", BREACHES.values(), ids=BREACHES.keys())
-def test_contracts_can_be_broken(breach, tmp_path):
-    file, statement, contract = breach
-    shutil.copy(ROOT / "pyproject.toml", tmp_path)
-    package = tmp_path / "src/innervate"
-    shutil.copytree(ROOT / "src/innervate", package, ignore=shutil.ignore_patterns("__pycache__"))
-    bad = package / file
-    bad.parent.mkdir(exist_ok=True)
-    bad.write_text(statement + "\n")
-    done = lint_imports(tmp_path)
-    assert done.returncode != 0
-    verdicts = [line for line in done.stdout.splitlines() if line.startswith(NAMES[contract])]
-    assert any(" BROKEN" in line for line in verdicts), done.stdout
+@pytest.fixture(scope="module")
+def breached(tmp_path_factory):
+    """What the contracts say of a copy with all these breaches; those of rooms in a second one."""
+    said = {}
+    for structural in (False, True):
+        root = tmp_path_factory.mktemp("breached")
+        shutil.copy(ROOT / "pyproject.toml", root)
+        package, unread = root / "src/innervate", shutil.ignore_patterns("__pycache__", "page")
+        shutil.copytree(ROOT / "src/innervate", package, ignore=unread)
+        chosen = {name: breach for name, breach in BREACHES.items()
+                  if breach[0].endswith(ROOMS) is structural}  # fmt: skip
+        for number, (file, statement, _) in enumerate(chosen.values()):
+            bad = package / file.replace("bad.py", f"bad_{number}.py")
+            bad.parent.mkdir(exist_ok=True)
+            bad.write_text(statement + "\n")
+        done = lint_imports(root)
+        assert done.returncode != 0
+        for number, (name, (file, _, contract)) in enumerate(chosen.items()):
+            module = file.replace("bad.py", f"bad_{number}.py").removesuffix(".py")
+            said[name] = (done.stdout, module.removesuffix("/__init__").replace("/", "."), contract)
+    return said
+
+
+@pytest.mark.parametrize("breach", BREACHES)
+def test_contracts_can_be_broken(breach, breached):
+    said, module, contract = breached[breach]
+    verdicts = [line for line in said.splitlines() if line.startswith(NAMES[contract])]
+    assert any(" BROKEN" in line for line in verdicts), said
+    assert module.rpartition(".")[2] in said
 
 
 def loaded_after(code):
@@ -89,15 +134,24 @@ def loaded_after(code):
     return done.stdout.splitlines()[-1].split()[1:]
 
 
-@pytest.mark.parametrize("room", ["protocol", "wire", "trace", "topology", "scenario"])
+@pytest.mark.parametrize("room", ["dialect", "network", "wire", "trace", "topology", "scenario"])
 def test_rooms_of_a_live_node_load_nothing_heavy(room):
-    walk = "import pkgutil, importlib"
-    each = (
-        f"for m in pkgutil.walk_packages(room.__path__, 'innervate.{room}.'):"
+    assert loaded_after(all_of(room)) == []
+
+
+def all_of(room):
+    """Code that imports everything in a room."""
+    return (
+        f"import pkgutil, importlib\nimport innervate.{room} as room\n"
+        f"for m in pkgutil.walk_packages(getattr(room, '__path__', []), 'innervate.{room}.'):"
         " importlib.import_module(m.name)"
     )
-    code = f"{walk}\nimport innervate.{room} as room\n{each}"
-    assert loaded_after(code) == []
+
+
+@pytest.mark.parametrize("network", ["skin", "radio", "mesh"])
+@pytest.mark.parametrize("room", ["protocol", "frames", "scenario", "live"])
+def test_rooms_of_a_networks_live_node_load_nothing_heavy(network, room):
+    assert loaded_after(all_of(f"networks.{network}.{room}")) == []
 
 
 def test_help_loads_nothing_heavy():

@@ -146,9 +146,9 @@ class Recorder:
         HEAR(world, node, time, port, frame)
         self.after(cell, world.out)
 
-    def build(self, *args: Any) -> Any:
+    def build(self, *args: Any, **keep: Any) -> Any:
         """Builds the world, and keeps it."""
-        self.world = self._build(*args)
+        self.world = self._build(*args, **keep)
         return self.world
 
     def before(self, handler: int, state: Any, params: Any, now: int, given: Any) -> None:

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 TYPE_CHECKING = False  # `typing` would be the slowest part of this import
 if TYPE_CHECKING:
-    from innervate.networks.public import Answer as Answer
-    from innervate.networks.public import Question as Question
-    from innervate.networks.public import size as size
+    from innervate.networks.typed import Answer as Answer
+    from innervate.networks.typed import Question as Question
+    from innervate.networks.typed import size as size
     from innervate.running.compare import Comparison as Comparison
     from innervate.running.compare import compare as compare
     from innervate.running.errors import RunError as RunError
@@ -32,9 +32,9 @@ __version__ = "0.1.0"
 
 # Where each name comes from; the lines above say the same to type checkers.
 _PLACES = {
-    "Answer": "networks.public",
+    "Answer": "networks.typed",
     "Comparison": "running.compare",
-    "Question": "networks.public",
+    "Question": "networks.typed",
     "Run": "running.run",
     "RunError": "running.errors",
     "Scenario": "scenario",
@@ -46,7 +46,7 @@ _PLACES = {
     "load": "scenario.given",
     "load_sweep": "sweeping.loading",
     "run": "running.run",
-    "size": "networks.public",
+    "size": "networks.typed",
     "sweep": "sweeping.sweep",
 }
 __all__ = ["__version__", *_PLACES]

@@ -7,12 +7,17 @@ loads only what it needs; one that a network leaves out is the default for any n
 
 from __future__ import annotations
 
+import os
 import pkgutil
+import sys
 from functools import cache
 from importlib import import_module
+from importlib.metadata import entry_points
+from pathlib import Path
 from typing import Any
 
-HOME = "innervate.networks"
+HOME = GROUP = "innervate.networks"
+FOLDERS = "INNERVATE_NETWORKS"
 
 # Every part that a network can have, and what it is. Those with a default may be left out.
 PARTS = {
@@ -32,6 +37,7 @@ PARTS = {
     "notebook": "(result, summary) -> str: the same for a notebook, its top and a picture",
     "figures": "module: draw(run, figure) -> a matplotlib figure",
     "summary_lines": "(run) -> list of str: what a person wants to know first",
+    "summary_name": '(summary) -> str: by what name a run has it, like "skin" for `run.skin`',
     "without_events": '(summary) -> str: why a run has no events to compare; "" if it has',
     "loop_name": '(plan) -> str: the compiled loop that it runs on; "" = it needs no compiling',
     "demo": "module: SCENARIO, INTRODUCTION, LOOK, NEXT, lines(run): its chapter of `demo`",
@@ -56,6 +62,7 @@ PARTS = {
     "engine": "class: web.engine.Engine, or what can do more",
     "view": "class: what the live page shows of its simulation (web/view.py)",
     "scene": "(plan): what a page draws once",
+    "papers": "module: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up",
 }
 DEFAULTS = {
     "run": "innervate.running.simulating",
@@ -74,11 +81,16 @@ DEFAULTS = {
     "unfit": "innervate.network:UNFIT",
     "without_events": "innervate.network:nothing_against_it",
     "loop_name": "innervate.network:no_name",
+    "summary_name": "innervate.network:kind_of",
 }
 
 
 NO_WORDS: dict[str, str] = {}
 UNFIT = "links of this kind of network are not measured"
+
+
+class NetworkError(Exception):
+    """A network that was named cannot be loaded."""
 
 
 class Network:
@@ -143,6 +155,12 @@ def no_name(plan: Any) -> str:
     return ""
 
 
+def kind_of(summary: Any) -> str:
+    """By its kind."""
+    kind: str = summary["kind"]
+    return kind
+
+
 def nothing_to_show(plan: Any, tables: Any) -> list[Any]:
     """A recording without a scene."""
     return []
@@ -155,13 +173,55 @@ def no_places(plan: Any) -> bool:
 
 @cache
 def networks() -> dict[str, Network]:
-    """All kinds of networks by name: every folder of `networks` with a `network.py` in it."""
+    """All kinds of networks by name, in the order of their ranks.
+
+    They are the toolkit's own (every folder of `innervate.networks` with a `network.py`), those of
+    installed packages (entry points of the group `innervate.networks`, each a `Network`), and
+    those in the folders that the environment names in INNERVATE_NETWORKS, separated as in PATH:
+    each folder is a package with a `network.py` in it, whose `NETWORK` says what it is.
+
+    Raises:
+        NetworkError: one that was named cannot be loaded, or a name is taken twice.
+    """
     home = import_module(HOME)
     found = [import_module(f"{HOME}.{folder.name}.network").NETWORK
              for folder in pkgutil.iter_modules(home.__path__) if folder.ispkg]  # fmt: skip
-    return {network.name: network for network in sorted(found, key=lambda n: n.rank)}
+    found += [_entry(point) for point in entry_points(group=GROUP)]
+    folders = os.environ.get(FOLDERS, "").split(os.pathsep)
+    found += [_in_folder(Path(folder)) for folder in folders if folder]
+    made: dict[str, Network] = {}
+    for network in sorted(found, key=lambda n: n.rank):
+        if made.setdefault(network.name, network) is not network:
+            other = made[network.name].package
+            raise NetworkError(f"{network.package} and {other} are both called {network.name!r}")
+    return made
+
+
+def _entry(point: Any) -> Network:
+    try:
+        return _checked(point.load(), point.value)
+    except (ImportError, AttributeError) as error:
+        raise NetworkError(f"the installed network {point.name} cannot be loaded: {error}") from error
+
+
+def _in_folder(folder: Path) -> Network:
+    if not (folder / "network.py").is_file():
+        raise NetworkError(f"{FOLDERS}: {folder} holds no network.py")
+    where = str(folder.resolve().parent)
+    if where not in sys.path:
+        sys.path.append(where)
+    try:
+        return _checked(import_module(f"{folder.resolve().name}.network").NETWORK, str(folder))
+    except (ImportError, AttributeError) as error:
+        raise NetworkError(f"{FOLDERS}: {folder} cannot be loaded: {error}") from error
+
+
+def _checked(found: Any, where: str) -> Network:
+    if not isinstance(found, Network):
+        raise NetworkError(f"{where} is no Network: {type(found).__name__}")
+    return found
 
 
 def _absolute(package: str, place: str) -> str:
     """A place within a network's package, or one that is named in full."""
-    return place if place.startswith("innervate.") else f"{package}.{place}"
+    return place if place.startswith("innervate.") or not package else f"{package}.{place}"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.browser_net import SKIN, WIDE, serving
+from tests.browser.servers import SKIN, WIDE, serving
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 

@@ -5,7 +5,7 @@ from contextlib import ExitStack
 
 import pytest
 
-from tests.browser_net import PHONE, SKIN, click, expect, place, seek, serving
+from tests.browser.servers import PHONE, SKIN, click, expect, place, seek, serving
 
 CABLE = "p0 r0 c2 - pc.0"
 CELL = "p0 r3 c3"

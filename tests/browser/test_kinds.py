@@ -1,6 +1,6 @@
 """The page of a radio team and of a mesh."""
 
-from tests.browser_net import click, expect, serving
+from tests.browser.servers import click, expect, serving
 
 RADIO = """
 kind = "radio"

@@ -11,7 +11,7 @@ from contextlib import ExitStack, contextmanager
 import pytest
 
 from innervate.live import status
-from tests.browser_net import WAIT_MS, click, expect, serving
+from tests.browser.servers import WAIT_MS, click, expect, serving
 
 pytestmark = pytest.mark.slow
 RADIO = """

@@ -3,7 +3,7 @@
 import re
 import socket
 
-from tests.browser_net import PHONE, SKIN, click, expect, place, seek, serving
+from tests.browser.servers import PHONE, SKIN, click, expect, place, seek, serving
 
 CABLE = "p0 r0 c2 - pc.0"
 OTHER = "p0 r2 c3 - p0 r2 c4"

@@ -12,7 +12,7 @@ from innervate.export import recording
 from innervate.kernel import door
 from innervate.running import folder as folders
 from innervate.sweeping import SweepError, sweep
-from tests.skin_runs import line, patch, plan_of
+from tests.networks.skin.runs import line, patch, plan_of
 
 TABLES = line(3, duration_s=0.05)
 

@@ -17,8 +17,8 @@ from innervate.networks.radio import frames as radio
 from innervate.networks.skin import frames as skin
 from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.sim.cables import wires
-from tests.skin_runs import patch
-from tests.tshark_runs import fields_of, tshark
+from tests.export.tshark_runs import fields_of, tshark
+from tests.networks.skin.runs import patch
 
 __all__ = ["tshark"]
 SKIN = patch(

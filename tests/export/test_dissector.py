@@ -19,7 +19,7 @@ from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.wire import crc, seal
 from innervate.wire.bits import put
 from innervate.wire.layout import REST, SPARE
-from tests.tshark_runs import fields_of, tshark
+from tests.export.tshark_runs import fields_of, tshark
 
 __all__ = ["tshark"]
 EACH = 6  # frames of every type
@@ -205,8 +205,10 @@ def test_the_list_of_packets_says_who_sends_what_to_whom(tmp_path, tshark):
     report.kind, report.window = radio_words.REPORT, 4
     data = plain.make("Frame", radio_fields.FRAME)()
     data.kind, data.source = radio_words.DATA, 7
-    station = pcapng.interface(networks()["radio"].link_type, "station 2", "station 2")
-    blocks = [pcapng.section(), station]
+    blocks = [
+        pcapng.section(),
+        pcapng.interface(networks()["radio"].link_type, "station 2", "station 2"),
+    ]
     blocks += [pcapng.packet(0, 0, radio.encode(report), out)]
     blocks += [pcapng.packet(0, 1, radio.encode(data), into)]
     path.write_bytes(b"".join(blocks))

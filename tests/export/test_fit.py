@@ -12,8 +12,8 @@ from innervate.export import capture, fitting, measure, pcapng
 from innervate.export.errors import ExportError
 from innervate.live import status, tap
 from innervate.networks.mesh.export import statuslog
-from tests.live_net import Mesh, until
-from tests.skin_runs import patch
+from tests.live.net import Mesh, until
+from tests.networks.skin.runs import patch
 
 RING = {
     "kind": "mesh",

@@ -13,7 +13,7 @@ from innervate import scenario as scenarios
 from innervate.live import status
 from innervate.live.netns import Lab
 from innervate.live.up import Network
-from tests.live_net import until
+from tests.live.net import until
 
 FIRST_S = 40.0
 MANY = 40

@@ -12,7 +12,7 @@ from innervate.live.keys import Sealer
 from innervate.live.state import State
 from innervate.networks.mesh import frames as mesh
 from innervate.networks.mesh.protocol.constants import DATA
-from tests.live_net import Mesh, Skin, until
+from tests.live.net import Mesh, Skin, until
 
 OUT, IN = 2, 1
 

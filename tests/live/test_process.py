@@ -15,7 +15,7 @@ import pytest
 from innervate import scenario as scenarios
 from innervate.live import status
 from innervate.live.up import Network
-from tests.live_net import until
+from tests.live.net import until
 
 RING = 5
 FIRST_S = 30.0

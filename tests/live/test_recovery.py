@@ -13,8 +13,8 @@ from innervate.export.errors import ExportError
 from innervate.live import status, tap
 from innervate.live.profile import SKIN
 from innervate.networks.skin.export.recovery import recoveries
-from tests.live_net import Skin, until
-from tests.skin_runs import patch
+from tests.live.net import Skin, until
+from tests.networks.skin.runs import patch
 
 CUT = patch(
     4, 4, (0, 0), (3, 3),

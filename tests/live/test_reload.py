@@ -7,7 +7,7 @@ import threading
 from innervate import scenario as scenarios
 from innervate.live import status
 from innervate.live.up import Network
-from tests.live_net import until
+from tests.live.net import until
 
 FIRST_S = 40.0
 OLD, NEW = "11" * 32, "22" * 32

@@ -10,7 +10,7 @@ from innervate.live.serial import SerialLink
 from innervate.live.serial_cables import Cables
 from innervate.networks.mesh.live.messages import DELIVERED, MeshNode
 from innervate.networks.mesh.live.stack import MeshStack
-from tests.live_net import until
+from tests.live.net import until
 
 PARAMS = mesh_parameters(2, {"ack_us": 30_000, "e2e_us": 300_000})
 

@@ -13,7 +13,7 @@ import pytest
 from innervate.live.keys import Sealer
 from innervate.live.state import State
 from innervate.networks.mesh.live.messages import DELIVERED, EXPIRED
-from tests.live_net import Mesh
+from tests.live.net import Mesh
 
 GRID = [
     (0, 1),

@@ -19,8 +19,8 @@ from innervate.networks.mesh.live.stack import Frame, MeshStack
 from innervate.networks.mesh.protocol.constants import ACK, ALL, SOURCE_ROUTE
 from innervate.networks.radio.live.medium import Medium
 from innervate.networks.radio.live.station import JOIN, PLUG, SEND, read_heard
+from tests.live.net import Mesh, Skin, until
 from tests.live.test_fuzz import crc
-from tests.live_net import Mesh, Skin, until
 
 HOP_ACK_OF_255 = bytes.fromhex("50ff0100000000e5b7")
 KEY = bytes(range(32))

@@ -10,7 +10,7 @@ from innervate.cli import app, live_status
 from innervate.live import status
 from innervate.live.errors import LiveError
 from innervate.live.up import Network
-from tests.live_net import Mesh, Skin, until
+from tests.live.net import Mesh, Skin, until
 
 
 def test_a_cells_ports_have_the_names_of_its_sockets_and_a_cut_is_shown():

@@ -19,9 +19,9 @@ from innervate.live import status
 from innervate.live.keys import AHEAD, Sealer
 from innervate.live.notices import PERIOD_S, Notices
 from innervate.live.state import State
+from tests.live.net import until
 from tests.live.test_keys import FRAME, KEY, taken
 from tests.live.test_process import free_port
-from tests.live_net import until
 
 FIRST_S = 30.0
 FULL = (resource.RLIMIT_FSIZE, (0, resource.RLIM_INFINITY))  # no file can grow

@@ -4,6 +4,7 @@ from types import ModuleType
 
 import pytest
 
+from innervate.network import Network, networks
 from innervate.papers import PapersError, book, main
 from innervate.papers.experiment import HOLDS, Claim, Experiment, Point
 from innervate.plot import style
@@ -18,8 +19,9 @@ class Toy:
         module.TITLE, module.AUTHORS, module.FIGURES = "Toys & <b>", "A. Nobody", ("a", "b")
         module.READINGS = {"Q1": "A sentence on <this>."}
         module.experiment, module.warm_up = self.experiment, lambda: None
-        monkeypatch.setitem(sys.modules, "innervate.papers.toy", module)
-        monkeypatch.setattr(book, "PAPERS", ("skin", "toy"))
+        monkeypatch.setitem(sys.modules, "toy_papers", module)
+        toy = Network("toy", "", papers="toy_papers")
+        monkeypatch.setattr(book, "networks", lambda: {"skin": networks()["skin"], "toy": toy})
 
     def experiment(self, name):
         keys = [f"{name}1", f"{name}2", "shared"]

@@ -8,7 +8,7 @@ import pytest
 from innervate import run, scenario
 from innervate.plot import report
 from tests.export.test_captures import MESH, RADIO, SKIN
-from tests.self_contained import TAGS, loads_nothing, plain
+from tests.plot.self_contained import TAGS, loads_nothing, plain
 
 SLOTTED = {"kind": "radio", "stations": 5, "seed": 3, "duration_s": 60,
            "traffic": {"kind": "disaster"}, "channel": {"level": "slotted"},

@@ -8,7 +8,7 @@ from innervate import run
 from innervate.web import messages
 from innervate.web.errors import Refused
 from innervate.web.history import LOG
-from tests.web_runs import SKIN, go_to, simulated
+from tests.web.runs import SKIN, go_to, simulated
 
 LAST = 29
 

@@ -11,8 +11,8 @@ from innervate.web.errors import Refused, WatchError
 from innervate.web.history import History
 from innervate.web.messages import Cut, Heal, Kill, Revive
 from innervate.web.saving import saved
-from tests.skin_runs import free
-from tests.web_runs import KINDS, MESH, RADIO, SKIN, plan_of
+from tests.networks.skin.runs import free
+from tests.web.runs import KINDS, MESH, RADIO, SKIN, plan_of
 
 BUDGETS = (64, 1000, 100_000)
 

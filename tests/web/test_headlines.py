@@ -3,7 +3,7 @@
 import pytest
 
 from innervate import run
-from tests.web_runs import MESH, RADIO, SKIN, go_to, simulated
+from tests.web.runs import MESH, RADIO, SKIN, go_to, simulated
 
 
 @pytest.mark.parametrize(

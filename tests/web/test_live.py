@@ -18,8 +18,8 @@ from innervate.web.errors import Refused, WatchError
 from innervate.web.live import Live, find
 from innervate.web.live_poll import Poller
 from innervate.web.serve import serving
-from tests.live_net import Mesh
-from tests.web_page import Page
+from tests.live.net import Mesh
+from tests.web.page import Page
 
 RING = [(0, 1), (1, 2), (2, 3), (3, 0)]
 

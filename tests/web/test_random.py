@@ -9,7 +9,7 @@ from innervate.running import run
 from innervate.web import messages as m
 from innervate.web.errors import Refused
 from innervate.web.saving import saved
-from tests.web_runs import KINDS, simulated
+from tests.web.runs import KINDS, simulated
 
 
 def command(draw, scene, duration_s):

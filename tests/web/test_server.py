@@ -21,8 +21,8 @@ from innervate.web import hub as hubs
 from innervate.web import server
 from innervate.web.errors import WatchError
 from innervate.web.serve import serving
-from tests.web_page import Page, socket_of
-from tests.web_runs import SKIN, simulated
+from tests.web.page import Page, socket_of
+from tests.web.runs import SKIN, simulated
 
 SMALL = {**SKIN, "duration_s": 60.0}
 

@@ -13,8 +13,8 @@ from innervate.web.errors import Refused, WatchError
 from innervate.web.history import LOG, SERIES, TIMELINE
 from innervate.web.simulated import Simulated
 from innervate.web.snapshot import Part, Snapshot, Teller
-from tests.skin_runs import patch
-from tests.web_runs import KINDS, MESH, RADIO, SKIN, go_to, simulated
+from tests.networks.skin.runs import patch
+from tests.web.runs import KINDS, MESH, RADIO, SKIN, go_to, simulated
 
 ROLES = {"cell", "sink", "port", "node", "gateway", "standby", "robot", "post", "monitor",
          "station"}  # fmt: skip

@@ -16,7 +16,7 @@ from innervate.web.messages import Command, Cut, Go, Pause, Seek, Speed, name_of
 from innervate.web.pace import Pace
 from innervate.web.snapshot import Part, Snapshot, Teller
 from innervate.web.stage import Stage
-from tests.web_runs import SKIN, simulated
+from tests.web.runs import SKIN, simulated
 
 SCENE = Part({"type": "scene"})
 

@@ -14,7 +14,7 @@ from innervate.web.history import LOG, SERIES, TIMELINE
 from innervate.web.recorded import Recorded
 from innervate.web.recorded import plan_of as plan_of_folder
 from innervate.web.saving import saved
-from tests.web_runs import KINDS, SKIN, go_to, plan_of, simulated
+from tests.web.runs import KINDS, SKIN, go_to, plan_of, simulated
 
 
 def items(made, stream):

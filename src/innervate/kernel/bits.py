@@ -1,6 +1,6 @@
 """Two small things that plain Python and compiled code must spell differently.
 
-Each has a plain body and a compiled one with the same result; `tests/parity` holds them together.
+Each has a plain body and a compiled one with the same result; `tests/kernel` holds them together.
 """
 
 from __future__ import annotations

@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from innervate.papers.book import Step as Step
     from innervate.papers.book import main as main
+    from innervate.papers.book import papers as papers
     from innervate.papers.errors import PapersError as PapersError
 
-__all__ = ["PAPERS", "PapersError", "Step", "main"]
+__all__ = ["PapersError", "Step", "main", "papers"]
 
-# Papers there are; each is a package with TITLE, AUTHORS, FIGURES, experiment() and warm_up().
-PAPERS = ("skin", "radio", "mesh")
-_HOMES = {"main": "book", "Step": "book", "PapersError": "errors"}
+_HOMES = {"main": "book", "papers": "book", "Step": "book", "PapersError": "errors"}
 
 
 def __getattr__(name: str) -> Any:

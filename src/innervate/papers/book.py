@@ -11,12 +11,12 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from innervate.papers import PAPERS, output
+from innervate.network import networks
+from innervate.papers import output
 from innervate.papers.errors import PapersError
 from innervate.papers.experiment import Claim, Experiment, Point
 from innervate.papers.store import Store, stamp
@@ -45,7 +45,7 @@ Progress = Callable[[Step], None]
 
 
 def main(
-    system: str = "skin",
+    system: str,
     out: str | os.PathLike[str] = "papers",
     quick: bool = False,
     only: Iterable[str] = (),
@@ -55,7 +55,7 @@ def main(
     """Draw and tabulate the figures of a paper.
 
     Args:
-        system: which paper: "skin", "radio" or "mesh".
+        system: which network's papers, one of `papers()`.
         out: folder for the figures, tables and kept results.
         quick: few seeds and settings, in under a minute.
         only: names of figures ("fig8a"); empty = all.
@@ -70,9 +70,10 @@ def main(
         PapersError: no such paper or figure, or the folder cannot be used.
         KeyboardInterrupt: it was interrupted; what was done is kept.
     """
-    if system not in PAPERS:
-        raise PapersError(f'there is no paper "{system}"; choose from: {", ".join(PAPERS)}')
-    paper = import_module(f"innervate.papers.{system}")
+    known = papers()
+    if system not in known:
+        raise PapersError(f'there is no paper "{system}"; choose from: {", ".join(known)}')
+    paper = networks()[system].papers
     names = _chosen(paper, only)
     experiments = [paper.experiment(name) for name in names]
     folder = Path(out)
@@ -90,6 +91,11 @@ def main(
         system, paper.TITLE, paper.AUTHORS, quick, mark, redraw, command, paper.READINGS
     )
     return output.write(folder, heading, experiments, book.claims, time.perf_counter() - started)
+
+
+def papers() -> list[str]:
+    """Networks whose papers can be redrawn."""
+    return [name for name, network in networks().items() if network.has("papers")]
 
 
 def _chosen(paper: ModuleType, only: Iterable[str]) -> list[str]:

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 from innervate import scenario as scenarios
 from innervate.network import networks
-from innervate.networks.summaries import Summaries, Summary
 from innervate.running import folder as folders
 from innervate.scenario import Scenario
 from innervate.scenario.given import Changes, Given, load
@@ -22,12 +21,16 @@ from innervate.trace.provenance import provenance
 if TYPE_CHECKING:
     import polars
 
+    from innervate.networks.typed import Summaries, Summary
+else:
+    Summaries = object
+
 Progress = Callable[[int, int], None]
 
 
 @dataclass(eq=False, repr=False)
 class Run(Summaries):
-    """A scenario that was run.
+    """A scenario that was run; `run.skin`, `run.radio`, ... are its summary, with known keys.
 
     Attributes:
         scenario: as resolved.
@@ -47,6 +50,15 @@ class Run(Summaries):
     def __repr__(self) -> str:
         """Short: what ran, and its fingerprint."""
         return f"Run({self.scenario.name!r}, seed={self.plan.seed}, {self.result.fingerprint})"
+
+    def __getattr__(self, name: str) -> Any:
+        """The summary by its network's name, so that type checkers know its keys."""
+        if name.startswith("_") or name in type(self).__dict__ or "summary" not in vars(self):
+            raise AttributeError(name)
+        own = networks()[self.summary["kind"]].summary_name(self.summary)
+        if name == own:
+            return self.summary
+        raise AttributeError(f"this run has no summary {name!r}; run.{own} is its summary")
 
     @cached_property
     def tables(self) -> dict[str, polars.LazyFrame]:

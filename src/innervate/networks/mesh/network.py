@@ -37,4 +37,5 @@ NETWORK = Network(
     frames="frames",
     frame_fields="protocol.fields:FRAME",
     dissector="export.dissector:dissector",
+    papers="papers",
 )

@@ -26,6 +26,7 @@ NETWORK = Network(
     notebook="plot.report:notebook",
     figures="plot.figures",
     summary_lines="show:summary_lines",
+    summary_name="run:summary_name",
     without_events="run:without_events",
     loop_name="scenario.words:loop_name",
     demo="demo",
@@ -34,4 +35,5 @@ NETWORK = Network(
     interface_words="frames:INTERFACE_WORDS",
     frame_fields="protocol.fields:FRAME",
     dissector="export.dissector:dissector",
+    papers="papers",
 )

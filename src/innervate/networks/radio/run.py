@@ -109,6 +109,11 @@ def trail(plan: Any, until_us: int) -> Iterator[Any]:
     yield simulator.simulate(shorter, checks=False, keep=False, trail=True).trail
 
 
+def summary_name(summary: Mapping[str, Any]) -> str:
+    """By what name a run has its summary."""
+    return "slotted" if summary.get("level") == "slotted" else "radio"
+
+
 def without_events(summary: Mapping[str, Any]) -> str:
     """Why a run has no events to compare; "" if it has."""
     slotted = summary.get("level") == "slotted"

@@ -39,4 +39,5 @@ NETWORK = Network(
     frames="frames",
     interface_words="frames:INTERFACE_WORDS",
     frame_fields="protocol.fields:FRAME",
+    papers="papers",
 )

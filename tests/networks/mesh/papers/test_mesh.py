@@ -1,0 +1,208 @@
+"""The mesh's figures and claims, in quick mode; the bars with real sizes at the end."""
+
+import re
+
+import matplotlib.image
+import numpy as np
+import pytest
+
+from innervate.networks.mesh import papers as mesh
+from innervate.networks.mesh.papers import (
+    FIGURES,
+    alarms,
+    crossing,
+    experiment,
+    gateway,
+    scale,
+    stretch,
+)
+from innervate.networks.mesh.papers.bars import wire_bytes
+from innervate.networks.mesh.papers.testbed import GATEWAY, Bed, dying, kill, send_rounds
+from innervate.papers import main
+from innervate.papers.experiment import FAILS, HOLDS
+from innervate.plot import style
+from tests.fixtures.papers import read
+from tests.networks.skin.papers.test_figures import overlapping
+from tests.plot.self_contained import check_paper
+
+VERDICT = re.compile(r"holds|does not hold|holds with reading A\d+(, A\d+)*")
+# Figure and words of its claims: those that have to hold, and those that must not.
+MUST_HOLD = (
+    ("bars", "discovery recall"),
+    ("bars", "every node with tables"),
+    ("bars", "tables complete"),
+    ("bars", "unknown dead, search"),
+    ("bars", "alarms with 8 dead"),
+    ("bars", "latency, 99 %"),
+    ("bars", "overrun at 1 m/s"),
+    ("bars", "state of a node"),
+    ("bars", "loses one in five"),
+    ("stretch", "discovery list"),
+    ("stretch", "alternate that cannot loop"),
+    ("failures", "alternates, then a search"),
+    ("lossy", "search"),
+    ("lossy", "graph"),
+    ("alarms", "next hop tables"),
+    ("alarms", ": all alarms"),
+    ("scale", "sufficient for small networks"),
+    ("scale", "go further"),
+    ("versions", "alternates alone"),
+    ("versions", "with the search"),
+)
+MUST_FAIL = (
+    ("recall", "(tree)"),
+    ("recall", "(each)"),
+    ("recall", "at once"),
+    ("recall", "respond to every request"),
+    ("stretch", "discovery tree"),
+    ("stretch", "discovery each"),
+    ("failures", "will replace it automatically"),
+    ("failures", "malfunctioned"),
+    ("failures", "RSSI"),
+    ("failures", "help every rule"),
+    ("lossy", "updates its routing table"),
+    ("alarms", "own rule"),
+    ("alarms", "by the document's rule"),
+    ("gateway", "outlives the gateway"),
+)
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_a_figure_is_drawn(mesh_made, name):
+    picture = matplotlib.image.imread(mesh_made.folder / f"{name}.png")
+    height, width = picture.shape[:2]
+    assert width >= 1000
+    assert 0.3 < height / width < 1.5
+    ink = (picture[..., :3].min(axis=2) < 0.9).mean()
+    assert 0.01 < ink < 0.6
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_no_labels_overlap(mesh_made, name):
+    with style.house():
+        figure = mesh_made.experiments[name].draw(mesh_made.values, True)
+        assert overlapping(figure) == []
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_claims_say_what_was_measured(mesh_made, name):
+    for claim in mesh_made.claims[name]:
+        assert VERDICT.fullmatch(claim.verdict), claim.verdict
+        assert re.search(r"\d", claim.measurement), claim
+        assert not re.search(r"\b(nan|None|inf)\b", claim.measurement), claim
+        assert claim.verdict != FAILS or claim.reason, claim
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_points_are_told_apart(name):
+    made = experiment(name)
+    assert made.name == name
+    for quick in (True, False):
+        points = made.points(quick)
+        keys = [point.key for point in points]
+        assert len(keys) == len(set(keys))
+        assert all(point.cost_s > 0 for point in points)
+
+
+@pytest.mark.parametrize(
+    ("begins", "name", "words"),
+    [(HOLDS, *row) for row in MUST_HOLD] + [(FAILS, *row) for row in MUST_FAIL],
+)
+def test_what_holds_and_what_does_not(mesh_made, begins, name, words):
+    found = [claim for claim in mesh_made.claims[name] if words in claim.claim]
+    assert found
+    wrong = [claim for claim in found if not claim.verdict.startswith(begins)]
+    if words == ": all alarms":  # routed alone it may be late: that is why there is a flood
+        wrong = [claim for claim in wrong if "flooded" in claim.claim]
+    assert wrong == []
+
+
+def test_with_one_death_more_the_same_die_and_one_more():
+    plan = Bed(nodes=8, degree=4).plan(3)
+    four, five = dying(plan, 4), dying(plan, 5)
+    assert five[:4] == four
+    assert len(set(five)) == 5
+    assert GATEWAY not in dying(plan, 7)
+    kill(plan, five, 1_000_000)
+    assert [fault.node for fault in plan.faults] == five
+    assert {fault.at_us for fault in plan.faults} == {1_000_000}
+
+
+def test_everyone_sends_once_a_round_and_never_to_itself():
+    plan = Bed(nodes=8, degree=4).plan(1)
+    send_rounds(plan, [1, 3, 5, 7], 2, 1_000_000, 400_000)
+    for k in range(2):
+        mine = [offer for offer in plan.offers if offer.flow == k]
+        assert sorted(offer.node for offer in mine) == [1, 3, 5, 7]
+        assert all(offer.dest in (1, 3, 5, 7) and offer.dest != offer.node for offer in mine)
+        assert all(0 <= offer.at_us - 1_000_000 - 400_000 * k < 300_000 for offer in mine)
+
+
+@pytest.mark.parametrize("seed", range(1, 9))
+def test_a_robot_walks_straight_out(seed):
+    (start, end), start_s = crossing.walk(seed)
+    inside = [crossing.LOW_M < value < crossing.HIGH_M for value in start]
+    outside = [crossing.LOW_M <= value <= crossing.HIGH_M for value in end]
+    assert all(inside)
+    assert sorted(outside) == [False, True]
+    assert 0 <= start_s + crossing.INSIDE_M - crossing.CROSSED_S < 1
+
+
+def test_a_crossing_is_measured():
+    run = crossing.measure(crossing.BOTH, 1, 8)
+    assert run["joined"]
+    assert run["came"]
+    assert 0 < run["ms"] <= run["flood_ms"]
+    assert 0 < run["overrun_m"] <= (20 + run["ms"]) / 1000 + 0.001
+
+
+def test_whose_neighbours_are_all_dead_is_not_connected():
+    plan = crossing.bed(crossing.BOTH, 1).plan(1)
+    everyone = [node for node in range(plan.nodes) if node not in (GATEWAY, crossing.ROBOT)]
+    at_us = round((crossing.walk(1)[1] + crossing.INSIDE_M) * 1e6)
+    assert crossing._joined(plan, [], at_us)
+    near = crossing._joined(plan, everyone, at_us)
+    assert near == (np.hypot(*np.subtract(plan.positions_cm[0], plan.positions_cm[29])) < 2000)
+
+
+def test_following_tables():
+    ways = [[255, 1, 1], [0, 255, 2], [1, 1, 255]]
+    assert stretch._hops(ways, 0, 2) == 2
+    assert stretch._hops([[255, 1, 1], [0, 255, 0], [1, 1, 255]], 0, 2) == 0
+    assert stretch._hops([[255, 1, 255], [0, 255, 0], [1, 1, 255]], 0, 2) == 0
+
+
+@pytest.mark.parametrize(
+    ("way", "other", "kind"), [(1, 2, 0), (1, 255, 3), (1, 4, 2), (2, 1, 0)]
+)  # fmt: skip
+def test_kinds_of_alternates(way, other, kind):
+    # A square 0-1-3-2 with a tail 4 at 0: from 0 to 3 over 1 or 2; 4 would only come back.
+    far = [[0, 1, 1, 2, 1], [1, 0, 2, 1, 2], [1, 2, 0, 1, 2], [2, 1, 1, 0, 3], [1, 2, 2, 3, 0]]
+    assert stretch._kind(far, 0, 3, way, other) == kind
+
+
+def test_where_a_line_is_half():
+    assert scale.half_full([10, 100], np.array([0.05, 5.0])) == (pytest.approx(31.6, 0.01), True)
+    n, reached = scale.half_full([10, 20], np.array([0.0625, 0.125]))
+    assert (n, reached) == (pytest.approx(80), False)
+
+
+def test_state_grows_with_the_class_only():
+    assert wire_bytes(20) == wire_bytes(32) < wire_bytes(33) == wire_bytes(64) < wire_bytes(65)
+
+
+def test_what_never_came_is_slowest():
+    runs = [{"ms": 3.0}, {"ms": None}, {"ms": 1.0}]
+    assert alarms.waits(runs).tolist() == [1.0, 3.0, np.inf]
+    assert gateway.takeovers([{"takeover_s": None}, {"takeover_s": 26.0}]) == [26.0, np.inf]
+
+
+@pytest.mark.slow
+def test_what_was_asked_for_in_full(tmp_path):
+    main("mesh", tmp_path, only=["bars"])
+    (claims,) = read(tmp_path, False, ["bars"], mesh).claims.values()
+    assert [claim for claim in claims if claim.verdict == FAILS] == []
+
+
+def test_the_page_needs_nothing_else_and_can_be_had_again(mesh_made):
+    check_paper(mesh_made, "mesh", "innervate papers mesh --quick")

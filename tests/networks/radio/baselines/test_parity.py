@@ -1,0 +1,39 @@
+"""The baselines, compiled and plain: the same rows, states and fingerprint."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from innervate.networks.radio.scenario.baselines import NUMBERS, baseline
+from tests.networks.radio.sim.test_parity import PRACTICAL, QUIET, check, plans
+
+
+@st.composite
+def baseline_plans(draw):
+    """The plans of CSMA/CD-R, and another protocol."""
+    plan = draw(plans(PRACTICAL))
+    plan.protocol = draw(st.sampled_from(sorted(NUMBERS)))
+    least = draw(st.sampled_from([1, 4, 32]))
+    plan.params = baseline(
+        plan.protocol,
+        plan.stations,
+        plan.params,
+        p=draw(st.sampled_from([0.01, 0.3, 1.0])),
+        cw_min=least,
+        cw_max=draw(st.sampled_from([32, 1024, 32_768])),
+        backoff_slots=draw(st.sampled_from([1, 1, 11])),
+    )
+    return plan
+
+
+@given(baseline_plans())
+@settings(QUIET, max_examples=60)
+def test_baselines_compiled_equal_plain(plan):
+    check(plan)
+
+
+@pytest.mark.slow
+@given(baseline_plans())
+@settings(QUIET, max_examples=300)
+def test_many_compiled_runs_equal_plain_ones(plan):
+    check(plan)

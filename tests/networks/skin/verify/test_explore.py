@@ -1,0 +1,128 @@
+import pytest
+
+from innervate.networks.skin.verify import graphs
+from innervate.networks.skin.verify.cases import budget_of
+from innervate.networks.skin.verify.system import Budget, SkinModel, first_row, layout, system_of
+from innervate.verify import explore
+from innervate.verify.errors import VerifyError
+from tests.networks.skin.verify.bench import parents_of
+
+SMALL = Budget(ticks=2, counts=2, faults=1)
+
+
+def model(graph, **keys):
+    return SkinModel(graphs.parse(graph), **{"budget": SMALL} | keys)
+
+
+CASES = {
+    "two in a line": model("pc-1 1-2"),
+    "no merging": model("pc-1", merge=False),
+    "triggered": model("pc-1", updates="triggered"),
+    "pair, paper rule": model("pair", rule="paper", budget=Budget(ticks=2, faults=2)),
+    "triangle": model("triangle", budget=Budget(ticks=2, faults=0)),
+    "star, strict": model("star", rule="strict", budget=Budget(ticks=2, faults=0)),
+    "prompt": model("pc-1 1-2", prompt=True),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_compiled_and_plain_find_the_same(name):
+    one, other = (explore.explore(CASES[name], plain=plain) for plain in (False, True))
+    assert one.tally.states == other.tally.states > 100
+    for number in ("expanded", "generated", "depth", "ended", "left_out"):
+        assert getattr(one.tally, number) == getattr(other.tally, number), number
+    assert (one.broken, one.path, one.last) == (other.broken, other.path, other.last)
+    assert bytes(memoryview(one.rows).cast("B")) == bytes(other.rows.cast("B"))
+
+
+def test_a_search_grows_its_table_and_loses_nothing(monkeypatch):
+    made = model("triangle", budget=Budget(faults=1))
+    roomy = explore.explore(made)
+    monkeypatch.setattr(explore, "SLOTS", 1 << 15)
+    grown = explore.explore(made)
+    assert grown.tally.states == roomy.tally.states > 1 << 15
+    assert grown.tally.generated == roomy.tally.generated
+    assert (grown.rows == roomy.rows).all()
+
+
+@pytest.mark.parametrize("rule", ["feasible", "strict"])
+def test_merging_beacons_into_ticks_reaches_the_same_routes(rule):
+    # Who has whom as parent, over all states: the same with every order of every delivery.
+    keys = {"rule": rule, "symmetric": False, "budget": Budget(2, 1, 0, 1, 0, 0, 0, 1)}
+    merged, every = (model("triangle", merge=merge, **keys) for merge in (True, False))
+    routes = [parents_of(made, explore.explore(made).rows) for made in (merged, every)]
+    assert len(routes[0]) > 10
+    assert routes[0] == routes[1]
+
+
+def test_symmetries_leave_out_mirror_images_only():
+    keys = {"budget": Budget(2, 2, faults=0)}
+    one, other = (model("star", symmetric=flag, **keys) for flag in (True, False))
+    halved, whole = (explore.explore(made) for made in (one, other))
+    assert halved.tally.states < 0.7 * whole.tally.states
+    assert 2 * halved.tally.states >= whole.tally.states
+    mirrored = {(a, c, b) for a, b, c in parents_of(one, halved.rows)}
+    assert parents_of(one, halved.rows) | mirrored == parents_of(other, whole.rows)
+
+
+def test_a_search_ends_where_it_is_told_to_and_says_so():
+    made = model("triangle", budget=Budget(faults=1))
+    assert explore.explore(made, states=1000).tally.ended == "limit"
+    assert explore.explore(made, progress=lambda _: True, every_s=0.0).tally.ended == "interrupted"
+    with pytest.raises(VerifyError, match="at least 64 MB"):
+        explore.explore(made, memory=1 << 20)
+    full = explore.explore(made, memory=8 << 20).tally
+    assert full.ended == "memory"
+    assert full.expanded < full.states
+
+
+def test_walks_find_what_a_search_finds():
+    fine = explore.wander(model("triangle", budget=Budget(ticks=6, counts=5, faults=4)), 200)
+    assert (fine.broken, fine.tally.ended, fine.tally.states) == (0, "walked", 200)
+    loop = explore.wander(model("triangle", rule="paper", budget=Budget(faults=2)), 100_000)
+    assert loop.broken
+    again = explore.wander(model("triangle", rule="paper", budget=Budget(faults=2)), 100_000)
+    assert again.path == loop.path
+
+
+def test_the_number_of_graphs_is_known():
+    counts = [sum(1 for _ in graphs.all_graphs(cells)) for cells in (1, 2, 3, 4)]
+    assert counts == [1, 3, 11, 58]
+
+
+def test_symmetries_keep_cables():
+    graph = graphs.parse("complete")
+    ends = graphs.symmetries(graph)
+    assert len(ends) == 6
+    assert ends[0] == list(range(len(graph.peer)))
+    for to in ends:
+        for end, peer in enumerate(graph.peer):
+            assert peer < 0 or graph.peer[to[end]] == to[peer]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("pc-1 2-3", "all of them by cables"),
+        ("pc-1 1-x", "is no cable"),
+        ("", "joins the PC"),
+        ("pc-1 1-2 1-3 1-4 1-5", "more than 4 cables"),
+    ],
+)
+def test_a_graph_that_is_none_is_refused_in_one_line(text, words):
+    with pytest.raises(VerifyError, match=words) as told:
+        graphs.parse(text)
+    assert "\n" not in str(told.value)
+
+
+def test_budgets_are_read():
+    assert budget_of("ticks=4, loss=0") == Budget(ticks=4, loss=0)
+    with pytest.raises(VerifyError, match="should be NAME=NUMBER"):
+        budget_of("tick=4")
+
+
+def test_a_first_row_holds_the_budgets():
+    made = model("pair")
+    row = first_row(made, system_of())
+    assert len(row) == layout(made).width
+    assert row.count(2) >= 2

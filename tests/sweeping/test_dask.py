@@ -1,0 +1,106 @@
+"""A real scheduler and real workers; one of them killed in the middle."""
+
+import json
+import os
+import signal
+import subprocess
+import threading
+from pathlib import Path
+
+import pytest
+
+import innervate
+from innervate.sweeping import SweepError, engines
+from tests.sweeping.conftest import TIMEOUT_S, start, until
+
+pytest.importorskip("distributed")
+VARY = {"protocol.beacon_hz": [100, 250], "protocol.k": "2..4"}
+RULES = {"repeat": 40, "until": "recoveries.routed_ms.ci=4%"}
+QUIET = {"stdout": subprocess.DEVNULL}
+
+
+@pytest.fixture
+def scheduler(four):
+    """The address of a scheduler, and its process."""
+    options = ("--port", 0, "--no-dashboard", "--scheduler-file", "scheduler.json")
+    process = start(*options, cwd=four.parent, module="distributed.cli.dask_scheduler", **QUIET)
+    reader = drain(process)
+    until(lambda: readable(Path("scheduler.json")), "the scheduler")
+    yield json.loads(Path("scheduler.json").read_text())["address"], process
+    process.kill()
+    process.wait(TIMEOUT_S)
+    reader.join(TIMEOUT_S)
+    process.stderr.close()
+
+
+@pytest.fixture
+def workers(scheduler, four):
+    """Two worker processes of one thread each."""
+    address, _ = scheduler
+    options = (address, "--no-nanny", "--no-dashboard", "--nthreads", 1)
+    made = [start(*options, cwd=four.parent, module="distributed.cli.dask_worker", **QUIET)
+            for _ in range(2)]  # fmt: skip
+    readers = [drain(process) for process in made]
+    yield made
+    for process, reader in zip(made, readers, strict=True):
+        process.kill()
+        process.wait(TIMEOUT_S)
+        reader.join(TIMEOUT_S)
+        process.stderr.close()
+
+
+def drain(process):
+    """Read what a process says, so that it never waits for a reader."""
+    reader = threading.Thread(target=process.stderr.read, daemon=True)
+    reader.start()
+    return reader
+
+
+def readable(path):
+    return path.exists() and path.read_text().rstrip().endswith("}")
+
+
+def table(folder):
+    return (Path(folder) / "results.parquet").read_bytes()
+
+
+def test_a_cluster_gives_the_same_bytes_even_if_a_worker_is_killed(scheduler, workers, four):
+    address, _ = scheduler
+    killed = []
+
+    def kill_one(conductor):
+        """Once a few runs have come from both of them."""
+        if not killed and conductor.ran > 20:
+            os.kill(workers[0].pid, signal.SIGKILL)
+            killed.append(conductor.ran)
+
+    done = innervate.sweep(four, vary=VARY, out="cluster", dask=address, progress=kill_one, **RULES)
+    innervate.sweep(four, vary=VARY, out="here", workers=1, **RULES)
+    assert killed
+    assert killed[0] < done.ran
+    assert done.complete
+    assert done.failed.height == 0
+    assert table("cluster") == table("here")
+    assert set(done.timings["pid"]) <= {process.pid for process in workers}
+
+
+def test_a_cluster_that_goes_away_is_one_line_and_loses_nothing(scheduler, workers, four):
+    address, process = scheduler
+
+    def stop(conductor):
+        if conductor.ran > 10:
+            process.kill()
+
+    with pytest.raises(SweepError, match="what is done is kept"):
+        innervate.sweep(four, vary=VARY, out="out", dask=address, progress=stop, repeat=300)
+    before = innervate.load_sweep("out")
+    assert 10 < before.results.height < 1800
+    assert not before.complete
+    done = innervate.sweep(four, vary=VARY, out="out", repeat=4, workers=1)
+    assert done.ran == 24 - before.results.filter(before.results["repeat"] < 4).height
+
+
+def test_no_scheduler_there(four, monkeypatch):
+    monkeypatch.setattr(engines, "_CONNECT_S", 1)
+    with pytest.raises(SweepError, match="no scheduler answers there"):
+        innervate.sweep(four, dask="tcp://127.0.0.1:1")

@@ -1,0 +1,141 @@
+"""The same final table whatever order, crashes and engine; nothing lost, nothing done twice."""
+
+import os
+import random
+import signal
+import sqlite3
+from concurrent.futures import Future
+from contextlib import nullcontext
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+import innervate
+from innervate.sweeping import scheduler as conduct
+from innervate.sweeping.engines import Here
+from tests.sweeping.conftest import TIMEOUT_S, start, until
+
+VARY = {"protocol.beacon_hz": [100, 250], "protocol.k": "2..4"}
+COMMAND = ("sweep", "four.toml", "--vary", "protocol.beacon_hz=100,250", "--vary",
+           "protocol.k=2..4")  # fmt: skip
+
+
+def table(folder):
+    return (Path(folder) / "results.parquet").read_bytes()
+
+
+def stored(folder):
+    """When each run began, by (point, repeat), from the job table that nobody is at work on."""
+    with sqlite3.connect(Path(folder) / "jobs.sqlite") as db:
+        rows = db.execute("SELECT point, repeat, began_s FROM runs").fetchall()
+    db.close()
+    return {(point, repeat): began for point, repeat, began in rows}
+
+
+@pytest.mark.parametrize("how", [
+    {"workers": 2}, {"workers": 3, "kind": "threads"}, {"kind": "here"},
+], ids=["processes", "threads", "here"])  # fmt: skip
+def test_every_engine_gives_the_same_bytes(four, how):
+    rules = {"until": "recoveries.routed_ms.ci=8%", "repeat": 24, "batch": 6}
+    innervate.sweep(four, vary=VARY, out="one", workers=1, **rules)
+    innervate.sweep(four, vary=VARY, out="other", **how, **rules)
+    assert table("one") == table("other")
+
+
+class Later(Future):
+    """A result that is not worked out before somebody says so."""
+
+    def __init__(self, work, args):
+        super().__init__()
+        self.finish = lambda: self.set_result(work(*args))
+
+
+class Shuffled(Here):
+    """Hands results back in another order than it was given the work."""
+
+    ahead = 7
+
+    def __init__(self, seed):
+        self._random = random.Random(seed)
+        self._waiting = []
+
+    def submit(self, work, *args):
+        self._waiting.append(Later(work, args))
+        return self._waiting[-1]
+
+    def settle(self):
+        count = self._random.randint(1, len(self._waiting))
+        self._random.shuffle(self._waiting)
+        for _ in range(count):
+            self._waiting.pop().finish()
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_any_order_gives_the_same_bytes(four, seed, monkeypatch):
+    rules = {"until": "recoveries.routed_ms.ci=8%", "repeat": 24, "batch": 6}
+    innervate.sweep(four, vary=VARY, out="one", workers=1, **rules)
+
+    made = Shuffled(seed)
+
+    def settle(futures, **_):
+        made.settle()
+        return {future for future in futures if future.done()}, set()
+
+    monkeypatch.setattr(
+        import_module("innervate.sweeping.sweep"), "engine", lambda *_: nullcontext(made)
+    )
+    monkeypatch.setattr(conduct, "wait", settle)
+    innervate.sweep(four, vary=VARY, out="other", **rules)
+    assert table("one") == table("other")
+
+
+def test_kill_9_at_any_moment_loses_nothing_and_does_nothing_twice(four):
+    """Killed again and again, at some moment between two results, until it is through."""
+    innervate.sweep(four, vary=VARY, repeat=60, out="whole")
+    seen, kills = {}, 0
+    while True:
+        before, growth = len(seen), Growth(3 + kills)
+        process = start(*COMMAND, "--repeat", 60, "--out", "killed", cwd=four.parent,
+                        start_new_session=True)  # fmt: skip
+        if kills < 3:
+            until(lambda g=growth, p=process: g() or p.poll() is not None, "results")
+            os.kill(process.pid, signal.SIGKILL)
+            kills += 1
+        _, err = process.communicate(timeout=TIMEOUT_S)
+        until(lambda p=process: not alive(p.pid), "the workers' end")
+        now = stored("killed")
+        assert seen.items() <= now.items()  # there still, and not run anew
+        assert len(now) > before or process.returncode == 0, err
+        seen = now
+        if process.returncode == 0:
+            break
+    assert kills == 3
+    assert len(seen) == 6 * 60
+    assert table("killed") == table("whole")
+
+
+class Growth:
+    """Whether the job table was written to a few times since this was made."""
+
+    def __init__(self, times):
+        self._times = times
+        self._last = self._look()
+
+    def _look(self):
+        log = Path("killed/jobs.sqlite-wal")
+        return log.stat().st_mtime_ns if log.exists() else 0
+
+    def __call__(self):
+        now = self._look()
+        self._times -= now != self._last
+        self._last = now
+        return self._times <= 0
+
+
+def alive(group):
+    try:
+        os.killpg(group, 0)
+    except ProcessLookupError:
+        return False
+    return True
