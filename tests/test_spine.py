@@ -34,9 +34,9 @@ def named(path):
     for node in ast.walk(tree):
         if isinstance(node, ast.Constant) and node not in prose and node.value in networks():
             yield node.lineno, node.value
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("innervate.netw"):
-            if node.module not in ALLOWED:
-                yield node.lineno, node.module
+        source = node.module or "" if isinstance(node, ast.ImportFrom) else ""
+        if source.startswith("innervate.netw") and source not in ALLOWED:
+            yield node.lineno, source
 
 
 def test_the_spine_names_no_network():

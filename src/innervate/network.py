@@ -201,7 +201,8 @@ def _entry(point: Any) -> Network:
     try:
         return _checked(point.load(), point.value)
     except (ImportError, AttributeError) as error:
-        raise NetworkError(f"the installed network {point.name} cannot be loaded: {error}") from error
+        what = f"the installed network {point.name}"
+        raise NetworkError(f"{what} cannot be loaded: {error}") from error
 
 
 def _in_folder(folder: Path) -> Network:

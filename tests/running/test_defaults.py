@@ -1,6 +1,7 @@
 """What any network has that says only what it must: here the skin, all the rest left out."""
 
 import pytest
+from tests.tshark_runs import tshark  # noqa: F401 - a fixture
 
 import innervate
 from innervate import network
@@ -9,7 +10,6 @@ from innervate.analysis.summary import headline
 from innervate.export import capture, dissector, graphs, recording
 from innervate.network import Network, networks
 from innervate.sim.counts import Counts
-from tests.tshark_runs import tshark  # noqa: F401 - a fixture
 
 OWN = ("model", "check", "plan", "describe", "fault_words", "actions", "harm", "template", "anchor",
        "loop_name", "frames", "frame_fields")  # fmt: skip
@@ -93,7 +93,8 @@ def test_it_is_compared_event_by_event(bare, four):
 
 
 def test_it_is_exported(done, bare, tmp_path, tshark):  # noqa: F811
-    written = capture.write(done.plan, tmp_path / "four.pcapng", fingerprint=done.result.fingerprint)
+    mark = done.result.fingerprint
+    written = capture.write(done.plan, tmp_path / "four.pcapng", fingerprint=mark)
     assert written.sent == done.summary["frames"]["sent"]
     lines = tshark(tmp_path / "four.pcapng", "-Y", "innervate.skin.beacon", "-T", "fields", "-e",
                    "innervate.skin.beacon.dist", "-e", "frame.interface_name")  # fmt: skip

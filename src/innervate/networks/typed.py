@@ -6,8 +6,6 @@ what `run.skin` holds. Nothing is loaded from here but by who asks for one of th
 
 from __future__ import annotations
 
-from typing import Any
-
 from innervate.networks.mesh.analysis.summary_keys import MeshSummary
 from innervate.networks.radio.analysis.summary_keys import RadioSummary, SlottedSummary
 from innervate.networks.skin.analysis.summary_keys import SkinSummary
