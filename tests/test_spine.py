@@ -6,13 +6,11 @@ from pathlib import Path
 import innervate
 from innervate.network import networks
 
+HOME_OF_NETWORKS = "innervate.networks"
+TYPED = "innervate.networks.typed"  # for type checkers; imported while the program runs by none
 HOME = Path(innervate.__file__).parent
 # The same letters for something else: an element of a robot's description, a shape in a scene.
 OTHER_MEANINGS = {"topology/cover.py", "topology/collada.py"}
-
-
-# What may be imported of them: the registry, and names for type checkers and programs.
-ALLOWED = {"innervate.network", "innervate.networks.typed"}
 
 
 def spine():
@@ -35,7 +33,7 @@ def named(path):
         if isinstance(node, ast.Constant) and node not in prose and node.value in networks():
             yield node.lineno, node.value
         source = node.module or "" if isinstance(node, ast.ImportFrom) else ""
-        if source.startswith("innervate.netw") and source not in ALLOWED:
+        if source.startswith(HOME_OF_NETWORKS) and source != TYPED:
             yield node.lineno, source
 
 

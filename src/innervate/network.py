@@ -197,12 +197,17 @@ def networks() -> dict[str, Network]:
     return made
 
 
+def first() -> str:
+    """The kind of network that is meant where none is named."""
+    return next(iter(networks()))
+
+
 def _entry(point: Any) -> Network:
     try:
         return _checked(point.load(), point.value)
     except (ImportError, AttributeError) as error:
-        what = f"the installed network {point.name}"
-        raise NetworkError(f"{what} cannot be loaded: {error}") from error
+        message = f"the installed network {point.name} cannot be loaded: {error}"
+        raise NetworkError(message) from error
 
 
 def _in_folder(folder: Path) -> Network:

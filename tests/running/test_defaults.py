@@ -1,7 +1,7 @@
 """What any network has that says only what it must: here the skin, all the rest left out."""
 
 import pytest
-from tests.tshark_runs import tshark  # noqa: F401 - a fixture
+from tests.export.tshark import tshark
 
 import innervate
 from innervate import network

@@ -1,4 +1,4 @@
-"""Checks that take a copy of the protocol and fail if it is wrong, for the protocol's mutants."""
+"""Checks that take a copy of the protocol and fail if it is wrong."""
 
 import random
 
