@@ -1,7 +1,6 @@
 """What any network has that says only what it must: here the skin, all the rest left out."""
 
 import pytest
-from tests.export.tshark import tshark
 
 import innervate
 from innervate import network
@@ -10,9 +9,10 @@ from innervate.analysis.summary import headline
 from innervate.export import capture, dissector, graphs, recording
 from innervate.network import Network, networks
 from innervate.sim.counts import Counts
+from tests.export.tshark_runs import tshark  # noqa: F401 - a fixture
 
 OWN = ("model", "check", "plan", "describe", "fault_words", "actions", "harm", "template", "anchor",
-       "loop_name", "frames", "frame_fields")  # fmt: skip
+       "loop_name", "frames", "fields")  # fmt: skip
 SKIN = networks()["skin"]
 
 

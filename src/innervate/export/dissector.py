@@ -90,7 +90,7 @@ def _locals(constants: Mapping[str, Any]) -> list[str]:
 
 def usual(network: Network) -> Frames:
     """Of a network whose frames are a type, the type's fields and a CRC."""
-    says = meanings(network.frame_fields)
+    says = meanings(network.fields.FRAME)
     made = kinds(network.frames.LAYOUTS, says)
     return Frames(f"{{ bits = {network.frames.KIND_BITS}, kinds = {made} }}")
 
