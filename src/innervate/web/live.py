@@ -122,6 +122,7 @@ class Live(Source):
             "can": list(self.can), "duration_s": None, "t_s": self._now_us() / 1e6,
             "nodes": nodes, "links": links, "series": series,
             "fence": known.fence if known is not None and as_drawn else None,
+            **self._view.scene(self._kind),
             "metres": known is not None and as_drawn and known.metres,
             "ports": sum(place.port >= 0 for place in self._map.places),
         }  # fmt: skip

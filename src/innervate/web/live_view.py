@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from innervate.live.declared import DRIVERS
+from innervate.network import networks
 from innervate.web.errors import Refused
 from innervate.web.live_map import Map, Place, Status
 from innervate.web.live_scene import Drawn
@@ -35,6 +37,16 @@ class LiveView:
     def drawn(self, plan: Any) -> Drawn:
         """Where nodes are drawn; without places they are drawn by who is linked with whom."""
         return Drawn(plan.scenario.name, {})
+
+    def scene(self, kind: str) -> dict[str, Any]:
+        """What a scene has besides that of every network: the fields that nodes tell of."""
+        network = networks()[kind]
+        if not network.has("fields"):
+            return {}
+        shown = [{"name": name, "unit": unit, "meaning": meaning}
+                 for name, length, _low, _high, unit, meaning in network.fields.STATE
+                 if not length and name not in DRIVERS]  # fmt: skip
+        return {"fields": shown}
 
     def unknown(self, told: list[Status], count: int) -> list[Status]:
         """What stands for nodes that have not answered, beside those that have."""
