@@ -3,11 +3,11 @@
 import pytest
 
 import innervate
-from innervate import network
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK
 from innervate.analysis.summary import headline
 from innervate.export import capture, dissector, graphs, recording
 from innervate.network import Network, networks
+from innervate.running import folder
 from innervate.sim.counts import Counts
 from tests.export.tshark_runs import tshark  # noqa: F401 - a fixture
 
@@ -22,9 +22,10 @@ def bare(monkeypatch):
     made = Network("skin", SKIN.package, link_type=SKIN.link_type,
                    **{part: SKIN.parts[part] for part in OWN},
                    simulation="sim.simulate:simulation")  # fmt: skip
-    network.networks()  # so that the cache holds them
     monkeypatch.setitem(networks(), "skin", made)
-    return made
+    folder.table_files.cache_clear()
+    yield made
+    folder.table_files.cache_clear()
 
 
 @pytest.fixture
@@ -79,10 +80,10 @@ def test_it_is_told_drawn_and_written(done, bare, tmp_path):
         assert done.plot(figure).axes
     with pytest.raises(ValueError, match="there are delivered, latency"):
         done.plot("routes")
-    folder = done.write(tmp_path / "out")
-    assert {path.name for path in folder.glob("*.parquet")} == {
+    written = done.write(tmp_path / "out")
+    assert {path.name for path in written.glob("*.parquet")} == {
         "reports.parquet", "deliveries.parquet"}  # fmt: skip
-    assert innervate.compare(done, folder).same
+    assert innervate.compare(done, written).same
 
 
 def test_it_is_compared_event_by_event(bare, four):
