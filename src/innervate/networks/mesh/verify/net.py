@@ -270,10 +270,8 @@ class Nets:
         packet = self.locals.packets[number]
         event = (local.FRAME, number)
         parts = [self._part(net)]
-        hear = (
-            heard_by if packet.link_dst == const.ALL or self.model.overhear else [packet.link_dst]
-        )
-        for v in hear:
+        is_for_all = packet.link_dst == const.ALL or self.model.overhear
+        for v in heard_by if is_for_all else [packet.link_dst]:
             if v not in missed and v in heard_by:
                 parts = self._apply(parts, v, event)
         parts = [
