@@ -45,6 +45,8 @@ PARTS = {
     "engine": "class: web.engine.Engine, or what can do more",
     "view": "class: what the live page shows of its simulation (web/view.py)",
     "scene": "(plan): what a page draws once",
+    "protocol": "module: on_start, on_frame, on_timer, on_input of a node; OUTBOX, TIMERS",
+    "fields": "module: PARAMS, STATE, FRAME: the declared fields of its protocol",
     "papers": "module: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up",
 }
 DEFAULTS = {
@@ -53,6 +55,12 @@ DEFAULTS = {
     "unwatchable": "innervate.network:nothing_against_it",
     "engine": "innervate.web.engine:Engine",
     "anchor": "innervate.network:nothing_to_anchor",
+    "describe": "innervate.scenario.cables:describe",
+    "fault_words": "innervate.scenario.cables:fault_words",
+    "actions": "innervate.scenario.actions.cables:ACTIONS",
+    "run": "innervate.running.cables",
+    "tables": "innervate.running.cables:TABLES",
+    "simulation": "innervate.sim.cables.declared:simulation",
 }
 
 

@@ -14,6 +14,8 @@ from innervate.networks.skin.scenario.script import Step, steps
 from innervate.networks.skin.scenario.targets import Damage, target
 from innervate.networks.skin.scenario.touch import Touch, sample
 from innervate.scenario.actions.cables import ACTIONS
+from innervate.scenario.cables import LOSS_ONE as LOSS_ONE
+from innervate.scenario.cables import Fault as Fault
 from innervate.scenario.load import Scenario
 from innervate.scenario.source import Source
 from innervate.topology import Graph
@@ -23,34 +25,10 @@ WIRE_US = 60  # a frame of 240 bit at 4 Mbit/s [skin 2]
 K = 5
 DEPTH_EXPECTED = 32  # MAXD' [skin 4]
 DATA_CELLS_MAX = 65_536
-LOSS_ONE = 32_768
 
 RULES = ("feasible", "strict", "paper", "static", "paper-lax")
 BALANCE_RULES = ("even", "paper")
 UPDATES = ("periodic", "triggered", "wave")
-
-
-@dataclass(frozen=True, slots=True)
-class Fault:
-    """One event of a run.
-
-    Attributes:
-        at_us: when, true time, us.
-        action: CUT, RESTORE, KILL, REVIVE, LOOSE, RESTART or LOSE.
-        end: one end of the cable it happens to; -1 for kill, revive and restart.
-        node: the node it happens to (the PC is node `cells`); -1 for cables.
-        loss_q15: for LOOSE the loss on both directions in 1/32768; else 0.
-        frames: for LOSE how many frames are lost on the cable; else 0.
-        index: the event's place in the scenario file.
-    """
-
-    at_us: int
-    action: int
-    end: int
-    node: int
-    loss_q15: int
-    frames: int
-    index: int
 
 
 @dataclass(slots=True)

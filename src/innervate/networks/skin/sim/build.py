@@ -18,7 +18,7 @@ from innervate.sim.wheel import NIL
 
 DELIVERY = (
     "time", "port", "cell", "seq", "hops", "latency",
-    "proximity", "force", "temperature", "accel",
+    "proximity", ("force", 3), "temperature", ("accel", 3),
 )  # fmt: skip
 RECORDS = Records(
     node=fields.CELL,
