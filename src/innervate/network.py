@@ -47,6 +47,13 @@ PARTS = {
     "scene": "(plan): what a page draws once",
     "protocol": "module: on_start, on_frame, on_timer, on_input of a node; OUTBOX, TIMERS",
     "fields": "module: PARAMS, STATE, FRAME: the declared fields of its protocol",
+    "frames": "module: LAYOUTS, KIND_BITS of its frames; encode, decode, REASONS if it has own",
+    "node_file": "live.nodefile.NodeFile: the keys of its node files",
+    "live_node": "(nodefile.Loaded) -> live.node.LiveNode: the node of a node file",
+    "deployment": "class: live.deployment.Deployment, how a plan becomes node files and cables",
+    "live_words": "module: lines, ports, heard: what its running nodes say, for people",
+    "live_view": "class: web.live_view.LiveView, its running nodes on the page",
+    "recovery": "module: recoveries, line, NOTHING: how it healed, from a capture",
     "papers": "module: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up",
 }
 DEFAULTS = {
@@ -61,6 +68,11 @@ DEFAULTS = {
     "run": "innervate.running.cables",
     "tables": "innervate.running.cables:TABLES",
     "simulation": "innervate.sim.cables.declared:simulation",
+    "node_file": "innervate.live.declared:DeclaredFile",
+    "live_node": "innervate.live.declared:build",
+    "deployment": "innervate.live.deployment:Deployment",
+    "live_words": "innervate.live.words",
+    "live_view": "innervate.web.live_view:LiveView",
 }
 
 
@@ -77,12 +89,14 @@ class Network:
         rank: its place in lists for people.
         link_type: of its frames in captures: LINKTYPE_USER0 .. USER15 = 147 .. 162, which pcapng
             keeps for private use.
+        key_kind: its number under a seal, 1 .. 255: what is sealed for one is not taken by another.
         **parts: where each part stands: "module" or "module:name".
     """
 
     def __init__(
-        self, name: str, package: str, rank: int = 100, link_type: int = 162, **parts: str
-    ) -> None:
+        self, name: str, package: str, rank: int = 100, link_type: int = 162, key_kind: int = 255,
+        **parts: str,
+    ) -> None:  # fmt: skip
         for part in parts:
             if part not in PARTS:
                 raise TypeError(f"network {name}: no part {part!r}; there are {', '.join(PARTS)}")
@@ -90,6 +104,7 @@ class Network:
         self.package = package
         self.rank = rank
         self.link_type = link_type
+        self.key_kind = key_kind
         self.parts = {
             **DEFAULTS,
             **{part: _absolute(package, place) for part, place in parts.items()},

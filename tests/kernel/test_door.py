@@ -26,7 +26,8 @@ def foreign(monkeypatch):
 
 @pytest.mark.parametrize("file", [
     "dialect/arith.py", "kernel/bits.py", "sim/wheel.py", "networks/mesh/protocol/node.py",
-    "networks/skin/verify/system.py", "networks/skin/invariants.py", "networks/radio/slotted/drive.py",
+    "networks/skin/verify/system.py", "networks/skin/invariants.py",
+    "networks/radio/slotted/drive.py",
 ])  # fmt: skip
 def test_an_edit_of_what_is_compiled_changes_the_cache(copied, file):
     before = door.source_hash(copied)
