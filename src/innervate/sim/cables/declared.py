@@ -13,7 +13,6 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
-from innervate.dialect import outbox
 from innervate.dialect.arith import MASK30
 from innervate.kernel import door
 from innervate.kernel.bits import mix
@@ -137,9 +136,8 @@ def compiled_loop(kind: str) -> Callable[..., None]:
     network = networks()[kind]
     do = functions(network.protocol, network.fields)
     door.register_functions(*(f for f in vars(do).values() if callable(f)))
-    advance: Callable[..., None] = loop.compiled(
-        do, (outbox, recorder, *door.modules_of(network.protocol)), ()
-    )
+    hot = (recorder, *door.modules_of(network.protocol))
+    advance: Callable[..., None] = loop.compiled(do, hot, ())
     return advance
 
 

@@ -23,15 +23,13 @@ RULE_STATIC = 3
 
 
 def _modules() -> tuple[ModuleType, ...]:
-    from innervate.dialect import arith, outbox
-    from innervate.dialect import rng as generator
     from innervate.networks.skin import invariants
     from innervate.networks.skin.protocol import cell, down, route, sink, static
     from innervate.networks.skin.sim import checks
     from innervate.sim.cables import recorder
 
     return (
-        arith, outbox, generator, route, down, cell, sink, static,
+        route, down, cell, sink, static,
         invariants, recorder, checks, skin_stack, static_stack,
     )  # fmt: skip
 
