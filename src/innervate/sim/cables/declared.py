@@ -18,12 +18,11 @@ from innervate.kernel import door
 from innervate.kernel.bits import mix
 from innervate.network import networks
 from innervate.scenario.actions.cables import GIVE
-from innervate.sim import clocks, taps
+from innervate.sim import clocks
 from innervate.sim.cables import loop, recorder
 from innervate.sim.cables.build import Added, Kept, Records, build
-from innervate.sim.cables.simulation import Cables, Result
+from innervate.sim.cables.simulation import Cables
 from innervate.sim.cables.world import ALIVE, SOURCE, World
-from innervate.sim.driver import Progress
 from innervate.sim.tables import Tables, put
 
 OUTBOX = 16
@@ -160,27 +159,3 @@ def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> Cables:
     advance = (plain_loop if plain else compiled_loop)(plan.kind)
     name = "" if plain else plan.kind
     return Cables(plan, world_of(plan, plain, Kept(**kept)), advance, name)
-
-
-def simulate(
-    plan: Any,
-    *,
-    plain: bool = False,
-    progress: Progress | None = None,
-    tap: taps.Tap | None = None,
-    **kept: bool,
-) -> Result:
-    """Run a plan to its end; an interrupt (Ctrl-C) ends it early and keeps what was done.
-
-    Args:
-        plan: see `scenario/cables.py`.
-        plain: run the same loop uncompiled.
-        progress: called now and then with (time_us, duration_us).
-        tap: is handed copies of all frames as they leave and come in (see sim/taps.py).
-        **kept: as in `cables.build.Kept`.
-
-    Raises:
-        InvariantBroken: a value out of its range, or an outbox that overflowed.
-    """
-    running = simulation(plan, plain=plain, tap=tap is not None, **kept)
-    return running.result(running.finish(progress, tap), kept.get("deliveries", False))
