@@ -45,6 +45,15 @@ PARTS = {
     "engine": "class: web.engine.Engine, or what can do more",
     "view": "class: what the live page shows of its simulation (web/view.py)",
     "scene": "(plan): what a page draws once",
+    "protocol": "module: on_start, on_frame, on_timer, on_input of a node; OUTBOX, TIMERS",
+    "fields": "module: PARAMS, STATE, FRAME: the declared fields of its protocol",
+    "frames": "module: LAYOUTS, KIND_BITS of its frames; encode, decode, REASONS if it has own",
+    "node_file": "live.nodefile.NodeFile: the keys of its node files",
+    "live_node": "(nodefile.Loaded) -> live.node.LiveNode: the node of a node file",
+    "deployment": "class: live.deployment.Deployment, how a plan becomes node files and cables",
+    "live_words": "module: lines, ports, heard: what its running nodes say, for people",
+    "live_view": "class: web.live_view.LiveView, its running nodes on the page",
+    "recovery": "module: recoveries, line, NOTHING: how it healed, from a capture",
     "papers": "module: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up",
 }
 DEFAULTS = {
@@ -53,6 +62,11 @@ DEFAULTS = {
     "unwatchable": "innervate.network:nothing_against_it",
     "engine": "innervate.web.engine:Engine",
     "anchor": "innervate.network:nothing_to_anchor",
+    "node_file": "innervate.live.declared:DeclaredFile",
+    "live_node": "innervate.live.declared:build",
+    "deployment": "innervate.live.deployment:Deployment",
+    "live_words": "innervate.live.words",
+    "live_view": "innervate.web.live_view:LiveView",
 }
 
 
@@ -69,12 +83,14 @@ class Network:
         rank: its place in lists for people.
         link_type: of its frames in captures: LINKTYPE_USER0 .. USER15 = 147 .. 162, which pcapng
             keeps for private use.
+        key_kind: its number under a seal, 1 .. 255: what is sealed for one is not taken by another.
         **parts: where each part stands: "module" or "module:name".
     """
 
     def __init__(
-        self, name: str, package: str, rank: int = 100, link_type: int = 162, **parts: str
-    ) -> None:
+        self, name: str, package: str, rank: int = 100, link_type: int = 162, key_kind: int = 255,
+        **parts: str,
+    ) -> None:  # fmt: skip
         for part in parts:
             if part not in PARTS:
                 raise TypeError(f"network {name}: no part {part!r}; there are {', '.join(PARTS)}")
@@ -82,6 +98,7 @@ class Network:
         self.package = package
         self.rank = rank
         self.link_type = link_type
+        self.key_kind = key_kind
         self.parts = {
             **DEFAULTS,
             **{part: _absolute(package, place) for part, place in parts.items()},
@@ -157,7 +174,8 @@ def _entry(point: Any) -> Network:
     try:
         return _checked(point.load(), point.value)
     except (ImportError, AttributeError) as error:
-        raise NetworkError(f"the installed network {point.name} cannot be loaded: {error}") from error
+        message = f"the installed network {point.name} cannot be loaded: {error}"
+        raise NetworkError(message) from error
 
 
 def _in_folder(folder: Path) -> Network:

@@ -15,10 +15,11 @@ from boards.errors import BoardMissing
 from boards.parity import nodejs, replay
 from innervate.dialect import outbox, rng
 from innervate.live import nodefile
-from innervate.live.profile import skin_parameters
 from innervate.live.serial import SerialLink
 from innervate.live.serial_cables import Cables
-from innervate.networks.skin.live.nodes import SinkNode, SinkStack
+from innervate.networks.skin.live.node import SinkNode
+from innervate.networks.skin.live.parameters import skin_parameters
+from innervate.networks.skin.live.stack import SinkStack
 from innervate.networks.skin.protocol import constants as skin_words
 from tests.live.net import until
 

@@ -59,8 +59,8 @@ def _open(world: Any, cells: int) -> tuple[dict[int, int], int]:
     missed = dict.fromkeys(REASONS.values(), 0)
     in_flight = 0
     flying = {number_of(frame, "sq") for frame in under_way(world)}
-    due = np.array(world.due, np.int64)
-    for slot, number in enumerate(int(number) for number in world.due_number):
+    due = np.array(world.watch.due, np.int64)
+    for slot, number in enumerate(int(number) for number in world.watch.due_number):
         if number < 0:
             continue
         states = due[slot * cells : (slot + 1) * cells]

@@ -1,6 +1,8 @@
 """What a medium and a medium access protocol say to each other: inputs, and reports that count."""
 
-# Inputs.
+# Inputs over cables; a network may have more.
+SAMPLE = 1  # item: what a node's sensors say, once a period of its source
+# Inputs on the air.
 PACKET = 1  # item: a packet to send (see radio_fields.PACKET)
 LEAVE = 2  # finish and send no more
 FORCE = 3  # paper mode: a packet to send at once, whatever the carrier says

@@ -12,10 +12,10 @@ import innervate
 from innervate.export import files, scenes, schemas
 from innervate.export.scenes import Channel, Message, stamp
 from innervate.network import networks
+from innervate.scenario.actions import HARM
 
 TOPICS = {"received": "/samples", "crossings": "/alarms"}  # others are called as their table
 INFORMATION, WARNING = 2, 3
-HARM = ("cut", "kill", "loose", "lose", "jam", "leave", "garble", "fade")
 
 
 def write(plan: Any, found: Mapping[str, Any], path: Path) -> int:

@@ -5,15 +5,22 @@ from __future__ import annotations
 import random
 import time
 from collections import Counter
+from collections.abc import Callable
 from typing import Any
 
 from innervate.live.engine import Engine, Stack, clock_us
 from innervate.live.keys import Sealer
 from innervate.live.links import Link, Path
+from innervate.live.receipts import Receipt
 from innervate.live.state import State
-from innervate.live.tap import Tap
+from innervate.live.streams import Stream
 
 CUT = "cable cut"  # as captures of simulations call it
+# When (ns since 1970), which port, True = it left, its bytes, why it was dropped ("" = it was not).
+# Without bytes: what happened to the path, "event: cut".
+Tap = Callable[[int, int, bool, bytes, str], None]
+# Answers a request that only some nodes understand.
+Answerer = Callable[[dict[str, Any]], dict[str, Any]]
 
 
 class LiveNode:
@@ -31,6 +38,7 @@ class LiveNode:
         reports: how often the protocol reported what, by code.
         taps: who is told of every frame, as it leaves and comes in.
         callers: how often callers of the node's process could not be let in, and why.
+        requests: what may be asked of it on its status socket besides what all nodes answer.
     """
 
     def __init__(
@@ -50,6 +58,7 @@ class LiveNode:
         self.reports: Counter[int] = Counter()
         self.taps: list[Tap] = []
         self.callers: Counter[str] = Counter()
+        self.requests: dict[str, Answerer] = {}
         self.engine: Engine | None = None
         self.started_at = time.time()
 
@@ -152,6 +161,22 @@ class LiveNode:
         """Tell those who asked of a frame, in the clear."""
         for tap in self.taps:
             tap(at_ns, port, out, data, why)
+
+    def send_request(self, request: dict[str, Any]) -> Receipt | None:
+        """Send a message as a request says; None = this node knows no messages.
+
+        Raises:
+            ValueError: it cannot be sent so.
+        """
+        return None
+
+    def streams(self, request: dict[str, Any]) -> list[Stream]:
+        """What somebody who listens is told of, and how.
+
+        Raises:
+            ValueError: nothing comes in here for people.
+        """
+        raise ValueError("nothing comes in here for people")
 
     async def drain(self, limit_s: float) -> bool:
         """Wait until nothing of ours is under way, at most `limit_s` seconds: True if so."""

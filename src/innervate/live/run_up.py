@@ -65,7 +65,7 @@ async def _until(ending: asyncio.Event, playing: asyncio.Task[None], limit_s: fl
 
 def _player(network: Network, as_json: bool) -> play.Player:
     """What plays the scenario; what cannot be played is said."""
-    events = play.events(network.plan, network.names, network.links, network.cable_of)
+    events = play.events(network.deployment)
     for event in events:
         if not play.is_played(event):
             print(f"not played: {event.what} at {event.at_s:g} s", file=sys.stderr)
@@ -74,7 +74,7 @@ def _player(network: Network, as_json: bool) -> play.Player:
         told = {"at_s": event.at_s, "event": event.text}
         print(json.dumps(told) if as_json else f"{event.at_s:g} s: {event.text}", flush=True)
 
-    return play.Player(network, network.plan, events, tell)
+    return play.Player(network, events, tell)
 
 
 def _announce(network: Network, took_s: float, as_json: bool) -> None:

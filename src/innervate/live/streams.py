@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncGenerator, Callable
-from typing import TypeVar
+from typing import Any, TypeVar
+
+# Makes the line that a listener gets of what came.
+Form = Callable[[Any], dict[str, Any]]
+Stream = tuple[AsyncGenerator[Any, None], Form]
 
 Item = TypeVar("Item")
 Told = TypeVar("Told", bound=Callable[..., None])
@@ -19,3 +23,8 @@ async def iterate(
             yield await queue.get()
     finally:
         callbacks.remove(own)
+
+
+def message_line(message: tuple[int, bytes]) -> dict[str, Any]:
+    """The line of a message."""
+    return {"from": message[0], "payload": message[1].hex()}

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
-from innervate.scenario.actions import Action
+from innervate.scenario.actions.action import Action
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source, dotted
 from innervate.trace.streams import Stream

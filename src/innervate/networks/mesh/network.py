@@ -6,6 +6,7 @@ NETWORK = Network(
     "mesh",
     __package__,
     link_type=148,
+    key_kind=1,
     rank=2,
     model="scenario.model:MeshScenario",
     check="scenario.rules:check",
@@ -24,5 +25,10 @@ NETWORK = Network(
     scenes="export.scenes:channels",
     has_places="export.rrd:has_places",
     rerun_parts="export.rrd:parts",
+    node_file="live.nodefile:MeshFile",
+    live_node="live.build:build",
+    deployment="live.deployment:MeshDeployment",
+    live_words="live.words",
+    live_view="view.live:MeshLiveView",
     papers="papers",
 )

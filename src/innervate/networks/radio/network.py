@@ -6,6 +6,7 @@ NETWORK = Network(
     "radio",
     __package__,
     link_type=149,
+    key_kind=3,
     rank=1,
     model="scenario.model:RadioScenario",
     check="scenario.rules:check",
@@ -21,5 +22,10 @@ NETWORK = Network(
     tables="tables:TABLES",
     capture="export.capture",
     graph="export.graph:graph",
+    node_file="live.nodefile:StationFile",
+    live_node="live.build:build",
+    deployment="live.deployment:RadioDeployment",
+    live_words="live.words",
+    live_view="view.live:RadioLiveView",
     papers="papers",
 )

@@ -1,28 +1,9 @@
 """What can be done to a network while it runs, by medium: words of [[event]]s, numbers."""
 
-from __future__ import annotations
+from innervate.scenario.actions import cables, channel, field
 
-from typing import NamedTuple
-
-
-class Action(NamedTuple):
-    """One thing that can be done, by the word for it; its number is its place in a table.
-
-    Attributes:
-        word: as in `action = "cut"`.
-        target: what it happens to: "cable", "link", "node".
-        key: of an event's table, that only this action has; "" = none.
-        harms: it makes things worse: recordings show it as a warning.
-        mends: the action that it undoes; "" = none.
-    """
-
-    word: str
-    target: str
-    key: str = ""
-    harms: bool = False
-    mends: str = ""
-
-
-def words(table: tuple[Action, ...]) -> tuple[str, ...]:
-    """The words of a table, in order of their numbers."""
-    return tuple(action.word for action in table)
+_ALL = cables.TABLE + channel.TABLE + field.TABLE
+# Those that happen to a link; what the others happen to is a node.
+ON_LINKS = frozenset(one.word for one in _ALL if one.target in ("cable", "link"))
+# Those that make things worse.
+HARM = frozenset(one.word for one in _ALL if one.harms)

@@ -1,6 +1,6 @@
 """What can be done to stations on a shared channel while it runs."""
 
-from innervate.scenario.actions import Action, words
+from innervate.scenario.actions.action import Action, words
 
 TABLE = (
     Action("begin", "node"),

@@ -1,6 +1,6 @@
 """What can be done to the nodes of a field while it runs."""
 
-from innervate.scenario.actions import Action, words
+from innervate.scenario.actions.action import Action, words
 
 TABLE = (
     Action("kill", "node", harms=True),

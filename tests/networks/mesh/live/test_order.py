@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from innervate.dialect.arith import MASK16
-from innervate.networks.mesh.live.messages import DELIVERED
+from innervate.live.receipts import DELIVERED
 from innervate.networks.mesh.live.order import Message, Order, Orderly
 from innervate.networks.mesh.protocol import queue as mesh_queue
 from innervate.networks.mesh.protocol.constants import DATA

@@ -21,6 +21,7 @@ from innervate.networks.skin.protocol import constants as skin_words
 from innervate.wire.bits import get
 from innervate.wire.layout import width
 
+NOTHING = "nothing happened to this skin while it was captured"
 CUT = "cable cut"
 SAME_NS = 1_000_000_000  # within that time both ends of a cable say that it was cut
 RECENT_NS = 500_000_000  # a sample's number comes again after 256 periods
@@ -267,3 +268,18 @@ def _touched(now: _Open, ends: set[End]) -> bool:
     if isinstance(now.key, str):
         return now.found.what.endswith("gone") and now.key in {end.node for end in ends}
     return now.found.what.startswith("cut") and not now.key.isdisjoint(ends)
+
+
+def line(one: Healing) -> str:
+    """What happened and how it healed, for people."""
+    return f"{one.at_s:.3f} s: {one.what}{_text(one)}"
+
+
+def _text(one: Healing) -> str:
+    if not one.cells:
+        return "; no cell had to find another way"
+    words = ("first moved", "last wrong parent", "all routed", "all heard", "half of them heard")
+    times = (one.first_ms, one.wrong_ms, one.routed_ms, one.heard_ms, one.heard_median_ms)
+    parts = [f"{word} {'never' if at is None else f'{at:.0f} ms'}"
+             for word, at in zip(words, times, strict=True)]  # fmt: skip
+    return f"; {one.cells} cells: {', '.join(parts)}; {one.lost} samples lost"

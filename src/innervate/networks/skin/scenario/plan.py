@@ -100,6 +100,11 @@ class Plan:
         """Hops of the deepest cell."""
         return max(self.depths)
 
+    @property
+    def start_us(self) -> int:
+        """Nodes are switched on within so long: a period of beacons."""
+        return 1 if self.lock_step else self.params["beacon_us"]
+
 
 def plan(scenario: Scenario) -> Plan:
     """The plan of a scenario: same scenario and seed, same plan, on any machine.

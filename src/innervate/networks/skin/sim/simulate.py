@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, ClassVar
 
-from innervate.kernel import door, tables
 from innervate.kernel.wall import wall_s
+from innervate.networks.skin.sim import build as builder
 from innervate.networks.skin.sim import script, static_stack
 from innervate.networks.skin.sim import stack as skin_stack
 from innervate.sim import taps
-from innervate.sim.cables import build as builder
-from innervate.sim.cables import loop, wires
+from innervate.sim.cables import loop
 from innervate.sim.cables import world as w
 from innervate.sim.cables.simulation import Cables
 from innervate.sim.cables.wires import ARRIVED, BLOCKS
@@ -31,7 +30,7 @@ class Result:
 
     `rows` are what nodes and the observer reported, `deliveries` the tactile samples that the PC
     received, `trail` all handler calls; structured arrays, with the fields of `world.ROW`,
-    `world.DELIVERY` and `world.TRAIL`, times in us. `received_kept`: `deliveries` holds all
+    `build.DELIVERY` and `world.TRAIL`, times in us. `received_kept`: `deliveries` holds all
     samples, rather than none.
     """
 
@@ -50,43 +49,32 @@ class Result:
     received_kept: bool = False
 
 
-def _modules() -> list[ModuleType]:
+def _modules() -> tuple[ModuleType, ...]:
     from innervate.dialect import arith, outbox
     from innervate.dialect import rng as generator
     from innervate.networks.skin import invariants
-    from innervate.networks.skin.protocol import cell as skin
-    from innervate.networks.skin.protocol import down as skin_down
-    from innervate.networks.skin.protocol import route as skin_route
-    from innervate.networks.skin.protocol import sink as skin_sink
-    from innervate.networks.skin.protocol import static as skin_static
+    from innervate.networks.skin.protocol import cell, down, route, sink, static
     from innervate.networks.skin.sim import checks
-    from innervate.sim import clocks, delays, wheel
+    from innervate.sim.cables import recorder
 
-    return [
-        arith, outbox, generator, skin_route, skin_down, skin, skin_sink, skin_static,
-        wheel, clocks, wires, delays, invariants, checks, skin_stack, static_stack,
-    ]  # fmt: skip
+    return (
+        arith, outbox, generator, route, down, cell, sink, static,
+        invariants, recorder, checks, skin_stack, static_stack,
+    )  # fmt: skip
 
 
-def _rare() -> list[ModuleType]:
+def _rare() -> tuple[ModuleType, ...]:
     """What runs too seldom to be worth copying into every caller."""
     from innervate.networks.skin.sim import observer, orders, touch
-    from innervate.sim import rows
-    from innervate.sim.cables import commands
 
-    return [observer, commands, orders, touch, rows, taps]
+    return (observer, orders, touch)
 
 
 @functools.cache
 def compiled_loop(static: bool) -> Callable[..., None]:
     """The compiled loop of the skin, or of its static baseline."""
-    door.register(*_rare(), hot=False)
-    door.register(*_modules())
-    door.register_functions(loop.pressing, loop.foresee)
-    parts = loop.build(static_stack if static else skin_stack)
-    door.register_functions(*parts[:-1])
-    advance = door.compiled(parts[-1])
-    return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
+    stack = static_stack if static else skin_stack
+    return loop.compiled(stack, _modules(), _rare())
 
 
 def loop_name(plan: Any) -> str:
@@ -96,14 +84,14 @@ def loop_name(plan: Any) -> str:
 
 def plain_loop(static: bool) -> Callable[..., None]:
     """The same loop, uncompiled."""
-    return loop.build(static_stack if static else skin_stack)[-1]
+    return loop.bind(static_stack if static else skin_stack)
 
 
 class SkinSimulation(Cables):
     """A skin under way."""
 
     tables: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "rows": w.ROW, "deliveries": w.DELIVERY, "trail": w.TRAIL,
+        "rows": w.ROW, "deliveries": builder.DELIVERY, "trail": w.TRAIL,
     }  # fmt: skip
 
     def story(self) -> str:
@@ -112,7 +100,7 @@ class SkinSimulation(Cables):
 
 
 def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> SkinSimulation:
-    """A plan's skin before its first event; `kept` as in `cables.build`."""
+    """A plan's skin before its first event; `kept` as in `build`."""
     static = plan.params["rule"] == RULE_STATIC
     advance = (plain_loop if plain else compiled_loop)(static)
     name = "" if plain else loop_name(plan)
@@ -189,7 +177,7 @@ def story(plan: Any, world: w.World) -> str:
         observer.BROKEN_LOOP: f"forwarding loop through {label(node)}",
         observer.BROKEN_FEASIBLE: f"feasible distance of {label(node)} is not worse than that of "
         f"its parent {label(other)}",
-        observer.BROKEN_RANGE: f"a value of {label(node)} is out of its declared range",
-        observer.BROKEN_OUTBOX: f"outbox of {label(node)} overflowed",
+        w.BROKEN_RANGE: f"a value of {label(node)} is out of its declared range",
+        w.BROKEN_OUTBOX: f"outbox of {label(node)} overflowed",
     }[int(get(world.run, 0, "broken"))]
     return f"invariant broken at {at:.6f} s (seed {plan.seed}): {what}"

@@ -40,8 +40,8 @@ class Catch:
     states: int
 
 
-# Mistakes that only the explorer's properties are asked to find; tests/networks/skin/verify has more of them,
-# with the unit and property tests that find those.
+# Mistakes that only the explorer's properties are asked to find; tests/networks/skin/verify has
+# more of them, with the unit and property tests that find those.
 MUTANTS = tuple(
     Mutant(*texts)
     for texts in (

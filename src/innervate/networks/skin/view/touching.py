@@ -12,6 +12,7 @@ import numpy as np
 
 from innervate.networks.skin.scenario.model import TouchTable
 from innervate.networks.skin.scenario.touch import sample
+from innervate.networks.skin.sim.build import Touch
 
 AWAY_MM = -1_000_000.0  # where nobody feels it
 RADIUS_MM = 25.0  # of a finger, where the scenario has no touch: a cell and its neighbours
@@ -51,10 +52,12 @@ class Finger:
         """The world with this touch."""
         place = [round(1000 * x) for spot in self._graph.layout() for x in spot]
         return world._replace(
-            touch_x=self.x_um.copy(),
-            touch_y=self.y_um.copy(),
-            touch_span=self._span.copy(),
-            place=np.array(place, np.int64),
+            carrier=Touch(
+                x=self.x_um.copy(),
+                y=self.y_um.copy(),
+                span=self._span.copy(),
+                place=np.array(place, np.int64),
+            )
         )
 
     def table(self) -> dict[str, Any]:

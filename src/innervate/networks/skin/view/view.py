@@ -22,6 +22,7 @@ from innervate.networks.skin.protocol.constants import (
 from innervate.networks.skin.scenario.plan import Fault
 from innervate.networks.skin.sim.observer import APART, CUT_OFF, LOOP_OPEN, UNROUTED
 from innervate.networks.skin.sim.orders import ORDER_CAME, ORDER_GIVEN
+from innervate.networks.skin.view import giving
 from innervate.networks.skin.view.engine import SkinEngine
 from innervate.networks.skin.view.scene import places
 from innervate.networks.skin.view.state import Cables
@@ -30,7 +31,6 @@ from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE
 from innervate.sim.cables.wires import EARLY, LOOPED, LOST_BROKEN, LOST_CUT, NO_ROUTE, OFFERED
 from innervate.sim.cables.world import DEAD
 from innervate.topology import PORTS
-from innervate.web import giving
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import History

@@ -1,4 +1,4 @@
-"""The shared channel as a process: superposes transmissions in real time [radio 3].
+"""A shared channel as a process: superposes transmissions in real time [radio 3].
 
 Everybody hears everybody. A station that sends is deaf until it listens again, a turnaround after
 its end; it receives a frame that was the only signal from start to end while it listened. Stations
@@ -10,24 +10,20 @@ from __future__ import annotations
 import asyncio
 import socket
 from collections import deque
-from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
+from innervate.live.channel_radio import DATAGRAM_MAX, HEARD, JOIN, PLUG, SEND
 from innervate.live.engine import clock_us
 from innervate.live.errors import LiveError
 from innervate.live.nodefile import address
-from innervate.networks.radio.live.station import HEARD, JOIN, PLUG, SEND, Listener, read_heard
 
-DATAGRAM_MAX = 2048
-JOIN_S = 1.0
 LOGGED = 4096  # transmissions
 SLOT_US = 10_000
 TURNAROUND_US = 5_000
 LEASE_US = 2_500_000  # a station that joins no more for so long may come back at another address
 STATIONS = 1024
 SLOTS_MAX = 4095
-HEARD_US = 1 << 28  # nothing is told of what was longer ago: the protocol's clock has 30 bits
 EARLY_US, LATE_US = 1_000_000, 10_000_000  # when a station can have decided, from now
 DELAY_US = 500  # from a station to every other: who has sent listens again before an answer comes
 
@@ -237,88 +233,6 @@ class Medium:
             self._socket.sendto(HEARD.pack(what, at, *map(int, ear.told)) + data, ear.where)
         except OSError:  # a station that is gone hears nothing
             return
-
-
-class MediumRadio:
-    """The radio of a station on a medium.
-
-    Args:
-        number: the station.
-        where: the medium's address.
-    """
-
-    def __init__(self, number: int, where: tuple[str, int]) -> None:
-        self.number = number
-        self.where = where
-        self.mode = "off"
-        self.plugged = True
-        self._socket: socket.socket | None = None
-        self._listener: Listener | None = None
-        self._again: asyncio.TimerHandle | None = None
-
-    async def start(self, listener: Listener) -> None:
-        """Join the channel."""
-        self._listener = listener
-        sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        sock.setblocking(False)
-        sock.connect(self.where)
-        self._socket = sock
-        asyncio.get_running_loop().add_reader(sock.fileno(), self._readable)
-        self.mode = "listening"
-        self._join()
-
-    def _join(self) -> None:
-        """Join, and again now and then: the channel may have been started anew."""
-        assert self._socket is not None
-        with suppress(OSError):  # no channel there yet
-            self._socket.send(JOIN.pack(b"J", self.number))
-            self._socket.send(PLUG.pack(b"P", self.number, self.plugged))
-        self._again = asyncio.get_running_loop().call_later(JOIN_S, self._join)
-
-    def send(self, at: int, data: bytes, slots: int) -> None:
-        """Send a frame."""
-        assert self._socket is not None
-        self.mode = "sending"
-        with suppress(OSError):  # no channel there: it is lost
-            self._socket.send(SEND.pack(b"T", self.number, at, slots) + data)
-
-    def plug(self, plugged: bool) -> None:
-        """Have the channel leave this station out, or take it in again."""
-        self.plugged = plugged
-        if self._socket is not None:
-            with suppress(OSError):
-                self._socket.send(PLUG.pack(b"P", self.number, plugged))
-
-    def stop(self) -> None:
-        """Leave the channel."""
-        if self._again is not None:
-            self._again.cancel()
-        if self._socket is not None:
-            asyncio.get_running_loop().remove_reader(self._socket.fileno())
-            self._socket.close()
-            self._socket = None
-        self.mode = "off"
-
-    def _readable(self) -> None:
-        assert self._socket is not None
-        try:
-            data = self._socket.recv(DATAGRAM_MAX)
-        except OSError:
-            return
-        heard = read_heard(data)
-        if heard is None or self._listener is None:
-            return
-        what, at, cd, voc, frame = heard
-        if abs(at - clock_us()) > HEARD_US:
-            return
-        if what == b"R":
-            self.mode = "listening"
-        if self.mode == "sending":
-            return  # we decided to send before the medium knew: deaf already
-        if what == b"F":
-            self._listener.on_frame(at, frame)
-        else:
-            self._listener.on_carrier(at, cd, voc)
 
 
 async def run(where: str, slot_us: int, turnaround_us: int) -> None:

@@ -11,13 +11,13 @@ from innervate.dialect.arith import MASK16
 from innervate.live.keys import Sealer
 from innervate.live.links import Link
 from innervate.live.node import LiveNode
+from innervate.live.receipts import DELIVERED, EXPIRED, HOP_ACKED, REFUSED, Receipt
 from innervate.live.state import State
-from innervate.live.streams import iterate
-from innervate.live.turns import Turns
+from innervate.live.streams import Stream, iterate, message_line
 from innervate.networks.mesh.live.alarms import Alarm, Alarms, place_of, read_alarm
 from innervate.networks.mesh.live.order import BEFORE_BYTES, Callback, Message, Orderly
-from innervate.networks.mesh.live.receipts import DELIVERED, EXPIRED, HOP_ACKED, REFUSED, Receipt
 from innervate.networks.mesh.live.stack import Item, MeshStack
+from innervate.networks.mesh.live.turns import Turns
 from innervate.networks.mesh.protocol.constants import (
     ALARM,
     ALL,
@@ -87,6 +87,32 @@ class MeshNode(LiveNode):
         self._inbox: list[Message] = []
         self._callbacks: list[Callback] = []
         self._feeding = False
+        self.requests["locate"] = self._located
+
+    def send_request(self, request: dict[str, Any]) -> Receipt:
+        """A message to a node, or to all: see send_message()."""
+        return self.send_message(
+            int(request["to"]),
+            bytes.fromhex(request["payload"]),
+            reliable=bool(request.get("reliable", True)),
+            priority=bool(request.get("priority", False)),
+            in_order=request.get("in_order"),
+        )
+
+    def streams(self, request: dict[str, Any]) -> list[Stream]:
+        """Messages, and alarms for who asks for them."""
+        found: list[Stream] = [
+            (self.receive_messages(in_order=request.get("in_order")), message_line)
+        ]
+        if request.get("alarms"):
+            found.append((self.receive_alarms(), _alarm_line))
+        return found
+
+    def _located(self, request: dict[str, Any]) -> dict[str, Any]:
+        x, y = (float(value) for value in request["at_cm"])
+        vx, vy = (float(value) for value in request.get("speed_cm_s", (0, 0)))
+        self.locate((x, y), (vx, vy))
+        return {"ok": True}
 
     def send_message(
         self,
@@ -318,3 +344,7 @@ REASONS = {1: "no route", 2: "no acknowledgement", 3: "path full", 4: "no room"}
 
 def _putter(queue: asyncio.Queue[tuple[int, bytes]]) -> Callback:
     return lambda sender, payload: queue.put_nowait((sender, payload))
+
+
+def _alarm_line(alarm: Alarm) -> dict[str, Any]:
+    return {"from": alarm.reporter, "alarm": alarm._asdict()}

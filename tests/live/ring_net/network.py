@@ -1,0 +1,18 @@
+"""What the toolkit is told of a token ring: no more than it has to be."""
+
+from innervate.network import Network
+
+NETWORK = Network(
+    "ring",
+    __package__,
+    link_type=150,
+    key_kind=4,
+    rank=3,
+    model="scenario:RingScenario",
+    check="scenario:check",
+    plan="scenario:plan",
+    actions="innervate.scenario.actions.cables:ACTIONS",
+    protocol="protocol",
+    fields="fields",
+    frames="frames",
+)
