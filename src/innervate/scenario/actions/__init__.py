@@ -5,5 +5,3 @@ from innervate.scenario.actions import cables, channel, field
 _ALL = cables.TABLE + channel.TABLE + field.TABLE
 # Those that happen to a link; what the others happen to is a node.
 ON_LINKS = frozenset(one.word for one in _ALL if one.target in ("cable", "link"))
-# Those that make things worse.
-HARM = frozenset(one.word for one in _ALL if one.harms)

@@ -26,3 +26,8 @@ class Action(NamedTuple):
 def words(table: tuple[Action, ...]) -> tuple[str, ...]:
     """The words of a table, in order of their numbers."""
     return tuple(action.word for action in table)
+
+
+def harmful(table: tuple[Action, ...]) -> tuple[str, ...]:
+    """Those that make it worse."""
+    return tuple(action.word for action in table if action.harms)

@@ -1,6 +1,6 @@
 """What can be done to stations on a shared channel while it runs."""
 
-from innervate.scenario.actions.action import Action, words
+from innervate.scenario.actions.action import Action, harmful, words
 
 TABLE = (
     Action("begin", "node"),
@@ -10,7 +10,7 @@ TABLE = (
     Action("garble", "node", "frames", harms=True),
     Action("fade", "node", "frames", harms=True),
 )
-ACTIONS = words(TABLE)
+ACTIONS, HARM = words(TABLE), harmful(TABLE)
 BEGIN, JOIN, KILL, LEAVE, GARBLE, FADE = range(6)
 # What a scenario calls them; stations begin by themselves.
 NUMBERS = {

@@ -1,6 +1,6 @@
 """What can be done to the nodes of a field while it runs."""
 
-from innervate.scenario.actions.action import Action, words
+from innervate.scenario.actions.action import Action, harmful, words
 
 TABLE = (
     Action("kill", "node", harms=True),
@@ -11,5 +11,5 @@ TABLE = (
     Action("quiet", "node", mends="jam"),
     Action("restart", "node"),
 )
-ACTIONS = words(TABLE)
+ACTIONS, HARM = words(TABLE), harmful(TABLE)
 KILL, REVIVE, CUT, RESTORE, JAM, QUIET, RESTART = range(7)

@@ -10,6 +10,8 @@ from innervate.scenario.events import told
 
 PAIRS_SHOWN = 4
 
+UNFIT = "a radio team has one channel and no links to fit"
+
 
 def describe(made: RadioPlan) -> str:
     """A plan in words, several lines, without a newline at the end."""
@@ -87,3 +89,8 @@ def unwatchable(plan: RadioPlan) -> str:
     if plan.scenario.model.channel.level == "slotted":
         return 'the slotted level has no stations to watch; set channel.level = "event"'
     return ""
+
+
+def loop_name(plan: RadioPlan) -> str:
+    """Which loop a plan runs on, for `kernel.door.is_compiled`."""
+    return plan.protocol.replace("/", "-")

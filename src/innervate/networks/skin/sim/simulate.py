@@ -78,7 +78,9 @@ def compiled_loop(static: bool) -> Callable[..., None]:
 
 
 def loop_name(plan: Any) -> str:
-    """Which loop a plan runs on, for `kernel.door.is_compiled`."""
+    """Which loop a plan runs on, for `kernel.door.is_compiled`; a script needs none."""
+    if plan.script:
+        return ""
     return "static" if plan.params["rule"] == RULE_STATIC else "skin"
 
 
