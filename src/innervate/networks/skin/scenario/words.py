@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from innervate.networks.skin.scenario.plan import LOSS_ONE, RULES, UPDATES, Fault, Plan
 from innervate.networks.skin.scenario.warnings import port_rate, warnings
-from innervate.scenario.actions.cables import ACTIONS
-
-EVENTS_SHOWN = 12
+from innervate.scenario.actions.cables import ACTIONS, LOOSE
+from innervate.scenario.events import told
 
 
 def describe(made: Plan) -> str:
@@ -38,12 +37,7 @@ def describe(made: Plan) -> str:
         )
     if made.script:
         lines.append(f"  script     {len(made.script)} steps")
-    lines += [f"  {'event' if i == 0 else '':10} {fault_words(made, fault)}"
-              for i, fault in enumerate(made.faults[:EVENTS_SHOWN])]  # fmt: skip
-    if len(made.faults) > EVENTS_SHOWN:
-        lines.append(f"  {'':10} and {len(made.faults) - EVENTS_SHOWN} more")
-    lines += [f"  warning    {text}" for text in warnings(made)]
-    return "\n".join(lines)
+    return "\n".join([*lines, *told(made, fault_words, warnings(made))])
 
 
 def fault_words(made: Plan, fault: Fault) -> str:
@@ -53,6 +47,6 @@ def fault_words(made: Plan, fault: Fault) -> str:
         what = f"{graph.label_end(fault.end)} - {graph.label_end(graph.peer[fault.end])}"
     else:
         what = graph.label(fault.node)
-    more = f", loss {fault.loss_q15 / LOSS_ONE:.3g}" if ACTIONS[fault.action] == "loose" else ""
+    more = f", loss {fault.loss_q15 / LOSS_ONE:.3g}" if fault.action == LOOSE else ""
     more += f", {fault.frames} frames" if fault.frames else ""
     return f"at {fault.at_us / 1e6:g} s {ACTIONS[fault.action]} {what}{more}"
