@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from innervate.scenario.actions.cables import ACTIONS
+from innervate.scenario.actions.cables import ACTIONS, LOOSE
+from innervate.scenario.events import told
 from innervate.topology.graph import Graph
 
 LOSS_ONE = 32_768
-EVENTS_SHOWN = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,11 +95,7 @@ def describe(plan: Any) -> str:
         f"  nodes      {graph.cells:,}, {sum(1 for _ in graph.links()):,} cables",
         f"  protocol   {params}",
     ]
-    lines += [f"  {'event' if i == 0 else '':10} {fault_words(plan, fault)}"
-              for i, fault in enumerate(plan.faults[:EVENTS_SHOWN])]  # fmt: skip
-    if len(plan.faults) > EVENTS_SHOWN:
-        lines.append(f"  {'':10} and {len(plan.faults) - EVENTS_SHOWN} more")
-    return "\n".join(lines)
+    return "\n".join([*lines, *told(plan, fault_words, ())])
 
 
 def fault_words(plan: Any, fault: Any) -> str:
@@ -109,6 +105,6 @@ def fault_words(plan: Any, fault: Any) -> str:
         what = f"{graph.label_end(fault.end)} - {graph.label_end(graph.peer[fault.end])}"
     else:
         what = graph.label(fault.node)
-    more = f", loss {fault.loss_q15 / LOSS_ONE:.3g}" if ACTIONS[fault.action] == "loose" else ""
+    more = f", loss {fault.loss_q15 / LOSS_ONE:.3g}" if fault.action == LOOSE else ""
     more += f", {fault.frames} frames" if fault.frames else ""
     return f"at {fault.at_us / 1e6:g} s {ACTIONS[fault.action]} {what}{more}"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from innervate.networks.skin.scenario.plan import RULES, UPDATES, Plan
 from innervate.networks.skin.scenario.warnings import port_rate, warnings
-from innervate.scenario.cables import EVENTS_SHOWN
 from innervate.scenario.cables import fault_words as fault_words
+from innervate.scenario.events import told
 
 
 def describe(made: Plan) -> str:
@@ -37,9 +37,4 @@ def describe(made: Plan) -> str:
         )
     if made.script:
         lines.append(f"  script     {len(made.script)} steps")
-    lines += [f"  {'event' if i == 0 else '':10} {fault_words(made, fault)}"
-              for i, fault in enumerate(made.faults[:EVENTS_SHOWN])]  # fmt: skip
-    if len(made.faults) > EVENTS_SHOWN:
-        lines.append(f"  {'':10} and {len(made.faults) - EVENTS_SHOWN} more")
-    lines += [f"  warning    {text}" for text in warnings(made)]
-    return "\n".join(lines)
+    return "\n".join([*lines, *told(made, fault_words, warnings(made))])
