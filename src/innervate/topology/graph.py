@@ -189,12 +189,6 @@ class Graph:
         """Hops of the deepest cell that is connected to the PC; 0 if there is none."""
         return max(max(self.depths(), default=0), 0)
 
-    def layout(self) -> list[tuple[float, float]]:
-        """Where to draw every cell: (x_mm, y_mm), x to the right, y down (see layout.py)."""
-        from innervate.topology.layout import layout
-
-        return layout(self)
-
     def _free_in_words(self, node: int) -> str:
         if node == self.cells:
             return "use another interface port"

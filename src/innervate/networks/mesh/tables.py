@@ -56,6 +56,7 @@ DELIVERIES = Table(
         Column("hops", "Int16", "hops", "transmissions on its way"),
         Column("looped", "Boolean", "", "a node was twice on its way"),
     ),
+    topic="/alarms",
 )
 SENT = Table(
     "transmissions",

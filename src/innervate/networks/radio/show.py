@@ -10,7 +10,7 @@ from innervate.networks.radio.scenario.words import warnings
 from innervate.plot import words
 
 if TYPE_CHECKING:
-    from innervate.analysis.summaries import RadioSummary, SlottedSummary
+    from innervate.networks.radio.analysis.summary_keys import RadioSummary, SlottedSummary
     from innervate.running import Run
 
 

@@ -44,6 +44,15 @@ STRAY = 35
 MISSED = 36
 COUNTERS = 40
 
+# Why frames are lost.
+REASONS = {
+    "cut": LOST_CUT,
+    "noise": LOST_NOISE,
+    "off": LOST_OFF,
+    "queue_full": LOST_QUEUE,
+    "broken_link": LOST_BROKEN,
+}
+
 # Bits of `end.impaired`.
 DOWN = 1
 LOSSY = 2

@@ -3,7 +3,7 @@
 import pytest
 
 from innervate import scenario
-from innervate.analysis.commands import commands_summary
+from innervate.networks.skin.analysis.commands import commands_summary
 from innervate.networks.skin.analysis.frames import check_conserved
 from innervate.networks.skin.analysis.rows import parent_changes
 from innervate.networks.skin.analysis.summary import summarize

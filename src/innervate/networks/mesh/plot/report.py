@@ -53,6 +53,11 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
     )
 
 
+def notebook(result: Any, summary: Mapping[str, Any]) -> str:
+    """What a notebook shows of a run, as HTML."""
+    return top(result, summary) + field(result, Sheet(result.plan), all_crossings(result))
+
+
 def top(result: Any, summary: Mapping[str, Any]) -> str:
     """What happened, and the figures to know."""
     model = result.plan.scenario.model

@@ -49,6 +49,14 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
     )
 
 
+def notebook(result: Any, summary: Mapping[str, Any]) -> str:
+    """What a notebook shows of a run, as HTML."""
+    if summary.get("level") == "slotted":
+        found = radio_slotted_report.charts_of(result, summary)
+        return radio_slotted_report.top(result, summary) + found
+    return top(result, summary) + on_air(result)
+
+
 def top(result: Any, summary: Mapping[str, Any]) -> str:
     """What happened, and the figures to know."""
     params = result.plan.params

@@ -13,9 +13,9 @@ from innervate.networks.skin.analysis.load import port_loads
 from innervate.networks.skin.analysis.touch import WINDOW_S, received_image
 from innervate.networks.skin.plot.axes import SkinAxes, port_fills
 from innervate.networks.skin.plot.history import History, Moment
+from innervate.networks.skin.plot.words import fault_words
 from innervate.networks.skin.protocol.constants import PORTS
 from innervate.plot import style
-from innervate.plot.words import fault_words
 from innervate.topology import Graph
 
 MARKS_MAX = 12

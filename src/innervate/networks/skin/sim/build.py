@@ -15,10 +15,11 @@ from innervate.sim.cables.build import build as cables
 from innervate.sim.cables.world import World
 from innervate.sim.tables import Tables
 from innervate.sim.wheel import NIL
+from innervate.topology.layout import cell_places
 
 DELIVERY = (
     "time", "port", "cell", "seq", "hops", "latency",
-    "proximity", "force", "temperature", "accel",
+    "proximity", ("force", 3), "temperature", ("accel", 3),
 )  # fmt: skip
 RECORDS = Records(
     node=fields.CELL,
@@ -101,7 +102,7 @@ def _watch(tables: Tables, cells: int, orders: bool) -> Watch:
 def _touch(tables: Tables, plan: Any) -> Touch:
     touch = plan.touch
     span = (touch.radius_um, touch.force_mn, touch.step_us) if touch else (0, 0, 1)
-    places = [round(1000 * x) for place in plan.graph.layout() for x in place] if touch else ()
+    places = [round(1000 * x) for place in cell_places(plan.graph) for x in place] if touch else ()
     return Touch(
         x=_numbers(tables, touch.x_um if touch else ()),
         y=_numbers(tables, touch.y_um if touch else ()),

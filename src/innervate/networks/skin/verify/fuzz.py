@@ -13,7 +13,6 @@ from typing import Any
 
 from innervate import scenario as scenarios
 from innervate.networks.mesh.verify import fuzz as wild_mesh
-from innervate.networks.skin.analysis.frames import FramesLost
 from innervate.running.run import run
 from innervate.sim.driver import InvariantBroken
 
@@ -158,7 +157,7 @@ def trouble(tables: Tables) -> str:
     """What this scenario breaks, in one line; "" nothing."""
     try:
         done = run(scenarios.from_dict(tables))
-    except (InvariantBroken, FramesLost) as error:
+    except InvariantBroken as error:
         return str(error)
     summary = done.summary
     if summary["kind"] == "radio" and summary["lost_silently"]:

@@ -13,6 +13,7 @@ from innervate.analysis.ways import NOWHERE
 from innervate.networks.skin.analysis.headline import skin_headline
 from innervate.networks.skin.analysis.load import balance_factor
 from innervate.networks.skin.analysis.reach import world_facts
+from innervate.networks.skin.plot.words import fault_words
 from innervate.networks.skin.protocol.constants import (
     NONE,
     REPORT_BALANCE,
@@ -26,7 +27,7 @@ from innervate.networks.skin.view import giving
 from innervate.networks.skin.view.engine import SkinEngine
 from innervate.networks.skin.view.scene import places
 from innervate.networks.skin.view.state import Cables
-from innervate.plot.words import fault_words, number_of
+from innervate.plot.words import number_of
 from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE
 from innervate.sim.cables.wires import EARLY, LOOPED, LOST_BROKEN, LOST_CUT, NO_ROUTE, OFFERED
 from innervate.sim.cables.world import DEAD

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from innervate.plot.words import end_words, number_of
+from innervate.networks.skin.plot.words import end_words
+from innervate.plot.words import number_of
 from innervate.topology.weak import Weak
 
 if TYPE_CHECKING:

@@ -1,11 +1,10 @@
-"""A run's summary for a terminal, in plain words."""
+"""A skin's run for a terminal, in plain words."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from innervate.networks.mesh import show as show_mesh
-from innervate.networks.radio import show as show_radio
+from innervate.networks.skin.plot import words as skin_words
 from innervate.plot import words
 
 if TYPE_CHECKING:
@@ -18,10 +17,6 @@ BROKEN_MAX = 5
 
 def summary_lines(run: Run) -> list[str]:
     """What a person wants to know first."""
-    if run.summary["kind"] == "radio":
-        return show_radio.summary_lines(run)
-    if run.summary["kind"] == "mesh":
-        return show_mesh.summary_lines(run)
     summary = run.skin
     said = words.headline_line(summary["headline"])
     warned = [f"Warning: {text}." for text in summary["warnings"]]
@@ -46,7 +41,7 @@ def event_lines(run: Run) -> list[str]:
     """A sentence for every event of the scenario."""
     summary, plan = run.skin, run.plan
     pairs = list(zip(plan.faults, summary["recoveries"], strict=False))
-    lines = [words.headline(plan.graph, *pair) for pair in pairs[:EVENTS_MAX]]
+    lines = [skin_words.headline(plan.graph, *pair) for pair in pairs[:EVENTS_MAX]]
     if len(pairs) > EVENTS_MAX:
         lines.append(f"... and {words.number_of(len(pairs) - EVENTS_MAX, 'more event')}.")
     if "interrupted_at_s" in summary:
@@ -110,17 +105,17 @@ def command_lines(commands: Commands) -> list[str]:
 
 def _missed(commands: Commands) -> str:
     lost = [(n, why) for why, n in commands["lost_by"].items() if n]
-    return "".join(f", {n:,} {words.MISSED[why]}" for n, why in sorted(lost, reverse=True))
+    return "".join(f", {n:,} {skin_words.MISSED[why]}" for n, why in sorted(lost, reverse=True))
 
 
 def _why(data: Data) -> str:
     """The reasons of lost samples, the greatest first."""
     lost = sorted(((n, why) for why, n in data["lost_by"].items() if n), reverse=True)
-    return "".join(f", {n:,} {words.LOST.get(why, why)}" for n, why in lost)
+    return "".join(f", {n:,} {skin_words.LOST.get(why, why)}" for n, why in lost)
 
 
 def _broken(summary: SkinSummary) -> list[str]:
-    cables = words.broken_cables(summary["broken"])
+    cables = skin_words.broken_cables(summary["broken"])
     if not cables:
         return ["No cable is broken at the end."]
     lines = [f"Broken at the end: {cable}." for cable in cables[:BROKEN_MAX]]
