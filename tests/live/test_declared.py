@@ -15,7 +15,7 @@ from innervate.live import play, status, tap
 from innervate.live.build import build
 from innervate.live.errors import LiveError
 from innervate.live.nodefile import load
-from innervate.live.up import Network
+from innervate.live.up import Processes
 from innervate.network import networks
 from innervate.web.live import Live
 from innervate.web.messages import Cut, Heal
@@ -48,7 +48,7 @@ def test_a_ring_comes_up_over_udp_is_sealed_watched_cut_and_mended(tmp_path):
     keys = {"use": 1, "secret.1": "11" * 32}
 
     async def main():
-        network = Network(plan, tmp_path, "udp", keys)
+        network = Processes(plan, tmp_path, "udp", keys)
         assert network.links == [(0, 2), (0, 1), (1, 2)]
         await network.up()
         (tmp_path / "scenario.toml").write_text(scenarios.dump(scenarios.from_dict(RING)))
@@ -102,7 +102,7 @@ def test_its_events_are_played_and_its_users_give_and_hear(tmp_path):
     plan = scenarios.plan(scenarios.from_dict({**RING, "event": event}))
 
     async def main():
-        network, told = Network(plan, tmp_path, "udp"), []
+        network, told = Processes(plan, tmp_path, "udp"), []
         happening = play.events(network.deployment)
         await network.up()
         try:
@@ -124,7 +124,7 @@ def test_its_events_are_played_and_its_users_give_and_hear(tmp_path):
 def hear(network):
     """Until a token that carries what was given comes to the next node."""
     answers = status.ask(network.socket("n2"), {"do": "listen"})
-    assert next(answers) == {"listening": "n2", "kind": "ring"}
+    assert next(answers) == {"listening": "n2"}
     one = next(answer for answer in answers if answer["load"] == 7)
     assert (one["from"], one["kind"]) == ("n2", 1)
     assert networks()["ring"].live_words.heard(one).startswith("kind 1, lap ")

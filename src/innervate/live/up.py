@@ -23,7 +23,7 @@ START_S = 30.0
 STOP_S = 5.0
 
 
-class Network:
+class Processes:
     """Node files and processes of a scenario.
 
     Args:

@@ -252,7 +252,7 @@ class Scheduler:
 
     @property
     def done(self) -> int:
-        """Runs that are there."""
+        """How many runs are there, of all points."""
         return sum(state.done for state in self.states)
 
     @property

@@ -50,7 +50,7 @@ def losses(quick: bool) -> list[float]:
 
 
 def seeds(quick: bool) -> range:
-    """Seeds a loss."""
+    """Seeds of the runs at each loss: 5, or 2 if `quick`."""
     return seeds_of(2 if quick else 5)
 
 

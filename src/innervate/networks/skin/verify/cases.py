@@ -51,7 +51,7 @@ class Case:
         )
 
     def as_dict(self) -> dict[str, Any]:
-        """For --json."""
+        """The case as `innervate verify --json` prints it."""
         budget = asdict(self.model.budget)
         if budget["ticks"] == system.ANY:
             budget["ticks"] = "any"

@@ -38,7 +38,7 @@ class Narrator:
         self.steps: list[str] = []
 
     def name(self, node: int) -> str:
-        """A node in words."""
+        """What a node is called in sentences."""
         return "the PC" if node == self.graph.sink else self.graph.label(node)
 
     def play(self, found: Twin, event: Event) -> None:
