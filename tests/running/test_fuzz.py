@@ -3,7 +3,7 @@
 import pytest
 
 from innervate import scenario
-from innervate.networks.skin.verify import fuzz as wild
+from innervate.running import fuzz as wild
 
 
 def test_what_is_drawn_can_nearly_always_be_run():
