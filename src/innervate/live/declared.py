@@ -148,7 +148,7 @@ class DeclaredNode(LiveNode):
         super().__init__(name, stack, links, sealer, state)
         self.requests["input"] = self._asked_for_input
 
-    def give(self, kind: int, values: dict[str, int]) -> None:
+    def give(self, kind: int, values: dict[str, Any]) -> None:
         """Hand something down: the protocol's `on_input`; `values` are fields of its item.
 
         Raises:
@@ -159,7 +159,12 @@ class DeclaredNode(LiveNode):
         for name, value in values.items():
             if not hasattr(self.stack.item, name):
                 raise ValueError(f"{name} is no field of a frame")
-            setattr(self.stack.item, name, value)
+            many = isinstance(getattr(self.stack.item, name), list)
+            numbers = value if many and isinstance(value, list) else [value]
+            count = len(getattr(self.stack.item, name)) if many else 1
+            if len(numbers) != count or not all(isinstance(one, int) for one in numbers):
+                raise ValueError(f"{name} has {count} values, whole numbers")
+            setattr(self.stack.item, name, list(numbers) if many else value)
         self.outcomes["inputs"] += 1
         self.engine.input(kind, self.stack.item)
 
@@ -179,7 +184,7 @@ class DeclaredNode(LiveNode):
         return super().counters() + reports
 
     def _asked_for_input(self, request: dict[str, Any]) -> dict[str, Any]:
-        self.give(int(request["kind"]), {k: int(v) for k, v in request.get("item", {}).items()})
+        self.give(int(request["kind"]), dict(request.get("item", {})))
         return {"ok": True}
 
     def _deliver(self, kind: int, frame: Any) -> None:

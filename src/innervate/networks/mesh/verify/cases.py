@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from innervate.networks.mesh.verify import model as mesh_model
@@ -11,8 +11,9 @@ from innervate.networks.mesh.verify import search as mesh_search
 from innervate.networks.mesh.verify import story as mesh_story
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
 from innervate.networks.mesh.verify.search import Found
-from innervate.verify.errors import VerifyError
-from innervate.verify.explore import MEMORY, Tally
+from innervate.verify.cases import budget_of as budget_of
+from innervate.verify.explore import MEMORY
+from innervate.verify.tally import Tally
 
 # A message is tried twice in all, a hop once: what three transmissions can do to a hop, one can.
 SHORT = (("e2e_tries", 1), ("transmissions", 1))
@@ -73,23 +74,6 @@ class MeshWanted:
 def text_of(links: Any) -> str:
     """Pairs of nodes as "0-1 1-2"."""
     return " ".join(f"{a}-{b}" for a, b in links)
-
-
-def budget_of(text: str, given: MeshBudget) -> MeshBudget:
-    """Budgets from text like "deaths=2,acks=0"; those left out stay as they are.
-
-    Raises:
-        VerifyError: no such budget, or no number.
-    """
-    values = asdict(given)
-    for part in filter(None, text.replace(" ", ",").split(",")):
-        name, _, value = part.partition("=")
-        if name not in values or not (value.isascii() and value.isdigit() and int(value) <= 20):
-            names = ", ".join(one.name for one in fields(MeshBudget))
-            message = f'--budget: "{part[:40]}" should be NAME=NUMBER, at most 20'
-            raise VerifyError(f"{message}; the names are {names}")
-        values[name] = int(value)
-    return MeshBudget(**values)
 
 
 def models(wanted: MeshWanted) -> Iterator[tuple[str, MeshModel]]:

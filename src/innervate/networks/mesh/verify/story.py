@@ -11,6 +11,7 @@ from innervate.networks.mesh.verify import net as mesh_net
 from innervate.networks.mesh.verify.local import NONE
 from innervate.networks.mesh.verify.net import DEAD, Move, Net, Nets
 from innervate.networks.mesh.verify.search import Found
+from innervate.verify import cases
 
 KINDS = {
     const.REQUEST: "a discovery request",
@@ -64,38 +65,27 @@ class Scene:
     lost: tuple[int, ...] = ()
 
 
-@dataclass(slots=True)
-class MeshStory:
-    """How something breaks.
+@dataclass(kw_only=True)
+class MeshStory(cases.Story):
+    """How something breaks in a mesh.
 
     Attributes:
         found: the search that found it.
-        title: what is broken, in one line.
         dest: the recipient that the pictures are about.
-        sentences: one for each event.
         scenes: the network after each.
         ring: two nodes that are each other's next hop to `dest`, if there are.
-        scenario: the text of a scenario that plays it; "" none.
     """
 
     found: Found
-    title: str
     dest: int
-    sentences: list[str] = field(default_factory=list)
     scenes: list[Scene] = field(default_factory=list)
     ring: list[int] = field(default_factory=list)
-    scenario: str = ""
-
-    def lines(self) -> list[str]:
-        """The story as numbered lines."""
-        told = [f"{i}. {text}" for i, text in enumerate(self.sentences, 1)]
-        return [*told, f"So: {self.title}"]
 
 
 def tell(found: Found) -> MeshStory:
     """The story of what a search found broken."""
     assert found.start is not None
-    story = MeshStory(found, TITLES[found.broken], _dest(found))
+    story = MeshStory(TITLES[found.broken], found=found, dest=_dest(found))
     before = found.start
     for move, after, _ in found.path:
         text = _sentence(found.nets, move, before, after)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from innervate.networks.skin.verify import assumptions, fair, graphs, retrace, story
 from innervate.networks.skin.verify import system as system
 from innervate.topology import Graph
+from innervate.verify import cases as common
 from innervate.verify import explore
 from innervate.verify.errors import VerifyError
 
@@ -20,7 +21,7 @@ PROPERTIES = "no closed loop, feasible distances in order, no value out of range
 
 
 @dataclass(slots=True)
-class Case:
+class SkinCase:
     """One exploration and what came of it.
 
     Attributes:
@@ -102,18 +103,9 @@ def budget_of(text: str) -> system.Budget:
     Raises:
         VerifyError: no such budget, or no number.
     """
-    given: dict[str, int] = {}
-    names = [one.name for one in fields(system.Budget)]
-    for part in filter(None, text.replace(" ", ",").split(",")):
-        name, _, value = part.partition("=")
-        if part == "ticks=any":
-            given["ticks"] = system.ANY
-        elif name in names and value.isascii() and value.isdigit() and int(value) <= 20:
-            given[name] = int(value)
-        else:
-            message = f'--budget: "{part[:40]}" should be NAME=NUMBER, at most 20, or ticks=any'
-            raise VerifyError(f"{message}; the names are {', '.join(names)}")
-    return system.Budget(**given)
+    words = {"ticks=any": ("ticks", system.ANY)}
+    made: system.Budget = common.budget_of(text, system.Budget(), words)
+    return made
 
 
 def graphs_of(text: str, cells: int) -> tuple[Graph, ...]:
@@ -146,7 +138,7 @@ def models(wanted: Wanted) -> Iterator[system.SkinModel]:
                 )  # fmt: skip
 
 
-def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> Case:
+def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> SkinCase:
     """Explore one model; then, under the recommended rule, play the fair schedule.
 
     Raises:
@@ -162,9 +154,9 @@ def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> Case:
             model, wanted.walks, seed=wanted.seed, plain=wanted.plain,
             progress=lambda tally: tell(name, tally),
         )  # fmt: skip
-        return Case(model, cables, found.tally, story=_tell(found, wanted, name, tell))
+        return SkinCase(model, cables, found.tally, story=_tell(found, wanted, name, tell))
     found = _explore(model, wanted, name, tell)
-    case = Case(model, cables, found.tally, story=_tell(found, wanted, name, tell))
+    case = SkinCase(model, cables, found.tally, story=_tell(found, wanted, name, tell))
     if wanted.live and model.rule == "feasible" and found.tally.ended in PLAYED:
         case.fair = _settle(found, wanted, name, tell)
         if case.fair.ended == "broken" and model.lean:
