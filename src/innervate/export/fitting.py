@@ -51,9 +51,7 @@ def check(text: str, found: Measured) -> tuple[list[str], bool]:
         capture.write(plan, path)
         again = measure(path)
     fit = networks()[found.kind].fit
-    captured = {
-        (fit.named(a), fit.named(b)): way for (a, b), way in found.ways.items() if way.got
-    }
+    captured = {(fit.named(a), fit.named(b)): way for (a, b), way in found.ways.items() if way.got}
     simulated = {
         (fit.named_again(a, plan), fit.named_again(b, plan)): way
         for (a, b), way in again.ways.items() if way.got

@@ -42,6 +42,18 @@ def register(*modules: ModuleType, hot: bool = True) -> None:
                 register_functions(function, hot=hot)
 
 
+def modules_of(entry: ModuleType) -> list[ModuleType]:
+    """All modules whose functions a protocol's functions call, directly or not."""
+    found = [entry]
+    for module in found:
+        for thing in vars(module).values():
+            if inspect.isfunction(thing):
+                thing = sys.modules[thing.__module__]
+            if inspect.ismodule(thing) and thing not in found:
+                found.append(thing)
+    return found
+
+
 def register_functions(*functions: Callable[..., Any], hot: bool = True) -> None:
     """Let compiled code call these plain functions; hot ones become part of their callers.
 

@@ -19,7 +19,7 @@ from innervate.kernel.wall import wall_s
 from innervate.sim import taps
 from innervate.sim.counts import Counts
 from innervate.sim.status import BROKEN, DONE
-from innervate.sim.tables import WIDE, get, hand_over, move_rows
+from innervate.sim.tables import WIDE, Names, get, hand_over, move_rows
 
 Advance = Callable[[Any, int, int], None]
 Progress = Callable[[int, int], None]
@@ -60,7 +60,7 @@ class Simulation(ABC):
         slice_events: about how many events between two looks at Ctrl-C and progress.
     """
 
-    tables: ClassVar[Mapping[str, tuple[str, ...]]]
+    tables: ClassVar[Mapping[str, Names]]
     wide: ClassVar[frozenset[str]] = WIDE
     slice_events: int = 1_000_000
 

@@ -52,6 +52,4 @@ def _steps(recovery: Recovery, cells: int) -> list[tuple[str, str]]:
         steps.append((routed, f"{whom} has a way again"))
     elif settled and recovery["routed_ms"] == 0:
         steps.append((settled, "the cells share both cables again; none lost its way meanwhile"))
-    return [
-        ("at once" if ms == 0 else f"+{ms_words(ms)}", what) for ms, what in sorted(steps)
-    ]
+    return [("at once" if ms == 0 else f"+{ms_words(ms)}", what) for ms, what in sorted(steps)]

@@ -15,7 +15,7 @@ from innervate.sim.cables import commands
 from innervate.sim.cables import world as w
 from innervate.sim.cables.loop import BATCH
 from innervate.sim.cables.wires import COUNTERS, LOSSY
-from innervate.sim.tables import ACTION, TAP, Out, Tables, _longer, get, put, uniform
+from innervate.sim.tables import ACTION, TAP, Names, Out, Tables, _longer, get, put, uniform
 from innervate.sim.wheel import BUCKETS, FREE, FRESH, LAST, LEVELS, NIL, PENDING, WORDS
 
 ROWS = 1 << 16
@@ -32,6 +32,7 @@ class Records(NamedTuple):
         sink: state of the node with a port per interface; () = all nodes are equal.
         delivery: names of the fields of a row of what users received.
         numbers: names of the recorder's own numbers, in `world.run`.
+        outbox: most actions of a handler, besides one per interface.
     """
 
     node: Declaration
@@ -39,8 +40,9 @@ class Records(NamedTuple):
     params: Declaration
     item: Declaration
     sink: Declaration = ()
-    delivery: tuple[str, ...] = ("time", "node", "port", "latency")
+    delivery: Names = w.DELIVERY
     numbers: tuple[str, ...] = ()
+    outbox: int = 16
 
 
 class Kept(NamedTuple):
@@ -146,7 +148,7 @@ def _sizes(plan: Any, of: Records, kept: Kept, added: Added) -> _Sizes:
     graph, ends = plan.graph, len(plan.graph.peer)
     nodes = graph.cells + bool(of.sink)
     tx_slots = nodes * w.TIMER_SLOTS
-    limit = max(16, graph.interfaces + 4)
+    limit = max(of.outbox, graph.interfaces + 4)
     # What a batch of events and a command can add: every action empties a queue, the sink goes off.
     burst = (BATCH + 1) * limit * (1 + plan.queue_frames)
     return _Sizes(

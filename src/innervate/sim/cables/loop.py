@@ -10,6 +10,7 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
+from innervate.dialect import arith, outbox, rng
 from innervate.kernel import door, tables
 from innervate.kernel.tables import fetch
 from innervate.scenario.actions.cables import GIVE
@@ -141,7 +142,7 @@ def compiled(do: ModuleType, hot: tuple[ModuleType, ...], rare: tuple[ModuleType
         rare: those of them that run too seldom to be worth copying into every caller.
     """
     door.register(*rare, commands, rows, taps, hot=False)
-    door.register(*hot, queue, clocks, wires, delays, calls)
+    door.register(arith, outbox, rng, *hot, queue, clocks, wires, delays, calls)
     door.register_functions(pressing, foresee, dispatch, run_batch, run_until)
     advance = door.compiled(bind(do))
     return lambda world, until, budget: advance(tables.borrowed(world), until, budget)

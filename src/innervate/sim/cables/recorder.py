@@ -3,7 +3,6 @@
 A row of every report, one of every delivered frame, and the declared range of every field.
 """
 
-from innervate.dialect.arith import MASK30
 from innervate.sim import delays
 from innervate.sim.cables.wires import DELIVERED
 from innervate.sim.cables.world import BROKEN_RANGE
@@ -16,19 +15,26 @@ def on_report(world, time, node, code, a, b):
         keep_row(world, time, node, code, a, b)
 
 
-def on_deliver(world, time, node, port, frame):
-    """A node's user got a frame; `made_at` is when the first of its senders was given it."""
+def keep_delivered(world, time, node, port, kind):
+    """A node's user got a frame; the row, its latency not yet known."""
     run = world.run[0]
-    latency_us = (time - frame.made_at) & MASK30
     world.counters[DELIVERED] += 1
-    delays.note(world, 0, latency_us)
     if run.delivery_limit > 0:
         row = world.deliveries[run.deliveries]
         run.deliveries += 1
         row.time = time
         row.node = node
         row.port = port
-        row.latency = latency_us
+        row.kind = kind
+        row.latency = -1
+
+
+def keep_latency(world, latency_us):
+    """How long what was just delivered took."""
+    run = world.run[0]
+    delays.note(world, 0, latency_us)
+    if run.delivery_limit > 0:
+        world.deliveries[run.deliveries - 1].latency = latency_us
 
 
 def on_stop(world, time, node):

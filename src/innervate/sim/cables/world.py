@@ -28,10 +28,7 @@ RUN = (
 )  # fmt: skip
 COMMAND = ("at", "action", "end", "node", "value", "index")
 ROW = ("time", "node", "code", "a", "b")
-DELIVERY = (
-    "time", "port", "cell", "seq", "hops", "latency",
-    "proximity", "force", "temperature", "accel",
-)  # fmt: skip
+DELIVERY = ("time", "node", "port", "kind", "latency")
 DELAY = ("count", "sum", "high")
 TRAIL = ("time", "node", "handler", "port", "fingerprint")
 WIDE = frozenset({*tables.WIDE, *RUN, *DELAY})

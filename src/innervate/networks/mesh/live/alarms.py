@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from innervate.live.streams import Arrivals
 from innervate.networks.mesh.payloads import FIELDS
 from innervate.networks.mesh.protocol.constants import ALARM
 from innervate.wire.layout import BROKEN, read
@@ -73,19 +73,18 @@ class Alarms:
     """Alarms that came in.
 
     Attributes:
-        callbacks: who is told of each.
+        arrivals: hands them up.
         recent: the newest, with the second of the epoch at which they came.
     """
 
     def __init__(self) -> None:
-        self.callbacks: list[Callable[[Alarm], None]] = []
+        self.arrivals: Arrivals[Alarm] = Arrivals()
         self.recent: deque[tuple[float, Alarm]] = deque(maxlen=SHOWN)
 
     def note(self, alarm: Alarm) -> None:
         """One came."""
         self.recent.append((time.time(), alarm))
-        for callback in self.callbacks:
-            callback(alarm)
+        self.arrivals.put(alarm)
 
     def status(self) -> list[dict[str, Any]]:
         """The newest alarms, with how long ago they came, s."""

@@ -85,7 +85,7 @@ def _compiled(entry: ModuleType, access: radio_stacks.Protocol | None) -> Callab
     from innervate.networks.mesh.protocol import csma
 
     door.register(arith, outbox, rng, heap)
-    door.register(*stacks.modules_of(entry), csma, medium, motion, books, rows, taps, hot=False)
+    door.register(*door.modules_of(entry), csma, medium, motion, books, rows, taps, hot=False)
     door.register_functions(powers.strength, powers.chance, powers.loss)
     door.register_functions(loop.pressing, loop.wipe, set_timer, hot=False)
     layer: Any = over_medium

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import inspect
-import sys
 from collections.abc import Callable
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -45,18 +43,6 @@ class Stack(NamedTuple):
 def mesh() -> ModuleType:
     """The mesh's router."""
     return importlib.import_module("innervate.networks.mesh.protocol.node")
-
-
-def modules_of(entry: ModuleType) -> list[ModuleType]:
-    """All modules whose functions a protocol's functions call, directly or not."""
-    found = [entry]
-    for module in found:
-        for thing in vars(module).values():
-            if inspect.isfunction(thing):
-                thing = sys.modules[thing.__module__]
-            if inspect.ismodule(thing) and thing not in found:
-                found.append(thing)
-    return found
 
 
 def digest(frame):

@@ -12,8 +12,9 @@ from innervate import scenario
 from innervate.networks.skin.analysis.rows import loop_episodes
 from innervate.networks.skin.analysis.summary import recoveries
 from innervate.networks.skin.scenario.plan import Plan
-from innervate.networks.skin.sim.simulate import Result, simulate
+from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers.experiment import Point, Results
+from innervate.sim.cables.simulation import Result
 
 # Rules of which several figures show the recoveries, with their M (0 = min(k, 5)), and their names.
 RULES = (("feasible", 0), ("paper", 1), ("paper-lax", 1))

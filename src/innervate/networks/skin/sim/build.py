@@ -19,7 +19,7 @@ from innervate.topology.layout import cell_places
 
 DELIVERY = (
     "time", "port", "cell", "seq", "hops", "latency",
-    "proximity", "force", "temperature", "accel",
+    "proximity", ("force", 3), "temperature", ("accel", 3),
 )  # fmt: skip
 RECORDS = Records(
     node=fields.CELL,

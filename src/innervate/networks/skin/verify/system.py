@@ -109,6 +109,27 @@ class SkinModel:
         """The same with some things different."""
         return replace(self, **keys)
 
+    def system(self) -> System:
+        """The protocol that is explored."""
+        return system_of()
+
+    @property
+    def compiled_parts(self) -> Callable[[], System]:
+        """Makes its system ready for compiled code."""
+        return compiled_parts
+
+    def layout(self) -> _Layout:
+        """Where in a row everything stands."""
+        return layout(self)
+
+    def world(self, plain: bool) -> w.SkinWorld:
+        """Empty tables to work in."""
+        return world_of(self, plain)
+
+    def first_row(self, system: System) -> list[int]:
+        """The state that everything begins with."""
+        return first_row(self, system)
+
 
 class System(NamedTuple):
     """What the search needs of a protocol (see search.py)."""

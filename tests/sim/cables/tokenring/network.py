@@ -3,15 +3,14 @@
 from innervate.network import Network
 
 NETWORK = Network(
-    "ring",
+    "tokenring",
     __package__,
     link_type=150,
     key_kind=4,
-    rank=3,
+    rank=9,
     model="scenario:RingScenario",
     check="scenario:check",
     plan="scenario:plan",
-    actions="innervate.scenario.actions.cables:ACTIONS",
     protocol="protocol",
     fields="fields",
     frames="frames",
