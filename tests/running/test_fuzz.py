@@ -3,11 +3,7 @@
 import pytest
 
 from innervate import scenario
-<<<<<<<< HEAD:tests/networks/skin/verify/test_fuzz.py
-from innervate.networks.skin.verify import fuzz
-========
-from innervate.running import fuzz as wild
->>>>>>>> house:tests/running/test_fuzz.py
+from innervate.running import fuzz
 
 
 def test_what_is_drawn_can_nearly_always_be_run():

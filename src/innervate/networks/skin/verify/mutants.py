@@ -4,13 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-<<<<<<< HEAD
-from innervate.dialect.copies import changed_copy
 from innervate.networks.skin.verify import assumptions, fair, graphs, story
-=======
-from innervate.networks.skin.verify import assumptions as promises
-from innervate.networks.skin.verify import fair, graphs, story
->>>>>>> house
 from innervate.networks.skin.verify import system as system
 from innervate.verify import explore
 from innervate.verify.mutants import Catch, Mutant, copies

@@ -1,6 +1,6 @@
 """From what a reduced search found back to whole states, which a story is told of.
 
-A reduced path says of each whole state what it is reduced to (skin_dead.py). So only whole states
+A reduced path says of each whole state what it is reduced to (reduction.py). So only whole states
 that are reduced to the next one are looked for: some steps of the path may take several events,
 of which all but one deliver what the reduced search has forgotten.
 """

@@ -56,13 +56,8 @@ def tell(result: Result, system: Any = None) -> Story:
         result.model.changed(merge=False, symmetric=False, keep=True, whole=True, capacity=ROOM),
         system,
     )
-<<<<<<< HEAD
-    story = Story(result.model.graph, "")
-    narrator = Narrator(real, story)
-=======
     story = Story("", graph=result.model.graph)
-    teller = Teller(real, story)
->>>>>>> house
+    narrator = Narrator(real, story)
     for target in [*result.path[1:], None]:
         here = found.row()
         event = find(found, target, result.broken)

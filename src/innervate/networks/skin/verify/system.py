@@ -83,7 +83,7 @@ class SkinModel:
             0 = what periodic cells can send within their budget; of triggered ones ROOM, or
             LEAN_ROOM.
         whole: leave no beacon out, though it changes nothing.
-        lean: forget what can no longer matter (see skin_dead.py), and follow no state of which a
+        lean: forget what can no longer matter (see reduction.py), and follow no state of which a
             known one differs only in that more may still happen.
     """
 
@@ -165,17 +165,12 @@ def compiled_parts() -> System:
     from innervate.dialect import arith, outbox, rng
     from innervate.kernel import door
     from innervate.networks.skin import invariants
-    from innervate.networks.skin.protocol import down as skin_down
+    from innervate.networks.skin.protocol import command_window
     from innervate.networks.skin.protocol import route as skin_route
 
     door.register(arith, outbox, rng, invariants)
-<<<<<<< HEAD
-    door.register(skin_route, skin, skin_sink, hot=False)
+    door.register(skin_route, command_window, skin, skin_sink, hot=False)
     door.register(skin_row, reduction, skin_check, hot=False)
-=======
-    door.register(skin_route, skin_down, skin, skin_sink, hot=False)
-    door.register(skin_row, skin_dead, skin_check, hot=False)
->>>>>>> house
     plain = [f for f in vars(skin_moves).values() if callable(f)]
     own = [f for f in plain if getattr(f, "__module__", "") == skin_moves.__name__]
     system = system_of()
