@@ -194,7 +194,7 @@ def choices(world: Any, plan: Any) -> Choices:
     """What the nodes of a simulation know."""
     count, params = plan.nodes, plan.params
     nodes = _Columns(world.nodes, count)
-    near, suspect = nodes["near"], nodes["suspect"] & 1 == 1
+    near, suspect = nodes["neighbour"], nodes["suspect"] & 1 == 1
     gateway = np.where(nodes["known"] == 1, nodes["gateway"], FREE)
     who = np.arange(count)
 

@@ -19,13 +19,13 @@ from innervate.networks.mesh.protocol.constants import (
     REPORT_EXPIRED,
     REPORT_MARGIN,
 )
-from innervate.networks.mesh.protocol.duplicates import FLOODED, is_flooded
+from innervate.networks.mesh.protocol.duplicates import FLOODED, record_flood
 from innervate.networks.mesh.protocol.fence import OUTSIDE, judge, margin
 from innervate.networks.mesh.protocol.fields import WAITING
 from innervate.networks.mesh.protocol.frames import add8, add_hop, put16
 from innervate.networks.mesh.protocol.messages import first_flag, resolve, take
 from innervate.networks.mesh.protocol.queue import compose, kick, take_over
-from innervate.networks.mesh.protocol.retransmission import free_wait, keep
+from innervate.networks.mesh.protocol.retransmission import buffer_sent, free_buffer
 from innervate.networks.mesh.protocol.send import send_on
 
 ALARM_BYTES = 16
@@ -45,24 +45,24 @@ def on_sample(node, params, now, item, out):
     if kind == CROSS:
         node.heard_out = 0
     if kind >= 0:
-        sound_own(node, params, now, kind, out)
+        raise_own(node, params, now, kind, out)
 
 
-def sound_own(node, params, now, kind, out):
+def raise_own(node, params, now, kind, out):
     """A robot raises an alarm for itself."""
-    sound(node, params, now, kind, node.number, node.x, node.y, node.vx, node.vy, out)
+    raise_alarm(node, params, now, kind, node.number, node.x, node.y, node.vx, node.vy, out)
 
 
-def insist(node, params, now, out):
+def repeat_alarm(node, params, now, out):
     """Every tick of a robot: outside, and nobody knows nor is being told? Once more, then.
 
     So it is while no gateway is known, when all tries failed, and after a change of the monitor.
     """
     if node.outside == OUTSIDE and not node.heard_out and not is_telling(node):
-        sound_own(node, params, now, CROSS, out)
+        raise_own(node, params, now, CROSS, out)
 
 
-def sound(node, params, now, kind, robot, x, y, vx, vy, out):
+def raise_alarm(node, params, now, kind, robot, x, y, vx, vy, out):
     """Raise an alarm for a robot: on its way to the monitor, flooded besides if it must be.
 
     0 if it cannot be: nobody to tell, or no place.
@@ -82,8 +82,8 @@ def sound(node, params, now, kind, robot, x, y, vx, vy, out):
     note_alarm(node, kind, robot, gap, out)
     write_alarm(node.q_body, i * BODY, node, params, now, kind, robot, x, y, vx, vy, gap)
     node.q_length[i] = ALARM_BYTES
-    w = wait_for_alarm(node, out)
-    keep(node, params, now, w, i, robot, out)
+    w = alarm_buffer(node, out)
+    buffer_sent(node, params, now, w, i, robot, out)
     node.q_owner[i] = w
     if params.flood == 2 or (params.flood == 1 and kind == CROSS):
         flood(node, params, now, w, 1, out)
@@ -116,9 +116,9 @@ def write_alarm(body, at, node, params, now, kind, robot, x, y, vx, vy, gap):
     put16(body, at + 14, max(-32_768, min(32_767, gap)))
 
 
-def wait_for_alarm(node, out):
+def alarm_buffer(node, out):
     """A place among the kept messages; an alarm puts out another message if it must."""
-    w = free_wait(node)
+    w = free_buffer(node)
     if w >= 0:
         return w
     w = 0
@@ -142,7 +142,7 @@ def flood(node, params, now, w, instance, out):
     for k in range(node.wait_length[w]):
         add8(node, i, node.wait_body[w * DATA_MAX + k])
     add_hop(node, i)
-    is_flooded(node, node.number, node.wait_seq[w], FLOODED, instance)
+    record_flood(node, node.number, node.wait_seq[w], FLOODED, instance)
 
 
 def flood_again(node, params, now, w, out):
@@ -158,7 +158,7 @@ def flood_again(node, params, now, w, out):
 
 def on_flood(node, params, now, frame, out):
     """A flooded alarm: the monitor takes it, everyone passes it on once per instance."""
-    if is_flooded(node, frame.origin, frame.seq, FLOODED, min(frame.ttl, 3)):
+    if record_flood(node, frame.origin, frame.seq, FLOODED, min(frame.ttl, 3)):
         return
     if frame.dest == node.number:
         take_alarm(node, params, now, frame, out)
@@ -208,7 +208,7 @@ def is_telling(node):
     return 0
 
 
-def unheard(node, w):
+def clear_raised(node, w):
     """The alarm that was kept in place w was given up: a witness raises it anew if it must."""
     robot = node.wait_body[w * DATA_MAX]
     node.raised[robot] = node.raised[robot] & ~RAISED_OUT

@@ -174,7 +174,7 @@ def was_at(node, i, who):
 
 
 def clear_queue(node):
-    """Nothing waits."""
+    """Empty the queue: nothing waits, nothing is under way."""
     for i in range(QUEUE):
         node.q_state[i] = 0
     node.busy = -1

@@ -18,12 +18,12 @@ from innervate.networks.radio.protocol.paper_idle import (
     TAIL,
     TURNS,
     arm,
-    dead_turn,
     forced,
     joined,
     offered,
     packet_us,
     take_turn,
+    turn_timeout,
     wait,
     waited,
 )
@@ -35,10 +35,10 @@ from innervate.networks.radio.protocol.paper_reserve import (
     burst_ends,
     follow,
     frame_ends,
-    own_crr,
     reserve_burst,
     send_own,
     sent_crr,
+    try_crr,
     window_over,
 )
 from innervate.networks.radio.protocol.paper_turns import (
@@ -75,7 +75,7 @@ def on_start(station, params, now, cause, out):
     if cause:
         station.free = 0
         station.mode = JOIN
-        arm(station, now + packet_us(params) + dead_turn(params), out)
+        arm(station, now + packet_us(params) + turn_timeout(params), out)
 
 
 def on_input(station, params, now, kind, item, out):
@@ -151,7 +151,7 @@ def carrier_went(station, params, now, out):
         elif mode == IDLE:
             wait(station, params, now, out)
         else:
-            arm(station, now + packet_us(params) + dead_turn(params), out)
+            arm(station, now + packet_us(params) + turn_timeout(params), out)
     elif mode == QUIET:
         quiet_burst(station, params, now, what, out)
     elif mode == AWAIT:
@@ -198,7 +198,7 @@ def on_timer(station, params, now, timer, out):
             turn_over(station, params, now, out)
     elif station.act:
         if mode == RESERVE:
-            if own_crr(station):
+            if try_crr(station):
                 send_own(station, out)
         elif mode == TURNS:
             station.act = 0
