@@ -7,6 +7,7 @@ from innervate.networks.mesh.protocol.constants import (
     ALARM,
     ALARMS,
     ALL,
+    BODY,
     CROSS,
     DATA_MAX,
     END_TO_END,
@@ -21,7 +22,7 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.duplicates import FLOODED, record_flood
 from innervate.networks.mesh.protocol.fence import OUTSIDE, judge, margin
 from innervate.networks.mesh.protocol.fields import WAITING
-from innervate.networks.mesh.protocol.frames import add8, add16, add_hop
+from innervate.networks.mesh.protocol.frames import add8, add_hop, put16
 from innervate.networks.mesh.protocol.messages import first_flag, resolve, take
 from innervate.networks.mesh.protocol.queue import compose, kick, take_over
 from innervate.networks.mesh.protocol.retransmission import buffer_sent, free_buffer
@@ -79,7 +80,8 @@ def raise_alarm(node, params, now, kind, robot, x, y, vx, vy, out):
     if i < 0:
         return 0
     note_alarm(node, kind, robot, gap, out)
-    write_alarm(node, params, now, i, kind, robot, x, y, vx, vy, gap)
+    write_alarm(node.q_body, i * BODY, node, params, now, kind, robot, x, y, vx, vy, gap)
+    node.q_length[i] = ALARM_BYTES
     w = alarm_buffer(node, out)
     buffer_sent(node, params, now, w, i, robot, out)
     node.q_owner[i] = w
@@ -97,21 +99,21 @@ def note_alarm(node, kind, robot, gap, out):
     report(out, REPORT_MARGIN, gap, node.alarm)
 
 
-def write_alarm(node, params, now, i, kind, robot, x, y, vx, vy, gap):
-    """The 16 bytes of an alarm [mesh 2 FENCE_ALARM]."""
+def write_alarm(body, at, node, params, now, kind, robot, x, y, vx, vy, gap):
+    """The 16 bytes of an alarm from `body[at]` on, as payloads.py lays them out [mesh 2]."""
     tick_ms = max(1, params.tick_us // 1000)
     at_ms = node.ticks * tick_ms + ((now - node.tick_at) & MASK30) // 1000
-    add8(node, i, robot)
-    add8(node, i, params.fence)
-    add8(node, i, node.alarm)
-    add8(node, i, kind)
-    add16(node, i, x)
-    add16(node, i, y)
-    add8(node, i, vx)
-    add8(node, i, vy)
-    add16(node, i, at_ms >> 16)
-    add16(node, i, at_ms & 65_535)
-    add16(node, i, max(-32_768, min(32_767, gap)))
+    body[at] = robot
+    body[at + 1] = params.fence
+    body[at + 2] = node.alarm
+    body[at + 3] = kind
+    put16(body, at + 4, x)
+    put16(body, at + 6, y)
+    body[at + 8] = vx & 255
+    body[at + 9] = vy & 255
+    put16(body, at + 10, at_ms >> 16)
+    put16(body, at + 12, at_ms)
+    put16(body, at + 14, max(-32_768, min(32_767, gap)))
 
 
 def alarm_buffer(node, out):
@@ -195,20 +197,7 @@ def tell_monitor(node, params, now, kind, robot, x, y, vx, vy, gap, out):
     frame.path_len = 0
     frame.rssi = 0
     frame.length = ALARM_BYTES
-    for k in range(ALARM_BYTES):
-        frame.body[k] = 0
-    frame.body[0] = robot
-    frame.body[1] = params.fence
-    frame.body[2] = node.alarm
-    frame.body[3] = kind
-    frame.body[4] = x >> 8 & 255
-    frame.body[5] = x & 255
-    frame.body[6] = y >> 8 & 255
-    frame.body[7] = y & 255
-    frame.body[8] = vx & 255
-    frame.body[9] = vy & 255
-    frame.body[14] = gap >> 8 & 255
-    frame.body[15] = gap & 255
+    write_alarm(frame.body, 0, node, params, now, kind, robot, x, y, vx, vy, gap)
 
 
 def is_telling(node):

@@ -45,6 +45,12 @@ def get16(frame, at):
     return frame.body[at] << 8 | frame.body[at + 1]
 
 
+def put16(body, at, value):
+    """Two bytes of a payload."""
+    body[at] = value >> 8 & 255
+    body[at + 1] = value & 255
+
+
 def signed8(value):
     """A byte as the signed number that it stands for."""
     return value - ((value & 128) << 1)
