@@ -1,8 +1,8 @@
 """The medium of cables: every frame has one sender and one receiver.
 
 Nodes have up to four ports; one more node, the sink, may have any number. What the medium decides:
-when a frame arrives (`wires`: queues, latency, loss), what faults do to it (`commands`), when timers
-fire on clocks that drift, and in what order all this happens (`loop`).
+when a frame arrives (`wires`: queues, latency, loss), what faults do to it (`commands`), when
+timers fire on clocks that drift, and in what order all this happens (`loop`).
 
 What a network brings (`declared.py` makes all of it from declarations):
 

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import struct
 import time
 from collections import deque
 from typing import Any, NamedTuple
 
 from innervate.live.streams import Arrivals
+from innervate.networks.mesh.payloads import FIELDS
+from innervate.networks.mesh.protocol.constants import ALARM
+from innervate.wire.layout import BROKEN, read
 
 KINDS = ("predict", "cross", "lost", "clear")
-BODY = struct.Struct(">BBBBhhbbIh")
 SHOWN = 16  # alarms that a status shows
 CM_S = 2  # unit of speeds, cm/s
 PLACE_MAX = 32_767  # units
@@ -43,13 +44,16 @@ class Alarm(NamedTuple):
 
 def read_alarm(reporter: int, body: bytes, unit_cm: int) -> Alarm | None:
     """The alarm in a packet's payload; None if it is of no kind that is known."""
-    if len(body) < BODY.size:
+    found: list[tuple[str, int]] = []
+    if read(FIELDS[ALARM], body, 0, 8 * len(body), found) == BROKEN:
         return None
-    robot, fence, number, kind, x, y, _vx, _vy, _at_ms, gap = BODY.unpack_from(body)
-    if kind >= len(KINDS):
+    told = dict(found)
+    if told["alarm"] >= len(KINDS):
         return None
-    x, y, gap = x * unit_cm, y * unit_cm, gap * unit_cm
-    return Alarm(KINDS[kind], robot, reporter, fence, number, x, y, gap)
+    x, y, gap = (told[name] * unit_cm for name in ("x", "y", "margin"))
+    return Alarm(
+        KINDS[told["alarm"]], told["robot"], reporter, told["fence"], told["number"], x, y, gap
+    )
 
 
 def place_of(

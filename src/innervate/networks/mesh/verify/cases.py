@@ -37,7 +37,7 @@ class MeshCase:
     story: mesh_story.MeshStory | None = None
 
     def as_dict(self) -> dict[str, Any]:
-        """For --json."""
+        """The case as `innervate verify mesh --json` prints it."""
         model, tally, found = self.found.model, self.found.tally, self.found
         return {
             "name": self.name,
@@ -72,7 +72,7 @@ class MeshWanted:
 
 
 def text_of(links: Any) -> str:
-    """Links as text."""
+    """Pairs of nodes as "0-1 1-2"."""
     return " ".join(f"{a}-{b}" for a, b in links)
 
 
@@ -111,7 +111,7 @@ def _own(failover: str, wanted: MeshWanted) -> Iterator[tuple[str, MeshModel]]:
 
 
 def run(name: str, model: MeshModel, wanted: MeshWanted, progress: Any) -> MeshCase:
-    """Explore one model."""
+    """Explore one model, or walk it at random, as is wanted; what came of it."""
 
     def tell(tally: Tally) -> bool:
         return bool(progress(f"{text_of(model.links)}, {model.failover}, {name}", tally))

@@ -141,7 +141,7 @@ def received(run: Any, time_s: float | None = None, window_s: float = WINDOW_S) 
 
 
 def _heat(share: float) -> tuple[float, float, float]:
-    """White to dark vermilion."""
+    """Red, green and blue, 0 to 1, from nearly white at 0 to dark vermilion at 1."""
     pale, dark = np.array([0.965, 0.953, 0.933]), np.array([0.702, 0.290, 0.031])
     red, green, blue = pale + float(share) * (dark - pale)
     return float(red), float(green), float(blue)

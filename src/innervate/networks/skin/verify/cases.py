@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
-from innervate.networks.skin.verify import assumptions as promises
-from innervate.networks.skin.verify import fair, graphs, retrace, story
+from innervate.networks.skin.verify import assumptions, fair, graphs, retrace, story
 from innervate.networks.skin.verify import system as system
 from innervate.topology import Graph
 from innervate.verify import cases as common
@@ -53,7 +52,7 @@ class SkinCase:
         )
 
     def as_dict(self) -> dict[str, Any]:
-        """For --json."""
+        """The case as `innervate verify --json` prints it."""
         budget = asdict(self.model.budget)
         if budget["ticks"] == system.ANY:
             budget["ticks"] = "any"
@@ -145,7 +144,7 @@ def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> SkinCase:
     Raises:
         VerifyError: the protocol does not keep what the reductions rest on.
     """
-    taken = promises.broken(model) if model.lean else ""
+    taken = assumptions.broken(model) if model.lean else ""
     if taken:
         raise VerifyError(f"{taken}; --no-reduce explores it without resting on the rule")
     cables = graphs.cables(model.graph)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from innervate.networks.skin.verify import assumptions as promises
-from innervate.networks.skin.verify import fair, graphs, story
+from innervate.networks.skin.verify import assumptions, fair, graphs, story
 from innervate.networks.skin.verify import system as system
 from innervate.verify import explore
 from innervate.verify.mutants import Catch, Mutant, copies
@@ -98,7 +97,7 @@ def hunt(mutant: Mutant, starts: int = 12, lean: bool = False) -> Catch:
     for model in models(lean):
         where = f"{graphs.cables(model.graph)}, {model.rule}, {model.updates}"
         try:
-            taken = promises.broken(model, changed) if lean else ""
+            taken = assumptions.broken(model, changed) if lean else ""
             if taken:
                 return Catch(mutant, f"a promise that reductions rest on: {taken}", where, states)
             found = explore.explore(model, plain=True, system=changed, states=15_000)

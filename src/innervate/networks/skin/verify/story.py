@@ -14,7 +14,7 @@ from innervate.networks.skin.protocol.constants import NONE
 from innervate.networks.skin.verify import check as skin_check
 from innervate.networks.skin.verify import system as skin_system
 from innervate.networks.skin.verify import world as w
-from innervate.networks.skin.verify.telling import Scene, Teller
+from innervate.networks.skin.verify.narrator import Narrator, Scene
 from innervate.topology import Graph
 from innervate.verify import cases as common
 from innervate.verify.explore import Result
@@ -57,13 +57,13 @@ def tell(result: Result, system: Any = None) -> Story:
         system,
     )
     story = Story("", graph=result.model.graph)
-    teller = Teller(real, story)
+    narrator = Narrator(real, story)
     for target in [*result.path[1:], None]:
         here = found.row()
         event = find(found, target, result.broken)
         after = found.row()
         found.put(here)
-        teller.play(found, event)
+        narrator.play(found, event)
         found.put(after)
     story.ring = _ring(real)
     ring = [story.graph.label(node) for node in [*story.ring, *story.ring[:1]]]
