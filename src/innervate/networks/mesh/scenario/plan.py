@@ -104,7 +104,7 @@ class MeshPlan:
 
     Attributes:
         nodes: how many, 1 .. 254.
-        capacity: their class, 32, 64 or 254 (see `protocol/mesh_fields.py`).
+        capacity: their class, 32, 64 or 254 (see `protocol/fields.py`).
         names: what each is called, as in the file.
         params: the protocol's parameters (`mesh_fields.PARAMS`); arrays as lists.
         ranks: per node 0 gateway, 1.. standby, -1 neither.
