@@ -2,7 +2,7 @@
 
 A node *has a way* if a packet that it sends to its gateway now would get there by what the protocol
 does: over links that carry frames and nodes that are on, next hops that do not answer passed by as
-`protocol/mesh_route.py` passes them by. It is *cut off* if no chain of such links and nodes joins
+`protocol/route.py` passes them by. It is *cut off* if no chain of such links and nodes joins
 it to any gateway, whatever a protocol did. What makes the difference between the two is mended by
 the protocol; what cuts off, by people.
 

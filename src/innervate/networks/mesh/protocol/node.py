@@ -1,8 +1,8 @@
 """The mesh: routed messages between any two nodes, tables made by a gateway, a virtual fence.
 
 The router's five functions [mesh 4]. `gate` is the record that only a gateway or standby has.
-Rounds stand in mesh_round.py (nodes) and mesh_gateway.py, tables in mesh_table.py and mesh_jobs.py,
-the choice of a hop in mesh_route.py, messages in mesh_messages.py, the fence in mesh_alarm.py.
+Rounds stand in round.py (nodes) and gateway.py, tables in table.py and jobs.py,
+the choice of a hop in route.py, messages in messages.py, the fence in alarm.py.
 """
 
 from innervate.dialect.arith import MASK30

@@ -111,7 +111,7 @@ class MeshPlan:
         robots: per node 1 = it is a robot.
         absent: per node 1 = switched off until it is revived.
         starts_us: per node, when it is switched on, us (the gateway last).
-        mac: "csma", "none" (ideal, and drivers that need none) or a name of `sim/radio/stacks.py`.
+        mac: "csma", "none" (ideal, and drivers that need none) or one of the radio's.
         mac_params: parameters of the medium access protocol.
         positions_cm: per node (x, y) at the start; empty where none are given.
         good: links (a < b) that are good both ways at the start.

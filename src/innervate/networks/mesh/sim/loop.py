@@ -26,7 +26,7 @@ from innervate.sim.status import (
 )
 
 NEVER = -1
-BOOT = 7  # a command besides those of `scenario/mesh_plan.py`
+BOOT = 7  # a command besides those of `scenario/plan.py`
 COLD, MEMORY_LOST = 0, 1
 DUPLICATES_FULL = 100  # a status: the table of deliveries is half full
 

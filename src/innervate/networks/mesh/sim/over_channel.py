@@ -1,6 +1,6 @@
 """Below the router: a medium access protocol of radio teams, on a channel that all share.
 
-The channel is simulated by `sim/radio`, with a queue of events of its own. A frame of the router is
+The channel is simulated by `sim/channel`, with its own queue of events. A frame of the router is
 a packet there, kept here under the packet's handle; what becomes of it comes back as an event of
 the mesh's queue, which goes first at equal times.
 """

@@ -1,7 +1,7 @@
 """A mesh for the explorer: its states, and what can happen next.
 
 A frame and its hop ack are one event: an ack comes a turnaround after the frame's end, before
-anything else of these two nodes. A state is one number for each node (mesh_local.py), how long its
+anything else of these two nodes. A state is one number for each node (local.py), how long its
 last event is past (timed only), what may still fail, and what was delivered.
 
 Untimed, a node's own timers fire in their order, but nothing is said of two nodes' clocks: frames

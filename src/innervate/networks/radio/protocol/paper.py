@@ -1,8 +1,8 @@
 """CSMA/CD-R as published: the order of turns after a collision comes from the order of its ends.
 
 Steps 1 to 8 and the rules T1 to N2 are those of [radio 4]: the paper's words, and what had to be
-added where it is silent. Step 1 stands in radio_paper_idle.py, 2 to 5 in radio_paper_verify.py,
-5 and 6 in radio_paper_reserve.py, 7 in radio_paper_turns.py.
+added where it is silent. Step 1 stands in paper_idle.py, 2 to 5 in paper_verify.py,
+5 and 6 in paper_reserve.py, 7 in paper_turns.py.
 """
 
 from innervate.dialect.access import FORCE, LEAVE, PACKET

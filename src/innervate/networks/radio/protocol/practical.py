@@ -3,8 +3,8 @@
 A reservation as in [radio 2.2] orders the turns, but three things differ from the paper:
 who heads it listens through all of it (the *reporter*), the order comes from minislots instead
 of transmission ends, and a packet counts as delivered only when somebody who received it says so.
-Windows stand in radio_reporter.py and radio_window.py, turns in radio_turn.py and
-radio_follow.py, openings in radio_idle.py.
+Windows stand in reporter.py and window.py, turns in turn.py and
+follow.py, openings in idle.py.
 """
 
 from innervate.dialect.access import LEAVE, PACKET

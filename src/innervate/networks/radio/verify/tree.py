@@ -1,6 +1,6 @@
 """Radio, every draw: each choice that stations make at random is tried with each of its values.
 
-As radio_grid.py, but uncompiled, and what a draw gives is no part of the grid: a run asks, every
+As grid.py, but uncompiled, and what a draw gives is no part of the grid: a run asks, every
 answer becomes a branch, whichever station asks, and whenever. Draws out of few are tried with all
 values, draws of a time with the first, the middle and the last of its range. Behind `depth` draws
 every station goes on with a generator of its own.

@@ -2,7 +2,7 @@
 
 Spec: the dynamic distance-vector protocol of Bader, Bergner and Cheng [skin II-B], with the
 readings E1-E34. The paper's master port is called parent here, its slave ports children.
-How the parent is chosen stands in skin_route.py.
+How the parent is chosen stands in route.py.
 """
 
 from innervate.dialect.arith import MASK30, after, later

@@ -76,7 +76,7 @@ class SkinModel:
         budget: how often what may happen.
         hold: FD_HOLD, in periods.
         prompt: every frame arrives, or is lost, before anything else happens.
-        merge: use that periodic beacons are only looked at in a tick (see skin_moves.py).
+        merge: use that periodic beacons are only looked at in a tick (see moves.py).
         keep: keep what only a later fair schedule would see.
         symmetric: take states that differ by a symmetry of the graph as one.
         capacity: most frames in flight per direction; states with more are left out, and counted.
