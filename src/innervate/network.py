@@ -28,7 +28,8 @@ PARTS = {
     "fault_words": '(plan, fault) -> str: "at 2 s cut pc.1 - p0 r16 c7 down"',
     "actions": "tuple of str: what can be done to it while it runs, in the order of their numbers",
     "harm": "tuple of str: those of the actions that make it worse",
-    "template": "str: a commented scenario to start from",
+    "template": "str: a commented scenario to start from; if absent, all keys as they are by "
+    "themselves",
     "anchor": "(tables, source): makes relative paths in a scenario's tables absolute",
     "run": "module: simulate, summarize, tables_of, written_of, columns, trail, call_words",
     "tables": "tuple of Table: all tables that its runs can have",
@@ -92,6 +93,7 @@ DEFAULTS = {
     "describe": "innervate.scenario.cables:describe",
     "fault_words": "innervate.scenario.cables:fault_words",
     "actions": "innervate.scenario.actions.cables:ACTIONS",
+    "harm": "innervate.scenario.actions.cables:HARM",
     "simulation": "innervate.sim.cables.declared:simulation",
     "verify": "innervate.verify.declared",
     "interface_words": "innervate.network:NO_WORDS",

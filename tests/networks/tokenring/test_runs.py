@@ -58,7 +58,7 @@ def test_compiled_runs_of_a_declared_network_equal_plain_ones():
 
 
 def test_what_is_out_of_its_declared_range_is_found():
-    with pytest.raises(InvariantBroken, match="a value of cell 0 is out of its declared range"):
+    with pytest.raises(InvariantBroken, match="a value of n0 is out of its declared range"):
         finished(plan_of(duration_s=2.0, event=[]), plain=True)
 
 
