@@ -2,40 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from innervate import scenario
 from innervate.networks.skin.analysis.load import interfaces_along
+from innervate.networks.skin.papers.common import SILENT, loaded
 from innervate.networks.skin.papers.steps import Steps
 
 HZ = 250
 START = 300  # periods until first routes and their sizes stand
 
 
-def measure(setup: str, lock_step: bool, some: Sequence[int], watched: int) -> dict[str, Any]:
+def measure(setup: str, lock_step: bool, watched: int, seed: int) -> list[int]:
     """Periods from a switch until all sizes are true, of the switches that were alone meanwhile."""
-    found: list[int] = []
-    for seed in some:
-        found += _after_switches(_steps(setup, lock_step, seed, START + watched), watched)
-    return {"periods": found}
-
-
-def _steps(setup: str, lock_step: bool, seed: int, periods: int) -> Steps:
-    overrides: list[tuple[str, Any]] = [
-        ("protocol.updates", "periodic"),
-        ("protocol.beacon_hz", HZ),
-        ("timing.lock_step", lock_step),
-        ("data.rate_hz", 0),
-        ("event", []),
-        ("duration_s", (periods + 1) / HZ),
-    ]
-    return Steps(scenario.load(setup, overrides, seed))
-
-
-def _after_switches(steps: Steps, watched: int) -> list[int]:
+    more = {**SILENT, "timing.lock_step": lock_step}
+    duration_s = (START + watched + 1) / HZ
+    steps = Steps(loaded(setup, seed, duration_s, more, updates="periodic", beacon_hz=HZ))
     before: Any = None
     found: list[int] = []
     since, fresh = -1, False
