@@ -11,8 +11,9 @@ import sys
 import time
 
 from innervate import scenario
+from innervate.networks.skin.sim.build import build
 from innervate.networks.skin.sim.simulate import compiled_loop
-from innervate.sim.cables.build import build, grow_pool
+from innervate.sim.cables.build import grow_pool
 from innervate.sim.cables.wires import ARRIVED, URGENT_BLOCK
 from innervate.sim.status import DONE, POOL_FULL
 from innervate.sim.tables import get, put

@@ -15,7 +15,7 @@ from boards.compile import mpy
 from boards.errors import BoardMissing
 from boards.roles import ROLES
 from innervate.live.errors import LiveError
-from innervate.live.profile import skin_parameters
+from innervate.networks.skin.live.parameters import skin_parameters
 
 HERE = Path(__file__).resolve().parent / "micropython"
 ROOM = Path(__file__).resolve().parent.parent / "src"

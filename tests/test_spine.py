@@ -6,6 +6,8 @@ from pathlib import Path
 import innervate
 from innervate.network import networks
 
+HOME_OF_NETWORKS = "innervate.networks"
+TYPED = "innervate.networks.typed"  # for type checkers; imported while the program runs by none
 HOME = Path(innervate.__file__).parent
 # The same letters for something else: an element of a robot's description, a shape in a scene.
 OTHER_MEANINGS = {"topology/cover.py", "topology/collada.py"}
@@ -30,9 +32,9 @@ def named(path):
     for node in ast.walk(tree):
         if isinstance(node, ast.Constant) and node not in prose and node.value in networks():
             yield node.lineno, node.value
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("innervate.netw"):
-            if node.module != "innervate.network":
-                yield node.lineno, node.module
+        source = node.module or "" if isinstance(node, ast.ImportFrom) else ""
+        if source.startswith(HOME_OF_NETWORKS) and source != TYPED:
+            yield node.lineno, source
 
 
 def test_the_spine_names_no_network():

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 TYPE_CHECKING = False  # `typing` would be the slowest part of this import
 if TYPE_CHECKING:
-    from innervate.networks.skin.sizing import Answer as Answer
-    from innervate.networks.skin.sizing import Question as Question
-    from innervate.networks.skin.sizing import size as size
+    from innervate.networks.typed import Answer as Answer
+    from innervate.networks.typed import Question as Question
+    from innervate.networks.typed import size as size
     from innervate.running.compare import Comparison as Comparison
     from innervate.running.compare import compare as compare
     from innervate.running.errors import RunError as RunError
@@ -24,17 +24,17 @@ if TYPE_CHECKING:
     from innervate.scenario.given import check as check
     from innervate.scenario.given import load as load
     from innervate.sweeping.errors import SweepError as SweepError
+    from innervate.sweeping.loading import load_sweep as load_sweep
     from innervate.sweeping.result import Sweep as Sweep
-    from innervate.sweeping.result import load_sweep as load_sweep
     from innervate.sweeping.sweep import sweep as sweep
 
 __version__ = "0.1.0"
 
 # Where each name comes from; the lines above say the same to type checkers.
 _PLACES = {
-    "Answer": "sweeping.sizing",
+    "Answer": "networks.typed",
     "Comparison": "running.compare",
-    "Question": "sweeping.sizing",
+    "Question": "networks.typed",
     "Run": "running.run",
     "RunError": "running.errors",
     "Scenario": "scenario",
@@ -44,9 +44,9 @@ _PLACES = {
     "check": "scenario.given",
     "compare": "running.compare",
     "load": "scenario.given",
-    "load_sweep": "sweeping.result",
+    "load_sweep": "sweeping.loading",
     "run": "running.run",
-    "size": "sweeping.sizing",
+    "size": "networks.typed",
     "sweep": "sweeping.sweep",
 }
 __all__ = ["__version__", *_PLACES]

@@ -27,33 +27,86 @@ PARTS = {
     "describe": "(plan) -> str: the scenario in a few lines, without running it",
     "fault_words": '(plan, fault) -> str: "at 2 s cut pc.1 - p0 r16 c7 down"',
     "actions": "tuple of str: what can be done to it while it runs, in the order of their numbers",
+    "harm": "tuple of str: those of the actions that make it worse",
     "template": "str: a commented scenario to start from",
     "anchor": "(tables, source): makes relative paths in a scenario's tables absolute",
     "run": "module: simulate, summarize, tables_of, written_of, columns, trail, call_words",
     "tables": "tuple of Table: all tables that its runs can have",
     "received_image": "(result, time_s, window_s): what was felt, as it was received",
     "report": "(result, summary) -> str: the body of its report, HTML",
+    "notebook": "(result, summary) -> str: the same for a notebook, its top and a picture",
     "figures": "module: draw(run, figure) -> a matplotlib figure",
     "summary_lines": "(run) -> list of str: what a person wants to know first",
-    "capture": "module: LATE_US, refusal, interfaces, numbers, frames, simulate",
+    "summary_name": '(summary) -> str: by what name a run has it, like "skin" for `run.skin`',
+    "without_events": '(summary) -> str: why a run has no events to compare; "" if it has',
+    "loop_name": '(plan) -> str: the compiled loop that it runs on; "" = it needs no compiling',
+    "demo": "module: SCENARIO, INTRODUCTION, LOOK, NEXT, lines(run): its chapter of `demo`",
+    "sizing": "module: Question, parse_ports, size, RECOVERY: what `size` answers",
+    "measured_template": "(name, network, link types, least quality) -> str: of what was measured",
+    "capture": "module: LATE_US, refusal, interfaces, numbers, frames, simulate; if absent, any "
+    "network of cables with `frames` has one (export/cabled.py)",
+    "interface_words": 'dict: what captures call a node, by its role; others are a "node"',
+    "dissector": "() -> export.dissector.Frames: its frames for Wireshark, from `frames` if absent",
+    "fit": "module: Reader, tables_of, named, named_again: a scenario out of a capture",
+    "unfit": "str: why no scenario comes out of its captures",
+    "log": "module: looks_like_one(path), measure(path): what `fit` reads besides captures",
     "graph": "(plan) -> export.graphs.Graph: its network as a graph",
     "scenes": "(plan, tables) -> list of export.scenes.Channel: what a recording shows in space",
     "has_places": "(plan) -> bool: its nodes lie somewhere in space",
     "rerun_parts": "(rerun, plan, tables) -> export.rrd_parts.Parts: a run in space",
-    "simulation": "(plan) -> sim.driver.Simulation: the network as it is watched, not yet begun",
+    "simulation": "(plan) -> sim.driver.Simulation: the network as it is watched, not yet begun; "
+    "for the default `run` also by name plain, checks, observe, deliveries, trail, tap",
     "unwatchable": '(plan) -> str: why it cannot be watched; "" if it can',
     "engine": "class: web.engine.Engine, or what can do more",
     "view": "class: what the live page shows of its simulation (web/view.py)",
     "scene": "(plan): what a page draws once",
+    "protocol": "module: on_start, on_frame, on_timer, on_input of a node; OUTBOX, TIMERS",
+    "fields": "module: PARAMS, STATE, FRAME: the declared fields of its protocol",
+    "frames": "module: LAYOUTS, KIND_BITS of its frames; encode, decode, REASONS if it has own",
+    "node_file": "live.nodefile.NodeFile: the keys of its node files",
+    "live_node": "(nodefile.Loaded) -> live.node.LiveNode: the node of a node file",
+    "deployment": "class: live.deployment.Deployment, how a plan becomes node files and cables",
+    "live_words": "module: lines, ports, heard: what its running nodes say, for people",
+    "live_view": "class: web.live_view.LiveView, its running nodes on the page",
+    "recovery": "module: recoveries, line, NOTHING: how it healed, from a capture",
+    "verify": "module: explorations, notice, MUTANTS, hunt: what `verify` does (verify/cases.py)",
+    "counterexample": "(story, path): the picture of how something breaks",
+    "random": "module: SHARE, drawn, smaller, trouble: networks from a number (running/fuzz.py)",
     "papers": "module: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up",
 }
 DEFAULTS = {
+    "run": "innervate.running.simulating",
+    "tables": "innervate.running.simulating:TABLES",
+    "report": "innervate.plot.body:body",
+    "notebook": "innervate.plot.body:notebook",
+    "figures": "innervate.plot.figures",
+    "summary_lines": "innervate.plot.lines:summary_lines",
+    "graph": "innervate.export.cabled:graph",
     "scenes": "innervate.network:nothing_to_show",
     "has_places": "innervate.network:no_places",
     "unwatchable": "innervate.network:nothing_against_it",
     "engine": "innervate.web.engine:Engine",
     "anchor": "innervate.network:nothing_to_anchor",
+    "describe": "innervate.scenario.cables:describe",
+    "fault_words": "innervate.scenario.cables:fault_words",
+    "actions": "innervate.scenario.actions.cables:ACTIONS",
+    "simulation": "innervate.sim.cables.declared:simulation",
+    "verify": "innervate.verify.declared",
+    "interface_words": "innervate.network:NO_WORDS",
+    "unfit": "innervate.network:UNFIT",
+    "without_events": "innervate.network:nothing_against_it",
+    "loop_name": "innervate.network:no_name",
+    "summary_name": "innervate.network:kind_of",
+    "node_file": "innervate.live.declared:DeclaredFile",
+    "live_node": "innervate.live.declared:build",
+    "deployment": "innervate.live.deployment:Deployment",
+    "live_words": "innervate.live.words",
+    "live_view": "innervate.web.live_view:LiveView",
 }
+
+
+NO_WORDS: dict[str, str] = {}
+UNFIT = "links of this kind of network are not measured"
 
 
 class NetworkError(Exception):
@@ -69,12 +122,14 @@ class Network:
         rank: its place in lists for people.
         link_type: of its frames in captures: LINKTYPE_USER0 .. USER15 = 147 .. 162, which pcapng
             keeps for private use.
+        key_kind: its number under a seal, 1 .. 255: what is sealed for one is not taken by another.
         **parts: where each part stands: "module" or "module:name".
     """
 
     def __init__(
-        self, name: str, package: str, rank: int = 100, link_type: int = 162, **parts: str
-    ) -> None:
+        self, name: str, package: str, rank: int = 100, link_type: int = 162, key_kind: int = 255,
+        **parts: str,
+    ) -> None:  # fmt: skip
         for part in parts:
             if part not in PARTS:
                 raise TypeError(f"network {name}: no part {part!r}; there are {', '.join(PARTS)}")
@@ -82,6 +137,7 @@ class Network:
         self.package = package
         self.rank = rank
         self.link_type = link_type
+        self.key_kind = key_kind
         self.parts = {
             **DEFAULTS,
             **{part: _absolute(package, place) for part, place in parts.items()},
@@ -112,9 +168,20 @@ def nothing_to_anchor(tables: dict[str, Any], source: Any) -> None:
     """A scenario without relative paths."""
 
 
-def nothing_against_it(plan: Any) -> str:
-    """Any plan will do."""
+def nothing_against_it(_given: Any) -> str:
+    """Any plan or run will do."""
     return ""
+
+
+def no_name(plan: Any) -> str:
+    """A loop that needs no compiling, as far as is known."""
+    return ""
+
+
+def kind_of(summary: Any) -> str:
+    """By its kind."""
+    kind: str = summary["kind"]
+    return kind
 
 
 def nothing_to_show(plan: Any, tables: Any) -> list[Any]:
@@ -153,11 +220,17 @@ def networks() -> dict[str, Network]:
     return made
 
 
+def first() -> str:
+    """The kind of network that is meant where none is named."""
+    return next(iter(networks()))
+
+
 def _entry(point: Any) -> Network:
     try:
         return _checked(point.load(), point.value)
     except (ImportError, AttributeError) as error:
-        raise NetworkError(f"the installed network {point.name} cannot be loaded: {error}") from error
+        message = f"the installed network {point.name} cannot be loaded: {error}"
+        raise NetworkError(message) from error
 
 
 def _in_folder(folder: Path) -> Network:

@@ -2,26 +2,17 @@
 
 import builtins
 import re
-import shutil
 
 import pytest
 
 from innervate import scenario
 from innervate.cli import errors, exporting, files, live_app, sizing
 from innervate.export import recording
-from innervate.kernel import door
 from innervate.running import folder as folders
 from innervate.sweeping import SweepError, sweep
 from tests.networks.skin.runs import line, patch, plan_of
 
 TABLES = line(3, duration_s=0.05)
-
-
-def test_compiled_code_of_the_same_sources_elsewhere_does_not_count(tmp_path):
-    for room in door.SOURCE_ROOMS:
-        shutil.copytree(door.ROOT / room, tmp_path / room)
-    assert door.source_hash(tmp_path) != door.source_hash()
-    assert door.source_hash(tmp_path) == door.source_hash(tmp_path)
 
 
 @pytest.mark.parametrize("seconds", [-3.0, float("nan"), float("inf")])

@@ -13,6 +13,7 @@ from mcap.reader import make_reader
 from innervate import run, scenario
 from innervate.export import graphs, recording, schemas, tables
 from innervate.export.errors import ExportError
+from innervate.network import networks
 from tests.export.test_captures import MESH, RADIO, SKIN
 
 FENCED = MESH | {
@@ -59,7 +60,7 @@ def plain(schema):
 
 
 def test_schemas_are_of_the_plain_kind():
-    tables = [table for some in recording.TABLES.values() for table in some]
+    tables = [table for network in networks().values() for table in network.tables]
     others = (schemas.SCENE, schemas.CELLS, schemas.TOUCH, schemas.ROBOT, schemas.LOG)
     for schema in (*others, *map(schemas.of_table, tables)):
         plain(schema)
@@ -72,8 +73,9 @@ def test_recordings_hold_every_row_and_fit_their_schemas(kind, runs, tmp_path):
     count = recording.write(done.plan, frames, tmp_path / "run.mcap")
     found = read(tmp_path / "run.mcap")
     assert sum(map(len, found.values())) == count
+    topics = {table.name: table.topic for table in networks()[kind].tables}
     for name, frame in frames.items():
-        topic = recording.TOPICS.get(name, f"/{name}")
+        topic = topics[name] or f"/{name}"
         rows = [{k: v for k, v in one.items() if k != "timestamp"}
                 for _, one in found.get(topic, [])]  # fmt: skip
         moment = next(column for column in frame.columns if column.endswith("_us"))

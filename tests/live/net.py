@@ -4,10 +4,12 @@ import asyncio
 import time
 
 from innervate.live import local
-from innervate.live.profile import mesh_parameters, skin_parameters
-from innervate.networks.mesh.live.messages import MeshNode
+from innervate.networks.mesh.live.node import MeshNode
+from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
-from innervate.networks.skin.live.nodes import CellNode, CellStack, SinkNode, SinkStack
+from innervate.networks.skin.live.node import CellNode, SinkNode
+from innervate.networks.skin.live.parameters import skin_parameters
+from innervate.networks.skin.live.stack import CellStack, SinkStack
 
 WAIT_S = 20.0
 

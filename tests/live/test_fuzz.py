@@ -11,14 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from innervate.live import status
+from innervate.live.channel import Medium
+from innervate.live.channel_radio import read_heard
 from innervate.networks.mesh import frames as mesh
 from innervate.networks.mesh.live.alarms import KINDS, read_alarm
 from innervate.networks.mesh.live.order import Order
 from innervate.networks.mesh.live.stack import Frame as MeshFrame
 from innervate.networks.radio import frames as radio
-from innervate.networks.radio.live.medium import Medium
-from innervate.networks.radio.live.station import Frame as RadioFrame
-from innervate.networks.radio.live.station import read_heard
+from innervate.networks.radio.live.stack import Frame as RadioFrame
 from innervate.networks.skin import frames as skin
 from innervate.networks.skin.live.items import Frame as SkinFrame
 from innervate.wire import cobs, seal

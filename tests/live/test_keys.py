@@ -8,10 +8,11 @@ from hypothesis import strategies as st
 
 from innervate.live.errors import LiveError
 from innervate.live.keys import Sealer, read_key
-from innervate.live.profile import mesh_parameters
+from innervate.live.receipts import DELIVERED
 from innervate.live.state import State
 from innervate.live.udp import UdpLink
-from innervate.networks.mesh.live.messages import DELIVERED, MeshNode
+from innervate.networks.mesh.live.node import MeshNode
+from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
 from innervate.wire import seal
 

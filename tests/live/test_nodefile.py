@@ -3,7 +3,7 @@ import pytest
 from innervate.live.build import build
 from innervate.live.errors import LiveError
 from innervate.live.nodefile import load
-from innervate.live.profile import IP, mesh_parameters
+from innervate.networks.mesh.live.parameters import IP, mesh_parameters
 from innervate.networks.mesh.protocol.fields import PARAMS
 from innervate.networks.mesh.scenario.profiles import IP as SCENARIOS_IP
 

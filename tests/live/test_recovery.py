@@ -11,8 +11,8 @@ from innervate.cli import app, capturing
 from innervate.export import capture, pcapng
 from innervate.export.errors import ExportError
 from innervate.live import status, tap
-from innervate.live.profile import SKIN
 from innervate.networks.skin.export.recovery import recoveries
+from innervate.networks.skin.live.parameters import SKIN
 from tests.live.net import Skin, until
 from tests.networks.skin.runs import patch
 

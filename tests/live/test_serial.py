@@ -5,10 +5,11 @@ import tty
 import pytest
 
 from innervate.live.errors import LiveError
-from innervate.live.profile import mesh_parameters
+from innervate.live.receipts import DELIVERED
 from innervate.live.serial import SerialLink
 from innervate.live.serial_cables import Cables
-from innervate.networks.mesh.live.messages import DELIVERED, MeshNode
+from innervate.networks.mesh.live.node import MeshNode
+from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
 from tests.live.net import until
 

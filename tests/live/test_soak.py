@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from innervate.live.keys import Sealer
+from innervate.live.receipts import DELIVERED, EXPIRED
 from innervate.live.state import State
-from innervate.networks.mesh.live.messages import DELIVERED, EXPIRED
 from tests.live.net import Mesh
 
 GRID = [

@@ -8,17 +8,18 @@ import socket
 
 import pytest
 
+from innervate.live.channel import Medium
+from innervate.live.channel_radio import JOIN, PLUG, SEND, read_heard
 from innervate.live.engine import clock_us
 from innervate.live.keys import Sealer
-from innervate.live.profile import mesh_parameters
+from innervate.live.receipts import DELIVERED
 from innervate.live.state import State
 from innervate.live.udp import MulticastLink, UdpLink
 from innervate.networks.mesh import frames as wire
-from innervate.networks.mesh.live.messages import DELIVERED, MeshNode
+from innervate.networks.mesh.live.node import MeshNode
+from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import Frame, MeshStack
 from innervate.networks.mesh.protocol.constants import ACK, ALL, SOURCE_ROUTE
-from innervate.networks.radio.live.medium import Medium
-from innervate.networks.radio.live.station import JOIN, PLUG, SEND, read_heard
 from tests.live.net import Mesh, Skin, until
 from tests.live.test_fuzz import crc
 

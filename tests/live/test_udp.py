@@ -4,9 +4,10 @@ import socket
 import pytest
 
 from innervate.live.errors import LiveError
-from innervate.live.profile import mesh_parameters
+from innervate.live.receipts import DELIVERED
 from innervate.live.udp import MulticastLink, UdpLink
-from innervate.networks.mesh.live.messages import DELIVERED, MeshNode
+from innervate.networks.mesh.live.node import MeshNode
+from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
 
 PARAMS = mesh_parameters(3, {"ack_us": 30_000, "e2e_us": 300_000})

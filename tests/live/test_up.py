@@ -12,7 +12,8 @@ import pytest
 from innervate import scenario as scenarios
 from innervate.live import play, status
 from innervate.live.errors import LiveError
-from innervate.live.up import Network
+from innervate.live.up import Processes
+from innervate.networks.mesh.live import walks
 from tests.live.net import until
 
 FIRST_S = 40.0
@@ -47,9 +48,9 @@ def kinds(told):
 def test_events_happen_and_the_monitor_hears_that_a_robot_left_and_came_back(tmp_path):
     async def main():
         plan = scenarios.plan(scenarios.from_dict(YARD))
-        network, told = Network(plan, tmp_path, "udp"), []
-        happening = play.events(plan, network.names, network.links, network.cable_of)
-        player = play.Player(network, plan, happening, told.append)
+        network, told = Processes(plan, tmp_path, "udp"), []
+        happening = play.events(network.deployment)
+        player = play.Player(network, happening, told.append)
         await network.up()
         playing = asyncio.create_task(player.play())
         try:
@@ -81,18 +82,18 @@ def test_events_happen_and_the_monitor_hears_that_a_robot_left_and_came_back(tmp
 def test_what_real_cables_do_by_themselves_is_not_played_and_what_is_not_there_is_refused():
     jammed = {**YARD, "event": [{"at_s": 1.0, "action": "jam", "node": 1}]}
     plan = scenarios.plan(scenarios.from_dict(jammed))
-    network = Network(plan, None, "udp")
-    (event,) = play.events(plan, network.names, network.links, network.cable_of)
+    network = Processes(plan, None, "udp")
+    (event,) = play.events(network.deployment)
     assert not play.is_played(event)
     plan.faults = [plan.faults[0].__class__(1, 2, 0, 2, 0, 0)]
     with pytest.raises(LiveError, match="no cable joins n0 and n2"):
-        play.events(plan, network.names, network.links, network.cable_of)
+        play.events(network.deployment)
 
 
 @pytest.mark.parametrize("time_us", [0, 1_000_000, 1_500_000, 3_000_000])
 def test_a_walk_is_straight_between_its_points(time_us):
     points = ((1_000_000, 0, 0), (2_000_000, 100, -200))
-    at, speed = play.place_at(points, time_us)
+    at, speed = walks.place_at(points, time_us)
     share = min(1.0, max(0.0, time_us / 1e6 - 1.0))
     assert at == (100 * share, -200 * share)
     assert speed == ((100.0, -200.0) if 0 <= time_us - 1_000_000 < 1_000_000 else (0.0, 0.0))
@@ -108,12 +109,12 @@ def test_a_skins_cable_comes_out_at_its_time(tmp_path):
 
     async def main():
         plan = scenarios.plan(scenarios.from_dict(skin))
-        network = Network(plan, tmp_path, "udp")
-        happening = play.events(plan, network.names, network.links, network.cable_of)
+        network = Processes(plan, tmp_path, "udp")
+        happening = play.events(network.deployment)
         await network.up()
         try:
             await until(lambda: sum(ask(network, "pc")["cells"]) == 4, FIRST_S)
-            await play.Player(network, plan, happening, lambda event: None).play()
+            await play.Player(network, happening, lambda event: None).play()
             await until(lambda: ask(network, "pc")["cells"][1] == 4, FIRST_S)
         finally:
             await network.down()
@@ -130,12 +131,12 @@ def test_a_radio_team_comes_up_and_stations_leave_and_join(tmp_path):
 
     async def main():
         plan = scenarios.plan(scenarios.from_dict(team))
-        network = Network(plan, tmp_path, "udp")
-        happening = play.events(plan, network.names, network.links, network.cable_of)
+        network = Processes(plan, tmp_path, "udp")
+        happening = play.events(network.deployment)
         await network.up()
         try:
             assert not status.answers(network.socket("s2"))  # it joins later
-            await play.Player(network, plan, happening, lambda event: None).play()
+            await play.Player(network, happening, lambda event: None).play()
             assert network.processes["s1"].poll() == 0
             request = {"do": "send", "payload": b"here".hex()}
             listening = status.ask(network.socket("s0"), {"do": "listen"})

@@ -1,5 +1,6 @@
 import pytest
 
+from innervate.networks.skin.plot import words as skin_words
 from innervate.plot import words
 
 
@@ -30,7 +31,7 @@ def test_shares():
 
 def test_every_kind_of_event_has_words(many):
     graph = many.plan.graph
-    found = [words.fault_words(graph, fault) for fault in many.plan.faults]
+    found = [skin_words.fault_words(graph, fault) for fault in many.plan.faults]
     assert found[0] == "cable to interface 1 cut"
     assert found[1] == "cell p0 r2 c2 switched off"
     assert found[2].startswith("cable p0 r")
@@ -44,7 +45,7 @@ def test_every_kind_of_event_has_words(many):
 
 def test_headline(cut):
     recovery = cut.summary["recoveries"][0]
-    sentence = words.headline(cut.plan.graph, cut.plan.faults[0], recovery)
+    sentence = skin_words.headline(cut.plan.graph, cut.plan.faults[0], recovery)
     detected, routed = (words.ms_words(recovery[k]) for k in ("detected_ms", "routed_ms"))
     assert sentence == (
         f"Cable to interface 1 cut at 0.300 s: noticed after {detected}, "
@@ -54,10 +55,10 @@ def test_headline(cut):
 
 def test_outcomes():
     never = {"detected_ms": None, "routed_ms": None, "converged_ms": None}
-    assert "still had no way" in words.outcome(never)
-    assert words.outcome(never, "3 cells are lost") == "3 cells are lost"
+    assert "still had no way" in skin_words.outcome(never)
+    assert skin_words.outcome(never, "3 cells are lost") == "3 cells are lost"
     kept = {"detected_ms": None, "routed_ms": 0.0, "converged_ms": 18.5}
-    assert words.outcome(kept) == (
+    assert skin_words.outcome(kept) == (
         "every cell kept its way to the PC, the last one changed it after 18.5 ms"
     )
 
@@ -84,7 +85,7 @@ def recovery(**keys):
     ({"action": "kill"}, "every other cell kept its way to the PC"),
 ])  # fmt: skip
 def test_cells_that_are_cut_off_are_told_from_those_with_a_way(changes, said):
-    assert words.outcome(recovery(**changes)) == said
+    assert skin_words.outcome(recovery(**changes)) == said
 
 
 def test_a_broken_cable_is_named_once():
@@ -93,8 +94,8 @@ def test_a_broken_cable_is_named_once():
         {"cell": "p0 r0 c1", "port": "W", "since_s": 1.25, "to": "p0 r0 c0 E"},
         {"cell": "p0 r5 c3", "port": "down", "since_s": None, "to": "pc.1"},
     ]
-    assert words.broken_cables(both) == [
+    assert skin_words.broken_cables(both) == [
         "cable p0 r0 c0 E - p0 r0 c1 W, since 1.250 s",
         "cable from interface 1 to p0 r5 c3 down",
     ]
-    assert words.broken_cables([]) == []
+    assert skin_words.broken_cables([]) == []

@@ -9,10 +9,10 @@ import pytest
 
 import innervate
 from innervate.analysis import summary_common
-from innervate.analysis.summaries import MeshSummary, RadioSummary, SkinSummary, SlottedSummary
 from innervate.networks.mesh.analysis import summary_keys as mesh_summary
 from innervate.networks.radio.analysis import summary_keys as radio_summary
 from innervate.networks.skin.analysis import summary_keys as skin_summary
+from innervate.networks.typed import MeshSummary, RadioSummary, SkinSummary, SlottedSummary
 
 RADIO = {"kind": "radio", "stations": 4, "duration_s": 5}
 RUNS = {

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from innervate import scenario
 from innervate.dialect.arith import HALF30, MASK30
+from innervate.networks.skin.sim import build
 from innervate.sim import clocks
-from innervate.sim.cables import build
 
 CELLS = 63
 TIME = st.integers(0, 10**11)

@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from innervate import scenario
+from innervate.networks.skin.sim import build
 from innervate.sim import wheel
-from innervate.sim.cables import build
 
 SLOTS = 24
 FAR = [0, 0, 1, 2, 63, 64, 1023, 1024, 1025, (1 << 20) - 1, 1 << 20, (1 << 20) + 1,

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from innervate.topology import TopologyError, body_graph, cells_from_urdf
+from innervate.topology.layout import cell_places
 
 ROBOT = "package:icub-models/iCubGenova02"
 has_icub = pytest.mark.skipif(
@@ -95,7 +96,7 @@ def test_cables_are_within_reach_and_hold_everything_together(
     for a, b in graph.links():
         if b < 4 * graph.cells:
             assert math.dist(places[a // 4], places[b // 4]) <= 40.0
-    assert all(math.isfinite(v) for point in graph.layout() for v in point)
+    assert all(math.isfinite(v) for point in cell_places(graph) for v in point)
 
 
 @has_icub
@@ -111,7 +112,7 @@ def test_icub_skin(pattern: str, cells: int) -> None:
     assert graph.depth_max < 16
     ends = [graph.peer[4 * cells + i] // 4 for i in range(2)]
     assert math.dist(places[ends[0]], places[ends[1]]) > 60
-    points = graph.layout()
+    points = cell_places(graph)
     assert max(x for x, _ in points) > 50
     assert max(y for _, y in points) > 80
 

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from innervate.topology import Graph, Patch, TopologyError, from_patches, join_chain, port_number
+from innervate.topology.layout import cell_places
 
 shapes = st.tuples(st.integers(1, 7), st.integers(1, 7), st.sampled_from("ZS"))
 
@@ -28,7 +29,7 @@ def test_every_cable_has_two_ends(patches: list[tuple[int, int, str]]) -> None:
 @given(shapes)
 def test_neighbours_touch_on_the_honeycomb(shape: tuple[int, int, str]) -> None:
     graph = from_patches([shape])
-    points = graph.layout()
+    points = cell_places(graph)
     for a, b in graph.links():
         assert math.dist(points[a // 4], points[b // 4]) == pytest.approx(14.0)
 
@@ -104,7 +105,7 @@ def joined(count: int) -> Graph:
 
 def test_patches_never_overlap() -> None:
     for count in (1, 5, 40, 70):
-        points = joined(count).layout()
+        points = cell_places(joined(count))
         assert len(points) == 60 * count
         assert len({(round(x), round(y)) for x, y in points}) == 60 * count
         assert min(x for x, _ in points) >= 0
@@ -114,7 +115,7 @@ def test_patches_never_overlap() -> None:
 def test_joined_patches_lie_side_by_side() -> None:
     graph = from_patches([(6, 10, "Z")] * 2)
     graph.connect(graph.end(5, 1), graph.end(60, 0))
-    points = graph.layout()
+    points = cell_places(graph)
     assert math.dist(points[5], points[60]) < 45
 
 

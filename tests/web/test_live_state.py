@@ -1,7 +1,8 @@
 """What is made of the words of running nodes: a map, ways, a headline."""
 
+from innervate.networks.radio.view.live import RadioState
+from innervate.networks.skin.view.live import SkinMap, SkinState
 from innervate.web.live_map import Map
-from innervate.web.live_state import State
 
 
 def cell(number, parent, paths):
@@ -31,47 +32,47 @@ def skin_of_three():
 
 def test_cables_are_found_by_their_addresses():
     told = skin_of_three()
-    where = Map(told)
+    where = SkinMap(told)
     assert [place.port for place in where.places] == [-1, -1, 0]
     found = [(where.number[link.a], where.number[link.b]) for link in where.links]
     assert found == [(0, 1), (0, 1), (0, 2)]
-    state = State(where, told)
+    state = SkinState(where, told)
     assert state.hop.tolist() == [2, 0, -1]
     assert state.fields()["depth"].tolist() == [1, 2, 0]
     assert state.fields()["port"].tolist() == [0, 0, 0]
     assert state.unconnected == 0
     told[0]["paths"][0]["up"] = False
-    state = State(where, told)
+    state = SkinState(where, told)
     assert state.link_up.tolist() == [1, 1, 0]
     assert state.unconnected == 2
     assert where.spread().shape == (3, 2)
-    shown = state.headline(0.0)
+    shown = state.headline()
     assert (shown.level, shown.nodes) == ("down", (0, 1))
     assert "cut off" in shown.text
 
 
 def test_cells_of_a_running_skin_are_cut_off_seeking_or_silent():
     told = skin_of_three()
-    where = Map(told)
-    assert State(where, told).headline(0.0).level == "ok"
+    where = SkinMap(told)
+    assert SkinState(where, told).headline().level == "ok"
     told[1]["parent"] = None
-    seeking = State(where, told)
+    seeking = SkinState(where, told)
     assert (seeking.unconnected, seeking.lacking) == (1, 1)
-    assert seeking.headline(0.0).text.startswith("1 of 2 cells (1) has no way to the PC")
-    silent = State(where, {i: one for i, one in told.items() if i != 1}).headline(0.0)
+    assert seeking.headline().text.startswith("1 of 2 cells (1) has no way to the PC")
+    silent = SkinState(where, {i: one for i, one in told.items() if i != 1}).headline()
     assert (silent.level, silent.nodes) == ("degraded", (1,))
-    no_pc = State(where, {i: one for i, one in told.items() if i != 2}).headline(0.0)
+    no_pc = SkinState(where, {i: one for i, one in told.items() if i != 2}).headline()
     assert no_pc.level == "down"
     assert no_pc.text.startswith("The PC")
-    assert State(where, {}).headline(0.0).level == "no data"
+    assert SkinState(where, {}).headline().level == "no data"
 
 
 def test_who_is_gone_stays_on_the_map():
     told = skin_of_three()
-    where = Map(told)
+    where = SkinMap(told)
     left = {i: one for i, one in told.items() if i != 1}
-    assert State(Map(told, where), left).node_up.tolist() == [1, 0, 1]
-    assert Map(told, where).links == where.links
+    assert SkinState(SkinMap(told, where), left).node_up.tolist() == [1, 0, 1]
+    assert SkinMap(told, where).links == where.links
 
 
 def test_a_radio_team_is_a_ring_of_stations():
@@ -81,10 +82,10 @@ def test_a_radio_team_is_a_ring_of_stations():
         for i in range(3)
     }  # fmt: skip
     where = Map(told)
-    fields = State(where, {i: told[i] for i in (0, 1)}).fields()
+    fields = RadioState(where, {i: told[i] for i in (0, 1)}).fields()
     assert fields["node_up"].tolist() == [1, 1, 0]
     assert fields["radio"] == {"now": [0, 4, 0], "turn": [4, -1, -1]}
     assert fields["unconnected"] == 1  # one that is off
-    gone = State(where, {}).headline(0.0)
+    gone = RadioState(where, {}).headline()
     assert (gone.level, gone.text) == ("no data", "None of the 3 stations answers.")
     assert len({tuple(place) for place in where.spread().round(3).tolist()}) == 3

@@ -17,6 +17,7 @@ from innervate.cli.files_app import check, compare, new, scenarios
 from innervate.cli.live_app import live_app
 from innervate.cli.seeds import Seed, Sets
 from innervate.cli.verify_options import VERIFY_DEFAULTS, VerifyOptions
+from innervate.network import first
 
 HELP = """Describe and simulate the networks inside and between robots.
 
@@ -223,7 +224,7 @@ def size(
 
 @app.command
 def papers(
-    paper: str = "skin",
+    paper: str | None = None,
     /,
     *,
     only: Annotated[list[str] | None, Parameter(negative="")] = None,
@@ -236,7 +237,7 @@ def papers(
     Parameters
     ----------
     paper
-        Which paper: skin, radio or mesh.
+        Which paper: skin (if left out), radio or mesh.
     only
         A figure by its name, like fig8a of the skin or fig12 of the radio; may be given again.
     quick
@@ -248,12 +249,12 @@ def papers(
     """
     from innervate.cli import papers as command
 
-    return command.papers(paper, only or [], quick, redraw, out)
+    return command.papers(paper or first(), only or [], quick, redraw, out)
 
 
 @app.command
 def verify(
-    system: str = "skin",
+    system: str | None = None,
     /,
     *,
     options: Annotated[VerifyOptions, Parameter(name="*")] = VERIFY_DEFAULTS,
@@ -265,7 +266,7 @@ def verify(
     Parameters
     ----------
     system
-        Which protocol: skin, radio or mesh.
+        Which protocol: skin (if left out), radio or mesh.
     json
         Print the results as JSON and nothing else.
     out
@@ -273,7 +274,7 @@ def verify(
     """
     from innervate.cli import verifying as command
 
-    return command.verify(system, options, json, out)
+    return command.verify(system or first(), options, json, out)
 
 
 @app.command

@@ -138,18 +138,16 @@ class Recorder:
         """Write those of a node's interfaces that are new; their numbers by port."""
         if about["sealed"] and about["capturing"] not in self.sealed:
             self.sealed.append(about["capturing"])
-        what = {"mesh": "node", "radio": "station"}.get(about["kind"])
-        if what is None:
-            what = "pc" if about["role"] == "sink" else "cell"
+        network = networks()[about["kind"]]
+        what = network.interface_words.get(about["role"], "node")
         numbers = {}
         for path, port, here, there in about["paths"]:
             several = len(about["paths"]) > 1
             name = about["capturing"] + (f" port {port}" if several else "")
             text = links.describe(what, about["number"], port, (here, there))
-            link_type = networks()[about["kind"]].link_type
             if (name, text) not in self.numbers:
                 self.numbers[name, text] = len(self.numbers)
-                self.file.write(pcapng.interface(link_type, name, text))
+                self.file.write(pcapng.interface(network.link_type, name, text))
             numbers[path] = self.numbers[name, text]
         self.file.flush()
         return numbers

@@ -34,7 +34,6 @@ _KNOWN = (
     ("innervate.export.errors", "ExportError", USERS),
     ("cyclopts", "CycloptsError", USERS),
     ("innervate.sim.driver", "InvariantBroken", OURS),
-    ("innervate.networks.skin.analysis.frames", "FramesLost", OURS),
 )
 
 

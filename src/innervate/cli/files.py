@@ -9,7 +9,7 @@ from pathlib import Path
 
 from innervate import scenario
 from innervate.cli.errors import UserError
-from innervate.networks.mesh.scenario.template import measured
+from innervate.network import networks
 
 
 def scenarios() -> int:
@@ -69,14 +69,16 @@ def _of_network(
     kind: str, file: Path | None, network: str, types: list[str], min_tq: float
 ) -> tuple[str, str]:
     """The text of a scenario of a measured network, and what it holds."""
-    if kind != "mesh":
-        raise UserError(f"--network is for a mesh: innervate new mesh FILE --network {network}")
+    able = [name for name, known in networks().items() if known.has("measured_template")]
+    if kind not in able:
+        raise UserError(f"--network is for a {' or a '.join(able)}: "
+                        f"innervate new {able[0]} FILE --network {network}")  # fmt: skip
     folder = file.parent if file is not None else Path()
     given = network
     if Path(network).is_file():
         given = Path(os.path.relpath(network, folder)).as_posix()
     name = file.stem if file is not None else Path(network).stem
-    text = measured(name, given, types, min_tq)
+    text = networks()[kind].measured_template(name, given, types, min_tq)
     return text, scenario.summary(scenario.loads(text, folder=str(folder)))
 
 

@@ -6,13 +6,11 @@ from pathlib import Path
 
 from innervate.cli.errors import say
 from innervate.export import files, fitting, measure
-from innervate.networks.mesh.export import statuslog
 
 
 def fit(capture: Path, out: Path | None) -> int:
     """Write the scenario, or print it; say how well its simulation matches. 1 if links differ."""
-    room = statuslog if statuslog.looks_like_one(capture) else measure
-    found = room.measure(capture)
+    found = measure.measure(capture)
     text = fitting.scenario_of(found, capture.stem)
     if out is None:
         print(text, end="")

@@ -5,13 +5,12 @@ from __future__ import annotations
 import asyncio
 import json
 import sys
-from datetime import datetime
 from pathlib import Path
-from typing import Any
 
 from innervate.cli import errors, live_status
 from innervate.live import status
 from innervate.live.errors import LiveError
+from innervate.network import networks
 
 
 def up(
@@ -79,22 +78,16 @@ def send(name: str, to: int, text: str, how: dict[str, bool], as_json: bool) -> 
 
 def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:
     """Print messages that come in at a node."""
-    heard = 0
+    heard, where = 0, status.find(name)
+    words = networks()[status.ask_one(where, {"do": "status"})["kind"]].live_words
     request = {"do": "listen", "alarms": True, **({"in_order": True} if in_order else {})}
-    for answer in status.ask(status.find(name), request):
+    for answer in status.ask(where, request):
         if "from" not in answer:
             continue
         if as_json:
             print(json.dumps(answer), flush=True)
         else:
-            text = touch_text(answer["touch"]) if "touch" in answer else ""
-            if "alarm" in answer:
-                text = f"alarm: {live_status.alarm_text(answer['alarm'])}"
-            if "command" in answer:
-                text = command_text(answer["command"])
-            if "payload" in answer:
-                text = bytes.fromhex(answer["payload"]).decode("utf-8", "backslashreplace")
-            print(f"{answer['from']}: {text}", flush=True)
+            print(f"{answer['from']}: {words.heard(answer)}", flush=True)
         heard += 1
         if heard == count:
             break
@@ -116,29 +109,6 @@ def command(name: str, code: int, value: int, cell: int | None, as_json: bool) -
     return 0 if sent["ports"] else 1
 
 
-def command_text(command: dict[str, Any]) -> str:
-    """A command, with the time at which the cell received it."""
-    whom = "all cells" if command["to_all"] else "this cell"
-    return (
-        f"{_time(command['time_us'])} command {command['number']} for {whom}: code "
-        f"{command['code']}, value {command['value']}, {command['hops']} hops"
-    )
-
-
-def _time(time_us: int) -> str:
-    return datetime.fromtimestamp(time_us / 1e6).isoformat(" ", "microseconds")
-
-
-def touch_text(touch: dict[str, Any]) -> str:
-    """A sample, with the time at which the PC received it."""
-    force = " ".join(str(value) for value in touch["force"])
-    return (
-        f"{_time(touch['time_us'])} seq {touch['seq']}, {touch['hops']} hops, "
-        f"interface {touch['port']}, proximity {touch['proximity']}, force {force} mN, "
-        f"{20 + touch['temperature'] / 2:g} degC"
-    )
-
-
 def change(name: str, port: int, what: str) -> int:
     """Cut or restore a cable at one node."""
     status.ask_one(status.find(name), {"do": what, "port": port})
@@ -147,7 +117,7 @@ def change(name: str, port: int, what: str) -> int:
 
 def medium(where: str, slot_us: int, turnaround_us: int) -> int:
     """Run a shared channel."""
-    from innervate.networks.radio.live import medium as room
+    from innervate.live import channel as room
 
     asyncio.run(room.run(where, slot_us, turnaround_us))
     return 0

@@ -7,6 +7,8 @@ import time
 from types import TracebackType
 from typing import Any, Self
 
+from innervate.network import networks
+
 COMPILING = "compiling the simulation, once on this machine: about half a minute"
 LINE_EVERY_S = 10.0
 
@@ -111,12 +113,5 @@ def is_compiled(plan: Any) -> bool:
     """True if the loop that a plan runs on is compiled, or needs no compiling."""
     from innervate.kernel import door
 
-    if plan.kind == "radio":
-        return door.is_compiled(plan.protocol.replace("/", "-"))
-    if plan.kind == "mesh":
-        from innervate.networks.mesh.sim.simulate import loop_name as mesh_loop_name
-
-        return door.is_compiled(mesh_loop_name(plan))
-    from innervate.networks.skin.sim.simulate import loop_name
-
-    return bool(plan.script) or door.is_compiled(loop_name(plan))
+    name = networks()[plan.kind].loop_name(plan)
+    return not name or door.is_compiled(name)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from innervate.cli import errors
 from innervate.cli.progress import Progress, is_compiled
+from innervate.network import networks
 
 if TYPE_CHECKING:
     from innervate.running import Run
@@ -27,9 +28,7 @@ def run(
     if as_json:
         print(json.dumps(done.summary, indent=2, allow_nan=False))
     else:
-        from innervate.cli import show
-
-        for line in show.summary_lines(done):
+        for line in networks()[done.plan.kind].summary_lines(done):
             print(line)
         print(f"Written: {folder / 'report.html' if report else folder}")
     return errors.INTERRUPTED if done.interrupted else 0

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from innervate.cli import errors
 from innervate.cli.live_table import LiveTable
-
-if TYPE_CHECKING:
-    from innervate.networks.skin.sizing import Answer
+from innervate.network import networks
 
 
 def size(question: dict[str, Any], how: dict[str, Any]) -> int:
-    """Answer how many interface ports a robot's skin needs, with a table and a picture."""
-    from innervate.networks.skin import sizing
-    from innervate.sweeping.sized import answer_lines
-
+    """Answer how many ports a robot needs, with a table and a picture."""
+    sizing = next(one.sizing for one in networks().values() if one.has("sizing"))
     _check(question)
     ports = sizing.parse_ports(question.pop("ports"))
     asked = sizing.Question(ports=ports, **question)
@@ -29,9 +25,9 @@ def size(question: dict[str, Any], how: dict[str, Any]) -> int:
             errors.say(f"interrupted; {table.words}; they are kept in {folder}, and the same "
                        "command goes on from there")  # fmt: skip
             return errors.INTERRUPTED
-    for line in answer_lines(answer):
+    for line in answer.lines():
         print(line)
-    print(f"Drawn: {draw(answer, folder)}")
+    print(f"Drawn: {answer.draw(folder)}")
     return 0
 
 
@@ -55,21 +51,3 @@ def _check(question: dict[str, Any]) -> None:
                 raise errors.UserError(
                     f"{option} must be {scale * low:g} to {scale * high:g}, not {scale * value:g}"
                 )
-
-
-def draw(answer: Answer, folder: Path) -> Path:
-    """The picture in the sweep's folder, with the ports that the hardest rate needs."""
-    from innervate.networks.skin.plot import sizing as figure
-    from innervate.plot import style
-    from innervate.plot.words import number_of
-
-    asked = answer.question
-    ports = max(n or max(answer.graphs) for n in answer.needed.values())
-    graph = answer.graphs[ports]
-    columns = answer.table.to_dict(as_series=False)
-    limits = (asked.loss_max, asked.recovery_ms_max)
-    with style.house():
-        made = figure.draw(
-            columns, graph, limits, f"{graph.cells} cells, {number_of(ports, 'port')}"
-        )
-        return style.save(made, folder, "size")[0]

@@ -10,7 +10,7 @@ from typing import Any, BinaryIO
 import numpy as np
 
 import innervate
-from innervate.export import files, pcapng
+from innervate.export import cabled, files, pcapng
 from innervate.export.errors import ExportError
 from innervate.network import networks
 from innervate.sim import taps
@@ -72,7 +72,7 @@ def write(
             the run that it should be.
         InvariantBroken: a checker found what must not happen.
     """
-    captured = networks()[plan.kind].capture
+    captured = captured_of(plan)
     why = captured.refusal(plan)
     if why:
         raise ExportError(why)
@@ -90,11 +90,17 @@ def write(
     return Written(stream.frames, stream.sent, stream.received, stream.dropped, result)
 
 
+def captured_of(plan: Any) -> Any:
+    """What the plan's network says of captures, or what any network of cables does."""
+    network = networks()[plan.kind]
+    return network.capture if network.has("capture") else cabled.Captured(network)
+
+
 class _Stream:
     """Puts frames in order of time and writes them."""
 
     def __init__(self, plan: Any, file: BinaryIO, window_us: tuple[int, int]) -> None:
-        self.captured = networks()[plan.kind].capture
+        self.captured = captured_of(plan)
         self.file = file
         self.window_us = window_us
         self.frames = self.sent = self.received = 0

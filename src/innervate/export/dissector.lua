@@ -130,134 +130,21 @@ local function ends()
   return here, there
 end
 
-local function skin(self, tvb, tree)
+-- A type of `bits` bits, its fields, a CRC and nothing else.
+local function usual(self, tvb, tree)
   local size = tvb:len()
-  if size < SKIN_MIN then
+  if size < 3 then
     complain(self, tree, MALFORMED, "Malformed: too short")
     return "damaged"
   end
-  local kind, range = number(tvb, 0, SKIN_HEAD)
+  local kind, range = number(tvb, 0, self.bits)
   tree:add(self.kind, range, kind)
-  local name, behind = body(self, tvb, tree, kind, SKIN_HEAD, 8 * size - 16)
+  local name, behind = body(self, tvb, tree, kind, self.bits, 8 * size - 16)
   if behind and math.ceil(behind / 8) ~= size - 2 then
     complain(self, tree, MALFORMED, "Malformed: too long for its type")
   end
   show_crc(self, tvb, tree)
   return name, ends()
-end
-
-local function radio(self, tvb, tree)
-  local size = tvb:len()
-  if size == 1 then
-    if tvb(0, 1):uint() ~= RADIO_CARRIER then complain(self, tree, MALFORMED, "Malformed: too short") end
-    return "CR-R or pulse", (ends()), "all"
-  elseif size < 3 then
-    complain(self, tree, MALFORMED, "Malformed: too short")
-    return "damaged"
-  end
-  local kind = number(tvb, 4, 4)
-  tree:add(self.version, tvb(0, 1), number(tvb, 0, 4))
-  tree:add(self.kind, tvb(0, 1), kind)
-  if number(tvb, 0, 4) ~= RADIO_VERSION then complain(self, tree, MALFORMED, "Malformed: version") end
-  local name, behind, found = body(self, tvb, tree, kind, 8, 8 * size - 16)
-  if behind and behind / 8 < size - 2 then
-    local first = math.floor(behind / 8)
-    tree:add(self.payload, tvb(first, size - 2 - first))
-    if kind == RADIO_REPORT then complain(self, tree, MALFORMED, "Malformed: too long for its type") end
-  end
-  show_crc(self, tvb, tree)
-  local source = found and found.source and string.format("station %d", found.source)
-  return name, source or (ends()), "all"
-end
-
--- True if bytes `first` to `last` are exactly a payload with these fields.
-local function is_whole(fields, tvb, first, last)
-  return first <= last and read(fields, tvb, 8 * first, 8 * last) == 8 * last
-end
-
-local function mesh_payload(self, tvb, tree, known, flags, first, last)
-  local stop = last
-  if bitop.band(flags, MESH_SOURCE_ROUTE) ~= 0 and first < last then
-    local count = tvb(first, 1):uint()
-    if first + 1 + count > last then
-      complain(self, tree, MALFORMED, "Malformed: source route")
-      return
-    end
-    list(self.source_route, tvb, first + 1, first + 1 + count, tree)
-    first = first + 1 + count
-  end
-  if bitop.band(flags, MESH_DETOURED) ~= 0 and first < last and tvb(last - 1, 1):uint() > 0 then
-    local at = last - 1 - tvb(last - 1, 1):uint()
-    if is_whole(known.fields, tvb, first, at) then stop = at end
-  end
-  if not is_whole(known.fields, tvb, first, stop) then
-    complain(self, tree, MALFORMED, "Malformed: payload")
-  end
-  tree:add(self.body, tvb(first, stop - first), known.name):set_hidden()
-  local part = tree:add(known.proto, tvb(first, stop - first))
-  local _, found = read(known.fields, tvb, 8 * first, 8 * stop, part)
-  if stop < last then list(self.failed, tvb, stop, last - 1, tree) end
-  return found
-end
-
-local function mesh_flags(item, flags)
-  local set = {}
-  for _, flag in ipairs(MESH_FLAGS) do
-    if bitop.band(flags, flag[1]) ~= 0 then set[#set + 1] = flag[2] end
-  end
-  if #set > 0 then item:append_text(" (" .. table.concat(set, ", ") .. ")") end
-end
-
-local function node(number)
-  if number == 255 then return "all" end
-  return number == 254 and "monitor" or string.format("%d", number)
-end
-
-local function mesh(self, tvb, tree)
-  local size = tvb:len()
-  if size < MESH_ACK_BYTES then
-    complain(self, tree, MALFORMED, "Malformed: too short")
-    return "damaged"
-  end
-  local kind = number(tvb, 2, 6)
-  tree:add(self.version, tvb(0, 1), number(tvb, 0, 2))
-  tree:add(self.kind, tvb(0, 1), kind)
-  if number(tvb, 0, 2) ~= MESH_VERSION then complain(self, tree, MALFORMED, "Malformed: version") end
-  local last, name, found, info = size - 2, "ack"
-  if kind == MESH_ACK then
-    local behind
-    behind, found = read(self.ack, tvb, 8, 8 * last, tree:add(self.hop_ack, tvb()))
-    if found then info = string.format("ack of %d's seq %d", found.origin, found.seq) end
-    if behind ~= 8 * last then complain(self, tree, MALFORMED, "Malformed: length of an ack") end
-  else
-    local known, behind = self.kinds[kind]
-    name = known and known.name or "unknown type"
-    behind, found = read(self.common, tvb, 8, 8 * last, tree)
-    if not behind then
-      complain(self, tree, MALFORMED, "Malformed: too short")
-    else
-      mesh_flags(tree, found.flags)
-      local path = math.floor(behind / 8)
-      local first = path + found.path_len
-      if found.path_len > MESH_PATH_MAX or first > last then
-        complain(self, tree, MALFORMED, "Malformed: path")
-      else
-        list(self.path, tvb, path, first, tree)
-        if known then
-          local own = mesh_payload(self, tvb, tree, known, found.flags, first, last)
-          info = line(name, known.fields, own)
-        else
-          complain(self, tree, MALFORMED, "Malformed: no packet has this type")
-        end
-      end
-    end
-  end
-  show_crc(self, tvb, tree)
-  if not found then return name end
-  if found.dest then
-    info = string.format("%s (%d > %s, seq %d)", info or name, found.origin, node(found.dest), found.seq)
-  end
-  return info, "node " .. node(found.link_src), found.link_dst == 255 and "all" or "node " .. node(found.link_dst)
 end
 
 -- A sealed frame: only who holds the key can say more.
@@ -268,9 +155,11 @@ local function sealed(self, tvb, tree)
   return string.format("sealed by %d", tvb(1, 2):uint()), ends()
 end
 
-local function define(name, readable, encap, run, layouts)
-  local proto = Proto("innervate_" .. name, "innervate " .. readable)
-  local self = { kinds = {}, experts = {} }
+-- A kind of network: what it is called, the link type of its frames, how they are read (nil: as is
+-- usual), and their layouts.
+local function define(name, encap, run, layouts)
+  local proto = Proto("innervate_" .. name, "innervate " .. name)
+  local self = { kinds = {}, experts = {}, bits = layouts.bits }
   local prefix, made = "innervate." .. name .. ".", {}
   local function field(make, abbr, ...)
     local one = make(prefix .. abbr, ...)
@@ -323,7 +212,7 @@ local function define(name, readable, encap, run, layouts)
     pinfo.cols.protocol = string.upper(name)
     local is_sealed = tvb:len() > SEALED_MIN and tvb(0, 1):uint() >= SEALED_MARK
       and tvb(0, 1):uint() < SEALED_MARK + 16
-    local info, from, to = (is_sealed and sealed or run)(self, tvb, tree)
+    local info, from, to = (is_sealed and sealed or run or usual)(self, tvb, tree)
     tree:append_text(", " .. info)
     pinfo.cols.info = info
     if from then pinfo.cols.src = from end
@@ -333,7 +222,3 @@ local function define(name, readable, encap, run, layouts)
   DissectorTable.get("wtap_encap"):add(encap, proto)
   protos[name] = proto
 end
-
-define("skin", "skin", encaps.USER0, skin, SKIN)
-define("mesh", "mesh", encaps.USER1, mesh, MESH)
-define("radio", "radio", encaps.USER2, radio, RADIO)

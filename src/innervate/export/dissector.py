@@ -1,38 +1,40 @@
-"""A Wireshark dissector in Lua, generated from the layouts of `wire`; dissector.lua runs them."""
+"""A Wireshark dissector in Lua, generated from frame layouts; dissector.lua runs them.
+
+What a network says of its frames is its part `dissector`; any network with frame layouts has one.
+"""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable, Mapping
 from importlib.resources import files as resources
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import innervate
 from innervate.export import files
 from innervate.export.errors import ExportError
-from innervate.networks.mesh import frames as mesh
-from innervate.networks.mesh import payloads as mesh_payloads
-from innervate.networks.mesh.meanings import MEANINGS
-from innervate.networks.mesh.protocol import constants as mesh_words
-from innervate.networks.mesh.protocol import fields as mesh_fields
-from innervate.networks.radio import frames as radio
-from innervate.networks.radio.protocol import fields as radio_fields
-from innervate.networks.radio.protocol.constants import CRR, REPORT
-from innervate.networks.skin import frames as skin
-from innervate.networks.skin.protocol import fields as skin_fields
+from innervate.network import Network, networks
 from innervate.wire import layout, seal
 
 FILE = "innervate.lua"
-FLAGS = (
-    (mesh_words.ACK_WANTED, "ack wanted"),
-    (mesh_words.END_TO_END, "end-to-end ack"),
-    (mesh_words.FLOOD, "flood"),
-    (mesh_words.SOURCE_ROUTE, "source route"),
-    (mesh_words.DETOURED, "detoured"),
-    (mesh_words.PRIORITY, "priority"),
-    (mesh_words.FIRST, "first after boot"),
-    (mesh_words.PARITY, "parity of the retry"),
-)
+USER0 = 147  # the link type that Wireshark calls USER0
+
+
+class Frames(NamedTuple):
+    """What a dissector has to know of a network's frames.
+
+    Attributes:
+        layouts: a Lua table: `kinds` by number, `others` that have a name and no fields, `bits` of
+            the type that a frame begins with, `common` and `ack` for frames with a header.
+        run: Lua that says `local function run(self, tvb, tree)`, which reads a frame and returns
+            its line, source and destination; "" = a type, the type's fields and a CRC.
+        constants: numbers, texts or tables in Lua that `run` speaks of.
+    """
+
+    layouts: str
+    run: str = ""
+    constants: Mapping[str, Any] = {}
 
 
 def plugin_folder() -> Path:
@@ -59,57 +61,45 @@ def install(folder: Path | None = None) -> Path:
 
 def source() -> str:
     """The dissector."""
-    runtime = (resources("innervate.export") / "dissector.lua").read_text(encoding="utf-8")
-    head = f"-- Frames of innervate {innervate.__version__}: skin, mesh, radio. Generated: "
-    head += "`innervate export --dissector` writes it anew."
-    return "\n".join([head, *_constants(), "", _skin(), _mesh(), _radio(), "", runtime])
-
-
-def _constants() -> list[str]:
+    known = [one for one in networks().values() if one.has("dissector") or one.has("frames")]
+    head = f"-- Frames of innervate {innervate.__version__}: {', '.join(n.name for n in known)}. "
+    head += "Generated: `innervate export --dissector` writes it anew."
     numbers = {
-        "REST": layout.REST,
-        "SKIN_HEAD": skin.KIND_BITS,
-        "SKIN_MIN": skin.CRC_BYTES + 1,
-        "MESH_VERSION": mesh.VERSION,
-        "MESH_ACK": mesh_words.ACK,
-        "MESH_ACK_BYTES": mesh_words.ACK_BYTES,
-        "MESH_PATH_MAX": mesh_words.PATH_MAX,
-        "MESH_SOURCE_ROUTE": mesh_words.SOURCE_ROUTE,
-        "MESH_DETOURED": mesh_words.DETOURED,
-        "RADIO_VERSION": radio.VERSION,
-        "RADIO_CARRIER": radio.CRR_BYTE,
-        "RADIO_REPORT": REPORT,
-        "SEALED_MARK": seal.MARK,
-        "SEALED_MIN": seal.OVERHEAD_BYTES,
-    }
-    flags = ", ".join(f'{{{bit}, "{name}"}}' for bit, name in FLAGS)
-    made = [f"local {name} = {value}" for name, value in numbers.items()]
-    return [*made, f"local MESH_FLAGS = {{{flags}}}"]
+        "REST": layout.REST, "SEALED_MARK": seal.MARK, "SEALED_MIN": seal.OVERHEAD_BYTES
+    }  # fmt: skip
+    return "\n".join([head, *_locals(numbers), "", lua("innervate.export"), *map(_network, known)])
 
 
-def _skin() -> str:
-    says = _meanings(skin_fields.FRAME)
-    return f"local SKIN = {{ kinds = {_kinds(skin.LAYOUTS, says)} }}"
+def lua(package: str) -> str:
+    """The file dissector.lua of a package."""
+    return (resources(package) / "dissector.lua").read_text(encoding="utf-8")
 
 
-def _mesh() -> str:
-    says = _meanings(mesh_fields.FRAME)
-    return (
-        f"local MESH = {{ kinds = {_kinds(mesh_payloads.LAYOUTS, MEANINGS)},\n"
-        f'  others = {{[{mesh_words.ACK}] = "ack"}},\n'
-        f"  common = {_fields(mesh.COMMON, says)},\n  ack = {_fields(mesh.HOP_ACK, says)} }}"
-    )
+def _network(network: Network) -> str:
+    """A network's frames, in a block of their own."""
+    said = network.dissector() if network.has("dissector") else usual(network)
+    run = "run" if said.run else "nil"
+    encap = f"encaps.USER{network.link_type - USER0}"
+    define = f'define("{network.name}", {encap}, {run}, {said.layouts})'
+    return "\n".join(["do", *_locals(said.constants), said.run, define, "end", ""])
 
 
-def _radio() -> str:
-    kinds = _kinds(radio.LAYOUTS, _meanings(radio_fields.FRAME))
-    return f'local RADIO = {{ kinds = {kinds}, others = {{[{CRR}] = "CR-R or pulse"}} }}'
+def _locals(constants: Mapping[str, Any]) -> list[str]:
+    return [f"local {name} = {value}" for name, value in constants.items()]
 
 
-def _kinds(layouts: Any, says: dict[str, str]) -> str:
+def usual(network: Network) -> Frames:
+    """Of a network whose frames are a type, the type's fields and a CRC."""
+    says = meanings(network.fields.FRAME)
+    made = kinds(network.frames.LAYOUTS, says)
+    return Frames(f"{{ bits = {network.frames.KIND_BITS}, kinds = {made} }}")
+
+
+def kinds(layouts: Iterable[tuple[int, str, Any]], says: Mapping[str, str]) -> str:
+    """A Lua table of frames by type, from (type, name, fields)."""
     parts = [
         f'  [{kind}] = {{name = "{name}", abbr = "{abbreviation(name)}", '
-        f"fields = {_fields(fields, says)}}}"
+        f"fields = {fields_of(fields, says)}}}"
         for kind, name, fields in layouts
     ]
     return "{\n" + ",\n".join(parts) + " }"
@@ -120,17 +110,19 @@ def abbreviation(name: str) -> str:
     return name.replace("-", "_").replace(" ", "_")
 
 
-def _fields(fields: Any, says: dict[str, str]) -> str:
+def fields_of(fields: Any, says: Mapping[str, str]) -> str:
+    """A Lua list of fields as wire/layout.py has them; `says` what they mean, by name."""
     return "{\n" + ",\n".join(f"    {_field(field, says)}" for field in fields) + " }"
 
 
-def _field(field: Any, says: dict[str, str]) -> str:
+def _field(field: Any, says: Mapping[str, str]) -> str:
     name, many, bits, signed = field
     count = f'"{many}"' if isinstance(many, str) else many
-    size = f"group = {_fields(bits, says)}" if isinstance(bits, tuple) else f"bits = {bits}"
+    size = f"group = {fields_of(bits, says)}" if isinstance(bits, tuple) else f"bits = {bits}"
     sign = ", signed = true" if signed else ""
     return f'{{name = "{name}", many = {count}, {size}{sign}, says = "{says.get(name, "")}"}}'
 
 
-def _meanings(fields: Any) -> dict[str, str]:
+def meanings(fields: Any) -> dict[str, str]:
+    """What fields mean, by name, from their declarations in a protocol."""
     return {name: meaning for name, _length, _low, _high, _unit, meaning in fields}

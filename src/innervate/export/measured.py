@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass, field
 from statistics import median
-from typing import Any, NamedTuple
+from typing import Any
 
 DELAYS_MAX = 4096  # kept of a way
 
@@ -32,31 +32,16 @@ class Way:
         return self.got / max(1, self.got + self.lost)
 
 
-class Flow(NamedTuple):
-    """Messages from one node of a mesh to another."""
-
-    origin: int
-    dest: int
-    messages: int
-    every_s: float
-    first_s: float
-    size: int
-
-
 @dataclass
 class Measured:
     """A network as a capture has it.
 
     Attributes:
-        kind: "skin" or "mesh".
-        ways: by sender and receiver: numbers of nodes, or ends of cables like "c3.1" and "pc.0".
+        kind: of network.
+        ways: by sender and receiver, nodes or ends of cables.
         seconds: from the first packet to the last.
         packets: read.
-        gateway: of a mesh, -1 nobody seen to be it.
-        flows: of a mesh.
-        beacon_us: of a skin, between beacons of a port; 0 unknown.
-        rate_hz: of a skin, samples per cell and second.
-        cut: ends of a skin whose cable was cut for some time.
+        cut: ends whose cable was cut for some time.
         notes: what to know besides.
     """
 
@@ -64,10 +49,6 @@ class Measured:
     ways: dict[tuple[Any, Any], Way] = field(default_factory=dict)
     seconds: float = 0.0
     packets: int = 0
-    gateway: int = -1
-    flows: list[Flow] = field(default_factory=list)
-    beacon_us: float = 0.0
-    rate_hz: float = 0.0
     cut: set[str] = field(default_factory=set)
     notes: list[str] = field(default_factory=list)
 

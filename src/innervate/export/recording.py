@@ -13,9 +13,7 @@ from innervate.export import files, scenes, schemas
 from innervate.export.scenes import Channel, Message, stamp
 from innervate.network import networks
 
-TOPICS = {"received": "/samples", "crossings": "/alarms"}  # others are called as their table
 INFORMATION, WARNING = 2, 3
-HARM = ("cut", "kill", "loose", "lose", "jam", "leave", "garble", "fade")
 
 
 def write(plan: Any, found: Mapping[str, Any], path: Path) -> int:
@@ -56,7 +54,7 @@ def channels(plan: Any, found: Mapping[str, Any]) -> list[Channel]:
     for table in networks()[plan.kind].tables:
         if table.name in found and len(found[table.name]):
             rows = _rows(found[table.name])
-            topic = TOPICS.get(table.name, f"/{table.name}")
+            topic = table.topic or f"/{table.name}"
             made.append(Channel(topic, schemas.of_table(table), rows))
     if plan.faults:
         made.append(Channel("/log", schemas.LOG, events(plan)))
@@ -85,11 +83,12 @@ def _rows(frame: Any) -> Iterator[Message]:
 def events(plan: Any) -> Iterator[Message]:
     """What the scenario did to the network."""
     told = plan.scenario.model.event
+    harm = networks()[plan.kind].harm
     for fault in plan.faults:
         action = told[fault.index].action
         yield fault.at_us, {
             "timestamp": stamp(fault.at_us),
-            "level": WARNING if action in HARM else INFORMATION,
+            "level": WARNING if action in harm else INFORMATION,
             "message": _sentence(plan, fault),
             "name": "scenario", "file": "", "line": 0,
         }  # fmt: skip

@@ -13,7 +13,8 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Iterable
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -23,11 +24,14 @@ from numba.extending import register_jitable
 
 from innervate.kernel.whole import as_one
 
-SOURCE_ROOMS = ("dialect", "kernel", "sim", "verify", "networks")
-FOLDERS_KEPT = 4
+# What of the sources ends up in compiled code: rooms, and of every network these parts.
+SOURCE_ROOMS = ("dialect", "kernel", "sim", "verify")
+PARTS = ("protocol", "sim", "verify", "baselines", "slotted", "invariants.py")
+FOLDERS_KEPT = 8
 ROOT = Path(__file__).resolve().parent.parent
 
 _registered: set[Callable[..., Any]] = set()
+_foreign: set[Path] = set()  # files of other packages that the next loop is compiled from
 
 
 def register(*modules: ModuleType, hot: bool = True) -> None:
@@ -38,28 +42,85 @@ def register(*modules: ModuleType, hot: bool = True) -> None:
                 register_functions(function, hot=hot)
 
 
+def modules_of(entry: ModuleType) -> list[ModuleType]:
+    """All modules whose functions a protocol's functions call, directly or not."""
+    found = [entry]
+    for module in found:
+        for thing in vars(module).values():
+            if inspect.isfunction(thing):
+                thing = sys.modules[thing.__module__]
+            if inspect.ismodule(thing) and thing not in found:
+                found.append(thing)
+    return found
+
+
+def bound(name: str, *functions: Iterable[Callable[..., Any]]) -> ModuleType:
+    """Functions under one roof, that compiled code can be handed: a module that is no file.
+
+    Compiled code takes no other object of functions as an argument. Of equal names the first
+    counts.
+    """
+    made = ModuleType(name)
+    for function in (one for some in functions for one in some):
+        vars(made).setdefault(function.__name__, function)
+    return made
+
+
 def register_functions(*functions: Callable[..., Any], hot: bool = True) -> None:
     """Let compiled code call these plain functions; hot ones become part of their callers.
 
     Nothing else calls them: without a wrapper for C each, a loop compiles a fifth faster.
     """
     for function in functions:
+        _note(function)
         if function not in _registered:
             register_jitable(forceinline=hot, no_cfunc_wrapper=True)(function)
             _registered.add(function)
 
 
-def source_hash(root: Path = ROOT) -> str:
+def _note(function: Callable[..., Any]) -> None:
+    """A function of a network elsewhere makes its file part of what is compiled next."""
+    path = Path(function.__code__.co_filename)
+    if not path.is_relative_to(ROOT):
+        _foreign.add(path)
+    elif not _is_hashed(path):
+        raise RuntimeError(f"{path} is compiled, and no part of what the cache is known by")
+
+
+@cache
+def _is_hashed(path: Path) -> bool:
+    return any(map(path.is_relative_to, _homes(ROOT)))
+
+
+def _homes(root: Path) -> list[Path]:
+    """Folders and files that compiled code can come from."""
+    networks = [path for path in (root / "networks").iterdir() if path.is_dir()]
+    inside = [network / part for network in networks for part in PARTS]
+    return [root / room for room in SOURCE_ROOMS] + inside
+
+
+def source_files(root: Path = ROOT) -> list[Path]:
+    """All files that compiled code of the toolkit can come from, in order."""
+    homes = _homes(root)
+    return sorted(p for home in homes for p in ([home] if home.is_file() else home.rglob("*.py")))
+
+
+def source_hash(root: Path = ROOT, more: Collection[Path] = ()) -> str:
     """Hash of all sources that compiled code can come from, of what compiles it, and of where.
+
+    Args:
+        root: of the toolkit's sources.
+        more: files of other packages that are compiled with them.
 
     Numba takes nothing from its cache that was compiled from files elsewhere: of the same version
     in another environment nothing is compiled yet.
     """
     digest = hashlib.blake2b(digest_size=10)
     digest.update(f"{root}\0{sys.version_info[:3]} {numba.__version__}".encode())
-    for path in sorted(p for room in SOURCE_ROOMS for p in (root / room).rglob("*.py")):
-        digest.update(path.relative_to(root).as_posix().encode())
-        digest.update(path.read_bytes())
+    for path in (*source_files(root), *sorted(more)):
+        where = path.relative_to(root) if path.is_relative_to(root) else path
+        digest.update(where.as_posix().encode())
+        digest.update(path.read_bytes() if path.is_file() else b"")
     return digest.hexdigest()
 
 
@@ -81,7 +142,8 @@ def cache_root() -> Path:
 
 def open_cache() -> Path:
     """Point Numba at the cache folder of the present sources; forget the oldest others."""
-    folder = cache_root() / source_hash()
+    folder = cache_root() / source_hash(more=_foreign)
+    _foreign.clear()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         os.utime(folder)

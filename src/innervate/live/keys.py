@@ -10,13 +10,13 @@ from typing import NamedTuple
 
 from innervate.live.errors import LiveError
 from innervate.live.state import State
+from innervate.network import networks
 from innervate.wire import seal
 
 KEY_BYTES = 32
 AHEAD = 1 << 18  # counters that the file reserves: 16 s of the clock, 26,000 frames/s between saves
 PER_MS = 16
 KEYS_KEPT = 16  # keys whose windows are kept, those that are no longer accepted included
-KINDS = {"mesh": 1, "skin": 2, "radio": 3}
 
 
 def read_key(text: str, folder: Path) -> bytes:
@@ -66,7 +66,7 @@ class Sealer:
     """Seals what leaves and opens what comes in.
 
     Args:
-        kind: "mesh", "skin" or "radio"; frames of one are never taken for another's.
+        kind: of network; frames of one are never taken for another's.
         sender: own number, 0 .. 65535.
         keys: keys by number, 0 .. 15; what comes in may be sealed with any of them.
         use: which one seals what leaves.
@@ -83,7 +83,7 @@ class Sealer:
     def __init__(
         self, kind: str, sender: int, keys: dict[int, bytes], use: int, state: State
     ) -> None:
-        self.kind = KINDS[kind]
+        self.kind = networks()[kind].key_kind
         self.sender = sender
         self.state = state
         self.dropped: Counter[str] = Counter()

@@ -6,7 +6,7 @@ import asyncio
 import signal
 import sys
 from collections import Counter
-from collections.abc import AsyncGenerator, Callable
+from collections.abc import AsyncGenerator
 from pathlib import Path
 from typing import Any
 
@@ -17,18 +17,13 @@ from innervate.live.metrics import MetricsPage
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import Loaded, address, load
 from innervate.live.notices import Notices
+from innervate.live.receipts import FINAL
 from innervate.live.rotation import Rotation
-from innervate.networks.mesh.live.messages import MeshNode
-from innervate.networks.mesh.live.receipts import FINAL
-from innervate.networks.skin.live.nodes import CellNode, SinkNode
-
-# Makes the line that a listener gets of what came.
-Form = Callable[[Any], dict[str, Any]]
+from innervate.live.streams import Form
 
 DRAIN_S = 2.0
 SAVE_S = 10.0
-REQUESTS = ("status", "send", "command", "listen", "cut", "restore", "loose", "locate",
-            "capture", "stop")  # fmt: skip
+REQUESTS = ("status", "send", "listen", "cut", "restore", "loose", "capture", "stop")
 
 
 def run(path: Path) -> int:
@@ -143,54 +138,25 @@ class Process:
             await tap.serve(self.node, writer)
         elif what == "send":
             await self._send(request, writer)
-        elif what == "command":
-            await writer.line(self._command(request))
         elif what == "listen":
             await self._listen(request, writer)
         elif what in ("cut", "restore", "loose"):
             loss = float(request["loss"]) if what == "loose" else 0.0
             path = self.node.change(int(request["port"]), what, loss)
             await writer.line({"path": path.name, "cut": path.cut, "loss": path.loss})
-        elif what == "locate":
-            self._locate(request)
-            await writer.line({"ok": True})
+        elif what in self.node.requests:
+            await writer.line(self.node.requests[what](request))
         elif what == "stop":
             self.ending.set()
             await writer.line({"ok": True})
         else:
-            raise ValueError(f'a request has "do": {", ".join(REQUESTS)}')
-
-    def _command(self, request: dict[str, Any]) -> dict[str, Any]:
-        if not isinstance(self.node, SinkNode):
-            raise ValueError("only the PC of a skin sends commands")
-        cell = request.get("cell")
-        numbers = (request["code"], request.get("value", 0), 0 if cell is None else cell)
-        if not all(isinstance(number, int) for number in numbers):
-            raise ValueError("code, value and cell are whole numbers")
-        return self.node.send_command(numbers[0], numbers[1], cell)._asdict()
-
-    def _locate(self, request: dict[str, Any]) -> None:
-        if not isinstance(self.node, MeshNode):
-            raise ValueError("only robots of a mesh have a position")
-        x, y = (float(value) for value in request["at_cm"])
-        vx, vy = (float(value) for value in request.get("speed_cm_s", (0, 0)))
-        self.node.locate((x, y), (vx, vy))
+            known = ", ".join((*REQUESTS, *self.node.requests))
+            raise ValueError(f'a request has "do": {known}')
 
     async def _send(self, request: dict[str, Any], writer: status.Writer) -> None:
-        node, payload = self.node, bytes.fromhex(request["payload"])
-        if isinstance(node, MeshNode):
-            receipt = node.send_message(
-                int(request["to"]),
-                payload,
-                reliable=bool(request.get("reliable", True)),
-                priority=bool(request.get("priority", False)),
-                in_order=request.get("in_order"),
-            )
-        else:
-            send_packet = getattr(node, "send_packet", None)
-            if send_packet is None:
-                raise ValueError("a skin has no messages")
-            receipt = send_packet(payload)
+        receipt = self.node.send_request(request)
+        if receipt is None:
+            raise ValueError(f"a {self.loaded.table.kind} has no messages")
         await writer.line({"state": receipt.state, "reason": receipt.reason})
         told = receipt.state
         while told not in FINAL and request.get("wait", True):
@@ -202,7 +168,7 @@ class Process:
     async def _listen(self, request: dict[str, Any], writer: status.Writer) -> None:
         pumps = [
             asyncio.ensure_future(_pump(stream, form, writer))
-            for stream, form in self._streams(request)
+            for stream, form in self.node.streams(request)
         ]
         await writer.line({"listening": self.loaded.name})
         try:
@@ -213,24 +179,6 @@ class Process:
             for pump in pumps:
                 pump.cancel()
 
-    def _streams(self, request: dict[str, Any]) -> list[tuple[AsyncGenerator[Any, None], Form]]:
-        """What a listener wants to hear, and how it is told."""
-        node = self.node
-        if isinstance(node, SinkNode):
-            return [(node.receive_touch(), _touch_line)]
-        if isinstance(node, CellNode):
-            return [(node.receive_commands(), _command_line)]
-        receive_packets = getattr(node, "receive_packets", None)
-        if receive_packets is not None:
-            return [(receive_packets(), _message_line)]
-        if not isinstance(node, MeshNode):
-            raise ValueError("nothing comes in here for people")
-        messages = node.receive_messages(in_order=request.get("in_order"))
-        streams: list[tuple[AsyncGenerator[Any, None], Form]] = [(messages, _message_line)]
-        if request.get("alarms"):
-            streams.append((node.receive_alarms(), _alarm_line))
-        return streams
-
 
 async def _pump(stream: AsyncGenerator[Any, None], form: Form, writer: status.Writer) -> None:
     try:
@@ -238,19 +186,3 @@ async def _pump(stream: AsyncGenerator[Any, None], form: Form, writer: status.Wr
             await writer.line(form(item))
     finally:
         await stream.aclose()
-
-
-def _message_line(message: tuple[int, bytes]) -> dict[str, Any]:
-    return {"from": message[0], "payload": message[1].hex()}
-
-
-def _alarm_line(alarm: Any) -> dict[str, Any]:
-    return {"from": alarm.reporter, "alarm": alarm._asdict()}
-
-
-def _command_line(command: Any) -> dict[str, Any]:
-    return {"from": "pc", "command": command._asdict()}
-
-
-def _touch_line(touch: Any) -> dict[str, Any]:
-    return {"from": touch.cell, "touch": touch._asdict()}

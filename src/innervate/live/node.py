@@ -5,15 +5,22 @@ from __future__ import annotations
 import random
 import time
 from collections import Counter
+from collections.abc import Callable
 from typing import Any
 
 from innervate.live.engine import Engine, Stack, clock_us
 from innervate.live.keys import Sealer
 from innervate.live.links import Link, Path
+from innervate.live.receipts import Receipt
 from innervate.live.state import State
-from innervate.live.tap import Tap
+from innervate.live.streams import Arrivals, Stream
 
 CUT = "cable cut"  # as captures of simulations call it
+# When (ns since 1970), which port, True = it left, its bytes, why it was dropped ("" = it was not).
+# Without bytes: what happened to the path, "event: cut".
+Tap = Callable[[int, int, bool, bytes, str], None]
+# Answers a request that only some nodes understand.
+Answerer = Callable[[dict[str, Any]], dict[str, Any]]
 
 
 class LiveNode:
@@ -29,8 +36,11 @@ class LiveNode:
     Attributes:
         paths: all paths, by port.
         reports: how often the protocol reported what, by code.
+        outcomes: what became of what its user said, and how much came in for him, by words.
+        arrivals: what came in for its user.
         taps: who is told of every frame, as it leaves and comes in.
         callers: how often callers of the node's process could not be let in, and why.
+        requests: what may be asked of it on its status socket besides what all nodes answer.
     """
 
     def __init__(
@@ -48,8 +58,11 @@ class LiveNode:
         self.state = state or State(None)
         self.paths: list[Path] = [path for link in links for path in link.paths]
         self.reports: Counter[int] = Counter()
+        self.outcomes: Counter[str] = Counter()
+        self.arrivals: Arrivals[Any] = Arrivals()
         self.taps: list[Tap] = []
         self.callers: Counter[str] = Counter()
+        self.requests: dict[str, Answerer] = {}
         self.engine: Engine | None = None
         self.started_at = time.time()
 
@@ -153,12 +166,28 @@ class LiveNode:
         for tap in self.taps:
             tap(at_ns, port, out, data, why)
 
+    def send_request(self, request: dict[str, Any]) -> Receipt | None:
+        """Send a message as a request says; None = this node knows no messages.
+
+        Raises:
+            ValueError: it cannot be sent so.
+        """
+        return None
+
+    def streams(self, request: dict[str, Any]) -> list[Stream]:
+        """What somebody who listens is told of, and how.
+
+        Raises:
+            ValueError: nothing comes in here for people.
+        """
+        raise ValueError("nothing comes in here for people")
+
     async def drain(self, limit_s: float) -> bool:
         """Wait until nothing of ours is under way, at most `limit_s` seconds: True if so."""
         return True
 
     def counters(self) -> Counter[str]:
-        """What happened how often: handler calls, frames dropped by reason."""
+        """What happened how often: handler calls, frames dropped by reason, outcomes."""
         total: Counter[str] = Counter() if self.engine is None else Counter(self.engine.counters)
         if self.sealer is not None:
             total.update({f"dropped: {why}": n for why, n in self.sealer.dropped.items()})
@@ -167,7 +196,7 @@ class LiveNode:
             total["dropped: from a stranger"] = strangers
         if self.state.failed:
             total["state not written"] = self.state.failed
-        return total + self.callers
+        return total + self.callers + self.outcomes
 
     def status(self) -> dict[str, Any]:
         """What is known here: paths, counters, and what the protocol says of itself."""
@@ -203,6 +232,7 @@ class LiveNode:
 
     def _settled(self) -> None:
         """The outbox is empty: the user may be called."""
+        self.arrivals.hand_up()
 
 
 def _path_status(path: Path, now: int, most_us: int) -> dict[str, Any]:

@@ -6,12 +6,13 @@ import tomllib
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar
 
 import msgspec
 from msgspec import Meta, Struct, field
 
 from innervate.live.errors import LiveError
+from innervate.network import networks
 
 Port = Annotated[int, Meta(ge=1, le=65_535)]
 
@@ -57,46 +58,46 @@ class KeysTable(Struct, frozen=True, forbid_unknown_fields=True):
     grace_s: Annotated[float, Meta(ge=0, le=86_400)] = 10.0
 
 
-class DeliverTable(Struct, frozen=True, forbid_unknown_fields=True):
-    """[deliver]: messages in the order in which they were sent."""
-
-    in_order: bool = False
-    wait_ms: Annotated[int, Meta(ge=1, le=60_000)] = 10_000
-    buffer: Annotated[int, Meta(ge=1, le=4096)] = 256
-
-
-Ring = Annotated[list[tuple[int, int]], Meta(min_length=3)]
-
-
-class FenceTable(Struct, frozen=True, forbid_unknown_fields=True):
-    """[fence]: corners in units of protocol.unit_cm from its origin; the same in every file."""
-
-    polygon: Ring
-    holes: list[Ring] = []
-
-
 class NodeFile(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """A node."""
+    """A node. A network whose nodes have keys of their own says so in a subclass.
 
-    kind: Literal["mesh", "skin", "radio"]
+    Attributes:
+        roles: what `role` can be.
+        nodes_max: most nodes that a network can have.
+    """
+
+    roles: ClassVar[tuple[str, ...]] = ("node",)
+    nodes_max: ClassVar[int] = 65_536
+
+    kind: str
     number: Annotated[int, Meta(ge=0, le=65_535)]
     name: Annotated[str, Meta(min_length=1, max_length=40, pattern="^[A-Za-z0-9_.-]+$")] | None = (
         None
     )
     nodes: Annotated[int, Meta(ge=1, le=65_535)] | None = None
-    role: Literal["node", "gateway", "standby", "cell", "sink", "station"] | None = None
-    rank: Annotated[int, Meta(ge=1, le=253)] = 1
-    ports: Annotated[list[Annotated[int, Meta(ge=0, le=3)]], Meta(max_length=4)] = []
+    role: str | None = None
     socket: str | None = None
     state: str | None = None
     metrics: str | None = None
-    rate_hz: Annotated[float, Meta(ge=0, le=1000)] = 0.0
     keys: KeysTable | None = None
-    deliver: DeliverTable | None = None
-    robot: bool = False
-    fence: FenceTable | None = None
     protocol: dict[str, int] = {}
     link: Annotated[list[LinkTable], Meta(min_length=1)] = field(default_factory=list)
+
+    def check(self, where: str) -> None:
+        """What single keys do not show.
+
+        Raises:
+            LiveError: the first thing that cannot be; the message begins with `where`.
+        """
+        if self.nodes is not None and not self.number < self.nodes <= self.nodes_max:
+            raise LiveError(
+                f"{where}: number {self.number} of {self.nodes} nodes cannot be; "
+                f"numbers are 0 to nodes - 1, nodes at most {self.nodes_max}"
+            )
+        if self.role is not None and self.role not in self.roles:
+            raise LiveError(f"{where}: role of a {self.kind} node can be {', '.join(self.roles)}")
+        if self.keys is not None and str(self.keys.use) not in self.keys.secret:
+            raise LiveError(f"{where}: keys.use = {self.keys.use}, but there is no such secret")
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,35 +141,17 @@ def parse(raw: dict[str, Any], where: str = "node") -> NodeFile:
     Raises:
         LiveError: see load().
     """
-    _refuse_unknown(raw, where)
+    kind, known = raw.get("kind"), networks()
+    if not isinstance(kind, str) or kind not in known:
+        raise LiveError(f"{where}: kind must be {' or '.join(known)}")
+    file = known[kind].node_file
+    _refuse_unknown(raw, file.__struct_fields__, where)
     try:
-        table = msgspec.convert(raw, NodeFile)
+        table: NodeFile = msgspec.convert(raw, file)
     except msgspec.ValidationError as error:
         raise LiveError(f"{where}: {_readable(str(error))}") from None
-    most = 254 if table.kind == "mesh" else 65_536
-    if table.nodes is None and table.kind == "mesh":
-        raise LiveError(f'{where}: "nodes" is missing: how many ids the mesh has, 1 to 254')
-    if table.nodes is not None and not table.number < table.nodes <= most:
-        raise LiveError(
-            f"{where}: number {table.number} of {table.nodes} nodes cannot be; "
-            f"numbers are 0 to nodes - 1, nodes at most {most}"
-        )
-    roles = ROLES[table.kind]
-    if table.role is not None and table.role not in roles:
-        raise LiveError(f"{where}: role of a {table.kind} node can be {', '.join(roles)}")
-    if table.keys is not None and str(table.keys.use) not in table.keys.secret:
-        raise LiveError(f"{where}: keys.use = {table.keys.use}, but there is no such secret")
-    for key in ("deliver", "robot", "fence"):
-        if getattr(table, key) and table.kind != "mesh":
-            raise LiveError(f"{where}: {key} is for nodes of a mesh; remove it")
+    table.check(where)
     return table
-
-
-ROLES = {
-    "mesh": ("node", "gateway", "standby"),
-    "skin": ("cell", "sink"),
-    "radio": ("station",),
-}
 
 
 def address(text: str, where: str) -> tuple[str, int]:
@@ -183,13 +166,16 @@ def address(text: str, where: str) -> tuple[str, int]:
     return host, int(port)
 
 
-def _refuse_unknown(raw: dict[str, Any], where: str) -> None:
-    known = NodeFile.__struct_fields__
+def _refuse_unknown(raw: dict[str, Any], known: tuple[str, ...], where: str) -> None:
     for key in raw:
-        if key not in known:
-            near = get_close_matches(key, known, 1)
-            hint = f'; do you mean "{near[0]}"?' if near else f"; it knows {', '.join(known)}"
-            raise LiveError(f'{where}: unknown key "{key}"{hint}')
+        if key in known:
+            continue
+        for other in networks().values():
+            if key in other.node_file.__struct_fields__:
+                raise LiveError(f"{where}: {key} is for nodes of a {other.name}; remove it")
+        near = get_close_matches(key, known, 1)
+        hint = f'; do you mean "{near[0]}"?' if near else f"; it knows {', '.join(known)}"
+        raise LiveError(f'{where}: unknown key "{key}"{hint}')
 
 
 def _readable(message: str) -> str:

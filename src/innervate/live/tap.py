@@ -6,17 +6,10 @@ They are told in the clear, opened where they are sealed: only the node's own us
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from innervate.live.node import LiveNode
 from innervate.live.status import Writer
-
-if TYPE_CHECKING:
-    from innervate.live.node import LiveNode
-
-# When (ns since 1970), which port, True = it left, its bytes, why it was dropped ("" = it was not).
-# Without bytes: what happened to the path, "event: cut".
-Tap = Callable[[int, int, bool, bytes, str], None]
 
 PENDING_MAX = 20_000  # frames that wait for a slow reader
 BATCH = 200  # frames in a line

@@ -10,28 +10,32 @@ import time
 from pathlib import Path
 from typing import Any
 
-from innervate.live import files, play, status
+from innervate.live import files, status
+from innervate.live.asking import ask
+from innervate.live.deployment import Deployment, Table
 from innervate.live.errors import LiveError
 from innervate.live.netns import UDP_PORT, Lab
 from innervate.live.serial_cables import Cables
-from innervate.live.wiring import free_ports, skin_cables, udp
+from innervate.live.wiring import free_ports, udp
+from innervate.network import networks
 
-NodeTables = tuple[dict[str, Any], dict[str, dict[str, Any]], list[dict[str, Any]]]
+NodeTables = tuple[Table, dict[str, Table], list[Table]]
 START_S = 30.0
 STOP_S = 5.0
 
 
-class Network:
+class Processes:
     """Node files and processes of a scenario.
 
     Args:
         plan: a scenario's plan.
         folder: where files, logs and sockets go.
-        cables: "udp" (loopback), "pty" (skins only) or "netns" (as root).
+        cables: "udp" (loopback), "pty" or "netns" (as root).
         keys: a [keys] table for all nodes; None = frames go in the clear.
 
     Attributes:
-        names: every node's name, by number; the PC of a skin is the last.
+        deployment: what it knows of the plan's nodes.
+        names: every node's name, by number.
         links: cables: pairs of nodes.
         absent: who is not started until an event says so.
     """
@@ -46,20 +50,9 @@ class Network:
         self.processes: dict[str, subprocess.Popen[bytes]] = {}
         self.lab: Lab | None = None
         self.relay: Cables | None = None
-        if plan.kind == "mesh":
-            self.names = [f"n{i}" for i in range(plan.nodes)]
-            self.links = list(plan.good)
-        elif plan.kind == "skin":
-            self.names = [*(f"c{i}" for i in range(plan.graph.cells)), "pc"]
-            self.links, self._ends, self._cable_of_end = skin_cables(plan.graph)
-        else:
-            self.names = [f"s{i}" for i in range(plan.stations)]
-            self.links = []
-            files.check_station_plan(plan)
-        if cables == "pty" and plan.kind != "skin":
-            raise LiveError("--pty joins the cells of a skin; mesh nodes take --netns or UDP")
-        if plan.kind == "radio" and (cables == "netns" or keys is not None):
-            raise LiveError("stations share a channel: leave --netns and --sealed out")
+        self.deployment: Deployment = networks()[plan.kind].deployment(plan)
+        self.deployment.check(cables, keys is not None)
+        self.names, self.links = self.deployment.names, self.deployment.links
         away = getattr(plan, "absent", ())
         self.absent = {name for name, gone in zip(self.names, away, strict=False) if gone}
         self._ports: list[list[int]] = []  # per node: the cables of its paths
@@ -86,7 +79,7 @@ class Network:
         elif self.cables == "pty":
             self.relay = Cables(len(self.links))
             self.relay.start()
-        if self.plan.kind == "radio":
+        if self.deployment.has_channel:
             await self._start_medium()
         paths = self._paths()
         for number, name in enumerate(self.names):
@@ -100,7 +93,7 @@ class Network:
                 await self._ready(name)
 
     async def _start_medium(self) -> None:
-        """The channel of a radio team, a process of its own."""
+        """The channel that the nodes share, a process of its own."""
         self._medium = f"127.0.0.1:{free_ports(1)[0]}"
         command = [sys.executable, "-m", "innervate.cli", "live", "medium", self._medium]
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE)
@@ -148,21 +141,7 @@ class Network:
 
     async def _change_end(self, number: int, cable: int, what: str, loss: float) -> None:
         request = {"do": what, "port": self._ports[number].index(cable), "loss": loss}
-        await play.ask(self.socket(self.names[number]), request)
-
-    def cable_of(self, fault: Any) -> int:
-        """The cable that an event of the plan happens to.
-
-        Raises:
-            LiveError: none joins these two.
-        """
-        if self.plan.kind == "skin":
-            return self._cable_of_end[fault.end]
-        pair = tuple(sorted((fault.node, fault.other)))
-        if pair not in self.links:
-            a, b = (self.names[node] for node in pair)
-            raise LiveError(f"event.{fault.index}: no cable joins {a} and {b}; name a good link")
-        return self.links.index(pair)
+        await ask(self.socket(self.names[number]), request)
 
     def socket(self, name: str) -> Path:
         """A node's status socket."""
@@ -195,13 +174,13 @@ class Network:
                 raise LiveError(f"{name} does not answer after {START_S:g} s")
             await asyncio.sleep(0.02)
 
-    def _paths(self) -> list[list[tuple[int, dict[str, Any]]]]:
-        """Per node: (cable, link table) for each of its cables, in order."""
-        found: list[list[tuple[int, dict[str, Any]]]] = [[] for _ in self.names]
+    def _paths(self) -> list[dict[int, Table]]:
+        """Per node: the link table of each of its cables, in order of its paths."""
+        found: list[dict[int, Table]] = [{} for _ in self.names]
         ports = free_ports(2 * len(self.links)) if self.cables == "udp" else []
         for k, ends in enumerate(self.links):
             for side, node in enumerate(ends):
-                table: dict[str, Any]
+                table: Table
                 if self.lab is not None:
                     own = self.lab.address(k, node)
                     other = self.lab.address(k, ends[1 - side])
@@ -212,10 +191,11 @@ class Network:
                 else:
                     own, other = (f"127.0.0.1:{ports[2 * k + i]}" for i in (side, 1 - side))
                     table = udp(own, other)
-                found[node].append((k, table))
-        if self.plan.kind == "skin":  # the PC's are in order of its interface ports
-            found[-1].sort(key=lambda path: self._ends[path[0]][1])
-        self._ports = [[k for k, _ in paths] for paths in found]
+                found[node][k] = table
+        for number, tables in enumerate(found):
+            order = self.deployment.in_order(number, list(tables))
+            found[number] = {k: tables[k] for k in order}
+        self._ports = [list(tables) for tables in found]
         return found
 
     def write_file(self, name: str) -> None:
@@ -227,20 +207,13 @@ class Network:
         path.touch(mode=0o600)  # keys may stand in it
         path.write_text(files.text(head, tables, links))
 
-    def _file(self, number: int, paths: list[tuple[int, dict[str, Any]]]) -> NodeTables:
+    def _file(self, number: int, paths: dict[int, Table]) -> NodeTables:
         """What a node's file says: its own keys, tables, links."""
-        plan, name = self.plan, self.names[number]
-        links = [table for _, table in paths]
-        if plan.kind == "mesh":
-            head, tables = files.mesh(plan, number)
-        elif plan.kind == "radio":
-            head, tables = files.station(plan)
+        name = self.names[number]
+        head, tables = self.deployment.file(number, list(paths))
+        links = list(paths.values())
+        if self.deployment.has_channel:
             links = [{"kind": "medium", "address": self._medium}]
-        elif number == len(self.names) - 1:
-            head, tables = files.sink(plan)
-        else:
-            ports = [self._ends[k][self.links[k].index(number)] for k, _ in paths]
-            head, tables = files.cell(plan, ports)
-        common = {"kind": plan.kind, "name": name, "number": number}
+        common = {"kind": self.plan.kind, "name": name, "number": number}
         common["socket"] = str(self.socket(name))
         return {**common, **head}, tables, links

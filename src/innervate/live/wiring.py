@@ -1,32 +1,10 @@
-"""Cables of a network that is brought up: who is joined to whom, and by which UDP ports."""
+"""Cables of a network that is brought up: UDP on loopback."""
 
 from __future__ import annotations
 
 import contextlib
 import socket
 from typing import Any
-
-PORTS = 4  # of a cell
-
-
-def skin_cables(
-    graph: Any,
-) -> tuple[list[tuple[int, int]], list[tuple[int, int]], dict[int, int]]:
-    """Cables of a skin: pairs of nodes, the port at either end; and the cable of every end."""
-    links: list[tuple[int, int]] = []
-    ends: list[tuple[int, int]] = []
-    cable_of: dict[int, int] = {}
-    sockets = PORTS * graph.cells
-    for end, other in enumerate(graph.peer):
-        if end < other:
-            here = (end // PORTS, end % PORTS)
-            there = (other // PORTS, other % PORTS)
-            if other >= sockets:
-                there = (graph.cells, other - sockets)
-            cable_of[end] = cable_of[other] = len(links)
-            links.append((here[0], there[0]))
-            ends.append((here[1], there[1]))
-    return links, ends, cable_of
 
 
 def udp(own: str, other: str) -> dict[str, Any]:

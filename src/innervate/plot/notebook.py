@@ -5,13 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from innervate.networks.mesh.analysis.alarms import all_crossings
-from innervate.networks.mesh.plot import report as mesh_report
-from innervate.networks.mesh.plot.sheet import Sheet
-from innervate.networks.radio.plot import report as radio_report
-from innervate.networks.radio.plot import slotted_report as radio_slotted_report
-from innervate.networks.skin.plot import report as skin_report
-from innervate.networks.skin.plot.story import Story
+from innervate.network import networks
 from innervate.plot import theme
 from innervate.plot.page import PARTS
 
@@ -20,33 +14,10 @@ NAME = "innervate-run"
 
 def render(result: Any, summary: Mapping[str, Any]) -> str:
     """A run as a piece of HTML that neither takes the notebook's styles nor changes them."""
-    inside = _SHOWN[summary.get("level", summary["kind"])](result, summary)
+    inside = networks()[summary["kind"]].notebook(result, summary)
     style = (theme.drawing_style() + PARTS).replace(":root", "&")
     frame = (
         "&{padding:12px 16px;border-radius:8px;background:var(--ground);color:var(--ink);"
         "font:15px/1.45 system-ui,sans-serif}"
     )
     return f'<div class="{NAME}"><style>.{NAME}{{{style}{frame}}}</style>\n{inside}</div>'
-
-
-def _skin(result: Any, summary: Mapping[str, Any]) -> str:
-    story = Story(result, summary)
-    return skin_report.top(story) + skin_report.maps(story)
-
-
-def _radio(result: Any, summary: Mapping[str, Any]) -> str:
-    return radio_report.top(result, summary) + radio_report.on_air(result)
-
-
-def _slotted(result: Any, summary: Mapping[str, Any]) -> str:
-    return radio_slotted_report.top(result, summary) + radio_slotted_report.charts_of(
-        result, summary
-    )
-
-
-def _mesh(result: Any, summary: Mapping[str, Any]) -> str:
-    shown = mesh_report.field(result, Sheet(result.plan), all_crossings(result))
-    return mesh_report.top(result, summary) + shown
-
-
-_SHOWN = {"skin": _skin, "radio": _radio, "slotted": _slotted, "mesh": _mesh}

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from html import escape
 from typing import Any, Protocol
 
 from innervate import scenario as scenarios
-from innervate.networks.mesh.plot import report as mesh_report
-from innervate.networks.radio.plot import report as radio_report
-from innervate.networks.skin.plot import report as skin_report
+from innervate.network import networks
 from innervate.plot.page import details, element, page, section, table
 
 
@@ -33,19 +31,11 @@ class Reportable(Protocol):
         """Versions, seeds, fingerprint."""
 
 
-# What a kind of network shows above the parts that all have; the other kinds add theirs.
-_BODIES: dict[str, Callable[[Any, Mapping[str, Any]], str]] = {
-    "skin": skin_report.body,
-    "radio": radio_report.body,
-    "mesh": mesh_report.body,
-}
-
-
 def render(run: Reportable) -> str:
     """The report of a run as HTML."""
     summary = run.summary
     parts = [
-        _BODIES[summary["kind"]](run.result, summary),
+        networks()[summary["kind"]].report(run.result, summary),
         _numbers(summary),
         _again(run),
     ]

@@ -131,7 +131,7 @@ class _Recorded:
 
     @property
     def fingerprint(self) -> Any:
-        """Of its events."""
+        """The hash of all events, 16 hexadecimal digits; None if it has none."""
         return self.summary.get("fingerprint")
 
     @property
@@ -199,8 +199,8 @@ def _notes(a: _Recorded, b: _Recorded) -> list[str]:
         one, other = a.provenance.get(key), b.provenance.get(key)
         if one != other:
             notes.append(f"{key} differs: {one} and {other}")
-    if "slotted" in (a.summary.get("level"), b.summary.get("level")):
-        notes.append("a run on the slotted level has no events to compare")
+    without = [networks()[run.summary["kind"]].without_events(run.summary) for run in (a, b)]
+    notes += dict.fromkeys(filter(None, without))
     for run in (a, b):
         if "interrupted_at_s" in run.summary:
             notes.append(f"{run.called} was interrupted at {run.ended_us / 1e6:g} s")

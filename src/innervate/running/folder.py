@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from innervate import scenario as scenarios
-from innervate.network import networks
+from innervate.network import first, networks
 from innervate.running.errors import RunError
 from innervate.scenario import Scenario, ScenarioError
 
@@ -38,7 +38,7 @@ def table_files() -> tuple[str, ...]:
 
 def default_folder(name: str, seed: int) -> Path:
     """Where a run goes if nobody says: runs/<name>-<seed>."""
-    plain = _UNSUITABLE.sub("-", name).strip("-.")[:80] or "skin"
+    plain = _UNSUITABLE.sub("-", name).strip("-.")[:80] or first()
     return Path("runs") / f"{plain}-{seed}"
 
 

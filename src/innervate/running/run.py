@@ -11,13 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from innervate import scenario as scenarios
-from innervate.analysis.summaries import (
-    MeshSummary,
-    RadioSummary,
-    SkinSummary,
-    SlottedSummary,
-    Summary,
-)
 from innervate.network import networks
 from innervate.running import folder as folders
 from innervate.scenario import Scenario
@@ -28,19 +21,22 @@ from innervate.trace.provenance import provenance
 if TYPE_CHECKING:
     import polars
 
+    from innervate.networks.typed import Summaries, Summary
+else:
+    Summaries = object
+
 Progress = Callable[[int, int], None]
 
 
 @dataclass(eq=False, repr=False)
-class Run:
-    """A scenario that was run.
+class Run(Summaries):
+    """A scenario that was run; `run.skin`, `run.radio`, ... are its summary, with known keys.
 
     Attributes:
         scenario: as resolved.
-        plan: its whole numbers; a Plan, RadioPlan or MeshPlan.
-        result: the simulation's rows and its world at the end: a Result, RadioResult or MeshResult.
-        summary: what a person wants to know; `skin`, `radio`, `slotted` and `mesh` are the same
-            with its keys known to type checkers and editors.
+        plan: its whole numbers.
+        result: the simulation's rows and its world at the end.
+        summary: what a person wants to know.
         checks: the invariant checkers were on.
     """
 
@@ -55,12 +51,20 @@ class Run:
         """Short: what ran, and its fingerprint."""
         return f"Run({self.scenario.name!r}, seed={self.plan.seed}, {self.result.fingerprint})"
 
+    if not TYPE_CHECKING:  # or every name would do, misspelt ones too
+
+        def __getattr__(self, name: str) -> Any:
+            """The summary by its network's name, so that type checkers know its keys."""
+            if name.startswith("_") or name in type(self).__dict__ or "summary" not in vars(self):
+                raise AttributeError(name)
+            own = networks()[self.summary["kind"]].summary_name(self.summary)
+            if name == own:
+                return self.summary
+            raise AttributeError(f"this run has no summary {name!r}; run.{own} is its summary")
+
     @cached_property
     def tables(self) -> dict[str, polars.LazyFrame]:
-        """The run's tables by name: of a skin routes, links, outages, loops, received; of a
-        radio team packets, transmissions, reports; of a mesh messages, crossings, deliveries,
-        transmissions, rounds, reports.
-        """
+        """The run's tables by name; the network's `tables` says what stands in them."""
         room = networks()[self.plan.kind].run
         return {
             table.name: tables.frame(table, room.columns(table, self.result)).lazy()
@@ -80,44 +84,12 @@ class Run:
         )
 
     @property
-    def skin(self) -> SkinSummary:
-        """The summary of a skin's run; AttributeError if it is of another kind."""
-        if self.summary["kind"] != "skin":
-            raise self._other("skin")
-        return self.summary
-
-    @property
-    def radio(self) -> RadioSummary:
-        """The summary of a radio team's run; AttributeError if it is of another kind."""
-        if self.summary["kind"] != "radio" or "level" in self.summary:
-            raise self._other("radio")
-        return self.summary
-
-    @property
-    def slotted(self) -> SlottedSummary:
-        """The summary of a run of the slotted channel; AttributeError if it is of another kind."""
-        if self.summary["kind"] != "radio" or "level" not in self.summary:
-            raise self._other("slotted")
-        return self.summary
-
-    @property
-    def mesh(self) -> MeshSummary:
-        """The summary of a mesh's run; AttributeError if it is of another kind."""
-        if self.summary["kind"] != "mesh":
-            raise self._other("mesh")
-        return self.summary
-
-    def _other(self, wanted: str) -> AttributeError:
-        own = "slotted" if "level" in self.summary else self.summary["kind"]
-        return AttributeError(f"this run has no summary {wanted!r}; run.{own} is its summary")
-
-    @property
     def interrupted(self) -> bool:
         """True if it was ended early; all it holds is then of the time until there."""
         return bool(self.result.interrupted)
 
     def received_image(self, time_s: float, **window: float) -> Any:
-        """Of a skin: force and proximity per cell as the PC had them at a time, s."""
+        """Where nodes feel: force and proximity per node as they were received at a time, s."""
         return networks()[self.plan.kind].received_image(self.result, time_s, **window)
 
     def _repr_html_(self) -> str:
@@ -126,10 +98,9 @@ class Run:
         return shown
 
     def plot(self, figure: str = "", **options: Any) -> Any:
-        """A matplotlib figure of the run; `innervate.plot.figures` says which there are."""
-        name = "figures" if self.plan.kind == "skin" else f"{self.plan.kind}_figures"
+        """A matplotlib figure of the run; the error of one that is none says which there are."""
         drawn = (figure,) if figure else ()
-        return import_module(f"innervate.plot.{name}").draw(self, *drawn, **options)
+        return networks()[self.plan.kind].figures.draw(self, *drawn, **options)
 
     def report(self) -> str:
         """The run's report, one page of HTML."""
@@ -186,8 +157,7 @@ def run(
     Raises:
         ScenarioError: the scenario is not valid.
         RunError: `out` cannot be written; found out before the simulation.
-        InvariantBroken: a checker found what must not happen.
-        FramesLost: frames are not accounted for.
+        InvariantBroken: a checker found what must not happen, as frames that went nowhere.
     """
     made = load(scenario, seed=seed, overrides=overrides)
     plan = scenarios.plan(made)

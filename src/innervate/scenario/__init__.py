@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from innervate.network import networks
+from innervate.network import first, networks
 from innervate.scenario.bundled import bundled
 from innervate.scenario.check import check, summary
 from innervate.scenario.emit import dump, inline
@@ -37,13 +37,13 @@ def plan(scenario: Scenario) -> Any:
     return networks()[scenario.kind].plan(scenario)
 
 
-def template(kind: str = "skin") -> str:
-    """A commented scenario of a kind, ready to run.
+def template(kind: str = "") -> str:
+    """A commented scenario of a kind, ready to run; of the first kind if none is named.
 
     Raises:
         ScenarioError: there is no such kind.
     """
-    known = networks()
+    known, kind = networks(), kind or first()
     if kind in known:
         return str(known[kind].template)
     hint = nearest(kind, list(known)).replace("it knows", "there is")

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import difflib
 import re
+import sys
 from collections.abc import Iterator
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 import msgspec
 from msgspec import inspect
@@ -122,23 +123,50 @@ def _wanted(model: type, key: Key) -> str:
     """Description of the innermost described type on the way to a key."""
     kind: inspect.Type | None = inspect.type_info(model)
     words = ""
-    for part in key:
+    for place, part in enumerate(key):
         assert kind is not None
+        choices: list[str] = []
         if isinstance(part, int):
             kind = _items(kind, part)
         else:
-            found = [f for s in _structs(kind) for f in s.fields if f.encode_name == part]
-            kind = found[0].type if found else None
+            found = [(f, s) for s in _structs(kind) for f in s.fields if f.encode_name == part]
+            kind = found[0][0].type if found else None
+            choices = _choices(found[0][1].cls, found[0][0].name) if found else []
         if kind is None:
             return words
-        words = _description(kind) or words
+        words = _description(kind, key[: place + 1]) or alternatives(choices) or words
     return words
 
 
-def _description(kind: inspect.Type) -> str:
+def _choices(table: type, name: str) -> list[str]:
+    """The values that a key can have, in the order in which they are declared; else none."""
+    # Not of msgspec's own view of the type: it sorts them.
+    names = vars(sys.modules[table.__module__])
+    left: list[Any] = [get_type_hints(table, names, {}, include_extras=True)[name]]
+    while left:
+        hint = left.pop(0)
+        if get_origin(hint) is Literal:
+            return [shown(value) for value in get_args(hint)]
+        left += get_args(hint)
+    return []
+
+
+def _description(kind: inspect.Type, key: Key) -> str:
+    """A type in words: its own description, else what it says by itself."""
     if isinstance(kind, inspect.Metadata):
         extra = kind.extra_json_schema or {}
-        return str(extra.get("description", "")) or _description(kind.type)
+        return str(extra.get("description", "")) or _description(kind.type, key)
     if isinstance(kind, inspect.UnionType):
-        return next((words for words in map(_description, kind.types) if words), "")
+        return next((words for one in kind.types if (words := _description(one, key))), "")
+    if isinstance(kind, inspect.BoolType):
+        return "true or false"
+    if isinstance(kind, inspect.StructType):
+        return f"a table {table_name(key)}" if len(key) == 1 else "a table"
+    if isinstance(kind, inspect.ListType) and isinstance(kind.item_type, inspect.StructType):
+        return f"tables [[{dotted(key)}]]"
     return ""
+
+
+def alternatives(words: list[str]) -> str:
+    """Words in a row: "a, b or c"."""
+    return " or ".join(part for part in (", ".join(words[:-1]), *words[-1:]) if part)

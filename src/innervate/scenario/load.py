@@ -13,7 +13,7 @@ from typing import Any
 from innervate.network import networks
 from innervate.scenario.bundled import bundled
 from innervate.scenario.errors import ScenarioError
-from innervate.scenario.explain import convert, nearest
+from innervate.scenario.explain import alternatives, convert, nearest
 from innervate.scenario.keys import SCHEMA
 from innervate.scenario.lines import key_lines
 from innervate.scenario.overrides import Override, apply
@@ -171,11 +171,9 @@ def _check_kind(source: Source, kind: object, known: list[str]) -> str:
         raise source.error((), f'the scenario has no kind; add kind = "{known[0]}"')
     if isinstance(kind, str) and kind in known:
         return kind
-    *most, last = (f'"{name}"' for name in known)
-    one = f"{', '.join(most)} or {last}"
+    one = alternatives([f'"{name}"' for name in known])
     shown = f'"{kind}"' if isinstance(kind, str) else str(kind)[:40]
-    error: ScenarioError = source.error(("kind",), f"kind must be {one}, not {shown}")
-    raise error
+    raise source.error(("kind",), f"kind must be {one}, not {shown}")
 
 
 def _copy(value: Any) -> Any:

@@ -17,8 +17,9 @@ from innervate.kernel import door
 from innervate.kernel.stop import Stop
 from innervate.kernel.wall import wall_s
 from innervate.sim import taps
+from innervate.sim.counts import Counts
 from innervate.sim.status import BROKEN, DONE
-from innervate.sim.tables import WIDE, get, hand_over, move_rows
+from innervate.sim.tables import WIDE, Names, get, hand_over, move_rows
 
 Advance = Callable[[Any, int, int], None]
 Progress = Callable[[int, int], None]
@@ -59,7 +60,7 @@ class Simulation(ABC):
         slice_events: about how many events between two looks at Ctrl-C and progress.
     """
 
-    tables: ClassVar[Mapping[str, tuple[str, ...]]]
+    tables: ClassVar[Mapping[str, Names]]
     wide: ClassVar[frozenset[str]] = WIDE
     slice_events: int = 1_000_000
 
@@ -138,6 +139,10 @@ class Simulation(ABC):
     def is_complete(self) -> bool:
         """True if it ended before its time because there was no more to do."""
         return False
+
+    def counts(self) -> Counts:
+        """What the medium has counted; nothing if it does not count."""
+        return Counts()
 
     @abstractmethod
     def clock_us(self) -> int:

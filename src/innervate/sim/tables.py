@@ -7,7 +7,7 @@ fields where the simulator keeps true time.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,6 +24,10 @@ WIDE = frozenset(
 # station); who sent it (mesh, radio); 1 = it left, 0 = it came in; why it got no further.
 TAP = ("time", "start", "at", "sender", "out", "why")
 ACTION = ("kind", "a", "b", "c")
+
+
+Name = str | tuple[str, int]  # of a field of rows; with a length, of an array
+Names = tuple[Name, ...]
 
 
 class Out(NamedTuple):
@@ -56,7 +60,7 @@ class Tables:
 
     def records(
         self,
-        names: tuple[str, ...],
+        names: Names,
         count: int,
         fresh: bool = False,
         wide: Collection[str] = WIDE,
@@ -66,7 +70,7 @@ class Tables:
         Fields in `wide` have 64 bits, all others 32.
         """
         if self.plain:
-            declaration = tuple((name, _length(name), 0, 0, "", "") for name in names)
+            declaration = tuple((*_named(name), 0, 0, "", "") for name in names)
             make = plain.make("Record", declaration)
             return [make() for _ in range(count)]
         dtype = row_dtype(names, wide)
@@ -86,18 +90,20 @@ class Tables:
         return states.view(self.word).reshape(len(states), -1)
 
 
-def row_dtype(names: tuple[str, ...], wide: Collection[str] = WIDE) -> np.dtype[Any]:
+def row_dtype(names: Names, wide: Collection[str] = WIDE) -> np.dtype[Any]:
     """The array form of simulator records with these fields."""
     return np.dtype([_column(name, wide) for name in names], align=True)
 
 
-def _length(name: str) -> int:
-    return 3 if name in ("force", "accel") else 0
+def _named(field: Name) -> tuple[str, int]:
+    """Name and length of a field; length 0 is a single number."""
+    return (field, 0) if isinstance(field, str) else field
 
 
-def _column(name: str, wide: Collection[str]) -> tuple[Any, ...]:
+def _column(field: Name, wide: Collection[str]) -> tuple[Any, ...]:
+    name, length = _named(field)
     kind = np.int64 if name in wide else np.int32
-    return (name, kind, (3,)) if _length(name) else (name, kind)
+    return (name, kind, (length,)) if length else (name, kind)
 
 
 GAMMA = 0x9E3779B97F4A7C15
@@ -115,11 +121,11 @@ def uniform(seed: int, name: str, count: int, n: int) -> Numbers:
     return (((z >> np.uint64(32)) * np.uint64(n)) >> np.uint64(32)).astype(np.int64)
 
 
-def put(table: Any, place: int, /, **values: int) -> None:
-    """Set fields of one record."""
+def put(table: Any, place: int, /, **values: int | Sequence[int]) -> None:
+    """Set fields of one record; those that are arrays, from a sequence."""
     for name, value in values.items():
         if isinstance(table, list):
-            setattr(table[place], name, int(value))
+            setattr(table[place], name, list(value) if isinstance(value, Sequence) else int(value))
         else:
             table[name][place] = value
 
@@ -142,7 +148,7 @@ def hand_over(world: Any, tap: taps.Tap | None, now: int) -> None:
 
 
 def move_rows(
-    world: Any, parts: dict[str, list[Any]], fields: Mapping[str, tuple[str, ...]], wide: Any
+    world: Any, parts: dict[str, list[Any]], fields: Mapping[str, Names], wide: Any
 ) -> None:
     """Move filled rows out of the loop's tables, so that these can stay small.
 
@@ -155,7 +161,9 @@ def move_rows(
     for name, kept in parts.items():
         count, table = int(get(world.run, 0, name)), getattr(world, name)
         if isinstance(table, list):
-            rows = [tuple(getattr(row, f) for f in fields[name]) for row in table[:count]]
+            rows = [
+                tuple(getattr(row, _named(f)[0]) for f in fields[name]) for row in table[:count]
+            ]
             kept.append(np.array(rows, row_dtype(fields[name], wide)))
         else:
             kept.append(table[:count].copy())

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -205,29 +203,3 @@ class Sweep:
             near = [c for c in self.results.columns if c.split(".")[-1] == name.split(".")[-1]]
             some = near or self.measures
             raise SweepError(f'there is no column "{name}"; there are {", ".join(some[:8])}, ...')
-
-
-def load_sweep(folder: str | os.PathLike[str]) -> Sweep:
-    """A sweep from its folder; nothing is run.
-
-    Raises:
-        SweepError: it is no sweep's folder, or damaged.
-    """
-    import polars
-
-    from innervate.sweeping.sweep import make_plan
-
-    path = Path(folder)
-    try:
-        origin = json.loads((path / "provenance.json").read_text(encoding="utf-8"))
-        results, timings = (
-            polars.read_parquet(path / name) for name in (tables.RESULTS, tables.TIMINGS)
-        )
-        complete = bool(origin["complete"])
-    except FileNotFoundError as error:
-        name = Path(str(error.filename or "")).name or tables.RESULTS
-        raise SweepError(f"{path} is not a finished sweep's folder: it has no {name}") from None
-    except (OSError, ValueError, KeyError, TypeError, polars.exceptions.PolarsError):
-        raise SweepError(f"{path} is damaged; give its sweep again") from None
-    plan = make_plan(path / "sweep.toml")
-    return Sweep(plan, results, timings, complete, written=path)

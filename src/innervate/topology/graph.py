@@ -40,12 +40,12 @@ class Graph:
 
     @property
     def sink(self) -> int:
-        """The PC's node number."""
+        """The PC's number: that behind the last cell's."""
         return self.cells
 
     @property
     def nodes(self) -> int:
-        """Cells and the PC."""
+        """How many nodes there are: all cells and the PC."""
         return self.cells + 1
 
     def node_of(self, end: int) -> int:
@@ -188,12 +188,6 @@ class Graph:
     def depth_max(self) -> int:
         """Hops of the deepest cell that is connected to the PC; 0 if there is none."""
         return max(max(self.depths(), default=0), 0)
-
-    def layout(self) -> list[tuple[float, float]]:
-        """Where to draw every cell: (x_mm, y_mm), x to the right, y down (see layout.py)."""
-        from innervate.topology.layout import layout
-
-        return layout(self)
 
     def _free_in_words(self, node: int) -> str:
         if node == self.cells:

@@ -22,7 +22,7 @@ _STEP = ((-PITCH_MM, 0.0), (PITCH_MM, 0.0), (0.0, -ROW_MM), (0.0, ROW_MM))
 Point = tuple[float, float]
 
 
-def layout(graph: Graph) -> list[Point]:
+def cell_places(graph: Graph) -> list[Point]:
     """(x_mm, y_mm) of every cell; the smallest x and y are 0."""
     if graph.patches:
         return _patched(graph)

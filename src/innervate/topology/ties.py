@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import Counter, deque
 
-from innervate.networks.skin.protocol.constants import PORTS
 from innervate.topology.graph import Graph
+from innervate.topology.patch import PORTS
 
 
 def tied_at(graph: Graph) -> Counter[int]:

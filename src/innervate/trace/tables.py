@@ -27,11 +27,15 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table: its name (also its file's), what a row is, and its columns."""
+    """A table: its name (also its file's), what a row is, and its columns.
+
+    In recordings it is called as it is, or by its `topic`.
+    """
 
     name: str
     row: str
     columns: tuple[Column, ...]
+    topic: str = ""
 
 
 def frame(table: Table, columns: Mapping[str, Any]) -> polars.DataFrame:

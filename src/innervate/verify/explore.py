@@ -1,4 +1,8 @@
-"""Drives a search: memory, progress, interruption; the result and the way to a broken state."""
+"""Drives a search: memory, progress, interruption; the result and the way to a broken state.
+
+A model says what is explored: `layout()` of a state's row (width, body, moves(), images()),
+`world(plain)` to work in, `system()` and `compiled_parts` (see search.py), `first_row(system)`.
+"""
 
 from __future__ import annotations
 
@@ -11,9 +15,9 @@ import numpy as np
 
 from innervate.kernel import door, tables
 from innervate.kernel.wall import wall_s
-from innervate.networks.skin.verify import system as skin_system
 from innervate.verify import search as s
 from innervate.verify.errors import VerifyError
+from innervate.verify.tally import Tally
 
 MEMORY = 2 << 30
 CHUNK = 20_000
@@ -24,42 +28,13 @@ ENDS = {s.DONE: "complete", s.FULL: "memory", s.FOUND: "broken", s.GOING: "inter
 
 
 @dataclass(slots=True)
-class Tally:
-    """How far a search is, or came.
-
-    Attributes:
-        states: different states found.
-        expanded: states whose successors are all known.
-        generated: successors generated and looked up.
-        left_out: successors not followed because more was in flight than there is room for.
-        depth: events from the start to the latest state; all states less deep are expanded.
-        wall_s: seconds of searching, compiling and loading not included.
-        ended: "complete", "broken", "memory" (the bound was reached), "limit" (of states),
-            "walked" (random walks; `states` counts these then) or "interrupted".
-    """
-
-    states: int = 0
-    expanded: int = 0
-    generated: int = 0
-    left_out: int = 0
-    depth: int = 0
-    wall_s: float = 0.0
-    ended: str = "interrupted"
-
-    @property
-    def per_s(self) -> float:
-        """Successors generated and looked up per second."""
-        return self.generated / self.wall_s if self.wall_s > 0 else 0.0
-
-
-@dataclass(slots=True)
 class Result:
     """What a search found.
 
     Attributes:
         model: what was explored.
         tally: how much of it.
-        broken: what is broken, a number of skin_world.py; 0 nothing.
+        broken: what is broken, a number of the model's; 0 nothing.
         path: the states from the start to the last one before it broke, as rows of bytes.
         last: the move that broke it: (move, variant, choice).
         rows: all states as rows of 64-bit words.
@@ -77,9 +52,9 @@ Progress = Callable[[Tally], bool]
 
 
 @functools.cache
-def compiled_engine() -> s.Engine:
-    """The search of skins, compiled: `expand` and `insert` take a world and a search."""
-    system = skin_system.compiled_parts()
+def compiled_engine(parts: Callable[[], Any]) -> s.Engine:
+    """The search of a system, compiled: `expand` and `insert` take a world and a search."""
+    system = parts()
     images = (s.compare, s.is_smaller_image, s.choose_image)
     known = (s.hash_of, s.covers, s.look_up, s.insert, s.refill)
     walking = (s.keep_words, s.fetch_words, s.append, s.room_left)
@@ -92,9 +67,9 @@ def compiled_engine() -> s.Engine:
 
 
 @functools.cache
-def compiled_refill() -> Callable[..., None]:
+def compiled_refill(parts: Callable[[], Any]) -> Callable[..., None]:
     """The function that enters all rows into a new table."""
-    compiled_engine()
+    compiled_engine(parts)
     return door.compiled(s.refill)
 
 
@@ -113,7 +88,7 @@ def explore(
     Args:
         model: what is explored.
         plain: uncompiled.
-        system: a copy of the protocol to run plain (see skin_system.system_of); None the real one.
+        system: a copy of the protocol to run plain; None the real one.
         memory: bytes the states may take; reaching it ends the search.
         states: end after so many states; 0 = no such limit.
         progress: called now and then; the search ends if it returns True.
@@ -122,7 +97,7 @@ def explore(
     Raises:
         VerifyError: the model does not fit its rows, or the memory.
     """
-    system = system or skin_system.system_of()
+    system = system or model.system()
     driver = _Driver(model, system, plain, memory, states)
     tally, started, told = Tally(), wall_s(), wall_s()
     while True:
@@ -156,9 +131,9 @@ def wander(
     progress: Progress | None = None,
 ) -> Result:
     """So many random walks of at most `length` events, for budgets too large to exhaust."""
-    system = system or skin_system.system_of()
+    system = system or model.system()
     driver = _Driver(model, system, plain, 64 << 20, length + 2)
-    walk = s.build(system).wander if plain else compiled_engine().wander
+    walk = s.build(system).wander if plain else compiled_engine(model.compiled_parts).wander
     run = driver.search.run
     run[s.RANDOM], run[s.NEXT] = seed * 2_654_435_761 + 97, 0
     walk(driver.seen_world, driver.seen_search, 0, length)  # compiles
@@ -179,8 +154,8 @@ class _Driver:
 
     def __init__(self, model: Any, system: Any, plain: bool, memory: int, states: int) -> None:
         self.model, self.plain = model, plain
-        self.lay = skin_system.layout(model)
-        self.world = skin_system.world_of(model, plain)
+        self.lay = model.layout()
+        self.world = model.world(plain)
         words = self.lay.width // 8
         # A row, its link backward, and 2 places of the table (at most 70 % full, then doubled).
         limit = memory // (8 * words + 4 + 2 * 12)
@@ -199,10 +174,10 @@ class _Driver:
             self.expand, insert = engine.expand, s.insert
             self.refill: Any = s.refill
         else:
-            engine = compiled_engine()
-            insert, self.refill = engine.insert, compiled_refill()
+            engine = compiled_engine(model.compiled_parts)
+            insert, self.refill = engine.insert, compiled_refill(model.compiled_parts)
             self.expand = engine.expand
-        first = skin_system.first_row(model, system)
+        first = model.first_row(system)
         for i, value in enumerate(first):
             self.world.work[i] = value
         self.seen_world = self.world if plain else tables.borrowed(self.world)

@@ -6,8 +6,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from innervate.networks.skin.verify import system as skin_system
-from innervate.networks.skin.verify import world as w
 from innervate.verify import search as s
 from innervate.verify.explore import body_words
 
@@ -28,15 +26,14 @@ class Twin:
 
     def __init__(self, model: Any, system: Any) -> None:
         self.model, self.system = model, system
-        self.lay = skin_system.layout(model)
+        self.lay = model.layout()
         self.moves = self.lay.moves()
-        self.world = skin_system.world_of(model, plain=True)
-        forms = w.Forms(True)
-        run = forms.longs(s.NUMBERS)
+        self.world = model.world(True)
+        run = memoryview(bytearray(8 * s.NUMBERS)).cast("q")
         run[s.WORDS], run[s.WIDTH] = self.lay.width // 8, self.lay.width
         run[s.IMAGES] = len(self.lay.images()) // self.lay.width
         self.search = s.Search(run, None, None, None, body_words(self.lay.body(), True))
-        self.put(bytes(skin_system.first_row(model, system)))
+        self.put(bytes(model.first_row(system)))
 
     def put(self, row: bytes) -> None:
         """Make a row the present state."""
@@ -78,5 +75,6 @@ def find(twin: Twin, target: bytes | None, broken: int) -> Event:
         if is_it:
             there = twin.row()
             twin.put(there)
-            return Event(*twin.moves[move], variant, choice, asked)
+            kind, arg = twin.moves[move]
+            return Event(kind, arg, variant, choice, asked)
     raise AssertionError("a kept state has no way to it")

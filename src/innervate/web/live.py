@@ -10,13 +10,14 @@ from typing import Any
 
 from innervate import __version__
 from innervate.live import status
-from innervate.networks.radio.analysis.live import Still
+from innervate.network import networks
 from innervate.web.errors import Refused, WatchError
 from innervate.web.history import LOSS, RETURN, SERIES, Logbook
-from innervate.web.live_map import Link, Map, Place, Status
+from innervate.web.live_map import Link, Place, Status
 from innervate.web.live_poll import Poller
 from innervate.web.live_scene import drawn
 from innervate.web.live_state import State
+from innervate.web.live_view import LiveView
 from innervate.web.messages import Command, Cut, Give, Heal, Kill, Revive, number
 from innervate.web.recovery import Recovery
 from innervate.web.source import Source
@@ -66,20 +67,21 @@ class Live(Source):
         self._counters: Counter[str] = Counter()
         self._counted_us = 0
         self._recovery: Recovery | None = None
-        self._still, self._still_ms = Still(), 0.0
         self._poll()
         if not self._told:
             raise WatchError(f"{sockets[0]}: no node answers here; are they still running?")
         kinds = {str(one["kind"]) for one in self._told.values()}
         if len(kinds) > 1:
             raise WatchError(f"{' and '.join(sorted(kinds))} nodes: name those of one network")
+        self._kind = min(kinds)
+        self._view: LiveView = networks()[self._kind].live_view()
         for i in range(len(sockets)):
             if i not in self._told:
                 self._log.often("none", 0, f"{self._names[i]}: nobody answers at its socket", "bad")
-        self._map = Map(self._last)
-        self._drawn = drawn(sockets, self._map.kind)
+        self._map = self._view.map(self._last)
+        self._drawn = drawn(sockets, self._kind)
         self._off: set[Place] = set()  # cut off whole, from here
-        self._state = State(self._map, self._told)
+        self._state: State = self._view.state(self._map, self._told)
         self.can = self._possible()
 
     def scene(self) -> dict[str, Any]:
@@ -108,19 +110,19 @@ class Live(Source):
             {"id": at, "a": numbers[link.a], "b": numbers[link.b]}
             for at, link in enumerate(self._map.links)
         ]
-        is_radio = self._map.kind == "radio"
-        lost = ("stations off", "") if is_radio else ("nodes without a way", "nodes")
+        lost = self._view.lost
         series = [
             {"id": "unconnected", "label": lost[0], "unit": lost[1]},
             {"id": "frames", "label": "frames received, all nodes", "unit": "per s"},
             {"id": "dropped", "label": "frames dropped, all nodes", "unit": "per s"},
         ]
         return {
-            "kind": self._map.kind, "name": known.name if known is not None else "live",
+            "kind": self._kind, "name": known.name if known is not None else "live",
             "source": "live", "version": __version__,
             "can": list(self.can), "duration_s": None, "t_s": self._now_us() / 1e6,
             "nodes": nodes, "links": links, "series": series,
             "fence": known.fence if known is not None and as_drawn else None,
+            **self._view.scene(self._kind),
             "metres": known is not None and as_drawn and known.metres,
             "ports": sum(place.port >= 0 for place in self._map.places),
         }  # fmt: skip
@@ -143,15 +145,14 @@ class Live(Source):
         if now < self._next:
             return self._next - now
         self._poll()
-        fresh = Map(self._last, self._map)
+        fresh = self._view.map(self._last, self._map)
         if (fresh.places, fresh.links) != (self._map.places, self._map.links):
             self._map = fresh
             self.can = self._possible()
             self.scenes += 1
         self._look()
         waits = self._recovery is not None and self._recovery.recovered_ms is None
-        waits = waits or self._map.kind == "radio"  # who sends is soon another
-        self._next = now + (SOON_S if waits else POLL_S)
+        self._next = now + (SOON_S if waits or self._view.is_quick else POLL_S)
         return max(0.0, self._next - time.monotonic())
 
     def _poll(self) -> None:
@@ -206,11 +207,10 @@ class Live(Source):
 
     def _look(self) -> None:
         """Take in what everybody said: who has a way again, a point of the plots."""
-        before, self._state = self._state, State(self._map, self._told, self._off)
+        before, self._state = self._state, self._view.state(self._map, self._told, self._off)
         self._compare(before)
         self._recover()
-        if self._map.kind == "radio":
-            self._still_ms = self._still.note(self._now_us(), self._told.values())
+        self._view.note(self._state, self._now_us(), self._told)
         at_us, lost = self._now_us(), self._state.unconnected
         total = self._frames()
         took_s = max(1e-3, (at_us - self._counted_us) / 1e6)
@@ -224,7 +224,7 @@ class Live(Source):
     def _recover(self) -> None:
         """Note when everybody who can have a way has one again; nothing if nobody answers."""
         recovery, state = self._recovery, self._state
-        if recovery is None or self._map.kind == "radio" or not self._told:
+        if recovery is None or not self._view.has_ways or not self._told:
             return
         at_us = self._now_us()
         recovery.cut_off(state.unconnected - state.lacking)
@@ -257,7 +257,7 @@ class Live(Source):
 
     def fields(self) -> dict[str, Any]:
         """The state as it was told last."""
-        recovery, headline = self._recovery, self._state.headline(self._still_ms)
+        recovery, headline = self._recovery, self._state.headline()
         t_s = math.ceil(self._now_us() / 1e5) / 10  # in steps, so that what is idle is told seldom
         return {
             "t_s": t_s,
@@ -272,30 +272,11 @@ class Live(Source):
 
     def _possible(self) -> tuple[str, ...]:
         nodes = ("kill", "revive") if any(one.get("paths") for one in self._last.values()) else ()
-        down = ("command",) if self._map.kind == "skin" and self._pc() is not None else ()
-        return (*(("cut", "heal") if self._map.links else ()), *nodes, *down)
+        links = ("cut", "heal") if self._map.links else ()
+        return (*links, *nodes, *self._view.can(self._last))
 
-    def _pc(self) -> int | None:
-        """Which node is the PC of a skin."""
-        found = (i for i, one in self._last.items() if one.get("role") == "sink")
-        return next(found, None)
-
-    def _give(self, command: Give) -> None:
-        """Have the PC send a command down."""
-        pc, cell, whom = self._pc(), None, "all cells"
-        assert pc is not None
-        if command.node is not None:
-            place = self._map.places[number("node", command.node, len(self._map.places))]
-            if place.port >= 0:
-                raise Refused("this is a port of the PC; commands are for cells")
-            cell, whom = int(self._last[place.node]["number"]), self._label(place)
-        request = {"do": "command", "code": command.code, "value": command.value, "cell": cell}
-        answer = self._poller.ask({pc: request}).get(pc)
-        if answer is None or "error" in answer:
-            raise Refused(f"the PC did not take it: {(answer or {}).get('error', 'no answer')}")
-        if not answer["ports"]:
-            raise Refused("no cell has the PC as its parent: nobody hands it down")
-        self._log.say(self._now_us(), f"command {answer['number']} sent to {whom}")
+    def _ask(self, node: int, request: dict[str, Any]) -> dict[str, Any] | None:
+        return self._poller.ask({node: request}).get(node)
 
     def do(self, command: Command) -> dict[str, Any] | None:
         """Have drivers drop what comes over a link, or over all paths of a node; or take it again.
@@ -308,7 +289,8 @@ class Live(Source):
         elif isinstance(command, Cut | Heal):
             self._cable(command)
         elif isinstance(command, Give) and "command" in self.can:
-            self._give(command)
+            said = self._view.give(command, self._map, self._last, self._label, self._ask)
+            self._log.say(self._now_us(), said)
         else:
             raise Refused("not possible here")
         self._next = 0.0
@@ -365,5 +347,5 @@ class Live(Source):
         return sum(path in one["ports"] for one in near) > 1
 
     def close(self) -> None:
-        """Hang up."""
+        """Stop asking the nodes."""
         self._poller.close()

@@ -12,11 +12,11 @@ Status = dict[str, Any]
 
 
 class Place(NamedTuple):
-    """A node on the map: a running node, or one interface port of a skin's PC.
+    """A node on the map: a running node, or one port of a node that is drawn by its ports.
 
     Attributes:
         node: which running node it is.
-        port: the PC's interface port; -1 for others.
+        port: which port it is; -1 for a node as a whole.
     """
 
     node: int
@@ -40,30 +40,31 @@ class Map:
         before: a map that this one takes the place of: a link that nobody names any more stays.
 
     Attributes:
-        kind: skin, radio or mesh.
-        places: the map's nodes: all that are no PC first, then the PC's ports.
+        places: the map's nodes; those that are ports of a node come last.
         links: in order of their places.
     """
 
     def __init__(self, told: Mapping[int, Status], before: Map | None = None) -> None:
-        self.kind = str(next(iter(told.values()))["kind"])
         ports = [
             Place(i, int(path["port"]))
             for i, one in sorted(told.items())
-            if one.get("role") == "sink"
+            if self.is_split(one)
             for path in one["paths"]
         ]
-        plain = [Place(i, -1) for i, one in sorted(told.items()) if one.get("role") != "sink"]
+        plain = [Place(i, -1) for i, one in sorted(told.items()) if not self.is_split(one)]
         self.places = [*plain, *ports]
         self.number = {place: at for at, place in enumerate(self.places)}
-        named = self._meshed(told) if self.kind == "mesh" else self._cabled(told)
-        # Two cells can have two cables; two nodes of a mesh hear each other, or not.
+        named = self.find_links(told)
         known = {self.key(link): link for link in (*(before.links if before else ()), *named)}
         self.links: list[Link] = sorted(known.values())
 
     def key(self, what: Link | Place) -> tuple[Any, ...]:
-        """What a link or place is known by: paths of a mesh's link come and go."""
-        return what[:2] if self.kind == "mesh" else tuple(what)
+        """What a link or place is known by; two nodes can have two cables."""
+        return tuple(what)
+
+    def is_split(self, one: Status) -> bool:
+        """True if every port of a node is a place of its own."""
+        return False
 
     def place(self, index: int, path: int) -> Place:
         """The place that a path of a node belongs to."""
@@ -74,7 +75,7 @@ class Map:
         """Places by the number that nodes know each other by."""
         return {int(one["number"]): Place(i, -1) for i, one in told.items() if "number" in one}
 
-    def _cabled(self, told: Mapping[int, Status]) -> list[Link]:
+    def find_links(self, told: Mapping[int, Status]) -> list[Link]:
         """Cables whose ends name each other: each is called what the other is at home."""
         ends: dict[tuple[str, str], list[tuple[str, str, int, int]]] = {}
         for i, one in told.items():
@@ -93,17 +94,6 @@ class Map:
                     if self.number[a] < self.number[b]:
                         found.append(Link(a, b, (port,), (their_port,)))
         return found
-
-    def _meshed(self, told: Mapping[int, Status]) -> list[Link]:
-        """Neighbours that hear each other, at least one way."""
-        places = self.numbered(told)
-        ports: dict[tuple[Place, Place], tuple[int, ...]] = {}
-        for i, one in told.items():
-            for near in one["neighbours"]:
-                if near["node"] in places:
-                    ports[Place(i, -1), places[near["node"]]] = tuple(near["ports"])
-        pairs = {(min(pair), max(pair)) for pair in ports if pair[0] != pair[1]}
-        return [Link(a, b, ports.get((a, b), ()), ports.get((b, a), ())) for a, b in pairs]
 
     def spread(self) -> Any:
         """x, y of every place: as far apart as they are in hops, about one from the next."""

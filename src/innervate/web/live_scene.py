@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
-from innervate import scenario as scenarios
-from innervate.scenario import ScenarioError
+from innervate.network import networks
 
 FILE = "scenario.toml"
 Place = tuple[float, float]
@@ -35,6 +33,8 @@ class Drawn:
 
 def drawn(sockets: Sequence[Path], kind: str) -> Drawn | None:
     """The map of nodes whose sockets lie beside their scenario; None without one of that kind."""
+    from innervate import scenario as scenarios
+
     folders = {path.parent for path in sockets}
     file = min(folders, default=Path()) / FILE
     if len(folders) != 1 or not file.is_file():
@@ -43,43 +43,10 @@ def drawn(sockets: Sequence[Path], kind: str) -> Drawn | None:
         plan = scenarios.plan(scenarios.load(file))
         if plan.kind != kind:
             return None
-        return _MAKERS[kind](plan)
-    except (ScenarioError, ImportError):  # files it names lie elsewhere, or no simulator is here
+        found: Drawn = networks()[kind].live_view().drawn(plan)
+        return found
+    except (
+        scenarios.ScenarioError,
+        ImportError,
+    ):  # files it names lie elsewhere, or no simulator is here
         return None
-
-
-def _mesh(plan: Any) -> Drawn:
-    from innervate.networks.mesh.view.scene import Field
-
-    scene = Field(plan).scene()
-    names = [f"n{i}" for i in range(plan.nodes)]
-    return Drawn(
-        name=plan.scenario.name,
-        places={
-            name: (one["x"], one["y"]) for name, one in zip(names, scene["nodes"], strict=True)
-        },
-        labels={name: own for name, own in zip(names, plan.names, strict=True) if name != own},
-        fence=scene["fence"],
-        metres=bool(scene["metres"]),
-    )
-
-
-def _skin(plan: Any) -> Drawn:
-    from innervate.networks.skin.view.scene import places
-
-    graph = plan.graph
-    names = [f"c{i}" for i in range(graph.cells)]
-    ports = [f"pc.{i}" for i in range(graph.interfaces)]
-    found = [(float(x), float(y)) for x, y in places(graph).round(3).tolist()]
-    return Drawn(
-        name=plan.scenario.name,
-        places=dict(zip([*names, *ports], found, strict=True)),
-        labels={name: graph.label(i) for i, name in enumerate(names)},
-    )
-
-
-def _radio(plan: Any) -> Drawn:
-    return Drawn(plan.scenario.name, {})  # stations are drawn in a ring
-
-
-_MAKERS = {"mesh": _mesh, "skin": _skin, "radio": _radio}

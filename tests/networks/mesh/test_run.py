@@ -4,9 +4,9 @@ import polars
 import pytest
 
 from innervate import run
-from innervate.cli.show import summary_lines
 from innervate.network import networks
 from innervate.networks.mesh import tables as declared
+from innervate.networks.mesh.show import summary_lines
 from innervate.running import compare
 from tests.networks.mesh.tables_runs import mesh_tables, without_fence
 

@@ -1,6 +1,7 @@
 """What must hold of the skin's handlers, as checks that run on any copy of the protocol.
 
-The tests run them on the real one, tests/networks/skin/verify on changed ones: there each must find something.
+The tests run them on the real one, verify/test_protocol_mutants.py on changed ones: there each
+must find something.
 """
 
 import random

@@ -66,7 +66,7 @@ def run_bundled(name, overrides=()):
 @contextmanager
 def plain_stack(stack):
     """Plain runs use this stack instead of the simulator's own."""
-    advance = loop.build(stack)[-1]
+    advance = loop.bind(stack)
     with mock.patch.object(simulator, "plain_loop", return_value=advance):
         yield
 

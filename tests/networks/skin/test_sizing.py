@@ -6,9 +6,9 @@ import pytest
 
 from innervate import scenario
 from innervate.cli import main
+from innervate.networks.skin.plot.answer import answer_lines
 from innervate.networks.skin.sizing import Question, parse_ports, size
 from innervate.sweeping import SweepError
-from innervate.sweeping.sized import answer_lines
 
 pytest.importorskip("icub_models")
 ICUB = "package:icub-models/iCubGenova02"

@@ -51,6 +51,8 @@ LAYOUTS = (
 PAYLOAD = (("payload", REST, 8, 0),)
 CRC = (("crc", 0, 16, 0),)
 AT = 8  # bits of HEAD
+# What captures call a node, by its role.
+INTERFACE_WORDS = {"station": "station"}
 
 # What decode says: read, or why not. Receivers count by these.
 OK = 0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -107,6 +107,17 @@ def trail(plan: Any, until_us: int) -> Iterator[Any]:
         return  # it has no handler calls
     shorter = replace(plan, duration_us=until_us)
     yield simulator.simulate(shorter, checks=False, keep=False, trail=True).trail
+
+
+def summary_name(summary: Mapping[str, Any]) -> str:
+    """By what name a run has its summary."""
+    return "slotted" if summary.get("level") == "slotted" else "radio"
+
+
+def without_events(summary: Mapping[str, Any]) -> str:
+    """Why a run has no events to compare; "" if it has."""
+    slotted = summary.get("level") == "slotted"
+    return "a run on the slotted level has no events to compare" if slotted else ""
 
 
 def call_words(plan: Any, row: Any) -> str:

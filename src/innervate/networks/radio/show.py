@@ -10,7 +10,7 @@ from innervate.networks.radio.scenario.words import warnings
 from innervate.plot import words
 
 if TYPE_CHECKING:
-    from innervate.analysis.summaries import RadioSummary, SlottedSummary
+    from innervate.networks.radio.analysis.summary_keys import RadioSummary, SlottedSummary
     from innervate.running import Run
 
 
@@ -39,7 +39,7 @@ def _first(run: Run) -> str:
 
 
 def result_lines(run: Run) -> list[str]:
-    """Packets, delays, fairness."""
+    """Lines on a run: packets delivered, delays, fairness, and what is amiss."""
     summary = _summary(run)
     lines = [_delivered(run), *off_words(summary), *warnings(run.plan)]
     delay = summary["delay_slots"]

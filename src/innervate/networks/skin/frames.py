@@ -45,6 +45,8 @@ LAYOUTS = (
     (RESTART, "restart", ROUTE),
     (COMMAND, "command", ORDER),
 )
+# What captures call a node, by its role.
+INTERFACE_WORDS = {"sink": "pc", "cell": "cell"}
 
 # What decode says: read, or why not. Receivers count by these.
 OK = 0

@@ -100,6 +100,18 @@ class Answer:
         """For every number of ports the names of the cells that they are on."""
         return {ports: cells_with_ports(graph) for ports, graph in self.graphs.items()}
 
+    def lines(self) -> list[str]:
+        """It in words: a table, then how many ports, where, and what does not heal."""
+        from innervate.networks.skin.plot.answer import answer_lines
+
+        return answer_lines(self)
+
+    def draw(self, folder: Path) -> Path:
+        """Its picture, written into a folder, with the ports that the hardest rate needs."""
+        from innervate.networks.skin.plot import sizing as figure
+
+        return figure.write(self, folder)
+
 
 def size(
     question: Question,

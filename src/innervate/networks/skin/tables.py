@@ -71,5 +71,6 @@ RECEIVED = Table(
         Column("accel_y", "Int16", "raw", "acceleration along y"),
         Column("accel_z", "Int16", "raw", "acceleration along z"),
     ),
+    topic="/samples",
 )
 TABLES = (ROUTES, LINKS, OUTAGES, LOOPS, RECEIVED)

@@ -1,5 +1,16 @@
 """What can be done to a network of cables while it runs."""
 
-ACTIONS = ("cut", "restore", "kill", "revive", "loose", "restart", "lose")
+from innervate.scenario.actions.action import Action, harmful, words
+
+TABLE = (
+    Action("cut", "cable", harms=True),
+    Action("restore", "cable", mends="cut"),
+    Action("kill", "cell", harms=True),
+    Action("revive", "cell", mends="kill"),
+    Action("loose", "cable", "loss", harms=True),
+    Action("restart", "node"),
+    Action("lose", "cable", "frames", harms=True),
+)
+ACTIONS, HARM = words(TABLE), harmful(TABLE)
 CUT, RESTORE, KILL, REVIVE, LOOSE, RESTART, LOSE = range(7)
 GIVE = 7  # no fault: the sink is given a command for nodes

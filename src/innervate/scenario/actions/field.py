@@ -1,4 +1,15 @@
 """What can be done to the nodes of a field while it runs."""
 
-ACTIONS = ("kill", "revive", "cut", "restore", "jam", "quiet", "restart")
+from innervate.scenario.actions.action import Action, harmful, words
+
+TABLE = (
+    Action("kill", "node", harms=True),
+    Action("revive", "node", mends="kill"),
+    Action("cut", "link", harms=True),
+    Action("restore", "link", mends="cut"),
+    Action("jam", "node", "noise_dbm", harms=True),
+    Action("quiet", "node", mends="jam"),
+    Action("restart", "node"),
+)
+ACTIONS, HARM = words(TABLE), harmful(TABLE)
 KILL, REVIVE, CUT, RESTORE, JAM, QUIET, RESTART = range(7)

@@ -2,96 +2,180 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from innervate.dialect import rng
 from innervate.kernel import records
-from innervate.networks.skin.protocol import fields as skin_fields
-from innervate.networks.skin.sim.orders import SLOTS
-from innervate.scenario.actions.cables import GIVE, LOSE
+from innervate.kernel.records import Declaration
+from innervate.scenario.actions.cables import LOSE
 from innervate.sim import delays
 from innervate.sim.cables import commands
 from innervate.sim.cables import world as w
 from innervate.sim.cables.loop import BATCH
 from innervate.sim.cables.wires import COUNTERS, LOSSY
-from innervate.sim.tables import ACTION, TAP, Out, Tables, _longer, get, put, uniform
+from innervate.sim.tables import ACTION, TAP, Names, Out, Tables, _longer, get, put, uniform
 from innervate.sim.wheel import BUCKETS, FREE, FRESH, LAST, LEVELS, NIL, PENDING, WORDS
 
 ROWS = 1 << 16
-CELL_BYTES = 256  # whole cache lines
-FRAME_BYTES = 128
+CACHE_LINE = 64
 
 
-def build(
-    plan: Any,
-    plain: bool = False,
-    checks: bool = True,
-    observe: bool = True,
-    deliveries: bool = False,
-    trail: bool = False,
-    tap: bool = False,
-    orders: bool = False,
-) -> w.World:
+class Records(NamedTuple):
+    """Declarations of a network's records, as columns of name, length, range, unit, meaning.
+
+    Attributes:
+        node: state of a node; `number`, `rng` and `choice`, where declared, are set here.
+        frame, params: frames, and the parameters of the protocol.
+        item: what a node is handed as input.
+        sink: state of the node with a port per interface; () = all nodes are equal.
+        delivery: names of the fields of a row of what users received.
+        numbers: names of the recorder's own numbers, in `world.run`.
+        outbox: most actions of a handler, besides one per interface.
+    """
+
+    node: Declaration
+    frame: Declaration
+    params: Declaration
+    item: Declaration
+    sink: Declaration = ()
+    delivery: Names = w.DELIVERY
+    numbers: tuple[str, ...] = ()
+    outbox: int = 16
+
+
+class Kept(NamedTuple):
+    """What a run keeps.
+
+    Attributes:
+        checks, observe: check what must hold; note what nodes report.
+        deliveries, trail: a row per delivered frame, and per handler call.
+        tap: copies of frames as they leave and come in.
+    """
+
+    checks: bool = True
+    observe: bool = True
+    deliveries: bool = False
+    trail: bool = False
+    tap: bool = False
+
+
+class Added(NamedTuple):
+    """What a network adds to the tables of its cables.
+
+    Attributes:
+        watch, carrier: the recorder's tables, and those of what nodes sense.
+        inputs: what nodes are given by their users, as rows of `world.COMMAND`.
+        queues: frames may have to wait at their ports.
+        ways: how many latencies are kept apart.
+    """
+
+    watch: Any = ()
+    carrier: Any = ()
+    inputs: tuple[tuple[int, ...], ...] = ()
+    queues: bool = True
+    ways: int = 0
+
+
+class _Sizes(NamedTuple):
+    """How long the tables are."""
+
+    nodes: int
+    ends: int
+    tx_slots: int
+    pool_slots: int
+    limit: int  # actions of the outbox
+    pool: int  # frames on their way
+    queue: int  # frames that wait
+    tapped: int
+
+
+def build(plan: Any, of: Records, tables: Tables, kept: Kept, added: Added) -> w.World:
     """The world of a plan, before its first event.
 
-    `deliveries` keeps a row per tactile sample the PC receives, `trail` a row per handler call,
-    `tap` copies of frames as they leave and come in. `orders` makes room for commands of the PC
-    even if the plan has none.
+    Args:
+        plan: see `scenario/cables.py`.
+        of: its protocol's records.
+        tables: makes them, compiled or plain.
+        kept: what the run keeps.
+        added: what is its network's own.
     """
-    tables = Tables(plain)
-    graph = plan.graph
-    cells, nodes, ends = graph.cells, graph.cells + 1, len(graph.peer)
-    tx_slots = nodes * w.TIMER_SLOTS
-    orders = orders or bool(plan.orders)
-    waits = bool(plan.data_period_us) or orders  # beacons alone never wait
-    pool_slots = tx_slots + (ends if waits else 0)
-    limit = max(16, graph.interfaces + 4)
-    pool = 2 * ends + BATCH * 16 + 4 * limit
-    queue_frames = ends * plan.queue_frames if waits else 1
-    # What a batch of events and a command can add: every action empties a queue, the PC goes off.
-    burst = (BATCH + 1) * limit * (1 + plan.queue_frames)
-    tapped = ROWS + burst if tap else 1
-    states = tables.states(skin_fields.CELL, cells, CELL_BYTES)
+    size = _sizes(plan, of, kept, added)
+    cells = plan.graph.cells
+    states = tables.states(of.node, cells, _lines(of.node))
+    low, high = records.bounds(of.node)
     world = w.World(
-        run=tables.records(w.RUN, 1, wide=w.WIDE),
-        wheel=_wheel(tables, pool_slots, pool),
-        frames=tables.states(skin_fields.FRAME, pool, FRAME_BYTES),
-        queue=tables.states(skin_fields.FRAME, queue_frames),
+        run=tables.records((*w.RUN, *of.numbers), 1, wide={*w.WIDE, *of.numbers}),
+        wheel=_wheel(tables, size.pool_slots, size.pool),
+        frames=tables.states(of.frame, size.pool, _lines(of.frame)),
+        queue=tables.states(of.frame, size.queue),
         cells=states,
-        pc=w.Sink(tables.states(skin_fields.SINK, 1), tables.numbers(graph.interfaces)),
-        params=tables.states(skin_fields.PARAMS, 1),
-        clocks=tables.records(w.CLOCK, nodes),
-        starts=tables.records(w.START, nodes),
-        alive=tables.numbers(nodes, w.OFF),
-        ends=tables.records(w.END, ends),
-        buffers=tables.records(w.BUFFER, ends),
-        epoch=tables.numbers(ends),
-        out=_outbox(tables, limit),
-        sample=tables.states(skin_fields.FRAME, 1),
+        words=tables.words(states, of.node),
+        low=low.tolist() if tables.plain else low,
+        high=high.tolist() if tables.plain else high,
+        pc=_sink(tables, of, plan.graph.interfaces),
+        params=tables.states(of.params, 1),
+        clocks=tables.records(w.CLOCK, size.nodes),
+        starts=tables.records(w.START, size.nodes),
+        alive=tables.numbers(size.nodes, w.OFF),
+        ends=tables.records(w.END, size.ends),
+        buffers=tables.records(w.BUFFER, size.ends),
+        epoch=tables.numbers(size.ends),
+        out=_outbox(tables, of, size.limit),
+        sample=tables.states(of.item, 1),
         counters=tables.numbers(COUNTERS, 0, np.int64),
-        watch=_watch(tables, cells, states),
-        commands=tables.records(w.COMMAND, len(plan.faults) + len(plan.orders) + 1),
-        rows=tables.records(w.ROW, ROWS + 8 * limit, fresh=True),
-        deliveries=tables.records(w.DELIVERY, ROWS if deliveries else 1, fresh=True),
-        trail=tables.records(w.TRAIL, ROWS if trail else 1, fresh=True),
-        taps=tables.records(TAP, tapped, fresh=True),
-        tapped=tables.states(skin_fields.FRAME, tapped),
-        **_books(tables, plan, orders),
-        **_touch(tables, plan),
+        watch=added.watch,
+        carrier=added.carrier,
+        commands=tables.records(w.COMMAND, len(plan.faults) + len(added.inputs) + 1),
+        rows=tables.records(w.ROW, ROWS + 8 * size.limit, fresh=True),
+        deliveries=tables.records(of.delivery, ROWS if kept.deliveries else 1, fresh=True),
+        trail=tables.records(w.TRAIL, ROWS if kept.trail else 1, fresh=True),
+        taps=tables.records(TAP, size.tapped, fresh=True),
+        tapped=tables.states(of.frame, size.tapped),
+        delays=tables.records(w.DELAY, added.ways, wide=w.WIDE),
+        delay_counts=tables.numbers(added.ways * delays.CLASSES),
     )
-    _set_run(world, plan, tx_slots, pool_slots)
-    put(world.run, 0, checks=int(checks), watchful=int(checks or trail), broken_at=-1,
-        row_limit=len(world.rows), observe=int(observe or checks))  # fmt: skip
-    put(world.run, 0, delivery_limit=ROWS if deliveries else 0, trail_limit=ROWS if trail else 0)
-    put(world.run, 0, tap_limit=ROWS if tap else 0)
-    put(world.params, 0, **{field[0]: plan.params[field[0]] for field in skin_fields.PARAMS})
-    put(world.pc.own, 0, ports=graph.interfaces)
+    _set_run(world, plan, size, kept)
+    put(world.params, 0, **{field[0]: plan.params[field[0]] for field in of.params})
     _set_wires(world, plan)
-    _set_nodes(world, plan)
-    _set_commands(world, plan)
+    _set_nodes(world, plan, of)
+    _set_commands(world, plan, added.inputs)
     return world
+
+
+def _sizes(plan: Any, of: Records, kept: Kept, added: Added) -> _Sizes:
+    graph, ends = plan.graph, len(plan.graph.peer)
+    nodes = graph.cells + bool(of.sink)
+    tx_slots = nodes * w.TIMER_SLOTS
+    limit = max(of.outbox, graph.interfaces + 4)
+    # What a batch of events and a command can add: every action empties a queue, the sink goes off.
+    burst = (BATCH + 1) * limit * (1 + plan.queue_frames)
+    return _Sizes(
+        nodes=nodes,
+        ends=ends,
+        tx_slots=tx_slots,
+        pool_slots=tx_slots + (ends if added.queues else 0),
+        limit=limit,
+        pool=2 * ends + BATCH * 16 + 4 * limit,
+        queue=ends * plan.queue_frames if added.queues else 1,
+        tapped=ROWS + burst if kept.tap else 1,
+    )
+
+
+def _lines(declaration: Declaration) -> int:
+    """Bytes of a record in whole cache lines."""
+    used = records.dtype(declaration).itemsize
+    return -(-used // CACHE_LINE) * CACHE_LINE
+
+
+def _sink(tables: Tables, of: Records, ports: int) -> Any:
+    """The state of the node with a port per interface, if there is one."""
+    if not of.sink:
+        return ()
+    sink = w.Sink(tables.states(of.sink, 1), tables.numbers(ports))
+    put(sink.own, 0, ports=ports)
+    return sink
 
 
 def _wheel(tables: Tables, pool_slots: int, pool: int) -> w.Wheel:
@@ -113,40 +197,15 @@ def _wheel(tables: Tables, pool_slots: int, pool: int) -> w.Wheel:
     return wheel
 
 
-def _outbox(tables: Tables, limit: int) -> Out:
+def _outbox(tables: Tables, of: Records, limit: int) -> Out:
     """An empty outbox with room for `limit` actions."""
     return Out(
         count=tables.numbers(1, 0, np.int64),
         limit=tables.numbers(1, limit, np.int64),
         overflow=tables.numbers(1, 0, np.int64),
         action=tables.records(ACTION, limit),
-        frame=tables.states(skin_fields.FRAME, limit),
+        frame=tables.states(of.frame, limit),
     )
-
-
-def _books(tables: Tables, plan: Any, orders: bool) -> dict[str, Any]:
-    """What is kept of latencies, and of the PC's commands."""
-    ways = (plan.graph.interfaces if plan.data_period_us else 0) + orders
-    slots = SLOTS if orders else 0
-    return {
-        "delays": tables.records(w.DELAY, ways, wide=w.WIDE),
-        "delay_counts": tables.numbers(ways * delays.CLASSES),
-        "due": tables.numbers(slots * plan.graph.cells),
-        "due_number": tables.numbers(slots, NIL),
-    }
-
-
-def _touch(tables: Tables, plan: Any) -> dict[str, Any]:
-    """Tables of the synthetic touch, empty without one."""
-    touch = plan.touch
-    span = (touch.radius_um, touch.force_mn, touch.step_us) if touch else (0, 0, 1)
-    places = [round(1000 * x) for place in plan.graph.layout() for x in place] if touch else ()
-    return {
-        "touch_x": _numbers(tables, touch.x_um if touch else ()),
-        "touch_y": _numbers(tables, touch.y_um if touch else ()),
-        "touch_span": _numbers(tables, span),
-        "place": _numbers(tables, places),
-    }
 
 
 def grow_pool(world: w.World) -> w.World:
@@ -171,45 +230,30 @@ def _fill(table: Any, name: str, values: Any, count: int) -> None:
         table[name][:count] = values
 
 
-def _numbers(tables: Tables, values: Any) -> Any:
-    made = np.array(values, np.int64)
-    return made.tolist() if tables.plain else made
-
-
-def _watch(tables: Tables, cells: int, states: Any) -> w.Watch:
-    low, high = records.bounds(skin_fields.CELL)
-    return w.Watch(
-        port=tables.numbers(cells, NIL),
-        routed=tables.numbers(cells),
-        had=tables.numbers(cells),
-        joined=tables.numbers(cells),
-        apart=tables.numbers(cells, NIL, np.int64),
-        ring=tables.numbers(cells, NIL),
-        before=tables.numbers(cells),
-        stack=tables.numbers(cells),
-        low=low.tolist() if tables.plain else low,
-        high=high.tolist() if tables.plain else high,
-        words=tables.words(states, skin_fields.CELL),
-    )
-
-
-def _set_run(world: w.World, plan: Any, tx_slots: int, pool_slots: int) -> None:
+def _set_run(world: w.World, plan: Any, size: _Sizes, kept: Kept) -> None:
     low, high = plan.latency_us
     put(
         world.run,
         0,
         cells=plan.graph.cells,
-        nodes=plan.graph.cells + 1,
-        tx_slots=tx_slots,
-        pool_slots=pool_slots,
+        nodes=size.nodes,
+        tx_slots=size.tx_slots,
+        pool_slots=size.pool_slots,
         wire_us=plan.wire_us,
         latency_low=low,
         latency_high=high,
         latency_per_frame=int(plan.latency_per_frame),
         queue_frames=plan.queue_frames,
         source_us=plan.data_period_us,
-        rule=plan.params["rule"],
         rng=rng.seeded(int(uniform(plan.seed, "medium", 1, 1 << 30)[0])),
+        checks=int(kept.checks),
+        watchful=int(kept.checks or kept.trail),
+        observe=int(kept.observe or kept.checks),
+        broken_at=-1,
+        row_limit=len(world.rows),
+        delivery_limit=ROWS if kept.deliveries else 0,
+        trail_limit=ROWS if kept.trail else 0,
+        tap_limit=ROWS if kept.tap else 0,
     )
 
 
@@ -223,30 +267,32 @@ def _set_wires(world: w.World, plan: Any) -> None:
         _fill(world.ends, "impaired", LOSSY, ends)
 
 
-def _set_nodes(world: w.World, plan: Any) -> None:
+def _set_nodes(world: w.World, plan: Any, of: Records) -> None:
     """Clocks, generators, and the moment each node is switched on."""
-    cells, nodes = plan.graph.cells, plan.graph.cells + 1
-    steep = 0 if plan.lock_step else round(plan.drift_ppm * (1 << 30) / 1_000_000)
+    cells, nodes = plan.graph.cells, len(world.clocks)
+    steep = round(plan.drift_ppm * (1 << 30) / 1_000_000)
     rates = uniform(plan.seed, "drift", nodes, 2 * steep + 1) - steep
     _fill(world.clocks, "rate", rates, nodes)
     _fill(world.starts, "inverse", (1 << 60) // ((1 << 30) + rates) - 1, nodes)
     _fill(world.clocks, "offset", uniform(plan.seed, "offset", nodes, 1 << 30), nodes)
-    seeds = uniform(plan.seed, "nodes", cells, rng.FIXED_POINT - 1) + 1
-    _fill(world.cells, "rng", seeds, cells)
-    _fill(world.cells, "number", np.arange(cells) & 0xFFFF, cells)
-    _fill(world.cells, "choice", rng.GENERATE, cells)
-    period = 1 if plan.lock_step else plan.params["beacon_us"]
-    phases = uniform(plan.seed, "phase", nodes, period)
+    first = {
+        "rng": uniform(plan.seed, "nodes", cells, rng.FIXED_POINT - 1) + 1,
+        "number": np.arange(cells) & 0xFFFF,
+        "choice": rng.GENERATE,
+    }
+    for name, *_ in of.node:
+        if name in first:
+            _fill(world.cells, name, first[name], cells)
     if plan.data_period_us:
         source = uniform(plan.seed, "source", nodes, plan.data_period_us)
         _fill(world.starts, "source", source, nodes)
-    _fill(world.starts, "phase", phases, nodes)
+    _fill(world.starts, "phase", uniform(plan.seed, "phase", nodes, plan.start_us), nodes)
 
 
-def _set_commands(world: w.World, plan: Any) -> None:
-    """What is done to the network from outside, in order of time; faults before commands."""
-    rows = [*map(fault_row, plan.faults), *map(order_row, plan.orders)]
-    rows = [(0, commands.BEGIN, NIL, NIL, 0, NIL), *sorted(rows, key=lambda row: row[0])]
+def _set_commands(world: w.World, plan: Any, inputs: tuple[tuple[int, ...], ...]) -> None:
+    """What is done to the network from outside, in order of time; faults before inputs."""
+    rows = sorted([*map(fault_row, plan.faults), *inputs], key=lambda row: row[0])
+    rows = [(0, commands.BEGIN, NIL, NIL, 0, NIL), *rows]
     put(world.run, 0, commands=len(rows))
     if isinstance(world.commands, list):
         for i, row in enumerate(rows):
@@ -259,8 +305,3 @@ def fault_row(fault: Any) -> tuple[int, ...]:
     """A fault of the plan as a row of `world.COMMAND`."""
     value = fault.frames if fault.action == LOSE else fault.loss_q15
     return (fault.at_us, fault.action, fault.end, fault.node, value, fault.index)
-
-
-def order_row(order: Any) -> tuple[int, ...]:
-    """A command of the PC as a row of `world.COMMAND`."""
-    return (order.at_us, GIVE, NIL, order.cell, order.code << 16 | order.value, NIL)

@@ -1,25 +1,26 @@
 """What is done to a running network from outside: cables cut, nodes killed, frames lost."""
 
-from innervate.networks.skin.sim import observer
+from innervate.dialect.arith import MASK30
 from innervate.scenario.actions.cables import CUT, KILL, LOOSE, LOSE, RESTART, RESTORE, REVIVE
+from innervate.sim import clocks
 from innervate.sim import wheel as queue
-from innervate.sim.cables import wires
+from innervate.sim.cables import calls, wires
 from innervate.sim.cables.wires import DOWN, LOSSY
 from innervate.sim.cables.world import ALIVE, DEAD, TIMER_SLOTS
 from innervate.sim.clocks import timer_slot
-from innervate.sim.status import MEMORY_LOST
+from innervate.sim.status import MEMORY_LOST, ON_INPUT
 from innervate.sim.wheel import NIL
 
 # As in a plan's faults; the loop begins with a command of its own.
 BEGIN = -1
 
 
-def obey(world, command, switch_on, stopped):
+def obey(world, do, command):
     """Carry out one command at its time."""
     action = command.action
     time = command.at
     if world.run[0].observe:
-        observer.remember(world)
+        do.before_change(world)
     if action == BEGIN:
         for node in range(world.run[0].nodes):
             queue.insert(world.wheel, node, world.starts[node].phase)
@@ -28,20 +29,20 @@ def obey(world, command, switch_on, stopped):
     elif action == RESTORE:
         change_link(world, command.end, -1)
     elif action == KILL:
-        switch_off(world, time, command.node, stopped)
+        switch_off(world, do, time, command.node)
     elif action == REVIVE:
         if world.alive[command.node] == DEAD:
             change_all(world, command.node, -1)
-            switch_on(world, command.node, time, MEMORY_LOST)
+            calls.switch_on(world, do, command.node, time, MEMORY_LOST)
     elif action == RESTART:
         if world.alive[command.node] == ALIVE:
-            forget(world, time, command.node, stopped)
-            switch_on(world, command.node, time, MEMORY_LOST)
+            forget(world, do, time, command.node)
+            calls.switch_on(world, do, command.node, time, MEMORY_LOST)
     elif action == LOOSE or action == LOSE:
         impair(world, command)
     if world.run[0].observe:
         node = max(command.node, command.end >> 2)
-        observer.on_links_changed(world, time, min(node, world.run[0].cells), command.index)
+        do.on_change(world, time, min(node, world.run[0].cells), command.index)
 
 
 def change_link(world, end, by):
@@ -80,16 +81,16 @@ def change_all(world, node, by):
             change_link(world, end, by)
 
 
-def switch_off(world, time, node, stopped):
+def switch_off(world, do, time, node):
     """A node dies: its timers stop, its queues are lost, its cables are dead."""
     if world.alive[node] == DEAD:
         return
     world.alive[node] = DEAD
     change_all(world, node, 1)
-    forget(world, time, node, stopped)
+    forget(world, do, time, node)
 
 
-def forget(world, time, node, stopped):
+def forget(world, do, time, node):
     """A node loses its memory: timers and queues go."""
     for timer in range(TIMER_SLOTS):
         slot = timer_slot(world, node, timer)
@@ -97,8 +98,17 @@ def forget(world, time, node, stopped):
             queue.remove(world.wheel, slot)
     first, behind = ends_of(world, node)
     for end in range(first, behind):
-        wires.drop_queue(world, end, time)
-    stopped(world, time, node)
+        wires.drop_queue(world, do, end, time)
+    do.on_stop(world, time, node)
+
+
+def hand_in(world, do, command):
+    """A node is given something by its user, if the network has it so."""
+    kind = do.take_input(world, command)
+    if kind > 0:
+        now = clocks.reading(world.clocks[command.node], command.at)
+        do.on_input(world, command.node, now & MASK30, kind)
+        calls.finish(world, do, command.node, command.at, ON_INPUT, 0)
 
 
 def impair(world, command):

@@ -1,36 +1,23 @@
-"""The simulation loop: one function, compiled on arrays or plain on lists.
+"""The simulation loop of a network of cables: one function, compiled on arrays or plain on lists.
 
 It takes events off the wheel, lets the node's protocol handle them, drains the outbox, and stops
 when the time, the commands or the room in a table is used up; `run.status` says which.
 """
 
-from collections.abc import Callable
-from typing import NamedTuple
+from __future__ import annotations
 
-from innervate.dialect.arith import MASK30
-from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
-from innervate.kernel.bits import mix
+from collections.abc import Callable
+from types import ModuleType
+from typing import Any
+
+from innervate.dialect import arith, outbox, rng
+from innervate.kernel import door, tables
 from innervate.kernel.tables import fetch
-from innervate.networks.skin.sim import orders, touch
-from innervate.networks.skin.sim.observer import BROKEN_OUTBOX
 from innervate.scenario.actions.cables import GIVE
-from innervate.sim import clocks, rows
+from innervate.sim import clocks, delays, rows, taps
 from innervate.sim import wheel as queue
-from innervate.sim.cables import commands, wires
-from innervate.sim.cables.wires import OFFERED
-from innervate.sim.cables.world import ALIVE, DEAD, OFF, SOURCE
-from innervate.sim.status import (
-    BROKEN,
-    BUDGET,
-    COLD,
-    DONE,
-    ON_FRAME,
-    ON_INPUT,
-    ON_START,
-    ON_TIMER,
-    POOL_FULL,
-    ROWS_FULL,
-)
+from innervate.sim.cables import calls, commands, wires
+from innervate.sim.status import BROKEN, BUDGET, DONE, POOL_FULL, ROWS_FULL
 from innervate.sim.wheel import FRESH, LAST, NIL
 
 # Events between two looks at the room left in the tables.
@@ -38,21 +25,6 @@ BATCH = 64
 FORESEE_CELLS = 2000  # fewer fit into the processor's caches anyway
 FORESEE_EVENTS = 4
 ROWS_PER_EVENT = 24
-
-
-class Handlers(NamedTuple):
-    """A loop's parts, bound to a stack; `advance` is the loop itself."""
-
-    drain: Callable[..., None]
-    look: Callable[..., None]
-    finish: Callable[..., None]
-    switch_on: Callable[..., None]
-    on_timer_slot: Callable[..., None]
-    on_arrival: Callable[..., None]
-    dispatch: Callable[..., None]
-    give_order: Callable[..., None]
-    report: Callable[..., None]
-    advance: Callable[..., None]
 
 
 def pressing(world):
@@ -102,169 +74,75 @@ def foresee(world, wheel):
     fetch(world.alive, node, 0)
 
 
-def build(stack):
-    """The loop for a stack: an object with start, hear, fire, sample, give, digest, report,
-    stopped, check, deliver and copy_frame (see skin_stack.py).
-    """
-    start, hear, fire = stack.start, stack.hear, stack.fire
-    sample, give = stack.sample, stack.give
-    digest, report, stopped = stack.digest, stack.report, stack.stopped
-    check, deliver, copy_frame = stack.check, stack.deliver, stack.copy_frame
+def dispatch(world, do, slot, time):
+    """Hand an event to what it is for."""
+    run = world.run[0]
+    if slot >= run.pool_slots:
+        event = world.wheel.events[slot]
+        if event.kind == wires.DELAYED:
+            wires.release(world, do, slot, time)
+        else:
+            calls.on_arrival(world, do, event, slot, time)
+    elif slot < run.tx_slots:
+        calls.on_timer_slot(world, do, slot, time)
+    else:
+        wires.wire_free(world, do, slot - run.tx_slots, time)
 
-    def drain(world, node, time, now, port):
-        """Carry out what a handler put into the outbox; fold it into the fingerprint."""
-        run = world.run[0]
-        out = world.out
-        mark = run.fingerprint
-        first_end = 4 * node
-        for i in range(out.count[0]):
-            act = out.action[i]
-            kind, a, b, c = act.kind, act.a, act.b, act.c
-            if kind == SEND:
-                frame = out.frame[i]
-                mark = mix(mark, digest(frame) ^ ((a * 4 + c) << 53) ^ (b << 20))
-                if b > 0:
-                    wires.delay(world, first_end + a, frame, time + b, c, copy_frame)
-                else:
-                    wires.transmit(world, first_end + a, frame, time, c, copy_frame)
-                continue
-            mark = mix(mark, kind ^ (a << 3) ^ (b << 20) ^ (c << 50))
-            if kind == SET_TIMER:
-                slot = clocks.timer_slot(world, node, a)
-                if world.wheel.events[slot].bucket != NIL:
-                    queue.remove(world.wheel, slot)
-                queue.insert(world.wheel, slot, clocks.true_time(world, node, time, now, b))
-            elif kind == REPORT:
-                report(world, time, node, a, b, c)
-            elif kind == DELIVER:
-                mark = mix(mark, digest(out.frame[i]))
-                deliver(world, time, node, port, out.frame[i])
-        out.count[0] = 0
-        run.fingerprint = mark
-        if out.overflow[0] and run.broken == 0:
-            run.broken = BROKEN_OUTBOX
-            run.broken_node = node
 
-    def finish(world, node, time, handler, port):
-        """After a handler: account for it, carry out what it asked for, check."""
-        run = world.run[0]
-        run.handled += 1
-        run.fingerprint = mix(run.fingerprint, (time << 26) ^ (node << 6) ^ (port << 40) ^ handler)
-        if world.out.count[0] > 0:
-            drain(world, node, time, clocks.reading(world.clocks[node], time), port)
-        if run.watchful:
-            look(world, node, time, handler, port)
+def run_batch(world, do, limit):
+    """Up to BATCH events before a time; true if that was all there was before it."""
+    wheel = world.wheel
+    for _ in range(BATCH):
+        slot = queue.pop(wheel, limit)
+        if slot == NIL:
+            return True
+        if world.run[0].cells > FORESEE_CELLS:
+            foresee(world, wheel)
+        dispatch(world, do, slot, wheel.clock[queue.NOW])
+    return False
 
-    def look(world, node, time, handler, port):
-        """Checkers, and the trail of all handler calls."""
-        run = world.run[0]
-        if run.checks:
-            check(world, node)
-            if run.broken and run.broken_at < 0:
-                run.broken_at = time
-        rows.keep_step(world, node, time, handler, port)
 
-    def switch_on(world, node, time, cause):
-        """Start a node, and its source of samples if it has one."""
-        run = world.run[0]
-        clock = world.clocks[node]
-        now = clocks.reading(clock, time)
-        world.alive[node] = ALIVE
-        start(world, node, now & MASK30, cause)
-        finish(world, node, time, ON_START, cause)
-        if run.source_us > 0 and node < run.cells:
-            slot = clocks.timer_slot(world, node, SOURCE)
-            if world.wheel.events[slot].bucket == NIL:
-                wait = clocks.true_delay(world, node, time, world.starts[node].source)
-                queue.insert(world.wheel, slot, time + wait)
-
-    def on_timer_slot(world, slot, time):
-        """A node's timer, its first switching on, or its next sample."""
-        timer = clocks.timer_of(world, slot)
-        node = slot - timer * world.run[0].nodes
-        if world.alive[node] == OFF:
-            switch_on(world, node, time, COLD)
-        elif world.alive[node] == DEAD:
+def run_until(world, do, until, budget):
+    """Run up to, not including, time `until` (us), or about `budget` events."""
+    run = world.run[0]
+    for _ in range(0, budget, BATCH):
+        run.status = pressing(world)
+        if run.status != DONE:
             return
-        elif timer == SOURCE:
-            now = clocks.reading(world.clocks[node], time)
-            world.counters[OFFERED] += 1
-            touch.read_sensors(world, node, time)
-            world.sample[0].made_at = time & MASK30
-            sample(world, node, now & MASK30)
-            finish(world, node, time, ON_INPUT, 0)
-            wait = clocks.true_delay(world, node, time, world.run[0].source_us)
-            queue.insert(world.wheel, slot, time + wait)
-        else:
-            now = clocks.reading(world.clocks[node], time)
-            fire(world, node, now & MASK30, timer)
-            finish(world, node, time, ON_TIMER, timer)
-
-    def on_arrival(world, event, slot, time):
-        """A frame at the end of its cable."""
-        run = world.run[0]
-        end = event.target
-        node = min(end >> 2, run.cells)
-        frame = world.frames[slot - run.pool_slots]
-        if wires.lands(world, event, node, frame, time):
-            port = end - 4 * node
-            hear(world, node, time, port, frame)
-            world.counters[wires.ARRIVED + event.kind] += 1
-            finish(world, node, time, ON_FRAME, port)
-        queue.give(world.wheel, slot)
-
-    def dispatch(world, slot, time):
-        """Hand an event to what it is for."""
-        run = world.run[0]
-        if slot >= run.pool_slots:
-            event = world.wheel.events[slot]
-            if event.kind == wires.DELAYED:
-                wires.release(world, slot, time, copy_frame)
-            else:
-                on_arrival(world, event, slot, time)
-        elif slot < run.tx_slots:
-            on_timer_slot(world, slot, time)
-        else:
-            wires.wire_free(world, slot - run.tx_slots, time, copy_frame)
-
-    def give_order(world, order):
-        """The PC is given a command for cells."""
-        if orders.begin(world, order):
-            node = world.run[0].cells
-            now = clocks.reading(world.clocks[node], order.at)
-            give(world, now & MASK30)
-            finish(world, node, order.at, ON_INPUT, 0)
-
-    def advance(world, until, budget):
-        """Run up to, not including, time `until` (us), or about `budget` events."""
-        run = world.run[0]
-        wheel = world.wheel
-        for _ in range(0, budget, BATCH):
-            run.status = pressing(world)
-            if run.status != DONE:
+        limit = until
+        if run.next_command < run.commands:
+            limit = min(until, world.commands[run.next_command].at)
+        if run_batch(world, do, limit) and run.broken == 0:
+            if limit >= until:
                 return
-            limit = until
-            if run.next_command < run.commands:
-                limit = min(until, world.commands[run.next_command].at)
-            for _ in range(BATCH):
-                slot = queue.pop(wheel, limit)
-                if slot == NIL:
-                    break
-                if run.cells > FORESEE_CELLS:
-                    foresee(world, wheel)
-                dispatch(world, slot, wheel.clock[queue.NOW])
-            if slot == NIL and run.broken == 0:
-                if limit >= until:
-                    return
-                command = world.commands[run.next_command]
-                if command.action == GIVE:
-                    give_order(world, command)
-                else:
-                    commands.obey(world, command, switch_on, stopped)
-                run.next_command += 1
-        run.status = BUDGET
+            command = world.commands[run.next_command]
+            if command.action == GIVE:
+                commands.hand_in(world, do, command)
+            else:
+                commands.obey(world, do, command)
+            run.next_command += 1
+    run.status = BUDGET
 
-    return Handlers(
-        drain, look, finish, switch_on, on_timer_slot, on_arrival, dispatch, give_order, report,
-        advance,
-    )  # fmt: skip
+
+def bind(do: Any) -> Callable[..., None]:
+    """The loop over a network's functions, plain: (world, until_us, budget of events)."""
+
+    def advance(world, until, budget):  # type: ignore[no-untyped-def]
+        run_until(world, do, until, budget)
+
+    return advance
+
+
+def compiled(do: ModuleType, hot: tuple[ModuleType, ...], rare: tuple[ModuleType, ...]) -> Any:
+    """The loop over a network's functions, compiled.
+
+    Args:
+        do: a module (see `kernel/door.bound`) with the network's functions.
+        hot: the modules that they stand in, and all that they call.
+        rare: those of them that run too seldom to be worth copying into every caller.
+    """
+    door.register(*rare, commands, rows, taps, hot=False)
+    door.register(arith, outbox, rng, *hot, queue, clocks, wires, delays, calls)
+    door.register_functions(pressing, foresee, dispatch, run_batch, run_until)
+    advance = door.compiled(bind(do))
+    return lambda world, until, budget: advance(tables.borrowed(world), until, budget)

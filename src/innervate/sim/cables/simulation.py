@@ -2,22 +2,105 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from innervate.sim import wheel
-from innervate.sim.cables import build
-from innervate.sim.driver import Simulation
+from innervate.sim.cables import build, wires
+from innervate.sim.cables import world as w
+from innervate.sim.cables.wires import ARRIVED, BLOCKS
+from innervate.sim.cables.world import ALIVE
+from innervate.sim.counts import Counts
+from innervate.sim.driver import Ended, Simulation
 from innervate.sim.queue import with_command
 from innervate.sim.status import POOL_FULL
-from innervate.sim.tables import get
+from innervate.sim.tables import Names, get
+
+
+@dataclass(slots=True)
+class Result:
+    """What a simulation leaves: the world at its end and all rows.
+
+    `rows` are what nodes and the recorder reported, `deliveries` what users received, `trail` all
+    handler calls; structured arrays with the fields of the simulation's `tables`, times in us.
+    `received_kept`: `deliveries` holds all of it, rather than nothing.
+    """
+
+    plan: Any
+    world: w.World
+    rows: Any
+    deliveries: Any
+    trail: Any
+    counters: list[int]
+    ended_us: int
+    wall_s: float
+    fingerprint: str
+    handled: int
+    arrived: int
+    interrupted: bool
+    received_kept: bool = False
 
 
 class Cables(Simulation):
-    """Nodes that are joined by cables; its network says which rows it keeps, and what broke."""
+    """Nodes that are joined by cables; a network may keep other rows, and have more to break.
+
+    Attributes:
+        broken_words: what is broken, with {node} and {other} for who it concerns.
+    """
+
+    tables: ClassVar[Mapping[str, Names]] = {
+        "rows": w.ROW, "deliveries": w.DELIVERY, "trail": w.TRAIL,
+    }  # fmt: skip
+    broken_words: ClassVar[Mapping[int, str]] = {
+        w.BROKEN_RANGE: "a value of {node} is out of its declared range",
+        w.BROKEN_OUTBOX: "outbox of {node} overflowed",
+    }
+
+    def result(self, ended: Ended, kept: bool) -> Result:
+        """What it leaves; `kept`: deliveries were."""
+        world = self.world
+        return Result(
+            plan=self.plan,
+            world=world,
+            counters=[int(count) for count in world.counters],
+            ended_us=ended.ended_us,
+            wall_s=ended.wall_s,
+            fingerprint=self.fingerprint,
+            handled=int(get(world.run, 0, "handled")),
+            arrived=sum(int(world.counters[ARRIVED + block]) for block in BLOCKS),
+            interrupted=ended.interrupted,
+            received_kept=kept,
+            **ended.rows,
+        )
+
+    def story(self) -> str:
+        """The broken invariant, in one line."""
+        run, label = self.world.run, self.plan.graph.label
+        node, other = (int(get(run, 0, name)) for name in ("broken_node", "broken_other"))
+        words = self.broken_words[int(get(run, 0, "broken"))]
+        what = words.format(node=label(node), other=label(other))
+        at = max(int(get(run, 0, "broken_at")), 0) / 1e6
+        return f"invariant broken at {at:.6f} s (seed {self.plan.seed}): {what}"
 
     def clock_us(self) -> int:
         """Time of the newest event, us."""
         return int(self.world.wheel.clock[wheel.NOW])
+
+    def counts(self) -> Counts:
+        """Frames of all classes on all cables, and what users gave and got."""
+        numbers, alive = self.world.counters, self.world.alive
+        return Counts(
+            nodes=len(alive),
+            off=tuple(node for node in range(len(alive)) if alive[node] != ALIVE),
+            sent=_in_all_blocks(numbers, wires.SENT),
+            arrived=_in_all_blocks(numbers, wires.ARRIVED),
+            lost_by={name: _in_all_blocks(numbers, word) for name, word in wires.REASONS.items()},
+            offered=int(numbers[wires.OFFERED]),
+            delivered=int(numbers[wires.DELIVERED]),
+            dropped_by={"no_route": int(numbers[wires.NO_ROUTE]),
+                        "loop": int(numbers[wires.LOOPED])},
+        )  # fmt: skip
 
     def next_us(self) -> int | None:
         """When something happens next; None = never."""
@@ -42,3 +125,7 @@ class Cables(Simulation):
     def schedule_row(self, row: tuple[int, ...]) -> None:
         """One row of `world.COMMAND`, at a time that has not come yet."""
         self.world, _ = with_command(self.world, "at", row)
+
+
+def _in_all_blocks(numbers: Any, word: int) -> int:
+    return sum(int(numbers[word + block]) for block in wires.BLOCKS)

@@ -4,12 +4,11 @@ A frame occupies its wire for `wire_us` and arrives `latency` after its start. U
 (beacons) take the wire as soon as the frame on it is out; others wait in the port's drop-tail
 queue.
 A cable's `epoch` is odd while it is down; a frame arrives only if the epoch did not change.
+`do` are the network's functions (see `sim/cables`).
 """
 
 from innervate.dialect.outbox import FLUSH, URGENT
 from innervate.dialect.rng import LOW15, step
-from innervate.networks.skin.protocol.cell import copy_frame as copy_skin_frame
-from innervate.networks.skin.protocol.constants import COMMAND
 from innervate.sim import taps
 from innervate.sim import wheel as queue
 from innervate.sim.cables.world import ALIVE
@@ -17,7 +16,8 @@ from innervate.sim.cables.world import ALIVE
 # Kinds of pool slots; an arrival is marked by the block of counters its frame belongs to.
 DELAYED = 1
 
-# Words of `world.counters`; in blocks: data, urgent frames, commands.
+# Words of `world.counters`; in blocks: data, urgent frames, commands. Which frames are commands,
+# the network's `block_of` says.
 SENT = 0
 ARRIVED = 1
 LOST_CUT = 2
@@ -44,49 +44,59 @@ STRAY = 35
 MISSED = 36
 COUNTERS = 40
 
+# Why frames are lost.
+REASONS = {
+    "cut": LOST_CUT,
+    "noise": LOST_NOISE,
+    "off": LOST_OFF,
+    "queue_full": LOST_QUEUE,
+    "broken_link": LOST_BROKEN,
+}
+
 # Bits of `end.impaired`.
 DOWN = 1
 LOSSY = 2
 
 
-def block_of(frame):
-    """The block of counters of a frame that is not urgent."""
-    return COMMAND_BLOCK if frame.kind == COMMAND else 0
-
-
-def tap(world, end, frame, time, out, why):
-    """Keep a copy of a frame at this end of a cable, if a capture is wanted."""
+def tap_out(world, do, end, frame, time, why):
+    """Keep a copy of a frame that leaves at this end of a cable, if a capture is wanted."""
     if world.run[0].tap_limit > 0:
-        taps.keep(world, time, time, end, 0, out, why, frame, copy_skin_frame)
+        taps.keep(world, time, time, end, 0, 1, why, frame, do.copy_frame)
 
 
-def transmit(world, end, frame, time, flags, copy_frame):
+def tap_in(world, do, end, frame, time, why):
+    """Keep a copy of a frame that comes in at this end of a cable, if a capture is wanted."""
+    if world.run[0].tap_limit > 0:
+        taps.keep(world, time, time, end, 0, 0, why, frame, do.copy_frame)
+
+
+def transmit(world, do, end, frame, time, flags):
     """A node hands a frame to its port at true time `time` (us)."""
     wire = world.ends[end]
     if wire.peer < 0:
         return
     if flags & FLUSH and world.buffers[end].queued > 0:
-        give_up_queue(world, end, time, LOST_BROKEN, taps.BROKEN)
+        give_up_queue(world, do, end, time, LOST_BROKEN, taps.BROKEN)
     if flags & URGENT:
-        launch(world, end, frame, max(time, wire.busy), URGENT_BLOCK, copy_frame)
+        launch(world, do, end, frame, max(time, wire.busy), URGENT_BLOCK)
     elif wire.waiting == 0 and time >= wire.busy:
-        launch(world, end, frame, time, block_of(frame), copy_frame)
+        launch(world, do, end, frame, time, do.block_of(frame))
     else:
-        enqueue(world, end, frame, time, copy_frame)
+        enqueue(world, do, end, frame, time)
 
 
-def enqueue(world, end, frame, time, copy_frame):
+def enqueue(world, do, end, frame, time):
     """Put a frame into its port's drop-tail queue."""
     buffer = world.buffers[end]
     room = world.run[0].queue_frames
-    block = block_of(frame)
+    block = do.block_of(frame)
     world.counters[SENT + block] += 1
     if buffer.queued >= room:
         world.counters[LOST_QUEUE + block] += 1
-        tap(world, end, frame, time, 1, taps.QUEUE)
+        tap_out(world, do, end, frame, time, taps.QUEUE)
         return
     place = (buffer.first + buffer.queued) % room
-    copy_frame(world.queue[end * room + place], frame)
+    do.copy_frame(world.queue[end * room + place], frame)
     buffer.queued += 1
     wire = world.ends[end]
     if wire.waiting == 0:
@@ -94,7 +104,7 @@ def enqueue(world, end, frame, time, copy_frame):
         queue.insert(world.wheel, world.run[0].tx_slots + end, wire.busy)
 
 
-def wire_free(world, end, time, copy_frame):
+def wire_free(world, do, end, time):
     """The frame on the wire is out: start the next of the queue."""
     wire = world.ends[end]
     buffer = world.buffers[end]
@@ -106,9 +116,9 @@ def wire_free(world, end, time, copy_frame):
     else:
         room = world.run[0].queue_frames
         frame = world.queue[end * room + buffer.first]
-        block = block_of(frame)
+        block = do.block_of(frame)
         world.counters[SENT + block] -= 1  # launch counts it again
-        launch(world, end, frame, time, block, copy_frame)
+        launch(world, do, end, frame, time, block)
         buffer.first = (buffer.first + 1) % room
         buffer.queued -= 1
         if buffer.queued == 0:
@@ -117,7 +127,7 @@ def wire_free(world, end, time, copy_frame):
             queue.insert(world.wheel, slot, wire.busy)
 
 
-def launch(world, end, frame, start, block, copy_frame):
+def launch(world, do, end, frame, start, block):
     """Put a frame on the wire at `start`; a queue slot brings it to the other side."""
     run = world.run[0]
     wire = world.ends[end]
@@ -127,9 +137,9 @@ def launch(world, end, frame, start, block, copy_frame):
     wire.busy = start + run.wire_us
     world.counters[SENT + block] += 1
     if wire.impaired and is_lost(world, end, block):
-        tap(world, end, frame, start, 1, taps.CUT if wire.impaired & DOWN else taps.NOISE)
+        tap_out(world, do, end, frame, start, taps.CUT if wire.impaired & DOWN else taps.NOISE)
         return
-    tap(world, end, frame, start, 1, taps.FINE)
+    tap_out(world, do, end, frame, start, taps.FINE)
     if run.latency_per_frame:
         latency = run.latency_low + chance(run, run.latency_high - run.latency_low + 1)
     slot = queue.take(world.wheel)
@@ -137,7 +147,7 @@ def launch(world, end, frame, start, block, copy_frame):
     event.kind = block
     event.target = peer
     event.epoch = epoch
-    copy_frame(world.frames[slot - run.pool_slots], frame)
+    do.copy_frame(world.frames[slot - run.pool_slots], frame)
     queue.insert(world.wheel, slot, start + latency)
 
 
@@ -166,53 +176,53 @@ def chance(run, n):
     return ((run.rng & LOW15) * n) >> 15
 
 
-def lands(world, event, node, frame, time):
+def lands(world, do, event, node, frame, time):
     """True if a frame gets through to the node at the end of its cable; counts it either way."""
     end = event.target
     if event.epoch == world.epoch[end]:
         if world.alive[node] == ALIVE:
-            tap(world, end, frame, time, 0, taps.FINE)
+            tap_in(world, do, end, frame, time, taps.FINE)
             return True
         world.counters[LOST_OFF + event.kind] += 1
-        tap(world, end, frame, time, 0, taps.OFF)
+        tap_in(world, do, end, frame, time, taps.OFF)
     else:
         world.counters[LOST_CUT + event.kind] += 1
-        tap(world, end, frame, time, 0, taps.CUT)
+        tap_in(world, do, end, frame, time, taps.CUT)
     return False
 
 
-def drop_queue(world, end, time):
+def drop_queue(world, do, end, time):
     """Empty a port's queue because its node is switched off."""
-    give_up_queue(world, end, time, LOST_OFF, taps.OFF)
+    give_up_queue(world, do, end, time, LOST_OFF, taps.OFF)
 
 
-def give_up_queue(world, end, time, reason, why):
+def give_up_queue(world, do, end, time, reason, why):
     """Lose all that waits at a port."""
     buffer = world.buffers[end]
     room = world.run[0].queue_frames
     for i in range(buffer.queued):
         frame = world.queue[end * room + (buffer.first + i) % room]
-        world.counters[reason + block_of(frame)] += 1
-    taps.keep_queue(world, end, time, why, copy_skin_frame)
+        world.counters[reason + do.block_of(frame)] += 1
+    taps.keep_queue(world, end, time, why, do.copy_frame)
     buffer.queued = 0
 
 
-def delay(world, end, frame, at, flags, copy_frame):
+def delay(world, do, end, frame, at, flags):
     """Hand a frame to its port later, at true time `at` (us)."""
     slot = queue.take(world.wheel)
     event = world.wheel.events[slot]
     event.kind = DELAYED
     event.target = end
     event.epoch = flags
-    copy_frame(world.frames[slot - world.run[0].pool_slots], frame)
+    do.copy_frame(world.frames[slot - world.run[0].pool_slots], frame)
     queue.insert(world.wheel, slot, at)
 
 
-def release(world, slot, time, copy_frame):
+def release(world, do, slot, time):
     """The delay of a frame is over; a node that went off meanwhile sends nothing."""
     event = world.wheel.events[slot]
     end = event.target
     frame = world.frames[slot - world.run[0].pool_slots]
     if world.alive[min(end >> 2, world.run[0].cells)] == ALIVE:
-        transmit(world, end, frame, time, event.epoch, copy_frame)
+        transmit(world, do, end, frame, time, event.epoch)
     queue.give(world.wheel, slot)

@@ -9,6 +9,7 @@ import { Card, Log, commandFor, showNumbers, showState } from "./panel.js";
 import { Plots } from "./plots.js";
 import { Pointer } from "./pointer.js";
 import { MeshView } from "./mesh.js";
+import { PlainView } from "./plain.js";
 import { RadioView } from "./radio.js";
 import { SkinView } from "./skin.js";
 import { Connection, TOKEN } from "./socket.js";
@@ -108,7 +109,7 @@ function onConnection(open, refused) {
 function showScene(scene) {
   const before = pointer.selected && nameOf(pointer.selected);
   network = new Network(scene);
-  view = new VIEWS[scene.kind](network);
+  view = new (VIEWS[scene.kind] ?? PlainView)(network);
   pointer.forget();
   card.show(view, null);
   log.clear();

@@ -53,7 +53,7 @@ export function showNumbers(network) {
     if (isKnown && recovery.recovered_ms === 0) {
       const whom = recovery.apart ? `${recovery.apart} cut off, no other `
         : /cable|link/.test(recovery.cause) ? "no " : "no other ";
-      show("recovery", "–", `${recovery.cause}: ${whom}${WORDS[network.kind]} affected`, "");
+      show("recovery", "–", `${recovery.cause}: ${whom}${WORDS[network.kind] ?? "node"} affected`, "");
     } else show("recovery", shown, more, look);
   }
   const isRadio = network.kind === "radio"; // there everybody hears everybody
@@ -62,7 +62,7 @@ export function showNumbers(network) {
   $("since").querySelector(".label").textContent = `since the last ${isRadio ? "failure" : "cut"}`;
   $("recovery").hidden = isRadio;
   const all = network.nodes.filter((node) => node.role !== "sink" && node.role !== "port").length;
-  const of = `of ${plural(all, WORDS[network.kind])}`;
+  const of = `of ${plural(all, WORDS[network.kind] ?? "node")}`;
   const off = apart ? `; ${apart === unconnected ? "cut off" : `${apart} of them cut off`}` : "";
   show("unconnected", isKnown ? String(unconnected) : "–",
     isKnown ? `${of}${off}` : "nobody answers", unconnected ? "bad" : "");

@@ -3,8 +3,8 @@ from collections import Counter
 
 import pytest
 
-from innervate.live.turns import MOST
-from innervate.networks.mesh.live.messages import DELIVERED, EXPIRED, HOP_ACKED, REFUSED
+from innervate.live.receipts import DELIVERED, EXPIRED, HOP_ACKED, REFUSED
+from innervate.networks.mesh.live.turns import MOST
 from tests.live.net import Mesh, until
 
 LINE = [(0, 1), (1, 2), (2, 3)]

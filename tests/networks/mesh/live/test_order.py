@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from innervate.dialect.arith import MASK16
-from innervate.networks.mesh.live.messages import DELIVERED
+from innervate.live.receipts import DELIVERED
 from innervate.networks.mesh.live.order import Message, Order, Orderly
 from innervate.networks.mesh.protocol import queue as mesh_queue
 from innervate.networks.mesh.protocol.constants import DATA
@@ -87,7 +87,7 @@ def test_a_sender_that_starts_anew_is_not_waited_for():
 
 def test_messages_that_say_nothing_of_order_go_up_at_once():
     orderly, got = Orderly(WAIT), []
-    orderly.callbacks.append(lambda sender, payload: got.append((sender, payload)))
+    orderly.arrivals.callbacks.append(lambda sender, payload: got.append((sender, payload)))
     orderly.take(Message(3, 17, None, b"x"))
     assert got == [(3, b"x")]
 
@@ -95,7 +95,7 @@ def test_messages_that_say_nothing_of_order_go_up_at_once():
 def lose_some(node, share):
     """It takes packets over, acknowledges them, and forgets some: as if it had been restarted."""
     chance, stack = random.Random(5), node.stack
-    frame = stack.frame
+    frame = stack.on_frame
 
     def forgetful(now, port):
         kind, seq, own = stack.inbox.kind, stack.inbox.seq, stack.node
@@ -105,7 +105,7 @@ def lose_some(node, share):
             if kind == DATA and found == seq and waits and chance.random() < share:
                 mesh_queue.drop(own, i)
 
-    stack.frame = forgetful
+    stack.on_frame = forgetful
 
 
 @pytest.mark.parametrize("count", [150])

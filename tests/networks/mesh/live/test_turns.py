@@ -7,11 +7,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from innervate.cli import live_status
-from innervate.live import turns
-from innervate.live.profile import fence_parameters, mesh_parameters
-from innervate.live.turns import FEW, MOST, Turns
-from innervate.networks.mesh.live.messages import DELIVERED, EXPIRED, REFUSED
+from innervate.live.receipts import DELIVERED, EXPIRED, REFUSED
+from innervate.networks.mesh.live import turns
+from innervate.networks.mesh.live.parameters import fence_parameters, mesh_parameters
 from innervate.networks.mesh.live.stack import Item, MeshStack
+from innervate.networks.mesh.live.turns import FEW, MOST, Turns
 from innervate.networks.mesh.protocol.constants import ALL, END_TO_END, MONITOR, PRIORITY
 from tests.live import time_by_hand as live_time
 from tests.live.net import Mesh

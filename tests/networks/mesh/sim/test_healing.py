@@ -3,7 +3,7 @@
 from collections import Counter
 from itertools import pairwise
 
-from innervate.live.profile import mesh_parameters
+from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.protocol.constants import DATA
 from tests.networks.mesh.bench import Bench
 

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import innervate
-from innervate.cli.show import summary_lines
 from innervate.dialect.access import REPORT_LEFT
 from innervate.networks.radio.analysis import air as radio_air
 from innervate.networks.radio.analysis import airtime as radio_airtime
@@ -12,6 +11,7 @@ from innervate.networks.radio.analysis import summary as radio
 from innervate.networks.radio.plot.words import off_words
 from innervate.networks.radio.protocol.constants import CRR, DATA, OPEN, REPORT_BOUNDS
 from innervate.networks.radio.scenario.plan import RadioFault
+from innervate.networks.radio.show import summary_lines
 from innervate.networks.radio.sim.build import build
 from innervate.networks.radio.sim.simulate import COUNTS
 from innervate.plot import report

@@ -3,11 +3,13 @@ from itertools import pairwise
 
 import pytest
 
-from innervate.live.profile import RADIO, radio_parameters
-from innervate.networks.mesh.live.messages import DELIVERED
+from innervate.live.channel import SLOT_US, Medium
+from innervate.live.channel_radio import MediumRadio
+from innervate.live.receipts import DELIVERED
 from innervate.networks.radio import frames as wire
-from innervate.networks.radio.live.medium import SLOT_US, Medium, MediumRadio
-from innervate.networks.radio.live.station import Frame, RadioNode, StationStack
+from innervate.networks.radio.live.node import RadioNode
+from innervate.networks.radio.live.parameters import RADIO, radio_parameters
+from innervate.networks.radio.live.stack import Frame, StationStack
 from innervate.networks.radio.protocol.constants import DATA
 from innervate.networks.radio.scenario.plan import parameters
 from tests.live.net import until

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from innervate.analysis.commands import commands_summary
-from innervate.cli.show import state_lines
+from innervate.networks.skin.analysis.commands import commands_summary
 from innervate.networks.skin.analysis.frames import data_summary
 from innervate.networks.skin.columns import columns
+from innervate.networks.skin.show import state_lines
 from innervate.networks.skin.tables import RECEIVED
 from innervate.sim import delays
 from tests.networks.skin.runs import line, run, setup_1

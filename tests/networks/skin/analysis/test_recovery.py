@@ -8,8 +8,8 @@ from innervate import scenario
 from innervate.networks.skin.analysis.recovery import recoveries, start_up
 from innervate.networks.skin.protocol.constants import REPORT_BALANCE, REPORT_BROKEN, REPORT_PARENT
 from innervate.networks.skin.sim.observer import CUT_OFF, UNROUTED
-from innervate.networks.skin.sim.simulate import Result
 from innervate.scenario.actions.cables import KILL, LOOSE
+from innervate.sim.cables.simulation import Result
 from innervate.sim.cables.world import ROW
 from innervate.sim.tables import row_dtype
 

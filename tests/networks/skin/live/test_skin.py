@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.cli.live import command_text, touch_text
-from innervate.live.profile import SKIN
+from innervate.networks.skin.live.parameters import SKIN
+from innervate.networks.skin.live.words import command_text, touch_text
 from tests.live.net import Skin, until
 
 # Detection takes k periods, then the news runs; a busy machine may double that.

@@ -1,8 +1,8 @@
 """Transcripts: small networks stepped by hand, what happens written beneath each command.
 
 A block is some commands, a line `----`, what they gave, and an empty line. What follows `#` is a
-remark. INNERVATE_REWRITE=1 python -m pytest tests/networks/skin/protocol writes what is given now: read it
-before you keep it. Commands, with nodes by name (`pc` is the PC):
+remark. INNERVATE_REWRITE=1 python -m pytest tests/networks/skin/protocol writes what
+is given now: read it before you keep it. Commands, with nodes by name (`pc` is the PC):
 
     net rule=paper k=2 pc-1 1-2    a new network, its [protocol] keys and cables
     tick 1 2 3                     these nodes' periods are over, one after the other

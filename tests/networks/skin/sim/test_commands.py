@@ -3,7 +3,7 @@
 import pytest
 
 from innervate import scenario
-from innervate.analysis.commands import commands_summary
+from innervate.networks.skin.analysis.commands import commands_summary
 from innervate.networks.skin.analysis.frames import check_conserved
 from innervate.networks.skin.analysis.rows import parent_changes
 from innervate.networks.skin.analysis.summary import summarize
@@ -113,7 +113,7 @@ def test_without_commands_nothing_is_kept_of_them():
     result, commands = simulated(line(3, duration_s=0.1))
     assert commands["sent"] == commands["addressed"] == 0
     assert commands["loss_ratio"] is None
-    assert len(result.world.due) == 0
+    assert len(result.world.watch.due) == 0
 
 
 def test_commands_of_a_scenario_come_at_their_times():

@@ -1,6 +1,6 @@
 """Many seeds, everything breaks, checkers on: no forwarding loop, no disorder, nothing lost.
 
-A failure names the seed; `faulty(seed, ...)` of tests/networks/skin/runs.py makes the scenario again.
+A failure names the seed; `faulty(seed, ...)` of networks/skin/runs.py makes the scenario again.
 """
 
 import random

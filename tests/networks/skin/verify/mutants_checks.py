@@ -1,4 +1,4 @@
-"""Checks that take a copy of the protocol and fail if it is wrong; test_protocol_mutants.py tries them."""
+"""Checks that take a copy of the protocol and fail if it is wrong."""
 
 import random
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from innervate.export.errors import ExportError
-from innervate.export.measured import Measured
+from innervate.networks.mesh.export.fit import Mesh
 
 FRAMES = 10_000  # a share stands for so many, as nodes do not say how many there were
 
@@ -25,13 +25,13 @@ def looks_like_one(path: Path) -> bool:
         raise ExportError(f"{path}: {error.strerror}") from None
 
 
-def measure(path: Path) -> Measured:
+def measure(path: Path) -> Mesh:
     """Read what nodes said.
 
     Raises:
         ExportError: it is not the status of mesh nodes.
     """
-    found = Measured("mesh")
+    found = Mesh()
     shares: dict[tuple[int, int], float] = {}
     try:
         told = json.loads(path.read_bytes())
@@ -58,7 +58,7 @@ def measure(path: Path) -> Measured:
     return found
 
 
-def _take(one: dict[str, Any], found: Measured, shares: dict[tuple[int, int], float]) -> None:
+def _take(one: dict[str, Any], found: Mesh, shares: dict[tuple[int, int], float]) -> None:
     """A node's neighbours; -1 = nobody knows how good the link is."""
     if one["kind"] != "mesh":
         raise ValueError("not of a mesh")

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.summary import summarize
 from innervate.networks.mesh.papers import crossing, gateway, sending
-from innervate.networks.mesh.papers.testbed import Bed
+from innervate.networks.mesh.papers.testbed import MeshTestbed
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.scenario.plan import CLASSES
 from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
@@ -44,9 +44,9 @@ class Bar(NamedTuple):
     of: str
 
 
-def measure_round(bed: Bed, seed: int) -> dict[str, Any]:
+def measure_round(testbed: MeshTestbed, seed: int) -> dict[str, Any]:
     """One discovery round and its tables."""
-    summary = summarize(bed.run(seed))
+    summary = summarize(testbed.run(seed))
     return {name: summary["discovery"][name] for name in ("recall", "tables_s", "with_tables")}
 
 
@@ -55,7 +55,7 @@ def rounds(quick: bool) -> Point:
 
     A mean of a few says nothing of two percent.
     """
-    return Bed().point("one round", range(1, 31 if quick else 101), measure_round)
+    return MeshTestbed().point("one round", range(1, 31 if quick else 101), measure_round)
 
 
 def sent(rule: sending.Rule, quick: bool) -> Point:
@@ -105,7 +105,7 @@ def bars(got: Measured) -> list[Bar]:
 
 def _rounds(runs: dict[str, Any]) -> list[Bar]:
     recalls, count = runs["recall"], len(runs["recall"])
-    without = sum(some < Bed().nodes for some in runs["with_tables"])
+    without = sum(some < MeshTestbed().nodes for some in runs["with_tables"])
     times = [np.inf if time is None else time for time in runs["tables_s"]]
     recall = float(np.mean(recalls))
     return [

@@ -34,7 +34,7 @@ NAMES = {"document": "the document to the letter"}
 
 
 def dead_of(quick: bool) -> tuple[int, ...]:
-    """How many die."""
+    """Numbers of nodes that die, one point each."""
     return (0, 4, 8) if quick else tuple(range(9))
 
 

@@ -10,7 +10,14 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.messages import DELIVERED, messages
 from innervate.networks.mesh.analysis.summary import summarize
-from innervate.networks.mesh.papers.testbed import BYTES, GATEWAY, Bed, Options, kill, seeds_of
+from innervate.networks.mesh.papers.testbed import (
+    BYTES,
+    GATEWAY,
+    MeshTestbed,
+    Options,
+    kill,
+    seeds_of,
+)
 from innervate.networks.mesh.protocol.constants import END_TO_END, MONITOR
 from innervate.networks.mesh.scenario.plan import Offer
 from innervate.networks.mesh.sim.simulate import simulate
@@ -56,19 +63,19 @@ SETTINGS = (ALONE, ONE, SECOND, SILENT, BUSY)
 
 
 def point(setting: Setting, quick: bool) -> Point:
-    """Networks with these standbys."""
+    """Networks with a setting's standbys that run until the table after next."""
     more: Options = (("standby", list(setting.standbys)),) if setting.standbys else ()
-    bed = Bed(duration_s=DIES_S + PERIOD_S + AFTER_S + 3, more=more)
+    testbed = MeshTestbed(duration_s=DIES_S + PERIOD_S + AFTER_S + 3, more=more)
     what = f"gateway dies, {setting.name}, every {setting.every_s} s"
-    return bed.point(what, seeds_of(quick), measure, setting)
+    return testbed.point(what, seeds_of(quick), measure, setting)
 
 
 def points(quick: bool) -> list[Point]:
-    """Every setting."""
+    """A point for each setting of standbys."""
     return [point(setting, quick) for setting in SETTINGS]
 
 
-def measure(of: Bed, setting: Setting, seed: int) -> dict[str, Any]:
+def measure(of: MeshTestbed, setting: Setting, seed: int) -> dict[str, Any]:
     """Takeover; delivery to the gateway and among others, by the time since the death."""
     plan = of.plan(seed)
     dies_us = round(DIES_S * 1e6) + stream(seed, "papers/death").draw(PERIOD_S * 1_000_000)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from innervate.networks.mesh.analysis.messages import DELIVERED, messages
 from innervate.networks.mesh.analysis.paths import Ground, distances
 from innervate.networks.mesh.papers.sending import DOCUMENT, GRAPH, SEARCH, Rule
-from innervate.networks.mesh.papers.testbed import Bed, seeds_of, send_anywhere
+from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of, send_anywhere
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing
@@ -42,8 +42,8 @@ def losses(quick: bool) -> tuple[int, ...]:
 
 def point(rule: Rule, loss: int, quick: bool) -> Point:
     """Networks whose gateway goes on looking every 10 s, as it always does."""
-    bed = Bed(protocol=rule.protocol, duration_s=UNTIL_S + 2.0)
-    return bed.point(f"lossy {loss} %", seeds_of(quick), measure, loss)
+    testbed = MeshTestbed(protocol=rule.protocol, duration_s=UNTIL_S + 2.0)
+    return testbed.point(f"lossy {loss} %", seeds_of(quick), measure, loss)
 
 
 def points(quick: bool) -> list[Point]:
@@ -51,7 +51,7 @@ def points(quick: bool) -> list[Point]:
     return [point(rule, loss, quick) for rule in RULES for loss in losses(quick)]
 
 
-def measure(of: Bed, loss: int, seed: int) -> dict[str, Any]:
+def measure(of: MeshTestbed, loss: int, seed: int) -> dict[str, Any]:
     """Delivery over time; entries of the tables that lead away or nowhere at the end."""
     plan = of.plan(seed)
     _soften(plan, loss)
@@ -137,7 +137,7 @@ def draw(got: Measured) -> Figure:
 
 
 def judge(got: Measured) -> Claims:
-    """One transmission; three; ours."""
+    """Claims on tables under loss: one transmission, three of them, our rules."""
     for rule, claim in (
         (DOCUMENT, '"If A does not get an ack from B for this packet, then A updates its routing '
          'table to no longer list B": the tables stay right while nobody dies'),

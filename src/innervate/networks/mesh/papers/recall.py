@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.summary import summarize
-from innervate.networks.mesh.papers.testbed import Bed, seeds_of
+from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
 from innervate.papers.words import joined, percent
@@ -46,9 +46,11 @@ def sizes(quick: bool) -> tuple[int, ...]:
 
 
 def point(quick: bool, reading: str, jitter_ms: int = USUAL_MS, nodes: int = 30) -> Point:
-    """One round, then nothing."""
+    """Networks that run one discovery round of a reading, and send nothing."""
     protocol = (("discovery", reading), ("jitter_s", jitter_ms / 1000))
-    return Bed(nodes, protocol=protocol, duration_s=8.0).point("round", seeds_of(quick), measure)
+    return MeshTestbed(nodes, protocol=protocol, duration_s=8.0).point(
+        "round", seeds_of(quick), measure
+    )
 
 
 def points(quick: bool) -> list[Point]:
@@ -58,8 +60,8 @@ def points(quick: bool) -> list[Point]:
     return made + [point(quick, reading, nodes=n) for reading in READINGS for n in others]
 
 
-def measure(of: Bed, seed: int) -> dict[str, Any]:
-    """The first round."""
+def measure(of: MeshTestbed, seed: int) -> dict[str, Any]:
+    """What the first round found of the links, and what it cost in airtime and time."""
     found = summarize(of.run(seed))["discovery"]
     return {name: found[name] for name in ("recall", "airtime_s", "with_tables")}
 

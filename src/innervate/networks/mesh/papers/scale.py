@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.summary import summarize
-from innervate.networks.mesh.papers.testbed import Bed, Options
+from innervate.networks.mesh.papers.testbed import MeshTestbed, Options
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
@@ -58,8 +58,8 @@ def point(radio: Radio, scheme: str, nodes: int, quick: bool) -> Point:
     """A single round, and time for all its tables."""
     alone: Options = (("period_s", 3600.0), ("period_max_s", 3600.0))
     duration = 20 + radio.per_node_s * nodes
-    bed = Bed(nodes, 8, radio.profile, (*alone, *SCHEMES[scheme]), duration)
-    return bed.point("a full round", range(1, 2 if quick else 4), measure)
+    testbed = MeshTestbed(nodes, 8, radio.profile, (*alone, *SCHEMES[scheme]), duration)
+    return testbed.point("a full round", range(1, 2 if quick else 4), measure)
 
 
 def points(quick: bool) -> list[Point]:
@@ -72,7 +72,7 @@ def points(quick: bool) -> list[Point]:
     ]
 
 
-def measure(of: Bed, seed: int) -> dict[str, Any]:
+def measure(of: MeshTestbed, seed: int) -> dict[str, Any]:
     """Seconds that the channel is busy for one full round, where it is busiest."""
     result = of.run(seed)
     plan, sent = result.plan, result.sent

@@ -7,7 +7,14 @@ from typing import Any, NamedTuple
 from innervate.networks.mesh.analysis.messages import duplicates, messages
 from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.analysis.summary import connected, looped
-from innervate.networks.mesh.papers.testbed import LITERAL, Bed, Options, dying, kill, send_rounds
+from innervate.networks.mesh.papers.testbed import (
+    LITERAL,
+    MeshTestbed,
+    Options,
+    dying,
+    kill,
+    send_rounds,
+)
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers.experiment import Point
 
@@ -36,11 +43,11 @@ RULES = (DOCUMENT, RANDOM, RSSI, ALTERNATE, SEARCH, GRAPH)
 def point(rule: Rule, dead: int, seeds: range, reliable: bool = True) -> Point:
     """The networks of a rule; not `reliable` = no second try from end to end either."""
     again: Options = () if reliable or rule is DOCUMENT else (("reliable", False),)
-    bed = Bed(protocol=(*QUIET, *rule.protocol, *again), duration_s=DURATION_S)
-    return bed.point(f"{dead} dead", seeds, measure, dead)
+    testbed = MeshTestbed(protocol=(*QUIET, *rule.protocol, *again), duration_s=DURATION_S)
+    return testbed.point(f"{dead} dead", seeds, measure, dead)
 
 
-def measure(of: Bed, dead: int, seed: int) -> dict[str, Any]:
+def measure(of: MeshTestbed, dead: int, seed: int) -> dict[str, Any]:
     """Messages of live nodes among themselves, after `dead` died; only of connected ones."""
     plan = of.plan(seed)
     gone = dying(plan, dead)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
 from innervate.networks.mesh.papers.lossy import NONE, row_of
-from innervate.networks.mesh.papers.testbed import Bed, seeds_of
+from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
 from innervate.papers.words import joined, percent
@@ -35,16 +35,16 @@ def degrees(quick: bool) -> tuple[int, ...]:
 
 def point(reading: str, degree: int, quick: bool) -> Point:
     """One round and its tables."""
-    bed = Bed(degree=degree, protocol=(("discovery", reading),), duration_s=8.0)
-    return bed.point("ways by tables", seeds_of(quick), measure)
+    testbed = MeshTestbed(degree=degree, protocol=(("discovery", reading),), duration_s=8.0)
+    return testbed.point("ways by tables", seeds_of(quick), measure)
 
 
 def points(quick: bool) -> list[Point]:
-    """Readings over the degree."""
+    """A point for each reading of discovery and mean degree."""
     return [point(reading, degree, quick) for reading in READINGS for degree in degrees(quick)]
 
 
-def measure(of: Bed, seed: int) -> dict[str, Any]:
+def measure(of: MeshTestbed, seed: int) -> dict[str, Any]:
     """Every pair's way by the tables, and the alternates of every entry."""
     result = of.run(seed)
     plan, nodes = result.plan, range(result.plan.nodes)
@@ -90,7 +90,7 @@ def _kind(far: list[list[int]], node: int, dest: int, way: int, other: int) -> i
 
 
 def mean(got: Measured, reading: str, degree: int) -> float:
-    """Mean stretch."""
+    """Hops by tables over hops of the shortest path, mean over all seeds."""
     return float(np.mean(got[point(reading, degree, got.quick)]["stretch"]))
 
 
@@ -101,7 +101,7 @@ def shares(got: Measured, reading: str, degree: int) -> Any:
 
 
 def draw(got: Measured) -> Figure:
-    """Stretch; alternates."""
+    """Stretch over the mean degree, and beside it what kinds of alternates there are."""
     figure, (left, right) = style.panels(style.WIDE_IN, 2.6, 1, 2, width_ratios=(1, 1.25))
     some = degrees(got.quick)
     for i, reading in enumerate(READINGS):

@@ -1,4 +1,4 @@
-"""The test bed of the mesh's figures [mesh 6]: networks, who dies and when, who sends to whom."""
+"""The testbed of the mesh's figures [mesh 6]: networks, who dies and when, who sends to whom."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def seeds_of(quick: bool) -> range:
 
 
 @dataclass(frozen=True, slots=True)
-class Bed:
+class MeshTestbed:
     """Networks of nodes anywhere in a square of 100 m, node 0 the gateway.
 
     Attributes:
@@ -72,13 +72,13 @@ class Bed:
         return plan
 
     def run(self, seed: int) -> MeshResult:
-        """One run."""
+        """Simulate the network of a seed to its end, compiled."""
         return simulate(self.plan(seed))
 
     def point(
         self, what: str, seeds: Sequence[int], measure: Callable[..., Any], *args: Any
     ) -> Point:
-        """The point that measures every seed with `measure(bed, *args, seed)`.
+        """The point that measures every seed with `measure(testbed, *args, seed)`.
 
         Its key says `what` is measured with which arguments.
         """

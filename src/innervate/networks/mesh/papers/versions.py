@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.messages import DELIVERED, counted, messages
 from innervate.networks.mesh.analysis.summary import looped
-from innervate.networks.mesh.papers.testbed import Bed, Options, send_anywhere
+from innervate.networks.mesh.papers.testbed import MeshTestbed, Options, send_anywhere
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
@@ -48,9 +48,9 @@ def point(scheme: str, speed: float, quick: bool) -> Point:
     """Half of the nodes are robots that go anywhere."""
     robots = [{"node": node, "random": True, "speed_mps": speed} for node in range(30 - ROBOTS, 30)]
     protocol: Options = (*SCHEMES[scheme], ("period_max_s", 10.0))
-    bed = Bed(protocol=protocol, duration_s=UNTIL_S + 2.0, more=(("robot", robots),))
+    testbed = MeshTestbed(protocol=protocol, duration_s=UNTIL_S + 2.0, more=(("robot", robots),))
     what = f"versions at {speed:g} m/s, {SCHEMES[scheme]}"
-    return Point.each(what, 0.5, range(1, 5 if quick else 16), measure, bed)
+    return Point.each(what, 0.5, range(1, 5 if quick else 16), measure, testbed)
 
 
 def points(quick: bool) -> list[Point]:
@@ -58,7 +58,7 @@ def points(quick: bool) -> list[Point]:
     return [point(scheme, speed, quick) for scheme in SCHEMES for speed in speeds(quick)]
 
 
-def measure(of: Bed, seed: int) -> dict[str, Any]:
+def measure(of: MeshTestbed, seed: int) -> dict[str, Any]:
     """Messages among all, one a node and second."""
     plan = of.plan(seed)
     send_anywhere(plan, FROM_S, UNTIL_S, EVERY_S)

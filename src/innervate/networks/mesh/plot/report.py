@@ -53,6 +53,11 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
     )
 
 
+def notebook(result: Any, summary: Mapping[str, Any]) -> str:
+    """What a notebook shows of a run, as HTML."""
+    return top(result, summary) + field(result, Sheet(result.plan), all_crossings(result))
+
+
 def top(result: Any, summary: Mapping[str, Any]) -> str:
     """What happened, and the figures to know."""
     model = result.plan.scenario.model
@@ -217,7 +222,7 @@ def _flows(result: Any, summary: Mapping[str, Any]) -> str:
 
 
 def _events(result: Any) -> str:
-    """Events of the scenario."""
+    """The section on events that the scenario brings about; "" if there are none."""
     plan = result.plan
     rows = [
         (f"{fault.at_us / 1e6:.3f} s", svg.clean(fault_words(plan, fault)))

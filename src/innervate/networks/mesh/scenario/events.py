@@ -8,12 +8,11 @@ from typing import Any
 from innervate.networks.mesh.scenario.model import MeshEventTable, MeshScenario
 from innervate.networks.mesh.scenario.nodes import Nodes
 from innervate.networks.mesh.scenario.plan import MeshFault
-from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
+from innervate.scenario.actions.field import ACTIONS, TABLE
+from innervate.scenario.events import at_us
 from innervate.trace.streams import Stream, stream
 
-ACTIONS = {"kill": KILL, "revive": REVIVE, "cut": CUT, "restore": RESTORE, "jam": JAM,
-           "quiet": QUIET, "restart": RESTART}  # fmt: skip
-LINK_ACTIONS = ("cut", "restore")
+ACTION = {action.word: action for action in TABLE}
 NOISE_CDB = 2000  # a noise is so much above the 50 % point if nothing is said
 
 Pair = tuple[int, int]
@@ -28,34 +27,30 @@ class _Tale:
         self.nodes = nodes
         self.good = good
         self.spared = spared
-        self.dead = {node for node, away in enumerate(absent) if away}
-        self.cut: set[Pair] = set()
-        self.jammed: set[int] = set()
+        # By the action that did it.
+        self.harmed: dict[str, set[Any]] = {one.word: set() for one in TABLE if one.harms}
+        self.harmed["kill"] |= {node for node, away in enumerate(absent) if away}
 
     def candidates(self, action: str) -> list[Any]:
         """What a random event may hit: nodes, or links for cut and restore."""
+        if ACTION[action].mends:
+            return sorted(self.harmed[ACTION[action].mends])
         if action == "cut":
-            return [link for link in self.good if link not in self.cut]
-        if action == "restore":
-            return sorted(self.cut)
-        if action == "revive":
-            return sorted(self.dead)
-        if action == "quiet":
-            return sorted(self.jammed)
+            return [link for link in self.good if link not in self.harmed["cut"]]
         return [node for node in range(len(self.nodes.names))
-                if node not in self.spared and node not in self.dead]  # fmt: skip
+                if node not in self.spared and node not in self.harmed["kill"]]  # fmt: skip
 
     def note(self, action: str, hit: Any) -> None:
         """Remember what an event did."""
-        if action in ("kill", "cut", "jam"):
-            self._set(action).add(hit)
-        elif action != "restart":
-            self._set(action).discard(hit)
+        if action in self.harmed:
+            self.harmed[action].add(hit)
+        elif ACTION[action].mends:
+            self.harmed[ACTION[action].mends].discard(hit)
 
-    def _set(self, action: str) -> set[Any]:
-        if action in ("kill", "revive"):
-            return self.dead
-        return self.cut if action in LINK_ACTIONS else self.jammed
+
+def target_of(action: str) -> str:
+    """What an action happens to: "node" or "link"."""
+    return ACTION[action].target
 
 
 def absent(model: MeshScenario, nodes: Nodes, roles: dict[str, int]) -> list[int]:
@@ -108,7 +103,7 @@ def faults(
     timed = []
     for index, event in enumerate(model.event):
         draw = stream(model.seed, f"event/{index}")
-        timed.append((_at_us(event, draw), index, event, draw))
+        timed.append((at_us(event, draw), index, event, draw))
     found = []
     for at, index, event, draw in sorted(timed, key=lambda item: item[:2]):
         noise = 0
@@ -119,7 +114,7 @@ def faults(
         for hit in _hits(model, tale, index, event, draw, roles):
             tale.note(event.action, hit)
             node, other = hit if isinstance(hit, tuple) else (hit, 0)
-            found.append(MeshFault(at, ACTIONS[event.action], node, other, noise, index))
+            found.append(MeshFault(at, ACTIONS.index(event.action), node, other, noise, index))
     return found
 
 
@@ -136,16 +131,12 @@ def _hits(
     if event.random is not None:
         free = tale.candidates(event.action)
         if event.random > len(free):
-            what = "links" if event.action in LINK_ACTIONS else "nodes"
-            rest = {
-                "kill": " that are alive and no flow's end, robot, gateway or monitor",
-                "revive": " that are dead",
-                "cut": " that are whole",
-                "restore": " that are cut",
-                "quiet": " that are jammed",
-            }.get(event.action, " that are alive and no flow's end, robot, gateway or monitor")
-            message = f"event.{index}.random = {event.random}, but there are {len(free)} {what}"
-            raise nodes.source.error(("event", index, "random"), message + rest)
+            which = {
+                "revive": "dead", "cut": "whole", "restore": "cut", "quiet": "jammed",
+            }.get(event.action, "alive and no flow's end, robot, gateway or monitor")  # fmt: skip
+            message = f"event.{index}.random = {event.random}, but there are {len(free)} "
+            message += f"{target_of(event.action)}s that are {which}"
+            raise nodes.source.error(("event", index, "random"), message)
         return sorted(free.pop(draw.draw(len(free))) for _ in range(event.random))
     if event.link is not None:
         a, b = (nodes.number(("event", index, "link", i), end) if end not in roles else
@@ -161,10 +152,3 @@ def _hits(
         return [(min(a, b), max(a, b))]
     assert event.node is not None
     return [_node(nodes, index, event.node, roles)]
-
-
-def _at_us(event: MeshEventTable, draw: Stream) -> int:
-    if isinstance(event.at_s, tuple):
-        low, high = (round(at * 1e6) for at in event.at_s)
-        return draw.uniform(low, high)
-    return round(event.at_s * 1e6)

@@ -2,34 +2,41 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from innervate.networks.mesh.scenario import fence as mesh_fence
-from innervate.networks.mesh.scenario.events import LINK_ACTIONS
+from innervate.networks.mesh.scenario.events import target_of
 from innervate.networks.mesh.scenario.model import MeshEventTable, MeshScenario
 from innervate.networks.mesh.scenario.nodes import NODES_MAX, RESERVED, too_many
+from innervate.scenario.actions.field import TABLE
+from innervate.scenario.events import Finding, in_time, own_keys, refuse
 from innervate.scenario.source import Source, shown
-from innervate.scenario.times import check_end
 
 POWERS = ("mean_degree", "reach_m", "tx_dbm")
 
 
 def check(source: Source, model: MeshScenario) -> None:
     """Raise ScenarioError at the first thing that does not fit together."""
-    _origin(source, model)
-    _nodes(source, model)
-    _links(source, model)
-    _radio(source, model)
-    _protocol(source, model)
+    refuse(source, _findings(source, model))
+
+
+def _findings(source: Source, model: MeshScenario) -> Iterator[Finding]:
+    yield from _origin(model)
+    yield from _nodes(model)
+    yield from _links(model)
+    yield from _radio(model)
+    yield from _protocol(model)
     for index in range(len(model.flow)):
-        _flow(source, model, index)
+        yield from _flow(model, index)
     if model.fence is not None:
         mesh_fence.check(source, model.fence)
     for index in range(len(model.robot)):
-        _robot(source, model, index)
+        yield from _robot(model, index)
     for index, event in enumerate(model.event):
-        _event(source, model, index, event)
+        yield from _event(model, index, event)
 
 
-def _origin(source: Source, model: MeshScenario) -> None:
+def _origin(model: MeshScenario) -> Iterator[Finding]:
     """Nodes come from one of four places."""
     given = [
         name
@@ -41,149 +48,139 @@ def _origin(source: Source, model: MeshScenario) -> None:
         if there
     ]
     if not given and not model.link:
-        raise source.error((), "there is no network; add nodes = 30, [[node]]s or an [import]")
+        yield (), "there is no network; add nodes = 30, [[node]]s or an [import]"
     if len(given) > 1:
-        message = f"a mesh is made of one of them: {' or '.join(given)}; leave one out"
-        raise source.error((given[1],), message)
+        yield (given[1],), f"a mesh is made of one of them: {' or '.join(given)}; leave one out"
     table = model.import_
     if table is not None:
         if model.link:
             message = "[[link]] goes with nodes or [[node]]; an [import] has links of its own"
-            raise source.error(("link", 0), message)
+            yield ("link", 0), message
         if (table.file is None) == (table.topohub is None):
             message = '[import] needs one of the two: file = "freifunk/leipzig" or topohub = "..."'
-            raise source.error(("import",), message)
+            yield ("import",), message
 
 
-def _nodes(source: Source, model: MeshScenario) -> None:
+def _nodes(model: MeshScenario) -> Iterator[Finding]:
     if model.nodes is not None and model.nodes > NODES_MAX:
-        raise source.error(("nodes",), too_many(model.nodes))
+        yield ("nodes",), too_many(model.nodes)
     if model.nodes is not None and model.nodes < 1:
-        raise source.error(("nodes",), f"nodes must be 1 to {NODES_MAX}, not {model.nodes}")
+        yield ("nodes",), f"nodes must be 1 to {NODES_MAX}, not {model.nodes}"
     if len(model.node) > NODES_MAX:
-        raise source.error(("node",), too_many(len(model.node)))
+        yield ("node",), too_many(len(model.node))
     for index, node in enumerate(model.node):
         key = ("node", index)
         if node.name in RESERVED:
             message = f'node.{index}.name = "{node.name}" means something else; choose another name'
-            raise source.error((*key, "name"), message)
+            yield (*key, "name"), message
         if (node.x_m is None) != (node.y_m is None):
-            raise source.error(key, f"node.{index} has half a place; give it both x_m and y_m")
+            yield key, f"node.{index} has half a place; give it both x_m and y_m"
         if node.x_m is None and not model.link:
-            message = f"node.{index} has no place; give it x_m and y_m, or add [[link]]s"
-            raise source.error(key, message)
+            yield key, f"node.{index} has no place; give it x_m and y_m, or add [[link]]s"
     if model.node and len({node.x_m is None for node in model.node}) > 1:
         index = next(i for i, node in enumerate(model.node) if node.x_m is None)
         message = f"node.{index} has no place, others have; give all of them x_m and y_m, or none"
-        raise source.error(("node", index), message)
+        yield ("node", index), message
     if (model.node or model.nodes is None) and model.placement != type(model.placement)():
-        raise source.error(("placement",), "[placement] goes with nodes = ...; leave it out")
+        yield ("placement",), "[placement] goes with nodes = ...; leave it out"
     if model.placement.layout == "random" and model.placement.columns is not None:
-        message = 'placement.columns goes with layout = "grid"'
-        raise source.error(("placement", "columns"), message)
+        yield ("placement", "columns"), 'placement.columns goes with layout = "grid"'
 
 
-def _links(source: Source, model: MeshScenario) -> None:
+def _links(model: MeshScenario) -> Iterator[Finding]:
     for index, link in enumerate(model.link):
         both = link.quality if isinstance(link.quality, tuple) else (link.quality,)
         for share in both:
             if not 0 <= share <= 1:
                 message = f"link.{index}.quality must be 0 to 1, not {share:g}"
-                raise source.error(("link", index, "quality"), message)
+                yield ("link", index, "quality"), message
         for side, end in (("a", link.a), ("b", link.b)):
             if end in RESERVED or end == "":
                 message = f"link.{index}.{side} must be a node by number or name, not {shown(end)}"
-                raise source.error(("link", index, side), message)
+                yield ("link", index, side), message
 
 
-def _radio(source: Source, model: MeshScenario) -> None:
+def _radio(model: MeshScenario) -> Iterator[Finding]:
     given = [name for name in POWERS if getattr(model.radio, name) is not None]
     if len(given) > 1:
         message = f"radio.{given[0]} and radio.{given[1]} both set the power; leave one out"
-        raise source.error(("radio", given[1]), message)
+        yield ("radio", given[1]), message
     if model.import_ is not None or model.link:
         given += [n for n in ("shadowing_db", "direction_db")
                   if getattr(model.radio, n) is not None]  # fmt: skip
         if given:
             message = f"radio.{given[0]} has no effect on links that are given; leave it out"
-            raise source.error(("radio", given[0]), message)
+            yield ("radio", given[0]), message
     if model.radio.mean_degree is not None:
         count = model.nodes if model.nodes is not None else len(model.node)
         if model.radio.mean_degree > count - 1:
-            message = f"radio.mean_degree = {model.radio.mean_degree:g}, but there are {count - 1}"
-            raise source.error(("radio", "mean_degree"), f"{message} others; make it smaller")
+            yield (
+                ("radio", "mean_degree"),
+                f"radio.mean_degree = {model.radio.mean_degree:g}, but there are {count - 1} "
+                "others; make it smaller",
+            )
         if model.placement.layout != "random" and not model.node:
-            message = "radio.mean_degree cannot choose between links that are equally long"
-            raise source.error(("radio", "mean_degree"), f"{message}; use radio.reach_m")
+            yield (
+                ("radio", "mean_degree"),
+                "radio.mean_degree cannot choose between links that are equally long; use "
+                "radio.reach_m",
+            )
 
 
-def _protocol(source: Source, model: MeshScenario) -> None:
+def _protocol(model: MeshScenario) -> Iterator[Finding]:
     protocol = model.protocol
     if not protocol.tables and protocol.failover == "graph":
         message = 'protocol.tables = false and failover = "graph" are two modes; leave one out'
-        raise source.error(("protocol", "tables"), message)
+        yield ("protocol", "tables"), message
     if not protocol.tables and protocol.activation:
         message = "protocol.activation waits for tables, and there are none; leave one out"
-        raise source.error(("protocol", "activation"), message)
+        yield ("protocol", "activation"), message
     if protocol.avoid == "origin" and protocol.failover not in ("random", "rssi"):
         message = 'protocol.avoid = "origin" goes with failover = "random" or "rssi"'
-        raise source.error(("protocol", "avoid"), message)
+        yield ("protocol", "avoid"), message
 
 
-def _flow(source: Source, model: MeshScenario, index: int) -> None:
+def _flow(model: MeshScenario, index: int) -> Iterator[Finding]:
     flow, key, name = model.flow[index], ("flow", index), f"flow.{index}"
     if flow.every_s is not None and flow.rate_hz is not None:
         message = f"{name}.every_s and rate_hz say the same thing twice; leave one out"
-        raise source.error((*key, "rate_hz"), message)
+        yield (*key, "rate_hz"), message
     if flow.from_ == "monitor":
         message = f'{name}.from must be a node, "all", "random" or "gateway", not "monitor"'
-        raise source.error((*key, "from"), message)
+        yield (*key, "from"), message
     if flow.pairs > 1 and "random" not in (flow.from_, flow.to):
-        message = f'{name}.pairs goes with from = "random" or to = "random"'
-        raise source.error((*key, "pairs"), message)
+        yield (*key, "pairs"), f'{name}.pairs goes with from = "random" or to = "random"'
     if flow.to == "all" and flow.reliable:
         message = f"{name} goes to all, and nobody acknowledges a broadcast; leave reliable out"
-        raise source.error((*key, "reliable"), message)
+        yield (*key, "reliable"), message
     if flow.start_s is not None and flow.start_s >= model.duration_s:
         message = f"{name}.start_s = {flow.start_s:g} is after the end ({model.duration_s:g} s)"
-        raise source.error((*key, "start_s"), message)
+        yield (*key, "start_s"), message
     if flow.stop_s is not None and flow.start_s is not None and flow.stop_s <= flow.start_s:
         message = f"{name}.stop_s = {flow.stop_s:g} is not after start_s = {flow.start_s:g}"
-        raise source.error((*key, "stop_s"), message)
+        yield (*key, "stop_s"), message
 
 
-def _robot(source: Source, model: MeshScenario, index: int) -> None:
+def _robot(model: MeshScenario, index: int) -> Iterator[Finding]:
     robot, key = model.robot[index], ("robot", index)
     if robot.random and len(robot.waypoints) > 1:
         message = f"robot.{index} is random and has waypoints; keep the first, its start, or none"
-        raise source.error((*key, "waypoints"), message)
+        yield (*key, "waypoints"), message
     if robot.area is not None and not robot.random:
-        message = f"robot.{index}.area goes with random = true"
-        raise source.error((*key, "area"), message)
+        yield (*key, "area"), f"robot.{index}.area goes with random = true"
 
 
-def _event(source: Source, model: MeshScenario, index: int, event: MeshEventTable) -> None:
+def _event(model: MeshScenario, index: int, event: MeshEventTable) -> Iterator[Finding]:
     key, name = ("event", index), f"event.{index}"
-    times = event.at_s if isinstance(event.at_s, tuple) else (event.at_s, event.at_s)
-    if times[0] > times[1]:
-        message = f"{name}.at_s must be [from, to], not [{times[0]:g}, {times[1]:g}]"
-        raise source.error((*key, "at_s"), message)
-    if not times[0] >= 0:
-        message = f"{name}.at_s must be a number of seconds from 0, not {times[0]:g}"
-        raise source.error((*key, "at_s"), message)
-    check_end(source, index, times[1], model.duration_s)
+    yield from in_time(index, event.at_s, model.duration_s)
     given = [t for t in ("node", "link", "random") if getattr(event, t) is not None]
-    wanted = "link" if event.action in LINK_ACTIONS else "node"
+    wanted = target_of(event.action)
     words = 'link = ["n1", "n2"] or random = 1' if wanted == "link" else "node = 3 or random = 1"
     if len(given) != 1:
         message = f'{name} ("{event.action}") needs one target: {words}'
-        raise source.error((*key, given[1]) if given else key, message)
+        yield (*key, given[1]) if given else key, message
     if given[0] not in (wanted, "random"):
-        message = f'{name}: "{event.action}" takes {words}, not {given[0]}'
-        raise source.error((*key, given[0]), message)
+        yield (*key, given[0]), f'{name}: "{event.action}" takes {words}, not {given[0]}'
     if event.random is not None and not 1 <= event.random <= NODES_MAX:
-        message = f"{name}.random must be 1 to {NODES_MAX}, not {event.random}"
-        raise source.error((*key, "random"), message)
-    if event.noise_dbm is not None and event.action != "jam":
-        message = f'{name}.noise_dbm goes with "jam", not "{event.action}"'
-        raise source.error((*key, "noise_dbm"), message)
+        yield (*key, "random"), f"{name}.random must be 1 to {NODES_MAX}, not {event.random}"
+    yield from own_keys(index, event, TABLE)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from innervate.networks.mesh.protocol.constants import MONITOR, PATH_MAX, TABLE_FREE, TABLES
+from innervate.networks.mesh.scenario.events import target_of
 from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.networks.mesh.scenario.nodes import listed
 from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan
 from innervate.scenario.actions.field import JAM
+from innervate.scenario.events import told
 from innervate.topology.placement import distances, neighbours
 
-EVENTS_SHOWN = 12
 NEIGHBOURS_MIN, GATEWAY_MIN = 3, 5  # rules for planning WirelessHART networks [mesh 9]
 STAR = 2 / 3  # share of nodes with a single link
 TABLES_MAX = {"38k4": 70, "250k": 150}  # [mesh 8.2]
@@ -45,12 +46,7 @@ def describe(made: MeshPlan) -> str:
         )
     if made.walks:
         lines.append(f"  robots     {listed([made.names[walk.node] for walk in made.walks], 8)}")
-    lines += [f"  {'event' if i == 0 else '':10} {fault_words(made, fault)}"
-              for i, fault in enumerate(made.faults[:EVENTS_SHOWN])]  # fmt: skip
-    if len(made.faults) > EVENTS_SHOWN:
-        lines.append(f"  {'':10} and {len(made.faults) - EVENTS_SHOWN} more")
-    lines += [f"  warning    {text}" for text in warnings(made)]
-    return "\n".join(lines)
+    return "\n".join([*lines, *told(made, fault_words, warnings(made))])
 
 
 def warnings(made: MeshPlan) -> list[str]:
@@ -118,7 +114,7 @@ def fault_words(made: MeshPlan, fault: MeshFault) -> str:
     """A fault in words: "at 2 s kill n3", "at 3 s cut n1 - n2"."""
     event = made.scenario.model.event[fault.index]
     what = made.names[fault.node]
-    if event.action in ("cut", "restore"):
+    if target_of(event.action) == "link":
         what += f" - {made.names[fault.other]}"
     more = f" with {fault.value / 100:g} dBm" if fault.action == JAM else ""
     return f"at {fault.at_us / 1e6:g} s {event.action} {what}{more}"

@@ -1,11 +1,14 @@
 """The simulation loop of a mesh: one function, compiled on arrays or plain on lists."""
 
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
 from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.kernel.bits import mix
-from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol.constants import MESSAGE, REPORT_GRAPH, SAMPLE, SENT
-from innervate.networks.mesh.sim import recorder as books
+from innervate.networks.mesh.sim import recorder
 from innervate.networks.mesh.sim.timers import set_timer
 from innervate.networks.mesh.sim.world import TIMERS
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
@@ -26,11 +29,26 @@ from innervate.sim.status import (
 )
 
 NEVER = -1
-BOOT = 7  # a command besides those of `scenario/mesh_plan.py`
+BOOT = 7  # a command besides those of `scenario/plan.py`
 COLD, MEMORY_LOST = 0, 1
-SEEN_FULL = 100  # a status: the table of deliveries is half full
+DUPLICATES_FULL = 100  # a status: the table of deliveries is half full
 
 BYTE = 0xFF
+
+
+class Loop(NamedTuple):
+    """A loop bound to a stack.
+
+    Attributes:
+        below, above: what the layer below the router does for it, and tells it.
+        own: the loop's other parts.
+        advance: the loop itself.
+    """
+
+    below: tuple[Callable[..., Any], ...]
+    above: tuple[Callable[..., Any], ...]
+    own: tuple[Callable[..., Any], ...]
+    advance: Callable[..., None]
 
 
 def pressing(world):
@@ -44,8 +62,8 @@ def pressing(world):
         return ROWS_FULL
     if run.taps > run.tap_limit:
         return ROWS_FULL
-    if run.seen > run.seen_limit:
-        return SEEN_FULL
+    if run.duplicates > run.duplicate_limit:
+        return DUPLICATES_FULL
     if world.heap.size[0] + 64 * run.nodes + 64 > len(world.heap.keys):
         return POOL_FULL
     return DONE
@@ -68,7 +86,8 @@ def wipe(world, node):
 
 def build(stack, layer):
     """The loop for a stack (see stacks.py) over a layer: `over_medium` or `over_channel`."""
-    start, hear, fire, give = stack.start, stack.hear, stack.fire, stack.give
+    on_start, on_frame = stack.on_start, stack.on_frame
+    on_timer, on_input = stack.on_timer, stack.on_input
     digest, is_sound = stack.digest, stack.is_sound
     below = layer.down(stack)
     hand_down, expire_below = below.hand_down, below.expire
@@ -91,13 +110,13 @@ def build(stack, layer):
             elif kind == REPORT:
                 rows.keep_row(world, time, node, a, b, c)
                 if a == REPORT_GRAPH:
-                    books.keep_round(world, node, time)
+                    recorder.record_round(world, node, time)
             elif kind == DELIVER:
                 run.fingerprint = mix(mark, digest(out.frame[i]))
-                books.keep_delivered(world, node, out.frame[i], time)
+                recorder.record_delivered(world, node, out.frame[i], time)
         out.count[0] = 0
         if out.overflow[0]:
-            books.breaks(world, books.BROKEN_OUTBOX, node)
+            recorder.breaks(world, recorder.BROKEN_OUTBOX, node)
 
     def finish(world, node, time, now, handler, port):
         """After a handler: account for it, carry out what it asked for, check."""
@@ -108,7 +127,7 @@ def build(stack, layer):
             drain(world, node, time, now)
         if run.watchful:
             if run.checks and not is_sound(world, node):
-                books.breaks(world, books.BROKEN_RANGE, node)
+                recorder.breaks(world, recorder.BROKEN_RANGE, node)
             rows.keep_step(world, node, time, handler, port)
 
     def tell_sent(world, node, time, ok):
@@ -116,20 +135,20 @@ def build(stack, layer):
         if world.run[0].told:
             world.item[0].ok = ok
             now = time + world.radios[node].offset
-            give(world, node, now & MASK30, SENT)
+            on_input(world, node, now & MASK30, SENT)
             finish(world, node, time, now, ON_INPUT, SENT)
 
     def take(world, node, frame, time):
         """A node's router is handed a frame that was received."""
         now = time + world.radios[node].offset
-        hear(world, node, now & MASK30, frame)
+        on_frame(world, node, now & MASK30, frame)
         finish(world, node, time, now, ON_FRAME, frame.kind)
 
     above = layer.up(stack, below, take, tell_sent)
     dispatch_below = above.dispatch
 
     def switch_on(world, node, time, cause):
-        """A node starts."""
+        """A node starts, for the first time or again; with MEMORY_LOST its record is wiped."""
         radio = world.radios[node]
         if cause == MEMORY_LOST:
             wipe(world, node)
@@ -139,7 +158,7 @@ def build(stack, layer):
             world.due[node * TIMERS + timer] = NEVER
         now = time + radio.offset
         power_on(world, node, time, now, cause)
-        start(world, node, now & MASK30, cause)
+        on_start(world, node, now & MASK30, cause)
         finish(world, node, time, now, ON_START, cause)
 
     def obey(world, index, time):
@@ -173,7 +192,7 @@ def build(stack, layer):
         for i in range(message.length):
             item.body[i] = (index >> (8 * (i & 3))) & BYTE
         now = time + world.radios[node].offset
-        give(world, node, now & MASK30, MESSAGE)
+        on_input(world, node, now & MASK30, MESSAGE)
         finish(world, node, time, now, ON_INPUT, MESSAGE)
 
     def sample(world, index, time):
@@ -182,7 +201,7 @@ def build(stack, layer):
         motion.walk_on(world, index, time)
         if motion.tell_place(world, node):
             now = time + world.radios[node].offset
-            give(world, node, now & MASK30, SAMPLE)
+            on_input(world, node, now & MASK30, SAMPLE)
             finish(world, node, time, now, ON_INPUT, SAMPLE)
         at = time + world.run[0].sample
         queue.push(world.heap, queue.key_of(at, queue.SAMPLE, node, index))
@@ -194,8 +213,8 @@ def build(stack, layer):
             return
         world.due[node * TIMERS + timer] = NEVER
         now = time + radio.offset
-        if timer < mesh_words.TIMERS:
-            fire(world, node, now & MASK30, timer)
+        if timer < mesh_const.TIMERS:
+            on_timer(world, node, now & MASK30, timer)
             finish(world, node, time, now, ON_TIMER, timer)
         else:
             expire_below(world, node, timer, time, now)
@@ -246,7 +265,5 @@ def build(stack, layer):
                 dispatch(world, key, time)
         run.status = BUDGET
 
-    return (
-        *(*below, drain, finish, tell_sent, take, *above, switch_on, obey, offer, sample),
-        *(expire, dispatch, advance),
-    )
+    own = (drain, finish, tell_sent, take, switch_on, obey, offer, sample, expire, dispatch)
+    return Loop(below, above, own, advance)

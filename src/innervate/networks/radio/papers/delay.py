@@ -110,12 +110,12 @@ def point(who: tuple[str, int], size: int, n: int, load: float, quick: bool) -> 
 
 
 def loads(quick: bool) -> tuple[float, ...]:
-    """Places of a curve."""
+    """Offered loads, as shares of the channel."""
     return BARS if quick else LOADS
 
 
 def points(quick: bool, of: tuple[tuple[str, int], ...] = tuple(LOOKS)) -> list[Point]:
-    """Everything that is drawn."""
+    """A point for each protocol, packet length, number of stations and load."""
     return [
         point(who, size, n, load, quick)
         for who in of

@@ -72,7 +72,7 @@ def draw(got: Measured) -> Figure:
 
 
 def at(got: Measured, reading: str, size: int, n: int) -> float:
-    """S of one n."""
+    """Throughput S with n stations, packets of `size` slots."""
     return float(curve(reading, size).mean(got)[NS.index(n)])
 
 

@@ -99,7 +99,7 @@ class Channel:
         return [[START_US + start] for start in self.starts_us or drawn]
 
     def run(self, seed: int) -> RadioResult:
-        """One run."""
+        """Simulate the plan of a seed to its end, compiled."""
         return simulate(self.plan(seed))
 
     def point(self, seeds: Sequence[int]) -> Point:

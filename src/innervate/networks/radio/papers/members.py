@@ -177,7 +177,7 @@ def is_harmless(lost: float, left: float, extra: float) -> bool:
 
 
 def judge(got: Measured) -> Claims:
-    """Added, removed, without identification."""
+    """Claims on robots added and removed, and on doing without identification."""
     for mode, move in CASES:
         found = got[moving(mode, move, got.quick)]
         lost, left = (sum(max(0.0, x) for x in found[name]) for name in ("lost", "left"))

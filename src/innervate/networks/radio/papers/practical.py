@@ -26,7 +26,7 @@ def points(quick: bool) -> list[Point]:
 
 
 def draw(got: Measured) -> Figure:
-    """Above S, below T_D."""
+    """Throughput S above and disaster's duration T_D below, a column a packet length."""
     return practice.draw(got, (SETTING,), "", 5.0, 1.1)
 
 

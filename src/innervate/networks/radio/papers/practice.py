@@ -39,12 +39,12 @@ class Setting(NamedTuple):
 
     @property
     def slots(self) -> float:
-        """The turnaround."""
+        """The turnaround in slots, not always a whole number."""
         return self.ta_us / SLOT
 
 
 def ns(quick: bool) -> tuple[int, ...]:
-    """Numbers of stations."""
+    """Numbers of stations, ascending, one place of a curve each."""
     return QUICK if quick else FULL
 
 
@@ -152,7 +152,7 @@ def complete(got: Measured, setting: Setting) -> Claim:
 
 
 def linear(got: Measured, setting: Setting) -> Claim:
-    """The slope of T_D."""
+    """The claim that T_D grows linearly: slope in slots a station, and the fit."""
     words, fits = [], []
     for size in SIZES:
         rise, start, fit = common.slope(ns(got.quick), duration(got, setting, size))

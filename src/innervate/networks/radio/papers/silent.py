@@ -79,7 +79,7 @@ def _share(ax: Axes, got: Measured) -> None:
 
 
 def judge(got: Measured) -> Claims:
-    """As published; practical."""
+    """Claims on packets lost silently: as published, and in practical mode."""
     paper = {n: lost(got, "paper", n, TURNAROUND_US) for n in NS}
     words = joined(
         f"n = {n}: {hit} of {of} packets lost silently ({percent(hit / of, 1)})"

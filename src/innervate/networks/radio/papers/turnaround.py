@@ -25,7 +25,7 @@ def points(quick: bool) -> list[Point]:
 
 
 def draw(got: Measured) -> Figure:
-    """Above S, below T_D."""
+    """Throughput S above, T_D below, with a turnaround of 2 ms; a column a packet length."""
     return practice.draw(got, (SETTING, FOUR), ", ta = 2 ms", 5.4, 1.3)
 
 

@@ -49,6 +49,14 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
     )
 
 
+def notebook(result: Any, summary: Mapping[str, Any]) -> str:
+    """What a notebook shows of a run, as HTML."""
+    if summary.get("level") == "slotted":
+        found = radio_slotted_report.charts_of(result, summary)
+        return radio_slotted_report.top(result, summary) + found
+    return top(result, summary) + on_air(result)
+
+
 def top(result: Any, summary: Mapping[str, Any]) -> str:
     """What happened, and the figures to know."""
     params = result.plan.params
@@ -119,7 +127,7 @@ def _arrivals(result: Any, summary: Mapping[str, Any]) -> str:
 
 
 def _collisions(result: Any, summary: Mapping[str, Any]) -> list[str]:
-    """What collisions there were."""
+    """Sentences on how many collisions there were, and of how many frames."""
     count = summary["collisions"]
     if not count:
         return ["No packet collided with another one."]
@@ -295,7 +303,7 @@ def _fairness(result: Any, summary: Mapping[str, Any]) -> str:
 
 
 def _events(result: Any) -> str:
-    """Events of the scenario."""
+    """The section on events that the scenario brings about; "" if there are none."""
     faults = result.plan.faults
     rows = [(f"{f.at_us / 1e6:.3f} s", svg.clean(fault_words(f))) for f in faults[:ROWS_MAX]]
     if not rows:

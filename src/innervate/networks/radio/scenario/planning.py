@@ -5,15 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from innervate.networks.radio.scenario.baselines import baseline
-from innervate.networks.radio.scenario.model import MACS, RadioEventTable, RadioScenario
+from innervate.networks.radio.scenario.model import MACS, RadioScenario
 from innervate.networks.radio.scenario.plan import RadioFault, RadioPlan, parameters
 from innervate.networks.radio.scenario.rules import pair
 from innervate.networks.radio.scenario.traffic import OFFERS_MAX, arrivals, mean_interval_us, sizes
-from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
+from innervate.scenario.actions.channel import JOIN, KILL, LEAVE, NUMBERS, TABLE
+from innervate.scenario.events import at_us
 from innervate.trace.streams import stream
 
-ACTIONS = {"join": JOIN, "revive": JOIN, "kill": KILL, "leave": LEAVE, "garble": GARBLE,
-           "fade": FADE}  # fmt: skip
 LOSS_ONE = 32_768
 
 
@@ -115,23 +114,9 @@ def _check_offers(scenario: Any, slot_us: int, duration_us: int) -> None:
 def _faults(model: RadioScenario) -> list[RadioFault]:
     found = []
     for index, event in enumerate(model.event):
-        draw = stream(model.seed, f"event/{index}")
-        at = _at_us(event, draw)
+        draw, action = stream(model.seed, f"event/{index}"), NUMBERS[event.action]
+        at = at_us(event, draw)
         node = draw.draw(model.stations) if isinstance(event.station, str) else event.station
-        found.append(
-            RadioFault(
-                at_us=at,
-                action=ACTIONS[event.action],
-                node=node,
-                value=(event.frames or 1) if event.action in ("garble", "fade") else 0,
-                index=index,
-            )
-        )
+        value = (event.frames or 1) if TABLE[action].key == "frames" else 0
+        found.append(RadioFault(at, action, node, value, index))
     return sorted(found, key=lambda fault: (fault.at_us, fault.index))
-
-
-def _at_us(event: RadioEventTable, draw: Any) -> int:
-    if isinstance(event.at_s, tuple):
-        low, high = (round(at * 1e6) for at in event.at_s)
-        return int(draw.uniform(low, high))
-    return round(event.at_s * 1e6)

@@ -6,6 +6,7 @@ for would be read and never asked again, so a scenario that changes one is refus
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 from innervate.networks.radio.scenario.model import (
@@ -14,7 +15,7 @@ from innervate.networks.radio.scenario.model import (
     RadioScenario,
     TrafficTable,
 )
-from innervate.scenario.source import Source
+from innervate.scenario.events import Finding
 
 TURNAROUND = frozenset({"csma-cd-r", "csma-cd-d2", "csma-cd-d2p"})
 BACKOFF = frozenset({"csma-cd-d1", "csma-cd-d2", "csma-cd-d2p"})
@@ -42,29 +43,27 @@ _DEFAULTS: dict[str, Any] = {
 }
 
 
-def check(source: Source, model: RadioScenario) -> None:
-    """Raise ScenarioError at the first setting that a slotted run would ignore."""
+def check(model: RadioScenario) -> Iterator[Finding]:
+    """The settings that a slotted run would ignore, and why they are refused."""
     mac = model.protocol.mac
     if mac in EVENT_ONLY:
-        message = f'{mac} goes with level = "event"; the slotted level has none'
-        raise source.error(("protocol", "mac"), message)
+        yield ("protocol", "mac"), f'{mac} goes with level = "event"; the slotted level has none'
     for key in UNUSED:
         if _is_changed(model, key):
             name = ".".join(key)
-            message = f'{name} goes with level = "event"; the slotted level has no use for it'
-            raise source.error(key, message)
+            yield key, f'{name} goes with level = "event"; the slotted level has no use for it'
     for key, macs in USED_BY.items():
         if mac not in macs and _is_changed(model, key):
             message = (
                 f"{'.'.join(key)} goes with {', '.join(sorted(macs))} on the slotted level; "
                 f"{mac} has no use for it there"
             )
-            raise source.error(key, message)
+            yield key, message
     if isinstance(model.packet_slots, tuple) and len(set(model.packet_slots)) > 1:
         message = 'a range of packet_slots goes with level = "event"; the slotted level takes one'
-        raise source.error(("packet_slots",), message)
+        yield ("packet_slots",), message
     if model.event:
-        raise source.error(("event", 0), 'events go with level = "event"; leave them out')
+        yield ("event", 0), 'events go with level = "event"; leave them out'
 
 
 def _is_changed(model: RadioScenario, key: tuple[str, str]) -> bool:

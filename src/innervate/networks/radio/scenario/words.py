@@ -6,9 +6,11 @@ from innervate.networks.radio.scenario import slotted as radio_slotted
 from innervate.networks.radio.scenario.model import RadioScenario
 from innervate.networks.radio.scenario.plan import RadioFault, RadioPlan
 from innervate.networks.radio.scenario.rules import pair
+from innervate.scenario.events import told
 
-EVENTS_SHOWN = 12
 PAIRS_SHOWN = 4
+
+UNFIT = "a radio team has one channel and no links to fit"
 
 
 def describe(made: RadioPlan) -> str:
@@ -23,12 +25,7 @@ def describe(made: RadioPlan) -> str:
         f"  channel    {channel}",
         f"  protocol   {protocol}",
     ]
-    lines += [f"  {'event' if i == 0 else '':10} {fault_words(made, fault)}"
-              for i, fault in enumerate(made.faults[:EVENTS_SHOWN])]  # fmt: skip
-    if len(made.faults) > EVENTS_SHOWN:
-        lines.append(f"  {'':10} and {len(made.faults) - EVENTS_SHOWN} more")
-    lines += [f"  warning    {warning}" for warning in warnings(made)]
-    return "\n".join(lines)
+    return "\n".join([*lines, *told(made, fault_words, warnings(made))])
 
 
 def _used(made: RadioPlan) -> tuple[str, str]:
@@ -92,3 +89,8 @@ def unwatchable(plan: RadioPlan) -> str:
     if plan.scenario.model.channel.level == "slotted":
         return 'the slotted level has no stations to watch; set channel.level = "event"'
     return ""
+
+
+def loop_name(plan: RadioPlan) -> str:
+    """Which loop a plan runs on, for `kernel.door.is_compiled`."""
+    return plan.protocol.replace("/", "-")

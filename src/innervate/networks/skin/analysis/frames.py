@@ -12,19 +12,12 @@ from innervate.networks.skin.analysis.latency import latency_by_port, latency_ms
 from innervate.networks.skin.analysis.summary_keys import Data
 from innervate.networks.skin.protocol.constants import COMMAND
 from innervate.sim.cables import wires
+from innervate.sim.driver import InvariantBroken
 from innervate.sim.tables import get
 from innervate.sim.wheel import FRESH, NIL
 
-REASONS = {
-    "cut": wires.LOST_CUT,
-    "noise": wires.LOST_NOISE,
-    "off": wires.LOST_OFF,
-    "queue_full": wires.LOST_QUEUE,
-    "broken_link": wires.LOST_BROKEN,
-}
 
-
-class FramesLost(Exception):
+class FramesLost(InvariantBroken):
     """Frames of a run that went nowhere: a mistake of the simulator, never of the scenario."""
 
 
@@ -131,7 +124,7 @@ def _traffic(result: Any, block: int) -> Traffic:
     return Traffic(
         sent=counters[wires.SENT + block],
         arrived=counters[wires.ARRIVED + block],
-        lost={name: counters[place + block] for name, place in REASONS.items()},
+        lost={name: counters[place + block] for name, place in wires.REASONS.items()},
         flying=_flying(result.world, block),
         queued=0 if block == wires.URGENT_BLOCK else _queued(result.world, block),
     )

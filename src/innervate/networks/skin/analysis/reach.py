@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from innervate.analysis.commands import missed_on_the_way
+from innervate.networks.skin.analysis.commands import missed_on_the_way
 from innervate.networks.skin.analysis.frames import lost_at_start
 from innervate.networks.skin.analysis.headline import SkinFacts
 from innervate.networks.skin.analysis.rows import apart_steps, marks

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from innervate.analysis.commands import commands_summary
+from innervate.networks.skin.analysis.commands import commands_summary
 from innervate.networks.skin.analysis.frames import beacon_share, data_summary
 from innervate.networks.skin.analysis.headline import skin_headline
 from innervate.networks.skin.analysis.load import balance_factor, port_loads

@@ -64,8 +64,8 @@ def felt_image(run: Any, time_s: float) -> Image:
     result = getattr(run, "result", run)
     cells, world = result.plan.graph.cells, result.world
     sample = SimpleNamespace(force=[0, 0, 0], accel=[0, 0, 0])
-    tables = {name: list(getattr(world, name)) for name in ("touch_x", "touch_y", "touch_span")}
-    sensors = SimpleNamespace(sample=[sample], place=list(world.place), **tables)
+    carrier = SimpleNamespace(**{name: list(t) for name, t in world.carrier._asdict().items()})
+    sensors = SimpleNamespace(sample=[sample], carrier=carrier)
     force, proximity = np.zeros(cells, np.int64), np.zeros(cells, np.int64)
     for cell in range(cells):
         read_sensors(sensors, cell, round(1e6 * time_s))  # type: ignore[no-untyped-call]

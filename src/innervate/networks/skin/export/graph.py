@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
+from innervate.export.cabled import edges
 from innervate.export.graphs import Attributes, Graph, Node
-from innervate.topology import PORT_NAMES
+from innervate.topology.layout import cell_places
 
 
 def graph(plan: Any) -> Graph:
-    """A plan's network."""
+    """A plan's cells with places in mm and hops, and its cables."""
     cells = plan.graph
     nodes: list[Node] = []
-    for cell, (x, y) in enumerate(cells.layout()):
+    for cell, (x, y) in enumerate(cell_places(cells)):
         at: Attributes = {"x_mm": float(x), "y_mm": float(y)}
         if cells.positions:
             at = dict(zip(("x_mm", "y_mm", "z_mm"), cells.positions[3 * cell : 3 * cell + 3],
@@ -20,14 +21,4 @@ def graph(plan: Any) -> Graph:
         hops = int(plan.depths[cell])
         nodes.append((cells.label(cell), {"role": "cell", "number": cell, "hops": hops, **at}))
     nodes.append((cells.label(cells.sink), {"role": "pc", "number": cells.sink, "hops": 0}))
-    edges = [
-        (cells.label(cells.node_of(a)), cells.label(cells.node_of(b)),
-         {"port_a": _port(cells, a), "port_b": _port(cells, b)})
-        for a, b in cells.links()
-    ]  # fmt: skip
-    return Graph(False, nodes, edges)
-
-
-def _port(graph: Any, end: int) -> str:
-    port = graph.port_of(end)
-    return str(port) if graph.node_of(end) == graph.sink else PORT_NAMES[port]
+    return Graph(False, nodes, edges(cells))

@@ -17,10 +17,11 @@ from innervate.export.errors import ExportError
 from innervate.export.reading import Capture, Packet
 from innervate.networks.skin import frames as skin
 from innervate.networks.skin.export.routes import PC, End, Network
-from innervate.networks.skin.protocol import constants as skin_words
+from innervate.networks.skin.protocol import constants as skin_const
 from innervate.wire.bits import get
 from innervate.wire.layout import width
 
+NOTHING = "nothing happened to this skin while it was captured"
 CUT = "cable cut"
 SAME_NS = 1_000_000_000  # within that time both ends of a cable say that it was cut
 RECENT_NS = 500_000_000  # a sample's number comes again after 256 periods
@@ -99,7 +100,7 @@ class Watcher:
         self._newest: dict[str, int | None] = {}  # number of the newest sample that came in
 
     def take(self, packet: Packet) -> None:
-        """The next packet."""
+        """The next packet of a capture, in order of time: an event or a beacon."""
         if self._first_ns < 0:
             self._first_ns = packet.time_ns
         self._last_ns = packet.time_ns
@@ -114,9 +115,9 @@ class Watcher:
         kind = packet.data[0] >> (8 - skin.KIND_BITS)
         if len(packet.data) != skin.SIZES.get(kind):
             return
-        if kind == skin_words.BEACON and out and end.node != PC:
+        if kind == skin_const.BEACON and out and end.node != PC:
             self._beacon(packet, end)
-        elif kind == skin_words.DATA and (out or (end.node == PC and not packet.comment)):
+        elif kind == skin_const.DATA and (out or (end.node == PC and not packet.comment)):
             self._sample(packet, end, out)
 
     def end(self) -> list[Healing]:
@@ -267,3 +268,18 @@ def _touched(now: _Open, ends: set[End]) -> bool:
     if isinstance(now.key, str):
         return now.found.what.endswith("gone") and now.key in {end.node for end in ends}
     return now.found.what.startswith("cut") and not now.key.isdisjoint(ends)
+
+
+def line(one: Healing) -> str:
+    """What happened and how it healed, for people."""
+    return f"{one.at_s:.3f} s: {one.what}{_text(one)}"
+
+
+def _text(one: Healing) -> str:
+    if not one.cells:
+        return "; no cell had to find another way"
+    words = ("first moved", "last wrong parent", "all routed", "all heard", "half of them heard")
+    times = (one.first_ms, one.wrong_ms, one.routed_ms, one.heard_ms, one.heard_median_ms)
+    parts = [f"{word} {'never' if at is None else f'{at:.0f} ms'}"
+             for word, at in zip(words, times, strict=True)]  # fmt: skip
+    return f"; {one.cells} cells: {', '.join(parts)}; {one.lost} samples lost"

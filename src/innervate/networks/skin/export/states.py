@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from innervate.topology.layout import cell_places
+
 TOUCH_WINDOW_US = 100_000
 
 Point = tuple[float, float, float]
@@ -104,6 +106,6 @@ class States:
 def places_m(graph: Any) -> list[Point]:
     """Where the cells of a graph lie, m: on a body, or in a plane."""
     if not graph.positions:
-        return [(x / 1000, -y / 1000, 0.0) for x, y in graph.layout()]
+        return [(x / 1000, -y / 1000, 0.0) for x, y in cell_places(graph)]
     flat = [value / 1000 for value in graph.positions]
     return [(flat[i], flat[i + 1], flat[i + 2]) for i in range(0, len(flat), 3)]

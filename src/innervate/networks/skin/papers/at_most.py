@@ -28,12 +28,12 @@ ALL = Span(1.0, 1.0)  # share of the recoveries
 
 
 def seeds(quick: bool) -> range:
-    """Recoveries a setting."""
+    """Seeds of the recoveries of each setting: 40, or 6 if `quick`."""
     return seeds_of(6 if quick else 40)
 
 
 def case(setup: str, rule: Rule, k: int) -> Case:
-    """One setting."""
+    """The case of one setting, with periodic beacons."""
     return Case(setup, HZ, k, rule.name, "periodic", rule.m)
 
 
@@ -44,7 +44,7 @@ def points(quick: bool) -> list[Point]:
 
 
 def converged_ms(got: Measured, setup: str, rule: Rule, k: int) -> Any:
-    """Convergence of every seed."""
+    """Time from the failure to the last change of a parent, ms, one value a seed."""
     one = case(setup, rule, k)
     return one.periods(got, seeds(got.quick), "converged_ms") * one.period_ms
 

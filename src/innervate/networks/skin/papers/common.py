@@ -14,10 +14,11 @@ from innervate import scenario
 from innervate.networks.skin.analysis.rows import loop_episodes
 from innervate.networks.skin.analysis.summary import recoveries
 from innervate.networks.skin.scenario.plan import Plan
-from innervate.networks.skin.sim.simulate import Result, simulate
+from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers.experiment import Measured, Point
 from innervate.plot import style
 from innervate.scenario import Scenario
+from innervate.sim.cables.simulation import Result
 
 SETUPS = tuple(f"setup-{i}" for i in range(1, 9))
 SETTLE_PERIODS = 60  # until nothing changes any more: listening, the deepest cell, its fresh number
@@ -93,7 +94,7 @@ class Case:
 
     @property
     def period_ms(self) -> float:
-        """One beacon period T_b."""
+        """The beacon period T_b, ms."""
         return 1000.0 / self.beacon_hz
 
     def __str__(self) -> str:

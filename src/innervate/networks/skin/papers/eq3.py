@@ -58,7 +58,7 @@ USUAL = RATES[1]
 
 @cache
 def skin(setup: str) -> tuple[int, int]:
-    """Depth and interface ports."""
+    """A setup's depth in hops, and its number of interface ports."""
     made = plan_of(setup)
     return int(made.depth_max), int(made.graph.interfaces)
 

@@ -59,7 +59,7 @@ def depth(setup: str) -> int:
 
 
 def case(setup: str, rule: Rule, cut: str) -> Case:
-    """One setting."""
+    """The case of one setting, with periodic beacons and one cut."""
     return Case(setup, HZ, K, rule.name, "periodic", rule.m, cut)
 
 

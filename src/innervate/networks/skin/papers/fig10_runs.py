@@ -86,7 +86,7 @@ def measure(setup: str, mode: Mode, seed: int, window_s: float) -> dict[str, Any
 
 
 def values(got: Measured, setup: str, mode: Mode, name: str) -> np.ndarray:
-    """One value a seed."""
+    """A measured value of each seed, as an array."""
     return np.array([got[point][name] for point in runs(setup, mode, got.quick)])
 
 

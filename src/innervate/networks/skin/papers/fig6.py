@@ -52,7 +52,7 @@ FOUND: tuple[Watched, ...] = (
 
 
 def losses(quick: bool) -> list[float]:
-    """Shares of lost beacons."""
+    """Shares of beacons that are lost, 0 to 1."""
     return [i / 100 for i in range(0, 101, 20 if quick else 4)]
 
 

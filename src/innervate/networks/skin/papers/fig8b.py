@@ -43,7 +43,7 @@ FIT = Span(0.8, 1.0)  # R2 of the line
 
 
 def case(setup: str, k: int, rule: Rule) -> Case:
-    """One setting."""
+    """The case of one setting, with periodic beacons."""
     return Case(setup, HZ, k, rule.name, "periodic", rule.m)
 
 

@@ -13,9 +13,9 @@ from innervate.networks.skin.analysis.load import port_loads
 from innervate.networks.skin.analysis.touch import WINDOW_S, received_image
 from innervate.networks.skin.plot.axes import SkinAxes, port_fills
 from innervate.networks.skin.plot.history import History, Moment
+from innervate.networks.skin.plot.words import fault_words
 from innervate.networks.skin.protocol.constants import PORTS
 from innervate.plot import style
-from innervate.plot.words import fault_words
 from innervate.topology import Graph
 
 MARKS_MAX = 12
@@ -141,7 +141,7 @@ def received(run: Any, time_s: float | None = None, window_s: float = WINDOW_S) 
 
 
 def _heat(share: float) -> tuple[float, float, float]:
-    """White to dark vermilion."""
+    """Red, green and blue, 0 to 1, from nearly white at 0 to dark vermilion at 1."""
     pale, dark = np.array([0.965, 0.953, 0.933]), np.array([0.702, 0.290, 0.031])
     red, green, blue = pale + float(share) * (dark - pale)
     return float(red), float(green), float(blue)

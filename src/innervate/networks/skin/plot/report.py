@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from innervate.networks.skin.plot import words as skin_words
 from innervate.networks.skin.plot.map import CELLS_MAX, shows_depth
 from innervate.networks.skin.plot.story import Panel, Story
 from innervate.plot import svg, words
@@ -30,6 +31,12 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
         )
         if part
     )
+
+
+def notebook(result: Any, summary: Mapping[str, Any]) -> str:
+    """What a notebook shows of a run, as HTML."""
+    story = Story(result, summary)
+    return top(story) + maps(story)
 
 
 def top(story: Story) -> str:
@@ -72,7 +79,7 @@ def _broken(summary: Mapping[str, Any]) -> str:
     broken = summary["broken"]
     if not broken:
         return element("p", "No cable is broken at the end.")
-    lines = words.broken_cables(broken)
+    lines = skin_words.broken_cables(broken)
     shown = lines[:BROKEN_MAX]
     if len(lines) > BROKEN_MAX:
         shown.append(f"and {len(lines) - BROKEN_MAX} more, listed under All numbers")
@@ -156,7 +163,7 @@ def _commands(commands: Mapping[str, Any]) -> str:
         return ""
     rows = [("reached", f"{commands['delivered']:,}")]
     rows += [
-        (f"not reached: {words.MISSED[why]}", f"{count:,}")
+        (f"not reached: {skin_words.MISSED[why]}", f"{count:,}")
         for why, count in commands["lost_by"].items()
     ]
     rows.append(("on their way at the end", f"{commands['in_flight']:,}"))
@@ -199,7 +206,7 @@ def _events(story: Story) -> str:
         times = [_ms(recovery[key]) for key in ("detected_ms", "others_ms", "converged_ms")]
         if recovery["others_ms"] == 0:
             times[1] = "had one all the time"
-        what = svg.clean(words.fault_words(story.graph, incident.fault))
+        what = svg.clean(skin_words.fault_words(story.graph, incident.fault))
         counts = [f"{recovery[key]:,}" for key in ("cut_cells", "cut_off_total")]
         rows.append((f"{recovery['at_s']:.3f} s", what, *counts, *times))
     if not rows:

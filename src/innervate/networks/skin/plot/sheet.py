@@ -10,6 +10,7 @@ import numpy as np
 from innervate.networks.skin.protocol.constants import PORTS
 from innervate.plot.svg import Point
 from innervate.topology import Graph
+from innervate.topology.layout import cell_places
 
 MARGIN = 40.0  # room for the ports' plugs; with less they are left out
 PITCH_MAX = 28.0
@@ -39,7 +40,7 @@ class Sheet:
     def __init__(self, graph: Graph, box: Point = TALL, margin: float = MARGIN) -> None:
         self.graph = graph
         self.margin = margin
-        places = np.array(graph.layout(), np.float64).reshape(-1, 2)
+        places = np.array(cell_places(graph), np.float64).reshape(-1, 2)
         low = places.min(axis=0)
         extent = places.max(axis=0) - low
         pitch_mm = _pitch(places)
@@ -69,7 +70,7 @@ class Sheet:
         return float(x), float(y)
 
     def cell(self, cell: int) -> Point:
-        """A cell's centre."""
+        """Where a cell's centre is, in the sheet's units."""
         x, y = self.points[cell]
         return float(x), float(y)
 

@@ -3,17 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate.plot import style
+from innervate.plot.words import number_of
+
+if TYPE_CHECKING:
+    from innervate.networks.skin.sizing import Answer
 
 Columns = Mapping[str, Sequence[Any]]
 AXES = "xyz"
 SLANT = 0.3
+
+
+def write(answer: Answer, folder: Path) -> Path:
+    """The picture in a folder, with the ports that the hardest rate needs; the file comes back."""
+    asked = answer.question
+    ports = max(n or max(answer.graphs) for n in answer.needed.values())
+    graph = answer.graphs[ports]
+    columns = answer.table.to_dict(as_series=False)
+    limits = (asked.loss_max, asked.recovery_ms_max)
+    with style.house():
+        title = f"{graph.cells} cells, {number_of(ports, 'port')}"
+        return style.save(draw(columns, graph, limits, title), folder, "size")[0]
 
 
 def draw(columns: Columns, graph: Any, limits: tuple[float, float], title: str) -> Figure:

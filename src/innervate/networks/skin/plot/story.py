@@ -11,6 +11,7 @@ import numpy as np
 
 from innervate.networks.skin.analysis import touch
 from innervate.networks.skin.plot import map as skinmap
+from innervate.networks.skin.plot import words as skin_words
 from innervate.networks.skin.plot.history import History
 from innervate.networks.skin.plot.sheet import Sheet
 from innervate.networks.skin.scenario.plan import Fault
@@ -48,7 +49,7 @@ class Incident:
 
     @property
     def at_us(self) -> int:
-        """When it happened."""
+        """When the failure came, us."""
         return round(1e6 * float(self.recovery["at_s"]))
 
     @property
@@ -102,7 +103,7 @@ class Story:
         """An event and what came of it."""
         who = words.number_of(incident.recovery["without_way"], "cell")
         still = f"{who} still had no way to the PC {self._then(incident)}"
-        return words.headline(self.graph, incident.fault, incident.recovery, still)
+        return skin_words.headline(self.graph, incident.fault, incident.recovery, still)
 
     def _then(self, incident: Incident) -> str:
         last = incident.until_us >= self.result.ended_us
@@ -182,7 +183,7 @@ class Story:
         y = charts.Axis(0.0, 1.08 * max(inside, 1))
         label = self.headline(incident)
         drawing = charts.step_chart((times - start) / 1e3, cells, x, y, marks, label)
-        what = words.fault_words(self.graph, incident.fault)
+        what = skin_words.fault_words(self.graph, incident.fault)
         text = f"{what[0].upper()}{what[1:]} at {start / 1e6:.3f} s."
         return Panel(drawing, "Cells without a way to the PC", text)
 
@@ -269,13 +270,13 @@ class Story:
         return not skinmap.shows_depth(self.graph.interfaces)
 
     def losses(self) -> Panel | None:
-        """Where samples were lost."""
+        """Bars of how many samples were lost for which reason; None if none was."""
         data = self.summary["data"]
         lost = {k: n for k, n in data.get("lost_by", {}).items() if n}
         if not lost:
             return None
         bars = [
-            charts.Bar(words.LOST.get(reason, reason), count, f"{count:,}")
+            charts.Bar(skin_words.LOST.get(reason, reason), count, f"{count:,}")
             for reason, count in sorted(lost.items(), key=lambda item: -item[1])
         ]
         drawing = charts.bar_chart(bars, "Lost samples by reason")

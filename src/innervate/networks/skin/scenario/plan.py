@@ -7,50 +7,29 @@ from fractions import Fraction
 from math import ceil, floor
 
 from innervate.networks.skin.scenario.graph import build_graph, check_reach
-from innervate.networks.skin.scenario.model import EventTable, ProtocolTable, SkinScenario
+from innervate.networks.skin.scenario.model import ProtocolTable, SkinScenario
 from innervate.networks.skin.scenario.orders import Order, orders
 from innervate.networks.skin.scenario.rules import ONE
 from innervate.networks.skin.scenario.script import Step, steps
 from innervate.networks.skin.scenario.targets import Damage, target
 from innervate.networks.skin.scenario.touch import Touch, sample
 from innervate.scenario.actions.cables import ACTIONS
+from innervate.scenario.cables import LOSS_ONE as LOSS_ONE
+from innervate.scenario.cables import Fault as Fault
+from innervate.scenario.events import at_us, exact, micros
 from innervate.scenario.load import Scenario
 from innervate.scenario.source import Source
 from innervate.topology import Graph
-from innervate.trace.streams import Stream, stream
+from innervate.trace.streams import stream
 
 WIRE_US = 60  # a frame of 240 bit at 4 Mbit/s [skin 2]
 K = 5
 DEPTH_EXPECTED = 32  # MAXD' [skin 4]
 DATA_CELLS_MAX = 65_536
-LOSS_ONE = 32_768
 
 RULES = ("feasible", "strict", "paper", "static", "paper-lax")
 BALANCE_RULES = ("even", "paper")
 UPDATES = ("periodic", "triggered", "wave")
-
-
-@dataclass(frozen=True, slots=True)
-class Fault:
-    """One event of a run.
-
-    Attributes:
-        at_us: when, true time, us.
-        action: CUT, RESTORE, KILL, REVIVE, LOOSE, RESTART or LOSE.
-        end: one end of the cable it happens to; -1 for kill, revive and restart.
-        node: the node it happens to (the PC is node `cells`); -1 for cables.
-        loss_q15: for LOOSE the loss on both directions in 1/32768; else 0.
-        frames: for LOSE how many frames are lost on the cable; else 0.
-        index: the event's place in the scenario file.
-    """
-
-    at_us: int
-    action: int
-    end: int
-    node: int
-    loss_q15: int
-    frames: int
-    index: int
 
 
 @dataclass(slots=True)
@@ -58,7 +37,7 @@ class Plan:
     """Everything a run needs, as whole numbers.
 
     Attributes:
-        params: the protocol's parameters (see `protocol/skin_fields.py`, PARAMS).
+        params: the protocol's parameters (see `protocol/fields.py`, PARAMS).
         drift_ppm: clocks run up to this much fast or slow.
         latency_us: least and greatest hop latency, wire time included, us.
         latency_per_frame: drawn for every frame; else once for each link and direction.
@@ -99,6 +78,11 @@ class Plan:
         """Hops of the deepest cell."""
         return max(self.depths)
 
+    @property
+    def start_us(self) -> int:
+        """Nodes are switched on within so long: a period of beacons."""
+        return 1 if self.lock_step else self.params["beacon_us"]
+
 
 def plan(scenario: Scenario) -> Plan:
     """The plan of a scenario: same scenario and seed, same plan, on any machine.
@@ -118,7 +102,7 @@ def plan(scenario: Scenario) -> Plan:
         graph=graph,
         kind=scenario.kind,
         seed=scenario.seed,
-        duration_us=max(1, _micros(model.duration_s)),
+        duration_us=max(1, micros(model.duration_s)),
         params=parameters(model.protocol, max(depths)),
         drift_ppm=0 if model.timing.lock_step else model.timing.drift_ppm,
         latency_us=model.timing.hop_latency_us,
@@ -126,7 +110,7 @@ def plan(scenario: Scenario) -> Plan:
         lock_step=model.timing.lock_step,
         data_period_us=_period_us(model.data.rate_hz) if model.data.rate_hz else 0,
         queue_frames=model.data.queue,
-        loss_q15=round(_exact(model.timing.loss) * LOSS_ONE),
+        loss_q15=round(exact(model.timing.loss) * LOSS_ONE),
         faults=_faults(source, graph, model),
         touch=sample(model.touch, graph, model.duration_s) if model.touch is not None else None,
         script=steps(source, graph, model.script) if model.script is not None else (),
@@ -139,10 +123,10 @@ def parameters(protocol: ProtocolTable, depth_max: int) -> dict[str, int]:
     """The protocol's parameters [skin 5] for a skin whose deepest cell has `depth_max` hops."""
     beacon_us = _period_us(protocol.beacon_hz)
     if protocol.r_f is not None:
-        r_f = ceil(ONE * _exact(protocol.r_f))
+        r_f = ceil(ONE * exact(protocol.r_f))
     else:
         r_f = ceil(Fraction(ONE, protocol.k or K))
-    r_r = r_f if protocol.r_r is None else max(1, floor(ONE * _exact(protocol.r_r)))
+    r_r = r_f if protocol.r_r is None else max(1, floor(ONE * exact(protocol.r_r)))
     k = ceil(Fraction(ONE, r_f))
     balance = protocol.balance_periods or min(8 * depth_max, 65_535)
     return {
@@ -159,7 +143,7 @@ def parameters(protocol: ProtocolTable, depth_max: int) -> dict[str, int]:
         "hold_periods": k + 4 * max(depth_max, DEPTH_EXPECTED),
         "gap_us": protocol.gap_us,
         "skip_us": beacon_us * 6 // 10,
-        "restart_us": _micros(protocol.restart_s),
+        "restart_us": micros(protocol.restart_s),
         "forward_min_us": protocol.forward_us[0],
         "forward_max_us": protocol.forward_us[1],
     }
@@ -167,41 +151,19 @@ def parameters(protocol: ProtocolTable, depth_max: int) -> dict[str, int]:
 
 def _faults(source: Source, graph: Graph, model: SkinScenario) -> list[Fault]:
     draws = [stream(model.seed, f"event/{index}") for index in range(len(model.event))]
-    times = [_at_us(event, draw) for event, draw in zip(model.event, draws, strict=True)]
+    times = [at_us(event, draw) for event, draw in zip(model.event, draws, strict=True)]
     damage = Damage()
     faults = []
     for index in sorted(range(len(times)), key=lambda i: (times[i], i)):
         event = model.event[index]
         end, node = target(source, graph, index, event, draws[index], damage)
         damage.note(graph, event.action, end, node)
-        faults.append(
-            Fault(
-                at_us=times[index],
-                action=ACTIONS.index(event.action),
-                end=end,
-                node=node,
-                loss_q15=round(_exact(event.loss or 0.0) * LOSS_ONE),
-                frames=(event.frames or 1) if event.action == "lose" else 0,
-                index=index,
-            )
-        )
+        loss_q15 = round(exact(event.loss or 0.0) * LOSS_ONE)
+        frames = (event.frames or 1) if event.action == "lose" else 0
+        action = ACTIONS.index(event.action)
+        faults.append(Fault(times[index], action, end, node, loss_q15, frames, index))
     return faults
 
 
-def _at_us(event: EventTable, draw: Stream) -> int:
-    if isinstance(event.at_s, tuple):
-        return draw.uniform(_micros(event.at_s[0]), _micros(event.at_s[1]))
-    return _micros(event.at_s)
-
-
-def _exact(value: float) -> Fraction:
-    """The decimal number the user wrote, free of binary rounding."""
-    return Fraction(repr(float(value)))
-
-
-def _micros(seconds: float) -> int:
-    return round(_exact(seconds) * 1_000_000)
-
-
 def _period_us(rate_hz: float) -> int:
-    return round(1_000_000 / _exact(rate_hz))
+    return round(1_000_000 / exact(rate_hz))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from innervate.networks.skin.scenario.graph import cell_at, node_and_port, numbered, port_at
 from innervate.networks.skin.scenario.model import CellTable, EventTable
-from innervate.networks.skin.scenario.rules import CABLE_ACTIONS
+from innervate.networks.skin.scenario.rules import TARGET_OF
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source, dotted
 from innervate.topology import PORT_NAMES, PORTS, Graph
@@ -54,7 +54,7 @@ def target(
     key: Key = ("event", index)
     if event.random is not None:
         return _drawn(source, graph, index, event, draw, damage)
-    if event.action not in CABLE_ACTIONS:
+    if TARGET_OF[event.action] != "cable":
         return NONE, _node(source, graph, event, key)
     if event.interface is not None:
         if event.interface >= graph.interfaces:

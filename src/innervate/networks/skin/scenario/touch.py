@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from innervate.networks.skin.scenario.model import TouchTable
 from innervate.topology import Graph
+from innervate.topology.layout import cell_places
 
 STEP_US = 2000
 SAMPLES_MAX = 50_000
@@ -54,7 +55,7 @@ def sample(table: TouchTable, graph: Graph, duration_s: float) -> Touch:
 
 
 def _across(graph: Graph, duration_s: float) -> list[tuple[float, float, float]]:
-    points = graph.layout()
+    points = cell_places(graph)
     wide = max(x for x, _ in points)
     high = max(y for _, y in points)
     if wide >= high:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from innervate.networks.skin.scenario.plan import LOSS_ONE, RULES, UPDATES, Fault, Plan
+from innervate.networks.skin.scenario.plan import RULES, UPDATES, Plan
 from innervate.networks.skin.scenario.warnings import port_rate, warnings
-from innervate.scenario.actions.cables import ACTIONS
-
-EVENTS_SHOWN = 12
+from innervate.scenario.cables import fault_words as fault_words
+from innervate.scenario.events import told
 
 
 def describe(made: Plan) -> str:
@@ -38,21 +37,4 @@ def describe(made: Plan) -> str:
         )
     if made.script:
         lines.append(f"  script     {len(made.script)} steps")
-    lines += [f"  {'event' if i == 0 else '':10} {fault_words(made, fault)}"
-              for i, fault in enumerate(made.faults[:EVENTS_SHOWN])]  # fmt: skip
-    if len(made.faults) > EVENTS_SHOWN:
-        lines.append(f"  {'':10} and {len(made.faults) - EVENTS_SHOWN} more")
-    lines += [f"  warning    {text}" for text in warnings(made)]
-    return "\n".join(lines)
-
-
-def fault_words(made: Plan, fault: Fault) -> str:
-    """A fault in words: "at 2 s cut pc.1 - p0 r16 c7 down"."""
-    graph = made.graph
-    if fault.end >= 0:
-        what = f"{graph.label_end(fault.end)} - {graph.label_end(graph.peer[fault.end])}"
-    else:
-        what = graph.label(fault.node)
-    more = f", loss {fault.loss_q15 / LOSS_ONE:.3g}" if ACTIONS[fault.action] == "loose" else ""
-    more += f", {fault.frames} frames" if fault.frames else ""
-    return f"at {fault.at_us / 1e6:g} s {ACTIONS[fault.action]} {what}{more}"
+    return "\n".join([*lines, *told(made, fault_words, warnings(made))])

@@ -29,10 +29,12 @@ CUT_OFF = 103  # a = index of the scenario's event, b = cells whose chain used t
 APART = 104  # a = cells that are on and that no live cable joins with the PC, b = those since now
 JOINED = 105  # a = cells that live cables join with the PC, from now on
 
+# Its numbers in `world.run`: connected cells without a route, and as they were last noted; cells
+# cut off, and connected; loops so far, and open ones.
+NUMBERS = ("unrouted", "noted", "apart", "joined", "loops", "loops_open")
+
 BROKEN_LOOP = 1
 BROKEN_FEASIBLE = 2
-BROKEN_RANGE = 3
-BROKEN_OUTBOX = 4
 
 
 def note(world, time, node, code, a, b):
@@ -153,7 +155,8 @@ def open_loop(world, time, cell):
     run.loops += 1
     run.loops_open += 1
     note(world, time, cell, LOOP_OPEN, length, 0)
-    loop_free = run.rule == RULE_FEASIBLE or run.rule == RULE_STRICT
+    rule = world.params[0].rule
+    loop_free = rule == RULE_FEASIBLE or rule == RULE_STRICT
     if loop_free and run.checks and run.broken == 0:
         run.broken = BROKEN_LOOP
         run.broken_node = cell

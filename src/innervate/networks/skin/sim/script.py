@@ -11,11 +11,11 @@ from typing import Any
 from innervate.dialect import plain
 from innervate.networks.skin.protocol import constants as skin_words
 from innervate.networks.skin.scenario import script as steps
+from innervate.networks.skin.sim.build import build
 from innervate.scenario import ScenarioError
 from innervate.scenario.actions import cables as actions
 from innervate.sim import wheel
-from innervate.sim.cables import commands, loop
-from innervate.sim.cables.build import build
+from innervate.sim.cables import calls, commands, loop
 from innervate.sim.cables.wires import DOWN, LOST_CUT, LOST_NOISE
 from innervate.sim.cables.world import COMMAND, World
 from innervate.sim.status import BROKEN, COLD, DONE
@@ -36,18 +36,17 @@ def play(plan: Any, stack: Any, checks: bool, trail: bool) -> tuple[World, int]:
     Raises ScenarioError if a step asks for a frame that is not on its way or a timer not set.
     """
     world = build(plan, plain=True, checks=checks, trail=trail, deliveries=True)
-    handle = loop.build(stack)
     for node in range(get(world.run, 0, "nodes")):
         world.starts[node].phase = 0
-    handle.advance(world, 1, 1)  # the command that begins a run
+    loop.run_until(world, stack, 1, 1)  # the command that begins a run
     for node in range(get(world.run, 0, "nodes")):
         wheel.remove(world.wheel, node)
-        handle.switch_on(world, node, 0, COLD)
+        calls.switch_on(world, stack, node, 0, COLD)
     time = 0
     missed: set[int] = set()
     for number, step in enumerate(plan.script):
         time += STEP_US
-        _take(plan, world, handle, stack, step, time, number, missed)
+        _take(plan, world, stack, step, time, number, missed)
         if get(world.run, 0, "broken"):
             world.run[0].status = BROKEN
             world.run[0].broken_at = time
@@ -57,8 +56,7 @@ def play(plan: Any, stack: Any, checks: bool, trail: bool) -> tuple[World, int]:
 
 
 def _take(
-    plan: Any, world: World, handle: Any, stack: Any, step: Any, time: int, number: int,
-    missed: set[int],
+    plan: Any, world: World, stack: Any, step: Any, time: int, number: int, missed: set[int]
 ) -> None:  # fmt: skip
     """One step; `missed` holds the ends that the next ticks find broken."""
     label = plan.graph.label
@@ -79,9 +77,9 @@ def _take(
         if world.wheel.events[slot].bucket == NIL:
             raise _refused(plan, number, f"{label(step.node)} has nothing to send soon")
         wheel.remove(world.wheel, slot)
-        handle.on_timer_slot(world, slot, time)
+        calls.on_timer_slot(world, stack, slot, time)
     elif step.action in FROM_OUTSIDE:
-        _obey(world, handle, stack, step, time)
+        _obey(world, stack, step, time)
     else:
         slot = _oldest(world, step.end)
         if slot == NIL:
@@ -89,7 +87,7 @@ def _take(
             raise _refused(plan, number, f"no frame is on its way from {where}")
         wheel.remove(world.wheel, slot)
         if step.action == steps.DELIVER:
-            handle.on_arrival(world, world.wheel.events[slot], slot, time)
+            calls.on_arrival(world, stack, world.wheel.events[slot], slot, time)
         else:
             world.counters[LOST_NOISE + world.wheel.events[slot].kind] += 1
             wheel.give(world.wheel, slot)
@@ -111,13 +109,13 @@ def _keep_alive(world: World, node: int, missed: set[int]) -> None:
         missed.discard(end)
 
 
-def _obey(world: World, handle: Any, stack: Any, step: Any, time: int) -> None:
+def _obey(world: World, stack: Any, step: Any, time: int) -> None:
     """A cable is cut, with what is on it, or works again; a node loses its memory."""
     command = plain.make("Command", tuple((n, 0, -1, -1, "", "") for n in COMMAND))()
     command.at, command.action = time, FROM_OUTSIDE[step.action]
     command.node = step.node if step.action == steps.STEP_RESTART else -1
     command.end = step.end
-    commands.obey(world, command, handle.switch_on, stack.stopped)
+    commands.obey(world, stack, command)
     if step.action == steps.STEP_CUT:
         for end in (step.end, world.ends[step.end].peer):
             while (slot := _oldest(world, end)) != NIL:

@@ -1,29 +1,25 @@
-"""Binds the skin's state machines to the simulator: which node is what, what its words mean."""
+"""The skin as the medium of cables is told of it (see sim/cables): its functions, its recorder."""
 
 from innervate.dialect.arith import MASK30
 from innervate.networks.skin.protocol import cell as skin
 from innervate.networks.skin.protocol import sink as skin_sink
 from innervate.networks.skin.protocol.cell import copy_frame
-from innervate.networks.skin.protocol.constants import (
-    BEACON,
-    COMMAND,
-    DATA,
-    GIVE,
-    NONE,
-    REPORT_BALANCE,
-    SAMPLE,
-)
-from innervate.networks.skin.sim import orders
-from innervate.networks.skin.sim.checks import check_cell, check_route
-from innervate.networks.skin.sim.observer import follow, on_report
+from innervate.networks.skin.protocol.constants import BEACON, COMMAND, DATA, NONE, REPORT_BALANCE
+from innervate.networks.skin.sim import observer, orders
+from innervate.networks.skin.sim.checks import check_route
+from innervate.networks.skin.sim.observer import on_links_changed as on_change
+from innervate.networks.skin.sim.observer import remember as before_change
+from innervate.networks.skin.sim.orders import begin as take_input
+from innervate.networks.skin.sim.touch import read_sensors as sense
 from innervate.sim import delays
-from innervate.sim.cables.wires import DELIVERED
+from innervate.sim.cables.recorder import check_range
+from innervate.sim.cables.wires import COMMAND_BLOCK, DELIVERED
 from innervate.sim.clocks import reading
 
-__all__ = ["copy_frame"]
+__all__ = ["before_change", "copy_frame", "on_change", "sense", "take_input"]
 
 
-def start(world, node, now, cause):
+def on_start(world, node, now, cause):
     """Switch a node on."""
     if node == world.run[0].cells:
         skin_sink.on_start(world.pc, world.params[0], now, cause, world.out)
@@ -31,7 +27,7 @@ def start(world, node, now, cause):
         skin.on_start(world.cells[node], world.params[0], now, cause, world.out)
 
 
-def hear(world, node, time, port, frame):
+def on_frame(world, node, time, port, frame):
     """Hand a node a frame. A beacon is taken in as `skin.on_frame` does, but the clock is read
     only for news: reading it costs a twentieth of an arrival.
     """
@@ -50,7 +46,7 @@ def local(world, node, time):
     return reading(world.clocks[node], time) & MASK30
 
 
-def fire(world, node, now, timer):
+def on_timer(world, node, now, timer):
     """A node's timer fires."""
     if node == world.run[0].cells:
         skin_sink.on_timer(world.pc, world.params[0], now, timer, world.out)
@@ -58,15 +54,18 @@ def fire(world, node, now, timer):
         skin.on_timer(world.cells[node], world.params[0], now, timer, world.out)
 
 
-def sample(world, node, now):
-    """Hand a cell what its sensors say."""
-    cell, params = world.cells[node], world.params[0]
-    skin.on_input(cell, params, now, SAMPLE, world.sample[0], world.out)
+def on_input(world, node, now, kind):
+    """Hand a cell what its sensors say, or the PC a command to send down."""
+    params, item, out = world.params[0], world.sample[0], world.out
+    if node == world.run[0].cells:
+        skin_sink.on_input(world.pc, params, now, kind, item, out)
+    else:
+        skin.on_input(world.cells[node], params, now, kind, item, out)
 
 
-def give(world, now):
-    """Hand the PC a command to send down."""
-    skin_sink.on_input(world.pc, world.params[0], now, GIVE, world.sample[0], world.out)
+def block_of(frame):
+    """The block of counters of a frame that is not urgent."""
+    return COMMAND_BLOCK if frame.kind == COMMAND else 0
 
 
 def digest(frame):
@@ -82,26 +81,26 @@ def digest(frame):
     return word | (frame.parent << 48) | (frame.kind << 49)
 
 
-def report(world, time, node, code, a, b):
+def on_report(world, time, node, code, a, b):
     """A node reported something."""
-    on_report(world, time, node, code, a, b)
+    observer.on_report(world, time, node, code, a, b)
     if world.run[0].checks and code <= REPORT_BALANCE:
         check_route(world, node)
 
 
-def stopped(world, time, node):
+def on_stop(world, time, node):
     """A node lost its memory or went dark: it has no parent any more."""
     if node < world.run[0].cells and world.run[0].observe:
-        follow(world, time, node, NONE)
+        observer.follow(world, time, node, NONE)
 
 
 def check(world, node):
     """After every handler."""
     if node < world.run[0].cells:
-        check_cell(world, node)
+        check_range(world, node)
 
 
-def deliver(world, time, node, port, frame):
+def on_deliver(world, time, node, port, frame):
     """The PC's user gets a tactile sample, or a cell's a command."""
     if frame.kind == COMMAND:
         orders.reach(world, time, node, frame)

@@ -121,7 +121,7 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
 
 @functools.cache
 def _compiled() -> Callable[..., None]:
-    engine = ex.compiled_engine()
+    engine = ex.compiled_engine(skin_system.compiled_parts)
     system = skin_system.compiled_parts()
     parts = build(system)
     door.register(skin_calm, hot=False)
@@ -268,11 +268,11 @@ class _Rows:
 
     @property
     def count(self) -> int:
-        """How many."""
+        """How many states were found."""
         return int(self.search.run[s.COUNT])
 
     def row(self, index: int) -> bytes:
-        """One of them."""
+        """The state of this index, as bytes."""
         part = self.search.rows[index * self.words : (index + 1) * self.words]
         return bytes(part.tobytes())
 
@@ -286,4 +286,4 @@ class _Rows:
         if self.plain:
             s.refill(self.search)
         else:
-            ex.compiled_refill()(self.seen)
+            ex.compiled_refill(skin_system.compiled_parts)(self.seen)

@@ -6,9 +6,9 @@ from typing import Any
 
 from innervate.networks.skin.scenario.orders import Order
 from innervate.networks.skin.sim import simulate
+from innervate.networks.skin.sim.build import order_row
 from innervate.networks.skin.sim.simulate import SkinSimulation
 from innervate.networks.skin.view.touching import Finger
-from innervate.sim.cables.build import order_row
 from innervate.sim.driver import Simulation
 from innervate.web.engine import Engine, Mark
 
@@ -34,7 +34,7 @@ class SkinEngine(Engine):
     def give(self, order: Order) -> None:
         """Have the PC send a command, not before `earliest_us`."""
         self.orders.append(order)
-        self.running.schedule_row(order_row(order))
+        self.running.schedule_row(order_row(self.plan, order))
 
     def touch(self, cell: int | None) -> None:
         """Touch a cell from now on, or none."""
@@ -48,7 +48,7 @@ class SkinEngine(Engine):
         super().back_to(mark)
         for order in self.orders:
             if order.at_us >= self.now_us:
-                self.running.schedule_row(order_row(order))
+                self.running.schedule_row(order_row(self.plan, order))
         if self.finger is not None:
             self.running.world = self.finger.into(self.world)
 

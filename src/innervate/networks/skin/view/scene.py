@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from innervate.topology import PORTS
+from innervate.topology.layout import cell_places
 from innervate.topology.patch import DOWN, UP, E, W
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -29,7 +30,7 @@ def nodes_of_ends(graph: Any) -> Numbers:
 
 def places(graph: Any) -> Floats:
     """x, y of every cell, then of every interface port, one pitch apart."""
-    cells = np.array(graph.layout(), np.float64).reshape(-1, 2)
+    cells = np.array(cell_places(graph), np.float64).reshape(-1, 2)
     cells /= _pitch(graph, cells)
     found = [(float(x), float(y)) for x, y in cells]
     centre = cells.mean(axis=0)

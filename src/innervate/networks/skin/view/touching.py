@@ -12,6 +12,8 @@ import numpy as np
 
 from innervate.networks.skin.scenario.model import TouchTable
 from innervate.networks.skin.scenario.touch import sample
+from innervate.networks.skin.sim.build import Touch
+from innervate.topology.layout import cell_places
 
 AWAY_MM = -1_000_000.0  # where nobody feels it
 RADIUS_MM = 25.0  # of a finger, where the scenario has no touch: a cell and its neighbours
@@ -43,18 +45,20 @@ class Finger:
 
     def move(self, at_us: int, cell: int | None) -> None:
         """Put the finger on a cell from the next step on, or (None) take it away."""
-        x_mm, y_mm = (AWAY_MM, 0.0) if cell is None else self._graph.layout()[cell]
+        x_mm, y_mm = (AWAY_MM, 0.0) if cell is None else cell_places(self._graph)[cell]
         first = -(-at_us // self._step_us)
         self.x_um[first:], self.y_um[first:] = round(1000 * x_mm), round(1000 * y_mm)
 
     def into(self, world: Any) -> Any:
         """The world with this touch."""
-        place = [round(1000 * x) for spot in self._graph.layout() for x in spot]
+        place = [round(1000 * x) for spot in cell_places(self._graph) for x in spot]
         return world._replace(
-            touch_x=self.x_um.copy(),
-            touch_y=self.y_um.copy(),
-            touch_span=self._span.copy(),
-            place=np.array(place, np.int64),
+            carrier=Touch(
+                x=self.x_um.copy(),
+                y=self.y_um.copy(),
+                span=self._span.copy(),
+                place=np.array(place, np.int64),
+            )
         )
 
     def table(self) -> dict[str, Any]:

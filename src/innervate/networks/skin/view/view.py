@@ -13,6 +13,7 @@ from innervate.analysis.ways import NOWHERE
 from innervate.networks.skin.analysis.headline import skin_headline
 from innervate.networks.skin.analysis.load import balance_factor
 from innervate.networks.skin.analysis.reach import world_facts
+from innervate.networks.skin.plot.words import fault_words
 from innervate.networks.skin.protocol.constants import (
     NONE,
     REPORT_BALANCE,
@@ -22,15 +23,15 @@ from innervate.networks.skin.protocol.constants import (
 from innervate.networks.skin.scenario.plan import Fault
 from innervate.networks.skin.sim.observer import APART, CUT_OFF, LOOP_OPEN, UNROUTED
 from innervate.networks.skin.sim.orders import ORDER_CAME, ORDER_GIVEN
+from innervate.networks.skin.view import giving
 from innervate.networks.skin.view.engine import SkinEngine
 from innervate.networks.skin.view.scene import places
 from innervate.networks.skin.view.state import Cables
-from innervate.plot.words import fault_words, number_of
+from innervate.plot.words import number_of
 from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE
 from innervate.sim.cables.wires import EARLY, LOOPED, LOST_BROKEN, LOST_CUT, NO_ROUTE, OFFERED
 from innervate.sim.cables.world import DEAD
 from innervate.topology import PORTS
-from innervate.web import giving
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import History
@@ -280,7 +281,7 @@ class SkinView(View):
         return found
 
     def words(self, fault: Any) -> str:
-        """A fault in words."""
+        """What a fault does, as "cut 3-4"."""
         return fault_words(self.plan.graph, fault)
 
     def takes(self, fault: Any) -> bool:

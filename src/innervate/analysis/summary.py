@@ -1,0 +1,157 @@
+"""The summary of any network's run: frames, messages, losses by reason, latencies, a headline.
+
+A network that knows more of its runs has a summary of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NotRequired, TypedDict
+
+import numpy as np
+
+from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline
+from innervate.analysis.summary_common import Common, Percentiles
+from innervate.sim.counts import Counts
+
+
+class Frames(TypedDict):
+    """Frames on their links; one counts once for every link that it takes.
+
+    Attributes:
+        sent: handed to a link.
+        arrived: reached a node that is on.
+        lost: by all reasons.
+        lost_by: by reason.
+        in_flight: on their way at the end.
+    """
+
+    sent: int
+    arrived: int
+    lost: int
+    lost_by: Mapping[str, int]
+    in_flight: int
+
+
+class Messages(TypedDict):
+    """What users gave to the network, and what it gave to users.
+
+    Attributes:
+        sent: given to nodes by their users.
+        delivered: given to users by nodes; more than sent if one is for many.
+        dropped_by: given up by nodes, by reason.
+        latency_ms: from the one to the other; None if none were delivered or no rows were kept.
+    """
+
+    sent: int
+    delivered: int
+    dropped_by: Mapping[str, int]
+    latency_ms: Percentiles
+
+
+class Summary(Common):
+    """Of a run of any network.
+
+    Attributes:
+        kind: of network.
+        nodes: how many there are.
+        off: how many of them were off at the end.
+        frames: on the links.
+        messages: of users.
+        reports: how often nodes reported something, by its number.
+    """
+
+    kind: str
+    nodes: int
+    off: int
+    frames: Frames
+    messages: Messages
+    reports: NotRequired[dict[str, int]]
+
+
+def summarize(result: Any) -> Summary:
+    """The summary of a run; what never happened is None."""
+    plan, counts = result.plan, result.counts
+    events = result.handled + counts.arrived
+    made: Summary = {
+        "kind": plan.kind,
+        "name": plan.scenario.name,
+        "seed": plan.seed,
+        "duration_s": plan.duration_us / 1e6,
+        "events": events,
+        "events_per_s": round(events / result.wall_s) if result.wall_s > 0 else None,
+        "wall_s": round(result.wall_s, 6),
+        "fingerprint": result.fingerprint,
+        "headline": headline(counts, result.handled).as_summary(),
+        "nodes": counts.nodes,
+        "off": len(counts.off),
+        "frames": {
+            "sent": counts.sent,
+            "arrived": counts.arrived,
+            "lost": sum(counts.lost_by.values()),
+            "lost_by": counts.lost_by,
+            "in_flight": counts.in_flight,
+        },
+        "messages": {
+            "sent": counts.offered,
+            "delivered": counts.delivered,
+            "dropped_by": counts.dropped_by,
+            "latency_ms": latency_ms(result.rows.get("deliveries")),
+        },
+    }
+    if "rows" in result.rows:
+        codes, times = np.unique(result.rows["rows"]["code"], return_counts=True)
+        made["reports"] = {
+            str(code): count for code, count in zip(codes.tolist(), times.tolist(), strict=True)
+        }
+    if result.interrupted:
+        made["interrupted_at_s"] = result.ended_us / 1e6
+    return made
+
+
+def latency_ms(deliveries: Any) -> Percentiles:
+    """Median, 99th percentile and maximum of deliveries' latencies, ms."""
+    if deliveries is None or not len(deliveries) or "latency" not in deliveries.dtype.names:
+        return {"p50": None, "p99": None, "max": None}
+    half, nearly, most = np.percentile(deliveries["latency"], (50, 99, 100), method="nearest") / 1e3
+    return {"p50": float(half), "p99": float(nearly), "max": float(most)}
+
+
+def headline(counts: Counts, handled: int) -> Headline:
+    """The state of any network, from what its medium counted.
+
+    degraded: frames or messages were lost, or a node is off. down: all nodes are off, or frames
+    were sent and none arrived. no data: nothing has happened yet.
+
+    Args:
+        counts: of the medium.
+        handled: handler calls.
+    """
+    if not handled:
+        return Headline(NO_DATA, "Nothing has happened yet.")
+    nodes, off = counts.nodes, counts.off
+    lost, dropped = sum(counts.lost_by.values()), sum(counts.dropped_by.values())
+    if nodes and len(off) == nodes:
+        return Headline(DOWN, f"All {nodes:,} nodes are off.", off)
+    if lost and not counts.arrived:
+        return Headline(DOWN, f"None of {counts.sent:,} frames arrived.", off)
+    if dropped and not counts.delivered:
+        return Headline(DOWN, f"None of {counts.offered:,} messages was delivered.", off)
+    wrong = [
+        _part(dropped, counts.offered, "message", "given up"),
+        _part(len(off), nodes, "node", "off"),
+        _part(lost, counts.sent, "frame", "lost"),
+    ]
+    said = ", ".join(filter(None, wrong))
+    if said:
+        return Headline(DEGRADED, f"{said}.", off)
+    if counts.offered:
+        return Headline(OK, f"{counts.delivered:,} of {counts.offered:,} messages are delivered, "
+                            "none is lost.")  # fmt: skip
+    return Headline(OK, f"None of {counts.sent:,} frames is lost.")
+
+
+def _part(count: int, total: int, what: str, how: str) -> str:
+    if not count:
+        return ""
+    return f"{count:,} of {total:,} {what}s {'is' if count == 1 else 'are'} {how}"

@@ -1,0 +1,104 @@
+"""Any network of cables as a capture and as a graph, from its plan's `graph` and frame layouts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from innervate.export import bulk, links
+from innervate.export.graphs import Graph
+from innervate.network import Network
+from innervate.topology import PORT_NAMES
+from innervate.topology.layout import cell_places
+from innervate.wire.layout import width
+
+Word = Callable[[Any, int], tuple[str, int]]
+
+
+def as_node(_graph: Any, node: int) -> tuple[str, int]:
+    """What a capture calls a node, and its number."""
+    return "node", node
+
+
+def interfaces(plan: Any, word: Word = as_node) -> list[tuple[str, str]]:
+    """(name, description) of every port that has a cable, in order."""
+    graph, found = plan.graph, []
+    for end in _cabled(graph):
+        cable = (graph.label_end(end), graph.label_end(graph.peer[end]))
+        what, number = word(graph, graph.node_of(end))
+        found.append((cable[0], links.describe(what, number, graph.port_of(end), cable)))
+    return found
+
+
+def numbers(plan: Any) -> Any:
+    """Which interface a tap's row is of, by its column `at`."""
+    found = np.zeros(len(plan.graph.peer), np.int64)
+    cabled = _cabled(plan.graph)
+    found[cabled] = np.arange(len(cabled))
+    return found
+
+
+def _cabled(graph: Any) -> list[int]:
+    """Ends that have a cable."""
+    return [end for end, peer in enumerate(graph.peer) if peer >= 0]
+
+
+def packed(layouts: Any, kind_bits: int, kept: Any) -> list[bytes]:
+    """The bytes of frames of a type, the type's fields and a CRC, from an array of records."""
+    return bulk.by_kind(kept, {
+        kind: (fields, kind, kind_bits, (kind_bits + width(fields) + 7) // 8 + bulk.CRC_BYTES)
+        for kind, _name, fields in layouts
+    })  # fmt: skip
+
+
+class Captured:
+    """What a network without a part `capture` has in its place."""
+
+    LATE_US = 0  # a row is told at its moment
+    interfaces = staticmethod(interfaces)
+    numbers = staticmethod(numbers)
+
+    def __init__(self, network: Network) -> None:
+        self.simulate = network.run.simulate
+        self._layouts = network.frames.LAYOUTS if network.has("frames") else ()
+        self._kind_bits = network.frames.KIND_BITS if self._layouts else 0
+
+    def refusal(self, plan: Any) -> str:
+        """Why there is no capture of a plan; "" if there is one."""
+        if not hasattr(plan, "graph"):
+            return f"a {plan.kind} has no cables, and says nothing of its frames on another medium"
+        return "" if self._layouts else f"a {plan.kind} does not say how its frames are laid out"
+
+    def frames(self, _rows: Any, kept: Any) -> list[bytes]:
+        """The bytes of frames, given as an array of records."""
+        return packed(self._layouts, self._kind_bits, kept)
+
+
+def graph(plan: Any) -> Graph:
+    """Nodes and cables; a plan without cables has nodes alone."""
+    if not hasattr(plan, "graph"):
+        return Graph(False, [(f"node {i}", {"number": i}) for i in range(plan.nodes)], [])
+    made = plan.graph
+    nodes = [
+        (made.label(cell), {"number": cell, "x_mm": float(x), "y_mm": float(y)})
+        for cell, (x, y) in enumerate(cell_places(made))
+    ]
+    if made.interfaces:
+        nodes.append((made.label(made.sink), {"number": made.sink}))
+    return Graph(False, nodes, edges(made))
+
+
+def edges(graph: Any) -> list[Any]:
+    """Every cable, with the ports that it joins."""
+    return [
+        (graph.label(graph.node_of(a)), graph.label(graph.node_of(b)),
+         {"port_a": _port(graph, a), "port_b": _port(graph, b)})
+        for a, b in graph.links()
+    ]  # fmt: skip
+
+
+def _port(graph: Any, end: int) -> str:
+    port = graph.port_of(end)
+    return str(port) if graph.node_of(end) == graph.sink else PORT_NAMES[port]

@@ -1,0 +1,227 @@
+"""A live node of a network whose record says no more than its protocol, its fields and its frames.
+
+The protocol is a module with the handlers of a node; every port is a cable. What its records have
+was declared, so that its status and what it delivers can be told without knowing what it is.
+"""
+
+from __future__ import annotations
+
+import secrets
+from collections import Counter
+from collections.abc import AsyncGenerator, Callable
+from functools import partial
+from typing import Annotated, Any
+
+from msgspec import Meta
+
+from innervate.dialect import plain
+from innervate.dialect.rng import seeded
+from innervate.live.build import links_of, sealer_of, state_of
+from innervate.live.errors import LiveError
+from innervate.live.keys import Sealer
+from innervate.live.links import Link
+from innervate.live.node import LiveNode
+from innervate.live.nodefile import Loaded, NodeFile
+from innervate.live.parameters import check_parameters
+from innervate.live.state import State
+from innervate.live.streams import Stream
+from innervate.network import Network, networks
+from innervate.wire.frames import REASONS, Codec
+
+FOR_EVER_US = 1 << 62  # protocols that do not say when a path is broken never call one so
+OUTBOX = 16
+# Fields that the driver sets as a node is made, and that nobody wants to read.
+DRIVERS = ("number", "rng", "choice")
+
+
+class DeclaredFile(NodeFile, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A node; `ports` are its port of each path, in order; 0, 1, ... if left out."""
+
+    ports: list[Annotated[int, Meta(ge=0, le=255)]] = []  # noqa: RUF012
+
+
+class DeclaredStack:
+    """One node of a network, as an engine runs it.
+
+    Args:
+        network: with the parts `protocol`, `fields` and `frames`.
+        number: the node's.
+        params: the protocol's parameters by name; those that are left out are the value in range
+            nearest 0.
+        seed: any whole number; nodes must have different ones.
+        ports: the port of each path, in order of the paths.
+    """
+
+    def __init__(
+        self, network: Network, number: int, params: dict[str, int], seed: int, ports: list[int]
+    ) -> None:
+        self.network = network
+        self.number = number
+        self._do, fields = network.protocol, network.fields
+        layout = network.frames  # a module that has its own functions, or only layouts
+        own = hasattr(layout, "encode")
+        self._frames = layout if own else Codec(layout.LAYOUTS, layout.KIND_BITS)
+        self.timers: int = self._do.TIMERS
+        self.reasons: tuple[str, ...] = layout.REASONS if own else REASONS
+        self.params = plain.make("Params", fields.PARAMS)()
+        for name, value in params.items():
+            setattr(self.params, name, value)
+        self.silent_us = getattr(self.params, "silent_us", FOR_EVER_US)
+        self.node = plain.make("Node", fields.STATE)()
+        for name, value in zip(DRIVERS, (number, seeded(seed), -1), strict=True):
+            if hasattr(self.node, name):
+                setattr(self.node, name, value)
+        frame = plain.make("Frame", fields.FRAME)
+        self.out = plain.Outbox(frame, getattr(self._do, "OUTBOX", OUTBOX))
+        self.inbox = frame()
+        self.item = frame()
+        self.port_of_path = ports
+        self.path_of_port = {port: path for path, port in enumerate(ports)}
+
+    def on_start(self, now: int, cause: int) -> None:
+        """Switch on."""
+        self._do.on_start(self.node, self.params, now, cause, self.out)
+
+    def on_frame(self, now: int, port: int) -> None:
+        """The frame in the inbox was received on a path."""
+        own = self.port_of_path[port]
+        self._do.on_frame(self.node, self.params, now, own, self.inbox, self.out)
+
+    def on_timer(self, now: int, timer: int) -> None:
+        """A timer fires."""
+        self._do.on_timer(self.node, self.params, now, timer, self.out)
+
+    def on_input(self, now: int, kind: int, item: Any) -> None:
+        """The node's own user hands something down."""
+        self._do.on_input(self.node, self.params, now, kind, item, self.out)
+
+    def encode(self, frame: Any) -> bytes:
+        """The bytes of a frame."""
+        data: bytes = self._frames.encode(frame)
+        return data
+
+    def decode(self, data: bytes) -> int:
+        """Read bytes into the inbox; 0, or why not."""
+        why: int = self._frames.decode(data, self.inbox)
+        return why
+
+    def objection(self, sender: int | None) -> str:
+        """Frames are taken as they are."""
+        return ""
+
+    def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
+        """The path of a port; a free one has none."""
+        path = self.path_of_port.get(port)
+        return [] if path is None else [path]
+
+    def status(self, now: int) -> dict[str, Any]:
+        """All declared fields of the node's state."""
+        return {
+            "kind": self.network.name,
+            "role": "node",
+            "number": self.number,
+            "fields": values_of(self.node, self.network.fields.STATE),
+        }
+
+
+class DeclaredNode(LiveNode):
+    """A node: tells what its protocol delivers, hands down what it is asked to.
+
+    Args:
+        name: as shown to people.
+        stack: the node.
+        links: its cables.
+        sealer: seals and opens frames.
+        state: what is kept over a restart.
+    """
+
+    stack: DeclaredStack
+
+    def __init__(
+        self,
+        name: str,
+        stack: DeclaredStack,
+        links: list[Link],
+        sealer: Sealer | None = None,
+        state: State | None = None,
+    ) -> None:
+        super().__init__(name, stack, links, sealer, state)
+        self.requests["input"] = self._asked_for_input
+
+    def give(self, kind: int, values: dict[str, Any]) -> None:
+        """Hand something down: the protocol's `on_input`; `values` are fields of its item.
+
+        Raises:
+            ValueError: there is no such field, or the node is not started.
+        """
+        if self.engine is None:
+            raise ValueError("node not started")
+        for name, value in values.items():
+            if not hasattr(self.stack.item, name):
+                raise ValueError(f"{name} is no field of a frame")
+            many = isinstance(getattr(self.stack.item, name), list)
+            numbers = value if many and isinstance(value, list) else [value]
+            count = len(getattr(self.stack.item, name)) if many else 1
+            if len(numbers) != count or not all(isinstance(one, int) for one in numbers):
+                raise ValueError(f"{name} has {count} values, whole numbers")
+            setattr(self.stack.item, name, list(numbers) if many else value)
+        self.outcomes["inputs"] += 1
+        self.engine.input(kind, self.stack.item)
+
+    def receive(
+        self, callback: Callable[[dict[str, Any]], None] | None = None
+    ) -> AsyncGenerator[dict[str, Any], None]:
+        """What is delivered, by field: to a callback, and as an async iterator."""
+        return self.arrivals.receive(callback)
+
+    def streams(self, request: dict[str, Any]) -> list[Stream]:
+        """What is delivered."""
+        return [(self.receive(), partial(_line, self.name))]
+
+    def counters(self) -> Counter[str]:
+        """Handler calls, frames dropped by reason, inputs, deliveries and reports by code."""
+        reports = Counter({f"report {code}": count for code, count in self.reports.items()})
+        return super().counters() + reports
+
+    def _asked_for_input(self, request: dict[str, Any]) -> dict[str, Any]:
+        self.give(int(request["kind"]), dict(request.get("item", {})))
+        return {"ok": True}
+
+    def _deliver(self, kind: int, frame: Any) -> None:
+        self.outcomes["delivered"] += 1
+        self.arrivals.put({"kind": kind, **values_of(frame, self.stack.network.fields.FRAME)})
+
+
+def values_of(record: Any, declared: Any) -> dict[str, Any]:
+    """The declared fields of a record by name, but for those that are the driver's."""
+    found = {}
+    for name, length, *_ in declared:
+        if name not in DRIVERS:
+            value = getattr(record, name)
+            found[name] = list(value) if length else value
+    return found
+
+
+def build(loaded: Loaded) -> DeclaredNode:
+    """The node of a file, not yet started.
+
+    Raises:
+        LiveError: it cannot be as written.
+    """
+    table = loaded.table
+    assert isinstance(table, DeclaredFile)
+    network, links, state = networks()[table.kind], links_of(loaded), state_of(loaded)
+    check_parameters(table.protocol, network.fields.PARAMS, f"{loaded.path}")
+    paths = sum(len(link.paths) for link in links)
+    ports = table.ports or list(range(paths))
+    if len(ports) != paths or len(set(ports)) != paths:
+        raise LiveError(
+            f"{loaded.path}: ports must name the node's port of each of its {paths} paths, "
+            "each once"
+        )
+    stack = DeclaredStack(network, table.number, dict(table.protocol), secrets.randbits(60), ports)
+    return DeclaredNode(loaded.name, stack, links, sealer_of(loaded, state), state)
+
+
+def _line(name: str, item: dict[str, Any]) -> dict[str, Any]:
+    return {"from": name, **item}

@@ -1,0 +1,30 @@
+"""What a node file may set of a protocol: its declared parameters, each within its range."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from innervate.live.errors import LiveError
+
+
+def check_parameters(
+    changes: Mapping[str, int], declared: Iterable[tuple[Any, ...]], where: str
+) -> None:
+    """Refuse what a protocol does not declare.
+
+    Args:
+        changes: parameters by name, as the file has them.
+        declared: the protocol's declarations (name, length, low, high, unit, meaning).
+        where: how messages begin.
+
+    Raises:
+        LiveError: no such parameter, or out of its range.
+    """
+    ranges = {name: (low, high, unit) for name, _length, low, high, unit, _meaning in declared}
+    for name, value in changes.items():
+        if name not in ranges:
+            raise LiveError(f"{where}: protocol.{name} is unknown; it knows {', '.join(ranges)}")
+        low, high, unit = ranges[name]
+        if not low <= value <= high:
+            raise LiveError(f"{where}: protocol.{name} = {value} must be {low} to {high} {unit}")

@@ -1,0 +1,71 @@
+"""Node files of a mesh's plan, and its robots on their way."""
+
+from __future__ import annotations
+
+from collections.abc import Coroutine
+from typing import Any
+
+from innervate.live.deployment import Deployment, Pairs, Stage, Table
+from innervate.live.errors import LiveError
+from innervate.networks.mesh.live import walks
+from innervate.scenario.actions import ON_LINKS
+
+# They follow from the file itself, or stand in its [fence].
+NOT_IN_FILES = ("nodes", "width", "row", "told", "places", "points", "px", "py", "after")
+
+
+class MeshDeployment(Deployment):
+    """The nodes of a mesh; a cable for every good link."""
+
+    def layout(self) -> tuple[list[str], Pairs]:
+        """See Deployment."""
+        return [f"n{i}" for i in range(self.plan.nodes)], list(self.plan.good)
+
+    def check(self, cables: str, sealed: bool) -> None:
+        """See Deployment."""
+        if cables == "pty":
+            raise LiveError("--pty joins the cells of a skin; mesh nodes take --netns or UDP")
+
+    def file(self, number: int, cables: list[int]) -> tuple[Table, dict[str, Table]]:
+        """See Deployment."""
+        plan, rank = self.plan, self.plan.ranks[number]
+        head: Table = {"nodes": plan.nodes}
+        head["role"] = "node" if rank < 0 else "gateway" if rank == 0 else "standby"
+        if rank > 0:
+            head["rank"] = rank
+        if plan.robots[number]:
+            head["robot"] = True
+        tables = {"protocol": {k: v for k, v in plan.params.items() if k not in NOT_IN_FILES}}
+        rings = rings_of(plan.params)
+        if rings:
+            tables["fence"] = {"polygon": rings[0], "holes": rings[1:]}
+        return head, tables
+
+    def cable_of(self, fault: Any) -> int:
+        """See Deployment."""
+        if self.word(fault) not in ON_LINKS:
+            return -1
+        pair = (min(fault.node, fault.other), max(fault.node, fault.other))
+        if pair not in self.links:
+            a, b = (self.names[node] for node in pair)
+            raise LiveError(f"event.{fault.index}: no cable joins {a} and {b}; name a good link")
+        return self.links.index(pair)
+
+    def others(self, stage: Stage) -> list[Coroutine[Any, Any, None]]:
+        """Robots say where they are; that has no end."""
+        plan = self.plan
+        return [
+            walks.walk(plan, walk.points, stage.socket(self.names[walk.node]))
+            for walk in plan.walks
+        ]
+
+
+def rings_of(params: dict[str, Any]) -> list[list[list[int]]]:
+    """The polygon of a fence and its holes; none if there is no fence."""
+    rings: list[list[list[int]]] = []
+    start = 0
+    for i in range(params["points"]):
+        if params["after"][i] != i + 1:  # the last corner of a ring leads back to its first
+            rings.append([[params["px"][k], params["py"][k]] for k in range(start, i + 1)])
+            start = i + 1
+    return rings

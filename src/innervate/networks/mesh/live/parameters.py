@@ -1,0 +1,62 @@
+"""Parameters of the router on live links: the profile "ip" [mesh 5]; whole numbers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from innervate.live.errors import LiveError
+from innervate.live.parameters import check_parameters
+from innervate.networks.mesh.live.stack import CLASSES
+from innervate.networks.mesh.protocol.constants import LIST, MONITOR, SEARCH, TABLES
+from innervate.networks.mesh.protocol.fields import NEIGHBOURS, PARAMS, POINTS, words
+
+IP: dict[str, int] = {
+    "mtu": 127, "mode": TABLES, "discovery": LIST, "failover": SEARCH, "avoid_origin": 0,
+    "retry": 1, "reliable": 1, "activation": 0, "told": 0, "hop_acks": 1, "flood_us": 625,
+    "transmissions": 3, "ack_us": 5000,
+    "suspect_us": 2_000_000, "min_rssi": -93, "jitter_us": 5000, "copies": 2,
+    "listen_us": 50_000, "spread_us": 50_000, "collect_us": 200_000, "tick_us": 250_000,
+    "period": 8, "period_max": 8, "dead": 20, "dead_step": 4, "standby": 0, "jobs": 4,
+    "job_us": 100_000, "job_tries": 3, "e2e_us": 30_000, "e2e_adapt": 1, "e2e_tries": 8,
+    "forget": 120, "monitor": MONITOR, "watch": 0, "lost": 3, "flood": 1, "instances": 3,
+    "clear_margin": 20, "predict_ms": 500, "unit_cm": 1, "points": 0, "fence": 0,
+}  # fmt: skip
+EXTENT_MAX = 23_000  # units: squares of distances stay below 2^29
+# They follow from the node's file.
+OURS = ("nodes", "width", "row", "told", "points", "px", "py", "after")
+
+
+def fence_parameters(rings: list[list[tuple[int, int]]], where: str = "") -> dict[str, Any]:
+    """The corners of a fence as the router has them: the polygon, then its holes.
+
+    Raises:
+        LiveError: too many corners, or one out of reach; the message begins with `where`.
+    """
+    count = sum(len(ring) for ring in rings)
+    if count > POINTS:
+        raise LiveError(f"{where}: the fence has {count} corners, more than {POINTS}")
+    px, py, after = ([0] * POINTS for _ in range(3))
+    at = 0
+    for ring in rings:
+        for i, (x, y) in enumerate(ring):
+            if not (0 <= x <= EXTENT_MAX and 0 <= y <= EXTENT_MAX):
+                raise LiveError(
+                    f"{where}: fence corner [{x}, {y}] must be 0 to {EXTENT_MAX} units both ways; "
+                    "raise protocol.unit_cm, or move the origin"
+                )
+            px[at + i], py[at + i], after[at + i] = x, y, at + (i + 1) % len(ring)
+        at += len(ring)
+    return {"points": count, "px": px, "py": py, "after": after}
+
+
+def mesh_parameters(nodes: int, changes: dict[str, int], where: str = "") -> dict[str, Any]:
+    """The router's parameters for a network of so many nodes, with what is to be different.
+
+    Raises:
+        LiveError: no such parameter, or out of its range; the message begins with `where`.
+    """
+    check_parameters(changes, (field for field in PARAMS if field[0] not in OURS), where)
+    width = next(size for size in CLASSES if nodes <= size)
+    corners = {name: [0] * POINTS for name in ("px", "py", "after")}
+    own = {"nodes": nodes, "width": width, "row": words(width), "places": min(width, NEIGHBOURS)}
+    return {**IP, **corners, **own, **changes}

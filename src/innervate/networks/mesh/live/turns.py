@@ -1,0 +1,168 @@
+"""Whose message goes next: a queue for each recipient, urgent ones first, recipients in turn.
+
+The router keeps eight messages until they are acknowledged. Whoever does not answer would soon have
+all eight places, and hold up who does; so places are given out with the others in mind.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from itertools import compress
+from typing import Any
+
+from innervate.dialect.arith import MASK16
+from innervate.networks.mesh.live.stack import MeshStack
+from innervate.networks.mesh.protocol.constants import ALL, CONTROL, END_TO_END, OWN, PRIORITY
+from innervate.networks.mesh.protocol.messages import resolve
+from innervate.networks.mesh.protocol.neighbours import place_of
+from innervate.networks.mesh.protocol.queue import free_places
+from innervate.networks.mesh.protocol.retransmission import FREE, crowds, is_ahead, is_in_vain
+
+MOST = 4096  # messages that wait ...
+FEW = 16  # ... but to each recipient so many may, whatever others have
+SILENT = 4  # the router's places for all recipients together that do not answer
+SPARE = 2  # its last places, for recipients that have none
+
+# A message as the router takes it, and its owner's name for it.
+Waiting = tuple[int, Any]
+
+
+class Turns:
+    """Messages that wait for a place in the router.
+
+    Args:
+        stack: the router.
+    """
+
+    def __init__(self, stack: MeshStack) -> None:
+        self._stack = stack
+        self._urgent: dict[int, deque[Waiting]] = {}
+        self._others: dict[int, deque[Waiting]] = {}
+        self._count: Counter[int] = Counter()
+        self._total = 0
+        self._in_vain: Any = None  # what nobody could go by: the same again will not do either
+        self._under_way: dict[int, int] = {}  # by handle: the recipient
+        self._gone: set[int] = set()  # recipients to whom everything was in vain since
+
+    def __len__(self) -> int:
+        return self._total
+
+    def has_room(self, recipient: int) -> bool:
+        """True if a message more may wait for this recipient."""
+        return self._total < MOST or self._count[self._name(recipient)] < FEW
+
+    def put(self, handle: int, item: Any) -> None:
+        """A message waits."""
+        queues = self._urgent if item.flags & PRIORITY else self._others
+        name = self._name(item.dest)
+        queues.setdefault(name, deque()).append((handle, item))
+        self._count[name] += 1
+        self._total += 1
+        self._in_vain = None
+
+    def take(self) -> Waiting | None:
+        """The message that goes now, None = none may."""
+        if not self._total or (self._in_vain and self._in_vain == self._facts()):
+            return None
+        all_wait = ALL in self._urgent or ALL in self._others
+        places = Places(self._stack, self._gone, all_wait)
+        for queues in (self._urgent, self._others):
+            for name, queue in queues.items():
+                if places.takes(queue[0][1]):
+                    return self._pop(queues, name)
+        self._in_vain = self._facts()
+        return None
+
+    def ended(self, handle: int, is_there: bool | None) -> None:
+        """A message has its end: True = it arrived, False = in vain, None = that says nothing."""
+        recipient = self._under_way.pop(handle, ALL)
+        if is_there is False:
+            self._gone.add(recipient)
+        elif is_there:
+            self.heard(recipient)
+
+    def heard(self, sender: int) -> None:
+        """A message of this node came: it is there."""
+        if sender in self._gone:
+            self._gone.discard(sender)
+            self._in_vain = None
+
+    def waiting(self) -> dict[int, int]:
+        """How many wait for whom."""
+        return dict(sorted(self._count.items()))
+
+    def _pop(self, queues: dict[int, deque[Waiting]], name: int) -> Waiting:
+        queue = queues.pop(name)
+        found = queue.popleft()
+        if queue:
+            queues[name] = queue  # behind all others
+        self._total -= 1
+        self._under_way[found[0]] = name
+        self._count[name] -= 1
+        if not self._count[name]:
+            del self._count[name]
+        return found
+
+    def _name(self, recipient: int) -> int:
+        """One queue for all names of a recipient, so that its messages keep their order."""
+        known = resolve(self._stack.node, self._stack.params, recipient)
+        return recipient if known == ALL else known
+
+    def _facts(self) -> Any:
+        """What the answer depends on, but for what can only make it a no."""
+        node = self._stack.node
+        queue = free_places(node)
+        room = (queue > OWN, queue > CONTROL, node.gateway)
+        suspects = (*node.neighbour, *node.suspect) if self._gone else ()
+        return (*room, *suspects, *node.wait_kind, *node.wait_dest, *node.wait_seq,
+                *node.bad_neighbour, *node.bad_dest)  # fmt: skip
+
+
+class Places:
+    """The router's places at this moment.
+
+    Args:
+        stack: the router.
+        gone: recipients to whom the newest messages were in vain.
+        all_wait: True = a message to all waits, which cannot go while one is long under way.
+    """
+
+    def __init__(self, stack: MeshStack, gone: set[int], all_wait: bool) -> None:
+        node = stack.node
+        self._node = node
+        self._gone = gone
+        self._params = stack.params
+        self._queue = free_places(node)
+        self._free = node.wait_kind.count(FREE)
+        self._held = Counter(compress(node.wait_dest, node.wait_kind))
+        silent = [self._held[dest] for dest in self._held if self._is_silent(dest)]
+        self._silent = sum(silent)
+        self._all_held_up = all_wait and bool(is_ahead(node, ALL))
+
+    def takes(self, item: Any) -> bool:
+        """True if the router has a place for a message, with all others in mind."""
+        node, urgent = self._node, bool(item.flags & PRIORITY)
+        dest = resolve(node, self._params, item.dest)
+        if dest == node.number:
+            return True
+        if self._queue <= (CONTROL if urgent else OWN) or is_ahead(node, dest):
+            return False
+        if dest == ALL or not item.flags & END_TO_END:
+            return True
+        held = self._held[dest]
+        if self._free < (1 if urgent else 2) + (SPARE if held else 0) or crowds(node, dest):
+            return False
+        if not self._is_silent(dest):
+            return True
+        return self._silent < SILENT + urgent and not self._all_held_up
+
+    def _is_silent(self, dest: int) -> bool:
+        """True if messages to `dest` were tried in vain, or are being for a while.
+
+        The router forgets that after a while, or of more than a few; we until something is heard.
+        """
+        node = self._node
+        if dest in self._gone:
+            k = place_of(node, self._params, dest)
+            return k < 0 or bool(node.suspect[k])
+        return bool(is_in_vain(node, dest, (node.seq + 1) & MASK16))

@@ -1,0 +1,141 @@
+"""A radio station on a live channel: the medium access protocol over any `Radio`."""
+
+from __future__ import annotations
+
+import random
+import time
+from collections.abc import AsyncGenerator, Callable
+from typing import Any
+
+from innervate.dialect import plain
+from innervate.dialect.access import PACKET, QUEUE, REPORT_DELIVERED
+from innervate.live.node import LiveNode
+from innervate.live.radio import Aerial, Radio
+from innervate.live.receipts import DELIVERED, REFUSED, Receipt
+from innervate.live.streams import Arrivals, Stream, message_line
+from innervate.networks.radio import frames as wire
+from innervate.networks.radio.live.stack import StationStack
+from innervate.networks.radio.protocol import fields as fields
+
+SLOTS_MIN = 3
+HANDLES = 65_536
+
+Packet = plain.make("Packet", fields.PACKET)
+
+
+class RadioNode(LiveNode):
+    """A station: sends packets to all, receives theirs.
+
+    Args:
+        name: as shown to people.
+        stack: the medium access protocol.
+        radio: what it sends and hears with.
+        channel: what its path is called.
+    """
+
+    stack: StationStack
+
+    def __init__(
+        self, name: str, stack: StationStack, radio: Radio, channel: str = "channel"
+    ) -> None:
+        super().__init__(name, stack, [])
+        self.radio = radio
+        self.paths = [Aerial(radio, channel)]
+        self.arrivals = Arrivals(is_spread=True)
+        self._packets: dict[int, tuple[bytes, Receipt]] = {}
+        self._handle = 0
+        self._bytes = b""
+
+    async def start(self) -> None:
+        """Switch on protocol and radio."""
+        await super().start()
+        await self.radio.start(self)
+
+    async def stop(self) -> None:
+        """Switch off."""
+        self.radio.stop()
+        await super().stop()
+
+    def send_request(self, request: dict[str, Any]) -> Receipt:
+        """A packet to all."""
+        return self.send_packet(bytes.fromhex(request["payload"]))
+
+    def streams(self, request: dict[str, Any]) -> list[Stream]:
+        """Packets of other stations."""
+        return [(self.receive_packets(), message_line)]
+
+    def receive_packets(
+        self, callback: Callable[[int, bytes], None] | None = None
+    ) -> AsyncGenerator[tuple[int, bytes], None]:
+        """Sender and payload of packets as they come: to a callback, and as an async iterator."""
+        return self.arrivals.receive(callback)
+
+    def send_packet(self, payload: bytes) -> Receipt:
+        """Send a packet to all; its receipt says "delivered" when another station proved it.
+
+        Raises:
+            ValueError: the payload is longer than a packet.
+        """
+        slots = max(SLOTS_MIN, len(payload) + 2)
+        most: int = self.stack.params.packet_slots
+        if slots > most:
+            raise ValueError(f"payload of {len(payload)} bytes; a packet holds {most - 2}")
+        receipt = Receipt()
+        if self.engine is None or self.stack.station.queued >= QUEUE:
+            receipt.move(REFUSED, "queue full" if self.engine else "node not started")
+            return receipt
+        item = Packet()
+        item.slots, item.handle, item.ago = slots, self._handle, 0
+        self._packets[self._handle] = (payload, receipt)
+        self._handle = (self._handle + 1) % HANDLES
+        self.outcomes["packets accepted"] += 1
+        self.engine.input(PACKET, item)
+        return receipt
+
+    def on_carrier(self, at: int, cd: bool, voc: bool) -> None:
+        """The radio's carrier came or went."""
+        assert self.engine is not None
+        self.paths[0].heard_at = at
+        self.engine.call(lambda now: self.stack.on_carrier(now, cd, voc), at)
+
+    def on_frame(self, at: int, data: bytes) -> None:
+        """The radio received a frame."""
+        path = self.paths[0]
+        if path.loss and random.random() < path.loss:
+            return
+        path.counters["received"] += 1
+        path.counters["received bytes"] += len(data)
+        assert self.engine is not None
+        at_ns = time.time_ns() if self.taps else 0
+        why = self.engine.read(data)
+        if not why:
+            self._bytes = data
+            self.engine.receive(0, at)
+        self._tell(at_ns, 0, False, data, why)
+
+    def status(self) -> dict[str, Any]:
+        """What is known here, and what the radio does: "off", "listening" or "sending"."""
+        return {**super().status(), "radio": self.radio.mode}
+
+    def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
+        payload = b""
+        for k in range(frame.count):
+            payload += self._packets[(frame.handle + k) % HANDLES][0]
+        assert self.engine is not None
+        data = wire.encode(frame, payload)
+        at_ns = time.time_ns() if self.taps else 0
+        self.radio.send(self.engine.now, data, frame.slots)
+        self.paths[0].sent(data)
+        self._tell(at_ns, 0, True, data, "")
+        self.outcomes["frames sent"] += 1
+
+    def _deliver(self, kind: int, frame: Any) -> None:
+        self.outcomes["packets received"] += 1
+        self.arrivals.put((frame.source, wire.payload_of(self._bytes)))
+
+    def _reported(self, code: int, a: int, b: int) -> None:
+        if code == REPORT_DELIVERED:
+            for k in range(b):
+                _, receipt = self._packets.pop((a + k) % HANDLES)
+                receipt.move(DELIVERED)
+                self.outcomes["packets delivered"] += 1

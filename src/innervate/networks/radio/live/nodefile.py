@@ -1,0 +1,13 @@
+"""Node files of a radio team."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from innervate.live.nodefile import NodeFile
+
+
+class StationFile(NodeFile, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A station."""
+
+    roles: ClassVar[tuple[str, ...]] = ("station",)

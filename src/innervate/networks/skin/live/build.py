@@ -1,0 +1,37 @@
+"""From a node file to a cell, or to the PC."""
+
+from __future__ import annotations
+
+import secrets
+
+from innervate.live.build import links_of, sealer_of, state_of
+from innervate.live.errors import LiveError
+from innervate.live.node import LiveNode
+from innervate.live.nodefile import Loaded
+from innervate.networks.skin.live.node import CellNode, SinkNode
+from innervate.networks.skin.live.nodefile import SkinFile
+from innervate.networks.skin.live.parameters import skin_parameters
+from innervate.networks.skin.live.stack import CellStack, SinkStack
+
+
+def build(loaded: Loaded) -> LiveNode:
+    """The node of a file, not yet started.
+
+    Raises:
+        LiveError: it cannot be as written.
+    """
+    table, links, state = loaded.table, links_of(loaded), state_of(loaded)
+    assert isinstance(table, SkinFile)
+    params = skin_parameters(dict(table.protocol), f"{loaded.path}")
+    paths = sum(len(link.paths) for link in links)
+    sealer = sealer_of(loaded, state)
+    if table.role == "sink":
+        return SinkNode(loaded.name, SinkStack(params, paths), links, sealer, state)
+    ports = table.ports or list(range(paths))
+    if len(ports) != paths or len(set(ports)) != paths:
+        raise LiveError(
+            f"{loaded.path}: ports must name the cell's port of each of its {paths} paths, "
+            "each once: W, E, up, down = 0 to 3"
+        )
+    stack = CellStack(table.number, params, secrets.randbits(60), ports)
+    return CellNode(loaded.name, stack, links, sealer, state, table.rate_hz)

@@ -1,0 +1,45 @@
+"""Node files of a skin's plan: its cells, and the PC, which is the last."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Coroutine
+from typing import Any
+
+from innervate.live.asking import ask, sleep_until
+from innervate.live.deployment import Deployment, Pairs, Stage, Table
+
+
+class SkinDeployment(Deployment):
+    """The cells of a skin and the PC."""
+
+    def layout(self) -> tuple[list[str], Pairs]:
+        """See Deployment."""
+        return [*(f"c{i}" for i in range(self.plan.graph.cells)), "pc"], self.cables()
+
+    def in_order(self, number: int, cables: list[int]) -> list[int]:
+        """The PC's are in order of its interface ports; a cell's file names its ports."""
+        if number < self.plan.graph.cells:
+            return cables
+        return sorted(cables, key=lambda k: self.port_of(number, k))
+
+    def file(self, number: int, cables: list[int]) -> tuple[Table, dict[str, Table]]:
+        """See Deployment."""
+        plan, tables = self.plan, {"protocol": dict(self.plan.params)}
+        if number == plan.graph.cells:
+            return {"role": "sink"}, tables
+        rate_hz = 1e6 / plan.data_period_us if plan.data_period_us else 0.0
+        ports = [self.port_of(number, k) for k in cables]
+        return {"role": "cell", "ports": ports, "rate_hz": rate_hz}, tables
+
+    def others(self, stage: Stage) -> list[Coroutine[Any, Any, None]]:
+        """The PC sends the scenario's commands."""
+        return [self._play_orders(stage)]
+
+    async def _play_orders(self, stage: Stage) -> None:
+        began = asyncio.get_running_loop().time()
+        for order in self.plan.orders:
+            await sleep_until(began + order.at_us / 1e6)
+            cell = None if order.cell < 0 else order.cell
+            request = {"do": "command", "code": order.code, "value": order.value, "cell": cell}
+            await ask(stage.socket("pc"), request)

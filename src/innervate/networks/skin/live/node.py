@@ -1,0 +1,194 @@
+"""The skin on live cables: a cell that senses, and the PC that all touch comes to."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import AsyncGenerator, Callable
+from typing import Any
+
+from innervate.live.keys import Sealer
+from innervate.live.links import Link
+from innervate.live.node import LiveNode
+from innervate.live.state import State
+from innervate.live.streams import Stream
+from innervate.networks.skin.live.items import Command, Frame, Sent, Touch, put
+from innervate.networks.skin.live.stack import CellStack, SinkStack
+from innervate.networks.skin.protocol.constants import EVERYBODY, GIVE, REPORT_PARENT, SAMPLE
+
+
+class CellNode(LiveNode):
+    """A cell: hands its samples to the skin, gives commands of the PC.
+
+    Args:
+        name: as shown to people.
+        stack: the cell.
+        links: its cables.
+        sealer: seals and opens frames.
+        state: what is kept over a restart.
+        rate_hz: a sample made up by the cell itself so often; 0 = only what `sample` is given.
+    """
+
+    stack: CellStack
+
+    def __init__(
+        self,
+        name: str,
+        stack: CellStack,
+        links: list[Link],
+        sealer: Sealer | None = None,
+        state: State | None = None,
+        rate_hz: float = 0.0,
+    ) -> None:
+        super().__init__(name, stack, links, sealer, state)
+        self.moves = 0
+        self._period_s = 1 / rate_hz if rate_hz else 0.0
+        self._due = 0.0
+        self._beat: asyncio.TimerHandle | None = None
+        self._item = Frame()
+        self.requests["command"] = refuse_command
+
+    def streams(self, request: dict[str, Any]) -> list[Stream]:
+        """Commands for this cell."""
+        return [(self.receive_commands(), _command_line)]
+
+    def receive_commands(
+        self, callback: Callable[[Command], None] | None = None
+    ) -> AsyncGenerator[Command, None]:
+        """Commands for this cell, each once: to a callback, and as an async iterator."""
+        return self.arrivals.receive(callback)
+
+    async def start(self) -> None:
+        """Switch on."""
+        await super().start()
+        if self._period_s:
+            self._due = asyncio.get_running_loop().time()
+            self._sample_again()
+
+    async def stop(self) -> None:
+        """Switch off."""
+        if self._beat is not None:
+            self._beat.cancel()
+        await super().stop()
+
+    def sample(
+        self,
+        proximity: int = 0,
+        force: tuple[int, int, int] = (0, 0, 0),
+        temperature: int = 0,
+        accel: tuple[int, int, int] = (0, 0, 0),
+    ) -> None:
+        """Send what the sensors say to the PC; units and ranges as in Touch.
+
+        Raises:
+            ValueError: a value leaves its range.
+        """
+        assert self.engine is not None
+        values = {"proximity": (proximity,), "force": force,
+                  "temperature": (temperature,), "accel": accel}  # fmt: skip
+        for name, given in values.items():
+            put(self._item, name, given)
+        self.engine.input(SAMPLE, self._item)
+
+    def _reported(self, code: int, a: int, b: int) -> None:
+        if code == REPORT_PARENT:
+            self.moves += 1
+
+    def _deliver(self, kind: int, frame: Any) -> None:
+        self.outcomes["commands received"] += 1
+        to_all, at_us = frame.cell == EVERYBODY, time.time_ns() // 1000
+        found = Command(frame.sq, frame.dist, frame.proximity, to_all, frame.hops, at_us)
+        self.arrivals.put(found)
+
+    def _sample_again(self) -> None:
+        self.sample(force=(self.stack.cell.number, self.stack.cell.seq, 0))
+        loop = asyncio.get_running_loop()
+        self._due = max(self._due + self._period_s, loop.time())
+        self._beat = loop.call_at(self._due, self._sample_again)
+
+
+class SinkNode(LiveNode):
+    """The PC end of a skin: gives tactile frames, sends commands down.
+
+    Args:
+        name: as shown to people.
+        stack: the PC.
+        links: its interface ports, in order.
+        sealer: seals and opens frames.
+        state: what is kept over a restart.
+    """
+
+    stack: SinkStack
+
+    def __init__(
+        self,
+        name: str,
+        stack: SinkStack,
+        links: list[Link],
+        sealer: Sealer | None = None,
+        state: State | None = None,
+    ) -> None:
+        super().__init__(name, stack, links, sealer, state)
+        self.requests["command"] = self._asked_for_command
+
+    def streams(self, request: dict[str, Any]) -> list[Stream]:
+        """Samples of all cells."""
+        return [(self.receive_touch(), _touch_line)]
+
+    def receive_touch(
+        self, callback: Callable[[Touch], None] | None = None
+    ) -> AsyncGenerator[Touch, None]:
+        """Tactile frames as they come: to a callback, and as an async iterator."""
+        return self.arrivals.receive(callback)
+
+    def send_command(self, code: int, value: int = 0, cell: int | None = None) -> Sent:
+        """Send a command down to a cell, or (None) to all; what it means is the user's.
+
+        Raises:
+            ValueError: a value leaves its range; see Command. Cells are 0 to 65534.
+        """
+        assert self.engine is not None
+        if cell == EVERYBODY:
+            raise ValueError(f"cell must be 0 to {EVERYBODY - 1}; leave it out for all")
+        item = Frame()
+        whom = EVERYBODY if cell is None else cell
+        for name, called, given in (
+            ("dist", "code", code), ("proximity", "value", value), ("cell", "cell", whom),
+        ):  # fmt: skip
+            put(item, name, (given,), called)
+        pc = self.stack.pc
+        self.engine.input(GIVE, item)
+        self.outcomes["commands sent"] += 1
+        return Sent(pc.own[0].command, sum(size > 0 for size in pc.size))
+
+    def _asked_for_command(self, request: dict[str, Any]) -> dict[str, Any]:
+        cell = request.get("cell")
+        numbers = (request["code"], request.get("value", 0), 0 if cell is None else cell)
+        if not all(isinstance(number, int) for number in numbers):
+            raise ValueError("code, value and cell are whole numbers")
+        return self.send_command(numbers[0], numbers[1], cell)._asdict()
+
+    def _deliver(self, kind: int, frame: Any) -> None:
+        self.outcomes["samples received"] += 1
+        self.arrivals.put(Touch(
+            frame.cell, frame.seq, frame.hops, self.stack.port, frame.proximity,
+            (frame.force[0], frame.force[1], frame.force[2]), frame.temperature,
+            (frame.accel[0], frame.accel[1], frame.accel[2]), time.time_ns() // 1000,
+        ))  # fmt: skip
+
+
+def refuse_command(request: dict[str, Any]) -> dict[str, Any]:
+    """Cells send no commands.
+
+    Raises:
+        ValueError: always.
+    """
+    raise ValueError("only the PC of a skin sends commands")
+
+
+def _command_line(command: Command) -> dict[str, Any]:
+    return {"from": "pc", "command": command._asdict()}
+
+
+def _touch_line(touch: Touch) -> dict[str, Any]:
+    return {"from": touch.cell, "touch": touch._asdict()}

@@ -1,0 +1,103 @@
+"""The answer of `innervate size` in words: a table, how many ports, which failures do not heal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from innervate.networks.skin.plot.words import end_words
+from innervate.plot.words import number_of
+from innervate.topology.weak import Weak
+
+if TYPE_CHECKING:
+    from innervate.networks.skin.sizing import Answer
+    from innervate.topology import Graph
+
+NAMED_MAX = 4
+
+
+def answer_lines(answer: Answer) -> list[str]:
+    """The answer for people: a table, then how many ports, where, and what does not heal."""
+    return [*_table(answer), "", *_verdicts(answer), *_unhealed(answer)]
+
+
+def _table(answer: Answer) -> list[str]:
+    asked = answer.question
+    kind = "skin frames of the robot" if answer.frames else f"cells {asked.pitch_mm:g} mm apart"
+    lines = [
+        f"{answer.cells} {kind}, cables of at most {asked.reach_mm:g} mm",
+        "",
+        f"{'rate':>8} {'ports':>5}  {'lost on the way':>16}  {'recovery, ms':>15}  "
+        f"{'after a port, ms':>16}  {'one failure cuts off':>20}  enough",
+    ]
+    for row in answer.table.iter_rows(named=True):
+        cells = (_share(row, "loss_cell"), _span(row, "recovery_ms_cell"),
+                 _span(row, "recovery_ms_pc"))  # fmt: skip
+        worst = row["isolated_max"]
+        gone = "nobody" if worst == 0 else f"up to {number_of(worst, 'cell')}" if worst else "-"
+        lines.append(
+            f"{row['rate_hz']:>5g} Hz {row['ports']:>5}  {cells[0]:>16}  {cells[1]:>15}  "
+            f"{cells[2]:>16}  {gone:>20}  {'yes' if row['enough'] else 'no'}"
+        )
+    return lines
+
+
+def _verdicts(answer: Answer) -> list[str]:
+    """How many ports every rate needs."""
+    asked, lines = answer.question, []
+    limits = f"{100 * asked.loss_max:g} % lost, ways back in {asked.recovery_ms_max:g} ms"
+    for rate, ports in answer.needed.items():
+        begin, most, least = f"{rate:g} Hz:", max(asked.ports), answer.carries[rate]
+        if ports is not None:
+            places = ", ".join(answer.where[ports])
+            lines.append(f"{begin} {_are(ports)} enough for {limits}, and every single failure of "
+                         f"a cable or cell heals, on {places}.")  # fmt: skip
+        elif least is not None:
+            lines.append(f"{begin} none of up to {most} ports is enough: {_are(least)} enough for "
+                         f"{limits}, but not every single failure heals.")  # fmt: skip
+        else:
+            lines.append(f"{begin} none of up to {most} ports is enough for {limits}.")
+    return lines
+
+
+def _are(ports: int) -> str:
+    return f"{ports} ports are" if ports > 1 else "1 port is"
+
+
+def _unhealed(answer: Answer) -> list[str]:
+    """Why numbers of ports that carry the load are not enough: who isolates whom."""
+    lines = []
+    for ports in sorted({least for least in answer.carries.values() if least is not None}):
+        weak = answer.weak[ports]
+        if weak:
+            named = [_named(answer.graphs[ports], one) for one in weak[:NAMED_MAX]]
+            more = f", and {len(weak) - NAMED_MAX} more" if len(weak) > NAMED_MAX else ""
+            failures = number_of(len(weak), "single failure")
+            cut = "cut" if len(weak) > 1 else "cuts"
+            have = f"With {number_of(ports, 'port')} {failures} {cut} off cells for good"
+            lines.append(f"{have}: {', '.join(named)}{more}.")
+    if lines:
+        lines.append("Longer cables between cells (--reach), or more ports (--ports), may give "
+                     "those cells a second way.")  # fmt: skip
+    return lines
+
+
+def _named(graph: Graph, weak: Weak) -> str:
+    """A weak point: "cable n1 E - n2 W (44 cells)", "cell n1 (3 cells)"."""
+    what = f"cell {graph.label(weak.node)}" if weak.node >= 0 else end_words(graph, weak.end)
+    return f"{what} ({number_of(weak.isolated, 'cell')})"
+
+
+def _share(row: dict[str, Any], name: str) -> str:
+    mean = row[f"{name}_mean"]
+    if mean is None:
+        return "-"
+    half = (row[f"{name}_high"] - row[f"{name}_low"]) / 2
+    return f"{100 * mean:.2f} +- {100 * half:.2f} %"
+
+
+def _span(row: dict[str, Any], name: str) -> str:
+    mean = row[f"{name}_mean"]
+    if mean is None:
+        return "-"
+    half = (row[f"{name}_high"] - row[f"{name}_low"]) / 2
+    return f"{mean:.1f} +- {half:.1f}"

@@ -1,0 +1,223 @@
+"""Events of a counterexample, played on the whole network and put into words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from innervate.networks.skin.protocol.constants import INFINITY, NONE, PORTS
+from innervate.networks.skin.verify import check as skin_check
+from innervate.networks.skin.verify import moves as skin_moves
+from innervate.networks.skin.verify import row as skin_row
+from innervate.networks.skin.verify import world as w
+from innervate.topology import Graph
+from innervate.verify.twin import Event, Twin
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """The network after an event.
+
+    Attributes:
+        parents: the node each cell sends to, NONE without a way, over cut cables too.
+        cut: pairs of nodes whose cable is cut.
+        actor: who did something, NONE for a cable.
+    """
+
+    parents: tuple[int, ...]
+    cut: frozenset[tuple[int, int]]
+    actor: int
+
+
+class Narrator:
+    """Plays events on the real network and finds words for them."""
+
+    def __init__(self, real: Twin, story: Any) -> None:
+        self.real, self.story = real, story
+        self.graph: Graph = real.model.graph
+        self.steps: list[str] = []
+
+    def name(self, node: int) -> str:
+        """What a node is called in sentences."""
+        return "the PC" if node == self.graph.sink else self.graph.label(node)
+
+    def play(self, found: Twin, event: Event) -> None:
+        """One event of the search, in the state before it."""
+        kind, arg = event.kind, event.arg
+        before = self._parents()
+        if kind in (w.TICK, w.PC_TICK):
+            node = arg if kind == w.TICK else self.graph.sink
+            text = self._tick(found, node, event)
+            actor = node
+        elif kind in (w.DELIVER, w.LOSE):
+            text, actor = self._frame(kind, arg, event)
+        elif kind == w.SOON:
+            self._step(w.SOON, arg, 0, event.choice, event.asked)
+            self.steps.append(f"soon {self.graph.label(arg)}")
+            text, actor = f"{self.name(arg)} sends its news", arg
+            text += f": {self._says(arg)}"
+        else:
+            text, actor = self._outside(kind, arg)
+        if actor != NONE and actor < self.graph.cells and kind != w.LOSE:
+            text += self._turned(actor, before[actor])
+        self.story.sentences.append(("The" + text[3:] if text.startswith("the ") else text) + ".")
+        self.story.steps.append(self.steps)
+        self.steps = []
+        self.story.scenes.append(Scene(tuple(self._parents()), frozenset(self._cut()), actor))
+
+    # What happens.
+
+    def _tick(self, found: Twin, node: int, event: Event) -> str:
+        """A node ticks, after what it takes in."""
+        variant = event.variant
+        heard: list[str] = []
+        breaks = 0
+        is_cell = node < self.graph.cells
+        factor = 1
+        for end in self.graph.ends_of(node):
+            if self.graph.peer[end] < 0:
+                continue
+            way = self.real.lay.in_way[end]
+            if is_cell:
+                count = skin_moves.options(found.world, node, self.graph.port_of(end))
+                can = skin_moves.may_break(found.world, node, self.graph.port_of(end))
+            else:
+                queued = found.world.work[found.lay.queue_at[way]] if found.model.merges else 0
+                count, can = queued + 1, 0
+            chosen, variant = variant % count, variant // count
+            real_can = (
+                skin_moves.may_break(self.real.world, node, self.graph.port_of(end))
+                if is_cell
+                else 0
+            )
+            if can and chosen == count - 1:
+                heard.append(self._broken(end, way))
+                breaks += factor
+            elif found.model.merges and chosen:
+                heard.append(self._hear(found, way, chosen))
+            factor *= 1 + real_can
+        listens = self.real.world.work[self.real.lay.pc_at + w.PC_LISTEN]
+        if is_cell:
+            self._step(w.TICK, node, breaks, event.choice, event.asked)
+        else:
+            self._step(w.PC_TICK, 0, 0, 0, 1)
+        self.steps.append(f"tick {self.graph.label(node)}")
+        if is_cell:
+            words = ", ".join([*heard, "ticks"])
+            return f"{self.name(node)} {words} and says {self._says(node)}"
+        if listens:
+            return f"the PC {', '.join([*heard, 'has listened for a period'])}"
+        own = self.real.world.work[self.real.lay.pc_at + w.PC_SQ]
+        return f"the PC sends its beacon with number {own}"
+
+    def _hear(self, found: Twin, way: int, count: int) -> str:
+        """Frames are taken in: as many as it takes to come to the one the search took."""
+        at = found.lay.queue_at[way] + 1 + w.FRAME_BYTES * (count - 1)
+        wanted = bytes(found.world.work[at : at + w.FRAME_BYTES])
+        queue = self.real.lay.queue_at[way]
+        while True:
+            assert self.real.world.work[queue] > 0, "a frame is missing from the story"
+            first = bytes(self.real.world.work[queue + 1 : queue + 1 + w.FRAME_BYTES])
+            self._step(w.DELIVER, way, 0, 0, 1)
+            self.steps.append(f"deliver {self._way(way)}")
+            if first == wanted:
+                return f"hears from {self._frame_words(way, first)}"
+
+    def _broken(self, end: int, way: int) -> str:
+        """A port is found broken by the coming tick."""
+        self.steps.append(f"detect {self._end(end)}")
+        wrongly = "" if self._is_cut(way) else ", wrongly,"
+        other = self.graph.node_of(self.graph.peer[end])
+        return f"finds{wrongly} its cable to {self.name(other)} broken"
+
+    def _frame(self, kind: int, way: int, event: Event) -> tuple[str, int]:
+        """A frame arrives, or is lost."""
+        queue = self.real.lay.queue_at[way]
+        first = bytes(self.real.world.work[queue + 1 : queue + 1 + w.FRAME_BYTES])
+        node = self.graph.node_of(self.real.lay.way_end[way])
+        words = self._frame_words(way, first)
+        self._step(kind, way, 0, event.choice, event.asked)
+        if kind == w.LOSE:
+            self.steps.append(f"lose {self._way(way)}")
+            return f"lost on its way to {self.name(node)}: the beacon of {words}", NONE
+        self.steps.append(f"deliver {self._way(way)}")
+        return f"{self.name(node)} hears from {words}", node
+
+    def _outside(self, kind: int, arg: int) -> tuple[str, int]:
+        """A cable is cut or mended, or the PC restarts."""
+        self._step(kind, arg, 0, 0, 1)
+        if kind == w.RESTART_PC:
+            self.steps.append("restart pc")
+            return "the PC restarts and has forgotten its number", NONE
+        way = 2 * arg
+        verb = "cut" if kind == w.CUT_LINK else "restore"
+        self.steps.append(f"{verb} {self._way(way)}")
+        a, b = (self.graph.node_of(self.real.lay.way_end[w_]) for w_ in (way + 1, way))
+        a, b = (b, a) if b == self.graph.sink else (a, b)
+        what = "is cut" if kind == w.CUT_LINK else "works again"
+        return f"the cable between {self.name(a)} and {self.name(b)} {what}", NONE
+
+    def _step(self, kind: int, arg: int, variant: int, choice: int, asked: int) -> None:
+        if asked > 1:
+            self.steps.append(f"draw {choice}")
+        move = self.real.moves.index((kind, arg))
+        done = self.real.system.step(self.real.world, move, variant, choice)
+        assert done > 0, "a step of the story cannot be taken"
+
+    # Words.
+
+    def _frame_words(self, way: int, frame: bytes) -> str:
+        sender = self.name(self.graph.node_of(self.real.lay.way_end[way ^ 1]))
+        child = ", you are my parent" if frame[w.SAYS] & skin_row.IS_CHILD else ""
+        return f'{sender} "{_route(frame[w.DIST], frame[w.SQ])}{child}"'
+
+    def _says(self, cell: int) -> str:
+        skin_row.load_cell(self.real.world, cell, 0)
+        state = self.real.world.cells[0]
+        dist = INFINITY if state.parent == NONE else state.dist[state.parent] + 1
+        return f'"{_route(dist, state.sq_own)}"'
+
+    def _turned(self, cell: int, old: int) -> str:
+        new = self._parents()[cell]
+        if new == old:
+            return "" if new == NONE else f"; it stays with {self.name(new)}"
+        if new == NONE:
+            return f"; it leaves {self.name(old)} and has no way left"
+        left = f"leaves {self.name(old)} and " if old != NONE else ""
+        return f"; it {left}takes {self.name(new)} as its parent"
+
+    def _end(self, end: int) -> str:
+        node, port = self.graph.node_of(end), self.graph.port_of(end)
+        return f"{self.graph.label(node)}.{port}"
+
+    def _way(self, way: int) -> str:
+        """A direction as a script names it."""
+        ends = self.real.lay.way_end
+        return f"{self._end(ends[way ^ 1])}->{self._end(ends[way])}"
+
+    # The network.
+
+    def _parents(self) -> list[int]:
+        found = []
+        for cell in range(self.graph.cells):
+            port = skin_check.parent_port(self.real.world, cell)
+            there = NONE if port == NONE else self.graph.peer[PORTS * cell + port]
+            found.append(NONE if port == NONE else self.graph.node_of(there))
+        return found
+
+    def _is_cut(self, way: int) -> bool:
+        return bool(self.real.world.work[self.real.lay.link_at + way // 2])
+
+    def _cut(self) -> list[tuple[int, int]]:
+        ends = self.real.lay.way_end
+        return [
+            (self.graph.node_of(ends[way]), self.graph.node_of(ends[way + 1]))
+            for way in range(0, self.real.lay.ways, 2)
+            if self._is_cut(way)
+        ]
+
+
+def _route(dist: int, sq: int) -> str:
+    if dist == INFINITY:
+        return f"no route, number {sq}"
+    return f"{dist} hop{'' if dist == 1 else 's'}, number {sq}"

@@ -1,0 +1,168 @@
+"""A running skin on the page: its cells, the PC by its ports, who sends to whom."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from innervate.analysis.headline import Headline
+from innervate.analysis.ways import NOWHERE, Numbers, follow, reach
+from innervate.networks.skin.analysis.headline import SkinFacts, skin_headline
+from innervate.web.errors import Refused
+from innervate.web.live_map import Map, Place, Status
+from innervate.web.live_scene import Drawn
+from innervate.web.live_state import State
+from innervate.web.live_view import Ask, LiveView
+from innervate.web.messages import Give, number
+
+LOAD_FULL = 66  # cells whose samples fill a link, at 250 Hz each
+
+
+class SkinMap(Map):
+    """Cells, then the PC's interface ports."""
+
+    def is_split(self, one: Status) -> bool:
+        """The PC is drawn by its ports."""
+        return one.get("role") == "sink"
+
+
+class SkinState(State):
+    """Which cells have a way to the PC."""
+
+    def look(self) -> tuple[int, int]:
+        """Find everybody's way anew: (how many have none, how many of these are astray)."""
+        where = self.map
+        count = len(where.places)
+        none = np.zeros(count, np.bool_)
+        self.hop = self._parents()
+        live, roots = self.live(), self._ports()
+        self.root, self.depth = follow(
+            np.where(live[np.arange(count), np.maximum(self.hop, 0)], self.hop, NOWHERE), roots
+        )
+        lost = (self.root == NOWHERE) & (self.node_up == 1)
+        if not where.links:  # cables unknown: what cells say has to do
+            lost = np.array([self.word(place, "parent", 0) is None for place in where.places])
+        joined = reach(live, roots) if where.links else ~none
+        self._facts = self._skin_facts(lost, joined)
+        return int(np.count_nonzero(lost)), int(np.count_nonzero(lost & joined))
+
+    def judge(self) -> Headline:
+        """The headline by the ways and loads that `look` found."""
+        return skin_headline(self._facts)
+
+    def _skin_facts(self, lost: Any, joined: Any) -> SkinFacts:
+        """What cells say of their ways; `joined`: cables join them with the PC."""
+        places = self.map.places
+        is_cell = np.array([place.port < 0 for place in places], np.bool_)
+        told = np.array([place.node in self.told for place in places], np.bool_)
+        apart = told & (~joined | np.array(self.cut_off, np.bool_))
+        ports = told[~is_cell]
+
+        def of(flags: Any) -> list[int]:
+            found: list[int] = np.flatnonzero(is_cell & flags).tolist()
+            return found
+
+        return SkinFacts(
+            cells=int(np.count_nonzero(is_cell)),
+            silent=of(~told),
+            cut_off=of(apart),
+            seeking=of(told & lost & ~apart),
+            pc_off=bool(len(ports)) and not ports.any(),
+        )
+
+    def _ports(self) -> Any:
+        """Where a skin's ways lead: the PC's ports."""
+        found = [place.port >= 0 for place in self.map.places]
+        return np.array(found, np.bool_) & (self.node_up == 1)
+
+    def _parents(self) -> Numbers:
+        """Per place of a skin the one that its cell sends to."""
+        number = self.map.number
+        found = np.full(len(self.map.places), NOWHERE, np.int64)
+        across = {}
+        for link in self.map.links:
+            across.update({(link.a, path): link.b for path in link.paths_a})
+            across.update({(link.b, path): link.a for path in link.paths_b})
+        for at, place in enumerate(self.map.places):
+            if place.port < 0:
+                ports = {port["port"]: port.get("path") for port in self.word(place, "ports", ())}
+                path = ports.get(self.word(place, "parent", None))
+                to = None if path is None else across.get((place, path))
+                found[at] = NOWHERE if to is None else number[to]
+        return found
+
+    def more(self) -> dict[str, Any]:
+        """Ways, the port that each cell's way leads to, load."""
+        places = self.map.places
+        port = [place.port for place in places]
+        load = np.array([self.word(place, "load", 0) for place in places]) / LOAD_FULL
+        return {
+            "parent": self.hop,
+            "depth": self.depth,
+            "port": np.where(self.root == NOWHERE, NOWHERE, np.take(port, self.root)),
+            "load": np.minimum(load, 1.0).round(3),
+        }
+
+
+class SkinLiveView(LiveView):
+    """What the page shows of cells and a PC that are processes."""
+
+    map = SkinMap
+    state = SkinState
+
+    def drawn(self, plan: Any) -> Drawn:
+        """Cells where the honeycomb has them, interface ports beside."""
+        from innervate.networks.skin.view.scene import places
+
+        graph = plan.graph
+        names = [f"c{i}" for i in range(graph.cells)]
+        ports = [f"pc.{i}" for i in range(graph.interfaces)]
+        found = [(float(x), float(y)) for x, y in places(graph).round(3).tolist()]
+        return Drawn(
+            name=plan.scenario.name,
+            places=dict(zip([*names, *ports], found, strict=True)),
+            labels={name: graph.label(i) for i, name in enumerate(names)},
+        )
+
+    def unknown(self, told: list[Status], count: int) -> list[Status]:
+        """If the PC is not among those that answer, it is among those that do not."""
+        found = super().unknown(told, count)
+        if count and all(one["role"] != "sink" for one in told):
+            found[0] |= {"role": "sink", "paths": [{"port": 0, "name": ""}]}
+        return found
+
+    def can(self, last: Mapping[int, Status]) -> tuple[str, ...]:
+        """A PC sends commands down."""
+        return ("command",) if _pc(last) is not None else ()
+
+    def give(
+        self,
+        command: Give,
+        where: Map,
+        last: Mapping[int, Status],
+        label: Callable[[Place], str],
+        ask: Ask,
+    ) -> str:
+        """Have the PC send a command down."""
+        pc, cell, whom = _pc(last), None, "all cells"
+        assert pc is not None
+        if command.node is not None:
+            place = where.places[number("node", command.node, len(where.places))]
+            if place.port >= 0:
+                raise Refused("this is a port of the PC; commands are for cells")
+            cell, whom = int(last[place.node]["number"]), label(place)
+        request = {"do": "command", "code": command.code, "value": command.value, "cell": cell}
+        answer = ask(pc, request)
+        if answer is None or "error" in answer:
+            raise Refused(f"the PC did not take it: {(answer or {}).get('error', 'no answer')}")
+        if not answer["ports"]:
+            raise Refused("no cell has the PC as its parent: nobody hands it down")
+        return f"command {answer['number']} sent to {whom}"
+
+
+def _pc(last: Mapping[int, Status]) -> int | None:
+    """Which node is the PC."""
+    found = (i for i, one in last.items() if one.get("role") == "sink")
+    return next(found, None)

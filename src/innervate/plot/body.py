@@ -1,0 +1,120 @@
+"""The report of a run of any network: headline, figures to know, graph, reports over time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from innervate.network import networks
+from innervate.plot import charts, svg
+from innervate.plot.lines import traffic_lines
+from innervate.plot.page import element, figure, headline, pictures, section, table, tiles
+from innervate.plot.words import count_words, number_of
+
+SIDE = 420.0
+DRAWN_MAX = 400  # nodes of a graph that is drawn
+NAMED_MAX = 60
+CHARTS_MAX = 8
+
+Places = dict[str, tuple[float, float]]
+
+
+def body(result: Any, summary: Mapping[str, Any]) -> str:
+    """All of it, as HTML."""
+    parts = (top(result, summary), graph(result.plan), _over_time(result), _events(result.plan))
+    return "\n".join(part for part in parts if part)
+
+
+def notebook(result: Any, summary: Mapping[str, Any]) -> str:
+    """What a notebook shows of a run, as HTML."""
+    return top(result, summary) + graph(result.plan)
+
+
+def top(result: Any, summary: Mapping[str, Any]) -> str:
+    """What happened, and the figures to know."""
+    over = (
+        f"{summary['name']}: {summary['kind']}, {number_of(summary['nodes'], 'node')}; "
+        f"{result.ended_us / 1e6:.4g} s, seed {summary['seed']}"
+    )
+    frames, messages = summary["frames"], summary["messages"]
+    numbers = [
+        (count_words(frames["sent"]), "frames sent"),
+        (count_words(frames["lost"]), "frames lost"),
+        (count_words(messages["delivered"]), "messages delivered"),
+        (count_words(summary["events"]), "events"),
+    ]
+    lines = "".join(element("p", f"{line}.") for line in traffic_lines(summary))
+    head = element("p", over, "over") + headline(summary["headline"]) + tiles(numbers) + lines
+    return f"<header>\n{head}</header>"
+
+
+def graph(plan: Any) -> str:
+    """The network: nodes where they lie, or on a circle; nothing if it is too large to be read."""
+    made = networks()[plan.kind].graph(plan)
+    if not 0 < len(made.nodes) <= DRAWN_MAX:
+        return ""
+    places = _places(made.nodes)
+    size = (
+        max(x for x, _ in places.values()) + 40,
+        max(y for _, y in places.values()) + 40,
+    )
+    drawing = svg.Drawing(*size, f"graph of {len(made.nodes)} nodes")
+    for a, b, _about in made.edges:
+        drawing.line(places[a], places[b], "cable")
+    for name, (x, y) in places.items():
+        drawing.circle((x, y), 5, "relay")
+        if len(places) <= NAMED_MAX:
+            drawing.text((x, y - 9), name, "small", "middle")
+    text = f"{number_of(len(made.nodes), 'node')}, {number_of(len(made.edges), 'link')}."
+    return section("The network", pictures([figure(drawing, "", text)], "two"))
+
+
+def _places(nodes: list[tuple[str, dict[str, Any]]]) -> Places:
+    """Where nodes are drawn: as their first two coordinates say, or else on a circle."""
+    keys = [next((k for k in nodes[0][1] if k.startswith(axis)), "") for axis in ("x_", "y_")]
+    if all(keys) and all(all(key in about for key in keys) for _, about in nodes):
+        spots = np.array([[about[key] for key in keys] for _, about in nodes], np.float64)
+    else:
+        turn = 2 * math.pi / len(nodes)
+        spots = np.array([(math.sin(i * turn), -math.cos(i * turn)) for i in range(len(nodes))])
+    spots -= spots.min(axis=0)
+    spots *= (SIDE - 80) / max(float(spots.max()), 1e-9)
+    spots += 40
+    return {name: (x, y) for (name, _), (x, y) in zip(nodes, spots.tolist(), strict=True)}
+
+
+def _over_time(result: Any) -> str:
+    """How often what was reported and delivered, added up over time."""
+    end_s = max(result.ended_us / 1e6, 1e-6)
+    marks = [charts.Mark(fault.at_us / 1e6, "") for fault in result.plan.faults]
+    figures = []
+    for name, times in _series(result)[:CHARTS_MAX]:
+        drawing = charts.step_chart(
+            np.sort(times) / 1e6, np.arange(1, len(times) + 1), charts.Axis(0, end_s, "s"),
+            charts.Axis(0, max(1, len(times))), marks[: charts.BARS_MAX], f"{name} over time",
+        )  # fmt: skip
+        figures.append(figure(drawing, name, "So many so far."))
+    return section("Over time", pictures(figures, "two"))
+
+
+def _series(result: Any) -> list[tuple[str, Any]]:
+    """(name, times in us) of deliveries and of every kind of report, the most frequent first."""
+    found = []
+    rows, deliveries = result.rows.get("rows"), result.rows.get("deliveries")
+    for code in np.unique(rows["code"]).tolist() if rows is not None else ():
+        found.append((f"reports {code}", rows["time"][rows["code"] == code]))
+    found.sort(key=lambda one: -len(one[1]))
+    if deliveries is not None and len(deliveries):
+        found.insert(0, ("messages delivered", deliveries["time"]))
+    return found
+
+
+def _events(plan: Any) -> str:
+    """What the scenario did to it."""
+    words = networks()[plan.kind].fault_words
+    rows = [(escape(words(plan, fault)),) for fault in plan.faults]
+    return section("Events", table(("what",), rows)) if rows else ""

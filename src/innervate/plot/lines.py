@@ -1,0 +1,46 @@
+"""A run of any network for a terminal, in plain words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from innervate.plot.words import headline_line, ms_words, number_of
+
+
+def summary_lines(run: Any) -> list[str]:
+    """What a person wants to know first."""
+    summary = run.summary
+    took = f"{run.result.ended_us / 1e6:.4g} s simulated in {summary['wall_s']:.2f} s"
+    first = f"{summary['name']}: {number_of(summary['nodes'], 'node')}; {took}, "
+    lines = [f"{first}seed {summary['seed']}", headline_line(summary["headline"])]
+    lines += [f"{line}." for line in traffic_lines(summary)]
+    if "interrupted_at_s" in summary:
+        lines.append(f"Interrupted at {summary['interrupted_at_s']:.3f} s of simulated time.")
+    return lines
+
+
+def traffic_lines(summary: Mapping[str, Any]) -> list[str]:
+    """Frames, messages and latencies, a sentence each, without full stops."""
+    frames, messages = summary["frames"], summary["messages"]
+    lines = [
+        f"Frames: {frames['sent']:,} sent, {frames['arrived']:,} arrived, "
+        f"{frames['lost']:,} lost{_reasons(frames['lost_by'])}"
+    ]
+    if messages["sent"] or messages["delivered"]:
+        lines.append(
+            f"Messages: {messages['sent']:,} sent, {messages['delivered']:,} delivered"
+            f"{_reasons(messages['dropped_by'])}"
+        )
+    latency = messages["latency_ms"]
+    if latency["p50"] is not None:
+        shown = [ms_words(latency[name]) for name in ("p50", "p99", "max")]
+        lines.append(f"Latency: half within {shown[0]}, 99 % within {shown[1]}, all within "
+                     f"{shown[2]}")  # fmt: skip
+    return lines
+
+
+def _reasons(lost_by: Mapping[str, int]) -> str:
+    """The greatest first: ", 12 cut, 3 noise"."""
+    found = sorted(((count, why) for why, count in lost_by.items() if count), reverse=True)
+    return "".join(f", {count:,} {why.replace('_', ' ')}" for count, why in found)

@@ -1,0 +1,81 @@
+"""A counterexample as a page of panels: the network after each event, the sentences below."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+from innervate.plot.svg import Drawing, Point
+from innervate.plot.theme import drawing_style
+
+PANEL = (210.0, 190.0)
+COLUMNS = 4
+RADIUS = 15.0
+TOP = 34.0
+LINE = 15.0
+LETTERS = 118
+STYLE = """
+.node{fill:var(--panel);stroke:var(--link);stroke-width:1.4}
+.actor{stroke:var(--accent);stroke-width:2.6}
+.pc{fill:var(--ink)}
+.way{stroke:var(--link);stroke-width:2.4;fill:none;stroke-linecap:round}
+.ring{stroke:var(--alarm);stroke-width:3.2;fill:none;stroke-linecap:round}
+"""
+
+
+def page(title: str, panels: Sequence[Drawing], sentences: Sequence[str]) -> Drawing:
+    """Panels in rows of four, then what happened, numbered."""
+    rows = -(-len(panels) // COLUMNS)
+    texts = [part for i, s in enumerate(sentences, 1) for part in wrapped(f"{i}. {s}")]
+    high = TOP + rows * PANEL[1] + LINE * (len(texts) + 2)
+    drawing = Drawing(PANEL[0] * COLUMNS, high, f"Counterexample: {title}")
+    drawing.text((12, 22), title, "strong alarm")
+    for index, panel in enumerate(panels):
+        corner = (PANEL[0] * (index % COLUMNS), TOP + PANEL[1] * (index // COLUMNS))
+        drawing.place(panel, corner)
+    for i, text in enumerate(texts):
+        drawing.text((12, TOP + rows * PANEL[1] + LINE * (i + 1)), text)
+    return drawing
+
+
+def panel(index: int) -> Drawing:
+    """An empty panel, of what was after the event with this index."""
+    made = Drawing(PANEL[0], PANEL[1], f"after event {index + 1}")
+    made.text((12, 18), f"after {index + 1}", "small")
+    return made
+
+
+def save(drawing: Drawing, path: Path, more: str = "") -> None:
+    """Write a page to a file of its own; `more` are further rules of its style."""
+    drawing.save(path, drawing_style() + STYLE + more)
+
+
+def wrapped(text: str) -> list[str]:
+    """A sentence as lines of at most LETTERS letters, all but the first indented."""
+    lines, line = [], ""
+    for word in text.split():
+        if len(line) + len(word) > LETTERS:
+            lines.append(line)
+            line = "    " + word
+        else:
+            line = f"{line} {word}".strip() if not line.startswith("    ") else f"{line} {word}"
+    return [*lines, line]
+
+
+def disc(panel: Drawing, place: Point, label: str, is_end: bool, is_actor: bool) -> None:
+    """A node; `is_end` where ways lead to it."""
+    panel.circle(place, RADIUS, "pc" if is_end else f"node{' actor' if is_actor else ''}")
+    panel.text((place[0], place[1] + 4), label, "portname" if is_end else "small", "middle")
+
+
+def arrow(panel: Drawing, start: Point, end: Point, kind: str) -> None:
+    """From the rim of one node to the rim of the other."""
+    angle = math.atan2(end[1] - start[1], end[0] - start[0])
+    x, y = math.cos(angle), math.sin(angle)
+    tail = (start[0] + x * RADIUS, start[1] + y * RADIUS)
+    tip = (end[0] - x * (RADIUS + 2), end[1] - y * (RADIUS + 2))
+    panel.line(tail, tip, kind)
+    for side in (2.6, -2.6):
+        barb = (tip[0] + 9 * math.cos(angle + side), tip[1] + 9 * math.sin(angle + side))
+        panel.line(tip, barb, kind)

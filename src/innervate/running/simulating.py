@@ -1,0 +1,146 @@
+"""Runs of any network that has no module `run` of its own: its loop driven, its rows as tables.
+
+Its `simulation` takes what is to be kept by name: plain, checks, observe, deliveries, trail, tap.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from innervate.analysis.summary import summarize
+from innervate.network import networks
+from innervate.sim.counts import Counts
+from innervate.sim.driver import Simulation
+from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
+from innervate.sim.tables import get
+from innervate.trace.tables import Column, Table
+
+__all__ = ["TABLES", "call_words", "columns", "simulate", "summarize", "tables_of", "trail",
+           "written_of"]  # fmt: skip
+
+_TIME = Column("time_us", "Int64", "us", "when, true time")
+_NODE = Column("node", "Int32", "node", "who")
+REPORTS = Table(
+    "reports",
+    "a node reported something",
+    (
+        _TIME,
+        _NODE,
+        Column("code", "Int32", "number", "what, as the protocol numbers it"),
+        Column("a", "Int64", "raw", "of the report"),
+        Column("b", "Int64", "raw", "of the report"),
+    ),
+)
+DELIVERIES = Table(
+    "deliveries",
+    "a node's user was given a message",
+    (
+        _TIME,
+        _NODE,
+        Column("port", "Int32", "port", "it came in on"),
+        Column("latency_us", "Int64", "us", "since it was sent"),
+    ),
+)
+TABLES = (REPORTS, DELIVERIES)
+_ROWS = {REPORTS.name: "rows", DELIVERIES.name: "deliveries"}
+_FIELDS = {"time_us": "time", "latency_us": "latency"}
+
+
+@dataclass(slots=True)
+class Result:
+    """What a simulation leaves.
+
+    Attributes:
+        plan: what ran.
+        world: its tables at the end.
+        rows: all rows of the loop's tables by their names, arrays of records, times in us.
+        counts: of the medium.
+        ended_us: up to where it ran.
+        wall_s: how long that took.
+        fingerprint: of everything that happened.
+        handled: handler calls.
+        interrupted: it was ended early.
+    """
+
+    plan: Any
+    world: Any
+    rows: dict[str, Any]
+    counts: Counts
+    ended_us: int
+    wall_s: float
+    fingerprint: str
+    handled: int
+    interrupted: bool
+
+
+def simulation(plan: Any, **kept: bool) -> Simulation:
+    """A plan's network, not yet begun."""
+    made: Simulation = networks()[plan.kind].simulation(plan, **kept)
+    return made
+
+
+def simulate(
+    plan: Any,
+    *,
+    plain: bool = False,
+    checks: bool = True,
+    received: bool | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    tap: Any = None,
+) -> Result:
+    """Run a plan; `received`: keep a row of every message delivered, None = yes."""
+    running = simulation(
+        plan, plain=plain, checks=checks, deliveries=received is not False, tap=tap is not None
+    )
+    ended = running.finish(progress, tap)
+    return Result(
+        plan=plan,
+        world=running.world,
+        rows=ended.rows,
+        counts=running.counts(),
+        ended_us=ended.ended_us,
+        wall_s=ended.wall_s,
+        fingerprint=running.fingerprint,
+        handled=int(get(running.world.run, 0, "handled")),
+        interrupted=ended.interrupted,
+    )
+
+
+def tables_of(result: Any) -> tuple[Table, ...]:
+    """The tables of a run: of the rows that its loop keeps."""
+    return tuple(table for table in TABLES if _ROWS[table.name] in result.rows)
+
+
+written_of = tables_of
+
+
+def columns(table: Table, result: Any) -> dict[str, Any]:
+    """One array for every column of a table; what rows do not say is null."""
+    rows = result.rows[_ROWS[table.name]]
+    found = {}
+    for column in table.columns:
+        name = _FIELDS.get(column.name, column.name)
+        has = name in rows.dtype.names
+        found[column.name] = np.ascontiguousarray(rows[name]) if has else [None] * len(rows)
+    return found
+
+
+def trail(plan: Any, until_us: int) -> Iterator[Any]:
+    """The trail of a plan: structured arrays with the fields of trail.FIELDS."""
+    return simulation(plan, checks=False, observe=False, trail=True).pieces("trail", until_us)
+
+
+def call_words(plan: Any, row: Any) -> str:
+    """A row of the trail in words: "node 3: frame on port 1"."""
+    handler, port = int(row["handler"]), int(row["port"])
+    what = {
+        ON_START: "switched on" if port == 0 else "restarted",
+        ON_FRAME: f"frame on port {port}",
+        ON_TIMER: f"timer {port}",
+        ON_INPUT: "given something by its user",
+    }.get(handler, f"handler {handler}")
+    return f"node {int(row['node'])}: {what}"

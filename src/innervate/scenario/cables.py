@@ -1,0 +1,110 @@
+"""The plan of a network over cables: what `sim/cables` runs and `live` sets up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from innervate.scenario.actions.cables import ACTIONS, LOOSE
+from innervate.scenario.events import told
+from innervate.topology.graph import Graph
+
+LOSS_ONE = 32_768
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One event of a run.
+
+    Attributes:
+        at_us: when, true time, us.
+        action: CUT, RESTORE, KILL, REVIVE, LOOSE, RESTART or LOSE.
+        end: one end of the cable it happens to; -1 for kill, revive and restart.
+        node: the node it happens to; -1 for cables.
+        loss_q15: for LOOSE the loss on both directions in 1/32768; else 0.
+        frames: for LOSE how many frames are lost on the cable; else 0.
+        index: the event's place in the scenario file.
+    """
+
+    at_us: int
+    action: int
+    end: int = -1
+    node: int = -1
+    loss_q15: int = 0
+    frames: int = 0
+    index: int = 0
+
+
+class Input(NamedTuple):
+    """What a node is given by its user at a time: a kind, and fields of its item (a frame)."""
+
+    at_us: int
+    node: int
+    kind: int
+    item: dict[str, int]
+
+
+@dataclass(slots=True)
+class CablesPlan:
+    """Everything a run over cables needs, as whole numbers.
+
+    Attributes:
+        scenario: whose plan it is.
+        graph: nodes with up to four ports each, and their cables.
+        kind: name of the network.
+        seed: root of all random numbers.
+        duration_us: simulated time.
+        params: the protocol's parameters, by name.
+        start_us: nodes are switched on within so long.
+        drift_ppm: clocks run up to this much fast or slow.
+        latency_us: least and greatest hop latency, wire time included, us.
+        latency_per_frame: drawn for every frame; else once for each link and direction.
+        wire_us: time a frame occupies the wire.
+        queue_frames: frames a port can hold that are not urgent.
+        loss_q15: share of the frames that every cable loses, in 1/32768.
+        data_period_us: between a node's inputs of kind SAMPLE; 0 = none.
+        faults: in order of time, then of the file.
+        inputs: what nodes are given besides, in order of time.
+    """
+
+    scenario: Any
+    graph: Graph
+    kind: str
+    seed: int
+    duration_us: int
+    params: dict[str, int]
+    start_us: int = 1_000
+    drift_ppm: int = 0
+    latency_us: tuple[int, int] = (80, 160)
+    latency_per_frame: bool = False
+    wire_us: int = 60
+    queue_frames: int = 8
+    loss_q15: int = 0
+    data_period_us: int = 0
+    faults: list[Fault] = field(default_factory=list)
+    inputs: list[Input] = field(default_factory=list)
+
+
+def describe(plan: Any) -> str:
+    """A plan in words, several lines, without a newline at the end."""
+    graph = plan.graph
+    params = ", ".join(f"{name} {value}" for name, value in plan.params.items())
+    lines = [
+        f"{plan.scenario.name}: a {plan.kind} scenario of {plan.duration_us / 1e6:g} s, "
+        f"seed {plan.seed}",
+        f"  nodes      {graph.cells:,}, {sum(1 for _ in graph.links()):,} cables",
+        f"  protocol   {params}",
+    ]
+    return "\n".join([*lines, *told(plan, fault_words, ())])
+
+
+def fault_words(plan: Any, fault: Any) -> str:
+    """A fault in words: "at 2 s cut pc.1 - p0 r16 c7 down"."""
+    graph = plan.graph
+    if fault.end >= 0:
+        what = f"{graph.label_end(fault.end)} - {graph.label_end(graph.peer[fault.end])}"
+    else:
+        what = graph.label(fault.node)
+    more = f", loss {fault.loss_q15 / LOSS_ONE:.3g}" if fault.action == LOOSE else ""
+    more += f", {fault.frames} frames" if fault.frames else ""
+    return f"at {fault.at_us / 1e6:g} s {ACTIONS[fault.action]} {what}{more}"

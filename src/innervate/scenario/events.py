@@ -1,0 +1,83 @@
+"""What [[event]] tables of all networks have in common: when, which keys, how they are told."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from fractions import Fraction
+from typing import Any
+
+from innervate.scenario.actions.action import Action
+from innervate.scenario.lines import Key
+from innervate.scenario.source import Source, dotted
+from innervate.trace.streams import Stream
+
+SHOWN = 12  # events of a scenario that are told one by one
+Finding = tuple[Key, str]
+
+
+def refuse(source: Source, findings: Iterable[Finding]) -> None:
+    """Raise ScenarioError for the first of (key, what is wrong with it)."""
+    for key, message in findings:
+        raise source.error(key, message)
+
+
+def in_order(key: Key, pair: tuple[float, float], names: str = "least, most") -> Iterator[Finding]:
+    """That a range does not end before it begins."""
+    if pair[0] > pair[1]:
+        yield key, f"{dotted(key)} must be [{names}], not [{pair[0]:g}, {pair[1]:g}]"
+
+
+def in_time(
+    index: int, at_s: float | tuple[float, float], duration_s: float, names: str = "from, to"
+) -> Iterator[Finding]:
+    """That event `index` happens: a run ends just before `duration_s`."""
+    first, last = at_s if isinstance(at_s, tuple) else (at_s, at_s)
+    key: Key = ("event", index, "at_s")
+    name = dotted(key)
+    yield from in_order(key, (first, last), names)
+    if not first >= 0:
+        yield key, f"{name} must be a number of seconds from 0, not {first:g}"
+    if round(1e6 * last) > round(1e6 * duration_s):
+        yield key, f"{name} = {last:g} is outside the run; duration_s is {duration_s:g}"
+    if round(1e6 * last) == round(1e6 * duration_s):
+        message = f"{name} = {last:g} is the end of the run, so it would never happen"
+        yield key, f"{message}; make it earlier, or duration_s longer"
+
+
+def own_keys(index: int, event: Any, table: Sequence[Action]) -> Iterator[Finding]:
+    """That an event has no key that only other actions have."""
+    for name in dict.fromkeys(action.key for action in table if action.key):
+        words = [action.word for action in table if action.key == name]
+        if getattr(event, name) is not None and event.action not in words:
+            those = " and ".join(f'"{word}"' for word in words)
+            message = f'event.{index}.{name} goes with {those}, not "{event.action}"'
+            yield ("event", index, name), message
+
+
+def exact(value: float) -> Fraction:
+    """The decimal number the user wrote, free of binary rounding."""
+    return Fraction(repr(float(value)))
+
+
+def micros(seconds: float) -> int:
+    """Seconds in whole microseconds."""
+    return round(exact(seconds) * 1_000_000)
+
+
+def at_us(event: Any, draw: Stream) -> int:
+    """When an event happens, us: as it says, or drawn from its range."""
+    if isinstance(event.at_s, tuple):
+        return draw.uniform(micros(event.at_s[0]), micros(event.at_s[1]))
+    return micros(event.at_s)
+
+
+def told(
+    made: Any, fault_words: Callable[[Any, Any], str], warnings: Iterable[str]
+) -> Iterator[str]:
+    """The lines on a plan's events and warnings, as at the end of what `check` prints."""
+    for i, fault in enumerate(made.faults[:SHOWN]):
+        yield f"  {'' if i else 'event':10} {fault_words(made, fault)}"
+    if len(made.faults) > SHOWN:
+        yield f"  {'':10} and {len(made.faults) - SHOWN} more"
+    for text in warnings:
+        yield f"  warning    {text}"

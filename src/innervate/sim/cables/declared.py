@@ -1,0 +1,161 @@
+"""A network over cables that only declares its protocol: its functions, its records, its runs.
+
+Of its `Network` it takes `protocol` (a module: `on_start`, `on_frame`, `on_timer`, `on_input` of a
+node; TIMERS; perhaps OUTBOX) and `fields` (STATE, FRAME, PARAMS). All nodes are equal but for
+`state.number`. A field `made_at` of a frame, where declared, is when its content was handed to its
+first sender: latencies are taken from it.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from types import ModuleType
+from typing import Any
+
+from innervate.dialect.arith import MASK30
+from innervate.kernel import door
+from innervate.kernel.bits import mix
+from innervate.network import networks
+from innervate.scenario.actions.cables import GIVE
+from innervate.sim import clocks
+from innervate.sim.cables import loop, recorder
+from innervate.sim.cables.build import Added, Kept, Records, build
+from innervate.sim.cables.simulation import Cables
+from innervate.sim.cables.world import ALIVE, SOURCE, World
+from innervate.sim.tables import Tables, put
+
+OUTBOX = 16
+
+
+class Unfit(ValueError):
+    """A protocol cannot be simulated as it is declared."""
+
+
+def functions(protocol: ModuleType, fields: ModuleType) -> ModuleType:
+    """What the medium calls (see `sim/cables`), of a protocol and its declared fields."""
+    if SOURCE < protocol.TIMERS:
+        raise Unfit(f"a node over cables has at most {SOURCE} timers, not {protocol.TIMERS}")
+    do = ModuleType(f"{protocol.__name__} over cables")
+    vars(do).update(_entries(protocol))
+    vars(do).update(_of_frames(fields.FRAME))
+    if hasattr(protocol, "copy_frame"):
+        vars(do)["copy_frame"] = protocol.copy_frame
+    names = {name for name, length, *_ in fields.FRAME if not length}
+    vars(do).update(_users_side(do, "made_at" in names))
+    for name in ("on_report", "on_stop", "before_change", "on_change", "check"):
+        vars(do)[name] = getattr(recorder, name)
+    return do
+
+
+def _entries(protocol: ModuleType) -> dict[str, Callable[..., Any]]:
+    """The protocol's functions with the world as their first argument."""
+    start, frame_in = protocol.on_start, protocol.on_frame
+    timer_due, given = protocol.on_timer, protocol.on_input
+
+    def on_start(world, node, now, cause):  # type: ignore[no-untyped-def]
+        start(world.cells[node], world.params[0], now, cause, world.out)
+
+    def on_frame(world, node, time, port, frame):  # type: ignore[no-untyped-def]
+        now = clocks.reading(world.clocks[node], time) & MASK30
+        frame_in(world.cells[node], world.params[0], now, port, frame, world.out)
+
+    def on_timer(world, node, now, timer):  # type: ignore[no-untyped-def]
+        timer_due(world.cells[node], world.params[0], now, timer, world.out)
+
+    def on_input(world, node, now, kind):  # type: ignore[no-untyped-def]
+        given(world.cells[node], world.params[0], now, kind, world.sample[0], world.out)
+
+    return {"on_start": on_start, "on_frame": on_frame, "on_timer": on_timer, "on_input": on_input}
+
+
+def _of_frames(declared: Any) -> dict[str, Callable[..., Any]]:
+    """`copy_frame`, `digest` and `kind_of`, written out for the fields of a frame."""
+    copies, words = [], []
+    for name, length, *_ in declared:
+        for place in [f"{name}[{i}]" for i in range(length)] if length else [name]:
+            copies.append(f"    to.{place} = frm.{place}")
+            if name != "made_at":
+                words.append(f"    word = mix(word, frame.{place})")
+    kind = "frame.kind" if any(name == "kind" for name, *_ in declared) else "-1"
+    text = "\n".join([
+        "def copy_frame(to, frm):", *copies,
+        "def digest(frame):", "    word = 1", *words, "    return word",
+        "def kind_of(frame):", f"    return {kind}",
+        "def block_of(frame):", "    return 0",
+    ])  # fmt: skip
+    made: dict[str, Any] = {"mix": mix}
+    exec(compile(text, "frames of a protocol", "exec"), made)
+    return {name: made[name] for name in ("copy_frame", "digest", "kind_of", "block_of")}
+
+
+def _users_side(do: ModuleType, is_timed: bool) -> dict[str, Callable[..., Any]]:
+    """What is handed to nodes, and what they deliver."""
+    copy_frame, kind_of = do.copy_frame, do.kind_of
+
+    def take_input(world, command):  # type: ignore[no-untyped-def]
+        copy_frame(world.sample[0], world.carrier[command.value])
+        return command.index if world.alive[command.node] == ALIVE else 0
+
+    def sense(world, node, time):  # type: ignore[no-untyped-def]
+        pass
+
+    def on_deliver(world, time, node, port, frame):  # type: ignore[no-untyped-def]
+        recorder.keep_delivered(world, time, node, port, kind_of(frame))
+
+    if not is_timed:
+        return {"take_input": take_input, "sense": sense, "on_deliver": on_deliver}
+
+    def take_timed(world, command):  # type: ignore[no-untyped-def]
+        kind = take_input(world, command)
+        world.sample[0].made_at = command.at & MASK30
+        return kind
+
+    def sense_timed(world, node, time):  # type: ignore[no-untyped-def]
+        world.sample[0].made_at = time & MASK30
+
+    def deliver_timed(world, time, node, port, frame):  # type: ignore[no-untyped-def]
+        on_deliver(world, time, node, port, frame)
+        recorder.keep_latency(world, (time - frame.made_at) & MASK30)
+
+    door.register_functions(copy_frame, kind_of, take_input, on_deliver)
+    return {"take_input": take_timed, "sense": sense_timed, "on_deliver": deliver_timed}
+
+
+@functools.cache
+def plain_loop(kind: str) -> Callable[..., None]:
+    """The loop of a network, uncompiled."""
+    network = networks()[kind]
+    return loop.bind(functions(network.protocol, network.fields))
+
+
+@functools.cache
+def compiled_loop(kind: str) -> Callable[..., None]:
+    """The same, compiled."""
+    network = networks()[kind]
+    do = functions(network.protocol, network.fields)
+    door.register_functions(*(f for f in vars(do).values() if callable(f)))
+    hot = (recorder, *door.modules_of(network.protocol))
+    advance: Callable[..., None] = loop.compiled(do, hot, ())
+    return advance
+
+
+def world_of(plan: Any, plain: bool, kept: Kept) -> World:
+    """The world of a plan (see `scenario/cables.py`), before its first event."""
+    network = networks()[plan.kind]
+    tables, fields = Tables(plain), network.fields
+    room = getattr(network.protocol, "OUTBOX", OUTBOX)
+    of = Records(fields.STATE, fields.FRAME, fields.PARAMS, fields.FRAME, outbox=room)
+    items = tables.states(fields.FRAME, len(plan.inputs) + 1)
+    rows = []
+    for place, given in enumerate(plan.inputs):
+        put(items, place, **given.item)
+        rows.append((given.at_us, GIVE, -1, given.node, place, given.kind))
+    return build(plan, of, tables, kept, Added(carrier=items, inputs=tuple(rows), ways=1))
+
+
+def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> Cables:
+    """A plan's network before its first event; `kept` as in `cables.build.Kept`."""
+    advance = (plain_loop if plain else compiled_loop)(plan.kind)
+    name = "" if plain else plan.kind
+    return Cables(plan, world_of(plan, plain, Kept(**kept)), advance, name)

@@ -1,0 +1,66 @@
+"""What a network of cables keeps and checks unless it has a recorder of its own.
+
+A row of every report, one of every delivered frame, and the declared range of every field.
+"""
+
+from innervate.sim import delays
+from innervate.sim.cables.wires import DELIVERED
+from innervate.sim.cables.world import BROKEN_RANGE
+from innervate.sim.rows import keep_row
+
+
+def on_report(world, time, node, code, a, b):
+    """A node reported something."""
+    if world.run[0].observe:
+        keep_row(world, time, node, code, a, b)
+
+
+def keep_delivered(world, time, node, port, kind):
+    """A node's user got a frame; the row, its latency not yet known."""
+    run = world.run[0]
+    world.counters[DELIVERED] += 1
+    if run.delivery_limit > 0:
+        row = world.deliveries[run.deliveries]
+        run.deliveries += 1
+        row.time = time
+        row.node = node
+        row.port = port
+        row.kind = kind
+        row.latency = -1
+
+
+def keep_latency(world, latency_us):
+    """How long what was just delivered took."""
+    run = world.run[0]
+    delays.note(world, 0, latency_us)
+    if run.delivery_limit > 0:
+        world.deliveries[run.deliveries - 1].latency = latency_us
+
+
+def on_stop(world, time, node):
+    """A node lost its memory or went dark."""
+
+
+def before_change(world):
+    """Cables or nodes are about to go down or to come back."""
+
+
+def on_change(world, time, node, index):
+    """They did."""
+
+
+def check(world, node):
+    """After every handler."""
+    check_range(world, node)
+
+
+def check_range(world, node):
+    """Every word of a node's record lies in its declared range."""
+    words = world.words[node]
+    wrong = 0
+    for i in range(len(world.low)):
+        value = words[i]
+        wrong |= (value < world.low[i]) | (value > world.high[i])
+    if wrong and world.run[0].broken == 0:
+        world.run[0].broken = BROKEN_RANGE
+        world.run[0].broken_node = node

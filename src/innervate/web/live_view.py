@@ -1,0 +1,76 @@
+"""What pages show of running nodes, as far as it is a network's own; here that of any network."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from innervate.live.declared import DRIVERS
+from innervate.network import networks
+from innervate.web.errors import Refused
+from innervate.web.live_map import Map, Place, Status
+from innervate.web.live_scene import Drawn
+from innervate.web.live_state import State
+from innervate.web.messages import Give
+
+# Asks a node something; None = it did not answer.
+Ask = Callable[[int, dict[str, Any]], dict[str, Any] | None]
+
+
+class LiveView:
+    """Running nodes of one kind.
+
+    Attributes:
+        map: class of its maps.
+        state: class of its states.
+        lost: name and unit of the plot of nodes that are in trouble.
+        is_quick: what is shown changes all the time: nodes are asked more often.
+        has_ways: nodes have ways that they can lose and find again.
+    """
+
+    map: type[Map] = Map
+    state: type[State] = State
+    lost: tuple[str, str] = ("nodes without a way", "nodes")
+    is_quick = False
+    has_ways = True
+
+    def drawn(self, plan: Any) -> Drawn:
+        """Where nodes are drawn; without places they are drawn by who is linked with whom."""
+        return Drawn(plan.scenario.name, {})
+
+    def scene(self, kind: str) -> dict[str, Any]:
+        """What a scene has besides that of every network: the fields that nodes tell of."""
+        network = networks()[kind]
+        declared = getattr(network.fields, "STATE", ()) if network.has("fields") else ()
+        shown = [
+            {"name": name, "unit": unit, "meaning": meaning}
+            for name, length, _low, _high, unit, meaning in declared
+            if not length and name not in DRIVERS
+        ]
+        return {"fields": shown} if shown else {}
+
+    def unknown(self, told: list[Status], count: int) -> list[Status]:
+        """What stands for nodes that have not answered, beside those that have."""
+        return [{"kind": told[0]["kind"], "neighbours": [], "paths": []} for _ in range(count)]
+
+    def note(self, state: State, now_us: int, told: Mapping[int, Status]) -> None:
+        """A new state: what can only be told over some time is worked out."""
+
+    def can(self, last: Mapping[int, Status]) -> tuple[str, ...]:
+        """Commands that these nodes understand beside those of every network."""
+        return ()
+
+    def give(
+        self,
+        command: Give,
+        where: Map,
+        last: Mapping[int, Status],
+        label: Callable[[Place], str],
+        ask: Ask,
+    ) -> str:
+        """Give the network a command of its own; what was done, for the log.
+
+        Raises:
+            Refused: it was not taken.
+        """
+        raise Refused("not possible here")

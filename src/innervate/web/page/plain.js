@@ -1,0 +1,94 @@
+// Any network: nodes and links as those of a mesh, coloured by the fields that its protocol has.
+import { colours, shade } from "./colours.js";
+import { Labels } from "./labels.js";
+import { MeshView } from "./mesh.js";
+import { affected, affectedSample, arrow, cross, stroke, word } from "./shapes.js";
+import { LAYERS } from "./stage.js";
+import { off, offWord } from "./words.js";
+
+const FONT = "12px system-ui, sans-serif";
+
+/** Draws a network of which no more is known than what its nodes declare. */
+export class PlainView extends MeshView {
+  constructor(network) {
+    super(network);
+    this.fields = network.scene.fields ?? [];
+    this.colour = this.fields[0]?.name ?? "";
+  }
+
+  choices() {
+    return this.fields.map(({ name }) => [name, name]);
+  }
+
+  layersOf(changed) {
+    const found = super.layersOf(changed);
+    if (changed.has("fields") && !found.includes(LAYERS.lines)) found.push(LAYERS.lines);
+    return found;
+  }
+
+  draw(layer, context, stage) {
+    if (layer !== LAYERS.lines) super.draw(layer, context, stage);
+    else this.#nodes(context, stage);
+  }
+
+  facts(i) {
+    const { now } = this.network;
+    if (!now.node_up[i]) return off(this.network, i);
+    const said = this.fields.map(({ name, unit }) => [name, now.fields?.[name]?.[i], unit]);
+    const known = said.filter(([, value]) => value !== undefined && value !== null);
+    return known.map((parts) => parts.join(" ")).join(", ") || "nothing known";
+  }
+
+  legend() {
+    const disc = (fill, up = 1) => (context) => this.#disc(context, 13, 8, 5, fill, up);
+    const found = this.colour === "" ? [[disc(colours.d[5]), "node"]]
+      : [[disc(colours.h[0]), `${this.colour}: least`], [disc(colours.h[7]), "most"]];
+    found.push([disc(colours.faint, 0), offWord(this.network)], affectedSample);
+    found.push([(context) => {
+      stroke(context, colours.alarm, 2, new Path2D("M1 8h24"), [4, 3]);
+    }, "cut"]);
+    return found;
+  }
+
+  #nodes(context, stage) {
+    const { network } = this;
+    const { now, nodes } = network;
+    const dot = this.dot();
+    const values = now.fields?.[this.colour] ?? [];
+    const known = values.filter((value) => value !== null);
+    const [least, most] = [Math.min(...known), Math.max(...known)];
+    stage.clear(context);
+    const routes = new Path2D();
+    nodes.forEach((_, i) => {
+      const next = now.node_up[i] ? network.parentOf(i) : -1;
+      if (next >= 0) arrow(routes, stage.x[i], stage.y[i], stage.x[next], stage.y[next], dot + 4);
+    });
+    stroke(context, colours.accent, 2.2, routes);
+    context.font = FONT;
+    context.textAlign = "left";
+    const names = new Labels(context, stage.width, stage.height);
+    nodes.forEach((_, i) => {
+      const [x, y, value] = [stage.x[i], stage.y[i], values[i] ?? null];
+      const fill = value === null ? colours.panel : colours.h[shade(value - least, most - least)];
+      this.#disc(context, x, y, dot, fill, now.node_up[i]);
+      names.block(x - dot - 2, y - dot - 2, x + dot + 2, y + dot + 2);
+    });
+    affected(context, network, stage, dot + 5);
+    nodes.forEach(({ label }, i) => {
+      const at = names.put(label, stage.x[i], stage.y[i], dot + 4);
+      if (at) word(context, label, ...at, colours.soft, colours.ground, FONT);
+    });
+  }
+
+  #disc(context, x, y, dot, fill, up) {
+    const path = new Path2D();
+    path.arc(x, y, dot, 0, 7);
+    context.fillStyle = up ? fill : colours.faint;
+    context.fill(path);
+    stroke(context, colours.soft, 1.2, path);
+    if (up) return;
+    const gone = new Path2D();
+    cross(gone, x, y, dot + 2);
+    stroke(context, colours.alarm, 2.2, gone);
+  }
+}

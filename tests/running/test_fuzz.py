@@ -1,0 +1,62 @@
+"""Networks drawn from one number: valid, the same again, and made smaller when one breaks."""
+
+import pytest
+
+from innervate import scenario
+from innervate.running import fuzz
+
+
+def test_what_is_drawn_can_nearly_always_be_run():
+    refused = 0
+    for seed in range(300):
+        assert fuzz.drawn(seed) == fuzz.drawn(seed)
+        try:
+            scenario.plan(scenario.from_dict(fuzz.drawn(seed)))
+        except scenario.ScenarioError:
+            refused += 1
+    assert refused == 0
+
+
+@pytest.mark.parametrize("seed", [3, 5, 7, 12])  # two skins, two meshes
+def test_nothing_breaks(seed):
+    assert fuzz.attempt(seed) is None
+
+
+def has_cut(tables):
+    events = tables.get("event", [])
+    return "there is a cut" if any(event["action"] == "cut" for event in events) else ""
+
+
+def test_a_broken_network_is_made_small_and_can_be_played(tmp_path):
+    seed = next(seed for seed in range(100) if has_cut(fuzz.drawn(seed)))
+    before = fuzz.drawn(seed)
+
+    def breaks(tables):
+        scenario.plan(scenario.from_dict(tables))
+        return has_cut(tables)
+
+    found = fuzz.attempt(seed, breaks)
+    assert [event["action"] for event in found.tables["event"]] == ["cut"]
+    assert len(before["event"]) > 1
+    assert found.tries < fuzz.TRIES
+    path = found.save(tmp_path)
+    assert path.read_text().startswith("# there is a cut\n")
+    again = scenario.load(str(path))
+    assert len(again.model.event) == 1
+
+
+def test_a_broken_mesh_is_made_small():
+    def breaks(tables):
+        scenario.plan(scenario.from_dict(tables))
+        dies = any(e["action"] == "kill" and e["node"] < 5 for e in tables["event"])
+        return "somebody dies" if dies and "robot" not in tables else ""
+
+    def is_wanted(tables):
+        return tables["kind"] == "mesh" and tables["nodes"] > 15 and breaks(tables)
+
+    seed = next(seed for seed in range(400) if is_wanted(fuzz.drawn(seed)))
+    found = fuzz.attempt(seed, breaks)
+    assert [event["action"] for event in found.tables["event"]] == ["kill"]
+    assert found.tables["nodes"] < 15
+    assert [flow["count"] for flow in found.tables["flow"]] == [1]
+    assert found.tables["duration_s"] < 2 * found.tables["event"][0]["at_s"] + 2
