@@ -146,6 +146,10 @@ class Span:
         """True if all lie inside, and there is one; what never happened (NaN) does not."""
         return bool(values) and all(self.low <= value <= self.high for value in values)
 
+    def share(self, values: Any) -> float:
+        """Which share of the values lies inside, 0 to 1; what never happened (NaN) does not."""
+        return float(np.mean((self.low <= values) & (values <= self.high)))
+
 
 def about(value: float) -> Span:
     """What counts as "about" a value: no more than a quarter off, up or down."""

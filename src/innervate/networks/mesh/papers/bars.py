@@ -55,7 +55,7 @@ def rounds(quick: bool) -> Point:
 
     A mean of a few says nothing of two percent.
     """
-    return MeshTestbed().point("one round", range(1, 31 if quick else 101), measure_round)
+    return MeshTestbed().point("round", range(1, 31 if quick else 101), measure_round)
 
 
 def sent(rule: sending.Rule, quick: bool) -> Point:

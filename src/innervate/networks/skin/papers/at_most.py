@@ -80,7 +80,7 @@ def _within(got: Measured, where: str, limit: float, rule: Rule) -> Claim:
     for k in KS:
         for setup, cells in SKINS:
             ms = converged_ms(got, setup, rule, k)
-            share = float((ms <= limit).mean())
+            share = Span(high=limit).share(ms)
             words.append(
                 f"k = {k}, {cells} cells: {percent(share)} (mean {np.nanmean(ms):.0f}, worst "
                 f"{np.nanmax(ms):.0f} ms)"

@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from innervate import scenario
 from innervate.networks.skin.analysis.load import balance_factor, port_loads
 from innervate.networks.skin.analysis.rows import parent_changes
-from innervate.networks.skin.papers import stale
 from innervate.networks.skin.papers.common import SILENT, loaded, number, plan_of, seeds_of
 from innervate.networks.skin.papers.startup import CLOCKS
+from innervate.networks.skin.papers.steps import stale_sizes
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
@@ -82,7 +82,7 @@ def sizes(setup: str, lock_step: bool, quick: bool) -> Point:
     watched = 400 if quick else 1500
     what = f"sizes {setup} {CLOCKS[lock_step]}, {HZ} Hz, {watched} periods"
     seeds = seeds_of(1 if quick else 10)
-    return Point.each(what, 0.5, seeds, stale.measure, setup, lock_step, watched)
+    return Point.each(what, 0.5, seeds, stale_sizes, setup, lock_step, watched)
 
 
 def points(quick: bool) -> list[Point]:

@@ -139,7 +139,7 @@ def _bound(got: Measured, rule: Rule, band: int) -> Claim:
     parts = [ratios(got, s, rule, kind) - depth(s) - K for s in SETUPS for kind in KINDS]
     over = np.concatenate(parts)
     over = over[np.isfinite(over[:, 0])]
-    share, routed = (float(part) for part in (over <= band).mean(axis=0))
+    share, routed = (Span(high=band).share(part) for part in over.T)
     last = parts[-1][:, 0]
     return Claim(
         "Eq. 7",

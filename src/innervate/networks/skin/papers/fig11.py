@@ -136,7 +136,7 @@ def judge(got: Measured) -> Claims:
     middle = 1e3 * formulas.convergence_by_depth_s(DEPTH, K, BEACON_HZ)
     half = 1e3 * formulas.convergence_error_s(BEACON_HZ)
     setup_1 = 1e3 * formulas.convergence_s(BEACON_HZ, K)
-    inside = float((np.abs(found - middle) <= half).mean())
+    inside = Span(-half, half).share(found - middle)
     yield Claim(
         "11",
         f"{BEACON_HZ} Hz, k = {K}: total convergence of around 500 ms (the mean "

@@ -24,6 +24,7 @@ CAPTION = (
 )
 SETUP = "setup-1"
 BAND = 3  # periods, Eq. 5
+IN_BAND = Span(-BAND, BAND)
 BAR_K = (2, 3, 5, 8)
 INSIDE = Span(0.95, 1.0)  # share of the recoveries in the band
 DETECTION = Span(-1.0, 1.0)  # periods from k
@@ -132,9 +133,7 @@ def judge(got: Measured) -> Claims:
     sweep = grid(got.quick)
     for rule in RULES:
         yield _band(got, sweep, rule)
-    shares = {
-        k: float((np.abs(off_band(got, RULES[0], max(sweep.hz), k)) <= BAND).mean()) for k in BAR_K
-    }
+    shares = {k: IN_BAND.share(off_band(got, RULES[0], max(sweep.hz), k)) for k in BAR_K}
     yield Claim(
         "8a",
         "feasible at 250 Hz: at least 95 % inside the band for k = 2, 3, 5, 8 (asked for)",
@@ -167,7 +166,7 @@ _WHY = {
 
 def _band(got: Measured, sweep: Grid, rule: Rule) -> Claim:
     off = _pooled(got, rule)
-    share = int((np.abs(off) <= BAND).sum()) / len(off)
+    share = IN_BAND.share(off)
     counts = [got[case(*one).point(sweep.seeds)]["loops"] for one in _cells(sweep, rule)]
     loops = sum(count > 0 for some in counts for count in some)
     least, low, high, most = np.nanpercentile(off, [0, 5, 95, 100])

@@ -125,8 +125,8 @@ def _band(got: Measured, rule: Rule) -> Claim:
         setup: np.concatenate([converged(got, setup, k, rule) - k - ceil(h / 2) for k in KS])
         for setup, h in sorted(SETUPS.items())
     }
-    shares = {setup: float((np.abs(some) <= BAND).mean()) for setup, some in off.items()}
-    wider = min(float((np.abs(some) <= 3).mean()) for some in off.values())
+    shares = {setup: Span(-BAND, BAND).share(some) for setup, some in off.items()}
+    wider = min(Span(-3, 3).share(some) for some in off.values())
     fine = INSIDE.has(*shares.values())
     reason = "E25: recovery counts up round a loop before it finds the other interface"
     if rule.name == "feasible":
