@@ -7,6 +7,7 @@ from html import escape
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK
 from innervate.plot import theme
+from innervate.plot.charts import Bars, Panel, Steps
 from innervate.plot.svg import Drawing, clean
 
 LEVEL_CLASSES = {OK: "status", DEGRADED: "status warn", DOWN: "status bad", NO_DATA: "status none"}
@@ -103,6 +104,11 @@ def figure(drawing: Drawing, head: str, text: str = "") -> str:
     words = element("figcaption", text) if text else ""
     title = element("h3", head) if head else ""
     return f"<figure>\n{title}{drawing.render()}\n{words}</figure>\n"
+
+
+def panel(one: Panel | Steps | Bars) -> str:
+    """A figure that has its caption with it."""
+    return figure(one.drawing, one.head, one.text)
 
 
 def pictures(figures: Iterable[str], columns: str) -> str:

@@ -23,6 +23,7 @@ from innervate.plot.page import (
     film_controls,
     headline,
     keys,
+    panel,
     pictures,
     section,
     table,
@@ -169,7 +170,7 @@ def _charts(result: Any, summary: Mapping[str, Any], crossings: list[Crossing]) 
         mesh_charts.alarms(result.plan, crossings),
         mesh_charts.airtime(summary),
     ]
-    return section("How well it went", pictures([part for part in figures if part], "two"))
+    return section("How well it went", pictures([panel(one) for one in figures if one], "two"))
 
 
 def _crossings(result: Any, crossings: list[Crossing]) -> str:

@@ -6,9 +6,8 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from innervate.networks.radio.analysis import summary as radio
+from innervate.networks.radio.plot import charts as radio_charts
 from innervate.networks.radio.plot import scene as radio_scene
 from innervate.networks.radio.plot import slotted_report as radio_slotted_report
 from innervate.networks.radio.plot import timeline as radio_timeline
@@ -23,13 +22,20 @@ from innervate.networks.radio.plot.words import (
     time_words,
 )
 from innervate.networks.radio.scenario.words import warnings
-from innervate.plot import charts, svg, words
-from innervate.plot.page import details, element, figure, headline, pictures, section, table, tiles
+from innervate.plot import svg, words
+from innervate.plot.page import (
+    details,
+    element,
+    figure,
+    headline,
+    panel,
+    pictures,
+    section,
+    table,
+    tiles,
+)
 
 ROWS_MAX = 200
-MARKS_MAX = 8
-BINS = 60
-STEPS_MAX = 2000  # of a cumulative curve
 
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
@@ -223,83 +229,13 @@ def _listing(result: Any, shown: radio_scene.Scene) -> str:
 def _charts(result: Any, summary: Mapping[str, Any]) -> str:
     if not summary["delivered"]:
         return ""
-    figures = [_over_time(result, summary), _fairness(result, summary)]
-    if summary["delay_slots"]["p50"] is not None:
-        figures.insert(1, _delays(result, summary))
-    return section("How well it went", pictures(figures, "two"))
-
-
-def _over_time(result: Any, summary: Mapping[str, Any]) -> str:
-    """Throughput over time; in a disaster the packets delivered."""
-    slot = result.plan.params["slot_us"]
-    begin = radio.first_offer_us(result)
-    if summary["traffic"] == "disaster":
-        ends = (radio.successes(result)["end"] - begin) / slot
-        head = "Packets delivered over time"
-        x = charts.Axis(0.0, 1.02 * float(ends[-1]), "slots after the first start")
-        y = charts.Axis(0.0, 1.08 * len(ends))
-        times, counts = np.append(0.0, ends), np.arange(len(ends) + 1)
-        return figure(charts.step_chart(times, counts, x, y, (), head), head)
-    steps = radio.airtime_steps(result, BINS)
-    seconds = steps.time_us / 1e6
-    width = float(seconds[1] - seconds[0])
-    head = "The channel, filled with delivered packets"
-    share = 100.0 * steps.values
-    x = charts.Axis(float(seconds[0]), float(seconds[-1]) + width, "seconds")
-    y = charts.Axis(0.0, 1.08 * max(100.0, float(share.max())))
-    marks = [
-        charts.Mark(fault.at_us / 1e6, fault_words(fault))
-        for fault in result.plan.faults[:MARKS_MAX]
-        if x.low <= fault.at_us / 1e6 <= x.high
+    disaster = summary["traffic"] == "disaster"
+    shown = [
+        radio_charts.came(result) if disaster else radio_charts.filled(result),
+        radio_charts.delays(result, summary),
+        radio_charts.waits(result) if disaster else radio_charts.shares(result, summary),
     ]
-    text = f"In % of the time, in steps of {words.ms_words(1e3 * width)}."
-    return figure(charts.step_chart(seconds, share, x, y, marks, head), head, text)
-
-
-def _delays(result: Any, summary: Mapping[str, Any]) -> str:
-    """How many packets were delivered within which delay."""
-    found = np.sort(radio.delays(result))
-    shares = 100.0 * np.arange(1, len(found) + 1) / len(found)
-    every = max(1, len(found) // STEPS_MAX)
-    at = np.concatenate([[0.0], found[::every], found[-1:]])
-    shares = np.concatenate([[0.0], shares[::every], shares[-1:]])
-    delay = summary["delay_slots"]
-    marks = [
-        charts.Mark(delay[key], name)
-        for key, name in (("p50", "half"), ("p95", "95 %"), ("p99", "99 %"))
-    ]
-    # Quantiles that coincide get one mark: two labels would name the same line.
-    marks = [mark for i, mark in enumerate(marks) if i == 0 or mark.at > 1.001 * marks[i - 1].at]
-    x = charts.Axis(0.0, 1.15 * max(float(found[-1]), 1.0), "slots from offer to end of frame")
-    head = "Packets delivered within a delay, in %"
-    half, most, nearly = (slots_words(delay[key]) for key in ("p50", "p95", "p99"))
-    text = f"Half of them within {half}, 95 % within {most}, 99 % within {nearly}."
-    drawing = charts.step_chart(at, shares, x, charts.Axis(0.0, 105.0), marks, head)
-    return figure(drawing, head, text)
-
-
-def _fairness(result: Any, summary: Mapping[str, Any]) -> str:
-    """What each station got: packets, or in a disaster when it was served."""
-    steady, n = radio.settled(result), result.plan.stations
-    if summary["traffic"] == "disaster":
-        head = "When each station's packet was delivered"
-        who = radio.timed(result)["node"].tolist()
-        waits = dict(zip(who, radio.delays(result).tolist(), strict=True))
-        bars = [
-            charts.Bar(f"station {i}", waits.get(i, 0.0),
-                       slots_words(waits[i]) if i in waits else "never")
-            for i in range(n)
-        ]  # fmt: skip
-        text = "Slots from the offer to the end of the frame."
-        return figure(charts.bar_chart(bars, head), head, text)
-    head = "Packets delivered, station by station"
-    counts = np.bincount(steady["node"], minlength=n).tolist()
-    bars = [charts.Bar(f"station {i}", count, f"{count:,}") for i, count in enumerate(counts)]
-    drawing = charts.bar_chart(bars, head, sum(counts) / n if n > 1 else None)
-    text = f"Jain's index {summary['jain']:.4f}; 1 is even."
-    if summary["jain_round"] is not None:
-        text += f" Over one round of {n} turns: {summary['jain_round']:.3f}."
-    return figure(drawing, head, text)
+    return section("How well it went", pictures([panel(one) for one in shown if one], "two"))
 
 
 def _events(result: Any) -> str:

@@ -7,9 +7,9 @@ from typing import Any
 
 from innervate.networks.skin.plot import words as skin_words
 from innervate.networks.skin.plot.map import CELLS_MAX, shows_depth
-from innervate.networks.skin.plot.story import Panel, Story
+from innervate.networks.skin.plot.story import Story
 from innervate.plot import svg, words
-from innervate.plot.page import element, figure, headline, keys, pictures, section, table, tiles
+from innervate.plot.page import element, headline, keys, panel, pictures, section, table, tiles
 from innervate.plot.theme import SHADES
 
 SENTENCES_MAX = 3
@@ -121,11 +121,11 @@ def maps(story: Story) -> str:
     """The skin before, during and after the worst event, and what the colours mean."""
     panels = story.maps()
     columns = "four" if len(panels) > 1 and not story.sheet.wide else "two"
-    return pictures([_figure(panel) for panel in panels], columns) + keys(legend(story))
+    return pictures([panel(one) for one in panels], columns) + keys(legend(story))
 
 
 def _recovery(story: Story) -> str:
-    charts = [_figure(panel) for panel in (*story.zooms(), *story.overview())]
+    charts = [panel(one) for one in (*story.zooms(), *story.overview())]
     head = "The recovery" if story.hero is not None else "The skin"
     return section(head, maps(story) + pictures(charts, "two"))
 
@@ -141,17 +141,17 @@ def _touch(story: Story) -> str:
         force = story.plan.touch.force_mn / 1e3
         entries.insert(0, (_ramp("h"), f"0 to {force:g} N"))
         entries.append((_icon("touch", circle=True), "where the touch really is"))
-    shown = pictures([_figure(p) for p in images], "two" if story.sheet.wide else "three")
+    shown = pictures([panel(one) for one in images], "two" if story.sheet.wide else "three")
     return section(
         "Touch as the PC received it", element("p", text, "note") + shown + keys(entries)
     )
 
 
 def _traffic(story: Story) -> str:
-    panels: list[Panel | None] = [story.loads(), story.losses()]
+    panels = [story.loads(), story.losses()]
     return section(
         "Load and losses",
-        pictures([_figure(panel) for panel in panels if panel is not None], "two")
+        pictures([panel(one) for one in panels if one is not None], "two")
         + _latencies(story.summary["data"])
         + _commands(story.summary["commands"]),
     )
@@ -220,10 +220,6 @@ def _events(story: Story) -> str:
 
 def _ms(value: float | None) -> str:
     return "-" if value is None else words.ms_words(value)
-
-
-def _figure(panel: Panel) -> str:
-    return figure(panel.drawing, panel.head, panel.text)
 
 
 def legend(story: Story) -> list[tuple[svg.Drawing, str]]:
