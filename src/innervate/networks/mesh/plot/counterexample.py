@@ -6,17 +6,9 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from innervate.networks.skin.plot.counterexample import (
-    COLUMNS,
-    LINE,
-    PANEL,
-    TOP,
-    arrow,
-    disc,
-    wrapped,
-)
+from innervate.plot import counterexample
+from innervate.plot.counterexample import PANEL, arrow, disc
 from innervate.plot.svg import Drawing, Point
-from innervate.plot.theme import drawing_style
 
 if TYPE_CHECKING:
     from innervate.networks.mesh.verify.story import MeshStory
@@ -25,35 +17,21 @@ SPREAD = (70.0, 52.0)
 CENTRE = (PANEL[0] / 2, PANEL[1] / 2 + 8)
 SHIFT = 4.0  # arrows of tables and of frames run beside each other
 _STYLE = """
-.node{fill:var(--panel);stroke:var(--link);stroke-width:1.4}
-.actor{stroke:var(--accent);stroke-width:2.6}
 .gone{fill:none;stroke:var(--link);stroke-dasharray:3 3}
-.pc{fill:var(--ink)}
-.way{stroke:var(--link);stroke-width:2.4;fill:none;stroke-linecap:round}
 .sent{stroke:var(--accent);stroke-width:1.6;fill:none;stroke-linecap:round}
 .lost{stroke:var(--alarm);stroke-width:1.6;fill:none;stroke-dasharray:4 4;stroke-linecap:round}
-.ring{stroke:var(--alarm);stroke-width:3.2;fill:none;stroke-linecap:round}
 """
 
 
 def draw(story: MeshStory) -> Drawing:
     """A panel for every event; the sentences below."""
-    rows = -(-len(story.scenes) // COLUMNS)
-    texts = [part for i, s in enumerate(story.sentences, 1) for part in wrapped(f"{i}. {s}")]
-    high = TOP + rows * PANEL[1] + LINE * (len(texts) + 2)
-    drawing = Drawing(PANEL[0] * COLUMNS, high, f"Counterexample: {story.title}")
-    drawing.text((12, 22), story.title, "strong alarm")
-    for index in range(len(story.scenes)):
-        corner = (PANEL[0] * (index % COLUMNS), TOP + PANEL[1] * (index // COLUMNS))
-        drawing.place(_panel(story, index), corner)
-    for i, text in enumerate(texts):
-        drawing.text((12, TOP + rows * PANEL[1] + LINE * (i + 1)), text)
-    return drawing
+    events = range(len(story.scenes))
+    return counterexample.draw(story, events, lambda panel, index: _paint(panel, story, index))
 
 
 def save(story: MeshStory, path: Path) -> None:
     """Write the drawing to a file of its own."""
-    draw(story).save(path, drawing_style() + _STYLE)
+    draw(story).save(path, counterexample.look(_STYLE))
 
 
 def _places(nodes: int) -> list[Point]:
@@ -64,11 +42,10 @@ def _places(nodes: int) -> list[Point]:
     ]
 
 
-def _panel(story: MeshStory, index: int) -> Drawing:
+def _paint(panel: Drawing, story: MeshStory, index: int) -> None:
     """The network after one event: links, next hops to the recipient, the frame that went out."""
     scene, model = story.scenes[index], story.found.model
     places = _places(model.nodes)
-    panel = Drawing(PANEL[0], PANEL[1], f"after event {index + 1}")
     for a, b in model.links:
         panel.line(places[a], places[b], "cable")
     is_last = index == len(story.scenes) - 1
@@ -84,9 +61,7 @@ def _panel(story: MeshStory, index: int) -> Drawing:
         label = "x" if gone else str(node)
         disc(panel, place, label, node == story.dest and not gone, node == scene.actor)
         if gone:
-            panel.circle(place, 15.0, "gone")
-    panel.text((12, 18), f"after {index + 1}", "small")
-    return panel
+            panel.circle(place, counterexample.RADIUS, "gone")
 
 
 def _beside(start: Point, end: Point, shift: float) -> tuple[Point, Point]:

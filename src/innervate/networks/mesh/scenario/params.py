@@ -5,26 +5,14 @@ from __future__ import annotations
 from math import ceil
 from typing import Any
 
-from innervate.networks.mesh.protocol.constants import (
-    ALTERNATE,
-    EACH,
-    LIST,
-    LOUDEST,
-    MONITOR,
-    RANDOM,
-    SEARCH,
-    TABLE_FREE,
-    TABLES,
-    TREE,
-    WHOLE_GRAPH,
-)
+from innervate.networks.mesh.protocol import constants as w
 from innervate.networks.mesh.protocol.fields import NEIGHBOURS, PARAMS, POINTS, words
 from innervate.networks.mesh.scenario.plan import CLASSES
 from innervate.networks.mesh.scenario.profiles import REPORT_CDB, Profile
 
-DISCOVERY = {"list": LIST, "tree": TREE, "each": EACH}
-FAILOVER = {"random": RANDOM, "rssi": LOUDEST, "alternate": ALTERNATE, "search": SEARCH,
-            "graph": SEARCH}  # fmt: skip
+DISCOVERY = {"list": w.LIST, "tree": w.TREE, "each": w.EACH}
+FAILOVER = {"random": w.RANDOM, "rssi": w.LOUDEST, "alternate": w.ALTERNATE, "search": w.SEARCH,
+            "graph": w.SEARCH}  # fmt: skip
 STANDBY_PERIODS = 2.5  # without a request, until the first standby takes over
 FORGET_S = 30.0
 FORGET_TICKS_MAX = 255
@@ -63,7 +51,7 @@ def parameters(
     nodes: int,
     *,
     standbys: int = 0,
-    monitor: int = MONITOR,
+    monitor: int = w.MONITOR,
     min_rssi_dbm: int | None = None,
 ) -> dict[str, Any]:
     """The protocol's parameters without a fence.
@@ -90,7 +78,7 @@ def parameters(
         "places": min(width, NEIGHBOURS),
         "width": width,
         "mtu": chosen.value("mtu", profile.mtu),
-        "mode": WHOLE_GRAPH if graph else TABLES if settings.tables else TABLE_FREE,
+        "mode": w.WHOLE_GRAPH if graph else w.TABLES if settings.tables else w.TABLE_FREE,
         "discovery": DISCOVERY[settings.discovery],
         "failover": FAILOVER[settings.failover],
         "avoid_origin": int(settings.avoid == "origin"),
@@ -153,7 +141,7 @@ def _check(params: dict[str, Any]) -> None:
         raise ValueError(
             "period_max_s:protocol.period_max_s is below period_s; make it as long or longer"
         )
-    if params["collect_us"] <= params["listen_us"] and params["discovery"] != EACH:
+    if params["collect_us"] <= params["listen_us"] and params["discovery"] != w.EACH:
         listen_s = params["listen_us"] / 1e6
         raise ValueError(
             f"collect_s:protocol.collect_s must be more than listen_s, {listen_s:g} s: before that "

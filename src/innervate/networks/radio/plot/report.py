@@ -11,47 +11,22 @@ from innervate.networks.radio.plot import charts as radio_charts
 from innervate.networks.radio.plot import scene as radio_scene
 from innervate.networks.radio.plot import slotted_report as radio_slotted_report
 from innervate.networks.radio.plot import timeline as radio_timeline
-from innervate.networks.radio.plot.words import (
-    fault_words,
-    off_words,
-    protocol_words,
-    report_kind,
-    report_words,
-    robots,
-    slots_words,
-    time_words,
-)
+from innervate.networks.radio.plot import words as told
 from innervate.networks.radio.scenario.words import warnings
-from innervate.plot import svg, words
-from innervate.plot.page import (
-    details,
-    element,
-    figure,
-    headline,
-    panel,
-    pictures,
-    section,
-    table,
-    tiles,
-)
-
-ROWS_MAX = 200
+from innervate.plot import page, svg, words
+from innervate.plot.page import ROWS_MAX, details, figure, pictures, section, table, tiles
 
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
     """Headline, numbers and pictures of a radio run, as HTML."""
     if summary.get("level") == "slotted":
         return radio_slotted_report.body(result, summary)
-    return "\n".join(
-        part
-        for part in (
-            top(result, summary),
-            _timelines(result),
-            _charts(result, summary),
-            _events(result),
-            _reports(result, summary),
-        )
-        if part
+    return page.joined(
+        top(result, summary),
+        _timelines(result),
+        _charts(result, summary),
+        _events(result),
+        _reports(result, summary),
     )
 
 
@@ -69,17 +44,12 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
     switch = f"in {words.ms_words(params['ta_us'] / 1e3)}" if params["ta_us"] else "at once"
     over = (
         f"{summary['name']}: {words.number_of(summary['stations'], 'station')} on one radio "
-        f"channel, {protocol_words(summary['protocol'])}, packets of "
+        f"channel, {told.protocol_words(summary['protocol'])}, packets of "
         f"{params['packet_slots']} slots of {params['slot_us']} us, radios that switch {switch}; "
         f"seed {summary['seed']}"
     )
-    parts = [element("p", over, "over"), headline(summary["headline"])]
-    parts += [element("p", sentence) for sentence in sentences(result, summary)]
-    if "interrupted_at_s" in summary:
-        early = f"Ended early, at {summary['interrupted_at_s']:.3f} s of simulated time."
-        parts.append(element("p", early, "status bad"))
-    parts.append(tiles(_figures(result, summary)))
-    return "<header>\n" + "".join(parts) + "</header>"
+    said = page.paragraphs(sentences(result, summary)) + page.ended_early(summary)
+    return page.top(over, summary, said, tiles(_figures(result, summary)))
 
 
 def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
@@ -87,7 +57,7 @@ def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
     telling = {"saturated": _saturated, "disaster": _disaster}.get(summary["traffic"], _arrivals)
     return [
         telling(result, summary),
-        *off_words(summary),
+        *told.off_words(summary),
         *warnings(result.plan),
         *_collisions(result, summary),
         _silence(summary),
@@ -99,10 +69,10 @@ def _disaster(result: Any, summary: Mapping[str, Any]) -> str:
     starts = [times[0] for times in plan.arrivals if len(times)]
     spread_us = max(starts, default=0) - min(starts, default=0)
     how = f"within {words.ms_words(spread_us / 1e3)}" if spread_us else "at once"
-    begin = f"{robots(offered)} started {how}" if offered > 1 else "1 robot started"
+    begin = f"{told.robots(offered)} started {how}" if offered > 1 else "1 robot started"
     if summary["duration_slots"] is None:
         return f"{begin}; no packet was delivered in {summary['duration_s']:g} s."
-    took = time_words(summary["duration_slots"], plan.params["slot_us"])
+    took = told.time_words(summary["duration_slots"], plan.params["slot_us"])
     if summary["delivered"] == offered:
         return f"{begin}; every packet was delivered {took} later."
     missing = offered - summary["delivered"]
@@ -111,7 +81,7 @@ def _disaster(result: Any, summary: Mapping[str, Any]) -> str:
 
 
 def _saturated(result: Any, summary: Mapping[str, Any]) -> str:
-    begin = f"{robots(summary['stations'])} always had something to send"
+    begin = f"{told.robots(summary['stations'])} always had something to send"
     if summary["throughput"] is None:
         return f"{begin}; no packet was delivered in {result.ended_us / 1e6:g} s."
     index = summary["jain"]
@@ -122,13 +92,13 @@ def _saturated(result: Any, summary: Mapping[str, Any]) -> str:
 
 def _arrivals(result: Any, summary: Mapping[str, Any]) -> str:
     expected = summary["offered"] - summary["abandoned"]
-    begin = f"{robots(summary['stations'])} had {expected:,} packets to send"
+    begin = f"{told.robots(summary['stations'])} had {expected:,} packets to send"
     if not summary["delivered"]:
         return f"{begin}; none was delivered."
     share = words.share_words(summary["delivered"] / expected)
     if summary["delay_slots"]["p50"] is None:
         return f"{begin}; {share} of them were delivered."
-    half = time_words(summary["delay_slots"]["p50"], result.plan.params["slot_us"])
+    half = told.time_words(summary["delay_slots"]["p50"], result.plan.params["slot_us"])
     return f"{begin}; {share} of them were delivered, half within {half}."
 
 
@@ -161,16 +131,13 @@ def _figures(result: Any, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         found.append((share, "of the time filled with delivered packets"))
     delay = summary["delay_slots"]
     if delay["p50"] is not None:
-        found.append((slots_words(delay["p50"]),
+        found.append((told.slots_words(delay["p50"]),
                       f"median delay, {words.ms_words(delay['p50'] * slot / 1e3)}"))  # fmt: skip
-        found.append((slots_words(delay["p99"]), "99 % were delivered within that"))
+        found.append((told.slots_words(delay["p99"]), "99 % were delivered within that"))
     if summary["jain"] is not None:
         found.append((f"{summary['jain']:.3f}", "Jain's index of fairness, 1 is even"))
     found.append((f"{summary['collisions']:,}", "collisions"))
-    took = f"{summary['wall_s']:.2g} s" if summary["wall_s"] >= 0.01 else "10 ms"
-    count = words.count_words(summary["events"])
-    found.append((took, f"to simulate {result.ended_us / 1e6:.4g} s, {count} events"))
-    return found
+    return [*found, page.took(summary, result.ended_us / 1e6)]
 
 
 def on_air(result: Any) -> str:
@@ -213,17 +180,15 @@ def _listing(result: Any, shown: radio_scene.Scene) -> str:
     rows = result.rows[(result.rows["time"] >= low) & (result.rows["time"] < high)]
     protocol = result.plan.protocol
     for row in rows[:ROWS_MAX]:
-        what = report_words(protocol, int(row["code"]), int(row["a"]), int(row["b"]))
+        what = told.report_words(protocol, int(row["code"]), int(row["a"]), int(row["b"]))
         lines.append((int(row["time"]), int(row["node"]), what))
     lines.sort(key=lambda line: line[:2])
     slot = shown.slot_us
     cells = [
         (f"{(at - origin) / 1e3:.3f}", f"{(at - origin) / slot:.2f}", str(node), svg.clean(what))
-        for at, node, what in lines[:ROWS_MAX]
+        for at, node, what in lines
     ]
-    more = len(lines) - len(cells)
-    note = element("p", f"And {more:,} more.", "note") if more > 0 else ""
-    return table(("ms", "slots", "station", "what"), cells) + note
+    return page.beginning(("ms", "slots", "station", "what"), cells)
 
 
 def _charts(result: Any, summary: Mapping[str, Any]) -> str:
@@ -235,25 +200,21 @@ def _charts(result: Any, summary: Mapping[str, Any]) -> str:
         radio_charts.delays(result, summary),
         radio_charts.waits(result) if disaster else radio_charts.shares(result, summary),
     ]
-    return section("How well it went", pictures([panel(one) for one in shown if one], "two"))
+    return section("How well it went", pictures([page.panel(one) for one in shown if one], "two"))
 
 
 def _events(result: Any) -> str:
     """Events of the scenario."""
     faults = result.plan.faults
-    rows = [(f"{f.at_us / 1e6:.3f} s", svg.clean(fault_words(f))) for f in faults[:ROWS_MAX]]
-    if not rows:
-        return ""
-    more = len(faults) - len(rows)
-    note = element("p", f"And {more:,} more.", "note") if more > 0 else ""
-    return section("Events", table(("at", "what"), rows) + note)
+    rows = [(f"{f.at_us / 1e6:.3f} s", svg.clean(told.fault_words(f))) for f in faults]
+    return section("Events", page.beginning(("at", "what"), rows) if rows else "")
 
 
 def _reports(result: Any, summary: Mapping[str, Any]) -> str:
     """How often stations reported what, and what became of frames and packets."""
     rows = result.rows
     kinds = Counter(
-        report_kind(code, b)
+        told.report_kind(code, b)
         for code, b in zip(rows["code"].tolist(), rows["b"].tolist(), strict=True)
     )
     for key, what in (

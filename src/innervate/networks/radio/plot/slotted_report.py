@@ -10,8 +10,8 @@ import numpy as np
 from innervate.networks.radio.plot.charts import stations
 from innervate.networks.radio.plot.words import robots
 from innervate.networks.radio.scenario.words import warnings
-from innervate.plot import charts, words
-from innervate.plot.page import element, headline, panel, pictures, section, tiles
+from innervate.plot import charts, page, words
+from innervate.plot.page import panel, pictures, section, tiles
 
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
@@ -43,10 +43,8 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         (f"{summary['jain']:.3f}", "fairness (Jain), 1 is even"),
         (f"{summary['collisions']:,}", "collisions"),
     ]
-    parts = [element("p", over, "over"), headline(summary["headline"]), element("p", head)]
-    parts += [element("p", warning) for warning in warnings(result.plan)]
-    parts.append(tiles(found))
-    return "<header>\n" + "".join(parts) + "</header>"
+    said = page.paragraphs([head, *warnings(result.plan)])
+    return page.top(over, summary, said, tiles(found))
 
 
 def charts_of(result: Any, summary: Mapping[str, Any]) -> str:

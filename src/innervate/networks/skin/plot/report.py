@@ -8,29 +8,18 @@ from typing import Any
 from innervate.networks.skin.plot import words as skin_words
 from innervate.networks.skin.plot.map import CELLS_MAX, shows_depth
 from innervate.networks.skin.plot.story import Story
-from innervate.plot import svg, words
-from innervate.plot.page import element, headline, keys, panel, pictures, section, table, tiles
+from innervate.plot import page, svg, words
+from innervate.plot.page import ROWS_MAX, element, keys, panel, pictures, section, table, tiles
 from innervate.plot.theme import SHADES
 
 SENTENCES_MAX = 3
-ROWS_MAX = 200
 BROKEN_MAX = 12
 
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
     """Headline, status, numbers and pictures of a skin's run, as HTML."""
     story = Story(result, summary)
-    return "\n".join(
-        part
-        for part in (
-            top(story),
-            _recovery(story),
-            _touch(story),
-            _traffic(story),
-            _events(story),
-        )
-        if part
-    )
+    return page.joined(top(story), _recovery(story), _touch(story), _traffic(story), _events(story))
 
 
 def notebook(result: Any, summary: Mapping[str, Any]) -> str:
@@ -48,14 +37,9 @@ def top(story: Story) -> str:
         f"{words.number_of(summary['depth_max'], 'hop')} deep; {summary['duration_s']:g} s, "
         f"seed {summary['seed']}"
     )
-    parts = [element("p", over, "over"), headline(summary["headline"])]
-    parts += [element("p", f"Warning: {text}.", "status bad") for text in summary["warnings"]]
-    parts += [element("p", sentence) for sentence in _sentences(story)]
-    if "interrupted_at_s" in summary:
-        early = f"Ended early, at {summary['interrupted_at_s']:.3f} s of simulated time."
-        parts.append(element("p", early, "status bad"))
-    parts += [_broken(summary), tiles(_figures(story))]
-    return "<header>\n" + "".join(parts) + "</header>"
+    warned = page.paragraphs((f"Warning: {text}." for text in summary["warnings"]), "status bad")
+    said = page.paragraphs(_sentences(story)) + page.ended_early(summary)
+    return page.top(over, summary, warned, said, _broken(summary), tiles(_figures(story)))
 
 
 def _sentences(story: Story) -> list[str]:
@@ -110,11 +94,8 @@ def _figures(story: Story) -> list[tuple[str, str]]:
         else "forwarding loops"
     )
     found.append((f"{loops['episodes']:,}", note))
-    took = f"{summary['wall_s']:.2g} s" if summary["wall_s"] >= 0.01 else "10 ms"
-    count = words.count_words(summary["events"])
     done_s = summary.get("interrupted_at_s", summary["duration_s"])
-    found.append((took, f"to simulate {done_s:.4g} s, {count} events"))
-    return found
+    return [*found, page.took(summary, done_s)]
 
 
 def maps(story: Story) -> str:
@@ -201,7 +182,7 @@ def _times(latency: Mapping[str, Any]) -> list[str]:
 
 def _events(story: Story) -> str:
     rows = []
-    for incident in story.incidents[:ROWS_MAX]:
+    for incident in story.incidents:
         recovery = incident.recovery
         times = [_ms(recovery[key]) for key in ("detected_ms", "others_ms", "converged_ms")]
         if recovery["others_ms"] == 0:
@@ -213,9 +194,7 @@ def _events(story: Story) -> str:
         return ""
     head = ("at", "what", "cells behind it", "cut off", "noticed after",
             "all others had a way after", "last change after")  # fmt: skip
-    more = len(story.incidents) - len(rows)
-    note = element("p", f"And {more} more, in summary.json.", "note") if more > 0 else ""
-    return section("Events", table(head, rows) + note)
+    return section("Events", page.beginning(head, rows, ", in summary.json"))
 
 
 def _ms(value: float | None) -> str:

@@ -1,0 +1,84 @@
+"""A counterexample as pictures: a panel for each event that matters, sentences below."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from innervate.plot.svg import Drawing, Point
+from innervate.plot.theme import drawing_style
+
+PANEL = (210.0, 190.0)
+COLUMNS = 4
+RADIUS = 15.0
+TOP = 34.0
+LINE = 15.0
+LETTERS = 118
+_STYLE = """
+.node{fill:var(--panel);stroke:var(--link);stroke-width:1.4}
+.actor{stroke:var(--accent);stroke-width:2.6}
+.pc{fill:var(--ink)}
+.way{stroke:var(--link);stroke-width:2.4;fill:none;stroke-linecap:round}
+.ring{stroke:var(--alarm);stroke-width:3.2;fill:none;stroke-linecap:round}
+"""
+
+
+def draw(story: Any, shown: Sequence[int], paint: Callable[[Drawing, int], None]) -> Drawing:
+    """All of a story.
+
+    Args:
+        story: with a title and sentences.
+        shown: the events that have a panel.
+        paint: draws the network after an event on its panel.
+    """
+    rows = -(-len(shown) // COLUMNS)
+    texts = [part for i, s in enumerate(story.sentences, 1) for part in wrapped(f"{i}. {s}")]
+    below = TOP + rows * PANEL[1]
+    drawing = Drawing(
+        PANEL[0] * COLUMNS, below + LINE * (len(texts) + 2), f"Counterexample: {story.title}"
+    )
+    drawing.text((12, 22), story.title, "strong alarm")
+    for place, index in enumerate(shown):
+        panel = Drawing(*PANEL, f"after event {index + 1}")
+        paint(panel, index)
+        panel.text((12, 18), f"after {index + 1}", "small")
+        drawing.place(panel, (PANEL[0] * (place % COLUMNS), TOP + PANEL[1] * (place // COLUMNS)))
+    for i, text in enumerate(texts):
+        drawing.text((12, below + LINE * (i + 1)), text)
+    return drawing
+
+
+def look(more: str = "") -> str:
+    """The style sheet of such a drawing; `more` is a network's own."""
+    return drawing_style() + _STYLE + more
+
+
+def wrapped(text: str) -> list[str]:
+    """A sentence in lines."""
+    lines, line = [], ""
+    for word in text.split():
+        if len(line) + len(word) > LETTERS:
+            lines.append(line)
+            line = "    " + word
+        else:
+            line = f"{line} {word}".strip() if not line.startswith("    ") else f"{line} {word}"
+    return [*lines, line]
+
+
+def disc(panel: Drawing, place: Point, label: str, is_end: bool, is_actor: bool) -> None:
+    """A node; `is_end` where ways lead to it."""
+    panel.circle(place, RADIUS, "pc" if is_end else f"node{' actor' if is_actor else ''}")
+    panel.text((place[0], place[1] + 4), label, "portname" if is_end else "small", "middle")
+
+
+def arrow(panel: Drawing, start: Point, end: Point, kind: str) -> None:
+    """From the rim of one node to the rim of the other."""
+    angle = math.atan2(end[1] - start[1], end[0] - start[0])
+    x, y = math.cos(angle), math.sin(angle)
+    tail = (start[0] + x * RADIUS, start[1] + y * RADIUS)
+    tip = (end[0] - x * (RADIUS + 2), end[1] - y * (RADIUS + 2))
+    panel.line(tail, tip, kind)
+    for side in (2.6, -2.6):
+        barb = (tip[0] + 9 * math.cos(angle + side), tip[1] + 9 * math.sin(angle + side))
+        panel.line(tip, barb, kind)
