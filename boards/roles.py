@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from innervate.networks.mesh import frames as mesh
-from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import csma_fields
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.radio import frames as radio
@@ -51,7 +51,7 @@ def _wire(fields: Any) -> tuple[tuple[str, Any], ...]:
 
 def _mesh_kinds() -> Kinds:
     packet = (*_wire(mesh.COMMON), *COUNTED.items())
-    return {mesh_words.ACK: _wire(mesh.HOP_ACK), **dict.fromkeys(mesh.FIELDS, packet)}
+    return {mesh_const.ACK: _wire(mesh.HOP_ACK), **dict.fromkeys(mesh.FIELDS, packet)}
 
 
 # A frame as it is sent.

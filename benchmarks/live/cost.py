@@ -17,7 +17,7 @@ from innervate.dialect import plain
 from innervate.live.keys import Sealer
 from innervate.live.state import State
 from innervate.networks.mesh import frames as mesh
-from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import fields as mesh_fields
 
 REPEATS = 5
@@ -83,7 +83,7 @@ def main():
             f"{max(sizes):.1f} MiB, loaded of {', '.join(HEAVY)}: {heavy[0] or 'none'}"
         )
     frame = plain.make("Frame", mesh_fields.FRAME)()
-    frame.kind, frame.length, frame.origin, frame.dest = mesh_words.DATA, PAYLOAD, 1, 2
+    frame.kind, frame.length, frame.origin, frame.dest = mesh_const.DATA, PAYLOAD, 1, 2
     data = mesh.encode(frame)
     here, there = (Sealer("mesh", i, {1: bytes(32)}, 1, State(None)) for i in (0, 1))
     sealed_frames = [here.close(data) for _ in range(args.frames)]

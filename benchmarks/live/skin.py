@@ -16,7 +16,7 @@ from pathlib import Path
 
 from innervate import scenario as scenarios
 from innervate.live import status
-from innervate.live.up import Network
+from innervate.live.up import Processes
 from innervate.networks.skin.export.recovery import recoveries
 
 AFTER_S = 2.5
@@ -81,7 +81,7 @@ async def hurt(network, runs):
 async def captured(cables, k, runs, folder):
     """What a capture of a network that was hurt says."""
     told = {**SCENARIO, "protocol": {**SCENARIO["protocol"], "k": k}}
-    network = Network(scenarios.plan(scenarios.from_dict(told)), folder, cables)
+    network = Processes(scenarios.plan(scenarios.from_dict(told)), folder, cables)
     out = folder / "skin.pcapng"
     try:
         await network.up()

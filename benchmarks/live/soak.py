@@ -21,7 +21,7 @@ from benchmarks.live.shapes import grid
 from benchmarks.live.sides import cpu_s, memory_mib
 from innervate import scenario as scenarios
 from innervate.live import status
-from innervate.live.up import Network
+from innervate.live.up import Processes
 
 SENDERS = 2  # per node: each waits for its receipt
 PAUSE_S = 0.1  # between a sender's messages: all nodes together take half a core
@@ -187,7 +187,7 @@ async def soaked(seconds, seed, folder):
         "kind": "mesh", "nodes": shape.count, "radio": {"profile": "ip"},
         "link": [{"a": a, "b": b} for a, b in shape.links],
     }))  # fmt: skip
-    network = Network(plan, folder, "udp", key_table(1))
+    network = Processes(plan, folder, "udp", key_table(1))
     await network.up()
     soak = Soak(network, seed)
     try:

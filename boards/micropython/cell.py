@@ -15,7 +15,7 @@ from innervate.wire import cobs
 
 MASK30 = (1 << 30) - 1  # the protocol's clock; ticks_us wraps there, or at a multiple of it
 HALF30 = 1 << 29
-SEND = 1  # actions and flags: protocol/outbox.py
+SEND = 1  # actions and flags: dialect/outbox.py
 SET_TIMER = 2
 DELIVER = 3
 REPORT = 4

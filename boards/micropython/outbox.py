@@ -1,6 +1,6 @@
 """An outbox with few frames: made when a handler first asks for one, used again after `clear`.
 
-It is what protocol/outbox.py describes; a list of frames as long as that of actions would take
+It is what dialect/outbox.py describes; a list of frames as long as that of actions would take
 most of a small board's memory.
 """
 

@@ -142,7 +142,7 @@ class Microbit:
 
 
 # Commands of the PC: they do not fit beside the rest, and the calls that are played have none.
-LEFT_OUT = ("hand_down", "take_first")
+LEFT_OUT = ("hand_down", "accept_command")
 
 
 class Names:

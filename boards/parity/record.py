@@ -93,7 +93,7 @@ def flat(layout: Iterable[tuple[str, Any]]) -> tuple[Any, ...]:
     return tuple(part for pair in layout for part in pair)
 
 
-def words(record: Any, layout: list[tuple[str, Any]]) -> list[int]:
+def values_of(record: Any, layout: list[tuple[str, Any]]) -> list[int]:
     """A record's fields in such an order."""
     found: list[int] = []
     for name, many in layout:
@@ -156,13 +156,13 @@ class Recorder:
         row = [handler, now]
         if handler == replay.START:
             layout = [(name, many) for name, many, *_ in self.transcript.role.params]
-            self.transcript.params = words(params, layout)
+            self.transcript.params = values_of(params, layout)
             changes = list(self._changes(state))
             row += [len(changes), *(word for change in changes for word in change), *given]
         elif handler == replay.FRAME:
-            row += [given[0], *words(given[1], self.heard)]
+            row += [given[0], *values_of(given[1], self.heard)]
         elif handler == replay.INPUT:
-            row += [given[0], *words(given[1], self.given)]
+            row += [given[0], *values_of(given[1], self.given)]
         else:
             row += given
         self.transcript.calls.append([int(word) for word in row])
@@ -186,7 +186,7 @@ class Recorder:
                     made = self.around(name, getattr(watched.module, name))
                     stack.enter_context(patch(watched.module, name, made))
             if watched.module is skin:
-                stack.enter_context(patch(skin_stack, "hear", self.hear))
+                stack.enter_context(patch(skin_stack, "on_frame", self.hear))
             result = simulator.simulate(plan_of(watched), plain=True)
         self.transcript.fingerprint = result.fingerprint
         return self.transcript
@@ -204,7 +204,7 @@ class Recorder:
                     yield index, i if is_array else -1, other
 
 
-HEAR = skin_stack.hear
+HEAR = skin_stack.on_frame
 
 
 def plan_of(watched: Watched) -> Any:

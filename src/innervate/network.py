@@ -69,6 +69,9 @@ PARTS = {
     "live_words": "module: lines, ports, heard: what its running nodes say, for people",
     "live_view": "class: web.live_view.LiveView, its running nodes on the page",
     "recovery": "module: recoveries, line, NOTHING: how it healed, from a capture",
+    "verify": "module: explorations, notice, MUTANTS, hunt: what `verify` does (verify/cases.py)",
+    "counterexample": "(story, path): the picture of how something breaks",
+    "random": "module: SHARE, drawn, smaller, trouble: networks from a number (running/fuzz.py)",
     "papers": "module: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up",
 }
 DEFAULTS = {
@@ -88,6 +91,7 @@ DEFAULTS = {
     "fault_words": "innervate.scenario.cables:fault_words",
     "actions": "innervate.scenario.actions.cables:ACTIONS",
     "simulation": "innervate.sim.cables.declared:simulation",
+    "verify": "innervate.verify.declared",
     "interface_words": "innervate.network:NO_WORDS",
     "unfit": "innervate.network:UNFIT",
     "without_events": "innervate.network:nothing_against_it",

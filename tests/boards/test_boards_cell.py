@@ -20,7 +20,7 @@ from innervate.live.serial_cables import Cables
 from innervate.networks.skin.live.node import SinkNode
 from innervate.networks.skin.live.parameters import skin_parameters
 from innervate.networks.skin.live.stack import SinkStack
-from innervate.networks.skin.protocol import constants as skin_words
+from innervate.networks.skin.protocol import constants as skin_const
 from tests.live.net import until
 
 FAR_SAMPLES = 5
@@ -141,6 +141,6 @@ def test_what_the_boards_files_repeat_is_the_protocols():
         for node in ast.parse(path.read_text(encoding="utf-8")).body:
             if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant):
                 (name,) = (target.id for target in node.targets)
-                for module in (outbox, skin_words):
+                for module in (outbox, skin_const):
                     assert getattr(module, name, node.value.value) == node.value.value, name
     assert replay.fold(77, 0) == rng.step(77)

@@ -15,7 +15,7 @@ from innervate.live import status
 from tests.browser.servers import WAIT_MS, click, expect, serving
 
 pytestmark = pytest.mark.slow
-RING = Path(__file__).parents[1] / "live" / "ring_net"
+RING = Path(__file__).parents[1] / "sim" / "cables" / "tokenring"
 RADIO = """
 kind = "radio"
 duration_s = 60
@@ -144,16 +144,17 @@ def test_what_was_not_clicked_is_seen_and_that_nobody_answers_is_said(look, shor
 
 def test_a_network_that_only_declares_itself_is_drawn_by_its_fields(look, short, monkeypatch):
     monkeypatch.setenv("INNERVATE_NETWORKS", str(RING))
-    with up('kind = "ring"\nhold_us = 20_000', short, monkeypatch), serving("live") as address:
+    slow = 'kind = "tokenring"\nhold_us = 20_000\nlost_us = 500_000'
+    with up(slow, short, monkeypatch), serving("live") as address:
         page = look(address)
         expect(page.locator("#headline")).to_have_text("All 4 nodes answer.")
-        expect(page.locator("#colour option")).to_have_text(["lap", "passed", "load"])
+        expect(page.locator("#colour option")).to_have_text(["lap", "passed", "made_at"])
         click(page, "n1")
         expect(page.locator("#selected-facts")).to_contain_text("cut off")
         expect(page.locator("#level")).to_have_text("! degraded")
         click(page, "n1")
         expect(page.locator("#selected-facts")).to_have_text(
-            re.compile(r"lap \d+ number, passed \d+ tokens, load 0 raw")
+            re.compile(r"lap \d+ number, passed \d+ tokens, made_at 0 us")
         )
         expect(page.locator("#unconnected .more")).to_have_text("of 4 nodes")
 

@@ -307,3 +307,55 @@ BAD = {
 @pytest.mark.parametrize("source", BAD.values(), ids=BAD.keys())
 def test_what_the_dialect_has_not(source):
     assert broken_rules(source)
+
+
+# What a caller's record or outbox is changed by, besides assignments to fields.
+EFFECTS = {"draw", "report", "set_timer", "send", "deliver"}
+PREDICATES = ("is_", "has_", "was_", "in_", "can_", "trusts_")
+
+
+def changes(function):
+    """1 if a function itself changes a record, draws, or puts something into the outbox."""
+    for node in ast.walk(function):
+        targets = node.targets if isinstance(node, ast.Assign) else []
+        targets = [node.target] if isinstance(node, ast.AugAssign) else targets
+        if any(not isinstance(target, ast.Name) for target in targets):
+            return True
+        if isinstance(node, ast.Call) and called(node) in EFFECTS:
+            return True
+    return False
+
+
+def called(call):
+    return call.func.id if isinstance(call.func, ast.Name) else call.func.attr
+
+
+def changing(functions):
+    """Names of those that change something, themselves or by what they call."""
+    found = {name for name, function in functions.items() if changes(function)}
+    calls = {
+        name: {called(node) for node in ast.walk(function) if isinstance(node, ast.Call)}
+        for name, function in functions.items()
+    }
+    while more := {name for name in calls if name not in found and calls[name] & found}:
+        found |= more
+    return found
+
+
+@pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: folder.parent.name)
+def test_what_is_named_as_a_question_changes_nothing(folder):
+    sources = [path for path in dialect_sources() if path.is_relative_to(folder)]
+    functions = {
+        function.name: function
+        for path in sources
+        for function in functions_of(ast.parse(path.read_text()))
+    }
+    assert [name for name in sorted(changing(functions)) if name.startswith(PREDICATES)] == []
+
+
+def test_a_change_is_found_behind_a_call():
+    source = "def set_it(r):\n    r.x = 1\n"
+    source += "def is_it(r):\n    return set_it(r)\n"
+    source += "def is_so(r):\n    x = r.x"
+    functions = {function.name: function for function in functions_of(ast.parse(source))}
+    assert changing(functions) == {"set_it", "is_it"}

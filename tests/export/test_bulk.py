@@ -12,7 +12,7 @@ from innervate.networks.mesh.export import capture as mesh_capture
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.radio import frames as radio
 from innervate.networks.radio.export import capture as radio_capture
-from innervate.networks.radio.protocol import constants as radio_words
+from innervate.networks.radio.protocol import constants as radio_const
 from innervate.networks.radio.protocol import fields as radio_fields
 from innervate.networks.skin import frames as skin
 from innervate.networks.skin.export import capture as skin_capture
@@ -56,9 +56,9 @@ def as_object(declaration, row):
 def test_fixed_frames(wire, declaration, many):
     kinds = [kind for kind, _name, _fields in wire.LAYOUTS]
     if wire is radio:
-        kinds.append(radio_words.CRR)
+        kinds.append(radio_const.CRR)
     rows = filled(declaration, wire.LAYOUTS, kinds)
-    rows["slots" if wire is radio else "dist"][rows["kind"] == radio_words.CRR] = 1
+    rows["slots" if wire is radio else "dist"][rows["kind"] == radio_const.CRR] = 1
     found = many(rows)
     assert found == [wire.encode(as_object(declaration, row)) for row in rows]
     assert len({len(data) for data in found}) > 1

@@ -9,10 +9,10 @@ from innervate.export import dissector, pcapng
 from innervate.network import networks
 from innervate.networks.mesh import frames as mesh
 from innervate.networks.mesh import payloads as mesh_payloads
-from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.radio import frames as radio
-from innervate.networks.radio.protocol import constants as radio_words
+from innervate.networks.radio.protocol import constants as radio_const
 from innervate.networks.radio.protocol import fields as radio_fields
 from innervate.networks.skin import frames as skin
 from innervate.networks.skin.protocol import fields as skin_fields
@@ -111,7 +111,7 @@ def radio_frames():
         record = plain.make("Frame", radio_fields.FRAME)()
         expected = set_all(record, fields, f"innervate.radio.{name}")
         record.kind = kind
-        data = b"packets" if kind == radio_words.DATA else b""
+        data = b"packets" if kind == radio_const.DATA else b""
         yield radio.encode(record, data), expected | {"innervate.radio.kind": [str(kind)]}
     yield bytes((radio.CRR_BYTE,)), {}
 
@@ -129,11 +129,11 @@ def mesh_record(kind, flags, path, body):
 
 
 def mesh_frames():
-    around = (0, mesh_words.SOURCE_ROUTE, mesh_words.DETOURED)
+    around = (0, mesh_const.SOURCE_ROUTE, mesh_const.DETOURED)
     for i, (kind, name, fields) in enumerate(mesh_payloads.LAYOUTS * EACH):
         payload = Payload(fields, f"innervate.mesh.{dissector.abbreviation(name)}")
         flags, body, more = around[i // len(mesh_payloads.LAYOUTS) % 3], bytes(payload.data), {}
-        if flags == mesh_words.SOURCE_ROUTE:
+        if flags == mesh_const.SOURCE_ROUTE:
             body, more = b"\x02\x07\xc9" + body, {"innervate.mesh.source_route": ["7", "201"]}
         elif flags and kind in mesh_payloads.SIZES:
             body, more = body + b"\x05\x06\x02", {"innervate.mesh.failed": ["5", "6"]}
@@ -144,8 +144,8 @@ def mesh_frames():
         yield mesh.encode(record), expected | payload.expected | more
     record = plain.make("Frame", mesh_fields.FRAME)()
     expected = set_all(record, mesh.HOP_ACK, "innervate.mesh.ack")
-    record.kind = mesh_words.ACK
-    yield mesh.encode(record), expected | {"innervate.mesh.kind": [str(mesh_words.ACK)]}
+    record.kind = mesh_const.ACK
+    yield mesh.encode(record), expected | {"innervate.mesh.kind": [str(mesh_const.ACK)]}
 
 
 FRAMES = {"skin": skin_frames, "mesh": mesh_frames, "radio": radio_frames}
@@ -171,7 +171,7 @@ def test_every_type_is_found_by_its_name(kind, tmp_path, tshark):
     capture = capture_of(tmp_path / "all.pcapng", kind, [data for data, _ in made])
     layouts = {"skin": skin, "mesh": mesh_payloads, "radio": radio}[kind].LAYOUTS
     known = {str(number): dissector.abbreviation(name) for number, name, _fields in layouts}
-    known |= {str(mesh_words.ACK): "ack"} if kind == "mesh" else {}
+    known |= {str(mesh_const.ACK): "ack"} if kind == "mesh" else {}
     for number, name in known.items():
         lines = tshark(capture, "-Y", f"innervate.{kind}.{name}", "-T", "fields", "-e",
                        f"innervate.{kind}.kind")  # fmt: skip
@@ -202,9 +202,9 @@ def test_the_list_of_packets_says_who_sends_what_to_whom(tmp_path, tshark):
     assert sent == ("c4 E", "c5 W", "beacon: dist 3, sq 12, load 0, size 0, parent 0")
     assert came == ("c5 W", "c4 E", sent[2])
     report = plain.make("Frame", radio_fields.FRAME)()
-    report.kind, report.window = radio_words.REPORT, 4
+    report.kind, report.window = radio_const.REPORT, 4
     data = plain.make("Frame", radio_fields.FRAME)()
-    data.kind, data.source = radio_words.DATA, 7
+    data.kind, data.source = radio_const.DATA, 7
     blocks = [
         pcapng.section(),
         pcapng.interface(networks()["radio"].link_type, "station 2", "station 2"),
@@ -216,7 +216,7 @@ def test_the_list_of_packets_says_who_sends_what_to_whom(tmp_path, tshark):
     assert sent[:2] == ("station 2", "all")
     assert "window 4" in sent[2]
     assert came[:2] == ("station 7", "all")
-    alarm, _ = mesh_record(mesh_words.ALARM, 0, [5], bytes([12] + [0] * 17))
+    alarm, _ = mesh_record(mesh_const.ALARM, 0, [5], bytes([12] + [0] * 17))
     alarm.link_src, alarm.link_dst, alarm.origin, alarm.dest, alarm.seq = 3, 255, 5, 254, 77
     capture = capture_of(tmp_path / "mesh.pcapng", "mesh", [mesh.encode(alarm)])
     ((source, to, info),) = columns(tshark, capture)

@@ -8,10 +8,10 @@ from innervate.dialect import plain
 from innervate.export import fitting, links, measure, pcapng
 from innervate.export.errors import ExportError
 from innervate.networks.mesh import frames as mesh
-from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.skin import frames as skin
-from innervate.networks.skin.protocol import constants as skin_words
+from innervate.networks.skin.protocol import constants as skin_const
 from innervate.networks.skin.protocol import fields as skin_fields
 
 MS = 1_000_000
@@ -19,13 +19,13 @@ MS = 1_000_000
 
 def beacon(dist=3):
     frame = plain.make("Frame", skin_fields.FRAME)()
-    frame.kind, frame.dist = skin_words.BEACON, dist
+    frame.kind, frame.dist = skin_const.BEACON, dist
     return skin.encode(frame)
 
 
 def sample(seq, cell=0):
     frame = plain.make("Frame", skin_fields.FRAME)()
-    frame.kind, frame.seq, frame.cell = skin_words.DATA, seq, cell
+    frame.kind, frame.seq, frame.cell = skin_const.DATA, seq, cell
     return skin.encode(frame)
 
 
@@ -66,7 +66,7 @@ def test_what_is_lost_on_a_live_cable_is_counted_though_beacons_are_alike(lost, 
 
 def test_on_the_air_a_frame_sent_again_is_the_newest(tmp_path):
     frame = plain.make("Frame", mesh_fields.FRAME)()
-    frame.kind, frame.link_src, frame.link_dst = mesh_words.ACK, 4, 7
+    frame.kind, frame.link_src, frame.link_dst = mesh_const.ACK, 4, 7
     data = mesh.encode(frame)
     blocks = [pcapng.section("innervate, live")]
     blocks += [pcapng.interface(148, f"n{i}", f"node {i}") for i in (4, 7, 9)]

@@ -12,7 +12,7 @@ import pytest
 from innervate import scenario as scenarios
 from innervate.live import status
 from innervate.live.netns import Lab
-from innervate.live.up import Network
+from innervate.live.up import Processes
 from tests.live.net import until
 
 FIRST_S = 40.0
@@ -31,7 +31,7 @@ def told(where):
 def test_a_node_that_is_told_to_end_gets_rid_of_its_messages_first(tmp_path):
     async def main():
         plan = scenarios.plan(scenarios.from_dict(LINE))
-        network = Network(plan, tmp_path, "udp")
+        network = Processes(plan, tmp_path, "udp")
         await network.up()
         try:
             where, far = network.socket("n0"), network.socket("n2")

@@ -15,15 +15,15 @@ from innervate.live import play, status, tap
 from innervate.live.build import build
 from innervate.live.errors import LiveError
 from innervate.live.nodefile import load
-from innervate.live.up import Network
+from innervate.live.up import Processes
 from innervate.network import networks
 from innervate.web.live import Live
 from innervate.web.messages import Cut, Heal
 from tests.live.net import until
 
 FIRST_S = 40.0
-FOLDER = Path(__file__).parent / "ring_net"
-RING = {"kind": "ring", "name": "round", "nodes": 3}
+FOLDER = Path(__file__).parents[1] / "sim" / "cables" / "tokenring"
+RING = {"kind": "tokenring", "name": "round", "nodes": 3, "lost_us": 200_000}
 
 
 @pytest.fixture(autouse=True)
@@ -48,7 +48,7 @@ def test_a_ring_comes_up_over_udp_is_sealed_watched_cut_and_mended(tmp_path):
     keys = {"use": 1, "secret.1": "11" * 32}
 
     async def main():
-        network = Network(plan, tmp_path, "udp", keys)
+        network = Processes(plan, tmp_path, "udp", keys)
         assert network.links == [(0, 2), (0, 1), (1, 2)]
         await network.up()
         (tmp_path / "scenario.toml").write_text(scenarios.dump(scenarios.from_dict(RING)))
@@ -58,7 +58,7 @@ def test_a_ring_comes_up_over_udp_is_sealed_watched_cut_and_mended(tmp_path):
             told = [asked(network, name) for name in network.names]
             live = Live([network.socket(name) for name in network.names])
             scene = live.scene()
-            assert (scene["kind"], scene["name"], len(scene["links"])) == ("ring", "round", 3)
+            assert (scene["kind"], scene["name"], len(scene["links"])) == ("tokenring", "round", 3)
             await watched(network, live)
             return told
         finally:
@@ -72,10 +72,10 @@ def test_a_ring_comes_up_over_udp_is_sealed_watched_cut_and_mended(tmp_path):
         "degraded: 1 of 4 nodes does not answer or is cut off."
     )
     lines = live_status.lines(told[1])
-    assert lines[0].startswith("n1: ring node, up ")
+    assert lines[0].startswith("n1: tokenring node, up ")
     assert lines[0].endswith(", sealed")
     assert lines[1].startswith("  lap ")
-    assert "tokens, load 0 raw" in lines[1]
+    assert "tokens, load 0 0 raw" in lines[1]
     assert lines[2].startswith("  port 0: udp 127.0.0.1:")
 
 
@@ -86,7 +86,7 @@ async def watched(network, live):
     state = live.fields()
     assert state["link_up"].tolist() == [0, 1, 1]
     assert state["headline"]["level"] == "ok"  # the others still join all
-    assert set(state["fields"]) == {"lap", "passed", "load"}
+    assert set(state["fields"]) == {"lap", "passed", "made_at"}
     at = asked(network, "n2")["fields"]["lap"]
     await asyncio.sleep(0.5)
     assert asked(network, "n2")["fields"]["lap"] <= at + 1
@@ -102,17 +102,19 @@ def test_its_events_are_played_and_its_users_give_and_hear(tmp_path):
     plan = scenarios.plan(scenarios.from_dict({**RING, "event": event}))
 
     async def main():
-        network, told = Network(plan, tmp_path, "udp"), []
+        network, told = Processes(plan, tmp_path, "udp"), []
         happening = play.events(network.deployment)
         await network.up()
         try:
             await play.Player(network, happening, told.append).play()
-            request = {"do": "input", "kind": 1, "item": {"load": 7}}
+            request = {"do": "input", "kind": 1, "item": {"load": [7, 8]}}
             assert asked(network, "n1", **request) == {"ok": True}
             await asyncio.to_thread(hear, network)
             with pytest.raises(LiveError, match="weight is no field of a frame"):
                 asked(network, "n1", do="input", kind=1, item={"weight": 7})
-            with pytest.raises(LiveError, match="a ring has no messages"):
+            with pytest.raises(LiveError, match="load has 2 values"):
+                asked(network, "n1", do="input", kind=1, item={"load": 7})
+            with pytest.raises(LiveError, match="a tokenring has no messages"):
                 asked(network, "n1", do="send", payload="00")
         finally:
             await network.down()
@@ -124,15 +126,15 @@ def test_its_events_are_played_and_its_users_give_and_hear(tmp_path):
 def hear(network):
     """Until a token that carries what was given comes to the next node."""
     answers = status.ask(network.socket("n2"), {"do": "listen"})
-    assert next(answers) == {"listening": "n2", "kind": "ring"}
-    one = next(answer for answer in answers if answer["load"] == 7)
+    assert next(answers) == {"listening": "n2"}
+    one = next(answer for answer in answers if answer["load"] == [7, 8])
     assert (one["from"], one["kind"]) == ("n2", 1)
-    assert networks()["ring"].live_words.heard(one).startswith("kind 1, lap ")
+    assert networks()["tokenring"].live_words.heard(one).startswith("kind 1, lap ")
 
 
 def test_live_up_brings_it_up_from_a_file(tmp_path):
     file = tmp_path / "round.toml"
-    file.write_text('kind = "ring"\nnodes = 3\n')
+    file.write_text('kind = "tokenring"\nnodes = 3\n')
     command = [sys.executable, "-m", "innervate.cli", "live", "up", file, "--for", "1", "--json"]
     done = subprocess.run(command, capture_output=True, text=True, env=dict(os.environ), check=True)
     assert set(json.loads(done.stdout)["nodes"]) == {"n0", "n1", "n2"}
@@ -145,13 +147,13 @@ def test_live_up_brings_it_up_from_a_file(tmp_path):
         ("hold_us = 5", "hold_us = 0", "protocol.hold_us = 0 must be 1 to 1000000 us"),
         ("hold_us = 5", "wait_us = 5", "protocol.wait_us is unknown; it knows hold_us, lost_us"),
         ("ports = [1]", "rank = 1", "rank is for nodes of a mesh; remove it"),
-        ("ports = [1]", "role = 'sink'", "role of a ring node can be node"),
-        ("'ring'", "'rings'", "kind must be skin or radio or mesh or ring"),
+        ("ports = [1]", "role = 'sink'", "role of a tokenring node can be node"),
+        ("'tokenring'", "'token'", "kind must be skin or radio or mesh or tokenring"),
     ],
 )
 def test_what_is_wrong_with_its_node_file_is_said_in_one_line(tmp_path, old, new, says):
     good = (
-        "kind = 'ring'\nnumber = 1\nports = [1]\nprotocol = {hold_us = 5}\n"
+        "kind = 'tokenring'\nnumber = 1\nports = [1]\nprotocol = {hold_us = 5}\n"
         "[[link]]\nkind = 'udp'\nbind = '127.0.0.1:0'\npeers = ['127.0.0.1:9']\n"
     )
     path = tmp_path / "n1.toml"

@@ -14,7 +14,7 @@ import pytest
 
 from innervate import scenario as scenarios
 from innervate.live import status
-from innervate.live.up import Network
+from innervate.live.up import Processes
 from tests.live.net import until
 
 RING = 5
@@ -52,7 +52,7 @@ def ask(network, name, **request):
 
 
 async def network_of(scenario, folder, cables="udp"):
-    network = Network(scenarios.plan(scenario), folder, cables)
+    network = Processes(scenarios.plan(scenario), folder, cables)
     await network.up()
     return network
 

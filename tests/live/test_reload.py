@@ -6,7 +6,7 @@ import threading
 
 from innervate import scenario as scenarios
 from innervate.live import status
-from innervate.live.up import Network
+from innervate.live.up import Processes
 from tests.live.net import until
 
 FIRST_S = 40.0
@@ -48,7 +48,7 @@ def test_other_keys_are_taken_over_node_by_node_and_no_message_is_lost(tmp_path)
     async def main():
         plan = scenarios.plan(scenarios.from_dict(LINE))
         keys = {"use": 1, "secret.1": OLD, "grace_s": GRACE_S}
-        network = Network(plan, tmp_path, "udp", keys)
+        network = Processes(plan, tmp_path, "udp", keys)
         await network.up()
         try:
             await until(lambda: all(told(network, n)["table"] for n in network.names), FIRST_S)
@@ -81,7 +81,7 @@ def test_what_cannot_be_reloaded_is_said_and_nothing_changes(tmp_path):
     async def main():
         plan = scenarios.plan(scenarios.from_dict(LINE))
         keys = {"use": 1, "secret.1": OLD, "grace_s": GRACE_S}
-        network = Network(plan, tmp_path, "udp", keys)
+        network = Processes(plan, tmp_path, "udp", keys)
         await network.up()
         try:
             path, process = tmp_path / "n0.toml", network.processes["n0"]

@@ -9,7 +9,7 @@ from innervate import scenario as scenarios
 from innervate.cli import app, live_status
 from innervate.live import status
 from innervate.live.errors import LiveError
-from innervate.live.up import Network
+from innervate.live.up import Processes
 from tests.live.net import Mesh, Skin, until
 
 
@@ -59,7 +59,7 @@ def test_a_message_from_standard_input_is_no_option(tmp_path, monkeypatch, capsy
 def test_two_networks_do_not_share_a_folder(tmp_path):
     links = [{"a": 0, "b": 1}]
     told = {"kind": "mesh", "nodes": 2, "radio": {"profile": "ip"}, "link": links}
-    network = Network(scenarios.plan(scenarios.from_dict(told)), tmp_path, "udp")
+    network = Processes(scenarios.plan(scenarios.from_dict(told)), tmp_path, "udp")
     with socket.socket(socket.AF_UNIX) as sock:
         sock.bind(str(network.socket("n1")))
         sock.listen()

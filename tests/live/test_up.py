@@ -12,7 +12,7 @@ import pytest
 from innervate import scenario as scenarios
 from innervate.live import play, status
 from innervate.live.errors import LiveError
-from innervate.live.up import Network
+from innervate.live.up import Processes
 from innervate.networks.mesh.live import walks
 from tests.live.net import until
 
@@ -48,7 +48,7 @@ def kinds(told):
 def test_events_happen_and_the_monitor_hears_that_a_robot_left_and_came_back(tmp_path):
     async def main():
         plan = scenarios.plan(scenarios.from_dict(YARD))
-        network, told = Network(plan, tmp_path, "udp"), []
+        network, told = Processes(plan, tmp_path, "udp"), []
         happening = play.events(network.deployment)
         player = play.Player(network, happening, told.append)
         await network.up()
@@ -82,7 +82,7 @@ def test_events_happen_and_the_monitor_hears_that_a_robot_left_and_came_back(tmp
 def test_what_real_cables_do_by_themselves_is_not_played_and_what_is_not_there_is_refused():
     jammed = {**YARD, "event": [{"at_s": 1.0, "action": "jam", "node": 1}]}
     plan = scenarios.plan(scenarios.from_dict(jammed))
-    network = Network(plan, None, "udp")
+    network = Processes(plan, None, "udp")
     (event,) = play.events(network.deployment)
     assert not play.is_played(event)
     plan.faults = [plan.faults[0].__class__(1, 2, 0, 2, 0, 0)]
@@ -109,7 +109,7 @@ def test_a_skins_cable_comes_out_at_its_time(tmp_path):
 
     async def main():
         plan = scenarios.plan(scenarios.from_dict(skin))
-        network = Network(plan, tmp_path, "udp")
+        network = Processes(plan, tmp_path, "udp")
         happening = play.events(network.deployment)
         await network.up()
         try:
@@ -131,7 +131,7 @@ def test_a_radio_team_comes_up_and_stations_leave_and_join(tmp_path):
 
     async def main():
         plan = scenarios.plan(scenarios.from_dict(team))
-        network = Network(plan, tmp_path, "udp")
+        network = Processes(plan, tmp_path, "udp")
         happening = play.events(network.deployment)
         await network.up()
         try:

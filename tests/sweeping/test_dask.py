@@ -68,11 +68,11 @@ def test_a_cluster_gives_the_same_bytes_even_if_a_worker_is_killed(scheduler, wo
     address, _ = scheduler
     killed = []
 
-    def kill_one(conductor):
+    def kill_one(scheduler):
         """Once a few runs have come from both of them."""
-        if not killed and conductor.ran > 20:
+        if not killed and scheduler.ran > 20:
             os.kill(workers[0].pid, signal.SIGKILL)
-            killed.append(conductor.ran)
+            killed.append(scheduler.ran)
 
     done = innervate.sweep(four, vary=VARY, out="cluster", dask=address, progress=kill_one, **RULES)
     innervate.sweep(four, vary=VARY, out="here", workers=1, **RULES)
@@ -87,8 +87,8 @@ def test_a_cluster_gives_the_same_bytes_even_if_a_worker_is_killed(scheduler, wo
 def test_a_cluster_that_goes_away_is_one_line_and_loses_nothing(scheduler, workers, four):
     address, process = scheduler
 
-    def stop(conductor):
-        if conductor.ran > 10:
+    def stop(scheduler):
+        if scheduler.ran > 10:
             process.kill()
 
     with pytest.raises(SweepError, match="what is done is kept"):

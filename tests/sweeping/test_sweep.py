@@ -239,9 +239,9 @@ def test_a_worker_that_dies_takes_nothing_with_it(four):
     """Killed from outside, like for want of memory: its runs go to others, the table is whole."""
     killed = []
 
-    def kill_one(conductor):
-        if not killed and conductor.ran > 10:
-            victim = next(iter(conductor._engine._pool._processes))
+    def kill_one(scheduler):
+        if not killed and scheduler.ran > 10:
+            victim = next(iter(scheduler._engine._pool._processes))
             os.kill(victim, signal.SIGKILL)
             killed.append(victim)
 
@@ -262,18 +262,18 @@ def test_a_run_that_kills_every_worker_is_a_failed_row(four):
 
 
 def deadly_for(key, value):
-    """A progress function that makes the conductor send deadly work for some points."""
+    """A progress function that makes the scheduler send deadly work for some points."""
 
-    def arm(conductor):
-        deadly = {p.digest for p in conductor.plan.points if p.columns[key] == value}
-        submit = type(conductor._engine).submit
+    def arm(scheduler):
+        deadly = {p.digest for p in scheduler.plan.points if p.columns[key] == value}
+        submit = type(scheduler._engine).submit
 
         def armed(work, base, jobs):
             if any(job.point in deadly for job in jobs):
-                return submit(conductor._engine, os._exit, 9)
-            return submit(conductor._engine, work, base, jobs)
+                return submit(scheduler._engine, os._exit, 9)
+            return submit(scheduler._engine, work, base, jobs)
 
-        conductor._engine.submit = armed
+        scheduler._engine.submit = armed
 
     return arm
 

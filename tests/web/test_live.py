@@ -12,7 +12,7 @@ import pytest
 from innervate import scenario
 from innervate.live import status
 from innervate.live.errors import LiveError
-from innervate.live.up import Network
+from innervate.live.up import Processes
 from innervate.web import messages
 from innervate.web.errors import Refused, WatchError
 from innervate.web.live import Live, find
@@ -184,7 +184,7 @@ def with_processes(plan, cables, do):
     """Have `do(network, page)` happen to a network of processes that a page looks at."""
 
     async def main(folder):
-        network = Network(plan, folder, cables)
+        network = Processes(plan, folder, cables)
         try:
             await network.up()
             paths = [network.socket(name) for name in network.names]

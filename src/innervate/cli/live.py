@@ -6,7 +6,6 @@ import asyncio
 import json
 import sys
 from pathlib import Path
-from typing import Any
 
 from innervate.cli import errors, live_status
 from innervate.live import status
@@ -79,12 +78,11 @@ def send(name: str, to: int, text: str, how: dict[str, bool], as_json: bool) -> 
 
 def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:
     """Print messages that come in at a node."""
-    heard = 0
-    words: Any = None
+    heard, where = 0, status.find(name)
+    words = networks()[status.ask_one(where, {"do": "status"})["kind"]].live_words
     request = {"do": "listen", "alarms": True, **({"in_order": True} if in_order else {})}
-    for answer in status.ask(status.find(name), request):
-        if "listening" in answer:
-            words = networks()[answer["kind"]].live_words
+    for answer in status.ask(where, request):
+        if "from" not in answer:
             continue
         if as_json:
             print(json.dumps(answer), flush=True)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 from innervate.analysis.intervals import mean_interval
 
 if TYPE_CHECKING:
-    from innervate.sweeping.scheduler import Conductor, State
+    from innervate.sweeping.scheduler import Scheduler, State
 
 LINE_EVERY_S = 10.0
 DRAW_EVERY_S = 0.2
@@ -19,7 +19,7 @@ MEASURES_MAX = 2
 
 
 class LiveTable:
-    """Shows how far a sweep is; a context manager, called with the Conductor; on stderr.
+    """Shows how far a sweep is; a context manager, called with the Scheduler; on stderr.
 
     Args:
         name: of the sweep.
@@ -57,7 +57,7 @@ class LiveTable:
             self._live.stop()
             self._live = None
 
-    def __call__(self, conductor: Conductor) -> None:
+    def __call__(self, conductor: Scheduler) -> None:
         """The sweep has come so far."""
         self.words = f"{conductor.done} of {_about(conductor)} runs done"
         if conductor.failed:
@@ -70,7 +70,7 @@ class LiveTable:
             self._last = now
             print(f"{self._name}: {self.words}{_left(conductor)}", file=sys.stderr, flush=True)
 
-    def _table(self, conductor: Conductor) -> Any:
+    def _table(self, conductor: Scheduler) -> Any:
         from rich.table import Table
 
         there = [m for m in self._measures if any(m in s.values for s in conductor.states)]
@@ -103,12 +103,12 @@ def _mean(values: list[float]) -> str:
     return f"{found.value:.4g} +- {(found.high - found.low) / 2:.2g}"
 
 
-def _about(conductor: Conductor) -> str:
+def _about(conductor: Scheduler) -> str:
     until = conductor.plan.until and conductor.done < conductor.total
     return f"{'about ' if until else ''}{conductor.total}"
 
 
-def _left(conductor: Conductor) -> str:
+def _left(conductor: Scheduler) -> str:
     left = conductor.left_s
     if left is None or left < 1:
         return ""

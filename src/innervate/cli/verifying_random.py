@@ -13,13 +13,13 @@ from innervate.cli.progress import Display
 def search(seed: int | None, count: int, as_json: bool, out: Path | None) -> int:
     """Run networks `seed`, `seed` + 1, ...; 1 with the first that breaks something."""
     from innervate.kernel.stop import Stop
-    from innervate.networks.skin.verify import fuzz as wild
+    from innervate.running import fuzz
 
     first, done, broken = seed or 1, 0, None
     with Stop() as stop, Display(as_json) as display:
         for number in numbers(first):
             display.show(f"network {number}: {done} fine so far", done, count or 1 << 40, None)
-            broken = wild.attempt(number)
+            broken = fuzz.attempt(number)
             done += 1
             if broken is not None or stop.asked or done == count:
                 break

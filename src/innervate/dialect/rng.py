@@ -23,7 +23,7 @@ def seeded(seed):
 
 
 def step(x):
-    """The generator's next state."""
+    """The generator's next state from x, 1 .. 2^30 - 1: a lag-1 multiply with carry."""
     return FACTOR * (x & LOW15) + (x >> 15)
 
 

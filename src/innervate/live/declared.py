@@ -6,7 +6,6 @@ was declared, so that its status and what it delivers can be told without knowin
 
 from __future__ import annotations
 
-import asyncio
 import secrets
 from collections import Counter
 from collections.abc import AsyncGenerator, Callable
@@ -25,7 +24,7 @@ from innervate.live.node import LiveNode
 from innervate.live.nodefile import Loaded, NodeFile
 from innervate.live.parameters import check_parameters
 from innervate.live.state import State
-from innervate.live.streams import Stream, iterate
+from innervate.live.streams import Stream
 from innervate.network import Network, networks
 from innervate.wire.frames import REASONS, Codec
 
@@ -147,12 +146,9 @@ class DeclaredNode(LiveNode):
         state: State | None = None,
     ) -> None:
         super().__init__(name, stack, links, sealer, state)
-        self.outcomes: Counter[str] = Counter()
         self.requests["input"] = self._asked_for_input
-        self._inbox: list[dict[str, Any]] = []
-        self._callbacks: list[Callable[[dict[str, Any]], None]] = []
 
-    def give(self, kind: int, values: dict[str, int]) -> None:
+    def give(self, kind: int, values: dict[str, Any]) -> None:
         """Hand something down: the protocol's `on_input`; `values` are fields of its item.
 
         Raises:
@@ -163,7 +159,12 @@ class DeclaredNode(LiveNode):
         for name, value in values.items():
             if not hasattr(self.stack.item, name):
                 raise ValueError(f"{name} is no field of a frame")
-            setattr(self.stack.item, name, value)
+            many = isinstance(getattr(self.stack.item, name), list)
+            numbers = value if many and isinstance(value, list) else [value]
+            count = len(getattr(self.stack.item, name)) if many else 1
+            if len(numbers) != count or not all(isinstance(one, int) for one in numbers):
+                raise ValueError(f"{name} has {count} values, whole numbers")
+            setattr(self.stack.item, name, list(numbers) if many else value)
         self.outcomes["inputs"] += 1
         self.engine.input(kind, self.stack.item)
 
@@ -171,11 +172,7 @@ class DeclaredNode(LiveNode):
         self, callback: Callable[[dict[str, Any]], None] | None = None
     ) -> AsyncGenerator[dict[str, Any], None]:
         """What is delivered, by field: to a callback, and as an async iterator."""
-        queue: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
-        if callback is None:
-            callback = queue.put_nowait
-        self._callbacks.append(callback)
-        return iterate(queue, self._callbacks, callback)
+        return self.arrivals.receive(callback)
 
     def streams(self, request: dict[str, Any]) -> list[Stream]:
         """What is delivered."""
@@ -184,21 +181,15 @@ class DeclaredNode(LiveNode):
     def counters(self) -> Counter[str]:
         """Handler calls, frames dropped by reason, inputs, deliveries and reports by code."""
         reports = Counter({f"report {code}": count for code, count in self.reports.items()})
-        return super().counters() + self.outcomes + reports
+        return super().counters() + reports
 
     def _asked_for_input(self, request: dict[str, Any]) -> dict[str, Any]:
-        self.give(int(request["kind"]), {k: int(v) for k, v in request.get("item", {}).items()})
+        self.give(int(request["kind"]), dict(request.get("item", {})))
         return {"ok": True}
 
     def _deliver(self, kind: int, frame: Any) -> None:
         self.outcomes["delivered"] += 1
-        self._inbox.append({"kind": kind, **values_of(frame, self.stack.network.fields.FRAME)})
-
-    def _settled(self) -> None:
-        inbox, self._inbox = self._inbox, []
-        for item in inbox:
-            for callback in self._callbacks:
-                callback(item)
+        self.arrivals.put({"kind": kind, **values_of(frame, self.stack.network.fields.FRAME)})
 
 
 def values_of(record: Any, declared: Any) -> dict[str, Any]:

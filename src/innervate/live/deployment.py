@@ -5,10 +5,12 @@ What stands here is for any network over cables; a network that has more to say 
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Coroutine
 from pathlib import Path
 from typing import Any, Protocol
 
+from innervate.live.asking import ask, sleep_until
 from innervate.network import networks
 from innervate.scenario.actions import ON_LINKS
 
@@ -109,5 +111,12 @@ class Deployment:
         return next(k for k, ends in enumerate(self._ends) if fault.end in ends)
 
     def others(self, stage: Stage) -> list[Coroutine[Any, Any, None]]:
-        """What a scenario has done beside its events, to be run with them."""
-        return []
+        """What a scenario has done beside its events, to be run with them: here its inputs."""
+        return [self._play_inputs(stage)]
+
+    async def _play_inputs(self, stage: Stage) -> None:
+        began = asyncio.get_running_loop().time()
+        for one in getattr(self.plan, "inputs", ()):
+            await sleep_until(began + one.at_us / 1e6)
+            request = {"do": "input", "kind": one.kind, "item": one.item}
+            await ask(stage.socket(self.names[one.node]), request)

@@ -170,7 +170,7 @@ class Process:
             asyncio.ensure_future(_pump(stream, form, writer))
             for stream, form in self.node.streams(request)
         ]
-        await writer.line({"listening": self.loaded.name, "kind": self.loaded.table.kind})
+        await writer.line({"listening": self.loaded.name})
         try:
             done, _ = await asyncio.wait(pumps, return_when=asyncio.FIRST_COMPLETED)
             for pump in done:

@@ -13,7 +13,7 @@ from innervate.live.keys import Sealer
 from innervate.live.links import Link, Path
 from innervate.live.receipts import Receipt
 from innervate.live.state import State
-from innervate.live.streams import Stream
+from innervate.live.streams import Arrivals, Stream
 
 CUT = "cable cut"  # as captures of simulations call it
 # When (ns since 1970), which port, True = it left, its bytes, why it was dropped ("" = it was not).
@@ -36,6 +36,8 @@ class LiveNode:
     Attributes:
         paths: all paths, by port.
         reports: how often the protocol reported what, by code.
+        outcomes: what became of what its user said, and how much came in for him, by words.
+        arrivals: what came in for its user.
         taps: who is told of every frame, as it leaves and comes in.
         callers: how often callers of the node's process could not be let in, and why.
         requests: what may be asked of it on its status socket besides what all nodes answer.
@@ -56,6 +58,8 @@ class LiveNode:
         self.state = state or State(None)
         self.paths: list[Path] = [path for link in links for path in link.paths]
         self.reports: Counter[int] = Counter()
+        self.outcomes: Counter[str] = Counter()
+        self.arrivals: Arrivals[Any] = Arrivals()
         self.taps: list[Tap] = []
         self.callers: Counter[str] = Counter()
         self.requests: dict[str, Answerer] = {}
@@ -183,7 +187,7 @@ class LiveNode:
         return True
 
     def counters(self) -> Counter[str]:
-        """What happened how often: handler calls, frames dropped by reason."""
+        """What happened how often: handler calls, frames dropped by reason, outcomes."""
         total: Counter[str] = Counter() if self.engine is None else Counter(self.engine.counters)
         if self.sealer is not None:
             total.update({f"dropped: {why}": n for why, n in self.sealer.dropped.items()})
@@ -192,7 +196,7 @@ class LiveNode:
             total["dropped: from a stranger"] = strangers
         if self.state.failed:
             total["state not written"] = self.state.failed
-        return total + self.callers
+        return total + self.callers + self.outcomes
 
     def status(self) -> dict[str, Any]:
         """What is known here: paths, counters, and what the protocol says of itself."""
@@ -228,6 +232,7 @@ class LiveNode:
 
     def _settled(self) -> None:
         """The outbox is empty: the user may be called."""
+        self.arrivals.hand_up()
 
 
 def _path_status(path: Path, now: int, most_us: int) -> dict[str, Any]:

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from contextlib import suppress
-from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from innervate.live import status
+from innervate.live.asking import sleep_until
 from innervate.live.deployment import Deployment, Stage
 from innervate.live.errors import LiveError
 
@@ -97,14 +95,3 @@ class Player:
                 await self.stage.end_node(event.node, event.what == "leave")
             if event.what in ("revive", "restart", "join"):
                 await self.stage.begin_node(event.node)
-
-
-async def ask(where: Path, request: dict[str, Any]) -> None:
-    """Ask a node for something; one that does not run has nothing to do."""
-    with suppress(LiveError):
-        await asyncio.to_thread(status.ask_one, where, request)
-
-
-async def sleep_until(when: float) -> None:
-    """Wait for a moment of the loop's clock."""
-    await asyncio.sleep(max(0.0, when - asyncio.get_running_loop().time()))

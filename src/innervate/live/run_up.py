@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from innervate.live import play
-from innervate.live.up import Network
+from innervate.live.up import Processes
 
 
 async def run(
@@ -26,7 +26,7 @@ async def run(
     own = folder is None
     folder = Path(tempfile.mkdtemp(prefix="innervate-")) if folder is None else folder.absolute()
     keys = {"use": 1, "secret.1": secrets.token_hex(32)} if sealed else None
-    network = Network(plan, folder, cables, keys)
+    network = Processes(plan, folder, cables, keys)
     player = _player(network, as_json)
     ending = asyncio.Event()
     loop = asyncio.get_running_loop()
@@ -63,7 +63,7 @@ async def _until(ending: asyncio.Event, playing: asyncio.Task[None], limit_s: fl
         await asyncio.gather(*both, return_exceptions=True)
 
 
-def _player(network: Network, as_json: bool) -> play.Player:
+def _player(network: Processes, as_json: bool) -> play.Player:
     """What plays the scenario; what cannot be played is said."""
     events = play.events(network.deployment)
     for event in events:
@@ -77,7 +77,7 @@ def _player(network: Network, as_json: bool) -> play.Player:
     return play.Player(network, events, tell)
 
 
-def _announce(network: Network, took_s: float, as_json: bool) -> None:
+def _announce(network: Processes, took_s: float, as_json: bool) -> None:
     if as_json:
         nodes = {
             name: {"pid": network.processes[name].pid, "socket": str(network.socket(name))}

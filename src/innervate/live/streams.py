@@ -1,28 +1,69 @@
-"""Async iterators over what callbacks are told."""
+"""What comes in at a node, for callbacks, async iterators and listeners at its socket."""
 
 from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncGenerator, Callable
-from typing import Any, TypeVar
+from functools import partial
+from typing import Any, Generic, TypeVar
 
 # Makes the line that a listener gets of what came.
 Form = Callable[[Any], dict[str, Any]]
 Stream = tuple[AsyncGenerator[Any, None], Form]
 
 Item = TypeVar("Item")
-Told = TypeVar("Told", bound=Callable[..., None])
 
 
-async def iterate(
-    queue: asyncio.Queue[Item], callbacks: list[Told], own: Told
-) -> AsyncGenerator[Item, None]:
-    """What comes into a queue by a callback; at its end the callback is taken away."""
-    try:
-        while True:
-            yield await queue.get()
-    finally:
-        callbacks.remove(own)
+class Arrivals(Generic[Item]):
+    """What has come in for a node's user: to callbacks, and as async iterators.
+
+    It waits until it is handed up: only then may a callback hand something down.
+
+    Args:
+        is_spread: items are tuples, and callbacks take their parts.
+
+    Attributes:
+        callbacks: who is told of each item.
+    """
+
+    def __init__(self, is_spread: bool = False) -> None:
+        self.callbacks: list[Callable[..., None]] = []
+        self._is_spread = is_spread
+        self._waiting: list[Item] = []
+
+    def put(self, item: Item) -> None:
+        """Something came."""
+        self._waiting.append(item)
+
+    def hand_up(self) -> None:
+        """Call everybody with everything that waits."""
+        waiting, self._waiting = self._waiting, []
+        for item in waiting:
+            for callback in self.callbacks:
+                callback(*item) if self._is_spread else callback(item)  # type: ignore[misc]
+
+    def receive(self, callback: Callable[..., None] | None = None) -> AsyncGenerator[Item, None]:
+        """What comes from now on: to a callback, and as an async iterator.
+
+        At the iterator's end the callback is taken away.
+        """
+        queue: asyncio.Queue[Any] = asyncio.Queue()
+        own = callback or (queue.put_nowait if not self._is_spread else partial(_put, queue))
+        self.callbacks.append(own)
+        return self._iterate(queue, own)
+
+    async def _iterate(
+        self, queue: asyncio.Queue[Item], own: Callable[..., None]
+    ) -> AsyncGenerator[Item, None]:
+        try:
+            while True:
+                yield await queue.get()
+        finally:
+            self.callbacks.remove(own)
+
+
+def _put(queue: asyncio.Queue[Any], *parts: Any) -> None:
+    queue.put_nowait(parts)
 
 
 def message_line(message: tuple[int, bytes]) -> dict[str, Any]:

@@ -10,7 +10,8 @@ import time
 from pathlib import Path
 from typing import Any
 
-from innervate.live import files, play, status
+from innervate.live import files, status
+from innervate.live.asking import ask
 from innervate.live.deployment import Deployment, Table
 from innervate.live.errors import LiveError
 from innervate.live.netns import UDP_PORT, Lab
@@ -23,7 +24,7 @@ START_S = 30.0
 STOP_S = 5.0
 
 
-class Network:
+class Processes:
     """Node files and processes of a scenario.
 
     Args:
@@ -140,7 +141,7 @@ class Network:
 
     async def _change_end(self, number: int, cable: int, what: str, loss: float) -> None:
         request = {"do": what, "port": self._ports[number].index(cable), "loss": loss}
-        await play.ask(self.socket(self.names[number]), request)
+        await ask(self.socket(self.names[number]), request)
 
     def socket(self, name: str) -> Path:
         """A node's status socket."""

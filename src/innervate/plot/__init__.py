@@ -1,1 +1,1 @@
-"""Figures and drawings."""
+"""Drawings of runs as SVG and HTML, and what their sentences are made of."""

@@ -55,7 +55,7 @@ def look(more: str = "") -> str:
 
 
 def wrapped(text: str) -> list[str]:
-    """A sentence in lines."""
+    """A sentence as lines of at most LETTERS letters, all but the first indented."""
     lines, line = [], ""
     for word in text.split():
         if len(line) + len(word) > LETTERS:

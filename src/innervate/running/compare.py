@@ -131,7 +131,7 @@ class _Recorded:
 
     @property
     def fingerprint(self) -> Any:
-        """Of its events."""
+        """The hash of all events, 16 hexadecimal digits; None if it has none."""
         return self.summary.get("fingerprint")
 
     @property

@@ -51,14 +51,16 @@ class Run(Summaries):
         """Short: what ran, and its fingerprint."""
         return f"Run({self.scenario.name!r}, seed={self.plan.seed}, {self.result.fingerprint})"
 
-    def __getattr__(self, name: str) -> Any:
-        """The summary by its network's name, so that type checkers know its keys."""
-        if name.startswith("_") or name in type(self).__dict__ or "summary" not in vars(self):
-            raise AttributeError(name)
-        own = networks()[self.summary["kind"]].summary_name(self.summary)
-        if name == own:
-            return self.summary
-        raise AttributeError(f"this run has no summary {name!r}; run.{own} is its summary")
+    if not TYPE_CHECKING:  # or every name would do, misspelt ones too
+
+        def __getattr__(self, name: str) -> Any:
+            """The summary by its network's name, so that type checkers know its keys."""
+            if name.startswith("_") or name in type(self).__dict__ or "summary" not in vars(self):
+                raise AttributeError(name)
+            own = networks()[self.summary["kind"]].summary_name(self.summary)
+            if name == own:
+                return self.summary
+            raise AttributeError(f"this run has no summary {name!r}; run.{own} is its summary")
 
     @cached_property
     def tables(self) -> dict[str, polars.LazyFrame]:

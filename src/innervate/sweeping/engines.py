@@ -45,7 +45,7 @@ class Engine:
     falls_together = False
 
     def submit(self, work: Callable[..., Any], *args: Any) -> Future[Any]:
-        """Run `work(*args)` some time."""
+        """Run `work(*args)` on some worker; its result comes by the future."""
         raise NotImplementedError
 
     def renew(self) -> None:
@@ -59,7 +59,7 @@ class Here(Engine):
     """This process and thread: `submit` comes back when the work is done."""
 
     def submit(self, work: Callable[..., Any], *args: Any) -> Future[Any]:
-        """Run `work(*args)` now."""
+        """Run `work(*args)` here and now; the future is done when it is returned."""
         future: Future[Any] = Future()
         try:
             future.set_result(work(*args))
@@ -155,7 +155,7 @@ class Cluster(Engine):
 
     @property
     def ahead(self) -> int:  # type: ignore[override]
-        """Two batches a thread."""
+        """How many batches are handed out ahead: two for each worker."""
         return 2 * self.workers
 
     def submit(self, work: Callable[..., Any], *args: Any) -> Future[Any]:

@@ -51,7 +51,7 @@ class Point:
 
     @property
     def label(self) -> str:
-        """Its settings in words."""
+        """The point's settings, as "a=1, b=2"."""
         return ", ".join(f"{key}={shown(value)}" for key, value in self.columns.items())
 
 

@@ -49,7 +49,7 @@ class State:
         return [found[repeat] for repeat in sorted(found)]
 
 
-class Conductor:
+class Scheduler:
     """Brings a sweep from where it is to its end.
 
     Args:
@@ -70,14 +70,14 @@ class Conductor:
         jobs: Jobs,
         engine: Engine,
         follow: tuple[str, ...] = (),
-        progress: Callable[[Conductor], None] | None = None,
+        progress: Callable[[Scheduler], None] | None = None,
     ) -> None:
         self.plan = plan
         self.states = [State(point) for point in plan.points]
         self.ran = 0
         self._jobs = jobs
         self._engine = engine
-        self._progress = progress or (lambda conductor: None)
+        self._progress = progress or (lambda scheduler: None)
         self._measures = tuple(dict.fromkeys([*(u.measure for u in plan.until), *follow]))
         self._by_digest = {state.point.digest: state for state in self.states}
         self._blocks = list(blocks(plan))
@@ -198,7 +198,7 @@ class Conductor:
             others, _ = wait(self._running)
             suspects += self._take(others)
         if suspects:
-            self._mourn(suspects)
+            self._isolate(suspects)
         if self._pace is None and self.ran > 0:
             self._pace = (time.perf_counter(), self.ran)
         self._progress(self)
@@ -233,7 +233,7 @@ class Conductor:
                 self._decide(state)
                 self._begin(state)  # the next block, if there is one
 
-    def _mourn(self, batches: list[list[Job]]) -> None:
+    def _isolate(self, batches: list[list[Job]]) -> None:
         """Workers died with these: each run goes alone from now on, and three times at most."""
         alone = len(batches) == 1 and len(batches[0]) == 1
         for job in (job for jobs in batches for job in jobs):
@@ -252,7 +252,7 @@ class Conductor:
 
     @property
     def done(self) -> int:
-        """Runs that are there."""
+        """How many runs are there, of all points."""
         return sum(state.done for state in self.states)
 
     @property

@@ -20,7 +20,7 @@ from innervate.sweeping.errors import SweepError
 from innervate.sweeping.jobs import FILE, Jobs
 from innervate.sweeping.plan import REPEAT_MAX, SweepPlan
 from innervate.sweeping.result import Sweep
-from innervate.sweeping.scheduler import Conductor
+from innervate.sweeping.scheduler import Scheduler
 from innervate.sweeping.until import parse as parse_until
 from innervate.sweeping.vary import Axis, axis, parse
 from innervate.trace.provenance import checkout
@@ -29,7 +29,7 @@ REPEAT_UNTIL = 1000  # repeats at most, with `until`, if nobody says
 BATCH = 10
 CHECKED_MAX = 20  # points looked at before the first run, for one that is valid
 Vary = Iterable[str] | Mapping[str | tuple[str, ...], Any]
-Progress = Callable[[Conductor], None]
+Progress = Callable[[Scheduler], None]
 
 
 def sweep(
@@ -71,7 +71,7 @@ def sweep(
         dask: address of a Dask scheduler to use instead of this machine.
         retry: run again what failed.
         follow: measures that `progress` wants to see the values of.
-        progress: called now and then with the Conductor.
+        progress: called now and then with the Scheduler.
 
     Raises:
         SweepError: the plan cannot be kept, or the folder not used; one line.
@@ -96,15 +96,15 @@ def sweep(
                 _describe(plan, folder)
             if retry:
                 jobs.forget_failed()
-            return _conduct(Conductor(plan, jobs, made, tuple(follow), progress), jobs, folder)
+            return _run_plan(Scheduler(plan, jobs, made, tuple(follow), progress), jobs, folder)
 
 
-def _conduct(conductor: Conductor, jobs: Jobs, folder: Path | None) -> Sweep:
+def _run_plan(scheduler: Scheduler, jobs: Jobs, folder: Path | None) -> Sweep:
     """Run it; the tables are written in any case, with what there is."""
     try:
-        conductor.run()
+        scheduler.run()
     finally:
-        done = _result(conductor.plan, jobs, conductor)
+        done = _result(scheduler.plan, jobs, scheduler)
         if folder is not None:
             _write(done, folder)
     return done
@@ -238,14 +238,14 @@ def _describe(plan: SweepPlan, folder: Path) -> None:
         tables.write_bytes(planfile.dump(plan).encode(), folder / PLAN_FILE)
 
 
-def _result(plan: SweepPlan, jobs: Jobs, conductor: Conductor) -> Sweep:
-    repeats = [state.goal for state in conductor.states]
+def _result(plan: SweepPlan, jobs: Jobs, scheduler: Scheduler) -> Sweep:
+    repeats = [state.goal for state in scheduler.states]
     return Sweep(
         plan=plan,
         results=tables.results(plan, jobs, repeats),
         timings=tables.timings(plan, jobs, repeats),
-        complete=all(state.finished for state in conductor.states),
-        ran=conductor.ran,
+        complete=all(state.finished for state in scheduler.states),
+        ran=scheduler.ran,
     )
 
 

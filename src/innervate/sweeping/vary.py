@@ -154,7 +154,7 @@ def column(value: Any) -> Any:
 
 
 def shown(value: Any) -> str:
-    """A value for people."""
+    """A value as people read it: numbers short, true and false as in a file."""
     text = column(value)
     if isinstance(text, bool):
         return str(text).lower()

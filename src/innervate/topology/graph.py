@@ -40,12 +40,12 @@ class Graph:
 
     @property
     def sink(self) -> int:
-        """The PC's node number."""
+        """The PC's number: that behind the last cell's."""
         return self.cells
 
     @property
     def nodes(self) -> int:
-        """Cells and the PC."""
+        """How many nodes there are: all cells and the PC."""
         return self.cells + 1
 
     def node_of(self, end: int) -> int:

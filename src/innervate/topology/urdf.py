@@ -168,7 +168,7 @@ def _numbers(origin: ElementTree.Element | None, key: str, link: str) -> Vector:
 
 
 def _rotation(rpy: Vector) -> Matrix:
-    """Rz(yaw) Ry(pitch) Rx(roll)."""
+    """The matrix of roll, pitch and yaw, rad: Rz(yaw) Ry(pitch) Rx(roll)."""
     (sr, sp, sy), (cr, cp, cy) = map(math.sin, rpy), map(math.cos, rpy)
     return (
         (cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),

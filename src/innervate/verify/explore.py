@@ -17,6 +17,7 @@ from innervate.kernel import door, tables
 from innervate.kernel.wall import wall_s
 from innervate.verify import search as s
 from innervate.verify.errors import VerifyError
+from innervate.verify.tally import Tally
 
 MEMORY = 2 << 30
 CHUNK = 20_000
@@ -24,35 +25,6 @@ PLAIN_CHUNK = 500
 SLOTS = 1 << 18
 
 ENDS = {s.DONE: "complete", s.FULL: "memory", s.FOUND: "broken", s.GOING: "interrupted"}
-
-
-@dataclass(slots=True)
-class Tally:
-    """How far a search is, or came.
-
-    Attributes:
-        states: different states found.
-        expanded: states whose successors are all known.
-        generated: successors generated and looked up.
-        left_out: successors not followed because more was in flight than there is room for.
-        depth: events from the start to the latest state; all states less deep are expanded.
-        wall_s: seconds of searching, compiling and loading not included.
-        ended: "complete", "broken", "memory" (the bound was reached), "limit" (of states),
-            "walked" (random walks; `states` counts these then) or "interrupted".
-    """
-
-    states: int = 0
-    expanded: int = 0
-    generated: int = 0
-    left_out: int = 0
-    depth: int = 0
-    wall_s: float = 0.0
-    ended: str = "interrupted"
-
-    @property
-    def per_s(self) -> float:
-        """Successors generated and looked up per second."""
-        return self.generated / self.wall_s if self.wall_s > 0 else 0.0
 
 
 @dataclass(slots=True)

@@ -44,7 +44,7 @@ class Engine:
 
     @property
     def world(self) -> Any:
-        """The simulation's tables."""
+        """The tables of the simulation as they are now."""
         return self.running.world
 
     def prepare(self) -> None:
@@ -71,7 +71,7 @@ class Engine:
         return self.running.take()
 
     def mark(self) -> Mark:
-        """Remember this moment."""
+        """A copy of everything at this moment, to come back to."""
         world, size = twin(self.world, self._rows)
         return Mark(self.now_us, world, size)
 

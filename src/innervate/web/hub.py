@@ -110,7 +110,7 @@ class Hub:
         return page
 
     def leave(self, page: Page) -> None:
-        """A page is gone."""
+        """A page is gone: it is told nothing more."""
         self.pages.discard(page)
 
     def say_end(self, text: str) -> None:

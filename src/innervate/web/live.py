@@ -347,5 +347,5 @@ class Live(Source):
         return sum(path in one["ports"] for one in near) > 1
 
     def close(self) -> None:
-        """Hang up."""
+        """Stop asking the nodes."""
         self._poller.close()

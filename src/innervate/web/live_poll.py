@@ -122,6 +122,6 @@ class Poller:
         return self._lines[index].is_gone
 
     def close(self) -> None:
-        """Hang up everywhere."""
+        """Drop the connections to all nodes."""
         for line in self._lines:
             line.drop()

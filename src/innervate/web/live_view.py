@@ -41,12 +41,13 @@ class LiveView:
     def scene(self, kind: str) -> dict[str, Any]:
         """What a scene has besides that of every network: the fields that nodes tell of."""
         network = networks()[kind]
-        if not network.has("fields"):
-            return {}
-        shown = [{"name": name, "unit": unit, "meaning": meaning}
-                 for name, length, _low, _high, unit, meaning in network.fields.STATE
-                 if not length and name not in DRIVERS]  # fmt: skip
-        return {"fields": shown}
+        declared = getattr(network.fields, "STATE", ()) if network.has("fields") else ()
+        shown = [
+            {"name": name, "unit": unit, "meaning": meaning}
+            for name, length, _low, _high, unit, meaning in declared
+            if not length and name not in DRIVERS
+        ]
+        return {"fields": shown} if shown else {}
 
     def unknown(self, told: list[Status], count: int) -> list[Status]:
         """What stands for nodes that have not answered, beside those that have."""

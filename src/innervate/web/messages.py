@@ -17,17 +17,17 @@ Seconds = Annotated[float, msgspec.Meta(ge=0, le=1e9)]
 
 
 class _Command(msgspec.Struct, frozen=True, tag_field="do", forbid_unknown_fields=True):
-    """The base of all."""
+    """What a page may ask for; the tag is its `do`."""
 
 
 class Cut(_Command, frozen=True, tag="cut"):
-    """Cut a link."""
+    """Cut a link, by its number in the scene."""
 
     link: Number
 
 
 class Heal(_Command, frozen=True, tag="heal"):
-    """Put a link back."""
+    """Put a link back, by its number in the scene."""
 
     link: Number
 
@@ -60,7 +60,7 @@ class Give(_Command, frozen=True, tag="command"):
 
 
 class Pause(_Command, frozen=True, tag="pause"):
-    """Hold the network's time."""
+    """Stop the network's time until Go."""
 
 
 class Go(_Command, frozen=True, tag="go"):

@@ -39,17 +39,17 @@ class Pace:
         self.start_from(now_us)
 
     def hold(self, now_us: int) -> None:
-        """Time stands."""
+        """Stop the network's time at `now_us`."""
         self.paused = True
         self.start_from(now_us)
 
     def go(self, now_us: int) -> None:
-        """Time goes on."""
+        """Let the network's time go on from `now_us`."""
         self.paused = False
         self.start_from(now_us)
 
     def start_from(self, now_us: int) -> None:
-        """Count anew from here."""
+        """Measure from this moment on: it is `now_us` in the network."""
         self._since, self._from_us = self._clock(), now_us
 
     def due_us(self, end_us: int) -> int:

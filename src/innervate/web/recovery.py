@@ -36,7 +36,7 @@ class Recovery:
         self.apart = max(self.apart, nodes)
 
     def shown(self) -> dict[str, Any]:
-        """For pages."""
+        """The recovery as pages get it, times in ms."""
         return {
             "cause": self.cause,
             "at_s": self.at_us / 1e6,

@@ -116,7 +116,7 @@ class _Server(uvicorn.Server):
         yield
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Listen, and say so."""
+        """Begin to listen; then call `ready`, once the port is open."""
         await super().startup(sockets)
         self.ready()
 

@@ -89,7 +89,7 @@ class Simulated(Source):
         }
 
     def fields(self) -> dict[str, Any]:
-        """The state now."""
+        """What pages get of the present state, by name."""
         self.view.is_still = self.pace.paused or self.at_end
         paced = self.pace.paused or 0 < self.pace.speed <= self.view.slow
         return {
@@ -118,7 +118,7 @@ class Simulated(Source):
         return BEAT_S if self.engine.now_us >= due_us else 0.0
 
     def do(self, command: Command) -> dict[str, Any] | None:
-        """Carry out a command."""
+        """Carry out a page's command; what to tell all pages of it, or None."""
         now_us = self.engine.now_us
         if isinstance(command, Pause):
             self.pace.hold(now_us)

@@ -32,7 +32,7 @@ class Part:
 
     @property
     def json(self) -> msgspec.Raw:
-        """The value as JSON."""
+        """The value as JSON, encoded once for all pages."""
         if self._json is None:
             value = self.value
             plain = value.tolist() if isinstance(value, np.ndarray) else value

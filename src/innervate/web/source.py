@@ -50,7 +50,7 @@ class Source(ABC):
         """
 
     def close(self) -> None:  # noqa: B027 - most have nothing to let go of
-        """Let go of everything."""
+        """Let go of files, sockets and threads; most have none."""
 
     def carry_out(self, command: Command) -> dict[str, Any] | None:
         """Carry out a command, if that is possible here.

@@ -70,7 +70,7 @@ class View(ABC):
 
     @abstractmethod
     def words(self, fault: Any) -> str:
-        """A fault in words."""
+        """What a fault does, in words for the log."""
 
     @abstractmethod
     def takes(self, fault: Any) -> bool:
@@ -99,7 +99,7 @@ class View(ABC):
         return recovery is not None and recovery.recovered_ms is None
 
     def check(self) -> None:  # noqa: B027 - only who says so by `check_us`
-        """Look whether it has."""
+        """Look whether the network has recovered; called at `check_us`."""
 
     def sample(self) -> None:
         """Keep a point of every plot."""
@@ -154,7 +154,7 @@ class View(ABC):
         return happened
 
     def fields(self, flights: bool) -> dict[str, Any]:
-        """The state now."""
+        """What pages get of the present state; `flights`: with frames under way."""
         recovery, fault = self.memory.recovery, self.memory.fault
         return {
             **self.arrays(flights),

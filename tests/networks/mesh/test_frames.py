@@ -10,14 +10,14 @@ from innervate.dialect import plain
 from innervate.networks.mesh import frames as wire
 from innervate.networks.mesh import payloads as payloads
 from innervate.networks.mesh.meanings import MEANINGS
-from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol.fields import FRAME
 from innervate.wire.bits import put
 from innervate.wire.layout import BROKEN, REST, read
 
 Frame = plain.make("Frame", FRAME)
 RANGES = {name: (length, low, high) for name, length, low, high, _unit, _meaning in FRAME}
-ROOM = wire.MTU_MAX - words.HEADER_BYTES - words.CRC_BYTES
+ROOM = wire.MTU_MAX - const.HEADER_BYTES - const.CRC_BYTES
 
 
 def new(kind, path=(), body=b"", **values):
@@ -38,7 +38,7 @@ def carried(frame):
     value = {name: getattr(frame, name) for name in RANGES}
     value["path"] = list(frame.path[: frame.path_len])
     value["body"] = list(frame.body[: frame.length])
-    if frame.kind != words.ACK:
+    if frame.kind != const.ACK:
         value.pop("rssi")
     return value
 
@@ -97,8 +97,8 @@ class Writer:
 @st.composite
 def packets(draw, kinds=tuple(payloads.FIELDS)):
     kind = draw(st.sampled_from(kinds))
-    path = draw(st.lists(st.integers(0, 255), max_size=words.PATH_MAX))
-    flags = draw(st.integers(0, 255)) & ~(words.SOURCE_ROUTE | words.DETOURED)
+    path = draw(st.lists(st.integers(0, 255), max_size=const.PATH_MAX))
+    flags = draw(st.integers(0, 255)) & ~(const.SOURCE_ROUTE | const.DETOURED)
     room = ROOM - len(path)
     writer = Writer(draw)
     writer.write(payloads.FIELDS[kind], 8 * room)
@@ -106,9 +106,9 @@ def packets(draw, kinds=tuple(payloads.FIELDS)):
     route = draw(st.none() | st.binary(max_size=5))
     failed = draw(st.none() | st.binary(min_size=1, max_size=5))
     if route is not None and len(body) + len(route) < room:
-        body, flags = bytes([len(route)]) + route + body, flags | words.SOURCE_ROUTE
+        body, flags = bytes([len(route)]) + route + body, flags | const.SOURCE_ROUTE
     if failed is not None and len(body) + len(failed) < room:
-        body, flags = body + failed + bytes([len(failed)]), flags | words.DETOURED
+        body, flags = body + failed + bytes([len(failed)]), flags | const.DETOURED
     frame = new(kind, path, body, flags=flags)
     for name in ("link_src", "link_dst", "origin", "dest", "seq", "table_ver", "ttl"):
         _length, low, high = RANGES[name]
@@ -117,7 +117,7 @@ def packets(draw, kinds=tuple(payloads.FIELDS)):
 
 
 acks = st.builds(
-    lambda **values: new(words.ACK, dest=values["link_dst"], **values),
+    lambda **values: new(const.ACK, dest=values["link_dst"], **values),
     **{
         name: st.integers(*RANGES[name][1:])
         for name in ("link_src", "link_dst", "origin", "seq", "rssi")
@@ -128,27 +128,27 @@ frames = packets() | acks
 
 def test_request_by_hand():
     request = new(
-        words.REQUEST, path=[7], body=bytes.fromhex("07 01 0203 0405 0a"), link_src=7,
+        const.REQUEST, path=[7], body=bytes.fromhex("07 01 0203 0405 0a"), link_src=7,
         link_dst=255, origin=7, dest=255, seq=0xBEEF, table_ver=5, ttl=24,
     )  # fmt: skip
     # version 1 in two bits and type 1 in six; no flags; 7 to all; seq, version, ttl, a path of one
     expected = sealed(bytes.fromhex("41 00 07 ff 07 ff beef 05 18 01 07 07 01 0203 0405 0a"))
     assert wire.encode(request) == expected
-    assert len(expected) == words.HEADER_BYTES + 1 + 7 + words.CRC_BYTES
+    assert len(expected) == const.HEADER_BYTES + 1 + 7 + const.CRC_BYTES
 
 
 def test_ack_by_hand():
-    ack = new(words.ACK, link_src=3, link_dst=4, origin=9, seq=0x0102, rssi=-95)
+    ack = new(const.ACK, link_src=3, link_dst=4, origin=9, seq=0x0102, rssi=-95)
     assert wire.encode(ack) == sealed(bytes.fromhex("50 03 04 09 0102 a1"))
-    assert len(wire.encode(ack)) == words.ACK_BYTES
+    assert len(wire.encode(ack)) == const.ACK_BYTES
 
 
 ALARM = bytes.fromhex("05 01 2a 01 fffe 0102 ce 32 00010203 ffed")
 
 
 def test_alarm_by_hand():
-    alarm = new(words.ALARM, path=[5, 6], body=ALARM, origin=5, dest=2, seq=1, ttl=22,
-                flags=words.ACK_WANTED | words.END_TO_END | words.PRIORITY)  # fmt: skip
+    alarm = new(const.ALARM, path=[5, 6], body=ALARM, origin=5, dest=2, seq=1, ttl=22,
+                flags=const.ACK_WANTED | const.END_TO_END | const.PRIORITY)  # fmt: skip
     data = wire.encode(alarm)
     assert data == sealed(bytes.fromhex("4a 23 00 00 05 02 0001 00 16 02 05 06") + ALARM)
     pairs = dict(wire.fields(alarm))
@@ -159,12 +159,12 @@ def test_alarm_by_hand():
 
 
 def test_response_and_table_by_hand():
-    response = new(words.RESPONSE, body=bytes.fromhex("01 0002 32 08 b0 09 80"))
+    response = new(const.RESPONSE, body=bytes.fromhex("01 0002 32 08 b0 09 80"))
     assert wire.fields(response)[-1] == (
         "neighbours",
         [[("id", 8), ("rssi", -80)], [("id", 9), ("rssi", -128)]],
     )
-    table = new(words.TABLE, body=bytes.fromhex("02 0304 01 0002 12  05 ff 02 0607  08 09 00"))
+    table = new(const.TABLE, body=bytes.fromhex("02 0304 01 0002 12  05 ff 02 0607  08 09 00"))
     pairs = dict(wire.fields(table))
     assert pairs["route"] == [3, 4]
     assert (pairs["fragment"], pairs["fragments"], pairs["table_version"]) == (1, 2, 2)
@@ -175,8 +175,8 @@ def test_response_and_table_by_hand():
 
 
 def test_route_and_failed_nodes_lie_around_the_payload():
-    flags = words.SOURCE_ROUTE | words.DETOURED
-    data = new(words.DATA, body=b"\x02\x08\x09hello\x07\x01", flags=flags)
+    flags = const.SOURCE_ROUTE | const.DETOURED
+    data = new(const.DATA, body=b"\x02\x08\x09hello\x07\x01", flags=flags)
     assert wire.fields(data)[-3:] == [
         ("source_route", [8, 9]),
         ("data", list(b"hello")),
@@ -186,10 +186,10 @@ def test_route_and_failed_nodes_lie_around_the_payload():
 
 def test_detoured_may_be_a_mark_and_nothing_else():
     for body, shown in ((b"abc", [("acked", 0x6162)]), (b"\1\2", [("acked", 0x0102)])):
-        frame = new(words.E2E_ACK, body=body[:2], flags=words.DETOURED)
+        frame = new(const.E2E_ACK, body=body[:2], flags=const.DETOURED)
         assert wire.decode(wire.encode(frame), Frame()) == wire.OK
         assert wire.fields(frame)[-1:] == shown
-    both = new(words.E2E_ACK, body=b"\1\2\x09\1", flags=words.DETOURED)
+    both = new(const.E2E_ACK, body=b"\1\2\x09\1", flags=const.DETOURED)
     assert wire.fields(both)[-2:] == [("acked", 0x0102), ("failed", [9])]
 
 
@@ -202,8 +202,8 @@ def test_whole_graph_by_hand():
 # The sizes of the packets' table [mesh 2].
 @pytest.mark.parametrize(
     ("kind", "size"),
-    [(words.REQUEST, 7), (words.TABLE_ACK, 5), (words.ACTIVATE, 3), (words.E2E_ACK, 2),
-     (words.ALARM, 16), (words.POSITION, 8)],
+    [(const.REQUEST, 7), (const.TABLE_ACK, 5), (const.ACTIVATE, 3), (const.E2E_ACK, 2),
+     (const.ALARM, 16), (const.POSITION, 8)],
 )  # fmt: skip
 def test_sizes_of_the_contract(kind, size):
     assert payloads.SIZES[kind] == size
@@ -217,7 +217,7 @@ def test_layouts_hold_exactly_the_declared_ranges():
     for fields in (wire.COMMON, wire.HOP_ACK):
         for name, _many, bits, is_signed in fields:
             low = -(1 << (bits - 1)) if is_signed else 0
-            high = words.PATH_MAX if name == "path_len" else low + (1 << bits) - 1
+            high = const.PATH_MAX if name == "path_len" else low + (1 << bits) - 1
             assert RANGES[name] == (0, low, high), name
     in_frames = {name for name, *_ in wire.HEAD + wire.COMMON + wire.HOP_ACK} - {"version"}
     assert in_frames | {"path", "length", "body"} == set(RANGES)
@@ -237,12 +237,12 @@ def test_every_field_of_a_payload_has_a_meaning_and_no_other():
 
 @given(frames)
 def test_round_trip(frame):
-    back = new(words.DATA, path=[9], body=b"old", flags=3, rssi=-7)
+    back = new(const.DATA, path=[9], body=b"old", flags=3, rssi=-7)
     data = wire.encode(frame)
     assert len(data) == wire.size_of(frame) <= wire.MTU_MAX
     assert wire.decode(memoryview(data), back) == wire.OK
     assert carried(back) == carried(frame)
-    assert back.rssi == (frame.rssi if frame.kind == words.ACK else -7)
+    assert back.rssi == (frame.rssi if frame.kind == const.ACK else -7)
 
 
 @given(frames)
@@ -264,7 +264,7 @@ def test_every_truncation_and_extension_is_refused(frame):
         assert by_chance or reason in (wire.BAD_LENGTH, wire.BAD_CRC)
     # The CRC of a frame and a zero is right again: what has a length of its own sees it.
     reason = wire.decode(data + b"\0", Frame())
-    endless = frame.kind in (words.DATA, words.GRAPH) or frame.flags & words.DETOURED
+    endless = frame.kind in (const.DATA, const.GRAPH) or frame.flags & const.DETOURED
     assert endless or reason != wire.OK
     assert wire.decode(data + b"\1", Frame()) in (wire.BAD_CRC, wire.BAD_LENGTH)
 
@@ -290,7 +290,7 @@ def test_up_to_three_flips_are_refused(frame, data):
 
 def feed(data):
     """Decode any bytes: a frame that is refused stays as it was, one that is not can be told."""
-    frame = new(words.DATA, path=[9], body=b"old", flags=3)
+    frame = new(const.DATA, path=[9], body=b"old", flags=3)
     before = carried(frame)
     reason = wire.decode(data, frame)
     assert 0 <= reason < len(wire.REASONS)
@@ -308,7 +308,7 @@ def noise(seed, count):
     for k in range(count):
         data = bytearray(source.randbytes(source.randrange(140)))
         if k % 4 and len(data) >= 11:
-            data[0] = 0x40 | source.choice([*payloads.FIELDS, words.ACK, 63])
+            data[0] = 0x40 | source.choice([*payloads.FIELDS, const.ACK, 63])
             data[1] &= source.choice([0, 8, 16, 255])
             data[10] = source.choice([0, 1, 24, 25, data[10]])
         yield sealed(bytes(data)) if k % 4 else bytes(data)
@@ -348,13 +348,13 @@ def test_reasons(body, reason):
 
 
 def test_the_mtu_holds_both_ways():
-    frame = new(words.DATA, body=bytes(51))
+    frame = new(const.DATA, body=bytes(51))
     assert len(wire.encode(frame, 64)) == 64
     frame.length = 52
     with pytest.raises(ValueError, match="MTU"):
         wire.encode(frame, 64)
     assert wire.decode(wire.encode(frame), Frame(), 64) == wire.BAD_LENGTH
-    long = sealed(bytes([0x48, *[0] * 10, *[0] * (words.BODY + 1)]))
+    long = sealed(bytes([0x48, *[0] * 10, *[0] * (const.BODY + 1)]))
     assert wire.decode(long, Frame(), 1200) == wire.BAD_LENGTH
 
 
@@ -364,13 +364,13 @@ def test_the_mtu_holds_both_ways():
      ("length", -1), ("path", [256] * 24), ("body", [-1] * 114)],
 )  # fmt: skip
 def test_encoding_what_does_not_fit_is_the_callers_mistake(name, value):
-    frame = new(words.DATA, path=[1], body=b"x")
+    frame = new(const.DATA, path=[1], body=b"x")
     setattr(frame, name, value)
     with pytest.raises(ValueError, match=name):
         wire.encode(frame)
 
 
 def test_a_payload_that_is_too_short_is_shown_as_it_is():
-    assert wire.fields(new(words.ALARM, body=b"\1\2"))[-1] == ("payload", [1, 2])
+    assert wire.fields(new(const.ALARM, body=b"\1\2"))[-1] == ("payload", [1, 2])
     assert wire.fields(new(6, body=b"\1"))[-1] == ("payload", [1])
     assert read(payloads.NEIGHBOUR, b"\1", 0, 8, []) == BROKEN

@@ -1,4 +1,4 @@
-"""A network of plain nodes on the bench, stepped by hand (see skin_bench.py)."""
+"""A network of plain nodes on the bench, stepped by hand (see bench.py)."""
 
 from innervate.dialect.arith import after, later
 from innervate.networks.skin.protocol.constants import NONE, PORTS

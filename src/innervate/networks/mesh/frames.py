@@ -1,6 +1,6 @@
 """Frames of the mesh [mesh 2]: a common header, the path so far, a payload, a CRC; hop acks.
 
-The tables here and in mesh_payloads.py are the one description: encoder, decoder and whatever else
+The tables here and in payloads.py are the one description: encoder, decoder and whatever else
 speaks of the bytes read them. A payload has no length of its own: it ends where the CRC begins, so
 that a medium must say where a frame ends (a CRC alone does not see a zero behind it).
 """

@@ -1,6 +1,6 @@
 """What the fields of mesh payloads mean, in words: for documents and dissectors, not for boards."""
 
-# By field of wire/mesh_payloads.py; a name means the same wherever it stands.
+# By field of payloads.py; a name means the same wherever it stands.
 MEANINGS = {
     "gateway": "who asks, and computes the tables",
     "epoch": "of the gateway; a standby that takes over counts it up",

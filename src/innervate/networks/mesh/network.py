@@ -44,4 +44,7 @@ NETWORK = Network(
     live_words="live.words",
     live_view="view.live:MeshLiveView",
     papers="papers",
+    verify="verify.command",
+    counterexample="plot.counterexample:save",
+    random="verify.fuzz",
 )

@@ -7,7 +7,7 @@ from innervate.trace.tables import Column, Table
 _TIME = Column("time_us", "Int64", "us", "when, true time")
 _NODE = Column("node", "Int16", "node", "who")
 _FLAGS = Column("flags", "Int16", "flags", "of its header: 2 end to end, 4 flood, 128 retry, ...")
-_KIND = Column("kind", "Int8", "type", "8 data, 10 alarm; the others: protocol/mesh_words.py")
+_KIND = Column("kind", "Int8", "type", "8 data, 10 alarm; the others: protocol/constants.py")
 _ORIGIN = Column("origin", "Int16", "node", "who made it")
 _SEQ = Column("seq", "Int32", "number", "of its origin")
 
@@ -90,7 +90,7 @@ ROUNDS = Table(
 )
 REPORTS = Table(
     "reports",
-    "a node reported something (codes: protocol/mesh_words.py)",
+    "a node reported something (codes: protocol/constants.py)",
     (
         _TIME,
         _NODE,

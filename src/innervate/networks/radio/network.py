@@ -42,4 +42,6 @@ NETWORK = Network(
     live_words="live.words",
     live_view="view.live:RadioLiveView",
     papers="papers",
+    verify="verify.command",
+    random="verify.fuzz",
 )

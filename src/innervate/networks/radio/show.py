@@ -39,7 +39,7 @@ def _first(run: Run) -> str:
 
 
 def result_lines(run: Run) -> list[str]:
-    """Packets, delays, fairness."""
+    """Lines on a run: packets delivered, delays, fairness, and what is amiss."""
     summary = _summary(run)
     lines = [_delivered(run), *off_words(summary), *warnings(run.plan)]
     delay = summary["delay_slots"]

@@ -38,7 +38,7 @@ SENT = Table(
 )
 REPORTS = Table(
     "reports",
-    "a station reported something (codes: protocol/radio_words.py)",
+    "a station reported something (codes: protocol/constants.py)",
     (
         Column("time_us", "Int64", "us", "when, true time"),
         _STATION,

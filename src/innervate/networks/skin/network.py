@@ -47,4 +47,7 @@ NETWORK = Network(
     live_view="view.live:SkinLiveView",
     recovery="export.recovery",
     papers="papers",
+    verify="verify.command",
+    counterexample="plot.counterexample:save",
+    random="verify.fuzz",
 )

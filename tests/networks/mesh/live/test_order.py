@@ -87,7 +87,7 @@ def test_a_sender_that_starts_anew_is_not_waited_for():
 
 def test_messages_that_say_nothing_of_order_go_up_at_once():
     orderly, got = Orderly(WAIT), []
-    orderly.callbacks.append(lambda sender, payload: got.append((sender, payload)))
+    orderly.arrivals.callbacks.append(lambda sender, payload: got.append((sender, payload)))
     orderly.take(Message(3, 17, None, b"x"))
     assert got == [(3, b"x")]
 

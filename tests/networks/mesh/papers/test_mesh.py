@@ -17,7 +17,7 @@ from innervate.networks.mesh.papers import (
     stretch,
 )
 from innervate.networks.mesh.papers.bars import wire_bytes
-from innervate.networks.mesh.papers.testbed import GATEWAY, Bed, dying, kill, send_rounds
+from innervate.networks.mesh.papers.testbed import GATEWAY, MeshTestbed, dying, kill, send_rounds
 from innervate.papers import main
 from innervate.papers.experiment import FAILS, HOLDS
 from innervate.plot import style
@@ -118,7 +118,7 @@ def test_what_holds_and_what_does_not(mesh_made, begins, name, words):
 
 
 def test_with_one_death_more_the_same_die_and_one_more():
-    plan = Bed(nodes=8, degree=4).plan(3)
+    plan = MeshTestbed(nodes=8, degree=4).plan(3)
     four, five = dying(plan, 4), dying(plan, 5)
     assert five[:4] == four
     assert len(set(five)) == 5
@@ -129,7 +129,7 @@ def test_with_one_death_more_the_same_die_and_one_more():
 
 
 def test_everyone_sends_once_a_round_and_never_to_itself():
-    plan = Bed(nodes=8, degree=4).plan(1)
+    plan = MeshTestbed(nodes=8, degree=4).plan(1)
     send_rounds(plan, [1, 3, 5, 7], 2, 1_000_000, 400_000)
     for k in range(2):
         mine = [offer for offer in plan.offers if offer.flow == k]
@@ -157,7 +157,7 @@ def test_a_crossing_is_measured():
 
 
 def test_whose_neighbours_are_all_dead_is_not_connected():
-    plan = crossing.bed(crossing.BOTH, 1).plan(1)
+    plan = crossing.make_testbed(crossing.BOTH, 1).plan(1)
     everyone = [node for node in range(plan.nodes) if node not in (GATEWAY, crossing.ROBOT)]
     at_us = round((crossing.walk(1)[1] + crossing.INSIDE_M) * 1e6)
     assert crossing._joined(plan, [], at_us)

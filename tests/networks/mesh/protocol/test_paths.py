@@ -33,8 +33,8 @@ def gateway_of(graph, mtu=127):
     for name, value in {**DEFAULTS, "nodes": len(graph), "width": 64, "row": 5, "mtu": mtu}.items():
         setattr(params, name, value)
     for a, b in graph.edges:
-        mesh_paths.heard(gate, params, a, b, 1)
-        mesh_paths.heard(gate, params, b, a, 1)
+        mesh_paths.note_heard(gate, params, a, b, 1)
+        mesh_paths.note_heard(gate, params, b, a, 1)
     mesh_paths.build_graph(gate, params, 1)
     mesh_paths.measure_all(gate, params)
     return node, gate, params
@@ -84,10 +84,10 @@ def test_alternates_are_loop_free_and_protect_the_node_where_one_can(graph):
 
 def test_links_count_both_ways_and_for_three_rounds():
     params, gate = gateway_of(nx.path_graph(3))[2], Gate()
-    mesh_paths.heard(gate, params, 0, 1, 65_534)
+    mesh_paths.note_heard(gate, params, 0, 1, 65_534)
     mesh_paths.build_graph(gate, params, 65_534)
     assert gate.links == 0
-    mesh_paths.heard(gate, params, 1, 0, 65_534)
+    mesh_paths.note_heard(gate, params, 1, 0, 65_534)
     for later, links in [(0, 1), (1, 1), (2, 1), (3, 0)]:
         mesh_paths.build_graph(gate, params, 65_534 + later & 65_535)
         assert gate.links == links, later

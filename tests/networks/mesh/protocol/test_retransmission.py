@@ -1,4 +1,4 @@
-"""Messages that are kept: none is tried when its recipient could not tell it any more."""
+"""Retransmission: no message is tried when its recipient could not tell it any more."""
 
 from itertools import pairwise
 
@@ -11,7 +11,7 @@ from innervate.networks.mesh.protocol.constants import (
     REPORT_EXPIRED,
     REPORT_FULL,
 )
-from innervate.networks.mesh.protocol.retransmission import OLDEST
+from innervate.networks.mesh.protocol.retransmission import AHEAD_MAX
 from tests.networks.mesh.net import Net, line
 
 READY = 4_000_000
@@ -61,10 +61,10 @@ def test_no_packet_goes_so_far_ahead_that_an_older_one_could_not_come_any_more()
     net.run(READY + 200_000)
     net.near[0].discard(1)
     net.send(0, 1, b"late", handle=7)
-    for k in range(OLDEST):
+    for k in range(AHEAD_MAX):
         net.send(0, 2, b"%d" % k)
         net.run(net.now + 10_000)
-    assert heard(net, 2)[1:] == [b"%d" % k for k in range(OLDEST)]
+    assert heard(net, 2)[1:] == [b"%d" % k for k in range(AHEAD_MAX)]
     net.send(0, 1, b"ahead", handle=9)
     assert codes(net, 0, REPORT_FULL) == [(9, NO_ROOM)]
     net.near[0].add(1)
@@ -82,10 +82,10 @@ def test_acks_do_not_shut_out_a_message_that_is_still_tried():
     net.run(READY + 200_000)
     net.lost = lambda frame, to: frame.kind == DATA and frame.origin == 0
     net.send(0, 1, b"late")
-    for k in range(2 * OLDEST):
+    for k in range(2 * AHEAD_MAX):
         net.send(1, 0, b"%d" % k)
         net.run(net.now + 10_000)
-    assert len(heard(net, 0)) == 2 * OLDEST
+    assert len(heard(net, 0)) == 2 * AHEAD_MAX
     net.lost = lambda frame, to: False
     net.run(net.now + 10_000_000)
     assert heard(net, 1) == [b"first", b"late"]

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.protocol import constants as const
 from tests.networks.mesh.net import Net
 
 REWRITE = os.environ.get("INNERVATE_REWRITE", "") not in ("", "0")
@@ -25,19 +25,19 @@ FENCE = dict(points=4, px=[0, 1000, 1000, 0] + [0] * 44, py=[0, 0, 1000, 1000] +
              after=[1, 2, 3, 0] + [0] * 44)  # fmt: skip
 NAMES = ["REQUEST", "RESPONSE", "TABLE", "TABLE_ACK", "DATA", "E2E_ACK"]
 NAMES += ["ALARM", "POSITION", "GRAPH", "ACK"]
-KINDS = {getattr(words, name): name.lower().replace("_", " ") for name in NAMES}
+KINDS = {getattr(const, name): name.lower().replace("_", " ") for name in NAMES}
 ALARM_KINDS = ["predict", "cross", "lost", "clear"]
 REPORTS = {
-    words.REPORT_HOP: "message {a} has left",
-    words.REPORT_ARRIVED: "message {a} has arrived",
-    words.REPORT_EXPIRED: "message {a} is given up",
-    words.REPORT_DROPPED: "a packet of {a} is dropped",
-    words.REPORT_SUSPECT: "suspects {a}",
-    words.REPORT_ROUND: "begins a round",
-    words.REPORT_GRAPH: "knows {a} links",
-    words.REPORT_TABLE: "has its table",
-    words.REPORT_TABLES: "has handed out all tables; {b} nodes are without",
-    words.REPORT_GATEWAY: "follows {a}",
+    const.REPORT_HOP: "message {a} has left",
+    const.REPORT_ARRIVED: "message {a} has arrived",
+    const.REPORT_EXPIRED: "message {a} is given up",
+    const.REPORT_DROPPED: "a packet of {a} is dropped",
+    const.REPORT_SUSPECT: "suspects {a}",
+    const.REPORT_ROUND: "begins a round",
+    const.REPORT_GRAPH: "knows {a} links",
+    const.REPORT_TABLE: "has its table",
+    const.REPORT_TABLES: "has handed out all tables; {b} nodes are without",
+    const.REPORT_GATEWAY: "follows {a}",
 }
 
 
@@ -74,13 +74,13 @@ class Player:
         return self.do_run(ms, aloud=True)
 
     def frame(self, i, frame):
-        to = "all" if frame.link_dst == words.ALL else frame.link_dst
-        path = "" if frame.kind == words.ACK else ", path " + " ".join(
+        to = "all" if frame.link_dst == const.ALL else frame.link_dst
+        path = "" if frame.kind == const.ACK else ", path " + " ".join(
             map(str, frame.path[: frame.path_len]))  # fmt: skip
         return f"{i} -> {to}: {KINDS[frame.kind]} of {frame.origin}{path}"
 
     def delivery(self, i, frame):
-        if frame.kind == words.ALARM:
+        if frame.kind == const.ALARM:
             return f"{i} GETS {ALARM_KINDS[frame.body[3]]} of robot {frame.body[0]}"
         return f"{i} GETS '{bytes(frame.body[: frame.length]).decode()}' of {frame.origin}"
 
@@ -110,8 +110,8 @@ class Player:
             row = []
             for dest in range(len(self.net.nodes)):
                 at = node.bank * 32 + dest
-                if node.next[at] != words.ALL:
-                    other = "" if node.alt[at] == words.ALL else f" ({node.alt[at]})"
+                if node.next[at] != const.ALL:
+                    other = "" if node.alt[at] == const.ALL else f" ({node.alt[at]})"
                     row.append(f"to {dest} by {node.next[at]}{other}")
             lines.append(f"{i}: " + ", ".join(row))
         return lines

@@ -2,7 +2,7 @@
 
 import pytest
 
-from innervate.networks.mesh.protocol.backoff import HARD, STRAIN_MAX, is_held
+from innervate.networks.mesh.protocol.backoff import STRAIN_HEAVY, STRAIN_MAX, is_held
 from innervate.networks.mesh.protocol.constants import (
     ACK,
     ALARM,
@@ -27,14 +27,14 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.networks.mesh.protocol.duplicates import (
     ANEW,
-    NO_WAY,
+    UNREACHABLE,
     accept,
-    is_hopeless,
+    clear_bad,
+    is_unreachable,
     mark_bad,
-    unbad,
 )
 from innervate.networks.mesh.protocol.neighbours import DOUBT, SUSPECT
-from innervate.networks.mesh.protocol.retransmission import DESPAIR_MAX
+from innervate.networks.mesh.protocol.retransmission import SEARCH_BACKOFF_MAX
 from innervate.networks.mesh.protocol.send import most_tries
 from tests.networks.mesh.bench import Bench
 
@@ -132,7 +132,7 @@ def test_who_did_not_answer_and_was_not_heard_since_is_tried_once():
 def test_what_climbs_to_the_gateway_is_tried_in_full_whoever_was_silent():
     bench = settled(3, LINE)
     node = bench.nodes[1]
-    k = node.near.index(0)
+    k = node.neighbour.index(0)
     node.suspect[k] = DOUBT
     for kind in (RESPONSE, TABLE_ACK, TABLE):
         assert most_tries_of(node, bench.params, k, kind) == 3
@@ -152,9 +152,9 @@ def test_new_tables_give_hope_for_whom_they_know(mode, left_out, kept):
     bench = settled(3, LINE, mode=mode)
     node = bench.nodes[0]
     node.next[node.bank * bench.params.width + 2] = 255 if left_out else 1
-    mark_bad(node, NO_WAY, 2)
-    unbad(node, bench.params)
-    assert is_hopeless(node, 2) == kept
+    mark_bad(node, UNREACHABLE, 2)
+    clear_bad(node, bench.params)
+    assert is_unreachable(node, 2) == kept
 
 
 def test_despair_fades_once_there_is_nobody_to_despair_of():
@@ -163,9 +163,9 @@ def test_despair_fades_once_there_is_nobody_to_despair_of():
     for _ in range(40):
         bench.send(0, 3)
         bench.run(bench.now + 2_000_000)
-    assert bench.nodes[0].despair == DESPAIR_MAX
+    assert bench.nodes[0].search_backoff == SEARCH_BACKOFF_MAX
     bench.run(bench.now + 130_000_000)
-    assert bench.nodes[0].despair == 0
+    assert bench.nodes[0].search_backoff == 0
 
 
 def test_a_message_to_all_comes_once_however_many_are_on_their_way():
@@ -236,9 +236,9 @@ HELD = [  # strain, rank, kind, flags -> held in a pause
     (STRAIN_MAX, CONTROL, TABLE, 0, 0),
     (STRAIN_MAX, CONTROL, E2E_ACK, 0, 1),
     (STRAIN_MAX, MESSAGES, DATA, 0, 1),
-    (HARD, MESSAGES, DATA, 0, 0),
-    (HARD, MESSAGES, DATA, DETOURED, 1),
-    (HARD, CONTROL, E2E_ACK, DETOURED, 0),
+    (STRAIN_HEAVY, MESSAGES, DATA, 0, 0),
+    (STRAIN_HEAVY, MESSAGES, DATA, DETOURED, 1),
+    (STRAIN_HEAVY, CONTROL, E2E_ACK, DETOURED, 0),
 ]
 
 

@@ -8,7 +8,7 @@ import pytest
 from innervate.dialect.outbox import deliver, report, send
 from innervate.networks.mesh.protocol.frames import copy_frame
 from innervate.networks.mesh.sim import simulate as simulation
-from innervate.networks.mesh.sim.build import build, grow_seen
+from innervate.networks.mesh.sim.build import build, grow_duplicates
 from innervate.networks.mesh.sim.recorder import place_of
 from innervate.sim.driver import InvariantBroken
 from tests.networks.mesh import pinger as mesh_pinger
@@ -162,8 +162,10 @@ def test_the_table_of_deliveries_grows():
     world = build(busy_plan(), True, True, True, False)
     keys = [1 + 2 * k for k in range(1_000)]
     for key in keys:
-        at = place_of(world.seen_key, key)
-        world.seen_key[at], world.seen_at[at] = key, 5 * key
-    grown = grow_seen(world)
-    assert len(grown.seen_key) == 2 * len(world.seen_key)
-    assert [grown.seen_at[place_of(grown.seen_key, key)] for key in keys] == [5 * k for k in keys]
+        at = place_of(world.duplicate_key, key)
+        world.duplicate_key[at], world.duplicate_at[at] = key, 5 * key
+    grown = grow_duplicates(world)
+    assert len(grown.duplicate_key) == 2 * len(world.duplicate_key)
+    assert [grown.duplicate_at[place_of(grown.duplicate_key, key)] for key in keys] == [
+        5 * k for k in keys
+    ]

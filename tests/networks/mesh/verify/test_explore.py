@@ -6,7 +6,7 @@ import pytest
 
 from innervate import scenario
 from innervate.networks.mesh.plot import counterexample as mesh_counterexample
-from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.networks.mesh.verify import cases as mesh_cases
 from innervate.networks.mesh.verify import fair as mesh_fair
@@ -55,7 +55,7 @@ def test_the_random_failover_closes_a_loop_of_two_for_good(made, ring, events):
     result = simulate(scenario.plan(scenario.loads(text)))
     assert mesh_replay.loop_of(text, told.dest) == ring
     # The recipient lives and has a way; forty messages later not one has come.
-    data = result.delivered["kind"] == words.DATA
+    data = result.delivered["kind"] == const.DATA
     assert sum(data) <= 1
     assert len(result.sent[result.sent["time"] > 90e6]) > 5 * hops_offered_late(result)
     picture = mesh_counterexample.draw(told).render()

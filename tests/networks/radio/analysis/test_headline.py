@@ -3,7 +3,7 @@
 import pytest
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK
-from innervate.networks.radio.analysis.headline import RadioFacts, headline, patience_us
+from innervate.networks.radio.analysis.headline import RadioFacts, headline, timeout_us
 from innervate.networks.radio.analysis.live import Still, of_stations
 from innervate.networks.radio.analysis.state import facts
 from innervate.networks.radio.analysis.summary import facts as facts_of_run
@@ -99,9 +99,9 @@ def test_worst_news_come_first():
     assert places == sorted(places)
 
 
-def test_patience_grows_with_what_a_turn_takes():
-    few, many = patience_us(radio_plan(2).params, 2), patience_us(radio_plan(20).params, 20)
-    slow = patience_us(radio_plan(2, ta=2000).params, 2)
+def test_the_timeout_grows_with_what_a_turn_takes():
+    few, many = timeout_us(radio_plan(2).params, 2), timeout_us(radio_plan(20).params, 20)
+    slow = timeout_us(radio_plan(2, ta=2000).params, 2)
     turn = 26 * 208 + 2 * 104
     assert (few, many) == (8 * turn + 1024 * 208, 80 * turn + 1024 * 208)
     assert slow == few + 8 * 4000
@@ -208,7 +208,7 @@ def test_running_stations():
 
 def test_running_stations_that_stand_still():
     told = {0: station(4, 3, 1), 1: station(2, 2)}
-    limit_ms = patience_us(PARAMS, 2) / 1e3
+    limit_ms = timeout_us(PARAMS, 2) / 1e3
     assert headline(of_stations(told, 2, (), limit_ms, PARAMS)).level == OK
     found = headline(of_stations(told, 2, (), limit_ms + 1, PARAMS))
     assert (found.level, found.nodes) == (DOWN, (0,))

@@ -10,8 +10,8 @@ from innervate.dialect.outbox import DELIVER, REPORT, SEND
 from innervate.networks.skin.protocol import cell as skin
 from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.networks.skin.protocol import sink as skin_sink
+from innervate.networks.skin.protocol.command_window import WINDOW, accept_command
 from innervate.networks.skin.protocol.constants import COMMAND, EVERYBODY, GIVE, ONE, PORTS
-from innervate.networks.skin.protocol.down import WINDOW, take_first
 
 Frame = plain.make("Frame", skin_fields.FRAME)
 Cell = plain.make("Cell", skin_fields.CELL)
@@ -116,7 +116,7 @@ def test_a_number_counts_once_in_any_order_within_the_window(steps, start):
     cell, seen, newest = Cell(), set(), start
     for step in [0, *steps]:
         number = (newest + step) & 0xFFFF
-        assert bool(take_first(cell, number)) == (number not in seen)
+        assert bool(accept_command(cell, number)) == (number not in seen)
         seen.add(number)
         if step > 0:
             newest = number
@@ -126,9 +126,9 @@ def test_a_number_counts_once_in_any_order_within_the_window(steps, start):
 
 def test_a_pc_that_counts_anew_is_heard():
     cell = Cell()
-    assert all(take_first(cell, number) for number in range(60_000, 60_050))
-    assert take_first(cell, 12_345)
-    assert not take_first(cell, 12_345)
+    assert all(accept_command(cell, number) for number in range(60_000, 60_050))
+    assert accept_command(cell, 12_345)
+    assert not accept_command(cell, 12_345)
 
 
 class Pc:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from innervate.networks.skin.protocol import constants as skin_words
+from innervate.networks.skin.protocol import constants as skin_const
 from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.networks.skin.scenario.plan import Plan
 from innervate.networks.skin.scenario.script import DELIVER, DETECT, DRAW, STEP_LOSE, TICK
@@ -38,11 +38,11 @@ def test_parameters(small: str) -> None:
     assert (made["forward_min_us"], made["forward_max_us"]) == (0, 2000)
     assert params(small, "protocol.balancing=false")["balance_periods"] == 0
     assert params(small, "protocol.balance_periods=7")["balance_periods"] == 7
-    assert params(small)["balance_rule"] == skin_words.BALANCE_EVEN
-    assert params(small, "protocol.balance_rule=paper")["balance_rule"] == skin_words.BALANCE_PAPER
+    assert params(small)["balance_rule"] == skin_const.BALANCE_EVEN
+    assert params(small, "protocol.balance_rule=paper")["balance_rule"] == skin_const.BALANCE_PAPER
     for rule, number in (
-        ("paper", skin_words.RULE_PAPER),
-        ("paper-lax", skin_words.RULE_PAPER_LAX),
+        ("paper", skin_const.RULE_PAPER),
+        ("paper-lax", skin_const.RULE_PAPER_LAX),
     ):
         assert params(small, f"protocol.rule={rule}")["rule"] == number
     assert params(small, "protocol.k=94")["seq_every"] == 5

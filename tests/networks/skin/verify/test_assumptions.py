@@ -2,8 +2,7 @@
 
 import pytest
 
-from innervate.networks.skin.verify import assumptions as promises
-from innervate.networks.skin.verify import cases, graphs, mutants
+from innervate.networks.skin.verify import assumptions, cases, graphs, mutants
 from innervate.networks.skin.verify.system import RULES, UPDATES, Budget, SkinModel
 from innervate.verify.errors import VerifyError
 
@@ -15,7 +14,7 @@ def model(rule, updates):
 @pytest.mark.parametrize("updates", UPDATES)
 @pytest.mark.parametrize("rule", RULES)
 def test_the_shipped_rule_keeps_them(rule, updates):
-    assert promises.broken(model(rule, updates)) == ""
+    assert assumptions.broken(model(rule, updates)) == ""
 
 
 HIDING = {
@@ -32,11 +31,11 @@ HIDING = {
 @pytest.mark.parametrize("name", HIDING)
 def test_mistakes_that_could_hide_behind_it_are_found(name):
     mutant = next(one for one in mutants.MUTANTS if one.name == name)
-    assert "is taken beside" in promises.broken(model(*HIDING[name]), mutants.copy_of(mutant))
+    assert "is taken beside" in assumptions.broken(model(*HIDING[name]), mutants.copy_of(mutant))
 
 
 def test_a_reduced_search_does_not_start_without_them(monkeypatch):
-    monkeypatch.setattr(promises, "broken", lambda _: "a route is taken")
+    monkeypatch.setattr(assumptions, "broken", lambda _: "a route is taken")
     wanted = cases.Wanted(live=False, states=50, plain=True)
     with pytest.raises(VerifyError, match="a route is taken; --no-reduce"):
         cases.run(model("feasible", "periodic"), wanted, lambda *_: False)

@@ -2,8 +2,7 @@
 
 import pytest
 
-from innervate.networks.skin.verify import cases, fair, graphs, mutants
-from innervate.networks.skin.verify import reduction as skin_dead
+from innervate.networks.skin.verify import cases, fair, graphs, mutants, reduction
 from innervate.networks.skin.verify.system import Budget, SkinModel
 from innervate.networks.skin.verify.world import BROKEN_LOOP
 from innervate.verify import explore
@@ -74,7 +73,7 @@ def test_forgetting_too_much_is_noticed(monkeypatch, wrong):
     made = model("pair", "periodic", budget=Budget(ticks=2, counts=2, faults=1), keep=True)
     if wrong == "is_dead_route":
         made = made.changed(keep=False)
-    monkeypatch.setattr(skin_dead, wrong, lambda *_: True)
+    monkeypatch.setattr(reduction, wrong, lambda *_: True)
     cover = Cover(made, plain=True)
     assert cover.missing() or not cover.is_faithful()
 

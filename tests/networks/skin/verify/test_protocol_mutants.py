@@ -14,7 +14,7 @@ from tests.networks.skin.verify.mutants_checks import CHECKS
 
 # name: (text, replacement, check that finds it)
 MUTANTS = {
-    # skin_route.py
+    # route.py
     "a worse parent is no reason to look around": (
         "if worse or not is_usable(cell, params, port):",
         "if not is_usable(cell, params, port):",
@@ -122,7 +122,7 @@ MUTANTS = {
     "samples are not counted on": (
         "cell.seq = (cell.seq + 1) & 255", "cell.seq = cell.seq & 255", "data"
     ),
-    # skin_sink.py
+    # sink.py
     "numbers do not wrap": (
         "own.sq = (own.sq + 1) & MASK16\n        own.sq_known",
         "own.sq = own.sq + 1\n        own.sq_known",

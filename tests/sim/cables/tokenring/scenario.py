@@ -29,6 +29,8 @@ class RingScenario(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
     duration_s: float = 0.5
     seed: int = 1
     nodes: int = 4
+    hold_us: int = 1000
+    lost_us: int = 20_000
     loads: bool = False
     event: list[Event] = []
 
@@ -58,7 +60,7 @@ def plan(scenario):
         kind="tokenring",
         seed=model.seed,
         duration_us=round(1e6 * model.duration_s),
-        params={"hold_us": 1000, "lost_us": 20_000},
+        params={"hold_us": model.hold_us, "lost_us": model.lost_us},
         drift_ppm=30,
         faults=faults,
         inputs=inputs if model.loads else [],

@@ -14,7 +14,7 @@ from innervate.networks.mesh.analysis.fence import (
     overrun_cm,
     position_cm,
 )
-from innervate.networks.mesh.analysis.messages import NEVER, patience_us, percentiles
+from innervate.networks.mesh.analysis.messages import NEVER, percentiles, timeout_us
 from innervate.networks.mesh.analysis.summary_keys import Alarms
 from innervate.networks.mesh.protocol.constants import ALARM, CROSS, FLOOD, PREDICT, REPORT_ALARM
 
@@ -127,7 +127,7 @@ def _crossing(
         hops=int(rows["path_len"][came[0]]) if len(came) else NEVER,
         warned_us=int(rows["time"][warned[0]]) if len(warned) else NEVER,
         overrun_m=overrun_cm(edges, walk, out_us, known) / 100,
-        open=not len(came) and out_us + patience_us(result.plan) > result.ended_us,
+        open=not len(came) and out_us + timeout_us(result.plan) > result.ended_us,
     )
 
 

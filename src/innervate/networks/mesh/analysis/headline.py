@@ -77,7 +77,7 @@ def _is_down(ways: Ways, traffic: Traffic) -> bool:
 
 
 def _undelivered(traffic: Traffic) -> list[str]:
-    """What did not come."""
+    """Sentences on crossings and messages that did not come; none if all did."""
     found = []
     unheard = traffic.crossings - traffic.learned
     if unheard:

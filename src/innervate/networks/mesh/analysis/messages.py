@@ -105,7 +105,7 @@ def messages(result: Any) -> Messages:
         detoured=of_first("looped") == 1,
         state=state,
         broadcast=dest == ALL,
-        young=at + patience_us(result.plan) > result.ended_us,
+        young=at + timeout_us(result.plan) > result.ended_us,
     )
 
 
@@ -173,7 +173,7 @@ def _rank(names: Numbers, times: Numbers, name: Numbers, time: Numbers) -> Numbe
 
 def _states(result: Any, at: Numbers, came: Flags, answer: Numbers) -> Numbers:
     state = np.full(len(at), LOST, np.int64)
-    state[at + patience_us(result.plan) > result.ended_us] = IN_FLIGHT
+    state[at + timeout_us(result.plan) > result.ended_us] = IN_FLIGHT
     rows = result.rows[result.rows["code"] == REPORT_EXPIRED]
     for row in rows:
         # The offer of that handle which was there last.
@@ -187,7 +187,7 @@ def _states(result: Any, at: Numbers, came: Flags, answer: Numbers) -> Numbers:
     return state
 
 
-def patience_us(plan: Any) -> int:
+def timeout_us(plan: Any) -> int:
     """How long a message can be on its way before its sender gives it up, us."""
     params = plan.params
     again = params["e2e_us"] * (params["e2e_tries"] + 1) if params["reliable"] else 0

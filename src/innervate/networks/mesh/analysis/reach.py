@@ -2,7 +2,7 @@
 
 A node *has a way* if a packet that it sends to its gateway now would get there by what the protocol
 does: over links that carry frames and nodes that are on, next hops that do not answer passed by as
-`protocol/mesh_route.py` passes them by. It is *cut off* if no chain of such links and nodes joins
+`protocol/route.py` passes them by. It is *cut off* if no chain of such links and nodes joins
 it to any gateway, whatever a protocol did. What makes the difference between the two is mended by
 the protocol; what cuts off, by people.
 
@@ -194,7 +194,7 @@ def choices(world: Any, plan: Any) -> Choices:
     """What the nodes of a simulation know."""
     count, params = plan.nodes, plan.params
     nodes = _Columns(world.nodes, count)
-    near, suspect = nodes["near"], nodes["suspect"] & 1 == 1
+    near, suspect = nodes["neighbour"], nodes["suspect"] & 1 == 1
     gateway = np.where(nodes["known"] == 1, nodes["gateway"], FREE)
     who = np.arange(count)
 

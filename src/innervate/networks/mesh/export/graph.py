@@ -10,7 +10,7 @@ ONE = 32_768
 
 
 def graph(plan: Any) -> Graph:
-    """A plan's network."""
+    """A plan's nodes with their roles and places in metres, and its links."""
     nodes = []
     for i, name in enumerate(plan.names):
         role = "gateway" if plan.ranks[i] == 0 else "standby" if plan.ranks[i] > 0 else "node"

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import struct
 import time
 from collections import deque
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from innervate.live.streams import Arrivals
+from innervate.networks.mesh.payloads import FIELDS
+from innervate.networks.mesh.protocol.constants import ALARM
+from innervate.wire.layout import BROKEN, read
+
 KINDS = ("predict", "cross", "lost", "clear")
-BODY = struct.Struct(">BBBBhhbbIh")
 SHOWN = 16  # alarms that a status shows
 CM_S = 2  # unit of speeds, cm/s
 PLACE_MAX = 32_767  # units
@@ -42,13 +44,16 @@ class Alarm(NamedTuple):
 
 def read_alarm(reporter: int, body: bytes, unit_cm: int) -> Alarm | None:
     """The alarm in a packet's payload; None if it is of no kind that is known."""
-    if len(body) < BODY.size:
+    found: list[tuple[str, int]] = []
+    if read(FIELDS[ALARM], body, 0, 8 * len(body), found) == BROKEN:
         return None
-    robot, fence, number, kind, x, y, _vx, _vy, _at_ms, gap = BODY.unpack_from(body)
-    if kind >= len(KINDS):
+    told = dict(found)
+    if told["alarm"] >= len(KINDS):
         return None
-    x, y, gap = x * unit_cm, y * unit_cm, gap * unit_cm
-    return Alarm(KINDS[kind], robot, reporter, fence, number, x, y, gap)
+    x, y, gap = (told[name] * unit_cm for name in ("x", "y", "margin"))
+    return Alarm(
+        KINDS[told["alarm"]], told["robot"], reporter, told["fence"], told["number"], x, y, gap
+    )
 
 
 def place_of(
@@ -68,19 +73,18 @@ class Alarms:
     """Alarms that came in.
 
     Attributes:
-        callbacks: who is told of each.
+        arrivals: hands them up.
         recent: the newest, with the second of the epoch at which they came.
     """
 
     def __init__(self) -> None:
-        self.callbacks: list[Callable[[Alarm], None]] = []
+        self.arrivals: Arrivals[Alarm] = Arrivals()
         self.recent: deque[tuple[float, Alarm]] = deque(maxlen=SHOWN)
 
     def note(self, alarm: Alarm) -> None:
         """One came."""
         self.recent.append((time.time(), alarm))
-        for callback in self.callbacks:
-            callback(alarm)
+        self.arrivals.put(alarm)
 
     def status(self) -> list[dict[str, Any]]:
         """The newest alarms, with how long ago they came, s."""

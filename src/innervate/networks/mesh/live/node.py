@@ -13,7 +13,7 @@ from innervate.live.links import Link
 from innervate.live.node import LiveNode
 from innervate.live.receipts import DELIVERED, EXPIRED, HOP_ACKED, REFUSED, Receipt
 from innervate.live.state import State
-from innervate.live.streams import Stream, iterate, message_line
+from innervate.live.streams import Arrivals, Stream, message_line
 from innervate.networks.mesh.live.alarms import Alarm, Alarms, place_of, read_alarm
 from innervate.networks.mesh.live.order import BEFORE_BYTES, Callback, Message, Orderly
 from innervate.networks.mesh.live.stack import Item, MeshStack
@@ -76,16 +76,14 @@ class MeshNode(LiveNode):
         self._newest: dict[
             int, int
         ] = {}  # by recipient: our newest message that is to come in order
-        self.outcomes: Counter[str] = Counter()
         self.arrived_by: dict[int, list[int]] = {}  # the way of each sender's newest message
         self._turns = Turns(stack)
         self._receipts: dict[int, Receipt] = {}
         self._handle = 0
+        self.arrivals = Arrivals(is_spread=True)
+        self._arrived: list[Message] = []
         self.alarms = Alarms()
-        self._alarmed: list[Alarm] = []
         self._place = Item()
-        self._inbox: list[Message] = []
-        self._callbacks: list[Callback] = []
         self._feeding = False
         self.requests["locate"] = self._located
 
@@ -174,13 +172,8 @@ class MeshNode(LiveNode):
         Returns:
             An iterator over (sender, payload) of messages that come from now on.
         """
-        queue: asyncio.Queue[tuple[int, bytes]] = asyncio.Queue()
-        if callback is None:
-            callback = _putter(queue)
         ordered = self.in_order if in_order is None else in_order
-        callbacks = self.orderly.callbacks if ordered else self._callbacks
-        callbacks.append(callback)
-        return iterate(queue, callbacks, callback)
+        return (self.orderly.arrivals if ordered else self.arrivals).receive(callback)
 
     async def stop(self) -> None:
         """Stop at once; what waits for its turn is handed up."""
@@ -206,11 +199,7 @@ class MeshNode(LiveNode):
         self, callback: Callable[[Alarm], None] | None = None
     ) -> AsyncGenerator[Alarm, None]:
         """Alarms of the fence, at the monitor: to a callback, and as an async iterator."""
-        queue: asyncio.Queue[Alarm] = asyncio.Queue()
-        if callback is None:
-            callback = queue.put_nowait
-        self.alarms.callbacks.append(callback)
-        return iterate(queue, self.alarms.callbacks, callback)
+        return self.alarms.arrivals.receive(callback)
 
     async def drain(self, limit_s: float) -> bool:
         """Wait until no message is under way, at most `limit_s` seconds: True if none is."""
@@ -224,7 +213,7 @@ class MeshNode(LiveNode):
 
     def counters(self) -> Counter[str]:
         """Handler calls, frames dropped by reason, messages by what became of them."""
-        return super().counters() + self.outcomes + self.orderly.counters()
+        return super().counters() + self.orderly.counters()
 
     def status(self) -> dict[str, Any]:
         """What is known here, besides how many messages wait and which way they came."""
@@ -252,7 +241,7 @@ class MeshNode(LiveNode):
             alarm = read_alarm(frame.origin, body, unit_cm)
             if alarm is not None:
                 self.outcomes[f"alarms received: {alarm.kind}"] += 1
-                self._alarmed.append(alarm)
+                self.alarms.note(alarm)
         if kind == DATA:
             self._turns.heard(frame.origin)
             self.arrived_by[frame.origin] = [*frame.path[: frame.path_len], frame.dest]
@@ -262,7 +251,7 @@ class MeshNode(LiveNode):
             if frame.flags & ORDERED and frame.dest != ALL and len(body) >= BEFORE_BYTES:
                 before = int.from_bytes(body[:BEFORE_BYTES], "big")
                 body = body[BEFORE_BYTES:]
-            self._inbox.append(Message(frame.origin, frame.seq, before, body))
+            self._arrived.append(Message(frame.origin, frame.seq, before, body))
 
     def _reported(self, code: int, a: int, b: int) -> None:
         if code == REPORT_GATEWAY and b != self.state.epoch:
@@ -295,17 +284,12 @@ class MeshNode(LiveNode):
             self.outcomes[f"messages {state}"] += 1
 
     def _settled(self) -> None:
-        if self._alarmed:
-            alarmed, self._alarmed = self._alarmed, []
-            for alarm in alarmed:
-                self.alarms.note(alarm)
-        inbox = self._inbox
-        if inbox:
-            self._inbox = []
-            for message in inbox:
-                for callback in self._callbacks:
-                    callback(message.sender, message.payload)
-                self.orderly.take(message)
+        self.alarms.arrivals.hand_up()
+        arrived, self._arrived = self._arrived, []
+        for message in arrived:
+            self.arrivals.put((message.sender, message.payload))
+            self.arrivals.hand_up()
+            self.orderly.take(message)
         if self._turns:
             self._feed()
 
@@ -340,10 +324,6 @@ class MeshNode(LiveNode):
 
 IN_VAIN = (NO_ROUTE, NO_ACK)
 REASONS = {1: "no route", 2: "no acknowledgement", 3: "path full", 4: "no room"}
-
-
-def _putter(queue: asyncio.Queue[tuple[int, bytes]]) -> Callback:
-    return lambda sender, payload: queue.put_nowait((sender, payload))
 
 
 def _alarm_line(alarm: Alarm) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from innervate.dialect.arith import MASK16, later
 from innervate.live.engine import clock_us
+from innervate.live.streams import Arrivals
 
 WAIT_US = 10_000_000  # a message is rarely tried longer; at most 26 s
 BUFFER = 256
@@ -133,13 +134,13 @@ class Orderly:
         buffer: how many may wait, per sender.
 
     Attributes:
-        callbacks: who is handed them.
+        arrivals: hands them up.
     """
 
     def __init__(self, wait_us: int = WAIT_US, buffer: int = BUFFER) -> None:
         self.wait_us = wait_us
         self.buffer = buffer
-        self.callbacks: list[Callback] = []
+        self.arrivals: Arrivals[tuple[int, bytes]] = Arrivals(is_spread=True)
         self._orders: dict[int, Order] = {}
         self._newest: dict[int, int] = {}
         self._again: asyncio.TimerHandle | None = None
@@ -150,7 +151,7 @@ class Orderly:
         if before is None:
             self._hand_up(sender, [payload])
             return
-        if not self.callbacks:  # nobody wants order yet
+        if not self.arrivals.callbacks:  # nobody wants order yet
             self._orders.pop(sender, None)
             self._newest[sender] = seq
             return
@@ -194,8 +195,8 @@ class Orderly:
 
     def _hand_up(self, sender: int, payloads: list[bytes]) -> None:
         for payload in payloads:
-            for callback in self.callbacks:
-                callback(sender, payload)
+            self.arrivals.put((sender, payload))
+        self.arrivals.hand_up()
 
 
 def _in_turn(held: list[Held], near: int) -> list[Held]:

@@ -166,7 +166,7 @@ class MeshStack:
         node, params = self.node, self.params
         neighbours = []
         for k in range(params.places):
-            who = node.near[k]
+            who = node.neighbour[k]
             if who != FREE:
                 asked = self.asked[who]
                 neighbours.append(
@@ -214,7 +214,7 @@ class MeshStack:
             dest if strong else FREE,
             planned(node, params, dest) if tables else FREE,
             alternate(node, params, dest) if tables and params.failover >= ALTERNATE else FREE,
-            *(node.near[k] for k in sorted(up, key=order)),
+            *(node.neighbour[k] for k in sorted(up, key=order)),
         ]
         answering = [who for who in found if who != FREE and not is_suspect(node, params, who)]
         return list(dict.fromkeys(answering))

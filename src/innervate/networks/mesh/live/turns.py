@@ -113,9 +113,9 @@ class Turns:
         node = self._stack.node
         queue = free_places(node)
         room = (queue > OWN, queue > CONTROL, node.gateway)
-        suspects = (*node.near, *node.suspect) if self._gone else ()
-        return (*room, *suspects, *node.wait_kind, *node.wait_dest, *node.wait_seq, *node.bad_near,
-                *node.bad_dest)  # fmt: skip
+        suspects = (*node.neighbour, *node.suspect) if self._gone else ()
+        return (*room, *suspects, *node.wait_kind, *node.wait_dest, *node.wait_seq,
+                *node.bad_neighbour, *node.bad_dest)  # fmt: skip
 
 
 class Places:

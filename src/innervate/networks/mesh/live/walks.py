@@ -8,8 +8,8 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+from innervate.live.asking import sleep_until
 from innervate.live.errors import LiveError
-from innervate.live.play import sleep_until
 
 ANSWER_S = 5.0
 STANDING_S = 0.5

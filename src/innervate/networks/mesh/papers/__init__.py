@@ -30,6 +30,6 @@ def experiment(name: str) -> Experiment:
 
 def warm_up() -> None:
     """Compile the loop for the smallest class of networks; larger ones when they are met."""
-    from innervate.networks.mesh.papers.testbed import Bed
+    from innervate.networks.mesh.papers.testbed import MeshTestbed
 
-    Bed(nodes=4, degree=3, duration_s=0.1).run(1)
+    MeshTestbed(nodes=4, degree=3, duration_s=0.1).run(1)

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.summary import summarize
 from innervate.networks.mesh.papers import alarms, crossing, gateway, sending
-from innervate.networks.mesh.papers.testbed import Bed
+from innervate.networks.mesh.papers.testbed import MeshTestbed
 from innervate.networks.mesh.papers.words import seeds_of
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.scenario.plan import CLASSES
@@ -17,7 +17,7 @@ from innervate.papers.experiment import Claim, Experiment, Point, Results, verdi
 from innervate.plot import style
 
 DEAD = 8
-ROUND = Bed()  # ends before the second discovery round
+ROUND = MeshTestbed()  # ends before the second discovery round
 STATE_NODES = 50
 STATE_MAX = 4096
 
@@ -39,14 +39,14 @@ class Bar(NamedTuple):
     of: str
 
 
-def measure_round(bed: Bed, seed: int) -> dict[str, Any]:
+def measure_round(testbed: MeshTestbed, seed: int) -> dict[str, Any]:
     """One discovery round and its tables."""
-    summary = summarize(bed.run(seed))
+    summary = summarize(testbed.run(seed))
     return {name: summary["discovery"][name] for name in ("recall", "tables_s", "with_tables")}
 
 
 def crossings(quick: bool) -> range:
-    """Those of the figure."""
+    """Seeds of the crossings: those of the figure of alarms."""
     return alarms.seeds_of(quick)
 
 
@@ -64,7 +64,7 @@ def points(quick: bool) -> list[Point]:
     """A round; messages and crossings with 8 dead; the gateway's death."""
     return [
         ROUND.point("round", rounds(quick), measure_round),
-        *(sending.point(sending.bed(rule), DEAD, sent(quick)) for rule in _RULES),
+        *(sending.point(sending.make_testbed(rule), DEAD, sent(quick)) for rule in _RULES),
         *(crossing.point(scheme, DEAD, crossings(quick)) for scheme in _SCHEMES),
         *(gateway.point(setting, seeds_of(quick)) for setting in _TAKEN),
     ]
@@ -127,7 +127,7 @@ def _none(count: int) -> float:
 
 
 def _first(results: Results, quick: bool, rule: sending.Rule, most: float) -> Bar:
-    runs = sending.told(results, sending.bed(rule), DEAD, sent(quick))
+    runs = sending.told(results, sending.make_testbed(rule), DEAD, sent(quick))
     came, of = sending.share(runs, "first")
     lost = (of - came) / of
     words = f"first packets with {DEAD} unknown dead, {rule.name}"
@@ -162,7 +162,7 @@ def _taken(results: Results, quick: bool, setting: gateway.Setting) -> Bar:
 def _twice(results: Results, quick: bool) -> Bar:
     runs: list[dict[str, Any]] = []
     for rule in _RULES:
-        runs += sending.told(results, sending.bed(rule), DEAD, sent(quick))
+        runs += sending.told(results, sending.make_testbed(rule), DEAD, sent(quick))
     runs += results[crossing.key(crossing.BOTH, DEAD, crossings(quick))]
     for setting in _TAKEN:
         runs += gateway.told(results, setting, seeds_of(quick))
@@ -198,7 +198,7 @@ def judge(results: Results, quick: bool) -> list[Claim]:
               "" if bar.used <= 1 else _off(bar))
         for bar in bars(results, quick)
     ]  # fmt: skip
-    runs = sending.told(results, sending.bed(sending.DOCUMENT), DEAD, sent(quick))
+    runs = sending.told(results, sending.make_testbed(sending.DOCUMENT), DEAD, sent(quick))
     came, of = sending.share(runs, "first")
     reason = "one transmission a hop, the packet is not sent again, a random neighbour comes next"
     return [

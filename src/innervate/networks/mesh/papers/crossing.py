@@ -10,7 +10,14 @@ from innervate.networks.mesh.analysis.alarms import all_crossings
 from innervate.networks.mesh.analysis.fence import position_cm
 from innervate.networks.mesh.analysis.messages import NEVER, duplicates
 from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
-from innervate.networks.mesh.papers.testbed import GATEWAY, LITERAL, Bed, Options, dying, kill
+from innervate.networks.mesh.papers.testbed import (
+    GATEWAY,
+    LITERAL,
+    MeshTestbed,
+    Options,
+    dying,
+    kill,
+)
 from innervate.networks.mesh.protocol.constants import ALARM, FLOOD
 from innervate.networks.mesh.scenario.profiles import GOOD_CDB
 from innervate.networks.mesh.sim.simulate import simulate
@@ -56,11 +63,11 @@ def walk(seed: int) -> tuple[list[list[float]], float]:
     return [[end, along] if out else [along, end] for end in ends], start_s
 
 
-def bed(scheme: Scheme, seed: int) -> Bed:
+def make_testbed(scheme: Scheme, seed: int) -> MeshTestbed:
     """The network of one crossing."""
     way, start_s = walk(seed)
     square = [[LOW_M, LOW_M], [HIGH_M, LOW_M], [HIGH_M, HIGH_M], [LOW_M, HIGH_M]]
-    return Bed(
+    return MeshTestbed(
         nodes=NODES,
         protocol=scheme.protocol,
         duration_s=CROSSED_S + 1 + AFTER_S,
@@ -73,7 +80,7 @@ def bed(scheme: Scheme, seed: int) -> Bed:
 
 def measure(scheme: Scheme, seed: int, dead: int) -> dict[str, Any]:
     """One crossing; the monitor is the gateway."""
-    plan = bed(scheme, seed).plan(seed)
+    plan = make_testbed(scheme, seed).plan(seed)
     out_us = round((walk(seed)[1] + INSIDE_M) * 1e6)
     gone = dying(plan, dead, (GATEWAY, ROBOT))
     kill(plan, gone, out_us - KNOWN_US)

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.papers import sending
 from innervate.networks.mesh.papers.sending import DOCUMENT, GRAPH, RULES, SEARCH, Rule
-from innervate.networks.mesh.papers.testbed import Bed
+from innervate.networks.mesh.papers.testbed import MeshTestbed
 from innervate.networks.mesh.papers.words import joined, percent, seeds_of
 from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
 from innervate.plot import style
@@ -20,25 +20,26 @@ NAMES = {"document": "the document to the letter"}
 
 
 def dead_of(quick: bool) -> tuple[int, ...]:
-    """How many die."""
+    """Numbers of nodes that die, one point each."""
     return (0, 4, 8) if quick else DEAD
 
 
-def beds(rule: Rule) -> tuple[Bed, ...]:
+def make_testbeds(rule: Rule) -> tuple[MeshTestbed, ...]:
     """Without a second try from end to end, and with it."""
-    return (sending.bed(rule, reliable=False), sending.bed(rule))
+    return (sending.make_testbed(rule, reliable=False), sending.make_testbed(rule))
 
 
 def points(quick: bool) -> list[Point]:
     """Every rule and number of dead; the worst with end-to-end acks too."""
     seeds = seeds_of(quick)
-    made = [sending.point(beds(rule)[0], k, seeds) for rule in RULES for k in dead_of(quick)]
-    made += [sending.point(beds(rule)[1], k, seeds) for rule in RULES if rule is not DOCUMENT
-             for k in (0, WORST)]  # fmt: skip
-    return [*made, sending.point(beds(ORIGIN)[0], WORST, seeds)]
+    testbeds = {rule: make_testbeds(rule) for rule in (*RULES, ORIGIN)}
+    made = [sending.point(testbeds[rule][0], k, seeds) for rule in RULES for k in dead_of(quick)]
+    again = [rule for rule in RULES if rule is not DOCUMENT]
+    made += [sending.point(testbeds[rule][1], k, seeds) for rule in again for k in (0, WORST)]
+    return [*made, sending.point(testbeds[ORIGIN][0], WORST, seeds)]
 
 
-def lost(results: Results, of: Bed, dead: int, quick: bool, which: str) -> float:
+def lost(results: Results, of: MeshTestbed, dead: int, quick: bool, which: str) -> float:
     """Share of the messages that did not come."""
     came, sent = sending.share(sending.told(results, of, dead, seeds_of(quick)), which)
     return 1 - came / sent
@@ -49,7 +50,9 @@ def draw(results: Results, quick: bool) -> Figure:
     figure, axes = style.panels(style.WIDE_IN, 2.9, 1, 3, width_ratios=(1, 1, 0.9), sharey=True)
     for which, ax, letter in zip(("first", "later"), axes[:2], "ab", strict=True):
         for i, rule in enumerate(RULES):
-            shares = [100 * lost(results, beds(rule)[0], k, quick, which) for k in dead_of(quick)]
+            shares = [
+                100 * lost(results, make_testbeds(rule)[0], k, quick, which) for k in dead_of(quick)
+            ]
             ax.plot(dead_of(quick), shares, color=style.SERIES[i], marker=style.MARKERS[i],
                     ls=style.DASHES[i % 4], label=NAMES.get(rule.name, rule.name))  # fmt: skip
         ax.set_xlabel("dead nodes that nobody knows of")
@@ -64,7 +67,9 @@ def draw(results: Results, quick: bool) -> Figure:
 def _reliable(ax: Axes, results: Results, quick: bool) -> None:
     rules = RULES[1:]
     for j, (which, hatch) in enumerate((("first", ""), ("later", "////"))):
-        shares = [100 * lost(results, beds(rule)[1], WORST, quick, which) for rule in rules]
+        shares = [
+            100 * lost(results, make_testbeds(rule)[1], WORST, quick, which) for rule in rules
+        ]
         x = np.arange(len(rules)) + 0.38 * (j - 0.5)
         ax.bar(x, shares, 0.36, color=style.SERIES[1 : len(rules) + 1], hatch=hatch,
                edgecolor="white", lw=0, label=which)  # fmt: skip
@@ -91,13 +96,13 @@ def judge(results: Results, quick: bool) -> list[Claim]:
 
 
 def _pair(results: Results, quick: bool, rule: Rule, which: str, end: bool = False) -> str:
-    runs = sending.told(results, beds(rule)[int(end)], WORST, seeds_of(quick))
+    runs = sending.told(results, make_testbeds(rule)[int(end)], WORST, seeds_of(quick))
     came, sent = sending.share(runs, which)
     return f"{came} of {sent} ({percent(came / sent, 1)})"
 
 
 def _replaced(results: Results, quick: bool) -> Claim:
-    after = lost(results, beds(DOCUMENT)[0], WORST, quick, "later")
+    after = lost(results, make_testbeds(DOCUMENT)[0], WORST, quick, "later")
     return Claim(
         "2.2",
         '"if a node X dies, the nodes which list X as the next hop in their routing tables, will '
@@ -110,7 +115,7 @@ def _replaced(results: Results, quick: bool) -> Claim:
 
 
 def _letter(results: Results, quick: bool) -> Claim:
-    gone = lost(results, beds(DOCUMENT)[0], WORST, quick, "first")
+    gone = lost(results, make_testbeds(DOCUMENT)[0], WORST, quick, "first")
     return Claim(
         "2.2",
         '"the fence crossing event delivery must happen even if some intermediate nodes '
@@ -124,7 +129,9 @@ def _letter(results: Results, quick: bool) -> Claim:
 
 def _next(results: Results, quick: bool) -> Claim:
     rule = RULES[1]
-    kept, gone = (lost(results, beds(r)[0], WORST, quick, "first") for r in (rule, DOCUMENT))
+    kept, gone = (
+        lost(results, make_testbeds(r)[0], WORST, quick, "first") for r in (rule, DOCUMENT)
+    )
     return Claim(
         "2.2",
         "it is enough to send the packet that found out again, after three transmissions",
@@ -137,7 +144,9 @@ def _next(results: Results, quick: bool) -> Claim:
 
 def _source(results: Results, quick: bool) -> Claim:
     rule = RULES[1]
-    ours, other = (lost(results, beds(r)[0], WORST, quick, "first") for r in (rule, ORIGIN))
+    ours, other = (
+        lost(results, make_testbeds(r)[0], WORST, quick, "first") for r in (rule, ORIGIN)
+    )
     return Claim(
         "2.2",
         '"the choice of neighbor is random (except for packet source)": the source is the node the '
@@ -150,7 +159,7 @@ def _source(results: Results, quick: bool) -> Claim:
 
 
 def _rssi(results: Results, quick: bool) -> Claim:
-    random, loud = (lost(results, beds(r)[0], WORST, quick, "first") for r in RULES[1:3])
+    random, loud = (lost(results, make_testbeds(r)[0], WORST, quick, "first") for r in RULES[1:3])
     return Claim(
         "2.2",
         '"in the future it could be based on last heard time and RSSI": better than random',
@@ -168,7 +177,9 @@ def _rssi(results: Results, quick: bool) -> Claim:
 
 def _ours(results: Results, quick: bool, rule: Rule) -> Claim:
     dead = dead_of(quick)
-    worst = max(lost(results, beds(rule)[0], k, quick, w) for k in dead for w in ("first", "later"))
+    worst = max(
+        lost(results, make_testbeds(rule)[0], k, quick, w) for k in dead for w in ("first", "later")
+    )
     what = "alternates, then a search along the path trace" if rule is SEARCH else "the whole graph"
     return Claim(
         "beyond",
@@ -183,7 +194,7 @@ def _ours(results: Results, quick: bool, rule: Rule) -> Claim:
 def _again(results: Results, quick: bool) -> Claim:
     words, worse = [], []
     for rule in RULES[1:]:
-        shares = [lost(results, bed, WORST, quick, "later") for bed in beds(rule)]
+        shares = [lost(results, testbed, WORST, quick, "later") for testbed in make_testbeds(rule)]
         worse.append(shares[1] > shares[0] + 0.01)
         words.append(f"{rule.name} {percent(1 - shares[0], 1)} to {percent(1 - shares[1], 1)}")
     return Claim(
@@ -199,7 +210,7 @@ def _again(results: Results, quick: bool) -> Claim:
 def _loops(results: Results, quick: bool) -> Claim:
     words, fine = [], True
     for rule in RULES:
-        runs = sending.told(results, beds(rule)[0], WORST, seeds_of(quick))
+        runs = sending.told(results, make_testbeds(rule)[0], WORST, seeds_of(quick))
         looped = sum(run["looped"] for run in runs)
         sent = sum(sending.share(runs, which)[1] for which in ("first", "later"))
         fine = fine and (looped == 0 or rule in (SEARCH, GRAPH))

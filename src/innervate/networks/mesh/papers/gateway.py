@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.messages import DELIVERED, messages
 from innervate.networks.mesh.analysis.summary import summarize
-from innervate.networks.mesh.papers.testbed import BYTES, GATEWAY, Bed, Options, kill
+from innervate.networks.mesh.papers.testbed import BYTES, GATEWAY, MeshTestbed, Options, kill
 from innervate.networks.mesh.papers.words import percent, seeds_of
 from innervate.networks.mesh.protocol.constants import END_TO_END, MONITOR
 from innervate.networks.mesh.scenario.plan import Offer
@@ -48,13 +48,13 @@ BUSY = Setting("one standby, many messages", (1,), (GATEWAY,), 2)
 SETTINGS = (ALONE, ONE, SECOND, SILENT, BUSY)
 
 
-def bed(setting: Setting) -> Bed:
-    """Networks with these standbys."""
+def make_testbed(setting: Setting) -> MeshTestbed:
+    """Networks with a setting's standbys that run until the table after next."""
     more: Options = (("standby", list(setting.standbys)),) if setting.standbys else ()
-    return Bed(duration_s=DIES_S + PERIOD_S + AFTER_S + 3, more=more)
+    return MeshTestbed(duration_s=DIES_S + PERIOD_S + AFTER_S + 3, more=more)
 
 
-def measure(of: Bed, seed: int, setting: Setting) -> dict[str, Any]:
+def measure(of: MeshTestbed, seed: int, setting: Setting) -> dict[str, Any]:
     """Takeover; delivery to the gateway and among others, by the time since the death."""
     plan = of.plan(seed)
     dies_us = round(DIES_S * 1e6) + stream(seed, "papers/death").draw(PERIOD_S * 1_000_000)
@@ -95,7 +95,7 @@ def _send(plan: Any, setting: Setting, dies_us: int) -> None:
 
 def point(setting: Setting, seeds: range) -> Point:
     """The point of a setting."""
-    return bed(setting).point(_what(setting), seeds, measure, setting)
+    return make_testbed(setting).point(_what(setting), seeds, measure, setting)
 
 
 def _what(setting: Setting) -> str:
@@ -103,8 +103,8 @@ def _what(setting: Setting) -> str:
 
 
 def told(results: Results, setting: Setting, seeds: range) -> list[dict[str, Any]]:
-    """What its runs gave."""
-    runs: list[dict[str, Any]] = results[bed(setting).key_of(_what(setting), seeds)]
+    """What was measured of a setting, one dict for each seed."""
+    runs: list[dict[str, Any]] = results[make_testbed(setting).key_of(_what(setting), seeds)]
     return runs
 
 
@@ -114,7 +114,7 @@ def takeovers(runs: list[dict[str, Any]]) -> list[float]:
 
 
 def points(quick: bool) -> list[Point]:
-    """Every setting."""
+    """A point for each setting of standbys."""
     return [point(setting, seeds_of(quick)) for setting in SETTINGS]
 
 

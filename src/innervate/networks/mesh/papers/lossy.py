@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from innervate.networks.mesh.analysis.messages import DELIVERED, messages
 from innervate.networks.mesh.analysis.paths import Ground, distances
 from innervate.networks.mesh.papers.sending import DOCUMENT, GRAPH, SEARCH, Rule
-from innervate.networks.mesh.papers.testbed import BYTES, Bed, Options
+from innervate.networks.mesh.papers.testbed import BYTES, MeshTestbed, Options
 from innervate.networks.mesh.papers.words import joined, percent, seeds_of
 from innervate.networks.mesh.protocol.constants import END_TO_END
 from innervate.networks.mesh.scenario.plan import ONE, Offer
@@ -33,13 +33,13 @@ PLAIN_GRAPH = Rule("graph", (*GRAPH.protocol, ("reliable", False)))
 RULES = (DOCUMENT, THREE, PLAIN_SEARCH, PLAIN_GRAPH)
 
 
-def bed(rule: Rule) -> Bed:
+def make_testbed(rule: Rule) -> MeshTestbed:
     """Networks whose gateway goes on looking every 10 s, as it always does."""
     more: Options = rule.protocol
-    return Bed(protocol=more, duration_s=UNTIL_S + 2.0)
+    return MeshTestbed(protocol=more, duration_s=UNTIL_S + 2.0)
 
 
-def measure(of: Bed, seed: int, loss: int) -> dict[str, Any]:
+def measure(of: MeshTestbed, seed: int, loss: int) -> dict[str, Any]:
     """Delivery over time; entries of the tables that lead away or nowhere at the end."""
     plan = of.plan(seed)
     _soften(plan, loss)
@@ -97,15 +97,17 @@ def _losses(quick: bool) -> tuple[int, ...]:
 def points(quick: bool) -> list[Point]:
     """Every rule over the loss."""
     return [
-        bed(rule).point(f"lossy {loss} %", seeds_of(quick), measure, loss)
+        make_testbed(rule).point(f"lossy {loss} %", seeds_of(quick), measure, loss)
         for rule in RULES
         for loss in _losses(quick)
     ]
 
 
 def told(results: Results, rule: Rule, loss: int, quick: bool) -> list[dict[str, Any]]:
-    """What its runs gave."""
-    runs: list[dict[str, Any]] = results[bed(rule).key_of(f"lossy {loss} %", seeds_of(quick))]
+    """What was measured of a rule at a loss in percent, one dict for each seed."""
+    runs: list[dict[str, Any]] = results[
+        make_testbed(rule).key_of(f"lossy {loss} %", seeds_of(quick))
+    ]
     return runs
 
 
@@ -159,7 +161,7 @@ def draw(results: Results, quick: bool) -> Figure:
 
 
 def judge(results: Results, quick: bool) -> list[Claim]:
-    """One transmission; three; ours."""
+    """Claims on tables under loss: one transmission, three of them, our rules."""
     rows = []
     for rule, words in (
         (DOCUMENT, '"If A does not get an ack from B for this packet, then A updates its routing '

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.summary import summarize
-from innervate.networks.mesh.papers.testbed import Bed
+from innervate.networks.mesh.papers.testbed import MeshTestbed
 from innervate.networks.mesh.papers.words import joined, percent, seeds_of
 from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
 from innervate.plot import style
@@ -23,22 +23,22 @@ SMALL = (10, 20, 30)
 WORDS = {"tree": "once a round", "each": "to every request", "list": "once, with all it hears"}
 
 
-def bed(reading: str, jitter_ms: int = USUAL_MS, nodes: int = 30) -> Bed:
-    """One round, then nothing."""
+def make_testbed(reading: str, jitter_ms: int = USUAL_MS, nodes: int = 30) -> MeshTestbed:
+    """Networks that run one discovery round of a reading, and send nothing."""
     protocol = (("discovery", reading), ("jitter_s", jitter_ms / 1000))
-    return Bed(nodes=nodes, protocol=protocol, duration_s=8.0)
+    return MeshTestbed(nodes=nodes, protocol=protocol, duration_s=8.0)
 
 
-def measure(of: Bed, seed: int) -> dict[str, Any]:
-    """The first round."""
+def measure(of: MeshTestbed, seed: int) -> dict[str, Any]:
+    """What the first round found of the links, and what it cost in airtime and time."""
     found = summarize(of.run(seed))["discovery"]
     return {name: found[name] for name in ("recall", "airtime_s", "with_tables", "tables_s")}
 
 
-def _settings(quick: bool) -> list[Bed]:
+def _settings(quick: bool) -> list[MeshTestbed]:
     jitters = SOME_MS if quick else JITTERS_MS
-    made = [bed(reading, ms) for reading in READINGS for ms in jitters]
-    made += [bed(reading, nodes=n) for reading in READINGS for n in _ns(quick) if n != 30]
+    made = [make_testbed(reading, ms) for reading in READINGS for ms in jitters]
+    made += [make_testbed(reading, nodes=n) for reading in READINGS for n in _ns(quick) if n != 30]
     return made
 
 
@@ -51,7 +51,7 @@ def points(quick: bool) -> list[Point]:
     return [one.point("round", seeds_of(quick), measure) for one in _settings(quick)]
 
 
-def told(results: Results, of: Bed, quick: bool, name: str) -> list[Any]:
+def told(results: Results, of: MeshTestbed, quick: bool, name: str) -> list[Any]:
     """A number of every network."""
     return [run[name] for run in results[of.key_of("round", seeds_of(quick))]]
 
@@ -60,13 +60,19 @@ def draw(results: Results, quick: bool) -> Figure:
     """Recall over the jitter, over the size; airtime of a round."""
     figure, axes = style.panels(style.WIDE_IN, 2.8, 1, 3)
     jitters = SOME_MS if quick else JITTERS_MS
-    _lines(axes[0], results, quick, jitters, [[bed(r, ms) for ms in jitters] for r in READINGS])
+    _lines(
+        axes[0],
+        results,
+        quick,
+        jitters,
+        [[make_testbed(r, ms) for ms in jitters] for r in READINGS],
+    )
     axes[0].set_xscale("log")
     axes[0].set_xticks(SOME_MS, [str(ms) for ms in SOME_MS])
     axes[0].set_xlabel("jitter of requests (ms)")
     axes[0].set_title("a  30 nodes")
     ns = _ns(quick)
-    sizes = [[bed(r, nodes=n) for n in ns] for r in READINGS]
+    sizes = [[make_testbed(r, nodes=n) for n in ns] for r in READINGS]
     _lines(axes[1], results, quick, ns, sizes)
     axes[1].set_xlabel("nodes N")
     axes[1].set_title(f"b  {USUAL_MS} ms")
@@ -85,8 +91,10 @@ def draw(results: Results, quick: bool) -> Figure:
     return figure
 
 
-def _lines(ax: Axes, results: Results, quick: bool, x: Any, beds: list[list[Bed]]) -> None:
-    for i, (reading, row) in enumerate(zip(READINGS, beds, strict=True)):
+def _lines(
+    ax: Axes, results: Results, quick: bool, x: Any, testbeds: list[list[MeshTestbed]]
+) -> None:
+    for i, (reading, row) in enumerate(zip(READINGS, testbeds, strict=True)):
         all_ = [told(results, of, quick, "recall") for of in row]
         mean = [float(np.mean(values)) for values in all_]
         ax.fill_between(x, [min(v) for v in all_], [max(v) for v in all_],
@@ -105,8 +113,10 @@ def judge(results: Results, quick: bool) -> list[Claim]:
 
 
 def _reading(results: Results, quick: bool, reading: str) -> Claim:
-    recalls = told(results, bed(reading), quick, "recall")
-    without = sum(count < 30 for count in told(results, bed(reading), quick, "with_tables"))
+    recalls = told(results, make_testbed(reading), quick, "recall")
+    without = sum(
+        count < 30 for count in told(results, make_testbed(reading), quick, "with_tables")
+    )
     why = {
         "tree": "A1: a tree has N - 1 links of about 4 N; Dijkstra has nothing to choose from",
         "each": "A1: the responses collide, and each climbs to the gateway on its own",
@@ -125,8 +135,10 @@ def _reading(results: Results, quick: bool, reading: str) -> Claim:
 
 def _at_once(results: Results, quick: bool) -> Claim:
     soon = [ms for ms in (SOME_MS if quick else JITTERS_MS) if ms <= 5]
-    means = [float(np.mean(told(results, bed("list", ms), quick, "recall"))) for ms in soon]
-    usual = np.mean(told(results, bed("list"), quick, "recall"))
+    means = [
+        float(np.mean(told(results, make_testbed("list", ms), quick, "recall"))) for ms in soon
+    ]
+    usual = np.mean(told(results, make_testbed("list"), quick, "recall"))
     return Claim(
         "1.1",
         '"broadcasts the same discovery request packet": at once, or within a few ms, is good '
@@ -139,7 +151,9 @@ def _at_once(results: Results, quick: bool) -> Claim:
 
 
 def _cost(results: Results, quick: bool) -> Claim:
-    spent = {r: float(np.mean(told(results, bed(r), quick, "airtime_s"))) for r in READINGS}
+    spent = {
+        r: float(np.mean(told(results, make_testbed(r), quick, "airtime_s"))) for r in READINGS
+    }
     return Claim(
         "1.1",
         "to respond to every request costs little more than to respond once",

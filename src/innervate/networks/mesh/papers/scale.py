@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.summary import summarize
-from innervate.networks.mesh.papers.testbed import Bed, Options
+from innervate.networks.mesh.papers.testbed import MeshTestbed, Options
 from innervate.networks.mesh.papers.words import joined
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
@@ -47,14 +47,14 @@ SCHEMES: tuple[tuple[str, Options], ...] = (
 )
 
 
-def bed(radio: Radio, protocol: Options, nodes: int) -> Bed:
+def make_testbed(radio: Radio, protocol: Options, nodes: int) -> MeshTestbed:
     """A single round, and time for all its tables."""
     alone: Options = (("period_s", 3600.0), ("period_max_s", 3600.0))
     duration = 20 + radio.per_node_s * nodes
-    return Bed(nodes, 8, radio.profile, (*alone, *protocol), duration)
+    return MeshTestbed(nodes, 8, radio.profile, (*alone, *protocol), duration)
 
 
-def measure(of: Bed, seed: int) -> dict[str, Any]:
+def measure(of: MeshTestbed, seed: int) -> dict[str, Any]:
     """Seconds that the channel is busy for one full round, where it is busiest."""
     result = of.run(seed)
     plan, sent = result.plan, result.sent
@@ -77,7 +77,7 @@ def _ns(radio: Radio, scheme: str, quick: bool) -> list[int]:
 def points(quick: bool) -> list[Point]:
     """Every radio, scheme and size."""
     return [
-        bed(radio, protocol, n).point("a full round", _seeds(quick), measure)
+        make_testbed(radio, protocol, n).point("a full round", _seeds(quick), measure)
         for radio in RADIOS
         for scheme, protocol in SCHEMES
         for n in _ns(radio, scheme, quick)
@@ -89,7 +89,7 @@ def shares(results: Results, radio: Radio, scheme: int, quick: bool) -> tuple[li
     name, protocol = SCHEMES[scheme]
     ns, found = [], []
     for n in _ns(radio, name, quick):
-        runs = results[bed(radio, protocol, n).key_of("a full round", _seeds(quick))]
+        runs = results[make_testbed(radio, protocol, n).key_of("a full round", _seeds(quick))]
         # A round that leaves nodes out costs less than a full one: it says nothing here.
         if all(run["with_tables"] in (None, n) for run in runs):
             ns.append(n)
@@ -166,7 +166,7 @@ def _complete(results: Results, quick: bool) -> Claim:
     for radio in RADIOS:
         for name, protocol in SCHEMES[:2]:
             n = _ns(radio, name, quick)[-1]
-            runs = results[bed(radio, protocol, n).key_of("a full round", _seeds(quick))]
+            runs = results[make_testbed(radio, protocol, n).key_of("a full round", _seeds(quick))]
             least = min(run["with_tables"] for run in runs)
             fine = fine and least == n
             times = [run["tables_s"] for run in runs if run["tables_s"] is not None]

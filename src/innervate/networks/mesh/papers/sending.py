@@ -9,7 +9,14 @@ import numpy as np
 from innervate.networks.mesh.analysis.messages import duplicates, latencies_us, messages
 from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.analysis.summary import connected, looped, stretch
-from innervate.networks.mesh.papers.testbed import LITERAL, Bed, Options, dying, kill, send_rounds
+from innervate.networks.mesh.papers.testbed import (
+    LITERAL,
+    MeshTestbed,
+    Options,
+    dying,
+    kill,
+    send_rounds,
+)
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers.experiment import Results
 
@@ -38,13 +45,13 @@ GRAPH = _rule("graph")
 RULES = (DOCUMENT, _rule("random"), _rule("rssi"), _rule("alternate"), SEARCH, GRAPH)
 
 
-def bed(rule: Rule, reliable: bool = True, more: Options = ()) -> Bed:
+def make_testbed(rule: Rule, reliable: bool = True, more: Options = ()) -> MeshTestbed:
     """The networks of a rule; not `reliable` = no second try from end to end either."""
     again: Options = () if reliable or rule is DOCUMENT else (("reliable", False),)
-    return Bed(protocol=(*QUIET, *rule.protocol, *again, *more), duration_s=DURATION_S)
+    return MeshTestbed(protocol=(*QUIET, *rule.protocol, *again, *more), duration_s=DURATION_S)
 
 
-def measure(of: Bed, seed: int, dead: int) -> dict[str, Any]:
+def measure(of: MeshTestbed, seed: int, dead: int) -> dict[str, Any]:
     """Messages of live nodes among themselves, after `dead` died; only of connected ones."""
     plan = of.plan(seed)
     gone = dying(plan, dead)
@@ -66,13 +73,13 @@ def measure(of: Bed, seed: int, dead: int) -> dict[str, Any]:
     }
 
 
-def point(of: Bed, dead: int, seeds: range) -> Any:
+def point(of: MeshTestbed, dead: int, seeds: range) -> Any:
     """The point of so many dead."""
     return of.point(f"{dead} dead", seeds, measure, dead)
 
 
-def told(results: Results, of: Bed, dead: int, seeds: range) -> list[dict[str, Any]]:
-    """What its runs gave."""
+def told(results: Results, of: MeshTestbed, dead: int, seeds: range) -> list[dict[str, Any]]:
+    """What was measured with so many dead, one dict for each seed."""
     runs: list[dict[str, Any]] = results[of.key_of(f"{dead} dead", seeds)]
     return runs
 

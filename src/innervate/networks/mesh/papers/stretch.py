@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
-from innervate.networks.mesh.papers.testbed import Bed
+from innervate.networks.mesh.papers.testbed import MeshTestbed
 from innervate.networks.mesh.papers.words import joined, percent, seeds_of
 from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
 from innervate.plot import style
@@ -23,12 +23,12 @@ NONE = 255
 KINDS = ("around the next hop, too", "free of loops", "last resort", "none")
 
 
-def bed(reading: str, degree: int) -> Bed:
+def make_testbed(reading: str, degree: int) -> MeshTestbed:
     """One round and its tables."""
-    return Bed(degree=degree, protocol=(("discovery", reading),), duration_s=8.0)
+    return MeshTestbed(degree=degree, protocol=(("discovery", reading),), duration_s=8.0)
 
 
-def measure(of: Bed, seed: int) -> dict[str, Any]:
+def measure(of: MeshTestbed, seed: int) -> dict[str, Any]:
     """Every pair's way by the tables, and the alternates of every entry."""
     result = of.run(seed)
     plan, world = result.plan, result.world
@@ -90,33 +90,37 @@ def _degrees(quick: bool) -> tuple[int, ...]:
 
 
 def points(quick: bool) -> list[Point]:
-    """Readings over the degree."""
+    """A point for each reading of discovery and mean degree."""
     return [
-        bed(reading, degree).point("ways by tables", seeds_of(quick), measure)
+        make_testbed(reading, degree).point("ways by tables", seeds_of(quick), measure)
         for reading in READINGS
         for degree in _degrees(quick)
     ]
 
 
-def told(results: Results, of: Bed, quick: bool) -> list[dict[str, Any]]:
-    """What its runs gave."""
+def told(results: Results, of: MeshTestbed, quick: bool) -> list[dict[str, Any]]:
+    """What was measured of these networks, one dict for each seed."""
     runs: list[dict[str, Any]] = results[of.key_of("ways by tables", seeds_of(quick))]
     return runs
 
 
 def mean(results: Results, reading: str, degree: int, quick: bool) -> float:
-    """Mean stretch."""
-    return float(np.mean([run["stretch"] for run in told(results, bed(reading, degree), quick)]))
+    """Hops by tables over hops of the shortest path, mean over all seeds."""
+    return float(
+        np.mean([run["stretch"] for run in told(results, make_testbed(reading, degree), quick)])
+    )
 
 
 def shares(results: Results, reading: str, degree: int, quick: bool) -> Any:
     """Of all entries with a next hop, the share of each kind of alternate."""
-    total = np.sum([run["kinds"] for run in told(results, bed(reading, degree), quick)], axis=0)
+    total = np.sum(
+        [run["kinds"] for run in told(results, make_testbed(reading, degree), quick)], axis=0
+    )
     return total / total.sum()
 
 
 def draw(results: Results, quick: bool) -> Figure:
-    """Stretch; alternates."""
+    """Stretch over the mean degree, and beside it what kinds of alternates there are."""
     figure, (left, right) = style.panels(style.WIDE_IN, 2.6, 1, 2, width_ratios=(1, 1.25))
     degrees = _degrees(quick)
     for i, reading in enumerate(READINGS):
@@ -157,7 +161,7 @@ def judge(results: Results, quick: bool) -> list[Claim]:
 
 
 def _shortest(results: Results, quick: bool, reading: str) -> Claim:
-    runs = told(results, bed(reading, 8), quick)
+    runs = told(results, make_testbed(reading, 8), quick)
     value = mean(results, reading, 8, quick)
     broken, pairs = (sum(run[name] for run in runs) for name in ("broken", "pairs"))
     degrees = _degrees(quick)

@@ -1,4 +1,4 @@
-"""The test bed of the mesh's figures [mesh 6]: networks, who dies and when, who sends to whom."""
+"""The testbed of the mesh's figures [mesh 6]: networks, who dies and when, who sends to whom."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LITERAL: Options = (
 
 
 @dataclass(frozen=True, slots=True)
-class Bed:
+class MeshTestbed:
     """Networks of nodes anywhere in a square of 100 m, node 0 the gateway.
 
     Attributes:
@@ -68,13 +68,13 @@ class Bed:
         return plan
 
     def run(self, seed: int) -> MeshResult:
-        """One run."""
+        """Simulate the network of a seed to its end, compiled."""
         return simulate(self.plan(seed))
 
     def point(
         self, what: str, seeds: Sequence[int], measure: Callable[..., Any], *args: Any
     ) -> Point:
-        """The point that measures every seed with `measure(bed, seed, *args)`.
+        """The point that measures every seed with `measure(testbed, seed, *args)`.
 
         Its key says `what` is measured with which arguments.
         """
@@ -86,9 +86,11 @@ class Bed:
         return f"{what}: {self.key} seeds {seeds[0]}-{seeds[-1]}"
 
 
-def each(measure: Callable[..., Any], bed: Bed, seeds: Sequence[int], *args: Any) -> list[Any]:
+def each(
+    measure: Callable[..., Any], testbed: MeshTestbed, seeds: Sequence[int], *args: Any
+) -> list[Any]:
     """What is measured of every seed."""
-    return [measure(bed, seed, *args) for seed in seeds]
+    return [measure(testbed, seed, *args) for seed in seeds]
 
 
 def dying(plan: MeshPlan, count: int, spared: Sequence[int] = (GATEWAY,)) -> list[int]:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.messages import DELIVERED, counted, messages
 from innervate.networks.mesh.analysis.summary import looped
-from innervate.networks.mesh.papers.testbed import BYTES, Bed, Options
+from innervate.networks.mesh.papers.testbed import BYTES, MeshTestbed, Options
 from innervate.networks.mesh.papers.words import FEW, joined, percent
 from innervate.networks.mesh.scenario.plan import Offer
 from innervate.networks.mesh.sim.simulate import simulate
@@ -37,18 +37,20 @@ SCHEMES = (
 
 
 def seeds_of(quick: bool) -> range:
-    """Fifteen robots each."""
+    """Seeds of the networks, each of which has fifteen robots."""
     return FEW if quick else TOPOLOGIES
 
 
-def bed(protocol: Options, speed: float) -> Bed:
+def make_testbed(protocol: Options, speed: float) -> MeshTestbed:
     """Half of the nodes are robots that go anywhere."""
     robots = [{"node": node, "random": True, "speed_mps": speed} for node in range(30 - ROBOTS, 30)]
     period: Options = (("period_max_s", 10.0),)
-    return Bed(protocol=(*protocol, *period), duration_s=UNTIL_S + 2.0, more=(("robot", robots),))
+    return MeshTestbed(
+        protocol=(*protocol, *period), duration_s=UNTIL_S + 2.0, more=(("robot", robots),)
+    )
 
 
-def measure(of: Bed, seed: int) -> dict[str, Any]:
+def measure(of: MeshTestbed, seed: int) -> dict[str, Any]:
     """Messages among all, one a node and second."""
     plan = of.plan(seed)
     draw_ = stream(seed, "papers/senders")
@@ -80,7 +82,7 @@ def points(quick: bool) -> list[Point]:
 
 
 def _all(protocol: Options, speed: float, seeds: range) -> list[dict[str, Any]]:
-    return [measure(bed(protocol, speed), seed) for seed in seeds]
+    return [measure(make_testbed(protocol, speed), seed) for seed in seeds]
 
 
 def share(results: Results, protocol: Options, speed: float, quick: bool, name: str) -> float:

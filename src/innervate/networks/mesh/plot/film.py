@@ -64,7 +64,7 @@ class _Crossing:
         self._axis()
 
     def _field(self, places: dict[int, Point]) -> None:
-        """What does not move."""
+        """Draw what stays as it is: the ground, links, nodes and their names."""
         field = svg.Drawing(self.sheet.width, self.sheet.height, "")
         names = Labels(self.sheet.width, self.sheet.height)
         on = Ground(self.plan).on_at(self.crossing.crossed_us)
@@ -125,7 +125,7 @@ class _Crossing:
                           d=mesh_map.pin(at))  # fmt: skip
 
     def _told(self) -> None:
-        """The monitor knows."""
+        """Draw two rings about the monitor from the moment on when it knows."""
         if self.crossing.accepted_us == NEVER:
             return
         given = self.result.delivered[self.crossing.row]

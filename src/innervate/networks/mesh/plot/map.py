@@ -138,7 +138,7 @@ def _measure(drawing: Drawing, sheet: Sheet) -> None:
 
 
 def walks(drawing: Drawing, plan: Any, sheet: Sheet, names: Labels) -> None:
-    """The ways of robots."""
+    """The ways that robots walk; nothing if the sheet has no metres."""
     for walk in plan.walks if sheet.metres else ():
         points = [sheet.of_cm((x, y)) for _, x, y in walk.points]
         if len(points) > 1:

@@ -198,7 +198,7 @@ def _flows(result: Any, summary: Mapping[str, Any]) -> str:
 
 
 def _events(result: Any) -> str:
-    """Events of the scenario."""
+    """The section on events that the scenario brings about; "" if there are none."""
     plan = result.plan
     rows = [(f"{f.at_us / 1e6:.3f} s", svg.clean(fault_words(plan, f))) for f in plan.faults]
     return section("Events", page.beginning(("at", "what"), rows) if rows else "")

@@ -57,7 +57,7 @@ class Sheet:
         return x, y
 
     def node(self, node: int) -> Point:
-        """A node's centre."""
+        """Where a node's centre is, in the sheet's units."""
         x, y = self.points[node]
         return float(x), float(y)
 

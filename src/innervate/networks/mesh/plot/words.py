@@ -5,55 +5,60 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from innervate.networks.mesh.protocol import constants as w
+from innervate.networks.mesh.protocol import constants as c
 from innervate.plot.words import ms_words, number_of, share_words
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 
 PACKETS = {
-    w.REQUEST: "a discovery request",
-    w.RESPONSE: "a discovery response",
-    w.TABLE: "a part of a table",
-    w.TABLE_ACK: "an ack of a table",
-    w.ACTIVATE: "an activation",
-    w.DATA: "a message",
-    w.E2E_ACK: "an end-to-end ack",
-    w.ALARM: "an alarm",
-    w.POSITION: "a robot's beacon",
-    w.GRAPH: "a part of the graph",
-    w.ACK: "an ack of a hop",
+    c.REQUEST: "a discovery request",
+    c.RESPONSE: "a discovery response",
+    c.TABLE: "a part of a table",
+    c.TABLE_ACK: "an ack of a table",
+    c.ACTIVATE: "an activation",
+    c.DATA: "a message",
+    c.E2E_ACK: "an end-to-end ack",
+    c.ALARM: "an alarm",
+    c.POSITION: "a robot's beacon",
+    c.GRAPH: "a part of the graph",
+    c.ACK: "an ack of a hop",
 }
 TIMERS = {
-    w.TX: "a frame is due",
-    w.ACK_WAIT: "a hop did not acknowledge",
-    w.ROUND: "next step of its discovery round",
-    w.TICK: "tick",
-    w.RETRY: "an end-to-end timeout",
-    w.JOBS: "a table was not acknowledged",
+    c.TX: "a frame is due",
+    c.ACK_WAIT: "a hop did not acknowledge",
+    c.ROUND: "next step of its discovery round",
+    c.TICK: "tick",
+    c.RETRY: "an end-to-end timeout",
+    c.JOBS: "a table was not acknowledged",
 }
 HANDED = {
-    w.MESSAGE: "was offered a message",
-    w.SENT: "its frame has left",
-    w.SAMPLE: "learned where it is",
+    c.MESSAGE: "was offered a message",
+    c.SENT: "its frame has left",
+    c.SAMPLE: "learned where it is",
 }
 REPORTS = {
-    w.REPORT_ACCEPTED: "message accepted",
-    w.REPORT_HOP: "message taken by its first hop",
-    w.REPORT_ARRIVED: "message acknowledged end to end",
-    w.REPORT_EXPIRED: "message given up",
-    w.REPORT_FULL: "message refused",
-    w.REPORT_DROPPED: "packet dropped on its way",
-    w.REPORT_SUSPECT: "neighbour does not answer",
-    w.REPORT_ROUND: "discovery round begun",
-    w.REPORT_GRAPH: "graph made of a round",
-    w.REPORT_TABLE: "table in force",
-    w.REPORT_TABLES: "all tables of a version acknowledged",
-    w.REPORT_GATEWAY: "gateway followed",
-    w.REPORT_ALARM: "alarm raised",
-    w.REPORT_MARGIN: "margin of an alarm",
-    w.REPORT_UNKEYED: "message of an unknown type",
-    w.REPORT_SILENCED: "alarm flooded again",
+    c.REPORT_ACCEPTED: "message accepted",
+    c.REPORT_HOP: "message taken by its first hop",
+    c.REPORT_ARRIVED: "message acknowledged end to end",
+    c.REPORT_EXPIRED: "message given up",
+    c.REPORT_FULL: "message refused",
+    c.REPORT_DROPPED: "packet dropped on its way",
+    c.REPORT_SUSPECT: "neighbour does not answer",
+    c.REPORT_ROUND: "discovery round begun",
+    c.REPORT_GRAPH: "graph made of a round",
+    c.REPORT_TABLE: "table in force",
+    c.REPORT_TABLES: "all tables of a version acknowledged",
+    c.REPORT_GATEWAY: "gateway followed",
+    c.REPORT_ALARM: "alarm raised",
+    c.REPORT_MARGIN: "margin of an alarm",
+    c.REPORT_UNKEYED: "message of an unknown type",
+    c.REPORT_SILENCED: "alarm flooded again",
 }
-ALARMS = {w.PREDICT: "about to cross", w.CROSS: "crossed", w.LOST: "lost", w.CLEAR: "inside again"}
+ALARMS = {
+    c.PREDICT: "about to cross",
+    c.CROSS: "crossed",
+    c.LOST: "lost",
+    c.CLEAR: "inside again",
+}
 
 
 def fault_words(plan: Any, fault: Any) -> str:

@@ -7,6 +7,7 @@ from innervate.networks.mesh.protocol.constants import (
     ALARM,
     ALARMS,
     ALL,
+    BODY,
     CROSS,
     DATA_MAX,
     END_TO_END,
@@ -18,13 +19,13 @@ from innervate.networks.mesh.protocol.constants import (
     REPORT_EXPIRED,
     REPORT_MARGIN,
 )
-from innervate.networks.mesh.protocol.duplicates import FLOODED, is_flooded
+from innervate.networks.mesh.protocol.duplicates import FLOODED, record_flood
 from innervate.networks.mesh.protocol.fence import OUTSIDE, judge, margin
 from innervate.networks.mesh.protocol.fields import WAITING
-from innervate.networks.mesh.protocol.frames import add8, add16, add_hop
+from innervate.networks.mesh.protocol.frames import add8, add_hop, put16
 from innervate.networks.mesh.protocol.messages import first_flag, resolve, take
 from innervate.networks.mesh.protocol.queue import compose, kick, take_over
-from innervate.networks.mesh.protocol.retransmission import free_wait, keep
+from innervate.networks.mesh.protocol.retransmission import buffer_sent, free_buffer
 from innervate.networks.mesh.protocol.send import send_on
 
 ALARM_BYTES = 16
@@ -44,24 +45,24 @@ def on_sample(node, params, now, item, out):
     if kind == CROSS:
         node.heard_out = 0
     if kind >= 0:
-        sound_own(node, params, now, kind, out)
+        raise_own(node, params, now, kind, out)
 
 
-def sound_own(node, params, now, kind, out):
+def raise_own(node, params, now, kind, out):
     """A robot raises an alarm for itself."""
-    sound(node, params, now, kind, node.number, node.x, node.y, node.vx, node.vy, out)
+    raise_alarm(node, params, now, kind, node.number, node.x, node.y, node.vx, node.vy, out)
 
 
-def insist(node, params, now, out):
+def repeat_alarm(node, params, now, out):
     """Every tick of a robot: outside, and nobody knows nor is being told? Once more, then.
 
     So it is while no gateway is known, when all tries failed, and after a change of the monitor.
     """
     if node.outside == OUTSIDE and not node.heard_out and not is_telling(node):
-        sound_own(node, params, now, CROSS, out)
+        raise_own(node, params, now, CROSS, out)
 
 
-def sound(node, params, now, kind, robot, x, y, vx, vy, out):
+def raise_alarm(node, params, now, kind, robot, x, y, vx, vy, out):
     """Raise an alarm for a robot: on its way to the monitor, flooded besides if it must be.
 
     0 if it cannot be: nobody to tell, or no place.
@@ -79,9 +80,10 @@ def sound(node, params, now, kind, robot, x, y, vx, vy, out):
     if i < 0:
         return 0
     note_alarm(node, kind, robot, gap, out)
-    write_alarm(node, params, now, i, kind, robot, x, y, vx, vy, gap)
-    w = wait_for_alarm(node, out)
-    keep(node, params, now, w, i, robot, out)
+    write_alarm(node.q_body, i * BODY, node, params, now, kind, robot, x, y, vx, vy, gap)
+    node.q_length[i] = ALARM_BYTES
+    w = alarm_buffer(node, out)
+    buffer_sent(node, params, now, w, i, robot, out)
     node.q_owner[i] = w
     if params.flood == 2 or (params.flood == 1 and kind == CROSS):
         flood(node, params, now, w, 1, out)
@@ -97,26 +99,26 @@ def note_alarm(node, kind, robot, gap, out):
     report(out, REPORT_MARGIN, gap, node.alarm)
 
 
-def write_alarm(node, params, now, i, kind, robot, x, y, vx, vy, gap):
-    """The 16 bytes of an alarm [mesh 2 FENCE_ALARM]."""
+def write_alarm(body, at, node, params, now, kind, robot, x, y, vx, vy, gap):
+    """The 16 bytes of an alarm from `body[at]` on, as payloads.py lays them out [mesh 2]."""
     tick_ms = max(1, params.tick_us // 1000)
     at_ms = node.ticks * tick_ms + ((now - node.tick_at) & MASK30) // 1000
-    add8(node, i, robot)
-    add8(node, i, params.fence)
-    add8(node, i, node.alarm)
-    add8(node, i, kind)
-    add16(node, i, x)
-    add16(node, i, y)
-    add8(node, i, vx)
-    add8(node, i, vy)
-    add16(node, i, at_ms >> 16)
-    add16(node, i, at_ms & 65_535)
-    add16(node, i, max(-32_768, min(32_767, gap)))
+    body[at] = robot
+    body[at + 1] = params.fence
+    body[at + 2] = node.alarm
+    body[at + 3] = kind
+    put16(body, at + 4, x)
+    put16(body, at + 6, y)
+    body[at + 8] = vx & 255
+    body[at + 9] = vy & 255
+    put16(body, at + 10, at_ms >> 16)
+    put16(body, at + 12, at_ms)
+    put16(body, at + 14, max(-32_768, min(32_767, gap)))
 
 
-def wait_for_alarm(node, out):
+def alarm_buffer(node, out):
     """A place among the kept messages; an alarm puts out another message if it must."""
-    w = free_wait(node)
+    w = free_buffer(node)
     if w >= 0:
         return w
     w = 0
@@ -140,7 +142,7 @@ def flood(node, params, now, w, instance, out):
     for k in range(node.wait_length[w]):
         add8(node, i, node.wait_body[w * DATA_MAX + k])
     add_hop(node, i)
-    is_flooded(node, node.number, node.wait_seq[w], FLOODED, instance)
+    record_flood(node, node.number, node.wait_seq[w], FLOODED, instance)
 
 
 def flood_again(node, params, now, w, out):
@@ -156,7 +158,7 @@ def flood_again(node, params, now, w, out):
 
 def on_flood(node, params, now, frame, out):
     """A flooded alarm: the monitor takes it, everyone passes it on once per instance."""
-    if is_flooded(node, frame.origin, frame.seq, FLOODED, min(frame.ttl, 3)):
+    if record_flood(node, frame.origin, frame.seq, FLOODED, min(frame.ttl, 3)):
         return
     if frame.dest == node.number:
         take_alarm(node, params, now, frame, out)
@@ -195,20 +197,7 @@ def tell_monitor(node, params, now, kind, robot, x, y, vx, vy, gap, out):
     frame.path_len = 0
     frame.rssi = 0
     frame.length = ALARM_BYTES
-    for k in range(ALARM_BYTES):
-        frame.body[k] = 0
-    frame.body[0] = robot
-    frame.body[1] = params.fence
-    frame.body[2] = node.alarm
-    frame.body[3] = kind
-    frame.body[4] = x >> 8 & 255
-    frame.body[5] = x & 255
-    frame.body[6] = y >> 8 & 255
-    frame.body[7] = y & 255
-    frame.body[8] = vx & 255
-    frame.body[9] = vy & 255
-    frame.body[14] = gap >> 8 & 255
-    frame.body[15] = gap & 255
+    write_alarm(frame.body, 0, node, params, now, kind, robot, x, y, vx, vy, gap)
 
 
 def is_telling(node):
@@ -219,7 +208,7 @@ def is_telling(node):
     return 0
 
 
-def unheard(node, w):
+def clear_raised(node, w):
     """The alarm that was kept in place w was given up: a witness raises it anew if it must."""
     robot = node.wait_body[w * DATA_MAX]
     node.raised[robot] = node.raised[robot] & ~RAISED_OUT

@@ -11,26 +11,26 @@ from innervate.dialect.arith import MASK30, after
 from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.constants import ALARMS, DATA, DETOURED, E2E_ACK, POSITION
 
-EASY = 12  # more acks that are missing than acks that came: so many cost no pause
-HARD = 28  # from here on messages that know their way pause, too
+STRAIN_FREE = 12  # more acks that are missing than acks that came: so many cost no pause
+STRAIN_HEAVY = 28  # from here on messages that know their way pause, too
 PER_DOUBLING = 4
 STRAIN_MAX = 44
 LONGEST_US = 65_536  # before it is doubled
-NO_PAUSE = -1
+NO_BACKOFF = -1
 
 
-def missed(node, params, now):
+def note_missed(node, params, now):
     """A transmission was not acknowledged: pause, the longer the more of them there were."""
     node.strain = min(node.strain + 1, STRAIN_MAX)
-    if node.strain > EASY:
-        span = min(params.ack_us, LONGEST_US) << ((node.strain - EASY) // PER_DOUBLING)
+    if node.strain > STRAIN_FREE:
+        span = min(params.ack_us, LONGEST_US) << ((node.strain - STRAIN_FREE) // PER_DOUBLING)
         node.pause = (now + draw(node, span) + 1) & MASK30
 
 
-def answered(node):
+def note_answer(node):
     """A transmission was acknowledged: the channel has room."""
     node.strain = max(node.strain - 1, 0)
-    node.pause = NO_PAUSE
+    node.pause = NO_BACKOFF
 
 
 def is_held(node, i):
@@ -38,10 +38,10 @@ def is_held(node, i):
     kind = node.q_kind[i]
     if node.q_rank[i] == ALARMS or (kind != DATA and kind != E2E_ACK and kind != POSITION):
         return 0
-    return (node.q_flags[i] & DETOURED != 0 and kind != E2E_ACK) or node.strain > HARD
+    return (node.q_flags[i] & DETOURED != 0 and kind != E2E_ACK) or node.strain > STRAIN_HEAVY
 
 
-def end_pause(node, now):
+def end_backoff(node, now):
     """Where its time is over."""
-    if node.pause != NO_PAUSE and after(now, node.pause):
-        node.pause = NO_PAUSE
+    if node.pause != NO_BACKOFF and after(now, node.pause):
+        node.pause = NO_BACKOFF

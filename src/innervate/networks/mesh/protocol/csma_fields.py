@@ -1,6 +1,6 @@
 """Declarations of CSMA: every field once, as (name, length, low, high, unit, meaning).
 
-See skin_fields.py for what the columns mean.
+Columns as in the skin's.
 """
 
 STATION = (

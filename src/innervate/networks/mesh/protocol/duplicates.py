@@ -8,11 +8,11 @@ NONE16 = 65536
 FLOODED = 20  # in done_kind: a flooded alarm, whose instances count apart
 BITS = 15
 ANEW = 320  # numbers behind the newest: more than a packet can be that is still on its way
-NO_WAY = 254  # in bad_near: nobody leads there
+UNREACHABLE = 254  # in bad_neighbour: nobody leads there
 
 
-def forget(node, params):
-    """As after switching on."""
+def clear_duplicates(node, params):
+    """Empty all four tables, as after switching on."""
     for k in range(params.width):
         node.idle[k] = 0
         node.heard_seq[k] = NONE16
@@ -20,7 +20,7 @@ def forget(node, params):
         node.done_origin[k] = ALL
     for k in range(SKIPS):
         node.skip_origin[k] = ALL
-        node.bad_near[k] = ALL
+        node.bad_neighbour[k] = ALL
     node.done_at = 0
     node.skip_at = 0
     node.bad_at = 0
@@ -112,8 +112,8 @@ def note_forwarded(node, origin, seq, kind, giver, hops):
     node.done_hops[k] = hops
 
 
-def is_repeated(node, frame):
-    """1 if we took this packet from somebody before; it is remembered.
+def record_packet(node, frame):
+    """Enter a packet into the duplicate cache: 1 if it was there, taken from somebody before.
 
     A retry by its origin has the other parity and counts as new.
     """
@@ -125,14 +125,14 @@ def is_repeated(node, frame):
         node.done_kind[k] = kind
         node.done_from[k] = frame.link_src
         node.done_hops[k] = frame.path_len
-        unskip(node, frame.origin, frame.seq)
+        clear_skipped(node, frame.origin, frame.seq)
         return 0
     note_forwarded(node, frame.origin, frame.seq, kind, frame.link_src, frame.path_len)
     return 0
 
 
-def is_returned_again(node, frame):
-    """1 if a packet that came back did so before, by its path; it is remembered.
+def record_return(node, frame):
+    """Enter a packet that came back: 1 if it did so before, by its path.
 
     Else whoever gives it back and misses our ack would make two of it.
     """
@@ -148,8 +148,8 @@ def is_returned_again(node, frame):
     return 0
 
 
-def is_flooded(node, origin, seq, kind, instance):
-    """1 if this instance of a flood went through here before; it is remembered."""
+def record_flood(node, origin, seq, kind, instance):
+    """Enter an instance of a flood: 1 if it went through here before."""
     for k in range(FORWARDED):
         if node.done_origin[k] == origin and node.done_seq[k] == seq:
             if node.done_kind[k] == (kind | (instance << 6)):
@@ -164,18 +164,19 @@ def skip(node, origin, seq, who):
     node.skip_at = (k + 1) % SKIPS
     node.skip_origin[k] = origin
     node.skip_seq[k] = seq
-    node.skip_near[k] = who
+    node.skip_neighbour[k] = who
 
 
 def is_skipped(node, origin, seq, who):
     """1 if neighbour `who` failed for this packet."""
     for k in range(SKIPS):
-        if node.skip_near[k] == who and node.skip_origin[k] == origin and node.skip_seq[k] == seq:
-            return 1
+        if node.skip_origin[k] == origin and node.skip_seq[k] == seq:
+            if node.skip_neighbour[k] == who:
+                return 1
     return 0
 
 
-def unskip(node, origin, seq):
+def clear_skipped(node, origin, seq):
     """This packet is tried anew."""
     for k in range(SKIPS):
         if node.skip_origin[k] == origin and node.skip_seq[k] == seq:
@@ -187,53 +188,53 @@ def mark_bad(node, who, dest):
     if not is_bad(node, who, dest):
         k = node.bad_at
         node.bad_at = (k + 1) % SKIPS
-        node.bad_near[k] = who
+        node.bad_neighbour[k] = who
         node.bad_dest[k] = dest
 
 
 def is_bad(node, who, dest):
     """1 if neighbour `who` gave back a packet for `dest`."""
     for k in range(SKIPS):
-        if node.bad_near[k] == who and node.bad_dest[k] == dest:
+        if node.bad_neighbour[k] == who and node.bad_dest[k] == dest:
             return 1
     return 0
 
 
-def is_hopeless(node, dest):
+def is_unreachable(node, dest):
     """1 if all tries of a message to `dest` were in vain, and nothing was heard of it since.
 
     A search asks the whole network. All who have messages for somebody who died would search
     without end, and leave no room for the round that mends the tables.
     """
-    return is_bad(node, NO_WAY, dest)
+    return is_bad(node, UNREACHABLE, dest)
 
 
-def is_there(node, dest):
-    """`dest` is heard of: forget that no way was found."""
+def mark_reachable(node, dest):
+    """`dest` is heard of: it is not unreachable, and searches wait no longer than at first."""
     for k in range(SKIPS):
         if node.bad_dest[k] == dest:
-            if node.bad_near[k] == NO_WAY:
-                node.bad_near[k] = ALL
-                node.despair = 0
+            if node.bad_neighbour[k] == UNREACHABLE:
+                node.bad_neighbour[k] = ALL
+                node.search_backoff = 0
 
 
-def hope_again(node):
-    """Whoever could not be reached may be there; if that is nobody, the wait gets shorter again."""
-    despaired = 0
+def retry_unreachable(node):
+    """Whoever could not be reached may be there; if that is nobody, the wait is halved again."""
+    was_unreachable = 0
     for k in range(SKIPS):
-        if node.bad_near[k] == NO_WAY:
-            node.bad_near[k] = ALL
-            despaired = 1
-    if not despaired:
-        node.despair = max(node.despair - 1, 0)
+        if node.bad_neighbour[k] == UNREACHABLE:
+            node.bad_neighbour[k] = ALL
+            was_unreachable = 1
+    if not was_unreachable:
+        node.search_backoff = max(node.search_backoff - 1, 0)
 
 
-def unbad(node, params):
+def clear_bad(node, params):
     """New tables: whoever gave packets back may know a way now, but not to whom they leave out."""
     for k in range(SKIPS):
         dest = node.bad_dest[k]
         left_out = params.mode == TABLES and dest < params.width
         if left_out:
             left_out = node.next[node.bank * params.width + dest] == ALL
-        if node.bad_near[k] != NO_WAY or not left_out:
-            node.bad_near[k] = ALL
+        if node.bad_neighbour[k] != UNREACHABLE or not left_out:
+            node.bad_neighbour[k] = ALL

@@ -1,7 +1,7 @@
 """Declarations of the mesh: every field once, as (name, length, low, high, unit, meaning).
 
 Arrays over nodes are as long as a capacity class has nodes (32, 64 or 254): `node(n)` and `gate(n)`
-give the declarations of a class. See skin_fields.py for what the columns mean.
+give the declarations of a class. Columns as in the skin's.
 """
 
 from innervate.networks.mesh.protocol.constants import BODY, DATA_MAX, PATH_MAX
@@ -18,7 +18,7 @@ POINTS = 48  # corners of a fence, holes included
 
 FRAME = (
     ("kind", 0, 0, 63, "type", "type of the packet"),
-    ("flags", 0, 0, 255, "flags", "see mesh_words.py"),
+    ("flags", 0, 0, 255, "flags", "see constants.py"),
     ("link_src", 0, 0, 255, "node", "transmitter of this hop"),
     ("link_dst", 0, 0, 255, "node", "receiver of this hop, 255 = all"),
     ("origin", 0, 0, 255, "node", "who made it"),
@@ -76,15 +76,15 @@ OWN = (
     ("leading", 0, 0, 1, "flag", "we are the gateway now"),
     ("round_trip", 0, 0, 16777215, "us", "smoothed, of end-to-end acks; 0 unknown"),
     ("strain", 0, 0, 44, "acks", "more that were missing than that came, of neighbours that live"),
-    ("despair", 0, 0, 3, "doublings", "of how long nobody looks for whom there was no way to"),
+    ("search_backoff", 0, 0, 3, "doublings", "of the wait till unreachable ones are tried again"),
     ("pause", 0, -1, TIME, "us", "searches, at worst all messages, wait until then; -1 none"),
 )
 
 
 def neighbours(k):
-    """The neighbour table, loudest kept."""
+    """The neighbour table: k places, the loudest when there are more."""
     return (
-        ("near", k, 0, 255, "node", "neighbour; 255 = free place"),
+        ("neighbour", k, 0, 255, "node", "neighbour; 255 = free place"),
         ("heard", k, 0, 65535, "ticks", "when we heard it last"),
         ("rssi", k, -512, 511, "dBm/4", "smoothed"),
         ("suspect", k, 0, 3, "flags", "1 it does not answer, until `until`; 2 nor was heard since"),
@@ -135,9 +135,9 @@ def packets(n):
         ("done_at", 0, 0, 63, "place", "forwarded: the next to be overwritten"),
         ("skip_origin", SKIPS, 0, 255, "node", "failed neighbours per packet; 255 free"),
         ("skip_seq", SKIPS, 0, 65535, "number", "... seq of the packet"),
-        ("skip_near", SKIPS, 0, 255, "node", "... the neighbour"),
+        ("skip_neighbour", SKIPS, 0, 255, "node", "... the neighbour"),
         ("skip_at", 0, 0, 15, "place", "... the next to be overwritten"),
-        ("bad_near", SKIPS, 0, 255, "node", "bad neighbours per destination; 255 free"),
+        ("bad_neighbour", SKIPS, 0, 255, "node", "bad neighbours per destination; 255 free"),
         ("bad_dest", SKIPS, 0, 255, "node", "... the destination"),
         ("bad_at", 0, 0, 15, "place", "... the next to be overwritten"),
         ("wait_seq", WAITING, 0, 65535, "number", "waits for an end-to-end ack: seq"),

@@ -45,6 +45,12 @@ def get16(frame, at):
     return frame.body[at] << 8 | frame.body[at + 1]
 
 
+def put16(body, at, value):
+    """Two bytes of a payload."""
+    body[at] = value >> 8 & 255
+    body[at + 1] = value & 255
+
+
 def signed8(value):
     """A byte as the signed number that it stands for."""
     return value - ((value & 128) << 1)
@@ -168,7 +174,7 @@ def was_at(node, i, who):
 
 
 def clear_queue(node):
-    """Nothing waits."""
+    """Empty the queue: nothing waits, nothing is under way."""
     for i in range(QUEUE):
         node.q_state[i] = 0
     node.busy = -1

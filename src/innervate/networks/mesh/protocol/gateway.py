@@ -14,12 +14,12 @@ from innervate.networks.mesh.protocol.constants import (
     TABLE_FREE,
 )
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16
-from innervate.networks.mesh.protocol.jobs import give_jobs, has_none, install_own, pump
+from innervate.networks.mesh.protocol.jobs import give_jobs, install_own, note_lost_table, pump
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
 from innervate.networks.mesh.protocol.paths import (
     build_graph,
-    heard,
     measure_all,
+    note_heard,
     note_list,
     note_path,
     trusts_lists,
@@ -98,7 +98,7 @@ def on_response(node, gate, params, frame, out):
     if round != node.round:
         return
     if frame.table_ver == 0:
-        has_none(gate, frame.origin)
+        note_lost_table(gate, frame.origin)
     note_path(gate, params, frame, node.number, round)
     if trusts_lists(params):
         note_list(gate, params, frame, 4, frame.body[3] & 15)
@@ -110,9 +110,9 @@ def collect(node, gate, params, now, out):
         return
     gate.step = IDLE
     for k in range(params.places):
-        if node.near[k] != FREE and node.round_depth[k] != UNHEARD and trusts_lists(params):
+        if node.neighbour[k] != FREE and node.round_depth[k] != UNHEARD and trusts_lists(params):
             if node.round_rssi[k] >= params.min_rssi:
-                heard(gate, params, node.near[k], node.number, node.round)
+                note_heard(gate, params, node.neighbour[k], node.number, node.round)
     mark = build_graph(gate, params, node.round)
     changed = mark != gate.sum_a
     gate.sum_a = mark

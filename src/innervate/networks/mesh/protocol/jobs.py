@@ -34,9 +34,9 @@ from innervate.networks.mesh.protocol.paths import (
 from innervate.networks.mesh.protocol.queue import compose, drop, free_places, kick
 from innervate.networks.mesh.protocol.search import set_edge
 from innervate.networks.mesh.protocol.send import pass_on
-from innervate.networks.mesh.protocol.table import GROUP_BYTES, all_parts, in_force
+from innervate.networks.mesh.protocol.table import GROUP_BYTES, all_parts, put_in_force
 
-PLACES_KEPT = 3  # of the queue, for what others send through us
+PLACES_RESERVED = 3  # of the queue, for what others send through us
 
 
 def install_own(node, gate, params, out):
@@ -51,7 +51,7 @@ def install_own(node, gate, params, out):
         for d in range(params.nodes):
             node.next[node.bank * params.width + d] = gate.next[d]
             node.alt[node.bank * params.width + d] = gate.alt[d]
-    in_force(node, params, node.epoch, gate.version, out)
+    put_in_force(node, params, node.epoch, gate.version, out)
     if not params.activation:
         node.active = gate.version
 
@@ -67,7 +67,7 @@ def give_jobs(node, gate, params, changed, out):
                 gate.open = 1
 
 
-def has_none(gate, s):
+def note_lost_table(gate, s):
     """Node s says that it has no table: should it have acknowledged one, it has lost it since."""
     if gate.job[s] == CURRENT:
         gate.mark_a[s] = 0
@@ -159,7 +159,7 @@ def queue_parts(node, gate, params, now, s, out):
         if index >= gate.job_count[s]:
             return
         if gate.job_parts[s] >> index & 1 == 0:
-            if free_places(node) <= PLACES_KEPT:
+            if free_places(node) <= PLACES_RESERVED:
                 return
             queue_part(node, gate, params, now, s, index, out)
             gate.job_due[s] = job_due(node, gate, params, now, s)

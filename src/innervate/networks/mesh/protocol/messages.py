@@ -27,17 +27,17 @@ from innervate.networks.mesh.protocol.constants import (
     REPORT_FULL,
     TABLES,
 )
-from innervate.networks.mesh.protocol.duplicates import accept, is_there
+from innervate.networks.mesh.protocol.duplicates import accept, mark_reachable
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, copy_frame, inner
 from innervate.networks.mesh.protocol.queue import compose, kick, make_room
 from innervate.networks.mesh.protocol.retransmission import (
+    buffer_sent,
+    buffer_unsent,
     crowds,
-    free_wait,
+    free_buffer,
     is_ahead,
-    keep,
-    keep_for_later,
-    launch,
     on_end_ack,
+    send_buffered,
 )
 from innervate.networks.mesh.protocol.search import BITS
 from innervate.networks.mesh.protocol.send import send_on
@@ -82,7 +82,7 @@ def on_message(node, params, now, item, out):
         return
     owner = -1
     if flags & END_TO_END and dest != ALL:
-        owner = free_wait(node)
+        owner = free_buffer(node)
         if owner < 0 or crowds(node, dest):
             report(out, REPORT_FULL, item.handle, NO_ROOM)
             return
@@ -92,7 +92,7 @@ def on_message(node, params, now, item, out):
     elif make_room(node, OWN if owner >= 0 else MESSAGES, out):
         i = compose(node, now, MESSAGES, DATA, dest, flags, out)
     if i < 0 and owner >= 0:
-        keep_for_later(node, params, now, owner, item, dest, flags | first_flag(node, dest), out)
+        buffer_unsent(node, params, now, owner, item, dest, flags | first_flag(node, dest), out)
         return
     if i < 0:
         report(out, REPORT_FULL, item.handle, NO_ROOM)
@@ -105,12 +105,12 @@ def on_message(node, params, now, item, out):
         flood_own(node, params, now, i, out)
         return
     if owner >= 0:
-        keep(node, params, now, owner, i, item.handle, out)
-    launch(node, params, now, i, owner, item.handle, out)
+        buffer_sent(node, params, now, owner, i, item.handle, out)
+    send_buffered(node, params, now, i, owner, item.handle, out)
 
 
 def hand_up_own(node, item, out):
-    """A message to ourselves."""
+    """Deliver a message to ourselves at once; its number is its handle."""
     frame = out.frame[deliver(out, DATA)]
     frame.kind = DATA
     frame.flags = 0
@@ -169,7 +169,7 @@ def take(node, params, now, frame, out):
     messages that are still tried.
     """
     first = frame.flags & FIRST
-    is_there(node, frame.origin)
+    mark_reachable(node, frame.origin)
     if frame.kind == E2E_ACK:
         on_end_ack(node, params, frame, now, out)
         return

@@ -1,4 +1,4 @@
-"""Neighbours: who was heard, how loud, and who does not answer."""
+"""The neighbour table: who was heard, how loud, and who does not answer."""
 
 from innervate.dialect.arith import MASK30, after
 from innervate.dialect.outbox import report
@@ -13,10 +13,10 @@ SUSPECT = 1  # avoided for a while
 DOUBT = 2  # not heard since: one transmission is enough to ask
 
 
-def forget_all(node, params):
-    """No neighbours."""
+def clear_neighbours(node, params):
+    """Empty the neighbour table, as after switching on."""
     for k in range(params.places):
-        node.near[k] = FREE
+        node.neighbour[k] = FREE
         node.suspect[k] = 0
         node.round_depth[k] = UNHEARD
 
@@ -24,7 +24,7 @@ def forget_all(node, params):
 def place_of(node, params, who):
     """Where a neighbour is in the table, or -1."""
     for k in range(params.places):
-        if node.near[k] == who:
+        if node.neighbour[k] == who:
             return k
     return -1
 
@@ -42,15 +42,15 @@ def hear(node, params, who, rssi):
         return k
     faintest = 0
     for j in range(params.places):
-        if node.near[j] == FREE:
+        if node.neighbour[j] == FREE:
             faintest = j
             break
         if node.rssi[j] < node.rssi[faintest]:
             faintest = j
     k = faintest
-    if node.near[k] != FREE and node.rssi[k] >= 4 * rssi:
+    if node.neighbour[k] != FREE and node.rssi[k] >= 4 * rssi:
         return -1
-    node.near[k] = who
+    node.neighbour[k] = who
     node.rssi[k] = 4 * rssi
     node.heard[k] = node.ticks
     node.suspect[k] = 0
@@ -87,7 +87,7 @@ def is_suspect(node, params, who):
 
 
 def trust(node, params):
-    """No suspicion any more."""
+    """End all suspicions; who was not heard since stays in DOUBT."""
     for k in range(params.places):
         node.suspect[k] = node.suspect[k] & DOUBT
 
@@ -96,11 +96,11 @@ def sweep(node, params, now):
     """Every tick: suspicions end; neighbours that were silent for too long are forgotten."""
     most = 3 * params.period_max + 2
     for k in range(params.places):
-        if node.near[k] != FREE:
+        if node.neighbour[k] != FREE:
             if node.suspect[k] & SUSPECT and after(now, node.until[k]):
                 node.suspect[k] = DOUBT
             if ((node.ticks - node.heard[k]) & 65535) > most:
-                node.near[k] = FREE
+                node.neighbour[k] = FREE
 
 
 def is_strong(node, params, k):
@@ -111,7 +111,7 @@ def is_strong(node, params, k):
 def random_neighbour(node, params, not_this, nor_this, pick):
     """The pick-th neighbour that is neither of two; NOBODY beyond the last."""
     for k in range(params.places):
-        who = node.near[k]
+        who = node.neighbour[k]
         if who != FREE and who != not_this and who != nor_this:
             if pick == 0:
                 return who
@@ -123,7 +123,8 @@ def count_neighbours(node, params, not_this, nor_this):
     """How many neighbours are neither of two."""
     count = 0
     for k in range(params.places):
-        if node.near[k] != FREE and node.near[k] != not_this and node.near[k] != nor_this:
+        who = node.neighbour[k]
+        if who != FREE and who != not_this and who != nor_this:
             count = count + 1
     return count
 
@@ -132,9 +133,10 @@ def loudest(node, params, not_this, nor_this):
     """The loudest neighbour that is neither of two, or NOBODY."""
     best = -1
     for k in range(params.places):
-        if node.near[k] != FREE and node.near[k] != not_this and node.near[k] != nor_this:
+        who = node.neighbour[k]
+        if who != FREE and who != not_this and who != nor_this:
             if best < 0 or node.rssi[k] > node.rssi[best]:
                 best = k
     if best < 0:
         return NOBODY
-    return node.near[best]
+    return node.neighbour[best]

@@ -1,22 +1,22 @@
 """The mesh: routed messages between any two nodes, tables made by a gateway, a virtual fence.
 
 The router's five functions [mesh 4]. `gate` is the record that only a gateway or standby has.
-Rounds stand in mesh_round.py (nodes) and mesh_gateway.py, tables in mesh_table.py and mesh_jobs.py,
-the choice of a hop in mesh_route.py, messages in mesh_messages.py, the fence in mesh_alarm.py.
+Rounds stand in round.py (nodes) and gateway.py, tables in table.py and jobs.py,
+the choice of a hop in route.py, messages in messages.py, the fence in alarm.py.
 """
 
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import report, set_timer
 from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.alarm import (
+    clear_raised,
     flood_again,
-    insist,
     on_flood,
     on_sample,
+    repeat_alarm,
     take_alarm,
-    unheard,
 )
-from innervate.networks.mesh.protocol.backoff import NO_PAUSE, end_pause
+from innervate.networks.mesh.protocol.backoff import NO_BACKOFF, end_backoff
 from innervate.networks.mesh.protocol.constants import (
     ACK,
     ACK_WAIT,
@@ -45,33 +45,42 @@ from innervate.networks.mesh.protocol.constants import (
     TICK,
     TX,
 )
-from innervate.networks.mesh.protocol.duplicates import age, forget, hope_again, is_repeated
+from innervate.networks.mesh.protocol.duplicates import (
+    age,
+    clear_duplicates,
+    record_packet,
+    retry_unreachable,
+)
 from innervate.networks.mesh.protocol.fields import WAITING
 from innervate.networks.mesh.protocol.frames import clear_queue, is_sound
 from innervate.networks.mesh.protocol.gateway import collect, lead, on_response, reset, tick
 from innervate.networks.mesh.protocol.jobs import on_ack, retry_jobs
 from innervate.networks.mesh.protocol.messages import on_message, take
-from innervate.networks.mesh.protocol.neighbours import forget_all, hear, hear_again, sweep
-from innervate.networks.mesh.protocol.overheard import spare
+from innervate.networks.mesh.protocol.neighbours import clear_neighbours, hear, hear_again, sweep
+from innervate.networks.mesh.protocol.overheard import drop_overheard
 from innervate.networks.mesh.protocol.queue import (
-    acked,
     acknowledge,
     has_room,
     kick,
-    left,
     make_room,
+    on_sent,
+    take_ack,
     take_over,
     tell_hop,
 )
 from innervate.networks.mesh.protocol.relay import flood_data, rank_of, relay
-from innervate.networks.mesh.protocol.retransmission import due_wait, try_again, wait_on
+from innervate.networks.mesh.protocol.retransmission import (
+    arm_retry,
+    due_retransmission,
+    retransmit,
+)
 from innervate.networks.mesh.protocol.round import on_request, step
-from innervate.networks.mesh.protocol.send import is_upward, send_up, unanswered
+from innervate.networks.mesh.protocol.send import is_upward, on_ack_timeout, send_up
 from innervate.networks.mesh.protocol.table import on_activate, on_graph, on_table
 from innervate.networks.mesh.protocol.watch import NEVER, beacon, on_position, watch
 
 NONE = 255
-HOPELESS_TICKS = 4  # whoever could not be reached is tried again after at most so long
+UNREACHABLE_TICKS = 4  # whoever could not be reached is tried again after at most so long
 RETRIES = 4  # of kept messages in one go: the outbox has to hold them
 
 
@@ -92,8 +101,8 @@ def on_start(node, gate, params, now, cause, out):
     node.leading = 0
     node.round_trip = 0
     node.strain = 0
-    node.despair = 0
-    node.pause = NO_PAUSE
+    node.search_backoff = 0
+    node.pause = NO_BACKOFF
     node.version = 0
     node.table_epoch = 0
     node.new_version = 0
@@ -103,8 +112,8 @@ def on_start(node, gate, params, now, cause, out):
     node.placed = 0
     node.outside = 0
     node.heard_out = 0
-    forget_all(node, params)
-    forget(node, params)
+    clear_neighbours(node, params)
+    clear_duplicates(node, params)
     clear_queue(node)
     clear_arrays(node, params)
     set_timer(out, TICK, (now + draw(node, params.tick_us) + 1) & MASK30)
@@ -145,7 +154,7 @@ def on_frame(node, gate, params, now, port, frame, out):
     elif frame.link_dst == ALL:
         on_broadcast(node, params, now, frame, k, out)
     else:
-        spare(node, frame, out)
+        drop_overheard(node, frame, out)
         if frame.link_dst == node.number:
             on_unicast(node, gate, params, now, frame, out)
         else:
@@ -154,7 +163,7 @@ def on_frame(node, gate, params, now, port, frame, out):
 
 def on_hop_ack(node, params, now, frame, out):
     """A hop has taken over what we sent."""
-    i = acked(node, frame)
+    i = take_ack(node, frame)
     if i >= 0:
         tell_hop(node, i, out)
         kick(node, params, now, out)
@@ -198,7 +207,7 @@ def on_unicast(node, gate, params, now, frame, out):
     if is_upward(kind):
         on_upward(node, gate, params, now, frame, out)
     elif kind == TABLE:
-        if not is_repeated(node, frame):
+        if not record_packet(node, frame):
             on_table(node, params, now, frame, out)
     elif kind == ALARM and here:
         take_alarm(node, params, now, frame, out)
@@ -216,7 +225,7 @@ def on_unicast(node, gate, params, now, frame, out):
 
 def on_upward(node, gate, params, now, frame, out):
     """A response or a table's ack: for us if we are the gateway, else it climbs on."""
-    if is_repeated(node, frame):
+    if record_packet(node, frame):
         return
     if not node.leading:
         i = take_over(node, now, CONTROL, frame, out)
@@ -231,7 +240,7 @@ def on_upward(node, gate, params, now, frame, out):
 def on_input(node, gate, params, now, kind, item, out):
     """MESSAGE: send it. SENT: the frame below has left. SAMPLE: where a robot is."""
     if kind == SENT:
-        left(node, params, now, item.ok, out)
+        on_sent(node, params, now, item.ok, out)
     elif kind == MESSAGE:
         on_message(node, params, now, item, out)
     elif kind == SAMPLE:
@@ -243,7 +252,7 @@ def on_timer(node, gate, params, now, timer, out):
     if timer == TX:
         kick(node, params, now, out)
     elif timer == ACK_WAIT:
-        unanswered(node, params, now, out)
+        on_ack_timeout(node, params, now, out)
     elif timer == ROUND:
         if node.leading:
             collect(node, gate, params, now, out)
@@ -264,13 +273,13 @@ def on_tick(node, gate, params, now, out):
     node.tick_at = now
     set_timer(out, TICK, (now + params.tick_us) & MASK30)
     sweep(node, params, now)
-    end_pause(node, now)
+    end_backoff(node, now)
     age(node, params)
-    if node.ticks % (HOPELESS_TICKS << node.despair) == 0:
-        hope_again(node)
+    if node.ticks % (UNREACHABLE_TICKS << node.search_backoff) == 0:
+        retry_unreachable(node)
     watch(node, params, now, out)
     if node.robot and node.placed:
-        insist(node, params, now, out)
+        repeat_alarm(node, params, now, out)
         beacon(node, params, now, out)
     if not node.leading:
         node.quiet = min(node.quiet + 1, 65_535)
@@ -282,12 +291,12 @@ def on_tick(node, gate, params, now, out):
 def on_retry(node, params, now, out):
     """An end-to-end ack is overdue: once more, for alarms as a flood besides."""
     for _ in range(RETRIES):
-        w = due_wait(node, now)
+        w = due_retransmission(node, now)
         if w >= 0:
             alarm = node.wait_kind[w] == ALARM
-            if not try_again(node, params, now, w, out):
+            if not retransmit(node, params, now, w, out):
                 if alarm:
-                    unheard(node, w)
+                    clear_raised(node, w)
             elif alarm:
                 flood_again(node, params, now, w, out)
-    wait_on(node, now, out)
+    arm_retry(node, now, out)

@@ -8,7 +8,7 @@ from innervate.networks.mesh.protocol.table import GROUP_BYTES, PART_HEAD
 
 
 def depth_of(node, gate, params, s):
-    """Hops to s."""
+    """Hops from the gateway to node s, 255 if there is no way."""
     return hops(gate, params, node.number, s)
 
 

@@ -10,10 +10,10 @@ from innervate.networks.mesh.protocol.fields import NEIGHBOURS
 FAR = 255
 NONE = 255
 BITS = 15
-ROUNDS_KEPT = 3
+ROUNDS_VALID = 3
 
 
-def heard(gate, params, who, by, round):
+def note_heard(gate, params, who, by, round):
     """`by` heard `who` in this round."""
     gate.reported[who * params.width + by] = (round + 1) & MASK16
 
@@ -21,7 +21,7 @@ def heard(gate, params, who, by, round):
 def is_reported(gate, params, who, by, round):
     """1 if `by` heard `who` in one of the last rounds."""
     said = gate.reported[who * params.width + by]
-    return said != 0 and ((round + 1 - said) & MASK16) < ROUNDS_KEPT
+    return said != 0 and ((round + 1 - said) & MASK16) < ROUNDS_VALID
 
 
 def is_link(gate, params, a, b, round):
@@ -147,7 +147,7 @@ def alternate_of(gate, params, s, d, main):
     return best
 
 
-def around(gate, params, s, main):
+def fill_around(gate, params, s, main):
     """For recipients without alternate: first hops of the shortest paths that avoid `main`.
 
     Safe only because packets carry their path.
@@ -194,7 +194,7 @@ def make_table(gate, params, s):
             gate.next[d] = first_hop(gate, params, s, d, 0)
             gate.alt[d] = alternate_of(gate, params, s, d, gate.next[d])
     for k in range(gate.degree[s]):
-        around(gate, params, s, gate.list[s * NEIGHBOURS + k])
+        fill_around(gate, params, s, gate.list[s * NEIGHBOURS + k])
 
 
 def mark_table(gate, params, start):
@@ -213,8 +213,8 @@ def note_path(gate, params, frame, me, round):
         if k + 1 < frame.path_len:
             b = frame.path[k + 1]
         if a < params.nodes and b < params.nodes and a != b:
-            heard(gate, params, a, b, round)
-            heard(gate, params, b, a, round)
+            note_heard(gate, params, a, b, round)
+            note_heard(gate, params, b, a, round)
 
 
 def note_list(gate, params, frame, at, count):
@@ -223,7 +223,7 @@ def note_list(gate, params, frame, at, count):
     for k in range(count):
         who = frame.body[at + 2 * k]
         if who < params.nodes and at + 2 * k + 1 < frame.length:
-            heard(gate, params, who, frame.origin, round)
+            note_heard(gate, params, who, frame.origin, round)
 
 
 def trusts_lists(params):

@@ -3,7 +3,7 @@
 from innervate.dialect.arith import MASK16, MASK30, after
 from innervate.dialect.outbox import URGENT, report, send, set_timer
 from innervate.dialect.rng import draw
-from innervate.networks.mesh.protocol.backoff import NO_PAUSE, answered, end_pause, is_held
+from innervate.networks.mesh.protocol.backoff import NO_BACKOFF, end_backoff, is_held, note_answer
 from innervate.networks.mesh.protocol.constants import (
     ACK,
     ACK_WAIT,
@@ -94,7 +94,7 @@ def take_place(node, rank, out):
     return worst
 
 
-def place(node, now, rank, giver, out):
+def enqueue(node, now, rank, giver, out):
     """A place in the queue, due at once, as yet without frame; -1 if there is none."""
     i = take_place(node, rank, out)
     if i >= 0:
@@ -114,7 +114,7 @@ def place(node, now, rank, giver, out):
 
 def compose(node, now, rank, kind, dest, flags, out):
     """A packet of our own, empty, its path still to be begun; -1 if there is no place."""
-    i = place(node, now, rank, NOBODY_GAVE, out)
+    i = enqueue(node, now, rank, NOBODY_GAVE, out)
     if i >= 0:
         node.seq = (node.seq + 1) & MASK16
         node.q_kind[i] = kind
@@ -132,7 +132,7 @@ def compose(node, now, rank, kind, dest, flags, out):
 
 def take_over(node, now, rank, frame, out):
     """A received packet that is to go on; -1 if there is no place."""
-    i = place(node, now, rank, frame.link_src, out)
+    i = enqueue(node, now, rank, frame.link_src, out)
     if i >= 0:
         store(node, i, frame)
     return i
@@ -158,12 +158,12 @@ def is_before(node, i, j):
     return (node.q_order[j] - node.q_order[i]) & MASK30 < (MASK30 >> 1)
 
 
-def first_due(node, now):
+def pick_due(node, now):
     """Which frame goes next, or -1."""
     best = -1
-    end_pause(node, now)
+    end_backoff(node, now)
     for i in range(QUEUE):
-        if node.pause != NO_PAUSE and is_held(node, i):
+        if node.pause != NO_BACKOFF and is_held(node, i):
             continue
         if node.q_state[i] == WAITS and after(now, node.q_due[i]):
             if best < 0 or is_before(node, i, best):
@@ -179,7 +179,7 @@ def wake(node, now, out):
             wait = (node.q_due[i] - now) & MASK30
             if after(now, node.q_due[i]):
                 wait = 0
-            if node.pause != NO_PAUSE and is_held(node, i):
+            if node.pause != NO_BACKOFF and is_held(node, i):
                 wait = max(wait, (node.pause - now) & MASK30)
             if soonest < 0 or wait < soonest:
                 soonest = wait
@@ -217,7 +217,7 @@ def kick(node, params, now, out):
     for _ in range(QUEUE + 1):
         if node.busy != -1:
             return
-        i = first_due(node, now)
+        i = pick_due(node, now)
         if i < 0:
             wake(node, now, out)
             return
@@ -238,7 +238,7 @@ def attempt(node, i):
     return node.q_tries[i]
 
 
-def left(node, params, now, sent, out):
+def on_sent(node, params, now, sent, out):
     """The layer below says that the frame has left."""
     if node.busy >= 0 and node.q_state[node.busy] == DOWN:
         settle(node, params, now, sent, out)
@@ -262,7 +262,7 @@ def acknowledge(node, frame, out):
     ack.rssi = frame.rssi
 
 
-def acked(node, frame):
+def take_ack(node, frame):
     """The place of the frame that this ack is for, which is free then; -1 if for none."""
     i = node.busy
     if i < 0 or node.q_state[i] != UNACKED:
@@ -271,7 +271,7 @@ def acked(node, frame):
         return -1
     if node.q_link_dst[i] != frame.link_src:
         return -1
-    answered(node)
+    note_answer(node)
     drop(node, i)
     return i
 

@@ -13,10 +13,10 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.networks.mesh.protocol.duplicates import (
     accept,
-    is_flooded,
-    is_repeated,
-    is_returned_again,
     mark_bad,
+    record_flood,
+    record_packet,
+    record_return,
 )
 from innervate.networks.mesh.protocol.frames import in_path
 from innervate.networks.mesh.protocol.messages import hand_up
@@ -36,9 +36,9 @@ def rank_of(frame):
 def relay(node, params, now, frame, out):
     """A routed packet for somebody else."""
     returned = in_path(frame, node.number)
-    if not returned and is_repeated(node, frame):
+    if not returned and record_packet(node, frame):
         return
-    if returned and is_returned_again(node, frame):
+    if returned and record_return(node, frame):
         return
     if returned:
         mark_bad(node, frame.link_src, frame.dest)
@@ -51,7 +51,7 @@ def relay(node, params, now, frame, out):
 
 def flood_data(node, params, now, frame, out):
     """A message to all: deliver it, pass it on once."""
-    if frame.origin == node.number or is_flooded(node, frame.origin, frame.seq, DATA, 0):
+    if frame.origin == node.number or record_flood(node, frame.origin, frame.seq, DATA, 0):
         return
     if not accept(node, params, frame.origin, frame.seq, 1):
         return  # passed on so long ago that it is forgotten

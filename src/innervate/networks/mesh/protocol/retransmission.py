@@ -22,7 +22,12 @@ from innervate.networks.mesh.protocol.constants import (
     REPORT_EXPIRED,
     RETRY,
 )
-from innervate.networks.mesh.protocol.duplicates import NO_WAY, is_hopeless, mark_bad, unskip
+from innervate.networks.mesh.protocol.duplicates import (
+    UNREACHABLE,
+    clear_skipped,
+    is_unreachable,
+    mark_bad,
+)
 from innervate.networks.mesh.protocol.fields import QUEUE, WAITING
 from innervate.networks.mesh.protocol.frames import add8, get16, inner
 from innervate.networks.mesh.protocol.queue import compose, drop, has_room, kick
@@ -31,19 +36,19 @@ from innervate.networks.mesh.protocol.send import send_on
 from innervate.networks.mesh.protocol.timeout import (
     LONGEST_US,
     learn_round_trip,
-    life,
-    shortest,
+    lifetime,
     timeout,
+    timeout_min,
 )
 
 FREE = 0
 SURE_AFTER = 2  # tries; after fewer in vain nothing is concluded
-DESPAIR_MAX = 3
-PATIENCE = 48  # first waits: all tries of a message take 32
-OLDEST = 64  # numbers: a packet older than that its recipient could not tell from one it had
+SEARCH_BACKOFF_MAX = 3
+LIFETIME_TIMEOUTS = 48  # first waits: all tries of a message take 32
+AHEAD_MAX = 64  # numbers: a packet older than that its recipient could not tell from one it had
 
 
-def free_wait(node):
+def free_buffer(node):
     """A place for a message that is kept, or -1."""
     for w in range(WAITING):
         if node.wait_kind[w] == FREE:
@@ -51,7 +56,7 @@ def free_wait(node):
     return -1
 
 
-def keep(node, params, now, w, i, handle, out):
+def buffer_sent(node, params, now, w, i, handle, out):
     """Keep the packet in place i of the queue until its recipient acknowledges it."""
     node.wait_kind[w] = node.q_kind[i]
     node.wait_seq[w] = node.q_seq[i]
@@ -66,10 +71,10 @@ def keep(node, params, now, w, i, handle, out):
     node.wait_length[w] = node.q_length[i]
     for k in range(node.q_length[i]):
         node.wait_body[w * DATA_MAX + k] = node.q_body[i * BODY + k]
-    wait_on(node, now, out)
+    arm_retry(node, now, out)
 
 
-def keep_for_later(node, params, now, w, item, dest, flags, out):
+def buffer_unsent(node, params, now, w, item, dest, flags, out):
     """Keep a message that finds no room in the queue: its first try comes soon."""
     node.seq = (node.seq + 1) & MASK16
     node.wait_kind[w] = DATA
@@ -86,7 +91,7 @@ def keep_for_later(node, params, now, w, item, dest, flags, out):
     for k in range(item.length):
         node.wait_body[w * DATA_MAX + k] = item.body[k]
     report(out, REPORT_ACCEPTED, item.handle, node.seq)
-    wait_on(node, now, out)
+    arm_retry(node, now, out)
 
 
 def is_ahead(node, dest):
@@ -96,12 +101,12 @@ def is_ahead(node, dest):
     """
     for w in range(WAITING):
         if node.wait_kind[w] != FREE and (node.wait_dest[w] == dest or dest == ALL):
-            if (node.seq + 1 - node.wait_seq[w]) & MASK16 > OLDEST:
+            if (node.seq + 1 - node.wait_seq[w]) & MASK16 > AHEAD_MAX:
                 return 1
     return 0
 
 
-def wait_on(node, now, out):
+def arm_retry(node, now, out):
     """Set the RETRY timer to the first end-to-end timeout."""
     soonest = -1
     for w in range(WAITING):
@@ -115,7 +120,7 @@ def wait_on(node, now, out):
         set_timer(out, RETRY, (now + soonest) & MASK30)
 
 
-def due_wait(node, now):
+def due_retransmission(node, now):
     """A kept message whose time is over, or -1."""
     for w in range(WAITING):
         if node.wait_kind[w] != FREE and after(now, node.wait_due[w]):
@@ -134,10 +139,10 @@ def is_behind(node, dest, seq):
 
 def is_in_vain(node, dest, seq):
     """1 if no way is known to the recipient, or an older message to it is looking for one."""
-    return is_hopeless(node, dest) or is_behind(node, dest, seq)
+    return is_unreachable(node, dest) or is_behind(node, dest, seq)
 
 
-def launch(node, params, now, i, owner, handle, out):
+def send_buffered(node, params, now, i, owner, handle, out):
     """A packet of ours goes out; without a way, only one that is kept may come to one later."""
     node.q_owner[i] = owner
     sent = 0
@@ -150,11 +155,11 @@ def launch(node, params, now, i, owner, handle, out):
     kick(node, params, now, out)
 
 
-def is_old(node, params, now, w):
+def is_expired(node, params, now, w):
     """1 if the message in place w is sent no more, however often it was: its place is wanted."""
-    most = life(params)
+    most = lifetime(params)
     if not params.e2e_adapt:
-        most = min(most, PATIENCE * min(params.e2e_us, LONGEST_US // PATIENCE))
+        most = min(most, LIFETIME_TIMEOUTS * min(params.e2e_us, LONGEST_US // LIFETIME_TIMEOUTS))
     return (now - node.wait_at[w]) & MASK30 > most
 
 
@@ -181,26 +186,26 @@ def is_queued(node, seq):
     return 0
 
 
-def try_again(node, params, now, w, out):
+def retransmit(node, params, now, w, out):
     """Send a kept message once more, or give it up: 1 if it was sent."""
-    if node.wait_tries[w] > params.e2e_tries or is_old(node, params, now, w):
+    if node.wait_tries[w] > params.e2e_tries or is_expired(node, params, now, w):
         report(out, REPORT_EXPIRED, node.wait_handle[w], NO_ACK)
         if node.wait_kind[w] == DATA and node.wait_tries[w] > SURE_AFTER:
-            mark_bad(node, NO_WAY, node.wait_dest[w])
-            node.despair = min(node.despair + 1, DESPAIR_MAX)
+            mark_bad(node, UNREACHABLE, node.wait_dest[w])
+            node.search_backoff = min(node.search_backoff + 1, SEARCH_BACKOFF_MAX)
         node.wait_kind[w] = FREE
         return 0
     if node.wait_kind[w] == DATA and is_behind(node, node.wait_dest[w], node.wait_seq[w]):
         node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
         return 0
     if node.wait_kind[w] == DATA and (is_queued(node, node.wait_seq[w]) or not has_room(node, OWN)):
-        node.wait_due[w] = (now + shortest(node, params)) & MASK30
+        node.wait_due[w] = (now + timeout_min(node, params)) & MASK30
         return 0
     node.wait_tries[w] = node.wait_tries[w] + 1
     node.wait_sent[w] = now
     node.wait_flags[w] = node.wait_flags[w] ^ PARITY
     node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
-    unskip(node, node.number, node.wait_seq[w])
+    clear_skipped(node, node.number, node.wait_seq[w])
     rank = CONTROL if node.wait_flags[w] & PRIORITY else MESSAGES
     if node.wait_kind[w] == ALARM:
         rank = ALARMS
@@ -210,7 +215,7 @@ def try_again(node, params, now, w, out):
         node.q_seq[i] = node.wait_seq[w]
         for k in range(node.wait_length[w]):
             add8(node, i, node.wait_body[w * DATA_MAX + k])
-        launch(node, params, now, i, w, node.wait_handle[w], out)
+        send_buffered(node, params, now, i, w, node.wait_handle[w], out)
     return 1
 
 
@@ -229,15 +234,15 @@ def on_end_ack(node, params, frame, now, out):
                     node.heard_out = 1
                 report(out, REPORT_ARRIVED, node.wait_handle[w], node.wait_seq[w])
                 node.wait_kind[w] = FREE
-    hurry(node, params, now, frame.origin, out)
+    advance_retries(node, params, now, frame.origin, out)
 
 
-def hurry(node, params, now, dest, out):
+def advance_retries(node, params, now, dest, out):
     """`dest` is there: what was tried in vain is sent again as soon as its ack is overdue.
 
     Who acknowledges much would else use up all tries before the first of them can arrive.
     """
-    pause = shortest(node, params)
+    pause = timeout_min(node, params)
     for w in range(WAITING):
         if node.wait_kind[w] == DATA and node.wait_dest[w] == dest and node.wait_tries[w] > 1:
             due = (node.wait_sent[w] + pause) & MASK30
@@ -245,7 +250,7 @@ def hurry(node, params, now, dest, out):
                 due = now
             if after(node.wait_due[w], due):
                 node.wait_due[w] = due
-    wait_on(node, now, out)
+    arm_retry(node, now, out)
 
 
 def is_own_crossing(node, w):

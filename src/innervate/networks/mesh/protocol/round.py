@@ -21,7 +21,7 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.fields import QUEUE
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16, store
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD, place_of
-from innervate.networks.mesh.protocol.queue import NOBODY_GAVE, WAITS, compose, drop, kick, place
+from innervate.networks.mesh.protocol.queue import NOBODY_GAVE, WAITS, compose, drop, enqueue, kick
 from innervate.networks.mesh.protocol.send import send_up
 from innervate.networks.mesh.protocol.table import activate
 from innervate.networks.mesh.protocol.upward import is_uplink, is_weak
@@ -88,29 +88,29 @@ def on_request(node, params, now, frame, k, out):
     elif gateway != node.gateway or epoch != node.epoch or round != node.round:
         return
     fresh = k < 0 or node.round_depth[k] == UNHEARD
-    note(node, frame, k)
+    note_request(node, frame, k)
     if node.leading:
         return
     if node.depth == UNHEARD:
         if frame.rssi < params.min_rssi + 1 and params.discovery == LIST:
-            hesitate(node, params, now, frame, out)
+            await_better(node, params, now, frame, out)
         else:
             node.parent = frame.link_src
-            hold(node, params, now, frame, 0, out)
+            queue_request(node, params, now, frame, 0, out)
             join(node, params, now, frame.path_len + 1, out)
     if params.discovery == EACH and fresh:  # not to every copy
         respond_to(node, params, now, frame.link_src, out)
     kick(node, params, now, out)
 
 
-def note(node, frame, k):
+def note_request(node, frame, k):
     """Who was heard in this round, how loud, and at which depth."""
     if k >= 0:
         node.round_rssi[k] = frame.rssi
         node.round_depth[k] = frame.path_len
 
 
-def held(node):
+def queued_request(node):
     """Where the request that we are to pass on waits in the queue, or -1."""
     for i in range(QUEUE):
         if node.q_state[i] == WAITS and node.q_kind[i] == REQUEST:
@@ -118,11 +118,11 @@ def held(node):
     return -1
 
 
-def hold(node, params, now, frame, wait, out):
+def queue_request(node, params, now, frame, wait, out):
     """Pass the request on after `wait` us and some more; it takes the place of one that waits."""
-    i = held(node)
+    i = queued_request(node)
     if i < 0:
-        i = place(node, now, CONTROL, NOBODY_GAVE, out)
+        i = enqueue(node, now, CONTROL, NOBODY_GAVE, out)
     if i >= 0:
         store(node, i, frame)
         node.q_link_dst[i] = ALL
@@ -132,7 +132,7 @@ def hold(node, params, now, frame, wait, out):
             drop(node, i)
 
 
-def hesitate(node, params, now, frame, out):
+def await_better(node, params, now, frame, out):
     """A weak, perhaps one-way, link must not win: wait whether a better request comes."""
     best = place_of(node, params, node.parent)
     if node.due != LOOK_AGAIN:
@@ -141,7 +141,7 @@ def hesitate(node, params, now, frame, out):
     elif best >= 0 and node.round_rssi[best] >= frame.rssi:
         return
     node.parent = frame.link_src
-    hold(node, params, now, frame, 2 * params.jitter_us, out)
+    queue_request(node, params, now, frame, 2 * params.jitter_us, out)
 
 
 def join(node, params, now, depth, out):
@@ -170,9 +170,9 @@ def step(node, params, now, out):
         respond(node, params, now, out)
 
 
-def listed(node, params, k):
+def is_listed(node, params, k):
     """1 if the neighbour in place k goes into our response."""
-    if node.near[k] == FREE or node.round_depth[k] == UNHEARD:
+    if node.neighbour[k] == FREE or node.round_depth[k] == UNHEARD:
         return 0
     if params.mode == TABLE_FREE and not is_uplink(node, k):
         return 0
@@ -183,7 +183,7 @@ def count_listed(node, params):
     """How many neighbours go into our responses."""
     count = 0
     for k in range(params.places):
-        count = count + listed(node, params, k)
+        count = count + is_listed(node, params, k)
     if params.mode == TABLE_FREE:
         count = min(count, UPLINKS_TOLD)
     return count
@@ -217,11 +217,11 @@ def respond(node, params, now, out):
         left = left - here
         i = open_response(node, params, now, here, out)
         for k in range(at, params.places):
-            if here > 0 and listed(node, params, k):
+            if here > 0 and is_listed(node, params, k):
                 here = here - 1
                 at = k + 1
                 if i >= 0:
-                    add8(node, i, node.near[k])
+                    add8(node, i, node.neighbour[k])
                     add8(node, i, node.round_rssi[k])
         if i >= 0:
             send_up(node, params, now, i, out)
@@ -235,7 +235,7 @@ def respond_faintly(node, params, now, out):
         return
     i = open_response(node, params, now, 1, out)
     if i >= 0:
-        add8(node, i, node.near[best])
+        add8(node, i, node.neighbour[best])
         add8(node, i, node.round_rssi[best])
         send_up(node, params, now, i, out)
 

@@ -28,7 +28,7 @@ from innervate.networks.mesh.protocol.neighbours import (
     place_of,
     random_neighbour,
 )
-from innervate.networks.mesh.protocol.search import add_failed, distances, is_edge, towards
+from innervate.networks.mesh.protocol.search import add_failed, find_hop, is_edge, measure_distances
 from innervate.networks.mesh.protocol.upward import uplink
 
 NONE = 255
@@ -44,44 +44,44 @@ def alternate(node, params, dest):
     return node.alt[node.bank * params.width + dest]
 
 
-def usable(node, params, i, who):
+def is_usable(node, params, i, who):
     """1 if the packet in place i may go to `who`."""
     if who == NONE or was_at(node, i, who) or is_suspect(node, params, who):
         return 0
     return not is_skipped(node, node.q_origin[i], node.q_seq[i], who)
 
 
-def fit(node, params, i, who, bad):
+def is_fit(node, params, i, who, bad):
     """1 if `who` may be next, and gave back packets for this recipient before as `bad` says."""
-    return usable(node, params, i, who) and is_bad(node, who, node.q_dest[i]) == bad
+    return is_usable(node, params, i, who) and is_bad(node, who, node.q_dest[i]) == bad
 
 
 def loudest_fit(node, params, i, bad):
     """The loudest of the neighbours that may be next, or NOBODY."""
     best = -1
     for k in range(params.places):
-        if node.near[k] != FREE and (best < 0 or node.rssi[k] > node.rssi[best]):
-            if fit(node, params, i, node.near[k], bad):
+        if node.neighbour[k] != FREE and (best < 0 or node.rssi[k] > node.rssi[best]):
+            if is_fit(node, params, i, node.neighbour[k], bad):
                 best = k
     if best < 0:
         return NOBODY
-    return node.near[best]
+    return node.neighbour[best]
 
 
 def search(node, params, i, bad):
     """Recipient, table, alternate, uplink, any other neighbour: the first that may be next."""
     dest = node.q_dest[i]
-    if is_strong(node, params, place_of(node, params, dest)) and fit(node, params, i, dest, bad):
+    if is_strong(node, params, place_of(node, params, dest)) and is_fit(node, params, i, dest, bad):
         return dest
     who = planned(node, params, dest)
-    if fit(node, params, i, who, bad):
+    if is_fit(node, params, i, who, bad):
         return who
     who = alternate(node, params, dest)
-    if fit(node, params, i, who, bad):
+    if is_fit(node, params, i, who, bad):
         return who
     if dest == node.gateway:
         who = uplink(node, params, i)
-        if who != NOBODY and fit(node, params, i, who, bad):
+        if who != NOBODY and is_fit(node, params, i, who, bad):
             return who
     if params.failover != SEARCH:
         return NOBODY
@@ -135,14 +135,14 @@ def last_resort(node, params, i):
     """
     best = -1
     for k in range(params.places):
-        if node.near[k] != FREE and is_untried(node, i, node.near[k]):
-            if node.near[k] == planned(node, params, node.q_dest[i]):
-                return node.near[k]
+        if node.neighbour[k] != FREE and is_untried(node, i, node.neighbour[k]):
+            if node.neighbour[k] == planned(node, params, node.q_dest[i]):
+                return node.neighbour[k]
             if best < 0 or node.rssi[k] > node.rssi[best]:
                 best = k
     if best < 0:
         return NOBODY
-    return node.near[best]
+    return node.neighbour[best]
 
 
 def seek(node, params, i):
@@ -163,7 +163,7 @@ def seek(node, params, i):
     return who
 
 
-def by_search(node, params, i):
+def choose_by_search(node, params, i):
     """The next hop by table, alternates and path-trace search."""
     who = seek(node, params, i)
     if who != NOBODY and who != planned(node, params, node.q_dest[i]):
@@ -176,7 +176,7 @@ def room_of(node, params, i):
     return params.mtu - HEADER_BYTES - CRC_BYTES - node.q_path_len[i]
 
 
-def by_graph(node, params, i):
+def choose_by_graph(node, params, i):
     """The next hop on a shortest path around all that failed and all that had the packet.
 
     Where the graph knows none, links may have come that it does not have: search.
@@ -186,13 +186,13 @@ def by_graph(node, params, i):
     if near and not is_suspect(node, params, dest):
         return dest
     if node.version:
-        who = towards(node, params, i, dest, room_of(node, params, i), 1)
+        who = find_hop(node, params, i, dest, room_of(node, params, i), 1)
         if who != NONE:
             return who
     return seek(node, params, i)
 
 
-def along_route(node, params, i):
+def choose_by_route(node, params, i):
     """Table-free: the next of the source route, the recipient if near, else the gateway.
 
     The gateway itself writes the route.
@@ -215,10 +215,10 @@ def plan_route(node, params, i):
     dest = node.q_dest[i]
     if dest >= params.nodes:
         return
-    first = towards(node, params, i, dest, room_of(node, params, i), 0)
+    first = find_hop(node, params, i, dest, room_of(node, params, i), 0)
     if first == NONE:
         return
-    distances(node, params, i, dest, node.number, 0)
+    measure_distances(node, params, i, dest, node.number, 0)
     count = node.far[first] + 1
     length = node.q_length[i]
     if length + count + 1 > room_of(node, params, i):
@@ -243,14 +243,14 @@ def downhill(node, params, at):
     return at
 
 
-def next_hop(node, params, i):
+def choose_hop(node, params, i):
     """Where the packet in place i goes next; NOBODY: nowhere."""
     if params.mode == WHOLE_GRAPH:
-        return by_graph(node, params, i)
+        return choose_by_graph(node, params, i)
     if params.mode == TABLE_FREE:
-        return along_route(node, params, i)
+        return choose_by_route(node, params, i)
     if params.failover >= ALTERNATE:
-        return by_search(node, params, i)
+        return choose_by_search(node, params, i)
     who = planned(node, params, node.q_dest[i])
     if who == NONE and node.q_dest[i] == node.gateway:
         return uplink(node, params, i)
@@ -259,16 +259,16 @@ def next_hop(node, params, i):
     return who
 
 
-def rewrite(node, params, i, dead):
+def rewrite(node, params, i, failed):
     """The document's failover: another neighbour takes the dead one's place in the table."""
     spared = node.q_origin[i] if params.avoid_origin else node.q_from[i]
     who = NOBODY
     if params.failover == RANDOM:
-        count = count_neighbours(node, params, dead, spared)
+        count = count_neighbours(node, params, failed, spared)
         if count > 0:
-            who = random_neighbour(node, params, dead, spared, draw(node, count))
+            who = random_neighbour(node, params, failed, spared, draw(node, count))
     elif params.failover == LOUDEST:
-        who = loudest(node, params, dead, spared)
+        who = loudest(node, params, failed, spared)
     node.next[node.bank * params.width + node.q_dest[i]] = NONE if who == NOBODY else who
 
 
@@ -292,12 +292,12 @@ def advance_route(node, i):
         node.q_length[i] = node.q_length[i] - 1
 
 
-def learn_failure(node, params, i, dead):
-    """Neighbour `dead` failed for the packet in place i."""
-    skip(node, node.q_origin[i], node.q_seq[i], dead)
+def learn_failure(node, params, i, failed):
+    """Neighbour `failed` failed for the packet in place i."""
+    skip(node, node.q_origin[i], node.q_seq[i], failed)
     if params.mode == TABLE_FREE:
         strip_route(node, i)
     if params.mode != 0:
-        add_failed(node, i, dead, room_of(node, params, i))
+        add_failed(node, i, failed, room_of(node, params, i))
     elif params.failover < ALTERNATE:
-        rewrite(node, params, i, dead)
+        rewrite(node, params, i, failed)

@@ -59,7 +59,7 @@ def add_failed(node, i, who, room):
     return 1
 
 
-def distances(node, params, i, dest, here, anew):
+def measure_distances(node, params, i, dest, here, anew):
     """Hops from everyone to `dest`, around `here` and whoever failed for the packet in place i.
 
     With `anew` around whoever had the packet, too.
@@ -89,13 +89,13 @@ def distances(node, params, i, dest, here, anew):
                             last = last + 1
 
 
-def nearest(node, params, i, dest, anew):
+def find_nearest(node, params, i, dest, anew):
     """The neighbour with the shortest way to `dest` for the packet in place i, or 255.
 
     Where the recipient itself did not answer us, somebody else may reach it.
     """
     me = node.number
-    distances(node, params, i, dest, me, anew)
+    measure_distances(node, params, i, dest, me, anew)
     best = 255
     for c in range(params.nodes):
         if node.far[c] != FAR and c != me and is_edge(node, params, me, c):
@@ -106,13 +106,13 @@ def nearest(node, params, i, dest, anew):
     return best
 
 
-def towards(node, params, i, dest, room, anew):
+def find_hop(node, params, i, dest, room, anew):
     """Where the packet in place i goes on a shortest path, or 255.
 
     Whoever would be next but does not answer is added to the failed that the packet carries.
     """
     for _ in range(params.places + 1):
-        who = nearest(node, params, i, dest, anew)
+        who = find_nearest(node, params, i, dest, anew)
         if who == 255 or not is_suspect(node, params, who):
             return who
         if not add_failed(node, i, who, room):

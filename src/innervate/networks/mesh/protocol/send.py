@@ -3,7 +3,7 @@
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import report
 from innervate.dialect.rng import draw
-from innervate.networks.mesh.protocol.backoff import missed
+from innervate.networks.mesh.protocol.backoff import note_missed
 from innervate.networks.mesh.protocol.constants import (
     ACK_WANTED,
     ALARMS,
@@ -18,15 +18,15 @@ from innervate.networks.mesh.protocol.constants import (
     TABLE_ACK,
     TABLE_FREE,
 )
-from innervate.networks.mesh.protocol.duplicates import skip, unskip
+from innervate.networks.mesh.protocol.duplicates import clear_skipped, skip
 from innervate.networks.mesh.protocol.fields import QUEUE
 from innervate.networks.mesh.protocol.frames import add_hop, was_at
 from innervate.networks.mesh.protocol.neighbours import DOUBT, is_lively, place_of, suspect, trust
 from innervate.networks.mesh.protocol.queue import UNACKED, WAITS, drop, kick
 from innervate.networks.mesh.protocol.route import (
     advance_route,
+    choose_hop,
     learn_failure,
-    next_hop,
     planned,
     room_of,
 )
@@ -61,7 +61,7 @@ def enter(node, params, i, out):
 
 def aim(node, params, i, out):
     """Choose the next hop of the routed packet in place i; 0 if there is none."""
-    who = next_hop(node, params, i)
+    who = choose_hop(node, params, i)
     if who == NOBODY:
         return 0
     advance_route(node, i)
@@ -69,7 +69,7 @@ def aim(node, params, i, out):
     return 1
 
 
-def goes_back(node, params, i):
+def resume_search(node, params, i):
     """1 if we search on for a packet that came back: its path has us already, and room for others.
 
     24 nodes can be searched so, not 24 hops; dead ends cost no room.
@@ -84,7 +84,7 @@ def goes_back(node, params, i):
 
 def send_on(node, params, now, i, out):
     """The packet in place i, ours or taken over, goes to its recipient; 0 if it cannot."""
-    if not goes_back(node, params, i) and not enter(node, params, i, out):
+    if not resume_search(node, params, i) and not enter(node, params, i, out):
         return 0
     if not aim(node, params, i, out):
         give_up(node, i, out)
@@ -107,7 +107,7 @@ def climb(node, params, now, i, out):
             give_up(node, i, out)
             return
         trust(node, params)
-        unskip(node, node.q_origin[i], node.q_seq[i])
+        clear_skipped(node, node.q_origin[i], node.q_seq[i])
         who = uplink(node, params, i)
         wait = (params.jitter_us >> 1) + draw(node, params.jitter_us + 1)
         node.q_due[i] = (now + wait) & MASK30
@@ -124,24 +124,24 @@ def is_upward(kind):
 
 def hop_failed(node, params, now, i, out):
     """The next hop of the packet in place i did not answer: try another."""
-    dead = node.q_link_dst[i]
+    failed = node.q_link_dst[i]
     kind = node.q_kind[i]
     node.q_state[i] = WAITS
     node.q_due[i] = now
     node.q_fails[i] = node.q_fails[i] + 1
     if kind == TABLE:
-        suspect(node, params, now, dead, 0, out)
+        suspect(node, params, now, failed, 0, out)
         give_up(node, i, out)
     elif is_upward(kind):
-        suspect(node, params, now, dead, 0, out)
-        skip(node, node.q_origin[i], node.q_seq[i], dead)
+        suspect(node, params, now, failed, 0, out)
+        skip(node, node.q_origin[i], node.q_seq[i], failed)
         if node.q_fails[i] > FAILURES_MAX:
             give_up(node, i, out)
         else:
             climb(node, params, now, i, out)
     else:
-        suspect(node, params, now, dead, planned(node, params, node.q_dest[i]) == dead, out)
-        learn_failure(node, params, i, dead)
+        suspect(node, params, now, failed, planned(node, params, node.q_dest[i]) == failed, out)
+        learn_failure(node, params, i, failed)
         if not params.retry or node.q_fails[i] > HOPS_MAX or is_stale(node, params, now, i):
             give_up(node, i, out)
         elif not aim(node, params, i, out):
@@ -162,7 +162,7 @@ def is_stale(node, params, now, i):
     return (now - node.q_born[i]) & MASK30 > limit
 
 
-def turn_away(node, params, dead, out):
+def turn_away(node, params, failed, out):
     """What else waits to go to a neighbour that does not answer goes another way, if there is one.
 
     Else every packet in the queue would have to find out for itself, one after the other.
@@ -171,7 +171,7 @@ def turn_away(node, params, dead, out):
         return
     for i in range(QUEUE):
         waits = node.q_state[i] == WAITS and node.q_flags[i] & ACK_WANTED
-        if waits and node.q_link_dst[i] == dead and node.q_kind[i] != TABLE:
+        if waits and node.q_link_dst[i] == failed and node.q_kind[i] != TABLE:
             if is_upward(node.q_kind[i]):
                 who = uplink(node, params, i)
                 if who != NOBODY:
@@ -192,7 +192,7 @@ def most_tries(node, params, i, who):
     return params.transmissions
 
 
-def unanswered(node, params, now, out):
+def on_ack_timeout(node, params, now, out):
     """The hop's ack did not come in time."""
     i = node.busy
     if i < 0 or node.q_state[i] != UNACKED:
@@ -200,12 +200,12 @@ def unanswered(node, params, now, out):
     node.busy = -1
     who = place_of(node, params, node.q_link_dst[i])
     if who < 0 or is_lively(node, who):
-        missed(node, params, now)
+        note_missed(node, params, now)
     if node.q_tries[i] < most_tries(node, params, i, who):
         node.q_state[i] = WAITS
         node.q_due[i] = now
     else:
-        dead = node.q_link_dst[i]
+        failed = node.q_link_dst[i]
         hop_failed(node, params, now, i, out)
-        turn_away(node, params, dead, out)
+        turn_away(node, params, failed, out)
     kick(node, params, now, out)

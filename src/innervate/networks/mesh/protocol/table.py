@@ -13,7 +13,7 @@ from innervate.networks.mesh.protocol.constants import (
     REPORT_TABLE,
     TABLE_ACK,
 )
-from innervate.networks.mesh.protocol.duplicates import is_flooded, unbad
+from innervate.networks.mesh.protocol.duplicates import clear_bad, record_flood
 from innervate.networks.mesh.protocol.frames import add8, add16, get16, is_route
 from innervate.networks.mesh.protocol.queue import compose, kick, take_over
 from innervate.networks.mesh.protocol.search import set_edge
@@ -58,13 +58,13 @@ def expect(node, epoch, version, count):
     return 0
 
 
-def in_force(node, params, epoch, version, out):
+def put_in_force(node, params, epoch, version, out):
     """What came in is in force from now on."""
     node.version = version
     node.table_epoch = epoch
     node.new_version = 0
     node.ready = 0
-    unbad(node, params)
+    clear_bad(node, params)
     report(out, REPORT_TABLE, version, epoch)
 
 
@@ -133,20 +133,20 @@ def finish_table(node, params, out):
         node.ready = 1
     else:
         node.bank = 1 - node.bank
-        in_force(node, params, node.new_epoch, node.new_version, out)
+        put_in_force(node, params, node.new_epoch, node.new_version, out)
 
 
 def activate(node, params, epoch, version, out):
     """The gateway says that these tables are in force."""
     if node.ready and epoch == node.new_epoch and version == node.new_version:
         node.bank = 1 - node.bank
-        in_force(node, params, epoch, version, out)
+        put_in_force(node, params, epoch, version, out)
 
 
 def on_activate(node, params, now, frame, out):
     """Flooded: put the new tables into force."""
     activate(node, params, frame.body[0], get16(frame, 1), out)
-    if not is_flooded(node, frame.origin, frame.seq, ACTIVATE, 0):
+    if not record_flood(node, frame.origin, frame.seq, ACTIVATE, 0):
         spread(node, params, now, frame, out)
 
 
@@ -180,7 +180,7 @@ def on_graph(node, params, now, frame, out):
     count = frame.body[3] & 15
     if epoch != node.epoch or index >= count:
         return
-    fresh = not is_flooded(node, frame.origin, frame.seq, GRAPH, 0)
+    fresh = not record_flood(node, frame.origin, frame.seq, GRAPH, 0)
     if is_current(node, epoch, version):
         if fresh:
             answer_graph(node, params, now, epoch, version, count, out)
@@ -189,7 +189,7 @@ def on_graph(node, params, now, frame, out):
         read_edges(node, params, frame, index)
         node.parts = node.parts | 1 << index
         if node.parts == all_parts(count):
-            in_force(node, params, epoch, version, out)
+            put_in_force(node, params, epoch, version, out)
             answer_graph(node, params, now, epoch, version, count, out)
     if fresh:
         spread(node, params, now, frame, out)

@@ -13,30 +13,30 @@ def timeout(node, params, w):
     Twice as long after every further retry, but for alarms: who is not there is searched
     everywhere each time.
     """
-    wait = shortest(node, params)
+    wait = timeout_min(node, params)
     double = max(0, node.wait_tries[w] - 2)
     if params.e2e_adapt:
         double = max(0, node.wait_tries[w] - 1)
     if node.wait_kind[w] != ALARM:
         wait = wait << min(double, 4)
-    return min(wait, longest(params))
+    return min(wait, timeout_max(params))
 
 
-def shortest(node, params):
+def timeout_min(node, params):
     """How long an end-to-end ack may take, us."""
     if params.e2e_adapt:
-        return min(max(params.e2e_us, 4 * node.round_trip), longest(params))
+        return min(max(params.e2e_us, 4 * node.round_trip), timeout_max(params))
     return params.e2e_us
 
 
-def longest(params):
+def timeout_max(params):
     """Longest wait for an end-to-end ack, us: five of them must fit into a message's life."""
     if params.e2e_adapt:
-        return max(params.e2e_us, life(params) >> 3)
+        return max(params.e2e_us, lifetime(params) >> 3)
     return LONGEST_US
 
 
-def life(params):
+def lifetime(params):
     """How long a message may be tried, us: who hears nothing of us forgets what it had of us."""
     silence = params.forget * min(params.tick_us, TICK_MAX_US)
     return min(silence - (silence >> 3), LONGEST_US)

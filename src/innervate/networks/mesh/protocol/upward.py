@@ -23,9 +23,9 @@ def is_better(node, params, a, b):
 
 def is_uplink(node, k):
     """1 if the neighbour in place k advertised less depth than ours in this round."""
-    return (
-        node.near[k] != FREE and node.round_depth[k] != UNHEARD and node.round_depth[k] < node.depth
-    )
+    if node.neighbour[k] == FREE or node.round_depth[k] == UNHEARD:
+        return 0
+    return node.round_depth[k] < node.depth
 
 
 def uplink(node, params, i):
@@ -33,7 +33,7 @@ def uplink(node, params, i):
     best = -1
     for k in range(params.places):
         if is_uplink(node, k) and not node.suspect[k] & SUSPECT:
-            who = node.near[k]
+            who = node.neighbour[k]
             if not is_skipped(node, node.q_origin[i], node.q_seq[i], who):
                 if params.discovery != LIST and who == node.parent:
                     return who
@@ -41,4 +41,4 @@ def uplink(node, params, i):
                     best = k
     if best < 0:
         return NOBODY
-    return node.near[best]
+    return node.neighbour[best]

@@ -1,6 +1,6 @@
 """Positions of robots: who hears them watches over the fence, the monitor that they go on."""
 
-from innervate.networks.mesh.protocol.alarm import RAISED_OUT, sound
+from innervate.networks.mesh.protocol.alarm import RAISED_OUT, raise_alarm
 from innervate.networks.mesh.protocol.constants import (
     ALL,
     CLEAR,
@@ -75,7 +75,7 @@ def on_position(node, params, now, frame, out):
         return
     monitor = resolve(node, params, MONITOR) == node.number
     if monitor:
-        found(node, params, now, robot, frame, at, out)
+        note_found(node, params, now, robot, frame, at, out)
     if params.points == 0:
         return
     x = signed16(get16(frame, at + 1))
@@ -92,18 +92,18 @@ def on_position(node, params, now, frame, out):
     if said & SAID_HEARD == 0 and node.raised[robot] & RAISED_OUT == 0:
         vx = signed8(frame.body[at + 5])
         vy = signed8(frame.body[at + 6])
-        if sound(node, params, now, CROSS, robot, x, y, vx, vy, out):
+        if raise_alarm(node, params, now, CROSS, robot, x, y, vx, vy, out):
             node.raised[robot] = node.raised[robot] | RAISED_OUT
 
 
-def found(node, params, now, robot, frame, at, out):
+def note_found(node, params, now, robot, frame, at, out):
     """The monitor hears of a robot: it is not lost, or not any more."""
     node.missed[robot] = 0
     if node.raised[robot] & RAISED_LOST:
         node.raised[robot] = node.raised[robot] & ~RAISED_LOST
         x = signed16(get16(frame, at + 1))
         y = signed16(get16(frame, at + 3))
-        sound(node, params, now, CLEAR, robot, x, y, 0, 0, out)
+        raise_alarm(node, params, now, CLEAR, robot, x, y, 0, 0, out)
 
 
 def watch(node, params, now, out):
@@ -117,4 +117,4 @@ def watch(node, params, now, out):
             if node.missed[robot] > params.lost and left > 0:
                 left = left - 1
                 node.raised[robot] = node.raised[robot] | RAISED_LOST
-                sound(node, params, now, LOST, robot, 0, 0, 0, 0, out)
+                raise_alarm(node, params, now, LOST, robot, 0, 0, 0, 0, out)

@@ -104,14 +104,14 @@ class MeshPlan:
 
     Attributes:
         nodes: how many, 1 .. 254.
-        capacity: their class, 32, 64 or 254 (see `protocol/mesh_fields.py`).
+        capacity: their class, 32, 64 or 254 (see `protocol/fields.py`).
         names: what each is called, as in the file.
         params: the protocol's parameters (`mesh_fields.PARAMS`); arrays as lists.
         ranks: per node 0 gateway, 1.. standby, -1 neither.
         robots: per node 1 = it is a robot.
         absent: per node 1 = switched off until it is revived.
         starts_us: per node, when it is switched on, us (the gateway last).
-        mac: "csma", "none" (ideal, and drivers that need none) or a name of `sim/radio/stacks.py`.
+        mac: "csma", "none" (ideal, and drivers that need none) or one of the radio's.
         mac_params: parameters of the medium access protocol.
         positions_cm: per node (x, y) at the start; empty where none are given.
         good: links (a < b) that are good both ways at the start.

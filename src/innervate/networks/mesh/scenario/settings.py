@@ -19,7 +19,7 @@ Tries = Annotated[int, keys.whole("tries", 0, 15)]
 
 
 class MeshProtocolTable(keys.Table, frozen=True, kw_only=True):
-    """[protocol]: the router's settings."""
+    """[protocol] of a mesh: discovery, failover, retransmission, timers."""
 
     discovery: Literal["list", "tree", "each"] = "list"
     failover: Literal["search", "alternate", "rssi", "random", "graph"] = "search"

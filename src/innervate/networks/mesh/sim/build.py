@@ -10,8 +10,7 @@ from innervate.dialect import rng
 from innervate.kernel import records
 from innervate.networks.mesh.protocol import csma_fields
 from innervate.networks.mesh.protocol import fields as mesh_fields
-from innervate.networks.mesh.sim import channel
-from innervate.networks.mesh.sim import recorder as books
+from innervate.networks.mesh.sim import channel, recorder
 from innervate.networks.mesh.sim import world as m
 from innervate.networks.mesh.sim.loop import BOOT, NEVER
 from innervate.networks.mesh.sim.over_channel import KEPT
@@ -25,7 +24,7 @@ PLAIN_ROWS = 1 << 12  # objects: dear to make
 TAPS = 1 << 12
 OUTBOX = 32
 MAC_OUTBOX = 4
-SEEN = 1 << 15
+DUPLICATES = 1 << 15
 FRAME_BYTES = 1 << 10
 PLACES_PER_NODE = 8
 FORGET_US = 30_000_000  # receivers forget origins that are silent for so long
@@ -71,8 +70,8 @@ def build(
         item=tables.states(mesh_fields.ITEM, 1),
         out=_outbox(tables, OUTBOX, mesh_fields.FRAME),
         mac_out=_outbox(tables, MAC_OUTBOX, csma_fields.ITEM),
-        seen_key=tables.numbers(SEEN, 0, np.int64),
-        seen_at=tables.numbers(SEEN, 0, np.int64),
+        duplicate_key=tables.numbers(DUPLICATES, 0, np.int64),
+        duplicate_at=tables.numbers(DUPLICATES, 0, np.int64),
         rows=tables.records(m.ROW, kept, fresh=True, wide=m.WIDE),
         sent=tables.records(m.SENT, kept, fresh=True, wide=m.WIDE),
         delivered=tables.records(m.DELIVERED, kept, fresh=True, wide=m.WIDE),
@@ -91,17 +90,17 @@ def build(
     return world
 
 
-def grow_seen(world: m.World) -> m.World:
+def grow_duplicates(world: m.World) -> m.World:
     """The same world with twice the room for deliveries."""
-    tables = Tables(isinstance(world.seen_key, list))
-    count = 2 * len(world.seen_key)
+    tables = Tables(isinstance(world.duplicate_key, list))
+    count = 2 * len(world.duplicate_key)
     keys, times = tables.numbers(count, 0, np.int64), tables.numbers(count, 0, np.int64)
-    for key, at in zip(world.seen_key, world.seen_at, strict=True):
+    for key, at in zip(world.duplicate_key, world.duplicate_at, strict=True):
         if key:
-            place = books.place_of(keys, int(key))
+            place = recorder.place_of(keys, int(key))
             keys[place], times[place] = key, at
-    put(world.run, 0, seen_limit=count // 2 - _margin(len(world.radios)) // 4)
-    return world._replace(seen_key=keys, seen_at=times)
+    put(world.run, 0, duplicate_limit=count // 2 - _margin(len(world.radios)) // 4)
+    return world._replace(duplicate_key=keys, duplicate_at=times)
 
 
 def _margin(nodes: int) -> int:
@@ -125,7 +124,7 @@ def _outbox(tables: Tables, limit: int, frame: Any) -> Out:
 
 
 def _medium(tables: Tables, plan: Any) -> dict[str, Any]:
-    """Tables of the medium."""
+    """Tables of the ideal or fading medium: frames in the air, powers between nodes."""
     n, radio = plan.nodes, plan.radio
     places = min(PLACES_PER_NODE * n + 64, queue.PLACES_MAX)
     if plan.mac not in MACS:
@@ -225,7 +224,7 @@ def _set_run(world: m.World, plan: Any, gate_words: int) -> None:
         gate_words=gate_words,
         commands=sum(not away for away in plan.absent) + len(plan.faults),
         offers=len(plan.offers),
-        seen_limit=SEEN // 2 - _margin(n) // 4,
+        duplicate_limit=DUPLICATES // 2 - _margin(n) // 4,
         forget=FORGET_US,
     )
     for name, length, *_ in mesh_fields.PARAMS:

@@ -1,4 +1,4 @@
-"""The channel below a mesh whose nodes all hear each other: a world of `sim/radio`."""
+"""The channel below a mesh whose nodes all hear each other: a world of `sim/channel`."""
 
 from __future__ import annotations
 

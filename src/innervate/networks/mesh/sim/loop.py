@@ -3,9 +3,9 @@
 from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.kernel.bits import mix
-from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol.constants import MESSAGE, REPORT_GRAPH, SAMPLE, SENT
-from innervate.networks.mesh.sim import recorder as books
+from innervate.networks.mesh.sim import recorder
 from innervate.networks.mesh.sim.timers import set_timer
 from innervate.networks.mesh.sim.world import TIMERS
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
@@ -26,9 +26,9 @@ from innervate.sim.status import (
 )
 
 NEVER = -1
-BOOT = 7  # a command besides those of `scenario/mesh_plan.py`
+BOOT = 7  # a command besides those of `scenario/plan.py`
 COLD, MEMORY_LOST = 0, 1
-SEEN_FULL = 100  # a status: the table of deliveries is half full
+DUPLICATES_FULL = 100  # a status: the table of deliveries is half full
 
 BYTE = 0xFF
 
@@ -44,8 +44,8 @@ def pressing(world):
         return ROWS_FULL
     if run.taps > run.tap_limit:
         return ROWS_FULL
-    if run.seen > run.seen_limit:
-        return SEEN_FULL
+    if run.duplicates > run.duplicate_limit:
+        return DUPLICATES_FULL
     if world.heap.size[0] + 64 * run.nodes + 64 > len(world.heap.keys):
         return POOL_FULL
     return DONE
@@ -91,13 +91,13 @@ def build(stack, layer):
             elif kind == REPORT:
                 rows.keep_row(world, time, node, a, b, c)
                 if a == REPORT_GRAPH:
-                    books.keep_round(world, node, time)
+                    recorder.record_round(world, node, time)
             elif kind == DELIVER:
                 run.fingerprint = mix(mark, digest(out.frame[i]))
-                books.keep_delivered(world, node, out.frame[i], time)
+                recorder.record_delivered(world, node, out.frame[i], time)
         out.count[0] = 0
         if out.overflow[0]:
-            books.breaks(world, books.BROKEN_OUTBOX, node)
+            recorder.breaks(world, recorder.BROKEN_OUTBOX, node)
 
     def finish(world, node, time, now, handler, port):
         """After a handler: account for it, carry out what it asked for, check."""
@@ -108,7 +108,7 @@ def build(stack, layer):
             drain(world, node, time, now)
         if run.watchful:
             if run.checks and not is_sound(world, node):
-                books.breaks(world, books.BROKEN_RANGE, node)
+                recorder.breaks(world, recorder.BROKEN_RANGE, node)
             rows.keep_step(world, node, time, handler, port)
 
     def tell_sent(world, node, time, ok):
@@ -129,7 +129,7 @@ def build(stack, layer):
     dispatch_below = above.dispatch
 
     def switch_on(world, node, time, cause):
-        """A node starts."""
+        """A node starts, for the first time or again; with MEMORY_LOST its record is wiped."""
         radio = world.radios[node]
         if cause == MEMORY_LOST:
             wipe(world, node)
@@ -194,7 +194,7 @@ def build(stack, layer):
             return
         world.due[node * TIMERS + timer] = NEVER
         now = time + radio.offset
-        if timer < mesh_words.TIMERS:
+        if timer < mesh_const.TIMERS:
             fire(world, node, now & MASK30, timer)
             finish(world, node, time, now, ON_TIMER, timer)
         else:

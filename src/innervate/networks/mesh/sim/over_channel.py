@@ -1,6 +1,6 @@
 """Below the router: a medium access protocol of radio teams, on a channel that all share.
 
-The channel is simulated by `sim/radio`, with a queue of events of its own. A frame of the router is
+The channel is simulated by `sim/channel`, with its own queue of events. A frame of the router is
 a packet there, kept here under the packet's handle; what becomes of it comes back as an event of
 the mesh's queue, which goes first at equal times.
 """
@@ -12,7 +12,7 @@ from innervate.dialect.access import QUEUE
 from innervate.kernel.bits import mix
 from innervate.networks.mesh.protocol.constants import ACK
 from innervate.networks.mesh.scenario.plan import HEADER_SLOTS
-from innervate.networks.mesh.sim import recorder as books
+from innervate.networks.mesh.sim import recorder
 from innervate.sim import heap, taps
 from innervate.sim.channel import loop as radio_loop
 from innervate.sim.channel import medium as channel
@@ -109,7 +109,7 @@ def short(world):
     below = world.below
     found = radio_loop.pressing(below)
     if below.run[0].broken:
-        books.breaks(world, books.BROKEN_BELOW, below.run[0].broken_node)
+        recorder.breaks(world, recorder.BROKEN_BELOW, below.run[0].broken_node)
     return found
 
 
@@ -129,7 +129,7 @@ def layer(handlers):
     start_station = handlers.switch_on
 
     def step(world, time):
-        """The channel's next event."""
+        """Handle the next event of the channel below, at `time`, us."""
         below = world.below
         handled = below.run[0].handled
         key = below.heap.keys[0] if below.heap.size[0] > 0 else heap.LAST
@@ -141,14 +141,14 @@ def layer(handlers):
         world.run[0].handled += below.run[0].handled - handled
 
     def down(stack):
-        """What the router calls."""
+        """The functions by which a router hands frames to a channel below."""
         digest, copy_frame, frame_bytes = stack.digest, stack.copy_frame, stack.frame_bytes
 
         def hand_down(world, node, frame, _attempt, urgent, time, _now):
             """The router sends a frame: it becomes a packet; returns its digest."""
             run, radio, below = world.run[0], world.radios[node], world.below
             if radio.held != NONE and not urgent:
-                books.breaks(world, books.BROKEN_HELD, node)
+                recorder.breaks(world, recorder.BROKEN_HELD, node)
                 return 0
             if urgent and below.radios[node].backlog >= QUEUE:
                 run.blocked += 1
@@ -173,7 +173,7 @@ def layer(handlers):
             """A node stops in mid-frame, if it has begun; nobody receives that."""
             length = frame_bytes(world.frames[place])
             if began(world, place, length, world.below.radios[node].data_end) < time:
-                books.keep_transmission(world, place, time, length, 0)
+                recorder.record_transmission(world, place, time, length, 0)
 
         def switch_off(world, node, time):
             """A node stops, in mid-frame too."""
@@ -202,7 +202,7 @@ def layer(handlers):
             if world.radios[node].state == ALIVE and air.state != VOID:
                 air.receivers += 1
                 run.arrived += 1
-                books.tap(world, place, node, time, 0, taps.FINE)
+                recorder.tap(world, place, node, time, 0, taps.FINE)
                 if frame.kind != ACK:
                     frame.rssi = medium.rssi_dbm(world, air.node, node)
                 take(world, node, frame, time)
@@ -217,11 +217,11 @@ def layer(handlers):
             began(world, place, length, end)
             run.transmissions += 1
             run.received += air.receivers
-            books.keep_transmission(world, place, end, length, air.receivers)
-            books.tap(world, place, node, air.start, 1, taps.FINE)
+            recorder.record_transmission(world, place, end, length, air.receivers)
+            recorder.tap(world, place, node, air.start, 1, taps.FINE)
             air.receivers = 0
             if run.checks and digest(world.frames[place]) != air.digest:
-                books.breaks(world, books.BROKEN_FRAME, node)
+                recorder.breaks(world, recorder.BROKEN_FRAME, node)
 
         def dispatch(world, rank, node, what, time):
             """What the channel's loop has noted."""

@@ -6,10 +6,10 @@ from typing import NamedTuple
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.kernel.bits import mix
-from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import csma
 from innervate.networks.mesh.protocol.constants import ACK
-from innervate.networks.mesh.sim import recorder as books
+from innervate.networks.mesh.sim import recorder
 from innervate.networks.mesh.sim.recorder import MAC
 from innervate.networks.mesh.sim.timers import set_timer
 from innervate.sim import rows, taps
@@ -61,11 +61,11 @@ def due(_world):
 
 
 def step(_world, _time):
-    """Do it."""
+    """Nothing: no channel with events of its own lies below."""
 
 
 def down(stack):
-    """What the router calls."""
+    """The functions by which a router hands frames to CSMA and the medium."""
     mac_start, mac_fire, mac_give = stack.mac_start, stack.mac_fire, stack.mac_give
     mac_carrier, digest, copy_frame = stack.mac_carrier, stack.digest, stack.copy_frame
     frame_bytes = stack.frame_bytes
@@ -82,7 +82,7 @@ def down(stack):
             if kind == SEND:
                 medium.commit(world, radio.hot if c & URGENT else radio.held, time)
             elif kind == SET_TIMER:
-                set_timer(world, node, mesh_words.TIMERS + a, b, time, now)
+                set_timer(world, node, mesh_const.TIMERS + a, b, time, now)
             elif kind == REPORT and a == csma.REPORT_GAVE_UP:
                 give_up(world, node, time)
             elif kind == DELIVER:
@@ -90,7 +90,7 @@ def down(stack):
         out.count[0] = 0
         run.fingerprint = mark
         if out.overflow[0]:
-            books.breaks(world, books.BROKEN_OUTBOX, node)
+            recorder.breaks(world, recorder.BROKEN_OUTBOX, node)
         if run.watchful:
             rows.keep_step(world, node, time, handler, 0)
         return handed_up
@@ -99,7 +99,7 @@ def down(stack):
         """The router sends a frame: put it where frames under way are; returns its digest."""
         run, radio, item = world.run[0], world.radios[node], world.mac_item[0]
         if radio.held != NONE and not urgent:
-            books.breaks(world, books.BROKEN_HELD, node)
+            recorder.breaks(world, recorder.BROKEN_HELD, node)
             return 0
         if radio.deaf and (urgent or not run.mac):
             run.blocked += 1
@@ -140,7 +140,7 @@ def down(stack):
             air = world.air[place]
             if air.node == node and air.state != FREE:
                 length = frame_bytes(world.frames[place])
-                books.keep_sent(world, place, time, length, 0)
+                recorder.record_sent(world, place, time, length, 0)
                 medium.abandon(world, place)
 
     def expire(world, node, timer, time, now):
@@ -151,7 +151,7 @@ def down(stack):
         if carrier != radio.told:
             radio.told = carrier
             mac_carrier(world, node, now & MASK30, carrier, 0)
-        mac_fire(world, node, now & MASK30, timer - mesh_words.TIMERS)
+        mac_fire(world, node, now & MASK30, timer - mesh_const.TIMERS)
         drain_mac(world, node, time, now, MAC + ON_TIMER)
 
     return Down(drain_mac, hand_down, switch_on, switch_off, expire)
@@ -169,7 +169,7 @@ def up(stack, below, take, tell_sent):
         if frame.kind != ACK:
             frame.rssi = medium.rssi_dbm(world, world.air[place].node, node)
         run.arrived += 1
-        books.tap(world, place, node, time, 0, taps.FINE)
+        recorder.tap(world, place, node, time, 0, taps.FINE)
         if run.mac:
             mac_hear(world, node, now & MASK30, frame)
             if not drain_mac(world, node, time, now, MAC + ON_FRAME):
@@ -182,12 +182,12 @@ def up(stack, below, take, tell_sent):
         frame, node, is_whole = world.frames[place], air.node, air.state == ON_AIR
         if is_whole:
             medium.leave(world, place)
-            count = medium.receivers(world, place, books.tap)
-            books.keep_sent(world, place, time, frame_bytes(frame), count)
+            count = medium.receivers(world, place, recorder.tap)
+            recorder.record_sent(world, place, time, frame_bytes(frame), count)
             for i in range(count):
                 arrive(world, world.got[i], place, time)
             if run.checks and digest(frame) != air.digest:
-                books.breaks(world, books.BROKEN_FRAME, node)
+                recorder.breaks(world, recorder.BROKEN_FRAME, node)
         medium.release(world, place)
         if is_whole and world.radios[node].held == place:
             world.radios[node].held = NONE
@@ -200,7 +200,7 @@ def up(stack, below, take, tell_sent):
         elif rank == queue.STARTS:
             if world.air[what].state == COMMITTED:
                 medium.start(world, what, time, frame_bytes(world.frames[what]))
-                books.tap(world, what, world.air[what].node, time, 1, taps.FINE)
+                recorder.tap(world, what, world.air[what].node, time, 1, taps.FINE)
             else:
                 medium.release(world, what)
         elif world.radios[node].tell_at == time:

@@ -15,7 +15,7 @@ BROKEN_BELOW = 7  # the channel below says what
 MAC = 8  # in trails: a handler of the medium access
 
 WORD_BITS = 15
-SEEN_HASH = 0x5EE
+DUPLICATES_HASH = 0x5EE
 
 
 def breaks(world, what, node):
@@ -25,13 +25,13 @@ def breaks(world, what, node):
         run.broken, run.broken_node = what, node
 
 
-def keep_sent(world, place, time, length, receivers):
+def record_sent(world, place, time, length, receivers):
     """A row of what was on the air until now, if it was."""
     if world.air[place].state == ON_AIR:
-        keep_transmission(world, place, time, length, receivers)
+        record_transmission(world, place, time, length, receivers)
 
 
-def keep_transmission(world, place, time, length, receivers):
+def record_transmission(world, place, time, length, receivers):
     """A row of what was on the air until now."""
     run, air, frame = world.run[0], world.air[place], world.frames[place]
     if run.sent_limit > 0:
@@ -59,7 +59,7 @@ def tap(world, place, at, time, out, why):
         taps.keep(world, time, air.start, at, air.node, out, why, frame, copy_frame)
 
 
-def keep_delivered(world, node, frame, time):
+def record_delivered(world, node, frame, time):
     """A row of what a node's user was given, and: never the same twice."""
     run = world.run[0]
     if run.checks and frame.origin < run.nodes:
@@ -100,20 +100,20 @@ def check_once(world, node, frame, time):
     key = 1 | node << 1 | frame.origin << 9 | frame.seq << 17
     key |= (world.radios[node].boots & 1023) << 33
     key |= (world.radios[frame.origin].boots & 1023) << 43
-    at = place_of(world.seen_key, key)
-    if world.seen_key[at] == key:
-        if time - world.seen_at[at] < run.forget:
+    at = place_of(world.duplicate_key, key)
+    if world.duplicate_key[at] == key:
+        if time - world.duplicate_at[at] < run.forget:
             breaks(world, BROKEN_TWICE, node)
     else:
-        world.seen_key[at] = key
-        run.seen += 1
-    world.seen_at[at] = time
+        world.duplicate_key[at] = key
+        run.duplicates += 1
+    world.duplicate_at[at] = time
 
 
 def place_of(keys, key):
     """Where a key is, or belongs, in a hash table whose length is a power of two."""
     mask = len(keys) - 1
-    at = mix(SEEN_HASH, key) & mask
+    at = mix(DUPLICATES_HASH, key) & mask
     for _ in range(mask):
         if keys[at] == 0 or keys[at] == key:
             break
@@ -121,7 +121,7 @@ def place_of(keys, key):
     return at
 
 
-def keep_round(world, node, time):
+def record_round(world, node, time):
     """A row of what a gateway knows after a round, against the links that are good."""
     run = world.run[0]
     if run.round_limit == 0:

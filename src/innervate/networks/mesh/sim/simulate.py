@@ -11,8 +11,7 @@ from typing import Any, ClassVar
 from innervate.kernel import door, tables
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.sim import build as builder
-from innervate.networks.mesh.sim import channel, loop, over_channel, over_medium, stacks
-from innervate.networks.mesh.sim import recorder as books
+from innervate.networks.mesh.sim import channel, loop, over_channel, over_medium, recorder, stacks
 from innervate.networks.mesh.sim import world as w
 from innervate.networks.mesh.sim.timers import set_timer
 from innervate.networks.radio.sim import recorder as radio_recorder
@@ -44,7 +43,7 @@ class MeshResult:
         delivered: what nodes gave to their users.
         rounds: what a gateway knew after each of its rounds.
         trail: all handler calls, if asked for; those of the medium access are numbered from
-            `books.MAC`.
+            `recorder.MAC`.
         counts: the numbers of the run by name, see COUNTS.
         ended_us: up to where it ran.
     """
@@ -85,7 +84,7 @@ def _compiled(entry: ModuleType, access: radio_stacks.Protocol | None) -> Callab
     from innervate.networks.mesh.protocol import csma
 
     door.register(arith, outbox, rng, heap)
-    door.register(*door.modules_of(entry), csma, medium, motion, books, rows, taps, hot=False)
+    door.register(*door.modules_of(entry), csma, medium, motion, recorder, rows, taps, hot=False)
     door.register_functions(powers.strength, powers.chance, powers.loss)
     door.register_functions(loop.pressing, loop.wipe, set_timer, hot=False)
     layer: Any = over_medium
@@ -150,7 +149,7 @@ def simulate(
 
 
 class MeshSimulation(Field):
-    """A mesh under way."""
+    """A mesh that is simulated in slices: its plan, its world, its loop."""
 
     wide = w.WIDE
     tables: ClassVar[Mapping[str, tuple[str, ...]]] = {
@@ -162,8 +161,8 @@ class MeshSimulation(Field):
         """Make room for more events, or for more deliveries to be remembered."""
         if status == POOL_FULL:
             self.world = channel.grown(self.world)
-        if status == loop.SEEN_FULL:
-            self.world = builder.grow_seen(self.world)
+        if status == loop.DUPLICATES_FULL:
+            self.world = builder.grow_duplicates(self.world)
 
     def story(self) -> str:
         """The broken invariant, in one line."""
@@ -221,16 +220,16 @@ def _plain_layer(mac: str) -> Any:
 
 def story(plan: Any, world: w.World) -> str:
     """A broken invariant in one line."""
-    if int(get(world.run, 0, "broken")) == books.BROKEN_BELOW:
+    if int(get(world.run, 0, "broken")) == recorder.BROKEN_BELOW:
         return radio_simulate.story(plan, world.below)
     at = int(get(world.run, 0, "now")) / 1e6
     name = plan.names[int(get(world.run, 0, "broken_node"))]
     what = {
         medium.BROKEN_AIR: f"node {name} has too many frames under way",
-        books.BROKEN_OUTBOX: f"outbox of node {name} overflowed",
-        books.BROKEN_RANGE: f"a value of node {name} is out of its declared range",
-        books.BROKEN_TWICE: f"node {name} delivered a packet twice",
-        books.BROKEN_HELD: f"node {name} handed down a frame while another was under way",
-        books.BROKEN_FRAME: f"a receiver changed the frame that node {name} had sent",
+        recorder.BROKEN_OUTBOX: f"outbox of node {name} overflowed",
+        recorder.BROKEN_RANGE: f"a value of node {name} is out of its declared range",
+        recorder.BROKEN_TWICE: f"node {name} delivered a packet twice",
+        recorder.BROKEN_HELD: f"node {name} handed down a frame while another was under way",
+        recorder.BROKEN_FRAME: f"a receiver changed the frame that node {name} had sent",
     }[int(get(world.run, 0, "broken"))]
     return f"invariant broken at {at:.6f} s (seed {plan.seed}): {what}"

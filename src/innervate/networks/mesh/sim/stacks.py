@@ -41,7 +41,7 @@ class Stack(NamedTuple):
 
 
 def mesh() -> ModuleType:
-    """The mesh's router."""
+    """The module with the five functions of the mesh's router."""
     return importlib.import_module("innervate.networks.mesh.protocol.node")
 
 

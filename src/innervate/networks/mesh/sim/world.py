@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from innervate.networks.mesh.protocol import constants as mesh_words
+from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import csma
 from innervate.sim.channel.world import Heap
 from innervate.sim.tables import Out
@@ -13,7 +13,7 @@ RUN = (
     "nodes", "mac", "collisions", "turnaround", "byte_ns", "phy_bytes", "sense", "capture",
     "rng", "sample", "origin_x", "origin_y", "unit", "moving", "rssi50", "told", "row", "good",
     "on_air", "free", "gate_words", "next_command", "commands", "next_offer", "offers",
-    "seen", "seen_limit", "forget", "checks", "watchful", "status", "fingerprint", "now",
+    "duplicates", "duplicate_limit", "forget", "checks", "watchful", "status", "fingerprint", "now",
     "handled", "arrived", "transmissions", "received", "gave_up", "blocked", "unasked",
     "rows", "row_limit", "sent", "sent_limit", "delivered", "delivered_limit",
     "rounds", "round_limit", "trail", "trail_limit", "taps", "tap_limit",
@@ -41,11 +41,11 @@ WIDE = frozenset({"time", "start", "end", "phase", "offset", "noise", "x", "y", 
                   "fingerprint", "tell_at", *RUN})  # fmt: skip
 
 # Timers of a node: the router's, then those of the medium access below it.
-TIMERS = mesh_words.TIMERS + csma.TIMERS
+TIMERS = mesh_const.TIMERS + csma.TIMERS
 
 
 class World(NamedTuple):
-    """All of it."""
+    """All tables of a simulated mesh, as the loop takes them."""
 
     run: Any
     heap: Heap
@@ -85,8 +85,8 @@ class World(NamedTuple):
     item: Any
     out: Out
     mac_out: Out
-    seen_key: Any  # what was delivered lately: a hash table
-    seen_at: Any
+    duplicate_key: Any  # what was delivered lately: a hash table
+    duplicate_at: Any
     rows: Any
     sent: Any
     delivered: Any

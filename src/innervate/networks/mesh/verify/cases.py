@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from innervate.networks.mesh.verify import model as mesh_model
@@ -11,8 +11,9 @@ from innervate.networks.mesh.verify import search as mesh_search
 from innervate.networks.mesh.verify import story as mesh_story
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
 from innervate.networks.mesh.verify.search import Found
-from innervate.verify.errors import VerifyError
-from innervate.verify.explore import MEMORY, Tally
+from innervate.verify.cases import budget_of as budget_of
+from innervate.verify.explore import MEMORY
+from innervate.verify.tally import Tally
 
 # A message is tried twice in all, a hop once: what three transmissions can do to a hop, one can.
 SHORT = (("e2e_tries", 1), ("transmissions", 1))
@@ -36,7 +37,7 @@ class MeshCase:
     story: mesh_story.MeshStory | None = None
 
     def as_dict(self) -> dict[str, Any]:
-        """For --json."""
+        """The case as `innervate verify mesh --json` prints it."""
         model, tally, found = self.found.model, self.found.tally, self.found
         return {
             "name": self.name,
@@ -71,25 +72,8 @@ class MeshWanted:
 
 
 def text_of(links: Any) -> str:
-    """Links as text."""
+    """Pairs of nodes as "0-1 1-2"."""
     return " ".join(f"{a}-{b}" for a, b in links)
-
-
-def budget_of(text: str, given: MeshBudget) -> MeshBudget:
-    """Budgets from text like "deaths=2,acks=0"; those left out stay as they are.
-
-    Raises:
-        VerifyError: no such budget, or no number.
-    """
-    values = asdict(given)
-    for part in filter(None, text.replace(" ", ",").split(",")):
-        name, _, value = part.partition("=")
-        if name not in values or not (value.isascii() and value.isdigit() and int(value) <= 20):
-            names = ", ".join(one.name for one in fields(MeshBudget))
-            message = f'--budget: "{part[:40]}" should be NAME=NUMBER, at most 20'
-            raise VerifyError(f"{message}; the names are {names}")
-        values[name] = int(value)
-    return MeshBudget(**values)
 
 
 def models(wanted: MeshWanted) -> Iterator[tuple[str, MeshModel]]:
@@ -127,7 +111,7 @@ def _own(failover: str, wanted: MeshWanted) -> Iterator[tuple[str, MeshModel]]:
 
 
 def run(name: str, model: MeshModel, wanted: MeshWanted, progress: Any) -> MeshCase:
-    """Explore one model."""
+    """Explore one model, or walk it at random, as is wanted; what came of it."""
 
     def tell(tally: Tally) -> bool:
         return bool(progress(f"{text_of(model.links)}, {model.failover}, {name}", tally))

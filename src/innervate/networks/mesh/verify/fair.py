@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify.local import (
     BROKEN_ENDLESS,
@@ -18,7 +18,7 @@ from innervate.networks.mesh.verify.local import (
 )
 from innervate.networks.mesh.verify.net import DEAD, EVENTS_MAX, Net, Nets
 
-IN_USE = (words.DATA, words.E2E_ACK, words.ALARM)
+IN_USE = (const.DATA, const.E2E_ACK, const.ALARM)
 
 
 class End(NamedTuple):

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
-from typing import Any
 
-Tables = dict[str, Any]
+from innervate.scenario.shrink import Tables, with_fewer_keys
+from innervate.scenario.shrink import nothing as trouble
+
+__all__ = ["trouble"]
+
+SHARE = (0.75, 1.0)
 
 ACTIONS = ("kill", "kill", "revive", "revive", "cut", "restore", "jam", "quiet", "restart")
 PROFILES = ("250k", "250k", "250k", "ideal", "ip", "38k4")
@@ -91,3 +95,4 @@ def smaller(tables: Tables) -> Iterator[Tables]:
         yield tables | {"nodes": tables["nodes"] - 1}
     if tables["duration_s"] > 2:
         yield tables | {"duration_s": round(tables["duration_s"] * 0.7, 3)}
+    yield from with_fewer_keys(tables)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from innervate.dialect import plain
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
-from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.protocol import node as mesh
 from innervate.networks.mesh.verify import model as mesh_model
@@ -24,7 +24,7 @@ NEVER = -1
 RSSI = -60  # dBm: of every frame that is heard; far above any threshold
 OUTBOX = 40
 GRAIN_US = 50_000  # untimed: shorter waits are over as soon as they begin
-TIMERS = range(words.TIMERS)
+TIMERS = range(const.TIMERS)
 COLLECTING = 1
 
 # What a call breaks.
@@ -122,7 +122,7 @@ class Locals:
         """The number of a frame."""
         packet = Packet(
             frame.kind, frame.flags, frame.link_src, frame.link_dst, frame.origin, frame.dest,
-            frame.seq, frame.table_ver, frame.ttl, frame.rssi if frame.kind == words.ACK else RSSI,
+            frame.seq, frame.table_ver, frame.ttl, frame.rssi if frame.kind == const.ACK else RSSI,
             bytes(frame.path[: frame.path_len]), bytes(frame.body[: frame.length]),
         )  # fmt: skip
         found = self.packet_numbers.get(packet)
@@ -160,11 +160,11 @@ class Locals:
             if shape is self.shape:
                 record.number, record.rank = who, self.ranks[who]
                 record.robot = int(who == self.model.robot)
-                record.rng, record.near = 1, [words.ALL] * self.model.nodes
+                record.rng, record.neighbour = 1, [const.ALL] * self.model.nodes
                 node = tuple(self._value(record, name) for name in shape.names)
             else:
                 gate = tuple(self._value(record, name) for name in shape.names)
-        timers = (NEVER,) * words.TIMERS
+        timers = (NEVER,) * const.TIMERS
         blank = State(node, gate if self.ranks[who] >= 0 else None, timers, NONE)
         number = self.number_of(blank)
         return self.call(number, (START, int(boots > 0), boots), 0)[0].state
@@ -225,15 +225,15 @@ class Locals:
             entry.on_timer(node, gate, params, now, event[1], out)
         elif what == SENT:
             self.item.ok = 1
-            entry.on_input(node, gate, params, now, words.SENT, self.item, out)
+            entry.on_input(node, gate, params, now, const.SENT, self.item, out)
         elif what == MESSAGE:
             item = self.item
-            item.dest, item.flags, item.handle = event[1], words.END_TO_END, event[2]
+            item.dest, item.flags, item.handle = event[1], const.END_TO_END, event[2]
             item.length, item.body[0] = 1, event[2]
-            entry.on_input(node, gate, params, now, words.MESSAGE, item, out)
+            entry.on_input(node, gate, params, now, const.MESSAGE, item, out)
         elif what == SAMPLE:
             self.item.x, self.item.y, self.item.vx, self.item.vy = -100, 500, -50, 0
-            entry.on_input(node, gate, params, now, words.SAMPLE, self.item, out)
+            entry.on_input(node, gate, params, now, const.SAMPLE, self.item, out)
         elif what == START:
             entry.on_start(node, gate, params, now, event[1], out)
 
@@ -283,15 +283,15 @@ class Locals:
         """Timers that find nothing to do: setting replaces, never cancels."""
         states = node.q_state
         if node.busy != -1 or 1 not in states:
-            timers[words.TX] = NEVER  # whatever ends the frame under way looks again
+            timers[const.TX] = NEVER  # whatever ends the frame under way looks again
         if node.busy == -1 or states[node.busy] != 3:
-            timers[words.ACK_WAIT] = NEVER
+            timers[const.ACK_WAIT] = NEVER
         if not any(node.wait_kind):
-            timers[words.RETRY] = NEVER
+            timers[const.RETRY] = NEVER
         if not node.due and not (node.leading and gate is not None and gate.step == COLLECTING):
-            timers[words.ROUND] = NEVER
+            timers[const.ROUND] = NEVER
         if not node.leading:
-            timers[words.JOBS] = NEVER
+            timers[const.JOBS] = NEVER
 
     def _who(self, number: int, count: int) -> int:
         """What a draw out of many gives: another value for every node, and after every start."""

@@ -79,7 +79,7 @@ class MeshModel:
 
     @property
     def nodes(self) -> int:
-        """How many."""
+        """How many nodes the links join, the gateway included."""
         return 1 + max(max(link) for link in self.links)
 
     def changed(self, **keys: Any) -> MeshModel:
@@ -88,7 +88,7 @@ class MeshModel:
 
     @property
     def protocol(self) -> dict[str, Any]:
-        """The keys of [protocol]."""
+        """Keys of [protocol] by which a scenario is the same network."""
         document = {"retry": False} if self.failover == "random" else {}
         return {**BRISK, "failover": self.failover, **document, **dict(self.settings)}
 

@@ -11,7 +11,7 @@ from innervate.networks.mesh.verify import story as mesh_story
 from innervate.networks.mesh.verify.cases import QUICK, SHORT
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
 from innervate.networks.mesh.verify.net import Nets
-from innervate.networks.skin.verify.mutants import Catch, Mutant, copies
+from innervate.verify.mutants import Catch, Mutant, copies
 
 STATES = 5_000
 

@@ -1,7 +1,7 @@
 """A mesh for the explorer: its states, and what can happen next.
 
 A frame and its hop ack are one event: an ack comes a turnaround after the frame's end, before
-anything else of these two nodes. A state is one number for each node (mesh_local.py), how long its
+anything else of these two nodes. A state is one number for each node (local.py), how long its
 last event is past (timed only), what may still fail, and what was delivered.
 
 Untimed, a node's own timers fire in their order, but nothing is said of two nodes' clocks: frames
@@ -15,7 +15,7 @@ import struct
 from itertools import combinations
 from typing import Any, NamedTuple
 
-from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol.queue import UNACKED
 from innervate.networks.mesh.verify import local as local
 from innervate.networks.mesh.verify.local import NEVER, NONE
@@ -91,11 +91,11 @@ class Nets:
         self.model = model
         self.locals = locals_ or local.Locals(model)
         self.n = model.nodes
-        self.near: list[list[int]] = [[] for _ in range(self.n)]
+        self.neighbours: list[list[int]] = [[] for _ in range(self.n)]
         for a, b in model.links:
-            self.near[a].append(b)
-            self.near[b].append(a)
-        for row in self.near:
+            self.neighbours[a].append(b)
+            self.neighbours[b].append(a)
+        for row in self.neighbours:
             row.sort()
         self.sets: list[frozenset[tuple[int, int, int, int]]] = [frozenset()]
         self.set_numbers = {self.sets[0]: 0}
@@ -105,11 +105,11 @@ class Nets:
     # Keeping states.
 
     def pack(self, net: Net) -> bytes:
-        """A state as bytes."""
+        """A state as bytes of fixed length, to be looked up."""
         return self.form.pack(*net.nodes, *net.lags, *net.left, *net.ticks, net.offered, net.got)
 
     def unpack(self, row: bytes) -> Net:
-        """... and back."""
+        """The state that `pack` made these bytes of."""
         n, w = self.n, self.form.unpack(row)
         left = (w[2 * n], w[2 * n + 1], w[2 * n + 2], w[2 * n + 3])
         return Net(w[:n], w[n : 2 * n], left, w[2 * n + 4 : 3 * n + 4], w[-2], w[-1])
@@ -178,7 +178,7 @@ class Nets:
     def timed(self, net: Net) -> list[Successor]:
         """What happens next when all clocks run alike: one event, in every way it can end."""
         wait, node, timer = self.soonest(net)
-        if node == NONE or (timer == words.TICK and not net.ticks[node]):
+        if node == NONE or (timer == const.TICK and not net.ticks[node]):
             return []
         return self.air(net, node) if timer == NONE else self.fire(net, node, timer, wait)
 
@@ -205,8 +205,8 @@ class Nets:
         """Untimed: timers of a node any of which can be first; beats beyond the budget are late."""
         timers = self.locals.states[net.nodes[node]].timers
         some = [t for t, due in enumerate(timers) if due != NEVER]
-        if not net.ticks[node] and words.TICK in some:
-            some.remove(words.TICK)
+        if not net.ticks[node] and const.TICK in some:
+            some.remove(const.TICK)
         first = min((timers[t] for t in some), default=NEVER)
         return [t for t in some if timers[t] == first]
 
@@ -234,7 +234,7 @@ class Nets:
             alive = zip(net.lags, net.nodes, strict=True)
             net = net._replace(lags=tuple(lag + wait if i != DEAD else 0 for lag, i in alive))
         later = net
-        if timer == words.TICK:
+        if timer == const.TICK:
             ticks = list(net.ticks)
             ticks[node] -= 1
             later = net._replace(ticks=tuple(ticks))
@@ -245,38 +245,38 @@ class Nets:
         """A frame goes out: who receives it, and does its sender hear the ack?"""
         number = self.locals.states[net.nodes[node]].handed
         to = self.locals.packets[number].link_dst
-        near = [v for v in self.near[node] if net.nodes[v] != DEAD]
+        heard_by = [v for v in self.neighbours[node] if net.nodes[v] != DEAD]
         deaths, revivals, frames, acks = net.left
         found: list[Successor] = []
-        if to == words.ALL:
-            for count in range(min(frames, len(near)) + 1):
-                for missed in combinations(near, count):
+        if to == const.ALL:
+            for count in range(min(frames, len(heard_by)) + 1):
+                for missed in combinations(heard_by, count):
                     left = (deaths, revivals, frames - count, acks)
-                    found += self._exchange(net, node, number, near, missed, left)
+                    found += self._exchange(net, node, number, heard_by, missed, left)
             return found
-        found += self._exchange(net, node, number, near, (), net.left)
-        if to in near and frames:
+        found += self._exchange(net, node, number, heard_by, (), net.left)
+        if to in heard_by and frames:
             left = (deaths, revivals, frames - 1, acks)
-            found += self._exchange(net, node, number, near, (to,), left)
-        if to in near and acks and self.locals.packets[number].flags & words.ACK_WANTED:
+            found += self._exchange(net, node, number, heard_by, (to,), left)
+        if to in heard_by and acks and self.locals.packets[number].flags & const.ACK_WANTED:
             left = (deaths, revivals, frames, acks - 1)
-            found += self._exchange(net, node, number, near, (), left, deaf=1)
+            found += self._exchange(net, node, number, heard_by, (), left, deaf=1)
         return found
 
     def _exchange(
-        self, net: Net, node: int, number: int, near: Any, missed: Any, left: Any, deaf: int = 0
+        self, net: Net, node: int, number: int, heard_by: Any, missed: Any, left: Any, deaf: int = 0
     ) -> list[Successor]:
         """Receivers in order, then the sender is told that it has left, then the ack is heard."""
         packet = self.locals.packets[number]
         event = (local.FRAME, number)
         parts = [self._part(net)]
-        hear = near if packet.link_dst == words.ALL or self.model.overhear else [packet.link_dst]
-        for v in hear:
-            if v not in missed and v in near:
+        is_for_all = packet.link_dst == const.ALL or self.model.overhear
+        for v in heard_by if is_for_all else [packet.link_dst]:
+            if v not in missed and v in heard_by:
                 parts = self._apply(parts, v, event)
         parts = [
             part._replace(acks=(), reports=part.reports) for part in parts
-        ] if packet.link_dst == words.ALL else parts  # fmt: skip
+        ] if packet.link_dst == const.ALL else parts  # fmt: skip
         done: list[Successor] = []
         for part in parts:
             acks = part.acks
@@ -291,7 +291,7 @@ class Nets:
 
     def _hear_ack(self, net: Net, parts: list[Part], sender: int, ack: int) -> list[Part]:
         to = self.locals.packets[ack].link_dst
-        for v in self.near[sender]:
+        for v in self.neighbours[sender]:
             if net.nodes[v] != DEAD and (v == to or self.model.overhear):
                 parts = self._apply(parts, v, (local.FRAME, ack))
         return [
@@ -320,8 +320,8 @@ class Nets:
             if min(net.ticks) < self.calm_beats():
                 return []
             timer = self.soonest(net)[2]
-            deaths = deaths if timer in (NONE, words.TICK) else 0
-            revivals = revivals if timer == words.TICK else 0
+            deaths = deaths if timer in (NONE, const.TICK) else 0
+            revivals = revivals if timer == const.TICK else 0
         for node, number in enumerate(net.nodes):
             if number != DEAD and deaths:
                 got = frozenset(row for row in self.sets[net.got] if row[0] != node)
@@ -382,8 +382,8 @@ class Nets:
         rows = self.sets[got]
         if row in rows:
             return got, local.BROKEN_TWICE
-        came = sum(other[:2] == row[:2] and other[3] == words.DATA for other in rows | {row})
-        broken = packet.kind == words.DATA and came > self.model.offers.count((packet.origin, node))
+        came = sum(other[:2] == row[:2] and other[3] == const.DATA for other in rows | {row})
+        broken = packet.kind == const.DATA and came > self.model.offers.count((packet.origin, node))
         return self._set_of(rows | {row}), local.BROKEN_TWICE if broken else 0
 
     def _set_of(self, rows: frozenset[tuple[int, int, int, int]]) -> int:

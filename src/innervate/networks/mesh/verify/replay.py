@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from innervate import scenario as scenarios
-from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify import net as mesh_net
@@ -62,7 +62,7 @@ def loop_of(text: str, dest: int) -> list[int]:
     for node in range(result.plan.nodes):
         table, bank = get(result.world.nodes, node, "next"), get(result.world.nodes, node, "bank")
         hop = int(table[int(bank) * width + dest])
-        hops.append(-1 if hop == words.ALL else hop)
+        hops.append(-1 if hop == const.ALL else hop)
     return sorted(ring(hops))
 
 
@@ -101,12 +101,12 @@ def _losses(story: MeshStory) -> list[Loss]:
             continue
         packet = packets[move.frame]
         ways = [(move.node, packet.link_dst, packet.kind)]
-        if packet.flags & words.ACK_WANTED and not move.missed:
-            ways.append((packet.link_dst, move.node, words.ACK))
+        if packet.flags & const.ACK_WANTED and not move.missed:
+            ways.append((packet.link_dst, move.node, const.ACK))
         for way in ways:
             nth = seen.get(way, 0)
             seen[way] = nth + 1
-            is_lost = move.deaf if way[2] == words.ACK else way[1] in move.missed
+            is_lost = move.deaf if way[2] == const.ACK else way[1] in move.missed
             if is_lost:
                 found.append(Loss(offer, *way, nth))
     return found

@@ -34,7 +34,7 @@ class Found:
         nets: its states' meaning.
         tally: how much of it; `depth` in events.
         calls: handler calls that were made; all others were remembered.
-        broken: what is broken, a number of mesh_local.py; 0 nothing.
+        broken: what is broken, a number of local.py; 0 nothing.
         path: the way there: (move, state after it, broken).
         fair: states whose calm future was looked at.
         longest: the most events that one of them took until everything was settled.

@@ -13,7 +13,7 @@ from typing import Any
 
 from innervate.dialect import plain
 from innervate.dialect.arith import MASK30
-from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol import fields as fields
 from innervate.networks.mesh.protocol.neighbours import SUSPECT
 
@@ -29,10 +29,10 @@ SCRATCH = ("far", "line")
 QUEUED = ("q_rank", "q_order", "q_due", "q_tries", "q_fails", "q_copies", "q_from", "q_owner",
           "q_kind", "q_flags", "q_link_dst", "q_origin", "q_dest", "q_seq", "q_ver", "q_ttl",
           "q_path_len", "q_length")  # fmt: skip
-KEPT = ("wait_seq", "wait_dest", "wait_flags", "wait_tries", "wait_due", "wait_handle", "wait_hop",
-        "wait_length")  # fmt: skip
-DONE = ("done_origin", "done_seq", "done_kind", "done_from", "done_hops")
-NEAR = ("heard", "rssi", "suspect", "until", "round_rssi", "round_depth")
+RETRANSMISSION = ("wait_seq", "wait_dest", "wait_flags", "wait_tries", "wait_due", "wait_handle",
+                  "wait_hop", "wait_length")  # fmt: skip
+FORWARDED = ("done_origin", "done_seq", "done_kind", "done_from", "done_hops")
+NEIGHBOUR = ("heard", "rssi", "suspect", "until", "round_rssi", "round_depth")
 
 
 class OutOfRange(ArithmeticError):
@@ -82,8 +82,10 @@ class Shape:
         for name, length, (low, high) in zip(self.names, self.lengths, self.bounds, strict=True):
             value = getattr(record, name)
             if name in self.times:
-                kept, grain = age if name in AGES else ahead, self.grain
-                value = [kept(t, now, grain) for t in value] if length else kept(value, now, grain)
+                since, grain = age if name in AGES else ahead, self.grain
+                value = (
+                    [since(t, now, grain) for t in value] if length else since(value, now, grain)
+                )
             if not length:
                 if not low <= value <= high:
                     raise OutOfRange(f"{name} = {value}")
@@ -100,14 +102,14 @@ class Shape:
 
     def put(self, record: Any, value: tuple[Any, ...]) -> None:
         """Make a record what it was; its present is NOW."""
-        for name, length, kept in zip(self.names, self.lengths, value, strict=True):
+        for name, length, part in zip(self.names, self.lengths, value, strict=True):
             if name in AGES:
-                kept = [NOW - t for t in kept]
+                part = [NOW - t for t in part]
             elif name in self.times:
-                kept = [NOW + t for t in kept] if length else NOW + kept
+                part = [NOW + t for t in part] if length else NOW + part
             elif length:
-                kept = list(kept)
-            setattr(record, name, kept)
+                part = list(part)
+            setattr(record, name, part)
 
 
 def ahead(time: int, now: int, grain: int = 1) -> int:
@@ -137,21 +139,21 @@ def tidy(node: Any, capacity: int, adapts: int, now: int) -> None:
         if node.wait_kind[w]:
             used = node.wait_length[w]
         else:
-            for name in KEPT:
+            for name in RETRANSMISSION:
                 getattr(node, name)[w] = 0
             node.wait_sent[w] = now
         if not (used and adapts):  # tries end long before a message is too old
             node.wait_at[w] = now
-        first = w * words.DATA_MAX
-        node.wait_body[first + used : first + words.DATA_MAX] = [0] * (words.DATA_MAX - used)
+        first = w * const.DATA_MAX
+        node.wait_body[first + used : first + const.DATA_MAX] = [0] * (const.DATA_MAX - used)
     for k in range(fields.SKIPS):
-        if node.skip_origin[k] == words.ALL:
-            node.skip_seq[k] = node.skip_near[k] = 0
-        if node.bad_near[k] == words.ALL:
+        if node.skip_origin[k] == const.ALL:
+            node.skip_seq[k] = node.skip_neighbour[k] = 0
+        if node.bad_neighbour[k] == const.ALL:
             node.bad_dest[k] = 0
-    for k in range(len(node.near)):
-        if node.near[k] == words.ALL:
-            for name in NEAR:
+    for k in range(len(node.neighbour)):
+        if node.neighbour[k] == const.ALL:
+            for name in NEIGHBOUR:
                 getattr(node, name)[k] = 0
         if not node.suspect[k] & SUSPECT:
             node.until[k] = now
@@ -171,26 +173,26 @@ def _tidy_queue(node: Any, now: int) -> None:
             for name in QUEUED:
                 getattr(node, name)[i] = 0
             node.q_due[i] = node.q_born[i] = now
-        first = i * words.BODY
-        node.q_body[first + length : first + words.BODY] = [0] * (words.BODY - length)
-        first = i * words.PATH_MAX
-        node.q_path[first + hops : first + words.PATH_MAX] = [0] * (words.PATH_MAX - hops)
+        first = i * const.BODY
+        node.q_body[first + length : first + const.BODY] = [0] * (const.BODY - length)
+        first = i * const.PATH_MAX
+        node.q_path[first + hops : first + const.PATH_MAX] = [0] * (const.PATH_MAX - hops)
 
 
 def _sort_forwarded(node: Any) -> None:
     """As long as none was overwritten, the order of what was forwarded says nothing."""
     rows = [
-        tuple(getattr(node, name)[k] for name in DONE)
+        tuple(getattr(node, name)[k] for name in FORWARDED)
         for k in range(fields.FORWARDED)
-        if node.done_origin[k] != words.ALL
+        if node.done_origin[k] != const.ALL
     ]
     if len(rows) >= fields.FORWARDED:
         return
     rows.sort()
     node.done_at = len(rows)
     for k in range(fields.FORWARDED):
-        row = rows[k] if k < len(rows) else (words.ALL, 0, 0, 0, 0)
-        for name, value in zip(DONE, row, strict=True):
+        row = rows[k] if k < len(rows) else (const.ALL, 0, 0, 0, 0)
+        for name, value in zip(FORWARDED, row, strict=True):
             getattr(node, name)[k] = value
 
 

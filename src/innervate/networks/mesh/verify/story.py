@@ -5,31 +5,32 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.verify import local as local
 from innervate.networks.mesh.verify import net as mesh_net
 from innervate.networks.mesh.verify.local import NONE
 from innervate.networks.mesh.verify.net import DEAD, Move, Net, Nets
 from innervate.networks.mesh.verify.search import Found
+from innervate.verify import cases
 
 KINDS = {
-    words.REQUEST: "a discovery request",
-    words.RESPONSE: "a discovery response",
-    words.TABLE: "a table",
-    words.TABLE_ACK: "a table's acknowledgement",
-    words.DATA: "message",
-    words.E2E_ACK: "an end-to-end ack",
-    words.ALARM: "the alarm",
-    words.POSITION: "its position",
-    words.GRAPH: "the graph",
+    const.REQUEST: "a discovery request",
+    const.RESPONSE: "a discovery response",
+    const.TABLE: "a table",
+    const.TABLE_ACK: "a table's acknowledgement",
+    const.DATA: "message",
+    const.E2E_ACK: "an end-to-end ack",
+    const.ALARM: "the alarm",
+    const.POSITION: "its position",
+    const.GRAPH: "the graph",
 }
 TIMERS = {
-    words.TX: "a wait is over",
-    words.ACK_WAIT: "hears no ack",
-    words.ROUND: "goes on with the discovery round",
-    words.TICK: "has its beat",
-    words.RETRY: "has heard of no arrival and tries again",
-    words.JOBS: "has no answer to a table",
+    const.TX: "a wait is over",
+    const.ACK_WAIT: "hears no ack",
+    const.ROUND: "goes on with the discovery round",
+    const.TICK: "has its beat",
+    const.RETRY: "has heard of no arrival and tries again",
+    const.JOBS: "has no answer to a table",
 }
 TITLES = {
     local.BROKEN_TWICE: "a packet is delivered twice",
@@ -64,38 +65,27 @@ class Scene:
     lost: tuple[int, ...] = ()
 
 
-@dataclass(slots=True)
-class MeshStory:
-    """How something breaks.
+@dataclass(kw_only=True)
+class MeshStory(cases.Story):
+    """How something breaks in a mesh.
 
     Attributes:
         found: the search that found it.
-        title: what is broken, in one line.
         dest: the recipient that the pictures are about.
-        sentences: one for each event.
         scenes: the network after each.
         ring: two nodes that are each other's next hop to `dest`, if there are.
-        scenario: the text of a scenario that plays it; "" none.
     """
 
     found: Found
-    title: str
     dest: int
-    sentences: list[str] = field(default_factory=list)
     scenes: list[Scene] = field(default_factory=list)
     ring: list[int] = field(default_factory=list)
-    scenario: str = ""
-
-    def lines(self) -> list[str]:
-        """The story as numbered lines."""
-        told = [f"{i}. {text}" for i, text in enumerate(self.sentences, 1)]
-        return [*told, f"So: {self.title}"]
 
 
 def tell(found: Found) -> MeshStory:
     """The story of what a search found broken."""
     assert found.start is not None
-    story = MeshStory(found, TITLES[found.broken], _dest(found))
+    story = MeshStory(TITLES[found.broken], found=found, dest=_dest(found))
     before = found.start
     for move, after, _ in found.path:
         text = _sentence(found.nets, move, before, after)
@@ -168,9 +158,9 @@ def _air(nets: Nets, move: Move, before: Net) -> str:
     """What goes out, to whom, and what comes of it."""
     packet = nets.locals.packets[move.frame]
     what = KINDS.get(packet.kind, "a packet")
-    if packet.kind == words.DATA:
+    if packet.kind == const.DATA:
         what += f" {packet.body[-1] + 1}" if packet.body else ""
-    if packet.link_dst == words.ALL:
+    if packet.link_dst == const.ALL:
         lost = ", ".join(f"node {v}" for v in move.missed)
         return f"sends {what} to all" + (f"; {lost} does not receive it" if lost else "")
     to = f"node {packet.link_dst}"
@@ -201,7 +191,7 @@ def _scene(nets: Nets, dest: int, move: Move, net: Net) -> Scene:
     scene = Scene(next_hops(nets, net, dest), dead, move.node)
     if move.kind == mesh_net.AIR:
         to: Any = nets.locals.packets[move.frame].link_dst
-        if to != words.ALL:
+        if to != const.ALL:
             pair = (move.node, to)
             if move.missed or to in dead:
                 scene.lost = pair

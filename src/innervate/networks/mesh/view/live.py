@@ -40,18 +40,18 @@ class MeshState(State):
     """Which nodes reach their gateway."""
 
     def look(self) -> tuple[int, int]:
-        """See State."""
+        """Find everybody's way anew: (how many have none, how many of these are astray)."""
         self.ways = self._find_ways()
         self.hop, self.depth = self.ways.hop, self.ways.depth
         found = self.ways.without & (self.node_up == 1), self.ways.astray
         return int(np.count_nonzero(found[0])), int(np.count_nonzero(found[1]))
 
     def judge(self) -> Headline:
-        """See State."""
+        """The headline by the ways that `look` found; who is off is called silent."""
         return headline(self.ways, absent="silent")
 
     def _find_ways(self) -> Ways:
-        """Who reaches its gateway."""
+        """Who reaches its gateway, by what the nodes say of each other."""
         places, count = self.map.places, len(self.map.places)
         numbered = self.map.numbered(self.told).items()
         place_of: dict[Any, int] = {name: self.map.number[at] for name, at in numbered}
@@ -85,7 +85,7 @@ class MeshState(State):
 
 
 class MeshLiveView(LiveView):
-    """A running mesh."""
+    """What the page shows of nodes of a mesh that are processes."""
 
     map = MeshMap
     state = MeshState

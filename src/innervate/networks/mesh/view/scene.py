@@ -82,6 +82,6 @@ class Field:
         return found.astype(np.int64)
 
     def positions(self, world: Any) -> Any:
-        """Where everybody is now."""
+        """Where all nodes are now: (n, 2), metres, y downwards."""
         radios = world.radios
         return (np.stack([radios["x"], -radios["y"]], axis=1) / 100).round(2)

@@ -11,10 +11,10 @@ from innervate.analysis.headline import Headline
 from innervate.networks.mesh.analysis.headline import headline
 from innervate.networks.mesh.analysis.reach import Ways, of_simulation
 from innervate.networks.mesh.plot.words import fault_words
-from innervate.networks.mesh.protocol import constants as w
+from innervate.networks.mesh.protocol import constants as c
 from innervate.networks.mesh.scenario.plan import MeshFault
 from innervate.networks.mesh.sim.build import MACS
-from innervate.networks.mesh.view.books import Books
+from innervate.networks.mesh.view.recorder import TrafficRecorder
 from innervate.networks.mesh.view.scene import Field
 from innervate.scenario.actions.field import CUT, KILL, QUIET, RESTORE, REVIVE
 from innervate.sim.field.states import ALIVE, DEAD, ON_AIR
@@ -25,12 +25,12 @@ from innervate.web.messages import number
 from innervate.web.view import Memory, View
 
 KINDS = {
-    w.REQUEST: "request", w.RESPONSE: "response", w.TABLE: "table", w.TABLE_ACK: "ack",
-    w.ACTIVATE: "table", w.GRAPH: "table", w.DATA: "data", w.E2E_ACK: "ack", w.ACK: "ack",
-    w.ALARM: "alarm", w.POSITION: "beacon",
+    c.REQUEST: "request", c.RESPONSE: "response", c.TABLE: "table", c.TABLE_ACK: "ack",
+    c.ACTIVATE: "table", c.GRAPH: "table", c.DATA: "data", c.E2E_ACK: "ack", c.ACK: "ack",
+    c.ALARM: "alarm", c.POSITION: "beacon",
 }  # fmt: skip
-ALARMS = {w.PREDICT: "is about to cross", w.CROSS: "has crossed the fence", w.LOST: "is lost",
-          w.CLEAR: "is inside again"}  # fmt: skip
+ALARMS = {c.PREDICT: "is about to cross", c.CROSS: "has crossed the fence", c.LOST: "is lost",
+          c.CLEAR: "is inside again"}  # fmt: skip
 SMOOTH = 0.3  # share of a new value in a load
 MESSAGES_MAX = 4_096
 FLIGHTS_MAX = 2_000
@@ -66,7 +66,7 @@ class MeshView(View):
             near[a].append(b)
             near[b].append(a)
         self.near = near
-        self.books = Books(engine)
+        self.recorder = TrafficRecorder(engine)
         self._found: tuple[int, Ways] | None = None
         if self.plan.mac not in MACS:  # a channel on which everybody hears everybody
             self.can = ("kill", "revive")
@@ -83,40 +83,40 @@ class MeshView(View):
     def note(self, rows: Rows) -> None:
         """Take in what happened since the last call."""
         memory, sent = self.memory, rows["sent"]
-        self.books.add(rows)
+        self.recorder.add(rows)
         np.add.at(memory.air_us, sent["node"], sent["end"] - sent["time"])
         if self.tell_faults():
             self.check()
         for at, node, code, a, b in rows["rows"].tolist():
             self._report(at, node, code, a, b)
         came = rows["delivered"]
-        for row in came[(came["kind"] == w.DATA) & (came["dest"] != w.ALL)]:
+        for row in came[(came["kind"] == c.DATA) & (came["dest"] != c.ALL)]:
             accepted = memory.messages.pop((int(row["origin"]), int(row["seq"])), None)
             if accepted is not None:
                 memory.latency_us.append(int(row["time"]) - accepted)
-        for row in came[came["kind"] == w.ALARM]:
+        for row in came[came["kind"] == c.ALARM]:
             self._alarm_came(int(row["time"]), int(row["body0"]), int(row["body3"]))
 
     def _report(self, at: int, node: int, code: int, a: int, b: int) -> None:
         memory, log, name = self.memory, self.log, self.plan.names
-        if code == w.REPORT_ACCEPTED:
+        if code == c.REPORT_ACCEPTED:
             memory.messages[node, b] = at
             if len(memory.messages) > MESSAGES_MAX:
                 del memory.messages[next(iter(memory.messages))]
-        elif code == w.REPORT_SUSPECT:
+        elif code == c.REPORT_SUSPECT:
             self._suspect(at, node, a)
-        elif code == w.REPORT_GATEWAY and a == node:
+        elif code == c.REPORT_GATEWAY and a == node:
             log.say(at, f"{name[node]} leads as gateway")
-        elif code == w.REPORT_TABLES:
+        elif code == c.REPORT_TABLES:
             missing = f", but {b} nodes have none" if b else ""
             log.say(at, f"tables are out{missing}", "bad" if b else "info")
-        elif code == w.REPORT_EXPIRED:
+        elif code == c.REPORT_EXPIRED:
             log.often("expired", at, f"{name[node]} gave a message up", "bad")
-        elif code == w.REPORT_ALARM:
+        elif code == c.REPORT_ALARM:
             memory.alarms.setdefault((b, a), at)
             who = "" if node == b else f", says {name[node]}"
             log.often("alarm", at, f"robot {name[b]} {ALARMS.get(a, 'raised an alarm')}{who}",
-                      "good" if a == w.CLEAR else "bad")  # fmt: skip
+                      "good" if a == c.CLEAR else "bad")  # fmt: skip
 
     def _suspect(self, at_us: int, node: int, near: int) -> None:
         recovery, fault = self.memory.recovery, self.memory.fault
@@ -130,7 +130,7 @@ class MeshView(View):
 
     def _alarm_came(self, at_us: int, robot: int, kind: int) -> None:
         raised = self.memory.alarms.pop((robot, kind), None)
-        if raised is not None and kind != w.CLEAR:
+        if raised is not None and kind != c.CLEAR:
             text = f"alarm of robot {self.plan.names[robot]} at the monitor after"
             self.log.say(at_us, f"{text} {(at_us - raised) / 1e3:.1f} ms", "good")
 
@@ -162,12 +162,12 @@ class MeshView(View):
 
     def headline(self) -> Headline:
         """Is all well, and if not, what is wrong."""
-        return headline(self._ways(), self.books.traffic(self.is_still))
+        return headline(self._ways(), self.recorder.traffic(self.is_still))
 
     def forget(self, memory: Any) -> None:
         """Go back to a memory."""
         super().forget(memory)
-        self.books.forget()
+        self.recorder.forget()
         self._found = None
 
     def points(self) -> dict[str, float | None]:
@@ -206,7 +206,7 @@ class MeshView(View):
         if any(self.plan.robots):
             monitor = self.plan.params["monitor"]
             roots = np.flatnonzero(ways.leads)
-            who = roots if monitor == w.MONITOR else [monitor]
+            who = roots if monitor == c.MONITOR else [monitor]
             raised = world.nodes["raised"][who][:, : self.plan.nodes]
             robots = np.array(self.plan.robots, np.bool_)
             outside = world.nodes["outside"][: self.plan.nodes] == 2
@@ -224,12 +224,12 @@ class MeshView(View):
             part = round(min(1.0, max(0.0, (now - start) / max(1, end - start))), 3)
             a, to = int(air["node"]), int(frame["link_dst"])
             kind = KINDS.get(int(frame["kind"]), "frame")
-            for b in self.near[a] if to == w.ALL else [to]:
+            for b in self.near[a] if to == c.ALL else [to]:
                 found.append({"a": a, "b": b, "kind": kind, "p": part})
         return found[:FLIGHTS_MAX]
 
     def words(self, fault: Any) -> str:
-        """A fault in words."""
+        """What a fault does, as "node 3 dies"."""
         return fault_words(self.plan, fault)
 
     def takes(self, fault: Any) -> bool:

@@ -27,7 +27,7 @@ class Air(NamedTuple):
 
     Attributes:
         node: who sent.
-        kind: which frame, see protocol/radio_words.py.
+        kind: which frame, see protocol/constants.py.
         start, end: when it was on the air; `end` as it was, if its sender died or stopped then.
         deaf_from, deaf_to: when its sender's radio could not listen; on a cable never.
         faded: a fault of the scenario hid it: nobody heard it.

@@ -31,11 +31,11 @@ class RadioFacts(NamedTuple):
         dropped: packets that full queues refused.
         lost_silently: packets that nobody received and their senders take for delivered.
         partial: delivered packets that not everybody received who could hear.
-        overdue: pending packets that have waited longer than `patience_ms`, or that a run which
+        overdue: pending packets that have waited longer than `timeout_ms`, or that a run which
             was to deliver them all did not deliver.
         waiting: who has overdue packets.
         still_ms: how long nothing has been delivered though somebody who is on had a packet.
-        patience_ms: how long that may take, see `patience_us`.
+        timeout_ms: how long that may take, see `timeout_us`.
         hidden: pairs that do not hear each other.
         bounds: where delays were found wrong, "believed_us": [least, greatest]; None = nothing was
             noticed.
@@ -57,14 +57,14 @@ class RadioFacts(NamedTuple):
     overdue: int = 0
     waiting: Stations = ()
     still_ms: float = 0.0
-    patience_ms: float = 1000.0
+    timeout_ms: float = 1000.0
     hidden: tuple[tuple[int, int], ...] = ()
     bounds: Mapping[str, Any] | None = None
     stations_wrong: Stations = ()
     ended: bool = False
 
 
-def patience_us(params: Mapping[str, int], stations: int) -> int:
+def timeout_us(params: Mapping[str, int], stations: int) -> int:
     """How long a channel on which somebody waits may deliver nothing, us.
 
     Args:
@@ -98,7 +98,7 @@ def _down(facts: RadioFacts) -> tuple[list[str], tuple[int, ...]]:
         return ["no robot is on"], tuple(range(facts.stations))
     if len(on) == 1:
         return [f"robot {on[0]} is alone: nobody can receive its packets"], (on[0],)
-    if facts.pending and facts.still_ms > facts.patience_ms:
+    if facts.pending and facts.still_ms > facts.timeout_ms:
         waits = _count(facts.pending, "packet waits", "packets wait")
         return [
             f"nothing has been delivered for {_time(facts.still_ms)} although {waits}"

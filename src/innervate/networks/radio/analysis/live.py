@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from innervate.networks.radio.analysis.headline import RadioFacts, Stations, patience_us
+from innervate.networks.radio.analysis.headline import RadioFacts, Stations, timeout_us
 
 
 class Still:
@@ -51,7 +51,7 @@ def of_stations(
     accepted, delivered = count.values()
     abandoned = sum(int(told[i].get("queued", 0)) for i in off if i in told)
     queued = {i: int(one.get("queued", 0)) for i, one in told.items() if i not in off}
-    patience_ms = patience_us(params, stations) / 1e3
+    timeout_ms = timeout_us(params, stations) / 1e3
     return RadioFacts(
         stations=stations,
         off=off,
@@ -60,7 +60,7 @@ def of_stations(
         delivered=delivered,
         pending=accepted - delivered - abandoned,
         abandoned=abandoned,
-        waiting=tuple(i for i in sorted(queued) if queued[i]) if still_ms > patience_ms else (),
+        waiting=tuple(i for i in sorted(queued) if queued[i]) if still_ms > timeout_ms else (),
         still_ms=still_ms,
-        patience_ms=patience_ms,
+        timeout_ms=timeout_ms,
     )

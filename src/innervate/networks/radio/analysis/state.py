@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from innervate.networks.radio.analysis.headline import RadioFacts, Stations, patience_us
+from innervate.networks.radio.analysis.headline import RadioFacts, Stations, timeout_us
 from innervate.scenario.actions.channel import JOIN
 from innervate.sim.channel.world import RING
 from innervate.sim.tables import get
@@ -34,10 +34,10 @@ def facts(
     on, off, away = _presence(world, plan, now_us)
     since = switched_on(count, [*plan.faults, *faults], now_us)
     waits = {i: waiting(world, i, since[i]) for i in range(count)}
-    patience = patience_us(plan.params, count)
+    timeout = timeout_us(plan.params, count)
     goal = ended and not plan.saturated and plan.wanted > 0
     overdue = {
-        i: len(waits[i]) if goal else sum(now_us - at > patience for at in waits[i]) for i in on
+        i: len(waits[i]) if goal else sum(now_us - at > timeout for at in waits[i]) for i in on
     }
     run = {name: int(get(world.run, 0, name)) for name in _COUNTS}
     oldest = min((waits[i][0] for i in on if waits[i]), default=now_us)
@@ -55,7 +55,7 @@ def facts(
         overdue=sum(overdue.values()),
         waiting=tuple(i for i in on if overdue[i]),
         still_ms=max(0, now_us - max(oldest, delivered_us)) / 1e3,
-        patience_ms=patience / 1e3,
+        timeout_ms=timeout / 1e3,
         hidden=hidden_pairs(plan),
         ended=ended,
     )

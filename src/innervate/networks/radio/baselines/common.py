@@ -26,7 +26,7 @@ def arm(station, at, out):
 
 
 def transmit(station, params, now, out):
-    """Send the oldest packet."""
+    """Send the oldest packet after the turnaround: deaf until it has ended."""
     frame = blank(out)
     load_packets(station, frame, 1)
     frame.kind = DATA
@@ -37,7 +37,7 @@ def transmit(station, params, now, out):
 
 
 def arrived(station, out):
-    """Our packet was received."""
+    """Our oldest packet was received: it is delivered, and tries count anew."""
     station.tries = 0
     delivered(station, 1, out)
 

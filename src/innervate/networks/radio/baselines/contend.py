@@ -87,7 +87,7 @@ def fire(station, params, now, out):
 
 
 def rise(station, params, now, out):
-    """A carrier came."""
+    """A carrier came: whoever listens stops its wait; full duplex breaks off."""
     if station.mode == SEND:
         if params.full_duplex:
             break_off(station, params, out)
@@ -103,7 +103,7 @@ def rise(station, params, now, out):
 
 
 def fall(station, params, now, out):
-    """The carrier went."""
+    """The carrier went: wait for the gap, and for the answer behind a packet."""
     gap = params.gap_us
     if station.decoded:
         gap = gap + params.answer_us
@@ -139,7 +139,7 @@ def break_off(station, params, out):
 
 
 def backoff(station, params, values):
-    """A random wait, us."""
+    """A random wait, us: a draw below `values` times the slot."""
     return min(draw(station, values) * params.backoff_us, LONGEST_US)
 
 

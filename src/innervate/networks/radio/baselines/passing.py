@@ -69,7 +69,7 @@ def grant(station, params, now, number, most, out):
 
 
 def take(station, params, now, out):
-    """It is our turn."""
+    """It is our turn: send what we have, and hand the turn on."""
     if params.mac == TOKEN_RING:
         grant(station, params, now, follower(station, params, station.number), params.per_turn, out)
     elif station.number == 0:
@@ -97,7 +97,7 @@ def ready(station, params, now, out):
 
 
 def rise(station):
-    """A carrier came."""
+    """A carrier came: somebody uses the turn, stop counting silence."""
     if station.mode == LISTEN:
         station.armed = 0
         station.counting = 0

@@ -105,13 +105,13 @@ def fire(station, params, now, out):
 
 
 def rise(station, params):
-    """A carrier came."""
+    """A carrier came: p-persistent stations throw no dice meanwhile."""
     if params.mac == P_PERSISTENT and station.mode == LISTEN:
         station.armed = 0
 
 
 def fall(station, params, now, out):
-    """It went."""
+    """The carrier went: p-persistent stations throw dice from the next slot on."""
     if params.mac == P_PERSISTENT and station.mode == LISTEN and station.queued:
         throw(station, params, boundary(station, params, now), out)
 

@@ -15,7 +15,7 @@ from innervate.networks.radio.scenario.baselines import TREE as TREE_MAC
 
 
 def on_start(station, params, now, cause, out):
-    """Switch on."""
+    """Switch on and listen, then as the protocol `params.mac` begins."""
     reset(station)
     station.mode = LISTEN
     station.armed = 0

@@ -25,7 +25,7 @@ def begin(station, params, now, out):
 
 
 def fire(station, params, now, out):
-    """A slot begins."""
+    """A slot begins: go down the tree by what the slot before held, perhaps send."""
     sync(station, params, now)
     arm(station, now + params.period_us, out)
     if station.branches:

@@ -8,7 +8,7 @@ from innervate.export.graphs import Graph
 
 
 def graph(plan: Any) -> Graph:
-    """A plan's network."""
+    """A plan's stations, and between those that hear each other the delay in us."""
     names = [f"station {i}" for i in range(plan.stations)]
     nodes = [(name, {"role": "station", "number": i}) for i, name in enumerate(names)]
     edges = [

@@ -46,5 +46,5 @@ class RadioDeployment(Deployment):
         return "join" if fault.action == JOIN else super().word(fault)
 
     def cable_of(self, fault: Any) -> int:
-        """There are none."""
+        """The cable that a fault is done to: -1, there are none."""
         return -1

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import asyncio
 import random
 import time
-from collections import Counter
 from collections.abc import AsyncGenerator, Callable
-from functools import partial
 from typing import Any
 
 from innervate.dialect import plain
@@ -15,7 +12,7 @@ from innervate.dialect.access import PACKET, QUEUE, REPORT_DELIVERED
 from innervate.live.node import LiveNode
 from innervate.live.radio import Aerial, Radio
 from innervate.live.receipts import DELIVERED, REFUSED, Receipt
-from innervate.live.streams import Stream, iterate, message_line
+from innervate.live.streams import Arrivals, Stream, message_line
 from innervate.networks.radio import frames as wire
 from innervate.networks.radio.live.stack import StationStack
 from innervate.networks.radio.protocol import fields as fields
@@ -44,12 +41,10 @@ class RadioNode(LiveNode):
         super().__init__(name, stack, [])
         self.radio = radio
         self.paths = [Aerial(radio, channel)]
-        self.outcomes: Counter[str] = Counter()
+        self.arrivals = Arrivals(is_spread=True)
         self._packets: dict[int, tuple[bytes, Receipt]] = {}
         self._handle = 0
         self._bytes = b""
-        self._inbox: list[tuple[int, bytes]] = []
-        self._callbacks: list[Callable[[int, bytes], None]] = []
 
     async def start(self) -> None:
         """Switch on protocol and radio."""
@@ -73,11 +68,7 @@ class RadioNode(LiveNode):
         self, callback: Callable[[int, bytes], None] | None = None
     ) -> AsyncGenerator[tuple[int, bytes], None]:
         """Sender and payload of packets as they come: to a callback, and as an async iterator."""
-        queue: asyncio.Queue[tuple[int, bytes]] = asyncio.Queue()
-        if callback is None:
-            callback = partial(_put, queue)
-        self._callbacks.append(callback)
-        return iterate(queue, self._callbacks, callback)
+        return self.arrivals.receive(callback)
 
     def send_packet(self, payload: bytes) -> Receipt:
         """Send a packet to all; its receipt says "delivered" when another station proved it.
@@ -126,10 +117,6 @@ class RadioNode(LiveNode):
         """What is known here, and what the radio does: "off", "listening" or "sending"."""
         return {**super().status(), "radio": self.radio.mode}
 
-    def counters(self) -> Counter[str]:
-        """Handler calls, frames dropped by reason, packets by what became of them."""
-        return super().counters() + self.outcomes
-
     def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
         payload = b""
         for k in range(frame.count):
@@ -144,7 +131,7 @@ class RadioNode(LiveNode):
 
     def _deliver(self, kind: int, frame: Any) -> None:
         self.outcomes["packets received"] += 1
-        self._inbox.append((frame.source, wire.payload_of(self._bytes)))
+        self.arrivals.put((frame.source, wire.payload_of(self._bytes)))
 
     def _reported(self, code: int, a: int, b: int) -> None:
         if code == REPORT_DELIVERED:
@@ -152,14 +139,3 @@ class RadioNode(LiveNode):
                 _, receipt = self._packets.pop((a + k) % HANDLES)
                 receipt.move(DELIVERED)
                 self.outcomes["packets delivered"] += 1
-
-    def _settled(self) -> None:
-        if self._inbox:
-            inbox, self._inbox = self._inbox, []
-            for source, payload in inbox:
-                for callback in self._callbacks:
-                    callback(source, payload)
-
-
-def _put(queue: asyncio.Queue[tuple[int, bytes]], source: int, payload: bytes) -> None:
-    queue.put_nowait((source, payload))

@@ -91,7 +91,7 @@ class Curve:
 
 
 def spans(numbers: Sequence[int]) -> str:
-    """Numbers in words: "2-45,50,70"."""
+    """Ascending numbers with runs joined, as "2-45,50,70"."""
     parts: list[list[int]] = []
     for n in numbers:
         if parts and parts[-1][-1] == n - 1:
@@ -118,12 +118,12 @@ def slope(x: Any, y: Any) -> tuple[float, float, float]:
 
 
 def percent(share: float, digits: int = 0) -> str:
-    """A share in words."""
+    """A share, 0 to 1, as "12 %"."""
     return f"{100 * share:.{digits}f} %"
 
 
 def joined(words: Iterable[Any], between: str = ", ") -> str:
-    """A list in words."""
+    """Things as text, with `between` between them."""
     return between.join(str(word) for word in words)
 
 

@@ -112,7 +112,7 @@ class Offered:
 
 
 def seeds(quick: bool) -> range:
-    """Runs each."""
+    """Seeds of the runs at each load: 5, or 2 if `quick`."""
     return range(1, 3 if quick else 6)
 
 
@@ -122,12 +122,12 @@ def offered(who: tuple[str, int], size: int, n: int, load: float, quick: bool) -
 
 
 def loads(quick: bool) -> tuple[float, ...]:
-    """Places of a curve."""
+    """Offered loads, as shares of the channel."""
     return BARS if quick else LOADS
 
 
 def points(quick: bool) -> list[Point]:
-    """Everything that is drawn."""
+    """A point for each protocol, packet length, number of stations and load."""
     return [
         offered(who, size, n, load, quick).point(seeds(quick))
         for who in LOOKS

@@ -25,12 +25,12 @@ NAMES = {"paper": "CSMA/CD-R, event level", "practical": "practical mode, event 
 
 
 def seeds(quick: bool) -> range:
-    """Runs each."""
+    """Seeds of the runs of each protocol: 10, or 3 if `quick`."""
     return range(1, 4 if quick else 11)
 
 
 def packets(quick: bool) -> int:
-    """A station and run."""
+    """Packets of a station in a run."""
     return 300 if quick else 1000
 
 

@@ -84,7 +84,7 @@ DISASTERS = range(1, 21)  # event-level disasters each
 
 
 def seeds(quick: bool) -> range:
-    """Event-level runs each, saturated."""
+    """Seeds of the saturated event-level runs: 10, or 2 if `quick`."""
     return range(1, 3 if quick else 11)
 
 

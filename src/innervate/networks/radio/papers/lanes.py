@@ -81,7 +81,7 @@ def _frame(ax: Axes, run: Any, frame: Any, floor: float) -> None:
 
 
 def keys(waves: bool, deaf: bool) -> list[Patch]:
-    """What the legend says."""
+    """Entries of the legend; `waves`: CD and VOC lines too, `deaf`: the radio's switching too."""
     made = [
         Patch(facecolor=FILLS[DATA][0], edgecolor=style.INK, lw=0.5, label="packet"),
         Patch(facecolor=FILLS[DATA][0], edgecolor=style.VERMILION, hatch=COLLIDED, lw=0.5,

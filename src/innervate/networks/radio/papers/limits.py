@@ -81,7 +81,7 @@ def draw(results: Results, quick: bool) -> Figure:
 
 
 def at(results: Results, reading: str, size: int, n: int) -> float:
-    """S of one n."""
+    """Throughput S with n stations, packets of `size` slots."""
     return float(curve(reading, size).mean(results, "throughput")[NS.index(n)])
 
 

@@ -100,7 +100,7 @@ class Channel:
         return [[START_US + start] for start in self.starts_us or drawn]
 
     def run(self, seed: int) -> RadioResult:
-        """One run."""
+        """Simulate the plan of a seed to its end, compiled."""
         return simulate(self.plan(seed))
 
     def measure(self, seeds: Sequence[int]) -> dict[str, list[Any]]:

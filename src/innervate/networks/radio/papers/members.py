@@ -40,7 +40,7 @@ def moments(quick: bool) -> list[int]:
 
 
 def seeds(quick: bool) -> range:
-    """Disasters at each moment."""
+    """Seeds of the disasters at each moment: 5, or 1 if `quick`."""
     return range(1, 2 if quick else 6)
 
 
@@ -183,7 +183,7 @@ def is_harmless(lost: float, left: float, extra: float) -> bool:
 
 
 def judge(results: Results, quick: bool) -> list[Claim]:
-    """Added, removed, without identification."""
+    """Claims on robots added and removed, and on doing without identification."""
     return [
         *(_move(results, quick, mode, move) for mode, move in CASES),
         _nameless(results, quick),

@@ -22,7 +22,7 @@ def points(quick: bool) -> list[Point]:
 
 
 def draw(results: Results, quick: bool) -> Figure:
-    """Above S, below T_D."""
+    """Throughput S above and disaster's duration T_D below, a column a packet length."""
     figure, axes = style.panels(style.WIDE_IN, 5.0, 2, 2, height_ratios=(1.1, 1))
     for above, below, letter, size in zip(axes[:2], axes[2:], "ab", SIZES, strict=True):
         practice_figures.saturated(above, results, SETTING, size, quick)

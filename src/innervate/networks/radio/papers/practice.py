@@ -41,12 +41,12 @@ class Setting(NamedTuple):
 
     @property
     def slots(self) -> float:
-        """The turnaround."""
+        """The turnaround in slots, not always a whole number."""
         return self.ta_us / SLOT
 
 
 def ns(quick: bool) -> tuple[int, ...]:
-    """Numbers of stations."""
+    """Numbers of stations, ascending, one place of a curve each."""
     return QUICK if quick else FULL
 
 
@@ -65,7 +65,7 @@ def disaster(setting: Setting, size: int, n: int) -> Channel:
 
 
 def seeds(quick: bool, traffic: str) -> range:
-    """Runs each."""
+    """Seeds of the runs, fewer of the long saturated ones."""
     if traffic == "saturated":
         return range(1, 2 if quick else 4)
     return range(1, 9 if quick else 61)
@@ -175,7 +175,7 @@ def complete(results: Results, setting: Setting, quick: bool) -> Claim:
 
 
 def linear(results: Results, setting: Setting, quick: bool) -> Claim:
-    """The slope of T_D."""
+    """The claim that T_D grows linearly: slope in slots a station, and the fit."""
     words, fits = [], []
     for size in SIZES:
         rise, start, fit = slope(ns(quick), duration(results, setting, size, quick))

@@ -27,7 +27,7 @@ def saturated(
     ax: Axes, results: Results, setting: Setting, size: int, quick: bool,
     more: tuple[Setting, ...] = (),
 ) -> None:  # fmt: skip
-    """S over n."""
+    """Throughput S over the number of stations, all of them always with packets."""
     places = ns(quick)
     stations_axis(ax)
     ax.set_xlim(1.9, 105)

@@ -83,7 +83,7 @@ def _share(ax: Axes, results: Results, quick: bool) -> None:
 
 
 def judge(results: Results, quick: bool) -> list[Claim]:
-    """As published; practical."""
+    """Claims on packets lost silently: as published, and in practical mode."""
     words, most = [], 0.0
     for n in NS:
         hit, of = lost(results, quick, "paper", n, TURNAROUND_US)

@@ -21,7 +21,7 @@ def points(quick: bool) -> list[Point]:
 
 
 def draw(results: Results, quick: bool) -> Figure:
-    """Above S, below T_D."""
+    """Throughput S above, T_D below, with a turnaround of 2 ms; a column a packet length."""
     figure, axes = style.panels(style.WIDE_IN, 5.4, 2, 2, height_ratios=(1.3, 1))
     for above, below, letter, size in zip(axes[:2], axes[2:], "ab", SIZES, strict=True):
         practice_figures.saturated(above, results, SETTING, size, quick, (FOUR,))

@@ -103,7 +103,7 @@ def _arrivals(result: Any, summary: Mapping[str, Any]) -> str:
 
 
 def _collisions(result: Any, summary: Mapping[str, Any]) -> list[str]:
-    """What collisions there were."""
+    """Sentences on how many collisions there were, and of how many frames."""
     count = summary["collisions"]
     if not count:
         return ["No packet collided with another one."]
@@ -204,7 +204,7 @@ def _charts(result: Any, summary: Mapping[str, Any]) -> str:
 
 
 def _events(result: Any) -> str:
-    """Events of the scenario."""
+    """The section on events that the scenario brings about; "" if there are none."""
     faults = result.plan.faults
     rows = [(f"{f.at_us / 1e6:.3f} s", svg.clean(told.fault_words(f))) for f in faults]
     return section("Events", page.beginning(("at", "what"), rows) if rows else "")

@@ -77,7 +77,7 @@ class _Timeline:
         )
 
     def across(self, at_us: float) -> float:
-        """Place of a moment."""
+        """Where a moment lies across the drawing, clamped to the window shown."""
         low, high, _ = self.shown.window
         share = (min(max(at_us, low), high) - low) / (high - low)
         return LEFT + (WIDTH - LEFT - RIGHT) * share

@@ -14,13 +14,13 @@ from innervate.networks.radio.protocol.constants import (
     REPORT_SKIPPED,
     WINDOWS,
 )
-from innervate.networks.radio.protocol.idle import rest
+from innervate.networks.radio.protocol.idle import leave_sequence
 from innervate.networks.radio.protocol.modes import (
     LEAD,
     clear_round,
     disprove,
     following,
-    is_over,
+    is_passed_over,
     note_joined,
     prove,
     window_of,
@@ -78,7 +78,7 @@ def hear_data(station, params, now, frame, out):
     if station.pos != NONE:
         skipped = lone or station.pos == sender
         if not skipped and not opens:
-            skipped = is_over(sender, behind, station.pos)
+            skipped = is_passed_over(sender, behind, station.pos)
         if skipped:
             report(out, REPORT_SKIPPED, station.pos, 0)
             station.pos = NONE
@@ -127,7 +127,7 @@ def sent_data(station, params, now, out):
         report(out, REPORT_COLLISION, 0, 0)
         disprove(station, HEARD_TAIL, out)
         if alone:
-            rest(station, now, join_after(params, station.used))
+            leave_sequence(station, now, join_after(params, station.used))
         else:
             enter_turn(station, params, now, station.cur, out)
     elif opens:

@@ -39,7 +39,7 @@ LONELY_FREE = 3  # openings into silence before the wait grows
 LONELY_MOST = 5  # doublings
 
 
-def boot(station, params, now, cause, out):
+def listen_first(station, params, now, cause, out):
     """Begin outside any sequence. On switching on, listen as long as one can be silent."""
     wait = 0
     station.lonely = 0
@@ -48,11 +48,11 @@ def boot(station, params, now, cause, out):
     station.slot = NONE
     if cause:
         wait = join_after(params, station.wide)
-    rest(station, now, wait)
+    leave_sequence(station, now, wait)
     schedule(station, now, out)
 
 
-def rest(station, now, wait_us):
+def leave_sequence(station, now, wait_us):
     """Leave the sequence; a new one may be opened `wait_us` from now."""
     clear_round(station)
     station.mode = IDLE
@@ -79,9 +79,9 @@ def schedule(station, now, out):
         arm(station, now, wait, out)
 
 
-def over(station, params, now, out):
+def end_sequence(station, params, now, out):
     """The sequence has ended, as all who followed it know: whoever has a packet may open."""
-    rest(station, now, guard(params, station.used) + 1)
+    leave_sequence(station, now, guard(params, station.used) + 1)
     schedule(station, now, out)
 
 
@@ -131,7 +131,7 @@ def retry(station, params, now, tail, out):
     """Our opening collided: with `tail` wait for the others' end, else draw the wait now."""
     report(out, REPORT_COLLISION, 0, 0)
     disprove(station, HEARD_TAIL if tail else NOT_HEARD, out)
-    rest(station, now, 0)
+    leave_sequence(station, now, 0)
     station.collided = 1
     station.tail = tail
     if not tail:

@@ -30,7 +30,7 @@ STEPS = 3  # sizes of announced windows
 
 
 def arm(station, now, delay_us, out):
-    """Set the main timer."""
+    """Set the main timer, `delay_us` from now; until `armed` is 0 it means something."""
     station.armed = 1
     set_timer(out, MAIN, (now + delay_us) & MASK30)
 
@@ -42,7 +42,7 @@ def arm_act(station, now, delay_us, out):
 
 
 def clear_round(station):
-    """Nobody has a place."""
+    """Forget the round: all places are free, it is nobody's turn."""
     for i in range(POSITIONS):
         station.live[i] = 0
     station.pos = NONE
@@ -61,7 +61,7 @@ def following(station, pos):
     return NONE
 
 
-def is_over(first, last, place):
+def is_passed_over(first, last, place):
     """1 if going round from `first` to `last` passes over `place`, both ends left out."""
     if first < last:
         return first < place < last

@@ -1,8 +1,8 @@
 """CSMA/CD-R as published: the order of turns after a collision comes from the order of its ends.
 
 Steps 1 to 8 and the rules T1 to N2 are those of [radio 4]: the paper's words, and what had to be
-added where it is silent. Step 1 stands in radio_paper_idle.py, 2 to 5 in radio_paper_verify.py,
-5 and 6 in radio_paper_reserve.py, 7 in radio_paper_turns.py.
+added where it is silent. Step 1 stands in paper_idle.py, 2 to 5 in paper_verify.py,
+5 and 6 in paper_reserve.py, 7 in paper_turns.py.
 """
 
 from innervate.dialect.access import FORCE, LEAVE, PACKET
@@ -18,12 +18,12 @@ from innervate.networks.radio.protocol.paper_idle import (
     TAIL,
     TURNS,
     arm,
-    dead_turn,
     forced,
     joined,
     offered,
     packet_us,
     take_turn,
+    turn_timeout,
     wait,
     waited,
 )
@@ -35,10 +35,10 @@ from innervate.networks.radio.protocol.paper_reserve import (
     burst_ends,
     follow,
     frame_ends,
-    own_crr,
     reserve_burst,
     send_own,
     sent_crr,
+    try_crr,
     window_over,
 )
 from innervate.networks.radio.protocol.paper_turns import (
@@ -75,7 +75,7 @@ def on_start(station, params, now, cause, out):
     if cause:
         station.free = 0
         station.mode = JOIN
-        arm(station, now + packet_us(params) + dead_turn(params), out)
+        arm(station, now + packet_us(params) + turn_timeout(params), out)
 
 
 def on_input(station, params, now, kind, item, out):
@@ -151,7 +151,7 @@ def carrier_went(station, params, now, out):
         elif mode == IDLE:
             wait(station, params, now, out)
         else:
-            arm(station, now + packet_us(params) + dead_turn(params), out)
+            arm(station, now + packet_us(params) + turn_timeout(params), out)
     elif mode == QUIET:
         quiet_burst(station, params, now, what, out)
     elif mode == AWAIT:
@@ -198,7 +198,7 @@ def on_timer(station, params, now, timer, out):
             turn_over(station, params, now, out)
     elif station.act:
         if mode == RESERVE:
-            if own_crr(station):
+            if try_crr(station):
                 send_own(station, out)
         elif mode == TURNS:
             station.act = 0

@@ -43,7 +43,7 @@ def guard(params):
     return 2 * params.dmax_us + params.ta_us + params.bit_us
 
 
-def dead_turn(params):
+def turn_timeout(params):
     """D: silence after which a turn is given up."""
     return 4 * params.dmax_us + 2 * params.ta_us
 

@@ -113,7 +113,7 @@ def heard_first(station, params, now, role, out):
         arm_act(station, now + station.tc * params.dilate, out)
 
 
-def own_crr(station):
+def try_crr(station):
     """Our moment for a CR-R has come; 1 if it can be sent. Rule S: else when the carrier ends."""
     station.act = 0
     if station.cd:

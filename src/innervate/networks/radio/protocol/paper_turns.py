@@ -14,11 +14,11 @@ from innervate.networks.radio.protocol.paper_idle import (
     TURNS,
     arm,
     arm_act,
-    dead_turn,
     guard,
     packet_us,
     rest,
     take_turn,
+    turn_timeout,
 )
 
 DELAY_SLOTS = 8  # T2: delays are drawn from so many slots for each re-collision
@@ -45,7 +45,7 @@ def enter_turns(station, params, out):
     station.place = station.left + 1
     station.places = station.reports + 1
     station.total = min(station.total + station.reports + 1, TURNS_MOST)
-    station.limit = dead_turn(params)
+    station.limit = turn_timeout(params)
     report(out, REPORT_COUNT, station.behind, station.reports)
 
 
@@ -80,7 +80,7 @@ def count_turn(station, params):
     station.total = max(station.total - 1, 0)
     if station.left > 0:
         station.left = station.left - 1
-    station.limit = dead_turn(params)
+    station.limit = turn_timeout(params)
 
 
 def turn_over(station, params, now, out):
@@ -107,7 +107,7 @@ def nested(station, params, now, out):
         station.places = min(station.places + station.crrs, TURNS_MOST)
     station.limit = (
         packet_us(params) + (NESTED_SLOTS + 1) * params.slot_us + 2 * params.ta_us
-    ) + dead_turn(params)
+    ) + turn_timeout(params)
     go_on(station, params, now, now, out)
 
 

@@ -3,8 +3,8 @@
 A reservation as in [radio 2.2] orders the turns, but three things differ from the paper:
 who heads it listens through all of it (the *reporter*), the order comes from minislots instead
 of transmission ends, and a packet counts as delivered only when somebody who received it says so.
-Windows stand in radio_reporter.py and radio_window.py, turns in radio_turn.py and
-radio_follow.py, openings in radio_idle.py.
+Windows stand in reporter.py and window.py, turns in turn.py and
+follow.py, openings in idle.py.
 """
 
 from innervate.dialect.access import LEAVE, PACKET
@@ -18,8 +18,8 @@ from innervate.networks.radio.protocol.follow import (
     silent_turn,
 )
 from innervate.networks.radio.protocol.idle import (
-    boot,
     heard_noise,
+    listen_first,
     offered,
     open_now,
     retry,
@@ -39,23 +39,23 @@ from innervate.networks.radio.protocol.modes import (
     arm,
 )
 from innervate.networks.radio.protocol.reporter import (
-    burst,
+    end_burst,
     end_of_window,
     hear_slot,
     opened,
     sent_report,
 )
 from innervate.networks.radio.protocol.station import enqueue, hand_up, leave, reset
-from innervate.networks.radio.protocol.times import dead_after, frame_from, join_after
+from innervate.networks.radio.protocol.times import frame_from, join_after, turn_timeout
 from innervate.networks.radio.protocol.turn import enter_turn, send_turn
-from innervate.networks.radio.protocol.window import hear_report, next_deadline, use_slot
+from innervate.networks.radio.protocol.window import hear_report, pass_deadline, use_slot
 
 
 def on_start(station, params, now, cause, out):
     """Switch on and listen first: a sequence may be under way."""
     reset(station)
     station.wide = 0
-    boot(station, params, now, cause, out)
+    listen_first(station, params, now, cause, out)
 
 
 def on_input(station, params, now, kind, item, out):
@@ -142,7 +142,7 @@ def carrier_went(station, params, now, length, out):
         else:
             schedule(station, now, out)
     elif mode == LEAD:
-        burst(station, params, now, length, noise, out)
+        end_burst(station, params, now, length, noise, out)
     elif mode == WINDOW:
         if noise and length >= frame_from(params, station.used) + params.slot_us:
             station.mode = LOST
@@ -153,7 +153,7 @@ def carrier_went(station, params, now, length, out):
         if noise and length >= 3 * params.slot_us:
             garbled_turn(station, params, now, out)
         else:
-            arm(station, now, dead_after(params, station.used), out)
+            arm(station, now, turn_timeout(params, station.used), out)
     elif mode == LOST:
         arm(station, now, join_after(params, station.used), out)
 
@@ -170,11 +170,11 @@ def on_timer(station, params, now, timer, out):
         elif mode == LEAD:
             end_of_window(station, params, now, out)
         elif mode == WINDOW:
-            next_deadline(station, params, now, out)
+            pass_deadline(station, params, now, out)
         elif mode == TURN:
             silent_turn(station, params, now, out)
         elif mode == LOST:
-            boot(station, params, now, 0, out)
+            listen_first(station, params, now, 0, out)
     elif station.act:
         station.act = 0
         if mode == WINDOW:

@@ -18,7 +18,7 @@ from innervate.networks.radio.protocol.constants import (
     POSITIONS,
     REPORT,
 )
-from innervate.networks.radio.protocol.idle import over, rest, retry, schedule
+from innervate.networks.radio.protocol.idle import end_sequence, leave_sequence, retry, schedule
 from innervate.networks.radio.protocol.modes import (
     LEAD,
     SEND_REPORT,
@@ -56,7 +56,7 @@ def bit(words, place):
 
 
 def set_bit(words, place):
-    """Set it."""
+    """Set the bit of a minislot in a mask of two 16-bit words."""
     words[place >> 4] = words[place >> 4] | (1 << (place & 15))
 
 
@@ -150,7 +150,7 @@ def hear_slot(station, params, now, out):
         set_bit(station.good, place)
 
 
-def burst(station, params, now, length, noise, out):
+def end_burst(station, params, now, length, noise, out):
     """The end of a carrier in our window; a report or turn waits for it."""
     if noise and length >= frame_from(params, station.used):
         run_together(station, params, length, out)
@@ -202,7 +202,7 @@ def close(station, params, now, out):
         else:
             disprove(station, NOT_HEARD, out)
             wait = join_after(params, station.used)
-            rest(station, now, wait + draw(station, retry_within(params, station.used)))
+            leave_sequence(station, now, wait + draw(station, retry_within(params, station.used)))
             schedule(station, now, out)
         return
     good = count_bits(station.good, station.window)
@@ -211,7 +211,7 @@ def close(station, params, now, out):
         station.opener = 0
         note_joined(station)
         if station.cur == NONE and station.pending == 0:
-            over(station, params, now, out)
+            end_sequence(station, params, now, out)
         else:
             enter_turn(station, params, now, station.cur, out)
     else:

@@ -17,7 +17,7 @@ def least_delay(params, wide):
 
 
 def most_delay(params, wide):
-    """The greatest, us."""
+    """The greatest delay believed in, us."""
     return params.dmax_us << wide
 
 
@@ -57,7 +57,7 @@ def join_after(params, wide):
     return params.join_us
 
 
-def dead_after(params, wide):
+def turn_timeout(params, wide):
     """D: silence after which a turn is given up."""
     if wide:
         return 2 * params.ta_us + 4 * most_delay(params, wide) + minislot(params, wide)

@@ -16,7 +16,7 @@ from innervate.networks.radio.protocol.constants import (
     REPORT_TURN,
     WINDOWS,
 )
-from innervate.networks.radio.protocol.idle import rest, schedule
+from innervate.networks.radio.protocol.idle import leave_sequence, schedule
 from innervate.networks.radio.protocol.modes import (
     SEND_DATA,
     TURN,
@@ -30,12 +30,12 @@ from innervate.networks.radio.protocol.modes import (
 )
 from innervate.networks.radio.protocol.station import blank, load_packets
 from innervate.networks.radio.protocol.times import (
-    dead_after,
     guard,
     join_after,
     minislot,
     most_delay,
     retry_within,
+    turn_timeout,
 )
 
 FAILS_MOST = 3  # packets without proof, then we leave the round
@@ -70,15 +70,15 @@ def enter_turn(station, params, now, cur, out):
     if station.cd:
         station.armed = 0
     else:
-        arm(station, now, dead_after(params, station.used), out)
+        arm(station, now, turn_timeout(params, station.used), out)
 
 
 def finish(station, params, now, out):
     """The round seems to be over; whoever knows more than we do goes first."""
     if station.pending:
         disprove(station, NO_PROOF, out)
-    wait = dead_after(params, station.used) + draw(station, retry_within(params, station.used))
-    rest(station, now, wait)
+    wait = turn_timeout(params, station.used) + draw(station, retry_within(params, station.used))
+    leave_sequence(station, now, wait)
     schedule(station, now, out)
 
 
@@ -88,7 +88,7 @@ def quit_round(station, params, now, out):
     station.pos = NONE
     station.fails = 0
     wait = join_after(params, station.used) + draw(station, retry_within(params, station.used))
-    rest(station, now, wait)
+    leave_sequence(station, now, wait)
     schedule(station, now, out)
 
 

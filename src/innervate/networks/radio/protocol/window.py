@@ -3,7 +3,7 @@
 from innervate.dialect.rng import draw
 from innervate.networks.radio.protocol.bounds import adopt
 from innervate.networks.radio.protocol.constants import MINISLOTS, NO_PROOF, NONE, POSITIONS
-from innervate.networks.radio.protocol.idle import over
+from innervate.networks.radio.protocol.idle import end_sequence
 from innervate.networks.radio.protocol.modes import (
     SEND_SLOT,
     WINDOW,
@@ -67,7 +67,7 @@ def expect_report(station, params, out):
     arm(station, station.ref, length, out)
 
 
-def next_deadline(station, params, now, out):
+def pass_deadline(station, params, now, out):
     """Nobody was heard, so the turns go on; else a report must come, or they go on too.
 
     With a carrier at the second deadline the end of that decides (see carrier_went).
@@ -82,7 +82,7 @@ def go_on(station, params, now, out):
     """The window has ended without a report."""
     note_joined(station)
     if station.cur == NONE and station.pending == 0:
-        over(station, params, now, out)
+        end_sequence(station, params, now, out)
     else:
         enter_turn(station, params, now, station.cur, out)
 

@@ -61,7 +61,7 @@ class ChannelTable(keys.Table, frozen=True, kw_only=True):
 
 
 class MediumAccessTable(keys.Table, frozen=True, kw_only=True):
-    """[protocol] [radio 4, 9]."""
+    """[protocol] of a radio: which protocol, and its settings [radio 4, 9]."""
 
     mac: Mac = "csma-cd-r"
     mode: Literal["paper", "practical"] = "practical"

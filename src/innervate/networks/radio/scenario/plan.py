@@ -34,7 +34,7 @@ class RadioPlan:
     Attributes:
         protocol: the medium access protocol by its simulator name, like "csma-cd-r/practical".
         stations: how many, 1 .. 1023.
-        params: the protocol's parameters (see `protocol/radio_fields.py`, PARAMS).
+        params: the protocol's parameters (see `protocol/fields.py`, PARAMS).
         delays_us: per sender and receiver, us; -1 = hidden from each other. Zero on the diagonal.
         loss_q15: share of frames that a receiver cannot read, in 1/32768.
         saturated: a new packet whenever one was delivered.

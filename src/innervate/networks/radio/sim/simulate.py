@@ -9,8 +9,7 @@ from typing import Any, ClassVar
 
 from innervate.kernel import door, tables
 from innervate.networks.radio.sim import build as builder
-from innervate.networks.radio.sim import recorder as books
-from innervate.networks.radio.sim import stacks
+from innervate.networks.radio.sim import recorder, stacks
 from innervate.scenario.actions.channel import KILL, LEAVE
 from innervate.sim import heap, rows, taps
 from innervate.sim.channel import loop, medium, traffic
@@ -68,11 +67,11 @@ def registered(protocol: stacks.Protocol, packets: Any) -> loop.Handlers:
     door.register(traffic, rows, taps, hot=False)
     door.register(arith, outbox, rng, heap, medium)
     door.register(*protocol.modules, hot=False)
-    door.register(books, hot=False)
+    door.register(recorder, hot=False)
     door.register_functions(loop.pressing, hot=False)
     stack = stacks.bind(protocol.entry)
     door.register_functions(*stack)
-    return loop.build(stack, books, packets)
+    return loop.build(stack, recorder, packets)
 
 
 def simulate(
@@ -145,7 +144,7 @@ def simulation(
 ) -> RadioSimulation:
     """A plan's team before its first event; what is kept as in `channel.build`."""
     if plain:
-        advance = loop.build(stacks.bind(stacks.PROTOCOLS[plan.protocol].entry), books)[-1]
+        advance = loop.build(stacks.bind(stacks.PROTOCOLS[plan.protocol].entry), recorder)[-1]
     else:
         advance = compiled_loop(plan.protocol)
     world = builder.build(plan, plain, checks, keep, trail, tap)
@@ -161,7 +160,7 @@ def story(plan: Any, world: w.World) -> str:
         medium.BROKEN_DEAF: f"station {node} sent while its radio could not",
         medium.BROKEN_AIR: f"station {node} has too many transmissions under way",
         loop.BROKEN_OUTBOX: f"outbox of station {node} overflowed",
-        books.BROKEN_TURNS: f"station {node} began a turn while another station had its own",
-        books.BROKEN_RANGE: f"a value of station {node} is out of its declared range",
+        recorder.BROKEN_TURNS: f"station {node} began a turn while another station had its own",
+        recorder.BROKEN_RANGE: f"a value of station {node} is out of its declared range",
     }[int(get(world.run, 0, "broken"))]
     return f"invariant broken at {at:.6f} s (seed {plan.seed}): {what}"

@@ -5,56 +5,56 @@ Probabilities and cumulative tables are whole numbers of 1 / UNIT, worked out be
 
 import numpy as np
 
-from innervate.networks.radio.slotted.books import COLLISIONS, deliver, going, opening, ready
 from innervate.networks.radio.slotted.draws import UNIT, choose, draw
+from innervate.networks.radio.slotted.recorder import COLLISIONS, deliver, going, opening, ready
 
 STEPS_PER_PACKET = 1000  # an overloaded channel lets nothing through; a run ends all the same
 
 
-def attempt(books, chance, step, packet, gap):
+def attempt(recorder, chance, step, packet, gap):
     """A finite population: who has a packet sends it in a step with probability `chance`.
 
     A step without a sender lasts `step`, one with any packet + gap.
     """
-    found = np.zeros(len(books.offer), np.int64)
+    found = np.zeros(len(recorder.offer), np.int64)
     time = 0
-    while going(books):
-        time = opening(books, time, step)
-        count = ready(books, time, found)
+    while going(recorder):
+        time = opening(recorder, time, step)
+        count = ready(recorder, time, found)
         senders = 0
         winner = 0
         for i in range(count):
-            if draw(books.rng, UNIT) < chance:
+            if draw(recorder.rng, UNIT) < chance:
                 senders += 1
                 winner = found[i]
         if senders == 0:
             time += step
             continue
         if senders == 1:
-            deliver(books, winner, time + packet)
+            deliver(recorder, winner, time + packet)
         else:
-            books.counts[COLLISIONS] += 1
+            recorder.counts[COLLISIONS] += 1
         time += packet + gap
 
 
-def pool(books, arrivals, step, packet, gap):
+def pool(recorder, arrivals, step, packet, gap):
     """An infinite population that sends what came during the last `step` (Poisson) at once.
 
     With packet + gap = step this is slotted ALOHA, else slotted nonpersistent CSMA.
     """
     time = 0
     steps = 0
-    while going(books) and steps < STEPS_PER_PACKET * len(books.end):
+    while going(recorder) and steps < STEPS_PER_PACKET * len(recorder.end):
         steps += 1
-        senders = choose(books.rng, arrivals)
+        senders = choose(recorder.rng, arrivals)
         if senders == 1:
-            deliver(books, 0, time + packet)
+            deliver(recorder, 0, time + packet)
         if senders > 1:
-            books.counts[COLLISIONS] += 1
+            recorder.counts[COLLISIONS] += 1
         time += step if senders == 0 else packet + gap
 
 
-def persist(books, arrivals, after, chance, slot, packet):
+def persist(recorder, arrivals, after, chance, slot, packet):
     """An infinite population of p-persistent stations (Kleinrock and Tobagi 1975).
 
     `after` is the table of arrivals during a packet and its idle slot, `arrivals` that of a slot.
@@ -63,29 +63,29 @@ def persist(books, arrivals, after, chance, slot, packet):
     """
     time = 0
     sent = 0
-    while going(books) and sent < STEPS_PER_PACKET * len(books.end):
+    while going(recorder) and sent < STEPS_PER_PACKET * len(recorder.end):
         sent += 1
-        waiting = choose(books.rng, after)
+        waiting = choose(recorder.rng, after)
         while waiting == 0:
             time += slot
-            waiting = choose(books.rng, arrivals)
-        senders = _senders(books, waiting, chance)
+            waiting = choose(recorder.rng, arrivals)
+        senders = _senders(recorder, waiting, chance)
         while senders == 0:
             time += slot
-            waiting += choose(books.rng, arrivals)
-            senders = _senders(books, waiting, chance)
+            waiting += choose(recorder.rng, arrivals)
+            senders = _senders(recorder, waiting, chance)
         if senders == 1:
-            deliver(books, 0, time + packet)
+            deliver(recorder, 0, time + packet)
         else:
-            books.counts[COLLISIONS] += 1
+            recorder.counts[COLLISIONS] += 1
         time += packet + slot
 
 
-def _senders(books, waiting, chance):
+def _senders(recorder, waiting, chance):
     """How many of those who wait send in this slot."""
     senders = 0
     for _ in range(waiting):
-        if draw(books.rng, UNIT) < chance:
+        if draw(recorder.rng, UNIT) < chance:
             senders += 1
     return senders
 

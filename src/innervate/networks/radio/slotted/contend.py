@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from innervate.networks.radio.slotted.books import COLLISIONS, NEVER, deliver, going
 from innervate.networks.radio.slotted.draws import draw
+from innervate.networks.radio.slotted.recorder import COLLISIONS, NEVER, deliver, going
 
 DOUBLINGS_MAX = 10
 
 
-def contend(books, slot, packet, cost, turn, back, backoff, linear, redraw):
+def contend(recorder, slot, packet, cost, turn, back, backoff, linear, redraw):
     """1-persistent CSMA/CD with binary (or linear) backoff, which runs on while others send.
 
     A station that decides at t is on air from t + turn; who decides before it can be heard, turn
@@ -17,14 +17,14 @@ def contend(books, slot, packet, cost, turn, back, backoff, linear, redraw):
     is later, and there their backoff begins. `redraw`: who got through draws 0 or 1 as well.
     """
     half = slot // 2
-    count = len(books.offer)
+    count = len(recorder.offer)
     due = np.zeros(count, np.int64)
     tries = np.zeros(count, np.int64)
     found = np.zeros(count + 1, np.int64)
     for i in range(count):
-        due[i] = _slot_of(books.offer[i], slot)
+        due[i] = _slot_of(recorder.offer[i], slot)
     idle = 0
-    while going(books):
+    while going(recorder):
         first = max(idle, _least(due))
         limit = first + turn + half
         senders = 0
@@ -36,12 +36,12 @@ def contend(books, slot, packet, cost, turn, back, backoff, linear, redraw):
             end = first + turn + packet
             idle = end + slot
             tries[winner] = 0
-            deliver(books, winner, end)
-            due[winner] = max(idle, end + back, _slot_of(books.offer[winner], slot))
+            deliver(recorder, winner, end)
+            due[winner] = max(idle, end + back, _slot_of(recorder.offer[winner], slot))
             if redraw:
-                due[winner] += draw(books.rng, 2) * backoff
+                due[winner] += draw(recorder.rng, 2) * backoff
             continue
-        books.counts[COLLISIONS] += 1
+        recorder.counts[COLLISIONS] += 1
         last = first
         for j in range(senders):
             last = max(last, due[found[j]])
@@ -51,7 +51,7 @@ def contend(books, slot, packet, cost, turn, back, backoff, linear, redraw):
             i = found[j]
             tries[i] += 1
             window = tries[i] + 1 if linear else 1 << min(tries[i], DOUBLINGS_MAX)
-            due[i] = known + draw(books.rng, window) * backoff
+            due[i] = known + draw(recorder.rng, window) * backoff
 
 
 def _slot_of(offer, slot):
@@ -67,41 +67,41 @@ def _least(due):
     return first
 
 
-def distribute(books, slot, success, cost, window, stages, at_once):
+def distribute(recorder, slot, success, cost, window, stages, at_once):
     """802.11 DCF as Bianchi's model has it: a busy period is one step of every counter.
 
     Counters start drawn from `window` values, doubled at most `stages` times; `at_once`: at 0.
     `success` and `cost` are the whole times that a packet and a collision take.
     """
-    count = len(books.offer)
+    count = len(recorder.offer)
     left = np.zeros(count, np.int64)
     stage = np.zeros(count, np.int64)
     time = 0
     if not at_once:
         for i in range(count):
-            left[i] = draw(books.rng, window)
-    while going(books):
-        wait = _shortest(books, left, time, slot)
+            left[i] = draw(recorder.rng, window)
+    while going(recorder):
+        wait = _shortest(recorder, left, time, slot)
         senders = 0
         winner = 0
         start = time + wait * slot
         for i in range(count):
-            here = _waiting_since(books.offer[i], time, slot)
+            here = _waiting_since(recorder.offer[i], time, slot)
             if here + left[i] == wait:
                 senders += 1
                 winner = i
         time = start + (success if senders == 1 else cost)
         if senders > 1:
-            books.counts[COLLISIONS] += 1
+            recorder.counts[COLLISIONS] += 1
         for i in range(count):
-            here = _waiting_since(books.offer[i], start - wait * slot, slot)
+            here = _waiting_since(recorder.offer[i], start - wait * slot, slot)
             if here + left[i] == wait:
                 stage[i] = 0 if senders == 1 else min(stage[i] + 1, stages)
-                left[i] = draw(books.rng, window << stage[i])
+                left[i] = draw(recorder.rng, window << stage[i])
             elif here <= wait:
                 left[i] -= wait - here + 1
         if senders == 1:
-            deliver(books, winner, time)
+            deliver(recorder, winner, time)
 
 
 def _waiting_since(offer, time, slot):
@@ -109,11 +109,11 @@ def _waiting_since(offer, time, slot):
     return 0 if offer <= time else (offer - time + slot - 1) // slot
 
 
-def _shortest(books, left, time, slot):
+def _shortest(recorder, left, time, slot):
     """Idle steps until the first counter is at 0."""
     wait = NEVER
     for i in range(len(left)):
-        wait = min(wait, _waiting_since(books.offer[i], time, slot) + left[i])
+        wait = min(wait, _waiting_since(recorder.offer[i], time, slot) + left[i])
     return wait
 
 

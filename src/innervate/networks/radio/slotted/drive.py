@@ -12,12 +12,12 @@ import numpy as np
 
 from innervate.kernel import door
 from innervate.networks.radio.scenario.slotted import BACKOFF, BY_CHANCE, TURNAROUND
-from innervate.networks.radio.slotted import books as shelf
 from innervate.networks.radio.slotted import chance as chance
 from innervate.networks.radio.slotted import contend as contend
 from innervate.networks.radio.slotted import draws as draws
+from innervate.networks.radio.slotted import recorder as rec
 from innervate.networks.radio.slotted import turns as turns
-from innervate.networks.radio.slotted.books import Books, Numbers
+from innervate.networks.radio.slotted.recorder import Numbers, Recorder
 
 SLOT = 208  # the paper's us
 POISSON_TAIL = 1e-12
@@ -105,10 +105,10 @@ def _require(holds: bool, what: str) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """One run: which protocol, on which books; `load` only for an infinite population."""
+    """One run: which protocol, into which recorder; `load` only for an infinite population."""
 
     mac: str
-    books: Books
+    recorder: Recorder
     packet_slots: int
     load: float | None
     options: Options
@@ -116,7 +116,7 @@ class Job:
 
     @property
     def packet(self) -> int:
-        """Airtime of a packet."""
+        """How long a packet is on the air, ticks."""
         return self.packet_slots * SLOT
 
     @property
@@ -125,12 +125,12 @@ class Job:
         return round(self.options.turnaround_slots * SLOT)
 
     def run(self, function: Callable[..., None], *values: int) -> None:
-        """Call a loop with the books and these values, all integers."""
-        loop(function, self.plain)(self.books, *values)
+        """Call a loop with the recorder and these values, all integers."""
+        loop(function, self.plain)(self.recorder, *values)
 
 
 def drive(job: Job) -> int:
-    """Run a protocol until its books are full; the idle time that belongs to its last packet."""
+    """Run a protocol until its recorder is full; the idle time that belongs to its last packet."""
     if job.mac in BACKOFF:
         return _contend(job)
     if job.mac in BY_CHANCE:
@@ -151,7 +151,7 @@ def _reserve(job: Job) -> int:
         return SLOT
     lead = turn + packet + turn + window * SLOT
     job.run(turns.reserve, SLOT, turn, packet, lead, SLOT, turn + packet)
-    return SLOT if len(job.books.offer) == 1 else 0
+    return SLOT if len(job.recorder.offer) == 1 else 0
 
 
 def _contend(job: Job) -> int:
@@ -166,7 +166,7 @@ def _contend(job: Job) -> int:
 
 def _dcf(job: Job) -> int:
     times = job.options.dcf or dcf_here(job.packet_slots)
-    at_once = int(job.books.counts[shelf.TRAFFIC] == shelf.DISASTER)
+    at_once = int(job.recorder.counts[rec.TRAFFIC] == rec.DISASTER)
     costs = times.slot_us, times.success_us, times.collision_us
     job.run(contend.distribute, *costs, times.window, times.stages, at_once)
     return 0
@@ -183,7 +183,7 @@ def _tdma(job: Job) -> int:
 
 
 def _attempt(job: Job) -> int:
-    p = job.options.p or 1 / len(job.books.offer)
+    p = job.options.p or 1 / len(job.recorder.offer)
     step, gap = (job.packet, 0) if job.mac == "slotted-aloha" else (SLOT, SLOT)
     job.run(chance.attempt, round(p * draws.UNIT), step, job.packet, gap)
     return gap
@@ -193,15 +193,17 @@ def _pool(job: Job) -> int:
     assert job.load is not None
     per_slot = job.load / job.packet_slots
     if job.mac == "slotted-aloha":
-        loop(chance.pool, job.plain)(job.books, poisson_table(job.load), job.packet, job.packet, 0)
+        loop(chance.pool, job.plain)(
+            job.recorder, poisson_table(job.load), job.packet, job.packet, 0
+        )
         return 0
     table = poisson_table(per_slot)
     if job.mac == "nonpersistent":
-        loop(chance.pool, job.plain)(job.books, table, SLOT, job.packet, SLOT)
+        loop(chance.pool, job.plain)(job.recorder, table, SLOT, job.packet, SLOT)
         return SLOT
     after = poisson_table(per_slot * (job.packet_slots + 1))
     p = round((job.options.p or 0.1) * draws.UNIT)
-    loop(chance.persist, job.plain)(job.books, table, after, p, SLOT, job.packet)
+    loop(chance.persist, job.plain)(job.recorder, table, after, p, SLOT, job.packet)
     return SLOT
 
 
@@ -225,7 +227,7 @@ def loop(function: Callable[..., Any], plain: bool) -> Callable[..., Any]:
 def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     door.register_functions(
         draws.step, draws.draw, draws.shuffle, draws.exponential, draws.choose,
-        shelf.going, shelf.deliver, shelf.ready, shelf.opening,
+        rec.going, rec.deliver, rec.ready, rec.opening,
         *contend.PARTS, *turns.PARTS, *chance.PARTS,
     )  # fmt: skip
     return door.compiled(function)

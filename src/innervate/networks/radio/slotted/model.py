@@ -25,12 +25,12 @@ from typing import Any
 import numpy as np
 
 from innervate.networks.radio.scenario.slotted import BY_CHANCE
-from innervate.networks.radio.slotted import books as shelf
-from innervate.networks.radio.slotted.books import Books, open_books, schedule
+from innervate.networks.radio.slotted import recorder as rec
 from innervate.networks.radio.slotted.draws import MEAN_MAX, generator
 from innervate.networks.radio.slotted.drive import MACS, SLOT, USED_BY, Job, Options, drive, loop
+from innervate.networks.radio.slotted.recorder import Recorder, new_recorder, schedule
 
-TRAFFIC = {"saturated": shelf.SATURATED, "disaster": shelf.DISASTER, "poisson": shelf.POISSON}
+TRAFFIC = {"saturated": rec.SATURATED, "disaster": rec.DISASTER, "poisson": rec.POISSON}
 STATIONS_MAX = 10_000
 PACKET_SLOTS_MAX = 10_000
 SUCCESSES_MAX = 100_000_000
@@ -120,16 +120,16 @@ def slotted(
     if given.dcf is not None:
         slot, airtime = given.dcf.slot_us, given.dcf.payload_us
     name = f"slotted/{mac}/{stations}"
-    kind = TRAFFIC[traffic] if stations else shelf.SATURATED
-    books = open_books(kind, max(1, stations), packets, generator(seed, name))
+    kind = TRAFFIC[traffic] if stations else rec.SATURATED
+    recorder = new_recorder(kind, max(1, stations), packets, generator(seed, name))
     if load is not None and stations:
         interval = max(1, round(stations * airtime / load))
-        if interval > MEAN_MAX or interval * packets > shelf.NEVER // 64:
+        if interval > MEAN_MAX or interval * packets > rec.NEVER // 64:
             raise ValueError(f"{packets} packets take too long at a load of {load}")
-        loop(schedule, plain)(books, generator(seed, f"{name}/arrivals"), interval)
-    gap = drive(Job(mac, books, packet_slots, None if stations else load, given, plain))
-    until = shelf.NEVER if until_slots is None else round(until_slots * slot)
-    return _measure(books, slot, airtime, gap, warmup, until, endless=not stations)
+        loop(schedule, plain)(recorder, generator(seed, f"{name}/arrivals"), interval)
+    gap = drive(Job(mac, recorder, packet_slots, None if stations else load, given, plain))
+    until = rec.NEVER if until_slots is None else round(until_slots * slot)
+    return _measure(recorder, slot, airtime, gap, warmup, until, endless=not stations)
 
 
 def _check(
@@ -177,20 +177,20 @@ def _options(mac: str, stations: int, options: dict[str, Any]) -> Options:
 
 
 def _measure(
-    books: Books, slot: int, airtime: int, gap: int, warmup: float, until: int, endless: bool
+    recorder: Recorder, slot: int, airtime: int, gap: int, warmup: float, until: int, endless: bool
 ) -> SlottedResult:
     """Times and shares from what the loop wrote down, up to a moment."""
-    all_done = int(books.counts[shelf.DONE])
-    done = int(np.searchsorted(books.end[:all_done], until, "right"))
+    all_done = int(recorder.counts[rec.DONE])
+    done = int(np.searchsorted(recorder.end[:all_done], until, "right"))
     skipped = int(done * warmup)
-    ends, order = books.end[skipped:done], books.station[skipped:done]
-    since = int(books.end[skipped - 1]) + gap if skipped else 0
-    before = int(books.before[skipped - 1]) if skipped else 0
-    last = int(books.end[done - 1]) if done else 0
+    ends, order = recorder.end[skipped:done], recorder.station[skipped:done]
+    since = int(recorder.end[skipped - 1]) + gap if skipped else 0
+    before = int(recorder.before[skipped - 1]) if skipped else 0
+    last = int(recorder.end[done - 1]) if done else 0
     elapsed = (last + gap if done == all_done else until) - since
-    stations = len(books.offer)
+    stations = len(recorder.offer)
     successes = np.bincount(order, minlength=stations)
-    delays = (ends - books.offered[skipped:done]) / slot
+    delays = (ends - recorder.offered[skipped:done]) / slot
     return SlottedResult(
         elapsed_slots=elapsed / slot,
         airtime_slots=len(ends) * airtime / slot,
@@ -198,18 +198,18 @@ def _measure(
         duration_slots=last / slot,
         successes=successes.tolist(),
         order=order.tolist(),
-        collisions=_collisions(books, done, all_done) - before,
+        collisions=_collisions(recorder, done, all_done) - before,
         delay_slots=delays[:0] if endless else delays,
         jain=jain(successes),
         jain_round=_jain_round(order, stations),
     )
 
 
-def _collisions(books: Books, done: int, all_done: int) -> int:
+def _collisions(recorder: Recorder, done: int, all_done: int) -> int:
     """Collisions up to the last success that counts; in a whole run to its end."""
     if done == all_done:
-        return int(books.counts[shelf.COLLISIONS])
-    return int(books.before[done])
+        return int(recorder.counts[rec.COLLISIONS])
+    return int(recorder.before[done])
 
 
 def jain(shares: Any) -> float:

@@ -2,55 +2,55 @@
 
 import numpy as np
 
-from innervate.networks.radio.slotted.books import COLLISIONS, deliver, going, opening, ready
 from innervate.networks.radio.slotted.draws import draw, shuffle
+from innervate.networks.radio.slotted.recorder import COLLISIONS, deliver, going, opening, ready
 
 
-def reserve(books, slot, turn, packet, lead, report, each):
+def reserve(recorder, slot, turn, packet, lead, report, each):
     """CSMA/CD-R with the finishing order given: a free random permutation [radio Q3].
 
     After a collision of m stations the turns begin `lead` + (m - 1) * `report` after its start and
     follow one another every `each`; what is offered meanwhile waits until the last is over. A
     packet is on air `turn` after its decision. One that met no other is followed by an idle slot.
     """
-    found = np.zeros(len(books.offer), np.int64)
+    found = np.zeros(len(recorder.offer), np.int64)
     time = 0
-    while going(books):
-        time = opening(books, time, slot)
-        count = ready(books, time, found)
+    while going(recorder):
+        time = opening(recorder, time, slot)
+        count = ready(recorder, time, found)
         if count == 1:
             time += turn + packet
-            deliver(books, found[0], time)
+            deliver(recorder, found[0], time)
             time += slot
             continue
-        books.counts[COLLISIONS] += 1
-        shuffle(books.rng, found, count)
+        recorder.counts[COLLISIONS] += 1
+        shuffle(recorder.rng, found, count)
         time += lead + (count - 1) * report
         for i in range(count):
-            deliver(books, found[i], time + turn + packet)
+            deliver(recorder, found[i], time + turn + packet)
             time += each
 
 
-def split(books, packet):
+def split(recorder, packet):
     """Binary splitting with gated access, every step as long as a packet (Capetanakis 1979).
 
     Whoever has a packet when a resolution begins takes part; a collision splits its stations by
     a fair bit; the last step is the one after which every branch is known to be empty.
     """
-    found = np.zeros(len(books.offer), np.int64)
-    depth = np.zeros(len(books.offer), np.int64)
+    found = np.zeros(len(recorder.offer), np.int64)
+    depth = np.zeros(len(recorder.offer), np.int64)
     time = 0
-    while going(books):
-        time = opening(books, time, packet)
-        count = ready(books, time, found)
+    while going(recorder):
+        time = opening(recorder, time, packet)
+        count = ready(recorder, time, found)
         depth[:count] = 0
         branches = 1
         while branches > 0:
             time += packet
-            branches += _branch(books, found, depth, count, time) - 1
+            branches += _branch(recorder, found, depth, count, time) - 1
 
 
-def _branch(books, found, depth, count, end):
+def _branch(recorder, found, depth, count, end):
     """One step of splitting that ends at `end`; how many branches it added."""
     senders = 0
     winner = 0
@@ -61,26 +61,26 @@ def _branch(books, found, depth, count, end):
     collided = senders > 1
     for i in range(count):
         if depth[i] == 0:
-            depth[i] = draw(books.rng, 2) if collided else -1
+            depth[i] = draw(recorder.rng, 2) if collided else -1
         elif depth[i] > 0:
             depth[i] += 1 if collided else -1
     if senders == 1:
-        deliver(books, found[winner], end)
+        deliver(recorder, found[winner], end)
     if collided:
-        books.counts[COLLISIONS] += 1
+        recorder.counts[COLLISIONS] += 1
         return 2
     return 0
 
 
-def take_turns(books, slot, packet):
+def take_turns(recorder, slot, packet):
     """TDMA: station after station has packet + 1 slot, used or not."""
-    count = len(books.offer)
+    count = len(recorder.offer)
     turn = 0
-    while going(books):
+    while going(recorder):
         station = turn % count
         start = turn * (packet + slot)
-        if books.offer[station] <= start:
-            deliver(books, station, start + packet)
+        if recorder.offer[station] <= start:
+            deliver(recorder, station, start + packet)
         turn += 1
 
 

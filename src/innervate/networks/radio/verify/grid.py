@@ -104,7 +104,7 @@ class Found:
     ended: str
 
     def as_dict(self) -> dict[str, Any]:
-        """For --json."""
+        """What was found, as `innervate verify radio --json` prints it."""
         return {
             "grid": asdict(self.grid),
             "points": self.grid.points,

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from innervate.networks.radio.verify import grid as grid
 from innervate.networks.radio.verify import tree as tree
-from innervate.networks.skin.verify.mutants import Catch, Mutant, copies
+from innervate.verify.mutants import Catch, Mutant, copies
 
 RUNS = 120
 

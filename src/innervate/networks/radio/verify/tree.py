@@ -1,6 +1,6 @@
 """Radio, every draw: each choice that stations make at random is tried with each of its values.
 
-As radio_grid.py, but uncompiled, and what a draw gives is no part of the grid: a run asks, every
+As grid.py, but uncompiled, and what a draw gives is no part of the grid: a run asks, every
 answer becomes a branch, whichever station asks, and whenever. Draws out of few are tried with all
 values, draws of a time with the first, the middle and the last of its range. Behind `depth` draws
 every station goes on with a generator of its own.
@@ -65,7 +65,7 @@ class Grown:
     ended: str
 
     def as_dict(self) -> dict[str, Any]:
-        """For --json."""
+        """What was found, as `innervate verify radio --json` prints it."""
         return {
             "tree": asdict(self.tree),
             "runs": self.runs,
@@ -87,7 +87,7 @@ class Asked:
         self.answer = 0
 
     def begin(self, script: tuple[int, ...]) -> None:
-        """A run begins."""
+        """A run begins whose first draws are those of `script`."""
         self.script, self.ranges, self.own, self.answer = script, [], rng.seeded(7), 0
 
     def ask(self, count: int) -> None:
@@ -152,7 +152,7 @@ def search(
 
 
 def _points(made: grid.Grid) -> Iterator[grid.Point]:
-    """All offers and delays."""
+    """Every combination of offers and delays of a grid; the first offer is at 0."""
     pairs = made.stations * (made.stations - 1) // 2
     for offers in itertools.product(made.offers_us, repeat=made.stations - 1):
         for delays in itertools.product(made.delays_us, repeat=pairs):

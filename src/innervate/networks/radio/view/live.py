@@ -35,7 +35,7 @@ class RadioState(State):
         return int(np.count_nonzero(self.node_up == 0)), 0
 
     def judge(self) -> Headline:
-        """See State."""
+        """The headline by what the stations say of their queues and packets."""
         places = self.map.places
         told = {at: self.told[p.node] for at, p in enumerate(places) if p.node in self.told}
         off = tuple(np.flatnonzero(self.node_up == 0).tolist())
@@ -75,6 +75,6 @@ class RadioLiveView(LiveView):
         self._still = Still()
 
     def note(self, state: State, now_us: int, told: Mapping[int, Status]) -> None:
-        """See LiveView."""
+        """Note for how long no station's count of packets has changed."""
         assert isinstance(state, RadioState)
         state.still_ms = self._still.note(now_us, told.values())

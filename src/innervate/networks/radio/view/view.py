@@ -215,7 +215,7 @@ class RadioView(View):
         return bool(fault.action != JOIN)
 
     def words(self, fault: Any) -> str:
-        """A fault in words."""
+        """What a fault does, as "station 3 dies"."""
         return fault_words(fault)
 
     def cut(self, link: int, heal: bool) -> dict[str, int]:

@@ -10,7 +10,7 @@ from innervate.topology.layout import cell_places
 
 
 def graph(plan: Any) -> Graph:
-    """A plan's network."""
+    """A plan's cells with places in mm and hops, and its cables."""
     cells = plan.graph
     nodes: list[Node] = []
     for cell, (x, y) in enumerate(cell_places(cells)):

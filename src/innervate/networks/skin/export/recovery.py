@@ -17,7 +17,7 @@ from innervate.export.errors import ExportError
 from innervate.export.reading import Capture, Packet
 from innervate.networks.skin import frames as skin
 from innervate.networks.skin.export.routes import PC, End, Network
-from innervate.networks.skin.protocol import constants as skin_words
+from innervate.networks.skin.protocol import constants as skin_const
 from innervate.wire.bits import get
 from innervate.wire.layout import width
 
@@ -100,7 +100,7 @@ class Watcher:
         self._newest: dict[str, int | None] = {}  # number of the newest sample that came in
 
     def take(self, packet: Packet) -> None:
-        """The next packet."""
+        """The next packet of a capture, in order of time: an event or a beacon."""
         if self._first_ns < 0:
             self._first_ns = packet.time_ns
         self._last_ns = packet.time_ns
@@ -115,9 +115,9 @@ class Watcher:
         kind = packet.data[0] >> (8 - skin.KIND_BITS)
         if len(packet.data) != skin.SIZES.get(kind):
             return
-        if kind == skin_words.BEACON and out and end.node != PC:
+        if kind == skin_const.BEACON and out and end.node != PC:
             self._beacon(packet, end)
-        elif kind == skin_words.DATA and (out or (end.node == PC and not packet.comment)):
+        elif kind == skin_const.DATA and (out or (end.node == PC and not packet.comment)):
             self._sample(packet, end, out)
 
     def end(self) -> list[Healing]:

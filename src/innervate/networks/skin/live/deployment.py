@@ -6,8 +6,8 @@ import asyncio
 from collections.abc import Coroutine
 from typing import Any
 
+from innervate.live.asking import ask, sleep_until
 from innervate.live.deployment import Deployment, Pairs, Stage, Table
-from innervate.live.play import ask, sleep_until
 
 
 class SkinDeployment(Deployment):

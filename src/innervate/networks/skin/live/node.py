@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections import Counter
-from collections.abc import AsyncGenerator, Callable, Sequence
+from collections.abc import AsyncGenerator, Callable
 from typing import Any
 
 from innervate.live.keys import Sealer
 from innervate.live.links import Link
 from innervate.live.node import LiveNode
 from innervate.live.state import State
-from innervate.live.streams import Stream, iterate
+from innervate.live.streams import Stream
 from innervate.networks.skin.live.items import Command, Frame, Sent, Touch, put
 from innervate.networks.skin.live.stack import CellStack, SinkStack
 from innervate.networks.skin.protocol.constants import EVERYBODY, GIVE, REPORT_PARENT, SAMPLE
@@ -47,9 +46,6 @@ class CellNode(LiveNode):
         self._due = 0.0
         self._beat: asyncio.TimerHandle | None = None
         self._item = Frame()
-        self.outcomes: Counter[str] = Counter()
-        self._inbox: list[Command] = []
-        self._callbacks: list[Callable[[Command], None]] = []
         self.requests["command"] = refuse_command
 
     def streams(self, request: dict[str, Any]) -> list[Stream]:
@@ -60,15 +56,7 @@ class CellNode(LiveNode):
         self, callback: Callable[[Command], None] | None = None
     ) -> AsyncGenerator[Command, None]:
         """Commands for this cell, each once: to a callback, and as an async iterator."""
-        queue: asyncio.Queue[Command] = asyncio.Queue()
-        if callback is None:
-            callback = queue.put_nowait
-        self._callbacks.append(callback)
-        return iterate(queue, self._callbacks, callback)
-
-    def counters(self) -> Counter[str]:
-        """Handler calls, frames dropped by reason, commands received."""
-        return super().counters() + self.outcomes
+        return self.arrivals.receive(callback)
 
     async def start(self) -> None:
         """Switch on."""
@@ -110,12 +98,7 @@ class CellNode(LiveNode):
         self.outcomes["commands received"] += 1
         to_all, at_us = frame.cell == EVERYBODY, time.time_ns() // 1000
         found = Command(frame.sq, frame.dist, frame.proximity, to_all, frame.hops, at_us)
-        self._inbox.append(found)
-
-    def _settled(self) -> None:
-        if self._inbox:
-            inbox, self._inbox = self._inbox, []
-            tell(self._callbacks, inbox)
+        self.arrivals.put(found)
 
     def _sample_again(self) -> None:
         self.sample(force=(self.stack.cell.number, self.stack.cell.seq, 0))
@@ -146,9 +129,6 @@ class SinkNode(LiveNode):
         state: State | None = None,
     ) -> None:
         super().__init__(name, stack, links, sealer, state)
-        self.outcomes: Counter[str] = Counter()
-        self._inbox: list[Touch] = []
-        self._callbacks: list[Callable[[Touch], None]] = []
         self.requests["command"] = self._asked_for_command
 
     def streams(self, request: dict[str, Any]) -> list[Stream]:
@@ -159,11 +139,7 @@ class SinkNode(LiveNode):
         self, callback: Callable[[Touch], None] | None = None
     ) -> AsyncGenerator[Touch, None]:
         """Tactile frames as they come: to a callback, and as an async iterator."""
-        queue: asyncio.Queue[Touch] = asyncio.Queue()
-        if callback is None:
-            callback = queue.put_nowait
-        self._callbacks.append(callback)
-        return iterate(queue, self._callbacks, callback)
+        return self.arrivals.receive(callback)
 
     def send_command(self, code: int, value: int = 0, cell: int | None = None) -> Sent:
         """Send a command down to a cell, or (None) to all; what it means is the user's.
@@ -192,29 +168,13 @@ class SinkNode(LiveNode):
             raise ValueError("code, value and cell are whole numbers")
         return self.send_command(numbers[0], numbers[1], cell)._asdict()
 
-    def counters(self) -> Counter[str]:
-        """Handler calls, frames dropped by reason, samples received, commands sent."""
-        return super().counters() + self.outcomes
-
     def _deliver(self, kind: int, frame: Any) -> None:
         self.outcomes["samples received"] += 1
-        self._inbox.append(Touch(
+        self.arrivals.put(Touch(
             frame.cell, frame.seq, frame.hops, self.stack.port, frame.proximity,
             (frame.force[0], frame.force[1], frame.force[2]), frame.temperature,
             (frame.accel[0], frame.accel[1], frame.accel[2]), time.time_ns() // 1000,
         ))  # fmt: skip
-
-    def _settled(self) -> None:
-        if self._inbox:
-            inbox, self._inbox = self._inbox, []
-            tell(self._callbacks, inbox)
-
-
-def tell(callbacks: Sequence[Callable[[Any], None]], items: Sequence[Any]) -> None:
-    """Call everybody with every item."""
-    for item in items:
-        for callback in callbacks:
-            callback(item)
 
 
 def refuse_command(request: dict[str, Any]) -> dict[str, Any]:

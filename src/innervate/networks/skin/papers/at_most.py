@@ -30,12 +30,12 @@ ALL = Span(1.0, 1.0)  # share of the recoveries
 
 
 def seeds(quick: bool) -> range:
-    """Recoveries a setting."""
+    """Seeds of the recoveries of each setting: 40, or 6 if `quick`."""
     return seeds_of(6 if quick else 40)
 
 
 def case(setup: str, rule: tuple[str, int], k: int) -> Case:
-    """One setting."""
+    """The case of one setting, with periodic beacons."""
     return Case(setup, HZ, k, rule[0], "periodic", rule[1])
 
 
@@ -50,7 +50,7 @@ def points(quick: bool) -> list[Point]:
 
 
 def converged_ms(results: Results, quick: bool, setup: str, rule: tuple[str, int], k: int) -> Any:
-    """Convergence of every seed."""
+    """Time from the failure to the last change of a parent, ms, one value a seed."""
     one = case(setup, rule, k)
     return periods(results, one, seeds(quick), "converged_ms") * one.period_ms
 

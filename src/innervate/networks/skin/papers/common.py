@@ -51,7 +51,7 @@ class Case:
 
     @property
     def period_ms(self) -> float:
-        """One beacon period T_b."""
+        """The beacon period T_b, ms."""
         return 1000.0 / self.beacon_hz
 
     def key(self, seeds: Sequence[int]) -> str:
@@ -123,7 +123,7 @@ def simulated(tables: dict[str, Any], seed: int, **options: Any) -> Result:
 
 
 def percent(share: float, digits: int = 0) -> str:
-    """A share in words."""
+    """A share, 0 to 1, as "12 %"."""
     return f"{100 * share:.{digits}f} %"
 
 
@@ -133,5 +133,5 @@ def mean_of(values: Any) -> float:
 
 
 def joined(words: Iterable[Any]) -> str:
-    """A list in words."""
+    """Things as text, with commas between them."""
     return ", ".join(str(word) for word in words)

@@ -25,7 +25,7 @@ SIX_MS = about(6.0)
 
 
 def seeds(quick: bool) -> range:
-    """Runs a rate."""
+    """Seeds of the runs at each rate: 5, or 1 if `quick`."""
     return seeds_of(1 if quick else 5)
 
 
@@ -34,7 +34,7 @@ def _key(rate_hz: int, quick: bool) -> str:
 
 
 def points(quick: bool) -> list[Point]:
-    """A point a rate."""
+    """A point for each rate of samples."""
     return [
         Point.of(_key(rate, quick), 0.3 * len(seeds(quick)), measure, rate, seeds(quick))
         for rate in RATES_HZ
@@ -108,7 +108,7 @@ def draw(results: Results, quick: bool) -> Figure:
 
 
 def judge(results: Results, quick: bool) -> list[Claim]:
-    """Six milliseconds?"""
+    """The claim of an average delay of 6 ms, and what it takes a hop."""
     means = {rate: results[_key(rate, quick)]["mean"] for rate in RATES_HZ}
     low, high = results[_key(RATES_HZ[0], quick)]["hop_us"]
     hops = means[RATES_HZ[0]] / ((low + high) / 2e3)

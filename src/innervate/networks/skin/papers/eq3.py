@@ -50,13 +50,13 @@ _SAID = {"even": "", "paper": ", Alg. 3 as printed"}
 
 
 def seeds(quick: bool) -> range:
-    """Runs a setting."""
+    """Seeds of the runs of each setting: 10, or 1 if `quick`."""
     return seeds_of(1 if quick else 10)
 
 
 @cache
 def skin(setup: str) -> tuple[int, int]:
-    """Depth and interface ports."""
+    """A setup's depth in hops, and its number of interface ports."""
     made = scenario.plan(scenario.load(setup, [("event", [])]))
     return int(made.depth_max), int(made.graph.interfaces)
 

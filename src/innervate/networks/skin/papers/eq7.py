@@ -51,7 +51,7 @@ def depth(setup: str) -> int:
 
 
 def case(setup: str, rule: tuple[str, int], cut: str) -> Case:
-    """One setting."""
+    """The case of one setting, with periodic beacons and one cut."""
     return Case(setup, HZ, K, rule[0], "periodic", rule[1], cut)
 
 

@@ -23,7 +23,7 @@ MORE = Span(-1.0, 0.1)  # beacons of the wave mode beyond Eq. 9
 
 
 def hz(quick: bool) -> tuple[int, ...]:
-    """Beacon frequencies."""
+    """Beacon frequencies, Hz, one point each."""
     return (10, 100, 250) if quick else (10, 20, 50, 100, 150, 200, 250)
 
 

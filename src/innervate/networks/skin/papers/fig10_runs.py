@@ -103,7 +103,7 @@ def measure(setup: str, mode: Mode, seed: int, window: float) -> dict[str, Any]:
 
 
 def values(results: Results, quick: bool, setup: str, mode: Mode, name: str) -> np.ndarray:
-    """One value a seed."""
+    """A measured value of each seed, as an array."""
     keys = [_key(setup, mode, seed, quick) for seed in seeds(quick, mode)]
     return np.array([results[key][name] for key in keys])
 

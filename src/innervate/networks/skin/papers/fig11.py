@@ -42,7 +42,7 @@ LOOKS = (("no failure", style.INK, "-"), ("dynamic", style.BLUE, (0, (4, 1.5))),
 
 
 def seeds(quick: bool) -> range:
-    """Runs a case."""
+    """Seeds of the runs of each case: 20, or 3 if `quick`."""
     return seeds_of(3 if quick else 20)
 
 
@@ -101,7 +101,7 @@ def measure(rule: str, cut: bool, seed: int) -> dict[str, Any]:
 
 
 def _after(values: Any) -> Any:
-    """From the unplugging on."""
+    """The part of values by step that lies behind the unplugging."""
     return values[round(UNPLUG_S * 1e6 / arm.STEP_US) :]
 
 

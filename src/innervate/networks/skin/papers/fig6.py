@@ -45,12 +45,12 @@ FOUND: tuple[tuple[float, float, float], ...] = (
 
 
 def losses(quick: bool) -> list[float]:
-    """Shares of lost beacons."""
+    """Shares of beacons that are lost, 0 to 1."""
     return [i / 100 for i in range(0, 101, 20 if quick else 4)]
 
 
 def seeds(quick: bool) -> range:
-    """Seeds a loss."""
+    """Seeds of the runs at each loss: 5, or 2 if `quick`."""
     return seeds_of(2 if quick else 5)
 
 

@@ -35,7 +35,7 @@ DETECTION_MEAN = Span(-0.25, 0.25)
 
 @dataclass(frozen=True, slots=True)
 class Grid:
-    """What is swept."""
+    """Which beacon frequencies, Hz, which k and which seeds are swept."""
 
     hz: tuple[int, ...]
     k: tuple[int, ...]

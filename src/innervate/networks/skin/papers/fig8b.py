@@ -39,7 +39,7 @@ FIT = Span(0.8, 1.0)  # R2 of the line
 
 
 def case(setup: str, k: int, rule: str, m: int) -> Case:
-    """One setting."""
+    """The case of one setting, with periodic beacons."""
     return Case(setup, HZ, k, rule, "periodic", m)
 
 

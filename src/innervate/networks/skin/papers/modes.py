@@ -47,12 +47,12 @@ MODES = (*DRAWN, OFTEN)
 
 
 def seeds(quick: bool) -> range:
-    """Recoveries a setting."""
+    """Seeds of the recoveries of each setting: 100, or 6 if `quick`."""
     return seeds_of(6 if quick else 100)
 
 
 def case(setup: str, k: int, mode: Mode) -> Case:
-    """One setting."""
+    """The case of one setting: a mode's updates under the rule `feasible`."""
     return Case(setup, HZ, k, "feasible", mode.updates, mode.m, gap_us=mode.gap_us)
 
 

@@ -52,7 +52,7 @@ def _key(setup: str, variant: Variant, quick: bool) -> str:
 
 
 def points(setup: str, quick: bool) -> list[Point]:
-    """One point a variant."""
+    """A point for each variant of a setup."""
     return [
         Point.of(
             _key(setup, variant, quick),

@@ -24,7 +24,7 @@ class Steps:
 
     @property
     def world(self) -> Any:
-        """Its tables now."""
+        """The tables of the simulation as they are now."""
         return self._running.world
 
     def to(self, time_s: float) -> None:

@@ -70,7 +70,7 @@ class Sheet:
         return float(x), float(y)
 
     def cell(self, cell: int) -> Point:
-        """A cell's centre."""
+        """Where a cell's centre is, in the sheet's units."""
         x, y = self.points[cell]
         return float(x), float(y)
 

@@ -40,7 +40,7 @@ class Incident:
 
     @property
     def at_us(self) -> int:
-        """When it happened."""
+        """When the failure came, us."""
         return round(1e6 * float(self.recovery["at_s"]))
 
     @property
@@ -262,7 +262,7 @@ class Story:
         return not skinmap.shows_depth(self.graph.interfaces)
 
     def losses(self) -> charts.Bars | None:
-        """Where samples were lost."""
+        """Bars of how many samples were lost for which reason; None if none was."""
         data = self.summary["data"]
         lost = {k: n for k, n in data.get("lost_by", {}).items() if n}
         if not lost:

@@ -2,12 +2,13 @@
 
 Spec: the dynamic distance-vector protocol of Bader, Bergner and Cheng [skin II-B], with the
 readings E1-E34. The paper's master port is called parent here, its slave ports children.
-How the parent is chosen stands in skin_route.py.
+How the parent is chosen stands in route.py.
 """
 
 from innervate.dialect.arith import MASK30, after, later
 from innervate.dialect.outbox import FLUSH, URGENT, deliver, report, send, set_timer
 from innervate.dialect.rng import draw
+from innervate.networks.skin.protocol.command_window import accept_command
 from innervate.networks.skin.protocol.constants import (
     BEACON,
     COMMAND,
@@ -31,7 +32,6 @@ from innervate.networks.skin.protocol.constants import (
     TICK,
     WAVE,
 )
-from innervate.networks.skin.protocol.down import take_first
 from innervate.networks.skin.protocol.route import distance, react, select
 
 
@@ -158,7 +158,7 @@ def hand_down(cell, params, port, frame, out):
     A cell knows its children, and not who is behind them: a command for one cell goes to all of
     them as well, and ends where it is for.
     """
-    if not take_first(cell, frame.sq):
+    if not accept_command(cell, frame.sq):
         report(out, REPORT_DROP, DROP_AGAIN, 0)
         return
     if frame.cell == EVERYBODY or frame.cell == cell.number:

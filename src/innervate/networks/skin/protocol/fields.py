@@ -35,7 +35,7 @@ FRAME = (
     ),
 )
 
-# Fields of a frame that only a simulation fills in, for its books: not sent, not on boards.
+# Fields of a frame that only a simulation fills in, for its tables: not sent, not on boards.
 NOTED = frozenset({"made_at"})
 
 CELL = (

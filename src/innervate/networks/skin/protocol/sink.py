@@ -54,7 +54,7 @@ def on_timer(pc, params, now, timer, out):
             own.sq = (own.sq + 1) & MASK16
         own.sq_known = 1
         announce(pc, out)
-    next_tick(pc, params, now, out)
+    set_tick(pc, params, now, out)
 
 
 def announce(pc, out):
@@ -70,7 +70,7 @@ def announce(pc, out):
         frame.parent = 0
 
 
-def next_tick(pc, params, now, out):
+def set_tick(pc, params, now, out):
     """Set the timer of the next period."""
     own = pc.own[0]
     own.tick_at = (own.tick_at + params.beacon_us) & MASK30

@@ -142,4 +142,4 @@ def sink_timer(pc, params, now, timer, out):
             own.sq_known = 1
     else:
         skin_sink.announce(pc, out)
-    skin_sink.next_tick(pc, params, now, out)
+    skin_sink.set_tick(pc, params, now, out)

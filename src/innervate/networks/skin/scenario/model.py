@@ -67,7 +67,7 @@ class InterfaceTable(keys.Table, frozen=True, kw_only=True):
 
 
 class CableTable(keys.Table, frozen=True, kw_only=True):
-    """[[cable]]: joins two patches."""
+    """[[cable]]: a cable between cells of two patches, or to the PC."""
 
     a: CellOrName
     b: CellOrName
@@ -96,7 +96,7 @@ class BodyTable(keys.Table, frozen=True, kw_only=True):
 
 
 class ProtocolTable(keys.Table, frozen=True, kw_only=True):
-    """[protocol] [skin 5]."""
+    """[protocol] of a skin: rule, updates, supervision, balancing [skin 5]."""
 
     rule: Literal["feasible", "strict", "paper", "paper-lax", "static"] = "feasible"
     updates: Literal["periodic", "triggered", "wave"] = "wave"
@@ -116,7 +116,7 @@ class ProtocolTable(keys.Table, frozen=True, kw_only=True):
 
 
 class TimingTable(keys.Table, frozen=True, kw_only=True):
-    """[timing]: clocks and cables."""
+    """[timing]: drift of clocks, latency and losses of cables."""
 
     drift_ppm: Annotated[int, keys.whole("", 0, 50_000)] = 1000
     hop_latency_us: Annotated[
@@ -128,7 +128,7 @@ class TimingTable(keys.Table, frozen=True, kw_only=True):
 
 
 class DataTable(keys.Table, frozen=True, kw_only=True):
-    """[data]: the cells' samples."""
+    """[data]: how often cells send samples, and how many wait at a port."""
 
     rate_hz: Annotated[
         float, Meta(ge=0, le=10_000, description="a number of samples per second, 0 (off) to 10000")

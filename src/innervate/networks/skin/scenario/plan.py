@@ -37,7 +37,7 @@ class Plan:
     """Everything a run needs, as whole numbers.
 
     Attributes:
-        params: the protocol's parameters (see `protocol/skin_fields.py`, PARAMS).
+        params: the protocol's parameters (see `protocol/fields.py`, PARAMS).
         drift_ppm: clocks run up to this much fast or slow.
         latency_us: least and greatest hop latency, wire time included, us.
         latency_per_frame: drawn for every frame; else once for each link and direction.

@@ -112,7 +112,7 @@ def _is_kept(k: int) -> bool:
 
 
 def _clocks(model: SkinScenario) -> Iterator[Finding]:
-    """That no clock overflows."""
+    """Refuse a duration in which drifting clocks would leave their range."""
     drift_ppm = 0 if model.timing.lock_step else model.timing.drift_ppm
     if model.duration_s * drift_ppm > DRIFT_S_PPM:
         yield (

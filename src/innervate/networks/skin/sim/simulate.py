@@ -24,12 +24,12 @@ RULE_STATIC = 3
 
 def _modules() -> tuple[ModuleType, ...]:
     from innervate.networks.skin import invariants
-    from innervate.networks.skin.protocol import cell, down, route, sink, static
+    from innervate.networks.skin.protocol import cell, command_window, route, sink, static
     from innervate.networks.skin.sim import checks
     from innervate.sim.cables import recorder
 
     return (
-        route, down, cell, sink, static,
+        route, command_window, cell, sink, static,
         invariants, recorder, checks, skin_stack, static_stack,
     )  # fmt: skip
 

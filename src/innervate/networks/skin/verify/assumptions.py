@@ -1,6 +1,6 @@
 """What the reductions rest on, tried on the protocol itself before they are used.
 
-They forget routes that the rule refuses (skin_dead.py), and so could hide a mistake in the rule. So
+They forget routes that the rule refuses (reduction.py), and so could hide a mistake in the rule. So
 a cell without a route is told of every such route there can be in small numbers, in a frame and
 before a tick: it must not take it.
 """

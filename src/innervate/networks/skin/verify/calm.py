@@ -32,7 +32,7 @@ def forget_budgets(world):
 def insert_lost(world, source, target, index):
     """Keep a state, and those in which the last beacon on a direction was lost, if one may be.
 
-    A search in which ticks take beacons in leaves a lost one under way (skin_moves.py); the fair
+    A search in which ticks take beacons in leaves a lost one under way (moves.py); the fair
     schedule would deliver it.
     """
     for way in range(-1, world.at[DIRECTIONS]):

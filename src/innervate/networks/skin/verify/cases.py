@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
-from innervate.networks.skin.verify import assumptions as promises
-from innervate.networks.skin.verify import fair, graphs, retrace, story
+from innervate.networks.skin.verify import assumptions, fair, graphs, retrace, story
 from innervate.networks.skin.verify import system as system
 from innervate.topology import Graph
+from innervate.verify import cases as common
 from innervate.verify import explore
 from innervate.verify.errors import VerifyError
 
@@ -21,7 +21,7 @@ PROPERTIES = "no closed loop, feasible distances in order, no value out of range
 
 
 @dataclass(slots=True)
-class Case:
+class SkinCase:
     """One exploration and what came of it.
 
     Attributes:
@@ -52,7 +52,7 @@ class Case:
         )
 
     def as_dict(self) -> dict[str, Any]:
-        """For --json."""
+        """The case as `innervate verify --json` prints it."""
         budget = asdict(self.model.budget)
         if budget["ticks"] == system.ANY:
             budget["ticks"] = "any"
@@ -103,18 +103,9 @@ def budget_of(text: str) -> system.Budget:
     Raises:
         VerifyError: no such budget, or no number.
     """
-    given: dict[str, int] = {}
-    names = [one.name for one in fields(system.Budget)]
-    for part in filter(None, text.replace(" ", ",").split(",")):
-        name, _, value = part.partition("=")
-        if part == "ticks=any":
-            given["ticks"] = system.ANY
-        elif name in names and value.isascii() and value.isdigit() and int(value) <= 20:
-            given[name] = int(value)
-        else:
-            message = f'--budget: "{part[:40]}" should be NAME=NUMBER, at most 20, or ticks=any'
-            raise VerifyError(f"{message}; the names are {', '.join(names)}")
-    return system.Budget(**given)
+    words = {"ticks=any": ("ticks", system.ANY)}
+    made: system.Budget = common.budget_of(text, system.Budget(), words)
+    return made
 
 
 def graphs_of(text: str, cells: int) -> tuple[Graph, ...]:
@@ -147,13 +138,13 @@ def models(wanted: Wanted) -> Iterator[system.SkinModel]:
                 )  # fmt: skip
 
 
-def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> Case:
+def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> SkinCase:
     """Explore one model; then, under the recommended rule, play the fair schedule.
 
     Raises:
         VerifyError: the protocol does not keep what the reductions rest on.
     """
-    taken = promises.broken(model) if model.lean else ""
+    taken = assumptions.broken(model) if model.lean else ""
     if taken:
         raise VerifyError(f"{taken}; --no-reduce explores it without resting on the rule")
     cables = graphs.cables(model.graph)
@@ -163,9 +154,9 @@ def run(model: system.SkinModel, wanted: Wanted, tell: Tell) -> Case:
             model, wanted.walks, seed=wanted.seed, plain=wanted.plain,
             progress=lambda tally: tell(name, tally),
         )  # fmt: skip
-        return Case(model, cables, found.tally, story=_tell(found, wanted, name, tell))
+        return SkinCase(model, cables, found.tally, story=_tell(found, wanted, name, tell))
     found = _explore(model, wanted, name, tell)
-    case = Case(model, cables, found.tally, story=_tell(found, wanted, name, tell))
+    case = SkinCase(model, cables, found.tally, story=_tell(found, wanted, name, tell))
     if wanted.live and model.rule == "feasible" and found.tally.ended in PLAYED:
         case.fair = _settle(found, wanted, name, tell)
         if case.fair.ended == "broken" and model.lean:

@@ -1,6 +1,6 @@
 """What must hold of a skin's state: no closed ring, feasible distances in order.
 
-A state is the row of bytes `world.work` (see skin_world.py).
+A state is the row of bytes `world.work` (see world.py).
 """
 
 from innervate.networks.skin.invariants import is_worse

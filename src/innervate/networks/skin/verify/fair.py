@@ -268,11 +268,11 @@ class _Rows:
 
     @property
     def count(self) -> int:
-        """How many."""
+        """How many states were found."""
         return int(self.search.run[s.COUNT])
 
     def row(self, index: int) -> bytes:
-        """One of them."""
+        """The state of this index, as bytes."""
         part = self.search.rows[index * self.words : (index + 1) * self.words]
         return bytes(part.tobytes())
 

@@ -334,7 +334,7 @@ def bind(skin, skin_sink):
         return asked
 
     def make(world, move, variant, choice):
-        """The move alone."""
+        """Carry out a move, without asking what it may cost: FINE, or what is broken."""
         world.found[0] = FINE
         kind, arg = world.move_kind[move], world.move_arg[move]
         if kind == TICK:

@@ -1,43 +1,15 @@
-"""The explorer can fail: it runs on copies of the protocol with a small mistake in each.
-
-A mistake is a text of the protocol's sources replaced by another. The copy is a package of its own
-in a temporary folder and runs uncompiled; the real protocol is not touched.
-"""
+"""The skin's explorer can fail: it runs on copies of the protocol with a small mistake in each."""
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
-from dataclasses import dataclass
-from types import ModuleType
 
-from innervate.dialect.copies import changed_copy
-from innervate.networks.skin.verify import assumptions as promises
-from innervate.networks.skin.verify import fair, graphs, story
+from innervate.networks.skin.verify import assumptions, fair, graphs, story
 from innervate.networks.skin.verify import system as system
 from innervate.verify import explore
+from innervate.verify.mutants import Catch, Mutant, copies
 
 PROTOCOL = "innervate.networks.skin.protocol"
-_count = itertools.count(1)
-
-
-@dataclass(frozen=True, slots=True)
-class Mutant:
-    """A mistake: `old` stands once in the sources and becomes `new`."""
-
-    name: str
-    old: str
-    new: str
-
-
-@dataclass(frozen=True, slots=True)
-class Catch:
-    """What the explorer found of a mutant; `by` is empty if it found nothing."""
-
-    mutant: Mutant
-    by: str
-    where: str
-    states: int
 
 
 # Mistakes that only the explorer's properties are asked to find; tests/networks/skin/verify has
@@ -96,15 +68,6 @@ MUTANTS = tuple(
 )  # fmt: skip
 
 
-def copies(mutant: Mutant, *names: str) -> list[ModuleType]:
-    """Modules of a copy of the protocols with the mistake in it.
-
-    Raises:
-        ValueError: the text does not stand exactly once in the sources: no mutant any more.
-    """
-    return changed_copy([(mutant.old, mutant.new)], *names)
-
-
 def copy_of(mutant: Mutant) -> system.System:
     """The skin's system on a copy of the protocol with the mistake in it."""
     cell, sink = copies(mutant, f"{PROTOCOL}.cell", f"{PROTOCOL}.sink")
@@ -134,7 +97,7 @@ def hunt(mutant: Mutant, starts: int = 12, lean: bool = False) -> Catch:
     for model in models(lean):
         where = f"{graphs.cables(model.graph)}, {model.rule}, {model.updates}"
         try:
-            taken = promises.broken(model, changed) if lean else ""
+            taken = assumptions.broken(model, changed) if lean else ""
             if taken:
                 return Catch(mutant, f"a promise that reductions rest on: {taken}", where, states)
             found = explore.explore(model, plain=True, system=changed, states=15_000)

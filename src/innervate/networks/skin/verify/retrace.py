@@ -1,6 +1,6 @@
 """From what a reduced search found back to whole states, which a story is told of.
 
-A reduced path says of each whole state what it is reduced to (skin_dead.py). So only whole states
+A reduced path says of each whole state what it is reduced to (reduction.py). So only whole states
 that are reduced to the next one are looked for: some steps of the path may take several events,
 of which all but one deliver what the reduced search has forgotten.
 """
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from innervate.networks.skin.verify import reduction as skin_dead
+from innervate.networks.skin.verify import reduction
 from innervate.networks.skin.verify import row as skin_row
 from innervate.networks.skin.verify import system as skin_system
 from innervate.networks.skin.verify.world import LEAN
@@ -85,7 +85,7 @@ def reduced(lean: Twin, row: bytes) -> bytes:
         for c in range(lean.model.graph.cells):
             skin_row.trim(lean.world, c)
     if lean.world.at[LEAN]:
-        skin_dead.tidy(lean.world)
+        reduction.tidy(lean.world)
     return lean.image()
 
 

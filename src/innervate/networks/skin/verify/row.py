@@ -1,4 +1,4 @@
-"""From a row of bytes to the protocol's records and back; see skin_world.py for the row.
+"""From a row of bytes to the protocol's records and back; see world.py for the row.
 
 What no choice of a route depends on is left out: clock readings (nothing has a time here), sizes
 and how great a load is (balancing is off; only load 0, which marks a cell without a number,

@@ -14,8 +14,9 @@ from innervate.networks.skin.protocol.constants import NONE
 from innervate.networks.skin.verify import check as skin_check
 from innervate.networks.skin.verify import system as skin_system
 from innervate.networks.skin.verify import world as w
-from innervate.networks.skin.verify.telling import Scene, Teller
+from innervate.networks.skin.verify.narrator import Narrator, Scene
 from innervate.topology import Graph
+from innervate.verify import cases as common
 from innervate.verify.explore import Result
 from innervate.verify.twin import Twin, find
 
@@ -30,32 +31,21 @@ TITLES = {
 }
 
 
-@dataclass(slots=True)
-class Story:
-    """How something breaks.
+@dataclass(kw_only=True)
+class Story(common.Story):
+    """How something breaks in a skin.
 
     Attributes:
         graph: the network.
-        title: what is broken, in one line.
-        sentences: one for each event.
         steps: for each event the script's steps that play it.
         scenes: the network after each event.
         ring: nodes of the closed ring in order, if there is one.
-        scenario: the text of a scenario file that plays it.
     """
 
     graph: Graph
-    title: str
-    sentences: list[str] = field(default_factory=list)
     steps: list[list[str]] = field(default_factory=list)
     scenes: list[Scene] = field(default_factory=list)
     ring: list[int] = field(default_factory=list)
-    scenario: str = ""
-
-    def lines(self) -> list[str]:
-        """The story as numbered lines."""
-        told = [f"{i}. {text}" for i, text in enumerate(self.sentences, 1)]
-        return [*told, f"So: {self.title}"]
 
 
 def tell(result: Result, system: Any = None) -> Story:
@@ -66,14 +56,14 @@ def tell(result: Result, system: Any = None) -> Story:
         result.model.changed(merge=False, symmetric=False, keep=True, whole=True, capacity=ROOM),
         system,
     )
-    story = Story(result.model.graph, "")
-    teller = Teller(real, story)
+    story = Story("", graph=result.model.graph)
+    narrator = Narrator(real, story)
     for target in [*result.path[1:], None]:
         here = found.row()
         event = find(found, target, result.broken)
         after = found.row()
         found.put(here)
-        teller.play(found, event)
+        narrator.play(found, event)
         found.put(after)
     story.ring = _ring(real)
     ring = [story.graph.label(node) for node in [*story.ring, *story.ring[:1]]]
@@ -85,9 +75,8 @@ def tell(result: Result, system: Any = None) -> Story:
 def in_short(result: Result) -> Story:
     """What is broken, where there was no room for the search that the story needs."""
     events = len(result.path)
-    return Story(
-        result.model.graph, f"{TITLES[result.broken]}, after {events} events or a few more"
-    )
+    title = f"{TITLES[result.broken]}, after {events} events or a few more"
+    return Story(title, graph=result.model.graph)
 
 
 def _ring(twin: Twin) -> list[int]:

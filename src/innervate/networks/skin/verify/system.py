@@ -22,7 +22,7 @@ from innervate.networks.skin.protocol.constants import (
 )
 from innervate.networks.skin.verify import check as skin_check
 from innervate.networks.skin.verify import moves as skin_moves
-from innervate.networks.skin.verify import reduction as skin_dead
+from innervate.networks.skin.verify import reduction
 from innervate.networks.skin.verify import row as skin_row
 from innervate.networks.skin.verify import world as skin_world
 from innervate.networks.skin.verify import world as w
@@ -76,14 +76,14 @@ class SkinModel:
         budget: how often what may happen.
         hold: FD_HOLD, in periods.
         prompt: every frame arrives, or is lost, before anything else happens.
-        merge: use that periodic beacons are only looked at in a tick (see skin_moves.py).
+        merge: use that periodic beacons are only looked at in a tick (see moves.py).
         keep: keep what only a later fair schedule would see.
         symmetric: take states that differ by a symmetry of the graph as one.
         capacity: most frames in flight per direction; states with more are left out, and counted.
             0 = what periodic cells can send within their budget; of triggered ones ROOM, or
             LEAN_ROOM.
         whole: leave no beacon out, though it changes nothing.
-        lean: forget what can no longer matter (see skin_dead.py), and follow no state of which a
+        lean: forget what can no longer matter (see reduction.py), and follow no state of which a
             known one differs only in that more may still happen.
     """
 
@@ -165,11 +165,12 @@ def compiled_parts() -> System:
     from innervate.dialect import arith, outbox, rng
     from innervate.kernel import door
     from innervate.networks.skin import invariants
+    from innervate.networks.skin.protocol import command_window
     from innervate.networks.skin.protocol import route as skin_route
 
     door.register(arith, outbox, rng, invariants)
-    door.register(skin_route, skin, skin_sink, hot=False)
-    door.register(skin_row, skin_dead, skin_check, hot=False)
+    door.register(skin_route, command_window, skin, skin_sink, hot=False)
+    door.register(skin_row, reduction, skin_check, hot=False)
     plain = [f for f in vars(skin_moves).values() if callable(f)]
     own = [f for f in plain if getattr(f, "__module__", "") == skin_moves.__name__]
     system = system_of()
@@ -243,7 +244,7 @@ def first_row(model: SkinModel, system: System) -> list[int]:
         world.work[lay.budget_at + i] = count if model.budget.faults else 0
     system.start(world)
     if world.at[w.LEAN]:
-        skin_dead.tidy(world)
+        reduction.tidy(world)
     return list(world.work)
 
 
@@ -322,7 +323,7 @@ class _Layout:
         return LEAN_ROOM if self.model.lean else ROOM
 
     def settings(self) -> list[int]:
-        """The numbers of `SkinWorld.at`."""
+        """What `SkinWorld.at` holds: sizes, offsets in a row, flags of the model."""
         model = self.model
         at = [0] * w.SETTINGS
         at[w.CELLS], at[w.LINKS], at[w.CAPACITY] = model.graph.cells, self.ways // 2, self.capacity

@@ -56,7 +56,7 @@ class Sink(NamedTuple):
 
 
 class Out(NamedTuple):
-    """The outbox (see protocol/outbox.py)."""
+    """The outbox, as tables that are compiled with (see dialect/outbox.py)."""
 
     count: Any
     limit: Any
@@ -105,7 +105,7 @@ class Forms:
         self.is_plain = is_plain
 
     def numbers(self, values: Any) -> Any:
-        """Whole numbers."""
+        """Whole numbers, as a list or as 32-bit integers."""
         return list(values) if self.is_plain else np.array(list(values), np.int32)
 
     def longs(self, count: int) -> Any:
@@ -136,7 +136,7 @@ class Forms:
         return states.view(np.int32).reshape(len(states), -1)
 
     def outbox(self) -> Out:
-        """An empty outbox."""
+        """An outbox with nothing in it and room for OUTBOX actions."""
         fields = ("kind", "a", "b", "c")
         action = tuple((name, 0, 0, 0, "", "") for name in fields)
         limit = self.longs(1)

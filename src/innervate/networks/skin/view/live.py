@@ -32,7 +32,7 @@ class SkinState(State):
     """Which cells have a way to the PC."""
 
     def look(self) -> tuple[int, int]:
-        """See State."""
+        """Find everybody's way anew: (how many have none, how many of these are astray)."""
         where = self.map
         count = len(where.places)
         none = np.zeros(count, np.bool_)
@@ -49,7 +49,7 @@ class SkinState(State):
         return int(np.count_nonzero(lost)), int(np.count_nonzero(lost & joined))
 
     def judge(self) -> Headline:
-        """See State."""
+        """The headline by the ways and loads that `look` found."""
         return skin_headline(self._facts)
 
     def _skin_facts(self, lost: Any, joined: Any) -> SkinFacts:
@@ -107,13 +107,13 @@ class SkinState(State):
 
 
 class SkinLiveView(LiveView):
-    """A running skin."""
+    """What the page shows of cells and a PC that are processes."""
 
     map = SkinMap
     state = SkinState
 
     def drawn(self, plan: Any) -> Drawn:
-        """Cells on their honeycomb."""
+        """Cells where the honeycomb has them, interface ports beside."""
         from innervate.networks.skin.view.scene import places
 
         graph = plan.graph

@@ -281,7 +281,7 @@ class SkinView(View):
         return found
 
     def words(self, fault: Any) -> str:
-        """A fault in words."""
+        """What a fault does, as "cut 3-4"."""
         return fault_words(self.plan.graph, fault)
 
     def takes(self, fault: Any) -> bool:

@@ -13,21 +13,26 @@ from innervate.networks.mesh.analysis.alarms import all_crossings
 from innervate.networks.mesh.analysis.headline import Traffic, traffic
 from innervate.networks.mesh.analysis.messages import duplicates, messages
 from innervate.networks.mesh.analysis.summary import looped
-from innervate.networks.mesh.protocol import constants as w
+from innervate.networks.mesh.protocol import constants as c
 from innervate.web.engine import Engine, Rows
 
-KEPT = ("rows", "sent", "delivered")
-CODES = (w.REPORT_ACCEPTED, w.REPORT_FULL, w.REPORT_EXPIRED, w.REPORT_ALARM)
+TABLES = ("rows", "sent", "delivered")
+CODES = (
+    c.REPORT_ACCEPTED,
+    c.REPORT_FULL,
+    c.REPORT_EXPIRED,
+    c.REPORT_ALARM,
+)
 SHARE = 20  # of this share of the time messages are counted anew, at most
 AT = {"rows": "time", "sent": "end", "delivered": "time"}
 
 
-class Books:
+class TrafficRecorder:
     """The rows that `analysis` counts messages by, as far as the network has come."""
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
-        self._parts: dict[str, list[Any]] = {name: [] for name in KEPT}
+        self._parts: dict[str, list[Any]] = {name: [] for name in TABLES}
         self._found = Traffic()
         self._found_us = -1
         self._not_before = 0.0
@@ -35,7 +40,7 @@ class Books:
     def add(self, rows: Rows) -> None:
         """Rows that have come since the last call."""
         sent = rows["sent"]
-        routed = np.isin(sent["kind"], (w.DATA, w.ALARM)) & (sent["link_dst"] != w.ALL)
+        routed = np.isin(sent["kind"], (c.DATA, c.ALARM)) & (sent["link_dst"] != c.ALL)
         fresh = {
             "rows": rows["rows"][np.isin(rows["rows"]["code"], CODES)],
             "sent": sent[routed],

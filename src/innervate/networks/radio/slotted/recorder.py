@@ -1,4 +1,4 @@
-"""What a slotted run keeps: who has a packet since when, and every success. Times in ticks."""
+"""The recorder of a slotted run: who has a packet since when, and every success. Times in ticks."""
 
 from typing import Any, NamedTuple
 
@@ -13,7 +13,7 @@ SATURATED = 0
 DISASTER = 1
 POISSON = 2
 
-# Places in Books.counts.
+# Places in Recorder.counts.
 DONE = 0
 COLLISIONS = 1
 LIMIT = 2
@@ -23,7 +23,7 @@ PACKETS = 4
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
 
 
-class Books(NamedTuple):
+class Recorder(NamedTuple):
     """All tables of a run, 64-bit integers."""
 
     rng: Numbers
@@ -37,10 +37,10 @@ class Books(NamedTuple):
     before: Numbers  # collisions up to then
 
 
-def open_books(traffic: int, stations: int, packets: int, rng: Numbers) -> Books:
-    """Books in which every station has a packet at time 0; `schedule` makes it Poisson traffic."""
+def new_recorder(traffic: int, stations: int, packets: int, rng: Numbers) -> Recorder:
+    """A recorder; all stations have a packet at time 0, unless `schedule` makes it Poisson."""
     limit = stations * packets
-    return Books(
+    return Recorder(
         rng=rng,
         counts=np.array([0, 0, limit, traffic, packets], np.int64),
         offer=np.zeros(stations, np.int64),
@@ -53,59 +53,61 @@ def open_books(traffic: int, stations: int, packets: int, rng: Numbers) -> Books
     )
 
 
-def schedule(books, rng, interval):
+def schedule(recorder, rng, interval):
     """Poisson arrivals: every station has packets `interval` apart in the mean."""
-    packets = books.counts[PACKETS]
-    for i in range(len(books.offer)):
+    packets = recorder.counts[PACKETS]
+    for i in range(len(recorder.offer)):
         time = 0
         for j in range(packets):
             time += exponential(rng, interval)
-            books.arrivals[i * packets + j] = time
-        books.offer[i] = books.arrivals[i * packets]
+            recorder.arrivals[i * packets + j] = time
+        recorder.offer[i] = recorder.arrivals[i * packets]
 
 
-def going(books):
+def going(recorder):
     """True until enough packets are through, or a Poisson station has no more to offer."""
-    return books.counts[DONE] < books.counts[LIMIT]
+    return recorder.counts[DONE] < recorder.counts[LIMIT]
 
 
-def deliver(books, station, end):
+def deliver(recorder, station, end):
     """A packet of `station` got through at `end`; its next one is offered."""
-    counts = books.counts
+    counts = recorder.counts
     at = counts[DONE]
     if at >= counts[LIMIT]:
         return
-    books.station[at] = station
-    books.offered[at] = books.offer[station]
-    books.end[at] = end
-    books.before[at] = counts[COLLISIONS]
+    recorder.station[at] = station
+    recorder.offered[at] = recorder.offer[station]
+    recorder.end[at] = end
+    recorder.before[at] = counts[COLLISIONS]
     counts[DONE] = at + 1
-    books.sent[station] += 1
+    recorder.sent[station] += 1
     if counts[TRAFFIC] == SATURATED:
-        books.offer[station] = end
+        recorder.offer[station] = end
     elif counts[TRAFFIC] == DISASTER:
-        books.offer[station] = NEVER
-    elif books.sent[station] < counts[PACKETS]:
-        books.offer[station] = books.arrivals[station * counts[PACKETS] + books.sent[station]]
+        recorder.offer[station] = NEVER
+    elif recorder.sent[station] < counts[PACKETS]:
+        recorder.offer[station] = recorder.arrivals[
+            station * counts[PACKETS] + recorder.sent[station]
+        ]
     else:
         counts[LIMIT] = counts[DONE]
 
 
-def ready(books, time, found):
+def ready(recorder, time, found):
     """Stations with a packet at `time`, into `found`; how many."""
     count = 0
-    for i in range(len(books.offer)):
-        if books.offer[i] <= time:
+    for i in range(len(recorder.offer)):
+        if recorder.offer[i] <= time:
             found[count] = i
             count += 1
     return count
 
 
-def opening(books, time, grid):
+def opening(recorder, time, grid):
     """The first instant from `time` on, in steps of `grid`, at which a station has a packet."""
     first = NEVER
-    for i in range(len(books.offer)):
-        first = min(first, books.offer[i])
+    for i in range(len(recorder.offer)):
+        first = min(first, recorder.offer[i])
     if first <= time:
         return time
     return time + (first - time + grid - 1) // grid * grid

@@ -9,7 +9,7 @@ from innervate.dialect.arith import MASK16
 WINDOW = 24
 
 
-def take_first(cell, number):
+def accept_command(cell, number):
     """1 if this command was not here before; it was from now on.
 
     A number behind the window is no old one, none lives that long: the PC has started anew.

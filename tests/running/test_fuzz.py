@@ -3,15 +3,15 @@
 import pytest
 
 from innervate import scenario
-from innervate.networks.skin.verify import fuzz as wild
+from innervate.running import fuzz
 
 
 def test_what_is_drawn_can_nearly_always_be_run():
     refused = 0
     for seed in range(300):
-        assert wild.drawn(seed) == wild.drawn(seed)
+        assert fuzz.drawn(seed) == fuzz.drawn(seed)
         try:
-            scenario.plan(scenario.from_dict(wild.drawn(seed)))
+            scenario.plan(scenario.from_dict(fuzz.drawn(seed)))
         except scenario.ScenarioError:
             refused += 1
     assert refused == 0
@@ -19,7 +19,7 @@ def test_what_is_drawn_can_nearly_always_be_run():
 
 @pytest.mark.parametrize("seed", [3, 5, 7, 12])  # two skins, two meshes
 def test_nothing_breaks(seed):
-    assert wild.attempt(seed) is None
+    assert fuzz.attempt(seed) is None
 
 
 def has_cut(tables):
@@ -28,17 +28,17 @@ def has_cut(tables):
 
 
 def test_a_broken_network_is_made_small_and_can_be_played(tmp_path):
-    seed = next(seed for seed in range(100) if has_cut(wild.drawn(seed)))
-    before = wild.drawn(seed)
+    seed = next(seed for seed in range(100) if has_cut(fuzz.drawn(seed)))
+    before = fuzz.drawn(seed)
 
     def breaks(tables):
         scenario.plan(scenario.from_dict(tables))
         return has_cut(tables)
 
-    found = wild.attempt(seed, breaks)
+    found = fuzz.attempt(seed, breaks)
     assert [event["action"] for event in found.tables["event"]] == ["cut"]
     assert len(before["event"]) > 1
-    assert found.tries < wild.TRIES
+    assert found.tries < fuzz.TRIES
     path = found.save(tmp_path)
     assert path.read_text().startswith("# there is a cut\n")
     again = scenario.load(str(path))
@@ -54,8 +54,8 @@ def test_a_broken_mesh_is_made_small():
     def is_wanted(tables):
         return tables["kind"] == "mesh" and tables["nodes"] > 15 and breaks(tables)
 
-    seed = next(seed for seed in range(400) if is_wanted(wild.drawn(seed)))
-    found = wild.attempt(seed, breaks)
+    seed = next(seed for seed in range(400) if is_wanted(fuzz.drawn(seed)))
+    found = fuzz.attempt(seed, breaks)
     assert [event["action"] for event in found.tables["event"]] == ["kill"]
     assert found.tables["nodes"] < 15
     assert [flow["count"] for flow in found.tables["flow"]] == [1]

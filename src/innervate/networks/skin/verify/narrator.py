@@ -29,7 +29,7 @@ class Scene:
     actor: int
 
 
-class Teller:
+class Narrator:
     """Plays events on the real network and finds words for them."""
 
     def __init__(self, real: Twin, story: Any) -> None:
@@ -38,7 +38,7 @@ class Teller:
         self.steps: list[str] = []
 
     def name(self, node: int) -> str:
-        """A node in words."""
+        """What a node is called in sentences."""
         return "the PC" if node == self.graph.sink else self.graph.label(node)
 
     def play(self, found: Twin, event: Event) -> None:

@@ -1,0 +1,87 @@
+"""What `innervate verify mesh` does: messages, alarms and gateways, on a few nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+from innervate.networks.mesh.verify import cases, replay
+from innervate.networks.mesh.verify import model as mesh_model
+from innervate.networks.mesh.verify.mutants import MUTANTS, hunt
+from innervate.verify import cases as common
+from innervate.verify.cases import Case, Explore, Tell
+from innervate.verify.errors import VerifyError
+from innervate.verify.tally import Tally
+
+__all__ = ["MUTANTS", "hunt"]
+
+
+def notice(options: Any) -> str:
+    """What to say before the first: nothing is compiled."""
+    return ""
+
+
+def wanted_of(options: Any) -> cases.MeshWanted:
+    """What the options of the command line ask for."""
+    known = mesh_model.FAILOVERS
+    rule = options.rule
+    if rule and rule not in (*known, "all"):
+        raise VerifyError(
+            f'--rule is a failover for a mesh, {", ".join(known)} or all, not "{rule[:40]}"'
+        )
+    usual = cases.MeshWanted()
+    links = () if options.graph == "all" else mesh_model.parse(options.graph)
+    common.budget_of(options.budget, mesh_model.MeshBudget())  # says now what is wrong with it
+    return cases.MeshWanted(
+        failovers=usual.failovers if not rule else known if rule == "all" else (rule,),
+        links=links,
+        budget=options.budget,
+        live=options.liveness,
+        states=options.states,
+        walks=options.walks,
+        seed=options.seed or 1,
+        memory=common.bytes_of(options.memory),
+    )
+
+
+def explorations(_network: Any, options: Any) -> Iterator[Explore]:
+    """All that the options of the command line ask for."""
+    wanted = wanted_of(options)
+    return (partial(_explore, name, model, wanted) for name, model in cases.models(wanted))
+
+
+def _explore(name: str, model: Any, wanted: cases.MeshWanted, tell: Tell) -> Case:
+    def progress(name: str, tally: Tally) -> bool:
+        what = f"{name}: {tally.states:,} states, {tally.depth} events deep"
+        return tell(f"{what}, {tally.per_s / 1e3:.0f} k/s", 0, 0)
+
+    case = cases.run(name, model, wanted, progress)
+    return Case(
+        lines=_lines(case),
+        record=case.as_dict(),
+        is_broken=case.story is not None,
+        is_complete=case.found.tally.ended == "complete",
+        story=case.story,
+        play=None if case.story is None else partial(replay.write, case.story),
+        stem="mesh-counterexample",
+    )
+
+
+def _lines(case: cases.MeshCase) -> list[str]:
+    """What came of one exploration."""
+    found, tally = case.found, case.found.tally
+    unit = "walks " if tally.ended == "walked" else "states"
+    head = f"{cases.text_of(found.model.links):24} {found.model.failover:9} {case.name:12}"
+    head += f"{tally.states:>10,} {unit} {tally.generated:>10,} successors {tally.wall_s:7.1f} s"
+    return common.lines_of(head, case.story, partial(_extent, case))
+
+
+def _extent(case: cases.MeshCase) -> str:
+    found, words = case.found, common.extent(case.found.tally)
+    if not found.fair:
+        return words
+    part = "" if found.fair >= found.tally.states else f" from {found.fair:,} of them"
+    if found.model.beats:
+        return f"{words}; one gateway{part} after {found.longest / 1e6:.1f} s at most"
+    return f"{words}; settled{part} in {found.longest} events at most"

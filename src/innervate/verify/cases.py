@@ -1,0 +1,154 @@
+"""What `innervate verify` is handed by a network, case by case, and what all cases have in common.
+
+A network's part `verify` is a module with `explorations(network, options)`: all that is asked for,
+each a function that explores it and returns a `Case`; `notice(options)`: what to say before the
+first, if it takes long to compile; MUTANTS and `hunt(mutant)`, if there are any.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from innervate.verify.errors import VerifyError
+from innervate.verify.tally import Tally
+
+BUDGET_MAX = 20
+
+# Is told what is being done, how much of it is, and of how much (0 = unknown); true = stop.
+Tell = Callable[[str, int, int], bool]
+
+
+@dataclass
+class Story:
+    """A counterexample in sentences: how something breaks.
+
+    Attributes:
+        title: what is broken, in one line.
+        sentences: one for each event.
+        scenario: the text of a scenario file that plays it; "" = none does.
+    """
+
+    title: str
+    sentences: list[str] = field(default_factory=list)
+    scenario: str = ""
+
+    def lines(self) -> list[str]:
+        """The story as numbered lines."""
+        told = [f"{i}. {text}" for i, text in enumerate(self.sentences, 1)]
+        return [*told, f"So: {self.title}"]
+
+
+@dataclass(slots=True)
+class Case:
+    """One exploration and what came of it.
+
+    Attributes:
+        lines: for people.
+        record: for --json.
+        is_broken: a property does not hold.
+        is_complete: everything was looked at.
+        sums_up: the last line counts it.
+        story: the counterexample, if it is told: title, sentences, scenario, lines().
+        play: makes the text of a scenario that plays it; "" = none does.
+        stem: what its files are called, before their number.
+    """
+
+    lines: list[str]
+    record: dict[str, Any]
+    is_broken: bool
+    is_complete: bool = True
+    sums_up: bool = True
+    story: Any = None
+    play: Callable[[], str] | None = None
+    stem: str = "counterexample"
+
+
+Explore = Callable[[Tell], Case]
+
+
+def verdict(done: list[Case]) -> str:
+    """The last line; "" where there is none."""
+    if not all(case.sums_up for case in done):
+        return ""
+    broken = sum(case.is_broken for case in done)
+    part = sum(not case.is_complete and not case.is_broken for case in done)
+    if broken:
+        return f"{broken} of {len(done)} broken."
+    sampled = f"; {part} of them only in part" if part else ", all completely"
+    return f"Nothing broken in {len(done)} explorations{sampled}."
+
+
+def lines_of(head: str, story: Any, else_words: Callable[[], str]) -> list[str]:
+    """The lines of a case: a counterexample, or how far the search came."""
+    if story is None:
+        return [f"{head}  {else_words()}"]
+    told = [f"    {line}" for line in story.lines()]
+    return [f"{head}  BROKEN after {len(story.sentences)} events", *told]
+
+
+def extent(tally: Tally) -> str:
+    """How far a search came, in words."""
+    first = f"first {tally.expanded:,} states, to {tally.depth} events"
+    return {
+        "complete": "all states",
+        "broken": "broken",
+        "memory": f"{first}: memory is full",
+        "limit": f"{first}, as asked",
+        "interrupted": f"{first}: interrupted",
+        "walked": "a sample of random walks",
+    }[tally.ended]
+
+
+def budget_of(text: str, given: Any, words: dict[str, tuple[str, int]] | None = None) -> Any:
+    """Budgets from text like "deaths=2,acks=0"; those left out stay as they are.
+
+    Args:
+        text: of --budget.
+        given: a dataclass of whole numbers.
+        words: what else may be written for a number: {"ticks=any": ("ticks", 255)}.
+
+    Raises:
+        VerifyError: no such budget, or no number.
+    """
+    values = asdict(given)
+    names, words = ", ".join(values), words or {}
+    for part in filter(None, text.replace(" ", ",").split(",")):
+        name, _, value = part.partition("=")
+        if part in words:
+            name, number = words[part]
+            values[name] = number
+        elif name in values and value.isascii() and value.isdigit() and int(value) <= BUDGET_MAX:
+            values[name] = int(value)
+        else:
+            more = "".join(f", or {word}" for word in words)
+            message = f'--budget: "{part[:40]}" should be NAME=NUMBER, at most {BUDGET_MAX}{more}'
+            raise VerifyError(f"{message}; the names are {names}")
+    return type(given)(**values)
+
+
+def choices(name: str, text: str, known: tuple[str, ...]) -> tuple[str, ...]:
+    """One of several words, or all of them.
+
+    Raises:
+        VerifyError: none of them.
+    """
+    if text == "all":
+        return known
+    if text not in known:
+        raise VerifyError(f'--{name} is {", ".join(known)} or all, not "{text[:40]}"')
+    return (text,)
+
+
+def bytes_of(text: str) -> int:
+    """Memory like "800M" or "4G".
+
+    Raises:
+        VerifyError: no such size.
+    """
+    unit = {"M": 1 << 20, "G": 1 << 30}.get(text[-1:].upper())
+    number = text[:-1] if unit else text
+    if unit is None or not (number.isascii() and number.isdigit() and int(number) > 0):
+        raise VerifyError(f'--memory takes a size like 800M or 4G, not "{text[:40]}"')
+    return int(number) * unit

@@ -1,0 +1,327 @@
+"""Every order of a few nodes' events, for any network over cables that declares its protocol.
+
+The protocol's parameters are those of its EXPLORED, or else the least of their ranges.
+What holds of any protocol is checked after every handler call: all fields in their declared range,
+room in the outbox, no handler that cannot go on; and of every state, that something can still
+happen (a timer is set, or a frame is on its way).
+
+Nodes know only their own time, so that a state holds timers and moments relative to it: fields in
+"us" of the full range of clocks. It passes when a timer fires, and not between; what other nodes do
+meanwhile is left open.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+from types import ModuleType
+from typing import Any, NamedTuple
+
+from innervate.dialect import plain
+from innervate.dialect.arith import MASK30
+from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
+from innervate.kernel.wall import wall_s
+from innervate.network import Network
+from innervate.topology import PORTS, Graph, TopologyError, free_graph
+from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent, lines_of
+from innervate.verify.errors import VerifyError
+from innervate.verify.tally import Tally
+
+HALF = 1 << 29
+OUTBOX = 16
+IN_FLIGHT = 3  # most frames on a cable per direction; states with more are left out, and counted
+STATES = 20_000
+BATCH = 500
+COLD, MEMORY_LOST = 0, 1
+GRAPHS = {
+    "pair": "n0.E-n1.W n1.E-n0.W",
+    "line": "n0.E-n1.W n1.E-n2.W",
+    "ring": "n0.E-n1.W n1.E-n2.W n2.E-n0.W",
+}
+STUCK = "nothing can happen any more: no timer is set, no frame is on its way"
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """How often what may happen: lost frames, nodes that lose their memory."""
+
+    loss: int = 1
+    restart: int = 1
+
+
+class Node(NamedTuple):
+    """A node: the values of its state, and its timers as (timer, us from its time on)."""
+
+    values: tuple[Any, ...]
+    timers: tuple[tuple[int, int], ...]
+
+
+class State(NamedTuple):
+    """A network: its nodes, the frames on their way by end, and what may still go wrong."""
+
+    nodes: tuple[Node, ...]
+    ways: tuple[tuple[tuple[Any, ...], ...], ...]
+    left: tuple[int, ...]
+
+
+class Step(NamedTuple):
+    """A successor: what happened, the state after it, what it broke ("" nothing)."""
+
+    words: str
+    state: State
+    broken: str
+
+
+class Net:
+    """Makes the states of a graph's nodes follow each other.
+
+    Args:
+        protocol, fields: parts of a network.
+        graph: its nodes and cables.
+        params: of the protocol; others are the value in range nearest 0.
+    """
+
+    def __init__(
+        self, protocol: ModuleType, fields: ModuleType, graph: Graph, params: dict[str, int]
+    ) -> None:
+        self.do, self.fields, self.graph = protocol, fields, graph
+        self.params = plain.make("Params", fields.PARAMS)()
+        for name, value in params.items():
+            setattr(self.params, name, value)
+        self.node = plain.make("Node", fields.STATE)()
+        frame = plain.make("Frame", fields.FRAME)
+        self.out = plain.Outbox(frame, getattr(protocol, "OUTBOX", OUTBOX))
+        self.frame = frame()
+        self.clocks = {name for name, _, _, high, unit, _ in fields.STATE
+                       if unit == "us" and high == MASK30}  # fmt: skip
+
+    def begin(self, budget: Budget) -> Step:
+        """All nodes are switched on, one after the other."""
+        blank = plain.make("Node", self.fields.STATE)
+        nodes = []
+        for number in range(self.graph.cells):
+            node = blank()
+            for name, value in (("number", number), ("rng", 1 + number), ("choice", -1)):
+                if hasattr(node, name):
+                    setattr(node, name, value)
+            nodes.append(Node(_values(node, self.fields.STATE), ()))
+        state = State(tuple(nodes), ((),) * len(self.graph.peer), (budget.loss, budget.restart))
+        for number in range(self.graph.cells):
+            state, broken = self.call(state, number, 0, self.do.on_start, COLD)
+            if broken:
+                return Step(f"{self.graph.label(number)} is switched on", state, broken)
+        return Step("", state, "")
+
+    def steps(self, state: State) -> Iterator[Step]:
+        """All that can happen next."""
+        loss, restart = state.left
+        for end, frames in enumerate(state.ways):
+            if frames:
+                yield self.arrive(state, end)
+                if loss:
+                    rest = _with(state.ways, end, frames[1:])
+                    what = f"A frame from {self.graph.label_end(end)} is lost"
+                    yield Step(what, state._replace(ways=rest, left=(loss - 1, restart)), "")
+        for number, node in enumerate(state.nodes):
+            if node.timers:
+                yield self.fire(state, number)
+            if restart:
+                lost = state._replace(left=(loss, restart - 1))
+                lost = lost._replace(nodes=_with(lost.nodes, number, node._replace(timers=())))
+                after, broken = self.call(lost, number, 0, self.do.on_start, MEMORY_LOST)
+                yield Step(f"{self.graph.label(number)} loses its memory", after, broken)
+
+    def arrive(self, state: State, end: int) -> Step:
+        """The oldest frame from an end comes to the other."""
+        first, *rest = state.ways[end]
+        peer = self.graph.peer[end]
+        number, port = self.graph.node_of(peer), self.graph.port_of(peer)
+        _put(self.frame, self.fields.FRAME, first)
+        gone = state._replace(ways=_with(state.ways, end, tuple(rest)))
+        after, broken = self.call(gone, number, 0, self.do.on_frame, port, self.frame)
+        what = f"{self.graph.label(number)} gets a frame from {self.graph.label_end(end)}"
+        return Step(what, after, broken)
+
+    def fire(self, state: State, number: int) -> Step:
+        """The next timer of a node fires; so far its time passes."""
+        node = state.nodes[number]
+        timer, wait = min(node.timers, key=lambda one: (one[1], one[0]))
+        rest = tuple(one for one in node.timers if one[0] != timer)
+        waiting = state._replace(nodes=_with(state.nodes, number, node._replace(timers=rest)))
+        after, broken = self.call(waiting, number, max(wait, 0), self.do.on_timer, timer)
+        return Step(f"Timer {timer} of {self.graph.label(number)} fires", after, broken)
+
+    def call(
+        self, state: State, number: int, now: int, handler: Any, *what: Any
+    ) -> tuple[State, str]:
+        """The state after a handler of a node at its time `now`, and what it broke."""
+        node, out = state.nodes[number], self.out
+        _put(self.node, self.fields.STATE, node.values)
+        out.count[0] = out.overflow[0] = 0
+        try:
+            handler(self.node, self.params, now, *what, out)
+        except (ArithmeticError, IndexError, TypeError, ValueError) as error:
+            return state, f"a handler cannot go on: {type(error).__name__}"
+        broken = self.broken()
+        timers, ways = dict(node.timers), list(state.ways)
+        for act, frame in zip(out.action[: out.count[0]], out.frame, strict=False):
+            if act.kind == SET_TIMER:
+                timers[act.a] = _ahead(act.b)
+                broken = broken or ("" if 0 <= act.a < self.do.TIMERS else "there is no such timer")
+            elif act.kind == SEND:
+                end = self.graph.end(number, act.a)
+                if not 0 <= act.a < PORTS:
+                    broken = broken or "a frame is sent on a port that no node has"
+                elif self.graph.peer[end] >= 0:
+                    ways[end] = (*ways[end], _values(frame, self.fields.FRAME, {"made_at"}))
+            elif act.kind not in (DELIVER, REPORT):
+                broken = broken or "the outbox holds what is no action"
+        return self.kept(state, number, now, timers, ways), broken
+
+    def kept(
+        self, state: State, number: int, now: int, timers: dict[int, int], ways: list[Any]
+    ) -> State:
+        """The state with a node as it is now, its moments relative to its time."""
+        for name in self.clocks:
+            setattr(self.node, name, (getattr(self.node, name) - now) & MASK30)
+        waits = tuple(sorted((timer, at - now) for timer, at in timers.items()))
+        node = Node(_values(self.node, self.fields.STATE), waits)
+        return state._replace(nodes=_with(state.nodes, number, node), ways=tuple(ways))
+
+    def broken(self) -> str:
+        """What the last handler broke."""
+        if self.out.overflow[0]:
+            return "an outbox overflowed"
+        for name, length, low, high, *_ in self.fields.STATE:
+            value = getattr(self.node, name)
+            if not all(low <= one <= high for one in (value if length else [value])):
+                return f"{name} is out of its declared range"
+        return ""
+
+
+def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tuple[Tally, Story]:
+    """All states breadth first, up to `limit`; the story has no title if nothing is broken."""
+    started, tally = wall_s(), Tally(states=1)
+    first = net.begin(budget)
+    if first.broken:
+        return replace(tally, ended="broken"), Story(first.broken, [f"{first.words}."])
+    before: dict[State, tuple[State, str] | None] = {first.state: None}
+    level = [first.state]
+    while level:
+        fresh: list[State] = []
+        for state in level:
+            steps = list(net.steps(state))
+            tally.expanded += 1
+            tally.generated += len(steps)
+            if not any(state.ways) and not any(node.timers for node in state.nodes):
+                return replace(tally, ended="broken"), _story(before, state, STUCK, "")
+            for step in steps:
+                if step.broken:
+                    told = _story(before, state, step.broken, step.words)
+                    return replace(tally, ended="broken"), told
+                if max(map(len, step.state.ways)) > IN_FLIGHT:
+                    tally.left_out += 1
+                elif step.state not in before:
+                    before[step.state] = (state, step.words)
+                    fresh.append(step.state)
+            tally.states, tally.wall_s = len(before), wall_s() - started
+            what = f"{name}: {tally.states:,} states, {tally.depth} events deep"
+            if tally.expanded % BATCH == 0 and tell(what, 0, 0):
+                return tally, Story("")
+            if tally.states >= limit:
+                return replace(tally, ended="limit"), Story("")
+        level = fresh
+        tally.depth += bool(fresh)
+    return replace(tally, ended="complete"), Story("")
+
+
+def _story(before: Any, state: State, title: str, last: str) -> Story:
+    sentences = [last] if last else []
+    while before[state] is not None:
+        state, words = before[state]
+        sentences.append(words)
+    return Story(title, [f"{text}." for text in reversed(sentences)])
+
+
+def _values(record: Any, declared: Any, left_out: Any = ()) -> tuple[Any, ...]:
+    """The declared fields of a record; those left out as 0."""
+    found = []
+    for name, length, *_ in declared:
+        value = getattr(record, name)
+        found.append(0 if name in left_out else tuple(value) if length else value)
+    return tuple(found)
+
+
+def _put(record: Any, declared: Any, values: tuple[Any, ...]) -> None:
+    for (name, length, *_), value in zip(declared, values, strict=True):
+        setattr(record, name, list(value) if length else value)
+
+
+def _with(row: tuple[Any, ...], place: int, value: Any) -> tuple[Any, ...]:
+    return (*row[:place], value, *row[place + 1 :])
+
+
+def _ahead(at: int) -> int:
+    """How far a moment is ahead of clock reading 0; negative if it is behind."""
+    at &= MASK30
+    return at - (1 << 30) if at >= HALF else at
+
+
+MUTANTS: tuple[Any, ...] = ()
+
+
+def hunt(mutant: Any) -> Any:
+    """There are no mutants of a network that only declares its protocol."""
+    raise LookupError(mutant)
+
+
+def notice(options: Any) -> str:
+    """What to say before the first: nothing is compiled."""
+    return ""
+
+
+def explorations(network: Network, options: Any) -> Iterator[Explore]:
+    """All that the options of the command line ask for."""
+    budget = budget_of(options.budget, Budget())
+    names = list(GRAPHS) if options.graph == "all" else [options.graph]
+    graphs = [_graph(GRAPHS.get(name, name)) for name in names]
+    return (partial(_explore, network, options, graph, budget) for graph in graphs)
+
+
+def _graph(text: str) -> Graph:
+    """The graph of cables like "n0.E-n1.W n1-n2".
+
+    Raises:
+        VerifyError: no such cables, or no such name.
+    """
+    pairs = [pair.partition("-")[::2] for pair in text.split()]
+    try:
+        return free_graph(pairs)
+    except TopologyError as error:
+        names = ", ".join(GRAPHS)
+        raise VerifyError(f"--graph: {error}; or one of {names}") from None
+
+
+def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell: Tell) -> Case:
+    params = dict(getattr(network.protocol, "EXPLORED", {}))
+    net = Net(network.protocol, network.fields, graph, params)
+    cables = " ".join(f"{graph.label_end(a)}-{graph.label_end(b)}" for a, b in graph.links())
+    tally, story = explore(net, budget, options.states or STATES, tell, cables)
+    head = f"{cables:40} {tally.states:>10,} states {tally.generated:>10,} successors"
+    told = story if story.title else None
+
+    def how_far() -> str:
+        more = f" but {tally.left_out:,} successors with too many frames in flight"
+        return extent(tally) + (more if tally.left_out else "")
+
+    names = ("states", "expanded", "generated", "left_out", "depth", "ended")
+    return Case(
+        lines=lines_of(f"{head} {tally.wall_s:7.1f} s", told, how_far),
+        record={"graph": cables, **{name: getattr(tally, name) for name in names},
+                "broken": story.title or None, "story": story.sentences or None},
+        is_broken=told is not None,
+        is_complete=tally.ended == "complete" and not tally.left_out,
+        story=told,
+        stem=f"{network.name}-counterexample",
+    )  # fmt: skip

@@ -1,4 +1,0 @@
-"""Frames of a token ring."""
-
-KIND_BITS = 4
-LAYOUTS = ((1, "token", (("lap", 0, 16, 0), ("load", 0, 8, 0))),)

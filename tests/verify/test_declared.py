@@ -1,0 +1,85 @@
+"""The explorer of any network over cables: on a token ring that is right, and on wrong ones."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from innervate.cli.verify_options import VerifyOptions
+from innervate.verify import declared
+from innervate.verify.errors import VerifyError
+from tests.sim.cables.tokenring import fields, protocol
+
+
+def explored(budget="", graph="ring", states=3_000, protocol=protocol, fields=fields):
+    """The case of one graph."""
+    network = SimpleNamespace(name="tokenring", protocol=protocol, fields=fields)
+    options = VerifyOptions(budget=budget, graph=graph, states=states)
+    (explore,) = declared.explorations(network, options)
+    return explore(lambda what, part, of: False)
+
+
+def changed(module, **names):
+    return SimpleNamespace(**{**vars(module), **names})
+
+
+def test_nothing_is_broken_in_what_is_right():
+    case = explored()
+    assert not case.is_broken
+    assert case.record["ended"] == "limit"
+    assert case.record["states"] >= 3_000
+    assert "as asked" in case.lines[0]
+
+
+def test_a_value_out_of_its_range_is_found_on_the_shortest_way():
+    state = [field if field[0] != "passed" else ("passed", 0, 0, 2, "tokens", "")
+             for field in fields.STATE]  # fmt: skip
+    case = explored("loss=0,restart=0", fields=changed(fields, STATE=state))
+    assert case.story.title == "passed is out of its declared range"
+    assert case.story.sentences == [
+        "Timer 1 of n0 fires.", "Timer 1 of n0 fires.", "Timer 1 of n0 fires.",
+    ]  # fmt: skip
+    assert case.lines[-1] == "    So: passed is out of its declared range"
+
+
+def test_a_ring_that_ends_for_ever_is_found():
+    def on_timer(node, params, now, timer, out):
+        lost = params.lost_us
+        protocol.on_timer(node, params, now, timer, out)
+        for act in out.action[: out.count[0]]:
+            if act.kind == 2 and act.b == now + lost:  # nobody mends the loss
+                act.kind, act.a, act.b = 4, 0, 0
+
+    case = explored("restart=0", protocol=changed(protocol, on_timer=on_timer))
+    assert case.story.title == declared.STUCK
+    assert case.story.sentences[-1].endswith("is lost.")
+    wrong = changed(protocol, on_timer=on_timer)
+    assert not explored("loss=0,restart=0", states=300, protocol=wrong).is_broken
+
+
+@pytest.mark.parametrize(
+    ("action", "title"),
+    [
+        ((1, 4, 0, 0), "a frame is sent on a port that no node has"),
+        ((2, 2, 0, 0), "there is no such timer"),
+        ((9, 0, 0, 0), "the outbox holds what is no action"),
+    ],
+)
+def test_an_action_that_nobody_can_carry_out_is_found(action, title):
+    def on_start(node, params, now, cause, out):
+        act = out.action[0]
+        act.kind, act.a, act.b, act.c = action
+        out.count[0] = 1
+
+    assert explored(protocol=changed(protocol, on_start=on_start)).story.title == title
+
+
+def test_an_outbox_that_overflows_is_found():
+    case = explored(protocol=changed(protocol, OUTBOX=1))
+    assert case.story.title == "an outbox overflowed"
+
+
+def test_mistakes_are_told():
+    with pytest.raises(VerifyError, match="the names are loss, restart"):
+        explored("cut=1")
+    with pytest.raises(VerifyError, match="--graph"):
+        explored(graph="n0-")
