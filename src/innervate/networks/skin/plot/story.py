@@ -14,9 +14,9 @@ from innervate.networks.skin.plot import map as skinmap
 from innervate.networks.skin.plot import words as skin_words
 from innervate.networks.skin.plot.history import History
 from innervate.networks.skin.plot.sheet import Sheet
-from innervate.networks.skin.scenario.plan import Fault
 from innervate.plot import charts, words
 from innervate.scenario.actions.cables import ACTIONS
+from innervate.scenario.cables import Fault
 
 WINDOW_PERIODS = 1.25
 ZOOMS_MAX = 6
