@@ -24,6 +24,8 @@ NO_FENCE: dict[str, Any] = {
 # Keys of [protocol] whose parameter is called something else.
 KEYS = {"tick": "beacon_s", "jobs": "table_window", "job": "table_retry_s",
         "job_tries": "table_tries", "min_rssi": "min_rssi_dbm"}  # fmt: skip
+# Parameters, keys of [protocol] and parts of a profile that are called the same.
+OF_PROFILE = ("mtu", "transmissions", "hop_acks", "ack_us", "e2e_adapt", "e2e_tries", "copies")
 IN_TICKS = ("period", "period_max", "dead", "dead_step", "forget")
 
 
@@ -69,7 +71,6 @@ def parameters(
     """
     width: int = next(size for size in CLASSES if nodes <= size)
     chosen = _Chosen(settings, profile.beacon)
-    graph = settings.failover == "graph"
     if min_rssi_dbm is None:
         min_rssi_dbm = round((profile.rssi50_cdb + REPORT_CDB) / 100)
     params: dict[str, Any] = {
@@ -77,33 +78,34 @@ def parameters(
         "row": words(width),
         "places": min(width, NEIGHBOURS),
         "width": width,
-        "mtu": chosen.value("mtu", profile.mtu),
-        "mode": w.WHOLE_GRAPH if graph else w.TABLES if settings.tables else w.TABLE_FREE,
-        "discovery": DISCOVERY[settings.discovery],
-        "failover": FAILOVER[settings.failover],
-        "avoid_origin": int(settings.avoid == "origin"),
-        "retry": int(settings.retry),
-        "reliable": int(settings.reliable),
-        "activation": int(settings.activation),
         "told": int(profile.collisions),
-        "transmissions": chosen.value("transmissions", profile.transmissions),
-        "hop_acks": int(chosen.value("hop_acks", profile.hop_acks)),
-        "ack_us": chosen.value("ack_us", profile.ack_us),
         "suspect_us": chosen.micros("suspect_s", profile.suspect),
         "min_rssi": chosen.value("min_rssi_dbm", min_rssi_dbm),
         "e2e_us": chosen.micros("e2e_s", profile.e2e),
-        "e2e_adapt": int(chosen.value("e2e_adapt", profile.e2e_adapt)),
-        "e2e_tries": chosen.value("e2e_tries", profile.e2e_tries),
         "monitor": monitor,
-        **_rounds(profile, chosen),
         "standby": int(standbys > 0),
         "jobs": chosen.value("table_window", profile.jobs),
         "job_us": chosen.micros("table_retry_s", profile.job),
         "job_tries": chosen.value("table_tries", 3),
+        **_routing(settings),
+        **{name: int(chosen.value(name, getattr(profile, name))) for name in OF_PROFILE},
+        **_rounds(profile, chosen),
         **NO_FENCE,
     }
     _check(params)
     return params
+
+
+def _routing(settings: Any) -> dict[str, int]:
+    """What a scenario says of routes, whatever the radio."""
+    graph = settings.failover == "graph"
+    return {
+        "mode": w.WHOLE_GRAPH if graph else w.TABLES if settings.tables else w.TABLE_FREE,
+        "discovery": DISCOVERY[settings.discovery],
+        "failover": FAILOVER[settings.failover],
+        "avoid_origin": int(settings.avoid == "origin"),
+        **{name: int(getattr(settings, name)) for name in ("retry", "reliable", "activation")},
+    }
 
 
 def _rounds(profile: Profile, chosen: _Chosen) -> dict[str, int]:
@@ -115,7 +117,6 @@ def _rounds(profile: Profile, chosen: _Chosen) -> dict[str, int]:
     return {
         "jitter_us": chosen.micros("jitter_s", profile.jitter),
         "flood_us": chosen.micros("flood_s", profile.jitter / 8),
-        "copies": chosen.value("copies", profile.copies),
         "listen_us": listen_us,
         "spread_us": spread_us,
         "collect_us": chosen.micros("collect_s", (listen_us + spread_us) / 1e6 + rest_s),
