@@ -79,7 +79,7 @@ def plan(scenario: Any) -> MeshPlan:
 
 def _ends(model: MeshScenario, flows: list[list[tuple[int, int]]]) -> set[int]:
     """Who sends or receives messages that not all send."""
-    found = set()
+    found: set[int] = set()
     for flow, ends in zip(model.flow, flows, strict=True):
         found.update(a for a, _ in ends if flow.from_ != "all")
         found.update(b for _, b in ends if b not in (MONITOR, ALL))
