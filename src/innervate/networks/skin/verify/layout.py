@@ -1,15 +1,12 @@
-"""Where cells, cables, budgets and frames in flight lie in a row of the explorer."""
+"""Where everything stands in a row: a state of a skin as bytes."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 from innervate.networks.skin.protocol.constants import NONE, PORTS
 from innervate.networks.skin.verify import world as w
 from innervate.networks.skin.verify.graphs import symmetries
-
-if TYPE_CHECKING:
-    from innervate.networks.skin.verify.system import SkinModel
 
 # A frame takes 0.06 to 0.2 ms, and news keeps 0.5 ms from the last beacon: a tick's beacon and one
 # more can be in flight.
@@ -17,16 +14,16 @@ ROOM = 2
 LEAN_ROOM = 10  # and as many as there can be where a search has room for it
 
 
+def hold_periods(model: Any) -> int:
+    """FD_HOLD: k + 4 times the greatest depth there can be, unless the model says otherwise."""
+    return model.hold or 1 + 4 * model.graph.cells
+
+
 class Layout:
-    """Where things lie in a row; offsets and sizes in bytes.
+    """Where things lie in a row."""
 
-    Args:
-        model: what is explored.
-        hold_periods: for how many periods without a route a feasible distance is kept.
-    """
-
-    def __init__(self, model: SkinModel, hold_periods: int) -> None:
-        graph, self.model, self.hold_periods = model.graph, model, hold_periods
+    def __init__(self, model: Any) -> None:
+        graph, self.model = model.graph, model
         self.links = list(graph.links())
         self.ways = 2 * len(self.links)
         self.capacity = model.capacity or self._capacity()
@@ -88,7 +85,7 @@ class Layout:
         forgotten. It may be where no feasible distance is before everybody has sent once more,
         which a restarted PC does in the second round.
         """
-        model, most = self.model, self.hold_periods - 3
+        model, most = self.model, hold_periods(self.model) - 3
         if model.budget.ticks < w.ANY:
             most = model.budget.ticks if model.budget.ticks <= most else -1
         return most + 1 if model.keep and self._is_lean else 0

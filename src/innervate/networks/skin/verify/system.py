@@ -25,6 +25,7 @@ from innervate.networks.skin.verify import row as skin_row
 from innervate.networks.skin.verify import world as skin_world
 from innervate.networks.skin.verify import world as w
 from innervate.networks.skin.verify.layout import Layout
+from innervate.networks.skin.verify.layout import hold_periods as hold_periods
 from innervate.topology import Graph
 from innervate.verify.errors import VerifyError
 
@@ -74,8 +75,8 @@ class SkinModel:
         keep: keep what only a later fair schedule would see.
         symmetric: take states that differ by a symmetry of the graph as one.
         capacity: most frames in flight per direction; states with more are left out, and counted.
-            0 = what periodic cells can send within their budget; of triggered ones 2, or 10 where a
-            search has room for it (layout.py).
+            0 = what periodic cells can send within their budget; of triggered ones ROOM, or
+            LEAN_ROOM.
         whole: leave no beacon out, though it changes nothing.
         lean: forget what can no longer matter (see reduction.py), and follow no state of which a
             known one differs only in that more may still happen.
@@ -184,7 +185,7 @@ def world_of(model: SkinModel, plain: bool) -> w.SkinWorld:
             f"rule is one of {', '.join(RULES)} and updates one of {', '.join(UPDATES)}"
         )
     forms = w.Forms(plain)
-    lay = layout(model)
+    lay = Layout(model)
     work, work_words = forms.row(lay.width)
     trial, trial_words = forms.row(lay.width)
     best, best_words = forms.row(lay.width)
@@ -229,7 +230,7 @@ def world_of(model: SkinModel, plain: bool) -> w.SkinWorld:
 def first_row(model: SkinModel, system: System) -> list[int]:
     """The bytes of the state in which everything has just been switched on."""
     world = world_of(model, plain=True)
-    lay = layout(model)
+    lay = Layout(model)
     for c in range(model.graph.cells):
         world.work[lay.cell_at[c] + w.TICKS] = model.budget.ticks
     world.work[lay.pc_at + w.PC_COUNTS] = model.budget.counts
@@ -263,11 +264,6 @@ def _parameters(model: SkinModel, seq_every: int) -> dict[str, int]:
     }
 
 
-def hold_periods(model: SkinModel) -> int:
-    """FD_HOLD: k + 4 times the greatest depth there can be, unless the model says otherwise."""
-    return model.hold or 1 + 4 * model.graph.cells
-
-
 def _put(table: Any, place: int, **values: int) -> None:
     for name, value in values.items():
         if isinstance(table, list):
@@ -278,7 +274,7 @@ def _put(table: Any, place: int, **values: int) -> None:
 
 def layout(model: SkinModel) -> Layout:
     """Where things lie in a row of this model."""
-    return Layout(model, hold_periods(model))
+    return Layout(model)
 
 
 __all__ = ["Budget", "SkinModel", "System", "first_row", "layout", "skin_world", "system_of"]
