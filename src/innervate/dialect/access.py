@@ -1,4 +1,11 @@
-"""What a medium and a medium access protocol say to each other: inputs, and reports that count."""
+"""What a medium and a protocol say to each other: inputs, and reports that count.
+
+Everywhere a protocol has the same functions: `on_start(state, params, now, cause, out)`,
+`on_frame(..., port, frame, out)`, `on_timer(..., timer, out)`, `on_input(..., kind, item, out)`,
+and on the air `on_carrier(..., cd, voc, out)`; `now` is the node's own clock modulo 2^30, and what
+it wants done it puts into the outbox (see outbox.py). What the media decide stands in
+`sim/cables`, `sim/channel` and `sim/field`.
+"""
 
 # Inputs over cables; a network may have more.
 SAMPLE = 1  # item: what a node's sensors say, once a period of its source

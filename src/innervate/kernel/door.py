@@ -13,7 +13,7 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterable
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -52,6 +52,18 @@ def modules_of(entry: ModuleType) -> list[ModuleType]:
             if inspect.ismodule(thing) and thing not in found:
                 found.append(thing)
     return found
+
+
+def bound(name: str, *functions: Iterable[Callable[..., Any]]) -> ModuleType:
+    """Functions under one roof, that compiled code can be handed: a module that is no file.
+
+    Compiled code takes no other object of functions as an argument. Of equal names the first
+    counts.
+    """
+    made = ModuleType(name)
+    for function in (one for some in functions for one in some):
+        vars(made).setdefault(function.__name__, function)
+    return made
 
 
 def register_functions(*functions: Callable[..., Any], hot: bool = True) -> None:

@@ -78,20 +78,20 @@ class DeclaredStack:
         self.port_of_path = ports
         self.path_of_port = {port: path for path, port in enumerate(ports)}
 
-    def start(self, now: int, cause: int) -> None:
+    def on_start(self, now: int, cause: int) -> None:
         """Switch on."""
         self._do.on_start(self.node, self.params, now, cause, self.out)
 
-    def frame(self, now: int, port: int) -> None:
+    def on_frame(self, now: int, port: int) -> None:
         """The frame in the inbox was received on a path."""
         own = self.port_of_path[port]
         self._do.on_frame(self.node, self.params, now, own, self.inbox, self.out)
 
-    def timer(self, now: int, timer: int) -> None:
+    def on_timer(self, now: int, timer: int) -> None:
         """A timer fires."""
         self._do.on_timer(self.node, self.params, now, timer, self.out)
 
-    def input(self, now: int, kind: int, item: Any) -> None:
+    def on_input(self, now: int, kind: int, item: Any) -> None:
         """The node's own user hands something down."""
         self._do.on_input(self.node, self.params, now, kind, item, self.out)
 

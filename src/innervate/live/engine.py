@@ -31,16 +31,16 @@ class Stack(Protocol):
     reasons: tuple[str, ...]
     silent_us: int
 
-    def start(self, now: int, cause: int) -> None:
+    def on_start(self, now: int, cause: int) -> None:
         """Switch on."""
 
-    def frame(self, now: int, port: int) -> None:
+    def on_frame(self, now: int, port: int) -> None:
         """The frame in `inbox` was received."""
 
-    def timer(self, now: int, timer: int) -> None:
+    def on_timer(self, now: int, timer: int) -> None:
         """A timer fires."""
 
-    def input(self, now: int, kind: int, item: Any) -> None:
+    def on_input(self, now: int, kind: int, item: Any) -> None:
         """The node's own user hands something down."""
 
     def encode(self, frame: Any) -> bytes:
@@ -109,7 +109,7 @@ class Engine:
     def start(self, cause: int = 0) -> None:
         """Switch the node on: 0 first, 1 again with its memory lost."""
         now = self._clock()
-        self.stack.start(now & MASK30, cause)
+        self.stack.on_start(now & MASK30, cause)
         self._drain(now)
 
     def stop(self) -> None:
@@ -140,7 +140,7 @@ class Engine:
         """
         now = self._clock() if at is None else at
         self.counters["frames"] += 1
-        self.stack.frame(now & MASK30, port)
+        self.stack.on_frame(now & MASK30, port)
         self._drain(now)
 
     def call(self, handler: Callable[[int], None], at: int) -> None:
@@ -152,7 +152,7 @@ class Engine:
     def input(self, kind: int, item: Any) -> None:
         """Hand something down for the node's own user."""
         now = self._clock()
-        self.stack.input(now & MASK30, kind, item)
+        self.stack.on_input(now & MASK30, kind, item)
         self._drain(now)
 
     def _drain(self, now: int) -> None:
@@ -199,7 +199,7 @@ class Engine:
             if at is not None and at <= now:
                 self._due[timer] = None
                 self.counters["timers"] += 1
-                self.stack.timer(now & MASK30, timer)
+                self.stack.on_timer(now & MASK30, timer)
                 self._drain(now)
         if not self._stopped:
             self._arm(now)

@@ -46,7 +46,8 @@ def keyed(drawing: Drawing, entries: Iterable[tuple[Drawing, str]]) -> Drawing:
     shown = list(entries)
     columns = max(1, int(drawing.width // COLUMN_PX))
     rows = -(-len(shown) // columns)
-    made = Drawing(drawing.width, drawing.height + KEY_PX * rows, drawing.label)
+    size = max(drawing.width, COLUMN_PX), drawing.height + KEY_PX * rows
+    made = Drawing(*size, drawing.label)
     made.place(drawing, (0.0, 0.0))
     for i, (icon, words) in enumerate(shown):
         row, column = divmod(i, columns)

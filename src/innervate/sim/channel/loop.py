@@ -1,7 +1,10 @@
-"""The simulation loop of a radio channel: one function, compiled on arrays or plain on lists."""
+"""The simulation loop of a radio channel: one function, compiled on arrays or plain on lists.
+
+`do` are the functions of the network (see `sim/channel`).
+"""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any
 
 from innervate.dialect.access import (
     CLOCK,
@@ -57,23 +60,6 @@ ROWS_PER_EVENT = 24
 MARGIN = BATCH * ROWS_PER_EVENT
 
 
-class Handlers(NamedTuple):
-    """A loop's parts, bound to a stack; `advance` is the loop itself."""
-
-    drain: Callable[..., None]
-    finish: Callable[..., None]
-    offer: Callable[..., None]
-    tell_clock: Callable[..., None]
-    tell_outcome: Callable[..., None]
-    switch_on: Callable[..., None]
-    tell_carrier: Callable[..., None]
-    edge: Callable[..., None]
-    obey: Callable[..., None]
-    tell_all: Callable[..., None]
-    dispatch: Callable[..., None]
-    advance: Callable[..., None]
-
-
 def pressing(world):
     """Why the loop has to stop before the next event, or DONE."""
     run = world.run[0]
@@ -92,259 +78,268 @@ def pressing(world):
     return DONE
 
 
-def build(stack, recorder, packets=traffic):
-    """The loop for a stack: an object with start, hear, fire, give, carrier, digest, copy_frame.
+def drain(world, do, node, time, now):
+    """Carry out what a handler put into the outbox; fold it into the fingerprint."""
+    run, out = world.run[0], world.out
+    mark = run.fingerprint
+    for i in range(out.count[0]):
+        act = out.action[i]
+        kind, a, b, c = act.kind, act.a, act.b, act.c
+        mark = mix(mark, kind ^ (a << 3) ^ (b << 20) ^ (c << 50))
+        if kind == SEND and c & STOP:
+            medium.break_off(world, node, time)
+        elif kind == SEND:
+            mark = mix(mark, do.digest(out.frame[i]))
+            do.keep_sent(world, node, out.frame[i], time)
+            if out.frame[i].count > 0:
+                do.note_sent(world, node, out.frame[i], time)
+            medium.transmit(world, node, out.frame[i], time, do.copy_frame)
+        elif kind == SET_TIMER:
+            at = time + max(0, ((b - now + (1 << 29)) & MASK30) - (1 << 29))
+            if world.due[node * TIMERS + a] != at:
+                world.due[node * TIMERS + a] = at
+                queue.push(world.heap, queue.key_of(at, TIMER, node, a))
+        elif kind == REPORT:
+            keep_row(world, time, node, a, b, c)
+            if a == REPORT_DELIVERED:
+                for k in range(c):
+                    do.note_delivered(world, node, (b + k) & MASK16, time)
+                world.radios[node].noted |= 2
+            elif a == REPORT_LEFT:
+                world.radios[node].leaving = 2
+        elif kind == DELIVER:
+            do.note_received(world, node, out.frame[i], time)
+    out.count[0] = 0
+    run.fingerprint = mark
+    if out.overflow[0] and run.broken == 0:
+        run.broken, run.broken_node = BROKEN_OUTBOX, node
 
-    `recorder` keeps rows and checks: it has keep_sent, keep_received and watch.
-    `packets` follows what becomes of packets: `traffic`, or a protocol above whose frames they are.
-    """
-    start, hear, fire, give = stack.start, stack.hear, stack.fire, stack.give
-    carrier, digest, copy_frame = stack.carrier, stack.digest, stack.copy_frame
-    keep_sent, keep_received, watch = recorder.keep_sent, recorder.keep_received, recorder.watch
-    note_sent, note_delivered = packets.note_sent, packets.note_delivered
-    note_received = packets.note_received
 
-    def drain(world, node, time, now):
-        """Carry out what a handler put into the outbox; fold it into the fingerprint."""
-        run, out = world.run[0], world.out
-        mark = run.fingerprint
-        for i in range(out.count[0]):
-            act = out.action[i]
-            kind, a, b, c = act.kind, act.a, act.b, act.c
-            mark = mix(mark, kind ^ (a << 3) ^ (b << 20) ^ (c << 50))
-            if kind == SEND and c & STOP:
-                medium.break_off(world, node, time)
-            elif kind == SEND:
-                mark = mix(mark, digest(out.frame[i]))
-                keep_sent(world, node, out.frame[i], time)
-                if out.frame[i].count > 0:
-                    note_sent(world, node, out.frame[i], time)
-                medium.transmit(world, node, out.frame[i], time, copy_frame)
-            elif kind == SET_TIMER:
-                at = time + max(0, ((b - now + (1 << 29)) & MASK30) - (1 << 29))
-                if world.due[node * TIMERS + a] != at:
-                    world.due[node * TIMERS + a] = at
-                    queue.push(world.heap, queue.key_of(at, TIMER, node, a))
-            elif kind == REPORT:
-                keep_row(world, time, node, a, b, c)
-                if a == REPORT_DELIVERED:
-                    for k in range(c):
-                        note_delivered(world, node, (b + k) & MASK16, time)
-                    world.radios[node].noted |= 2
-                elif a == REPORT_LEFT:
-                    world.radios[node].leaving = 2
-            elif kind == DELIVER:
-                note_received(world, node, out.frame[i], time)
-        out.count[0] = 0
-        run.fingerprint = mark
-        if out.overflow[0] and run.broken == 0:
-            run.broken, run.broken_node = BROKEN_OUTBOX, node
+def finish(world, do, node, time, now, handler, port):
+    """After a handler: account for it, carry out what it asked for, check."""
+    run, radio = world.run[0], world.radios[node]
+    run.handled += 1
+    run.fingerprint = mix(run.fingerprint, (time << 26) ^ (node << 6) ^ (port << 40) ^ handler)
+    if world.out.count[0] > 0:
+        drain(world, do, node, time, now)
+    if run.watchful:
+        do.watch(world, node, time, handler, port)
+        if run.broken and run.broken_at < 0:
+            run.broken_at = time
+    if radio.noted & 2:
+        radio.noted &= 1
+        if (run.saturated or radio.backlog > 0) and radio.leaving == 0:
+            queue.push(world.heap, queue.key_of(time, OFFER, node, 1))
+    if radio.leaving == 2 and radio.alive and not radio.deaf:
+        radio.alive = 0
+        run.hurt += 1
 
-    def finish(world, node, time, now, handler, port):
-        """After a handler: account for it, carry out what it asked for, check."""
-        run, radio = world.run[0], world.radios[node]
-        run.handled += 1
-        run.fingerprint = mix(run.fingerprint, (time << 26) ^ (node << 6) ^ (port << 40) ^ handler)
-        if world.out.count[0] > 0:
-            drain(world, node, time, now)
-        if run.watchful:
-            watch(world, node, time, handler, port)
-            if run.broken and run.broken_at < 0:
-                run.broken_at = time
-        if radio.noted & 2:
-            radio.noted &= 1
-            if (run.saturated or radio.backlog > 0) and radio.leaving == 0:
-                queue.push(world.heap, queue.key_of(time, OFFER, node, 1))
-        if radio.leaving == 2 and radio.alive and not radio.deaf:
-            radio.alive = 0
-            run.hurt += 1
 
-    def offer(world, node, time):
-        """Hand packets down: of those that wait, and in saturation always new ones."""
-        run, radio = world.run[0], world.radios[node]
-        station = world.stations[node]
-        most = min(QUEUE, 2 * run.per_turn + 1) if run.saturated else QUEUE
-        for _ in range(QUEUE):
-            if station.queued >= most or radio.leaving or not radio.alive:
-                break
-            if run.saturated:
-                handle = traffic.make(world, node, time)
-            elif radio.backlog > station.queued:
-                handle = (radio.fresh - radio.backlog + station.queued) & MASK16
-            else:
-                break
-            traffic.fill_item(world, node, handle)
-            now = time + radio.offset
-            kind = FORCE if run.forced else PACKET
-            give(world, node, now & MASK30, kind)
-            finish(world, node, time, now, ON_INPUT, kind)
-
-    def tell_clock(world, node, time):
-        """Where stations share a clock: tell one which slot this is."""
-        run, item = world.run[0], world.item[0]
-        if run.period > 0:
-            item.slots, item.handle = 0, time // run.period % run.stations
-            item.ago = time % run.period
-            now = time + world.radios[node].offset
-            give(world, node, now & MASK30, CLOCK)
-            finish(world, node, time, now, ON_INPUT, CLOCK)
-
-    def tell_outcome(world, node, time):
-        """Tell a sender how many received its packet; no radio could know."""
-        radio, item = world.radios[node], world.item[0]
-        if radio.told_at == time and radio.alive:
-            item.slots, item.ago = 0, 0
-            item.handle = world.got[node * RING + (radio.told & (RING - 1))]
-            now = time + radio.offset
-            give(world, node, now & MASK30, RESULT)
-            finish(world, node, time, now, ON_INPUT, RESULT)
-
-    def switch_on(world, node, time, cause):
-        """Start a station; it learns at once whether there is a carrier."""
-        radio = world.radios[node]
-        radio.alive = 1
-        radio.leaving = 0
-        world.run[0].hurt -= 1
-        radio.candidate = NEVER
-        radio.cd, radio.voc, radio.noted = 0, 0, 0
-        radio.deaf = 0  # it died in mid-frame, and its radio starts anew, too
-        radio.ready_at, radio.told_at = NEVER, NEVER
-        now = time + radio.offset
-        for timer in range(TIMERS):
-            world.due[node * TIMERS + timer] = NEVER
-        start(world, node, now & MASK30, cause)
-        finish(world, node, time, now, ON_START, cause)
-        tell_clock(world, node, time)
-        medium.note_carrier(world, node)
-        queue.push(world.heap, queue.key_of(time, OFFER, node, 1))
-
-    def tell_carrier(world, node, time):
-        """Tell a station what its radio hears."""
-        radio = world.radios[node]
-        radio.cd = 1 if radio.present > 0 else 0
-        radio.voc = 1 if radio.present == 1 else 0
-        now = time + radio.offset
-        carrier(world, node, now & MASK30, radio.cd, radio.voc)
-        finish(world, node, time, now, ON_CARRIER, radio.cd * 2 + radio.voc)
-
-    def edge(world, rank, node, what, time):
-        """A signal arrives at a station, or ends there."""
-        air, radio = world.air[what], world.radios[node]
-        sender = what >> queue.AIR_BITS
-        if rank == STARTS:
-            air.at_start += 1
-            medium.go_on(world, STARTS, what, air.start, air.at_start)
-            medium.begin_signal(world, node, what)
+def offer(world, do, node, time):
+    """Hand packets down: of those that wait, and in saturation always new ones."""
+    run, radio = world.run[0], world.radios[node]
+    station = world.stations[node]
+    most = min(QUEUE, 2 * run.per_turn + 1) if run.saturated else QUEUE
+    for _ in range(QUEUE):
+        if station.queued >= most or radio.leaving or not radio.alive:
+            break
+        if run.saturated:
+            handle = traffic.make(world, node, time)
+        elif radio.backlog > station.queued:
+            handle = (radio.fresh - radio.backlog + station.queued) & MASK16
         else:
-            if not medium.is_end(world, sender, node, air, time):
-                queue.pop(world.heap)  # its sender died before
-                return
-            air.at_end += 1
-            medium.go_on(world, ENDS, what, air.end, air.at_end)
-            clear = radio.candidate == what
-            received = medium.end_signal(world, node, what)
-            keep_received(world, node, what, time, clear, received)
-            if received:
-                world.run[0].decoded += 1
-                now = time + radio.offset
-                hear(world, node, now & MASK30, world.frames[what])
-                finish(world, node, time, now, ON_FRAME, world.frames[what].kind)
-        medium.note_carrier(world, node)
+            break
+        traffic.fill_item(world, node, handle)
+        now = time + radio.offset
+        kind = FORCE if run.forced else PACKET
+        do.on_input(world, node, now & MASK30, kind)
+        finish(world, do, node, time, now, ON_INPUT, kind)
 
-    def obey(world, index, time):
-        """An event of the scenario."""
-        command = world.commands[index]
-        node = command.node
-        radio, run = world.radios[node], world.run[0]
-        if command.action == BEGIN:
-            for i in range(run.stations):
-                if world.radios[i].leaving == 0:
-                    switch_on(world, i, time, COLD)
-        elif command.action == JOIN and not radio.alive:
-            switch_on(world, node, time, LATE)
-        elif command.action == KILL and radio.alive:
-            radio.alive = 0
-            run.hurt += 1
-            medium.silence(world, node, time)
-        elif command.action == RETIRE and radio.alive:
-            radio.leaving = max(radio.leaving, 1)
-            now = time + radio.offset
-            give(world, node, now & MASK30, LEAVE)
-            finish(world, node, time, now, ON_INPUT, LEAVE)
-        elif command.action == GARBLE:
-            radio.garble = command.value
-        elif command.action == FADE:
-            radio.fade = command.value
 
-    def tell_all(world, time):
-        """Carrier notifications of this moment."""
-        count = world.told[0]
-        world.told[0] = 0
-        for i in range(1, count + 1):
-            node = world.told[i]
-            radio = world.radios[node]
-            radio.noted &= 2
-            if radio.alive and radio.deaf != medium.SENDING:
-                tell_carrier(world, node, time)
+def tell_clock(world, do, node, time):
+    """Where stations share a clock: tell one which slot this is."""
+    run, item = world.run[0], world.item[0]
+    if run.period > 0:
+        item.slots, item.handle = 0, time // run.period % run.stations
+        item.ago = time % run.period
+        now = time + world.radios[node].offset
+        do.on_input(world, node, now & MASK30, CLOCK)
+        finish(world, do, node, time, now, ON_INPUT, CLOCK)
 
-    def dispatch(world, key, time):
-        """Hand the first event of the queue to what it is for."""
-        rank = (key >> RANK_SHIFT) & 7
-        node = (key >> STATION_SHIFT) & (STATIONS_MAX - 1)
-        what = key & WHAT_MASK
-        if rank <= STARTS:
-            edge(world, rank, node, what, time)
+
+def tell_outcome(world, do, node, time):
+    """Tell a sender how many received its packet; no radio could know."""
+    radio, item = world.radios[node], world.item[0]
+    if radio.told_at == time and radio.alive:
+        item.slots, item.ago = 0, 0
+        item.handle = world.got[node * RING + (radio.told & (RING - 1))]
+        now = time + radio.offset
+        do.on_input(world, node, now & MASK30, RESULT)
+        finish(world, do, node, time, now, ON_INPUT, RESULT)
+
+
+def switch_on(world, do, node, time, cause):
+    """Start a station; it learns at once whether there is a carrier."""
+    radio = world.radios[node]
+    radio.alive = 1
+    radio.leaving = 0
+    world.run[0].hurt -= 1
+    radio.candidate = NEVER
+    radio.cd, radio.voc, radio.noted = 0, 0, 0
+    radio.deaf = 0  # it died in mid-frame, and its radio starts anew, too
+    radio.ready_at, radio.told_at = NEVER, NEVER
+    now = time + radio.offset
+    for timer in range(TIMERS):
+        world.due[node * TIMERS + timer] = NEVER
+    do.on_start(world, node, now & MASK30, cause)
+    finish(world, do, node, time, now, ON_START, cause)
+    tell_clock(world, do, node, time)
+    medium.note_carrier(world, node)
+    queue.push(world.heap, queue.key_of(time, OFFER, node, 1))
+
+
+def tell_carrier(world, do, node, time):
+    """Tell a station what its radio hears."""
+    radio = world.radios[node]
+    radio.cd = 1 if radio.present > 0 else 0
+    radio.voc = 1 if radio.present == 1 else 0
+    now = time + radio.offset
+    do.on_carrier(world, node, now & MASK30, radio.cd, radio.voc)
+    finish(world, do, node, time, now, ON_CARRIER, radio.cd * 2 + radio.voc)
+
+
+def edge(world, do, rank, node, what, time):
+    """A signal arrives at a station, or ends there."""
+    air, radio = world.air[what], world.radios[node]
+    sender = what >> queue.AIR_BITS
+    if rank == STARTS:
+        air.at_start += 1
+        medium.go_on(world, STARTS, what, air.start, air.at_start)
+        medium.begin_signal(world, node, what)
+    else:
+        if not medium.is_end(world, sender, node, air, time):
+            queue.pop(world.heap)  # its sender died before
             return
-        queue.pop(world.heap)
+        air.at_end += 1
+        medium.go_on(world, ENDS, what, air.end, air.at_end)
+        clear = radio.candidate == what
+        received = medium.end_signal(world, node, what)
+        do.keep_received(world, node, what, time, clear, received)
+        if received:
+            world.run[0].decoded += 1
+            now = time + radio.offset
+            do.on_frame(world, node, now & MASK30, world.frames[what])
+            finish(world, do, node, time, now, ON_FRAME, world.frames[what].kind)
+    medium.note_carrier(world, node)
+
+
+def obey(world, do, index, time):
+    """An event of the scenario."""
+    command = world.commands[index]
+    node = command.node
+    radio, run = world.radios[node], world.run[0]
+    if command.action == BEGIN:
+        for i in range(run.stations):
+            if world.radios[i].leaving == 0:
+                switch_on(world, do, i, time, COLD)
+    elif command.action == JOIN and not radio.alive:
+        switch_on(world, do, node, time, LATE)
+    elif command.action == KILL and radio.alive:
+        radio.alive = 0
+        run.hurt += 1
+        medium.silence(world, node, time)
+    elif command.action == RETIRE and radio.alive:
+        radio.leaving = max(radio.leaving, 1)
+        now = time + radio.offset
+        do.on_input(world, node, now & MASK30, LEAVE)
+        finish(world, do, node, time, now, ON_INPUT, LEAVE)
+    elif command.action == GARBLE:
+        radio.garble = command.value
+    elif command.action == FADE:
+        radio.fade = command.value
+
+
+def tell_all(world, do, time):
+    """Carrier notifications of this moment."""
+    count = world.told[0]
+    world.told[0] = 0
+    for i in range(1, count + 1):
+        node = world.told[i]
         radio = world.radios[node]
-        if rank == READY:
-            if radio.ready_at == time:
-                radio.deaf = 0
-            if radio.alive and not radio.deaf:
-                tell_carrier(world, node, time)
-        elif rank == TIMER:
-            if world.due[node * TIMERS + what] == time and radio.alive:
-                world.due[node * TIMERS + what] = NEVER
-                now = time + radio.offset
-                fire(world, node, now & MASK30, what)
-                finish(world, node, time, now, ON_TIMER, what)
-        elif rank == OFFER:
-            if what == 0:
-                traffic.make(world, node, time)
-                radio.next_offer += 1
-                traffic.schedule(world, node)
-            offer(world, node, time)
-        elif rank == OUTCOME:
-            tell_outcome(world, node, time)
-        else:
-            obey(world, (node << STATION_SHIFT) | what, time)
+        radio.noted &= 2
+        if radio.alive and radio.deaf != medium.SENDING:
+            tell_carrier(world, do, node, time)
 
-    def advance(world, until, budget):
-        """Run up to, not including, time `until` (us), or `budget` events."""
-        run, heap = world.run[0], world.heap
-        for _ in range(0, budget, BATCH):
-            run.status = pressing(world)
-            if run.status != DONE:
+
+def dispatch(world, do, key, time):
+    """Hand the first event of the queue to what it is for."""
+    rank = (key >> RANK_SHIFT) & 7
+    node = (key >> STATION_SHIFT) & (STATIONS_MAX - 1)
+    what = key & WHAT_MASK
+    if rank <= STARTS:
+        edge(world, do, rank, node, what, time)
+        return
+    queue.pop(world.heap)
+    radio = world.radios[node]
+    if rank == READY:
+        if radio.ready_at == time:
+            radio.deaf = 0
+        if radio.alive and not radio.deaf:
+            tell_carrier(world, do, node, time)
+    elif rank == TIMER:
+        if world.due[node * TIMERS + what] == time and radio.alive:
+            world.due[node * TIMERS + what] = NEVER
+            now = time + radio.offset
+            do.on_timer(world, node, now & MASK30, what)
+            finish(world, do, node, time, now, ON_TIMER, what)
+    elif rank == OFFER:
+        if what == 0:
+            traffic.make(world, node, time)
+            radio.next_offer += 1
+            traffic.schedule(world, node)
+        offer(world, do, node, time)
+    elif rank == OUTCOME:
+        tell_outcome(world, do, node, time)
+    else:
+        obey(world, do, (node << STATION_SHIFT) | what, time)
+
+
+def run_until(world, do, until, budget):
+    """Run up to, not including, time `until` (us), or `budget` events."""
+    run, heap = world.run[0], world.heap
+    for _ in range(0, budget, BATCH):
+        run.status = pressing(world)
+        if run.status != DONE:
+            return
+        for _ in range(BATCH):
+            if run.completed >= run.wanted > 0:
                 return
-            for _ in range(BATCH):
-                if run.completed >= run.wanted > 0:
-                    return
-                key = heap.keys[0]
-                if heap.size[0] == 0:
-                    key = queue.LAST
-                if world.told[0] > 0 and key >= queue.key_of(run.now, READY, 0, 0):
-                    tell_all(world, run.now)
-                    continue
-                time = key >> TIME_SHIFT
-                if time >= until:
-                    return
-                run.now = time
-                dispatch(world, key, time)
-            if run.broken:
-                break
-        run.status = BUDGET
+            key = heap.keys[0]
+            if heap.size[0] == 0:
+                key = queue.LAST
+            if world.told[0] > 0 and key >= queue.key_of(run.now, READY, 0, 0):
+                tell_all(world, do, run.now)
+                continue
+            time = key >> TIME_SHIFT
+            if time >= until:
+                return
+            run.now = time
+            dispatch(world, do, key, time)
+        if run.broken:
+            break
+    run.status = BUDGET
 
-    return Handlers(
-        *(drain, finish, offer, tell_clock, tell_outcome, switch_on),
-        *(tell_carrier, edge, obey, tell_all, dispatch, advance),
-    )
+
+FUNCTIONS = (
+    *(drain, finish, offer, tell_clock, tell_outcome, switch_on),
+    *(tell_carrier, edge, obey, tell_all, dispatch, run_until),
+)
+
+
+def bind(do: Any) -> Callable[..., None]:
+    """The loop over a network's functions (see `sim/channel`): (world, until_us, budget)."""
+
+    def advance(world, until, budget):  # type: ignore[no-untyped-def]
+        run_until(world, do, until, budget)
+
+    return advance

@@ -95,7 +95,7 @@ def test_messages_that_say_nothing_of_order_go_up_at_once():
 def lose_some(node, share):
     """It takes packets over, acknowledges them, and forgets some: as if it had been restarted."""
     chance, stack = random.Random(5), node.stack
-    frame = stack.frame
+    frame = stack.on_frame
 
     def forgetful(now, port):
         kind, seq, own = stack.inbox.kind, stack.inbox.seq, stack.node
@@ -105,7 +105,7 @@ def lose_some(node, share):
             if kind == DATA and found == seq and waits and chance.random() < share:
                 mesh_queue.drop(own, i)
 
-    stack.frame = forgetful
+    stack.on_frame = forgetful
 
 
 @pytest.mark.parametrize("count", [150])

@@ -80,7 +80,7 @@ class MeshStack:
         # Who was asked to acknowledge which packet (origin, number): how often it has not.
         self._unanswered: dict[tuple[int, int, int], int] = {}
 
-    def start(self, now: int, cause: int) -> None:
+    def on_start(self, now: int, cause: int) -> None:
         """Switch on; after a restart with the epoch that was followed before.
 
         A gateway's requests are heeded only if their epoch, or their round, is newer than before.
@@ -104,7 +104,7 @@ class MeshStack:
         is_ack = frame.kind == ACK and frame.link_dst == self.node.number
         return "ack of nothing" if is_ack and what not in self._unanswered else ""
 
-    def frame(self, now: int, port: int) -> None:
+    def on_frame(self, now: int, port: int) -> None:
         """The frame in the inbox was received, and there is no objection to it."""
         self._place(self.inbox.link_src, port)
         if self.inbox.kind != ACK:  # acks tell how loud the frame was that they are for
@@ -131,11 +131,11 @@ class MeshStack:
                 known.remove(port)
             known.insert(0, port)
 
-    def timer(self, now: int, timer: int) -> None:
+    def on_timer(self, now: int, timer: int) -> None:
         """A timer fires."""
         mesh.on_timer(self.node, self.gate, self.params, now, timer, self.out)
 
-    def input(self, now: int, kind: int, item: Any) -> None:
+    def on_input(self, now: int, kind: int, item: Any) -> None:
         """A message to send, or where a robot is."""
         mesh.on_input(self.node, self.gate, self.params, now, kind, item, self.out)
 

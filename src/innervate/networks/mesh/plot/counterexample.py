@@ -6,8 +6,8 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from innervate.plot import counterexample
-from innervate.plot.counterexample import PANEL, arrow, disc
+from innervate.plot import panels
+from innervate.plot.panels import PANEL, RADIUS
 from innervate.plot.svg import Drawing, Point
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 SPREAD = (70.0, 52.0)
 CENTRE = (PANEL[0] / 2, PANEL[1] / 2 + 8)
 SHIFT = 4.0  # arrows of tables and of frames run beside each other
-_STYLE = """
+_MORE = """
 .gone{fill:none;stroke:var(--link);stroke-dasharray:3 3}
 .sent{stroke:var(--accent);stroke-width:1.6;fill:none;stroke-linecap:round}
 .lost{stroke:var(--alarm);stroke-width:1.6;fill:none;stroke-dasharray:4 4;stroke-linecap:round}
@@ -25,13 +25,13 @@ _STYLE = """
 
 def draw(story: MeshStory) -> Drawing:
     """A panel for every event; the sentences below."""
-    events = range(len(story.scenes))
-    return counterexample.draw(story, events, lambda panel, index: _paint(panel, story, index))
+    drawn = [_panel(story, index) for index in range(len(story.scenes))]
+    return panels.page(story.title, drawn, story.sentences)
 
 
 def save(story: MeshStory, path: Path) -> None:
     """Write the drawing to a file of its own."""
-    draw(story).save(path, counterexample.look(_STYLE))
+    panels.save(draw(story), path, _MORE)
 
 
 def _places(nodes: int) -> list[Point]:
@@ -42,26 +42,28 @@ def _places(nodes: int) -> list[Point]:
     ]
 
 
-def _paint(panel: Drawing, story: MeshStory, index: int) -> None:
+def _panel(story: MeshStory, index: int) -> Drawing:
     """The network after one event: links, next hops to the recipient, the frame that went out."""
     scene, model = story.scenes[index], story.found.model
     places = _places(model.nodes)
+    panel = panels.panel(index)
     for a, b in model.links:
         panel.line(places[a], places[b], "cable")
     is_last = index == len(story.scenes) - 1
     for node, hop in enumerate(scene.hops):
         if hop >= 0:
             kind = "ring" if is_last and node in story.ring else "way"
-            arrow(panel, *_beside(places[node], places[hop], SHIFT), kind)
+            panels.arrow(panel, *_beside(places[node], places[hop], SHIFT), kind)
     for pair, kind in ((scene.sent, "sent"), (scene.lost, "lost")):
         if pair:
-            arrow(panel, *_beside(places[pair[0]], places[pair[1]], 3 * SHIFT), kind)
+            panels.arrow(panel, *_beside(places[pair[0]], places[pair[1]], 3 * SHIFT), kind)
     for node, place in enumerate(places):
         gone = node in scene.dead
         label = "x" if gone else str(node)
-        disc(panel, place, label, node == story.dest and not gone, node == scene.actor)
+        panels.disc(panel, place, label, node == story.dest and not gone, node == scene.actor)
         if gone:
-            panel.circle(place, counterexample.RADIUS, "gone")
+            panel.circle(place, RADIUS, "gone")
+    return panel
 
 
 def _beside(start: Point, end: Point, shift: float) -> tuple[Point, Point]:

@@ -1,5 +1,8 @@
 """The simulation loop of a mesh: one function, compiled on arrays or plain on lists."""
 
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
 from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.kernel.bits import mix
@@ -31,6 +34,21 @@ COLD, MEMORY_LOST = 0, 1
 DUPLICATES_FULL = 100  # a status: the table of deliveries is half full
 
 BYTE = 0xFF
+
+
+class Loop(NamedTuple):
+    """A loop bound to a stack.
+
+    Attributes:
+        below, above: what the layer below the router does for it, and tells it.
+        own: the loop's other parts.
+        advance: the loop itself.
+    """
+
+    below: tuple[Callable[..., Any], ...]
+    above: tuple[Callable[..., Any], ...]
+    own: tuple[Callable[..., Any], ...]
+    advance: Callable[..., None]
 
 
 def pressing(world):
@@ -68,7 +86,8 @@ def wipe(world, node):
 
 def build(stack, layer):
     """The loop for a stack (see stacks.py) over a layer: `over_medium` or `over_channel`."""
-    start, hear, fire, give = stack.start, stack.hear, stack.fire, stack.give
+    on_start, on_frame = stack.on_start, stack.on_frame
+    on_timer, on_input = stack.on_timer, stack.on_input
     digest, is_sound = stack.digest, stack.is_sound
     below = layer.down(stack)
     hand_down, expire_below = below.hand_down, below.expire
@@ -116,13 +135,13 @@ def build(stack, layer):
         if world.run[0].told:
             world.item[0].ok = ok
             now = time + world.radios[node].offset
-            give(world, node, now & MASK30, SENT)
+            on_input(world, node, now & MASK30, SENT)
             finish(world, node, time, now, ON_INPUT, SENT)
 
     def take(world, node, frame, time):
         """A node's router is handed a frame that was received."""
         now = time + world.radios[node].offset
-        hear(world, node, now & MASK30, frame)
+        on_frame(world, node, now & MASK30, frame)
         finish(world, node, time, now, ON_FRAME, frame.kind)
 
     above = layer.up(stack, below, take, tell_sent)
@@ -139,7 +158,7 @@ def build(stack, layer):
             world.due[node * TIMERS + timer] = NEVER
         now = time + radio.offset
         power_on(world, node, time, now, cause)
-        start(world, node, now & MASK30, cause)
+        on_start(world, node, now & MASK30, cause)
         finish(world, node, time, now, ON_START, cause)
 
     def obey(world, index, time):
@@ -173,7 +192,7 @@ def build(stack, layer):
         for i in range(message.length):
             item.body[i] = (index >> (8 * (i & 3))) & BYTE
         now = time + world.radios[node].offset
-        give(world, node, now & MASK30, MESSAGE)
+        on_input(world, node, now & MASK30, MESSAGE)
         finish(world, node, time, now, ON_INPUT, MESSAGE)
 
     def sample(world, index, time):
@@ -182,7 +201,7 @@ def build(stack, layer):
         motion.walk_on(world, index, time)
         if motion.tell_place(world, node):
             now = time + world.radios[node].offset
-            give(world, node, now & MASK30, SAMPLE)
+            on_input(world, node, now & MASK30, SAMPLE)
             finish(world, node, time, now, ON_INPUT, SAMPLE)
         at = time + world.run[0].sample
         queue.push(world.heap, queue.key_of(at, queue.SAMPLE, node, index))
@@ -195,7 +214,7 @@ def build(stack, layer):
         world.due[node * TIMERS + timer] = NEVER
         now = time + radio.offset
         if timer < mesh_const.TIMERS:
-            fire(world, node, now & MASK30, timer)
+            on_timer(world, node, now & MASK30, timer)
             finish(world, node, time, now, ON_TIMER, timer)
         else:
             expire_below(world, node, timer, time, now)
@@ -246,7 +265,5 @@ def build(stack, layer):
                 dispatch(world, key, time)
         run.status = BUDGET
 
-    return (
-        *(*below, drain, finish, tell_sent, take, *above, switch_on, obey, offer, sample),
-        *(expire, dispatch, advance),
-    )
+    own = (drain, finish, tell_sent, take, switch_on, obey, offer, sample, expire, dispatch)
+    return Loop(below, above, own, advance)

@@ -123,10 +123,8 @@ def due(world):
     return key >> heap.TIME_SHIFT
 
 
-def layer(handlers):
-    """The layer whose channel has these handlers, made with this module as its `packets`."""
-    tell_all, dispatch_channel = handlers.tell_all, handlers.dispatch
-    start_station = handlers.switch_on
+def layer(do):
+    """The layer whose channel calls these functions, made with this module as their `packets`."""
 
     def step(world, time):
         """Handle the next event of the channel below, at `time`, us."""
@@ -134,10 +132,10 @@ def layer(handlers):
         handled = below.run[0].handled
         key = below.heap.keys[0] if below.heap.size[0] > 0 else heap.LAST
         if below.told[0] > 0 and key >= heap.key_of(below.run[0].now, heap.READY, 0, 0):
-            tell_all(below, time)
+            radio_loop.tell_all(below, do, time)
         else:
             below.run[0].now = time
-            dispatch_channel(below, key, time)
+            radio_loop.dispatch(below, do, key, time)
         world.run[0].handled += below.run[0].handled - handled
 
     def down(stack):
@@ -167,7 +165,7 @@ def layer(handlers):
 
         def switch_on(world, node, time, _now, _cause):
             """A node starts; its station listens first, as others may be on the air."""
-            start_station(world.below, node, time, radio_loop.LATE)
+            radio_loop.switch_on(world.below, do, node, time, radio_loop.LATE)
 
         def cut_short(world, node, place, time):
             """A node stops in mid-frame, if it has begun; nobody receives that."""

@@ -66,9 +66,9 @@ def step(_world, _time):
 
 def down(stack):
     """The functions by which a router hands frames to CSMA and the medium."""
-    mac_start, mac_fire, mac_give = stack.mac_start, stack.mac_fire, stack.mac_give
-    mac_carrier, digest, copy_frame = stack.mac_carrier, stack.digest, stack.copy_frame
-    frame_bytes = stack.frame_bytes
+    mac_on_start, mac_on_timer = stack.mac_on_start, stack.mac_on_timer
+    mac_on_input, mac_on_carrier = stack.mac_on_input, stack.mac_on_carrier
+    digest, copy_frame, frame_bytes = stack.digest, stack.copy_frame, stack.frame_bytes
 
     def drain_mac(world, node, time, now, handler):
         """Carry out what the medium access wants: True if it hands up the frame it was given."""
@@ -122,7 +122,7 @@ def down(stack):
         item.us = medium.airtime(world, frame_bytes(kept))
         item.urgent = 1 if urgent else 0
         item.attempt = attempt
-        mac_give(world, node, now & MASK30, csma.PACKET)
+        mac_on_input(world, node, now & MASK30, csma.PACKET)
         drain_mac(world, node, time, now, MAC + ON_INPUT)
         return mark
 
@@ -131,7 +131,7 @@ def down(stack):
         medium.miss(world, node, time)
         world.radios[node].told = 0
         if world.run[0].mac:
-            mac_start(world, node, now & MASK30, cause)
+            mac_on_start(world, node, now & MASK30, cause)
             drain_mac(world, node, time, now, MAC + ON_START)
 
     def switch_off(world, node, time):
@@ -150,8 +150,8 @@ def down(stack):
         carrier = 1 if medium.senses(world, node) else 0
         if carrier != radio.told:
             radio.told = carrier
-            mac_carrier(world, node, now & MASK30, carrier, 0)
-        mac_fire(world, node, now & MASK30, timer - mesh_const.TIMERS)
+            mac_on_carrier(world, node, now & MASK30, carrier, 0)
+        mac_on_timer(world, node, now & MASK30, timer - mesh_const.TIMERS)
         drain_mac(world, node, time, now, MAC + ON_TIMER)
 
     return Down(drain_mac, hand_down, switch_on, switch_off, expire)
@@ -159,7 +159,7 @@ def down(stack):
 
 def up(stack, below, take, tell_sent):
     """What happens below: `take` hands a frame to a router, `tell_sent` its own one's fate."""
-    mac_hear, digest, frame_bytes = stack.mac_hear, stack.digest, stack.frame_bytes
+    mac_on_frame, digest, frame_bytes = stack.mac_on_frame, stack.digest, stack.frame_bytes
     drain_mac = below.drain_mac
 
     def arrive(world, node, place, time):
@@ -171,7 +171,7 @@ def up(stack, below, take, tell_sent):
         run.arrived += 1
         recorder.tap(world, place, node, time, 0, taps.FINE)
         if run.mac:
-            mac_hear(world, node, now & MASK30, frame)
+            mac_on_frame(world, node, now & MASK30, frame)
             if not drain_mac(world, node, time, now, MAC + ON_FRAME):
                 return
         take(world, node, frame, time)

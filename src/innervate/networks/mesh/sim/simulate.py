@@ -18,7 +18,6 @@ from innervate.networks.radio.sim import recorder as radio_recorder
 from innervate.networks.radio.sim import simulate as radio_simulate
 from innervate.networks.radio.sim import stacks as radio_stacks
 from innervate.sim import heap, rows, taps
-from innervate.sim.channel import loop as radio_loop
 from innervate.sim.driver import Progress
 from innervate.sim.field import medium, motion, powers
 from innervate.sim.field.simulation import Field
@@ -92,16 +91,13 @@ def _compiled(entry: ModuleType, access: radio_stacks.Protocol | None) -> Callab
         below = (over_medium.give_up, over_medium.short, over_medium.due, over_medium.step)
         door.register_functions(*below, hot=False)
     else:
-        handlers = radio_simulate.registered(access, over_channel)
-        door.register_functions(*handlers[:-1], hot=False)
-        door.register(over_channel, hot=False)
-        layer = over_channel.layer(handlers)
+        layer = over_channel.layer(radio_simulate.registered(access, over_channel))
         door.register_functions(layer.step, hot=False)
     stack = stacks.bind(entry)
     door.register_functions(*stack, hot=False)
     parts = loop.build(stack, layer)
-    door.register_functions(*parts[:-1], hot=False)
-    advance = door.compiled_as_one(parts[-1])
+    door.register_functions(*parts.below, *parts.above, *parts.own, hot=False)
+    advance = door.compiled_as_one(parts.advance)
     return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
 
 
@@ -188,7 +184,7 @@ def simulation(
     if plain:
         fields = mesh_fields.node(plan.capacity)
         stack = stacks.plain_stack(router, fields, through)
-        advance = loop.build(stack, _plain_layer(plan.mac))[-1]
+        advance = loop.build(stack, _plain_layer(plan.mac)).advance
     else:
         advance = compiled_loop(router, plan.mac)
     world = builder.build(plan, plain, checks, keep, trail, tap)
@@ -214,8 +210,8 @@ def _plain_layer(mac: str) -> Any:
     """What is below the router in a plain run."""
     if mac in builder.MACS:
         return over_medium
-    stack = radio_stacks.bind(radio_stacks.PROTOCOLS[mac].entry)
-    return over_channel.layer(radio_loop.build(stack, radio_recorder, over_channel))
+    entry = radio_stacks.PROTOCOLS[mac].entry
+    return over_channel.layer(radio_stacks.bind(entry, radio_recorder, over_channel))
 
 
 def story(plan: Any, world: w.World) -> str:

@@ -17,23 +17,23 @@ class Stack(NamedTuple):
     """The functions of router and medium access with the simulator's world first.
 
     Attributes:
-        start: the router's on_start, and so on: hear, fire, give.
-        mac_start: the medium access's on_start, and so on.
+        on_start: the router's, and so on.
+        mac_on_start: the medium access's, and so on.
         digest: a frame in one word.
         copy_frame: to a place on the air; tests may send it through bytes on the way.
         frame_bytes: its length on the wire.
         is_sound: True if every word of a node's record is in its range.
     """
 
-    start: Callable[..., None]
-    hear: Callable[..., None]
-    fire: Callable[..., None]
-    give: Callable[..., None]
-    mac_start: Callable[..., None]
-    mac_hear: Callable[..., None]
-    mac_fire: Callable[..., None]
-    mac_give: Callable[..., None]
-    mac_carrier: Callable[..., None]
+    on_start: Callable[..., None]
+    on_frame: Callable[..., None]
+    on_timer: Callable[..., None]
+    on_input: Callable[..., None]
+    mac_on_start: Callable[..., None]
+    mac_on_frame: Callable[..., None]
+    mac_on_timer: Callable[..., None]
+    mac_on_input: Callable[..., None]
+    mac_on_carrier: Callable[..., None]
     digest: Callable[..., int]
     copy_frame: Callable[..., None]
     frame_bytes: Callable[..., int]
@@ -72,49 +72,56 @@ def is_sound(world, node):
 
 def bind(entry: ModuleType, sound: Callable[..., bool] = is_sound) -> Stack:
     """The stack of a router, over CSMA."""
-    on_start, on_frame, on_timer, on_input = (
-        *(entry.on_start, entry.on_frame),
-        *(entry.on_timer, entry.on_input),
-    )
-    mac_on_start, mac_on_frame, mac_on_timer = csma.on_start, csma.on_frame, csma.on_timer
-    mac_on_input, mac_on_carrier = csma.on_input, csma.on_carrier
+    parts: tuple[Any, ...] = (*_router(entry), *_csma(), digest, copy_frame, frame_bytes, sound)
+    return Stack._make(parts)
 
-    def start(world, node, now, cause):
+
+def _router(entry: ModuleType) -> tuple[Callable[..., Any], ...]:
+    """A router's functions with the world as their first argument."""
+    start, frame_in, timer_due = entry.on_start, entry.on_frame, entry.on_timer
+    given = entry.on_input
+
+    def on_start(world, node, now, cause):  # type: ignore[no-untyped-def]
         gate = world.gates[world.radios[node].gate]
-        on_start(world.nodes[node], gate, world.params[0], now, cause, world.out)
+        start(world.nodes[node], gate, world.params[0], now, cause, world.out)
 
-    def hear(world, node, now, frame):
+    def on_frame(world, node, now, frame):  # type: ignore[no-untyped-def]
         gate = world.gates[world.radios[node].gate]
-        on_frame(world.nodes[node], gate, world.params[0], now, 0, frame, world.out)
+        frame_in(world.nodes[node], gate, world.params[0], now, 0, frame, world.out)
 
-    def fire(world, node, now, timer):
+    def on_timer(world, node, now, timer):  # type: ignore[no-untyped-def]
         gate = world.gates[world.radios[node].gate]
-        on_timer(world.nodes[node], gate, world.params[0], now, timer, world.out)
+        timer_due(world.nodes[node], gate, world.params[0], now, timer, world.out)
 
-    def give(world, node, now, kind):
+    def on_input(world, node, now, kind):  # type: ignore[no-untyped-def]
         gate, item = world.gates[world.radios[node].gate], world.item[0]
-        on_input(world.nodes[node], gate, world.params[0], now, kind, item, world.out)
+        given(world.nodes[node], gate, world.params[0], now, kind, item, world.out)
 
-    def mac_start(world, node, now, cause):
-        mac_on_start(world.macs[node], world.mac_params[0], now, cause, world.mac_out)
+    return on_start, on_frame, on_timer, on_input
 
-    def mac_hear(world, node, now, frame):
-        mac_on_frame(world.macs[node], world.mac_params[0], now, 0, frame, world.mac_out)
 
-    def mac_fire(world, node, now, timer):
-        mac_on_timer(world.macs[node], world.mac_params[0], now, timer, world.mac_out)
+def _csma() -> tuple[Callable[..., Any], ...]:
+    """The medium access's."""
+    start, frame_in, timer_due = csma.on_start, csma.on_frame, csma.on_timer
+    given, carrier = csma.on_input, csma.on_carrier
 
-    def mac_give(world, node, now, kind):
+    def mac_on_start(world, node, now, cause):  # type: ignore[no-untyped-def]
+        start(world.macs[node], world.mac_params[0], now, cause, world.mac_out)
+
+    def mac_on_frame(world, node, now, frame):  # type: ignore[no-untyped-def]
+        frame_in(world.macs[node], world.mac_params[0], now, 0, frame, world.mac_out)
+
+    def mac_on_timer(world, node, now, timer):  # type: ignore[no-untyped-def]
+        timer_due(world.macs[node], world.mac_params[0], now, timer, world.mac_out)
+
+    def mac_on_input(world, node, now, kind):  # type: ignore[no-untyped-def]
         params, item = world.mac_params[0], world.mac_item[0]
-        mac_on_input(world.macs[node], params, now, kind, item, world.mac_out)
+        given(world.macs[node], params, now, kind, item, world.mac_out)
 
-    def mac_carrier(world, node, now, cd, voc):
-        mac_on_carrier(world.macs[node], world.mac_params[0], now, cd, voc, world.mac_out)
+    def mac_on_carrier(world, node, now, cd, voc):  # type: ignore[no-untyped-def]
+        carrier(world.macs[node], world.mac_params[0], now, cd, voc, world.mac_out)
 
-    return Stack(
-        *(start, hear, fire, give, mac_start, mac_hear, mac_fire, mac_give, mac_carrier),
-        *(digest, copy_frame, frame_bytes, sound),
-    )
+    return mac_on_start, mac_on_frame, mac_on_timer, mac_on_input, mac_on_carrier
 
 
 def plain_stack(entry: ModuleType, fields: Any, through: Callable[[Any], Any] | None) -> Stack:

@@ -96,7 +96,7 @@ class RadioNode(LiveNode):
         """The radio's carrier came or went."""
         assert self.engine is not None
         self.paths[0].heard_at = at
-        self.engine.call(lambda now: self.stack.carrier(now, cd, voc), at)
+        self.engine.call(lambda now: self.stack.on_carrier(now, cd, voc), at)
 
     def on_frame(self, at: int, data: bytes) -> None:
         """The radio received a frame."""

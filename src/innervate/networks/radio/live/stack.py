@@ -42,23 +42,23 @@ class StationStack:
         self.out = plain.Outbox(Frame, OUTBOX)
         self.inbox = Frame()
 
-    def start(self, now: int, cause: int) -> None:
+    def on_start(self, now: int, cause: int) -> None:
         """Switch on."""
         radio_practical.on_start(self.station, self.params, now, cause, self.out)
 
-    def frame(self, now: int, port: int) -> None:
+    def on_frame(self, now: int, port: int) -> None:
         """The frame in the inbox was received."""
         radio_practical.on_frame(self.station, self.params, now, port, self.inbox, self.out)
 
-    def timer(self, now: int, timer: int) -> None:
+    def on_timer(self, now: int, timer: int) -> None:
         """A timer fires."""
         radio_practical.on_timer(self.station, self.params, now, timer, self.out)
 
-    def input(self, now: int, kind: int, item: Any) -> None:
+    def on_input(self, now: int, kind: int, item: Any) -> None:
         """A packet to send."""
         radio_practical.on_input(self.station, self.params, now, kind, item, self.out)
 
-    def carrier(self, now: int, cd: bool, voc: bool) -> None:
+    def on_carrier(self, now: int, cd: bool, voc: bool) -> None:
         """The carrier came or went."""
         radio_practical.on_carrier(self.station, self.params, now, int(cd), int(voc), self.out)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from types import ModuleType
 from typing import Any, ClassVar
 
 from innervate.kernel import door, tables
@@ -54,24 +55,23 @@ def compiled_loop(name: str) -> Callable[..., None]:
 @functools.cache
 def _compiled(protocol: stacks.Protocol) -> Callable[..., None]:
     """Its loop; all names of one protocol share it."""
-    parts = registered(protocol, traffic)
-    door.register_functions(*parts[:-1], hot=False)
-    advance = door.compiled(parts[-1])
+    advance = door.compiled(loop.bind(registered(protocol, traffic)))
     return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
 
 
-def registered(protocol: stacks.Protocol, packets: Any) -> loop.Handlers:
-    """A protocol's loop, plain; what its parts call may be compiled."""
+def registered(protocol: stacks.Protocol, packets: ModuleType) -> ModuleType:
+    """What the medium calls of a protocol; that and the medium may be compiled from now on."""
     from innervate.dialect import arith, outbox, rng
 
     door.register(traffic, rows, taps, hot=False)
     door.register(arith, outbox, rng, heap, medium)
     door.register(*protocol.modules, hot=False)
     door.register(recorder, hot=False)
-    door.register_functions(loop.pressing, hot=False)
-    stack = stacks.bind(protocol.entry)
-    door.register_functions(*stack)
-    return loop.build(stack, recorder, packets)
+    door.register(packets, hot=False)
+    door.register_functions(loop.pressing, *loop.FUNCTIONS, hot=False)
+    do = stacks.bind(protocol.entry, recorder, packets)
+    door.register_functions(*(one for one in vars(do).values() if callable(one)))
+    return do
 
 
 def simulate(
@@ -144,7 +144,7 @@ def simulation(
 ) -> RadioSimulation:
     """A plan's team before its first event; what is kept as in `channel.build`."""
     if plain:
-        advance = loop.build(stacks.bind(stacks.PROTOCOLS[plan.protocol].entry), recorder)[-1]
+        advance = loop.bind(stacks.bind(stacks.PROTOCOLS[plan.protocol].entry, recorder))
     else:
         advance = compiled_loop(plan.protocol)
     world = builder.build(plan, plain, checks, keep, trail, tap)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from types import ModuleType
 from typing import Any, NamedTuple
 
+from innervate.kernel import door
 from innervate.networks.radio.baselines import common, contend, passing, slots, station, tree
 from innervate.networks.radio.baselines.fields import BASELINE
 from innervate.networks.radio.protocol import bounds as radio_bounds
@@ -26,18 +26,7 @@ from innervate.networks.radio.protocol import turn as radio_turn
 from innervate.networks.radio.protocol import window as radio_window
 from innervate.networks.radio.protocol.station import copy_frame
 from innervate.networks.radio.scenario.baselines import NUMBERS
-
-
-class Stack(NamedTuple):
-    """A protocol's five functions with the simulator's world as their first argument."""
-
-    start: Callable[..., None]
-    hear: Callable[..., None]
-    fire: Callable[..., None]
-    give: Callable[..., None]
-    carrier: Callable[..., None]
-    digest: Callable[..., int]
-    copy_frame: Callable[..., None]
+from innervate.sim.channel import traffic
 
 
 class Protocol(NamedTuple):
@@ -90,24 +79,36 @@ def digest(frame):
     )
 
 
-def bind(entry: ModuleType) -> Stack:
-    """The stack of a protocol."""
-    on_start, on_frame, on_timer = entry.on_start, entry.on_frame, entry.on_timer
-    on_input, on_carrier = entry.on_input, entry.on_carrier
+def bind(entry: ModuleType, recorder: Any, packets: Any = traffic) -> ModuleType:
+    """What the medium calls (see `sim/channel`), of a protocol.
 
-    def start(world, node, now, cause):
-        on_start(world.stations[node], world.params[0], now, cause, world.out)
+    Args:
+        entry: the module with its five functions.
+        recorder: keeps rows and checks: keep_sent, keep_received, watch.
+        packets: follows what becomes of packets (note_sent, note_received, note_delivered):
+            `traffic`, or a protocol above whose frames they are.
+    """
+    start, frame_in, timer_due = entry.on_start, entry.on_frame, entry.on_timer
+    given, carrier = entry.on_input, entry.on_carrier
 
-    def hear(world, node, now, frame):
-        on_frame(world.stations[node], world.params[0], now, 0, frame, world.out)
+    def on_start(world, node, now, cause):  # type: ignore[no-untyped-def]
+        start(world.stations[node], world.params[0], now, cause, world.out)
 
-    def fire(world, node, now, timer):
-        on_timer(world.stations[node], world.params[0], now, timer, world.out)
+    def on_frame(world, node, now, frame):  # type: ignore[no-untyped-def]
+        frame_in(world.stations[node], world.params[0], now, 0, frame, world.out)
 
-    def give(world, node, now, kind):
-        on_input(world.stations[node], world.params[0], now, kind, world.item[0], world.out)
+    def on_timer(world, node, now, timer):  # type: ignore[no-untyped-def]
+        timer_due(world.stations[node], world.params[0], now, timer, world.out)
 
-    def carrier(world, node, now, cd, voc):
-        on_carrier(world.stations[node], world.params[0], now, cd, voc, world.out)
+    def on_input(world, node, now, kind):  # type: ignore[no-untyped-def]
+        given(world.stations[node], world.params[0], now, kind, world.item[0], world.out)
 
-    return Stack(start, hear, fire, give, carrier, digest, copy_frame)
+    def on_carrier(world, node, now, cd, voc):  # type: ignore[no-untyped-def]
+        carrier(world.stations[node], world.params[0], now, cd, voc, world.out)
+
+    return door.bound(
+        f"{entry.__name__} on a channel",
+        (on_start, on_frame, on_timer, on_input, on_carrier, digest, copy_frame),
+        (recorder.keep_sent, recorder.keep_received, recorder.watch),
+        (packets.note_sent, packets.note_received, packets.note_delivered),
+    )

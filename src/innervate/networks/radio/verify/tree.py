@@ -125,8 +125,7 @@ def search(
 ) -> Grown:
     """All runs of a tree, or the first `limit`; `entry` a copy of the protocol to run."""
     shared = grid.base_plan(tree.grid)
-    stack = stacks.bind(entry or stacks.PROTOCOLS[shared.protocol].entry)
-    advance = loop.build(stack, recorder)[-1]
+    advance = loop.bind(stacks.bind(entry or stacks.PROTOCOLS[shared.protocol].entry, recorder))
     asked, grown = Asked(tree.depth), Grown(tree, 0, 0, 0.0, {}, {}, "interrupted")
     started = wall_s()
     for point in _points(tree.grid):

@@ -73,19 +73,19 @@ class CellStack(SkinStack):
         self.path_of_port = {port: path for path, port in enumerate(ports)}
         self.moves = 0
 
-    def start(self, now: int, cause: int) -> None:
+    def on_start(self, now: int, cause: int) -> None:
         """Switch on."""
         skin.on_start(self.cell, self.params, now, cause, self.out)
 
-    def frame(self, now: int, port: int) -> None:
+    def on_frame(self, now: int, port: int) -> None:
         """The frame in the inbox was received on a path."""
         skin.on_frame(self.cell, self.params, now, self.port_of_path[port], self.inbox, self.out)
 
-    def timer(self, now: int, timer: int) -> None:
+    def on_timer(self, now: int, timer: int) -> None:
         """A timer fires."""
         skin.on_timer(self.cell, self.params, now, timer, self.out)
 
-    def input(self, now: int, kind: int, item: Any) -> None:
+    def on_input(self, now: int, kind: int, item: Any) -> None:
         """What the cell's sensors say."""
         skin.on_input(self.cell, self.params, now, kind, item, self.out)
 
@@ -134,20 +134,20 @@ class SinkStack(SkinStack):
         self.pc.own = [plain.make("Sink", fields.SINK)()]
         self.pc.own[0].ports = ports
 
-    def start(self, now: int, cause: int) -> None:
+    def on_start(self, now: int, cause: int) -> None:
         """Switch on."""
         skin_sink.on_start(self.pc, self.params, now, cause, self.out)
 
-    def frame(self, now: int, port: int) -> None:
+    def on_frame(self, now: int, port: int) -> None:
         """The frame in the inbox was received on an interface port."""
         self.port = port
         skin_sink.on_frame(self.pc, self.params, now, port, self.inbox, self.out)
 
-    def timer(self, now: int, timer: int) -> None:
+    def on_timer(self, now: int, timer: int) -> None:
         """A timer fires."""
         skin_sink.on_timer(self.pc, self.params, now, timer, self.out)
 
-    def input(self, now: int, kind: int, item: Any) -> None:
+    def on_input(self, now: int, kind: int, item: Any) -> None:
         """A command, to be sent down."""
         skin_sink.on_input(self.pc, self.params, now, kind, item, self.out)
 

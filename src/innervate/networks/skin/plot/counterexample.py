@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from innervate.networks.skin.protocol.constants import NONE
-from innervate.plot import counterexample
-from innervate.plot.counterexample import PANEL, arrow, disc
+from innervate.plot import panels
+from innervate.plot.panels import PANEL
 from innervate.plot.svg import Drawing, Point
 
 if TYPE_CHECKING:
@@ -17,14 +17,13 @@ if TYPE_CHECKING:
 def draw(story: Story) -> Drawing:
     """A panel for every event that changed a parent or a cable; the sentences below."""
     places = _places(story)
-    return counterexample.draw(
-        story, _shown(story), lambda panel, index: _paint(panel, story, index, places)
-    )
+    drawn = [_panel(story, index, places) for index in _shown(story)]
+    return panels.page(story.title, drawn, story.sentences)
 
 
 def save(story: Story, path: Path) -> None:
     """Write the drawing to a file of its own."""
-    draw(story).save(path, counterexample.look())
+    panels.save(draw(story), path)
 
 
 def _shown(story: Story) -> list[int]:
@@ -54,9 +53,10 @@ def _places(story: Story) -> list[Point]:
     return [*places, (PANEL[0] / 2, 40.0)]
 
 
-def _paint(panel: Drawing, story: Story, index: int, places: list[Point]) -> None:
+def _panel(story: Story, index: int, places: list[Point]) -> Drawing:
     """The network after one event."""
     scene, graph = story.scenes[index], story.graph
+    panel = panels.panel(index)
     whole: list[tuple[Point, Point]] = []
     cut: list[tuple[Point, Point]] = []
     for a, b in graph.links():
@@ -69,9 +69,10 @@ def _paint(panel: Drawing, story: Story, index: int, places: list[Point]) -> Non
     for cell, parent in enumerate(scene.parents):
         if parent != NONE:
             closed = is_last and cell in story.ring
-            arrow(panel, places[cell], places[parent], "ring" if closed else "way")
+            panels.arrow(panel, places[cell], places[parent], "ring" if closed else "way")
     for start, end in cut:  # over the arrow of a cell that has not noticed yet
         panel.line(start, end, "cut")
     for node, place in enumerate(places):
         label = "PC" if node == graph.sink else graph.label(node)
-        disc(panel, place, label, node == graph.sink, node == scene.actor)
+        panels.disc(panel, place, label, node == graph.sink, node == scene.actor)
+    return panel

@@ -1,10 +1,10 @@
-"""A counterexample as pictures: a panel for each event that matters, sentences below."""
+"""A counterexample as a page of panels: the network after each event, the sentences below."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
+from pathlib import Path
 
 from innervate.plot.svg import Drawing, Point
 from innervate.plot.theme import drawing_style
@@ -15,7 +15,7 @@ RADIUS = 15.0
 TOP = 34.0
 LINE = 15.0
 LETTERS = 118
-_STYLE = """
+STYLE = """
 .node{fill:var(--panel);stroke:var(--link);stroke-width:1.4}
 .actor{stroke:var(--accent);stroke-width:2.6}
 .pc{fill:var(--ink)}
@@ -24,34 +24,31 @@ _STYLE = """
 """
 
 
-def draw(story: Any, shown: Sequence[int], paint: Callable[[Drawing, int], None]) -> Drawing:
-    """All of a story.
-
-    Args:
-        story: with a title and sentences.
-        shown: the events that have a panel.
-        paint: draws the network after an event on its panel.
-    """
-    rows = -(-len(shown) // COLUMNS)
-    texts = [part for i, s in enumerate(story.sentences, 1) for part in wrapped(f"{i}. {s}")]
-    below = TOP + rows * PANEL[1]
-    drawing = Drawing(
-        PANEL[0] * COLUMNS, below + LINE * (len(texts) + 2), f"Counterexample: {story.title}"
-    )
-    drawing.text((12, 22), story.title, "strong alarm")
-    for place, index in enumerate(shown):
-        panel = Drawing(*PANEL, f"after event {index + 1}")
-        paint(panel, index)
-        panel.text((12, 18), f"after {index + 1}", "small")
-        drawing.place(panel, (PANEL[0] * (place % COLUMNS), TOP + PANEL[1] * (place // COLUMNS)))
+def page(title: str, panels: Sequence[Drawing], sentences: Sequence[str]) -> Drawing:
+    """Panels in rows of four, then what happened, numbered."""
+    rows = -(-len(panels) // COLUMNS)
+    texts = [part for i, s in enumerate(sentences, 1) for part in wrapped(f"{i}. {s}")]
+    high = TOP + rows * PANEL[1] + LINE * (len(texts) + 2)
+    drawing = Drawing(PANEL[0] * COLUMNS, high, f"Counterexample: {title}")
+    drawing.text((12, 22), title, "strong alarm")
+    for index, panel in enumerate(panels):
+        corner = (PANEL[0] * (index % COLUMNS), TOP + PANEL[1] * (index // COLUMNS))
+        drawing.place(panel, corner)
     for i, text in enumerate(texts):
-        drawing.text((12, below + LINE * (i + 1)), text)
+        drawing.text((12, TOP + rows * PANEL[1] + LINE * (i + 1)), text)
     return drawing
 
 
-def look(more: str = "") -> str:
-    """The style sheet of such a drawing; `more` is a network's own."""
-    return drawing_style() + _STYLE + more
+def panel(index: int) -> Drawing:
+    """An empty panel, of what was after the event with this index."""
+    made = Drawing(PANEL[0], PANEL[1], f"after event {index + 1}")
+    made.text((12, 18), f"after {index + 1}", "small")
+    return made
+
+
+def save(drawing: Drawing, path: Path, more: str = "") -> None:
+    """Write a page to a file of its own; `more` are further rules of its style."""
+    drawing.save(path, drawing_style() + STYLE + more)
 
 
 def wrapped(text: str) -> list[str]:
