@@ -1,4 +1,4 @@
-"""`innervate watch`."""
+"""`innervate watch`: a simulation or live nodes as a page in the browser."""
 
 from __future__ import annotations
 

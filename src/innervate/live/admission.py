@@ -59,7 +59,7 @@ class BoundedListener:
         self._loop = asyncio.get_running_loop()
 
     def open(self) -> None:
-        """Listen."""
+        """Begin to listen; callers are let in from now on."""
         self._sock.setblocking(False)
         self._sock.listen(BACKLOG)
         self._loop.add_reader(self._sock.fileno(), self._knock)

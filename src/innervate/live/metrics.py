@@ -45,7 +45,7 @@ class MetricsPage:
         self.listener.open()
 
     async def stop(self) -> None:
-        """Close."""
+        """Stop listening, and hang up on whoever is served."""
         if self.listener is not None:
             self.listener.close()
 

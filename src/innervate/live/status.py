@@ -43,7 +43,7 @@ class Writer:
         self._stream = stream
 
     async def line(self, answer: dict[str, Any]) -> None:
-        """Write one answer."""
+        """Write one answer as a line of JSON, and wait until there is room for more."""
         self._stream.write(json.dumps(answer).encode() + b"\n")
         await self._stream.drain()
 
@@ -183,6 +183,6 @@ def sockets() -> list[Path]:
 
 
 def _in_order(path: Path) -> tuple[str, int]:
-    """n2 comes before n10."""
+    """A key by which n2 comes before n10."""
     letters = path.stem.rstrip("0123456789")
     return letters, int(path.stem[len(letters) :] or -1)

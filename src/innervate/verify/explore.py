@@ -235,13 +235,13 @@ class _Driver:
         tally.depth = len(self.levels) - 2
 
     def row(self, index: int) -> bytes:
-        """A kept state."""
+        """The state of this index, as bytes."""
         words = self.lay.width // 8
         part = self.search.rows[index * words : (index + 1) * words]
         return bytes(part.tobytes())
 
     def result(self, tally: Tally) -> Result:
-        """What came of it."""
+        """What came of the search: counts, and the path to what is broken."""
         run = self.search.run
         count, words = int(run[s.COUNT]), self.lay.width // 8
         kept = self.search.rows[: count * words]

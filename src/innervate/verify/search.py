@@ -171,7 +171,7 @@ def save_row(world, search):
 
 
 def restore_row(world, search):
-    """Come back to it."""
+    """Make the row that `save_row` remembered the present state."""
     fetch_row(world, search, search.run[LIMIT] - 1)
 
 

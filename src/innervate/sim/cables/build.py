@@ -179,7 +179,7 @@ def _sink(tables: Tables, of: Records, ports: int) -> Any:
 
 
 def _wheel(tables: Tables, pool_slots: int, pool: int) -> w.Wheel:
-    """An empty event queue."""
+    """An empty event queue with room for `pool` events and a slot for each wait."""
     wheel = w.Wheel(
         clock=tables.numbers(2, 0, np.int64),
         links=tables.numbers(BUCKETS + pool_slots + pool),

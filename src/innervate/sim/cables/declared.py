@@ -131,7 +131,7 @@ def plain_loop(kind: str) -> Callable[..., None]:
 
 @functools.cache
 def compiled_loop(kind: str) -> Callable[..., None]:
-    """The same, compiled."""
+    """The loop of a network over cables, compiled with its protocol."""
     network = networks()[kind]
     do = functions(network.protocol, network.fields)
     compilation.register_functions(*(f for f in vars(do).values() if callable(f)))

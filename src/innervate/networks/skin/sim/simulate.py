@@ -56,12 +56,12 @@ def loop_name(plan: Any) -> str:
 
 
 def plain_loop(static: bool) -> Callable[..., None]:
-    """The same loop, uncompiled."""
+    """The loop as plain Python: the same events, no compiler."""
     return loop.bind(static_stack if static else skin_stack)
 
 
 class SkinSimulation(Cables):
-    """A skin under way."""
+    """A skin that is simulated in slices: its plan, its world, its loop."""
 
     tables: ClassVar[Mapping[str, Names]] = {
         "rows": w.ROW, "deliveries": builder.DELIVERY, "trail": w.TRAIL,
