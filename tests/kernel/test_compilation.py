@@ -66,7 +66,7 @@ def test_functions_of_other_packages_are_noted_for_the_next_loop(foreign, tmp_pa
     monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path))
     before = compilation.numba.config.CACHE_DIR
     compilation.register_functions(lambda: None)
-    assert {path.name for path in foreign} == {"test_door.py"}
+    assert {path.name for path in foreign} == {"test_compilation.py"}
     with_ours = compilation.open_cache()
     assert not foreign
     assert compilation.open_cache() != with_ours
