@@ -8,7 +8,7 @@ from msgspec import Meta
 
 from innervate.live.nodefile import NodeFile
 
-Port = Annotated[int, Meta(ge=0, le=3)]
+PortNumber = Annotated[int, Meta(ge=0, le=3)]
 
 
 class SkinFile(NodeFile, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -16,5 +16,5 @@ class SkinFile(NodeFile, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     roles: ClassVar[tuple[str, ...]] = ("cell", "sink")
 
-    ports: Annotated[list[Port], Meta(max_length=4)] = []  # noqa: RUF012
+    ports: Annotated[list[PortNumber], Meta(max_length=4)] = []  # noqa: RUF012
     rate_hz: Annotated[float, Meta(ge=0, le=1000)] = 0.0
