@@ -106,7 +106,7 @@ class Drawing:
             self.add("path", class_=kind, d=data)
 
     def line(self, start: Point, end: Point, kind: str) -> None:
-        """A straight line."""
+        """A straight line of a style class."""
         self.add("line", class_=kind, x1=start[0], y1=start[1], x2=end[0], y2=end[1])
 
     def rect(self, corner: Point, size: Point, kind: str, tip: str = "") -> None:
@@ -116,7 +116,7 @@ class Drawing:
         self.path(f"{data}h{number(-wide)}z", kind, tip)
 
     def circle(self, centre: Point, radius: float, kind: str) -> None:
-        """A circle."""
+        """A circle of a style class, its radius in the drawing's units."""
         self.add("circle", class_=kind, cx=centre[0], cy=centre[1], r=radius)
 
     def text(self, at: Point, words: str, kind: str = "", anchor: str = "start") -> None:
