@@ -13,9 +13,9 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from innervate.kernel import door
+from innervate.kernel import compilation
+from innervate.kernel.clock import wall_s
 from innervate.kernel.stop import Stop
-from innervate.kernel.wall import wall_s
 from innervate.sim import taps
 from innervate.sim.counts import Counts
 from innervate.sim.status import BROKEN, DONE
@@ -75,7 +75,7 @@ class Simulation(ABC):
         """Compile the loop, or load what was compiled; nothing is due before time 0."""
         self._advance(self.world, 0, 1)
         if self.name:
-            door.mark_compiled(self.name)
+            compilation.mark_compiled(self.name)
 
     def advance(self, until_us: int, budget: int) -> int:
         """Run the loop until a time, a budget of events or the room in a table is used up.

@@ -158,19 +158,19 @@ def system_of(cell: Any = skin, sink: Any = skin_sink) -> System:
 def compiled_parts() -> System:
     """The system with all its functions registered for the compiler."""
     from innervate.dialect import arith, outbox, rng
-    from innervate.kernel import door
+    from innervate.kernel import compilation
     from innervate.networks.skin import invariants
     from innervate.networks.skin.protocol import command_window
     from innervate.networks.skin.protocol import route as skin_route
 
-    door.register(arith, outbox, rng, invariants)
-    door.register(skin_route, command_window, skin, skin_sink, hot=False)
-    door.register(skin_row, reduction, skin_check, hot=False)
+    compilation.register(arith, outbox, rng, invariants)
+    compilation.register(skin_route, command_window, skin, skin_sink, hot=False)
+    compilation.register(skin_row, reduction, skin_check, hot=False)
     plain = [f for f in vars(skin_moves).values() if callable(f)]
     own = [f for f in plain if getattr(f, "__module__", "") == skin_moves.__name__]
     system = system_of()
     helpers = [f for f in own if f not in (skin_moves.bind, skin_moves.Moves)]
-    door.register_functions(*helpers, *system.parts, hot=False)
+    compilation.register_functions(*helpers, *system.parts, hot=False)
     return system
 
 
