@@ -86,7 +86,7 @@ def seeds(quick: bool) -> range:
 def points(quick: bool) -> list[Point]:
     """Each way of reading the figure, and one run in detail."""
     made = [Point.of(_key(name, quick), 2.0, measure, case, quick) for name, case in CASES.items()]
-    return [*made, Point.of(f"fig5 story k={SHOWN_K}", 0.1, story)]
+    return [*made, Point.of(f"fig5 story k={SHOWN_K}", 0.1, parents_after_cut)]
 
 
 def measure(case: tuple[int, bool, bool], quick: bool) -> dict[str, list[list[float]]]:
@@ -103,7 +103,7 @@ def measure(case: tuple[int, bool, bool], quick: bool) -> dict[str, list[list[fl
     return found
 
 
-def story() -> dict[str, Any]:
+def parents_after_cut() -> dict[str, Any]:
     """Who takes whom as parent, when, in periods since the cut (0 = before it)."""
     result = simulated(tables(SHOWN_K, 1, True), 1)
     graph = result.plan.graph
