@@ -6,31 +6,20 @@ from collections.abc import Mapping
 from typing import Any
 
 from innervate.networks.skin.plot import words as skin_words
-from innervate.networks.skin.plot.digest import Digest, Panel
 from innervate.networks.skin.plot.map import CELLS_MAX, shows_depth
-from innervate.plot import svg, words
-from innervate.plot.page import element, figure, headline, keys, pictures, section, table, tiles
+from innervate.networks.skin.plot.digest import Digest
+from innervate.plot import page, svg, words
+from innervate.plot.page import ROWS_MAX, element, keys, panel, pictures, section, table, tiles
 from innervate.plot.theme import SHADES
 
 SENTENCES_MAX = 3
-ROWS_MAX = 200
 BROKEN_MAX = 12
 
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
     """Headline, status, numbers and pictures of a skin's run, as HTML."""
     digest = Digest(result, summary)
-    return "\n".join(
-        part
-        for part in (
-            top(digest),
-            _recovery(digest),
-            _touch(digest),
-            _traffic(digest),
-            _events(digest),
-        )
-        if part
-    )
+    return page.joined(top(digest), _recovery(digest), _touch(digest), _traffic(digest), _events(digest))
 
 
 def notebook(result: Any, summary: Mapping[str, Any]) -> str:
@@ -48,14 +37,9 @@ def top(digest: Digest) -> str:
         f"{words.number_of(summary['depth_max'], 'hop')} deep; {summary['duration_s']:g} s, "
         f"seed {summary['seed']}"
     )
-    parts = [element("p", over, "over"), headline(summary["headline"])]
-    parts += [element("p", f"Warning: {text}.", "status bad") for text in summary["warnings"]]
-    parts += [element("p", sentence) for sentence in _sentences(digest)]
-    if "interrupted_at_s" in summary:
-        early = f"Ended early, at {summary['interrupted_at_s']:.3f} s of simulated time."
-        parts.append(element("p", early, "status bad"))
-    parts += [_broken(summary), tiles(_figures(digest))]
-    return "<header>\n" + "".join(parts) + "</header>"
+    warned = page.paragraphs((f"Warning: {text}." for text in summary["warnings"]), "status bad")
+    said = page.paragraphs(_sentences(digest)) + page.ended_early(summary)
+    return page.top(over, summary, warned, said, _broken(summary), tiles(_figures(digest)))
 
 
 def _sentences(digest: Digest) -> list[str]:
@@ -110,22 +94,19 @@ def _figures(digest: Digest) -> list[tuple[str, str]]:
         else "forwarding loops"
     )
     found.append((f"{loops['episodes']:,}", note))
-    took = f"{summary['wall_s']:.2g} s" if summary["wall_s"] >= 0.01 else "10 ms"
-    count = words.count_words(summary["events"])
     done_s = summary.get("interrupted_at_s", summary["duration_s"])
-    found.append((took, f"to simulate {done_s:.4g} s, {count} events"))
-    return found
+    return [*found, page.took(summary, done_s)]
 
 
 def maps(digest: Digest) -> str:
     """The skin before, during and after the worst event, and what the colours mean."""
     panels = digest.maps()
     columns = "four" if len(panels) > 1 and not digest.sheet.wide else "two"
-    return pictures([_figure(panel) for panel in panels], columns) + keys(legend(digest))
+    return pictures([panel(one) for one in panels], columns) + keys(legend(digest))
 
 
 def _recovery(digest: Digest) -> str:
-    charts = [_figure(panel) for panel in (*digest.zooms(), *digest.overview())]
+    charts = [panel(one) for one in (*digest.zooms(), *digest.overview())]
     head = "The recovery" if digest.hero is not None else "The skin"
     return section(head, maps(digest) + pictures(charts, "two"))
 
@@ -141,17 +122,17 @@ def _touch(digest: Digest) -> str:
         force = digest.plan.touch.force_mn / 1e3
         entries.insert(0, (_ramp("h"), f"0 to {force:g} N"))
         entries.append((_icon("touch", circle=True), "where the touch really is"))
-    shown = pictures([_figure(p) for p in images], "two" if digest.sheet.wide else "three")
+    shown = pictures([panel(one) for one in images], "two" if digest.sheet.wide else "three")
     return section(
         "Touch as the PC received it", element("p", text, "note") + shown + keys(entries)
     )
 
 
 def _traffic(digest: Digest) -> str:
-    panels: list[Panel | None] = [digest.loads(), digest.losses()]
+    panels = [digest.loads(), digest.losses()]
     return section(
         "Load and losses",
-        pictures([_figure(panel) for panel in panels if panel is not None], "two")
+        pictures([panel(one) for one in panels if one is not None], "two")
         + _latencies(digest.summary["data"])
         + _commands(digest.summary["commands"]),
     )
@@ -201,7 +182,7 @@ def _times(latency: Mapping[str, Any]) -> list[str]:
 
 def _events(digest: Digest) -> str:
     rows = []
-    for incident in digest.incidents[:ROWS_MAX]:
+    for incident in digest.incidents:
         recovery = incident.recovery
         times = [_ms(recovery[key]) for key in ("detected_ms", "others_ms", "converged_ms")]
         if recovery["others_ms"] == 0:
@@ -213,17 +194,11 @@ def _events(digest: Digest) -> str:
         return ""
     head = ("at", "what", "cells behind it", "cut off", "noticed after",
             "all others had a way after", "last change after")  # fmt: skip
-    more = len(digest.incidents) - len(rows)
-    note = element("p", f"And {more} more, in summary.json.", "note") if more > 0 else ""
-    return section("Events", table(head, rows) + note)
+    return section("Events", page.beginning(head, rows, ", in summary.json"))
 
 
 def _ms(value: float | None) -> str:
     return "-" if value is None else words.ms_words(value)
-
-
-def _figure(panel: Panel) -> str:
-    return figure(panel.drawing, panel.head, panel.text)
 
 
 def legend(digest: Digest) -> list[tuple[svg.Drawing, str]]:
