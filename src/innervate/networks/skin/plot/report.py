@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from innervate.networks.skin.plot import words as skin_words
-from innervate.networks.skin.plot.map import CELLS_MAX, shows_depth
 from innervate.networks.skin.plot.digest import Digest
+from innervate.networks.skin.plot.map import CELLS_MAX, shows_depth
 from innervate.plot import page, svg, words
 from innervate.plot.page import ROWS_MAX, element, keys, panel, pictures, section, table, tiles
 from innervate.plot.theme import SHADES
@@ -19,7 +19,9 @@ BROKEN_MAX = 12
 def body(result: Any, summary: Mapping[str, Any]) -> str:
     """Headline, status, numbers and pictures of a skin's run, as HTML."""
     digest = Digest(result, summary)
-    return page.joined(top(digest), _recovery(digest), _touch(digest), _traffic(digest), _events(digest))
+    return page.joined(
+        top(digest), _recovery(digest), _touch(digest), _traffic(digest), _events(digest)
+    )
 
 
 def notebook(result: Any, summary: Mapping[str, Any]) -> str:
