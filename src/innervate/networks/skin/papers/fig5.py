@@ -81,7 +81,7 @@ def runs(name: str, k: int, quick: bool) -> Point:
 def points(quick: bool) -> list[Point]:
     """Each way of reading the figure, and one run in detail."""
     made = [runs(name, k, quick) for name in CASES for k in ks(quick)]
-    return [*made, Point.of(f"fig5 story k={SHOWN_K}", 0.1, story)]
+    return [*made, Point.of(f"fig5 story k={SHOWN_K}", 0.1, parents_after_cut)]
 
 
 def measure(k: int, case: tuple[int, bool, bool], seed: int) -> list[float]:
@@ -93,7 +93,7 @@ def measure(k: int, case: tuple[int, bool, bool], seed: int) -> list[float]:
     return [detected_ms * HZ / 1e3, converged_ms * HZ / 1e3]
 
 
-def story() -> dict[str, Any]:
+def parents_after_cut() -> dict[str, Any]:
     """Who takes whom as parent, when, in periods since the cut (0 = before it)."""
     result = simulated(tables(SHOWN_K, 1, True), 1)
     graph = result.plan.graph
