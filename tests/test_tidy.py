@@ -10,6 +10,7 @@ ROOT = Path(__file__).resolve().parent.parent
 FUNCTION_LINES_MAX = 70
 FILE_LINES_MAX = 400
 COLUMNS_MAX = 100
+DOCSTRING_WORDS_MIN = 5
 SUFFIXES = {".py", ".c", ".toml", ".sh"}
 UNFINISHED = ("TO" + "DO", "FIX" + "ME", "X" * 3)
 FIELD_MAX = 1 << 30
@@ -102,3 +103,21 @@ def test_every_field_says_what_it_is(table):
         assert -FIELD_MAX < low <= high < FIELD_MAX, name
         assert unit.strip(), name
         assert meaning.strip(), name
+
+
+def docstrings(path):
+    """(line, docstring) of a module and of all classes and functions in it, but `__special__`."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            said = ast.get_docstring(node)
+            if said is not None and not getattr(node, "name", "").startswith("__"):
+                yield getattr(node, "lineno", 1), said
+
+
+def test_docstrings_say_something():
+    assert [
+        f"{path.relative_to(ROOT)}:{line} {said}"
+        for path in sources("src", suffixes={".py"})
+        for line, said in docstrings(path)
+        if len(said.split()) < DOCSTRING_WORDS_MIN
+    ] == []

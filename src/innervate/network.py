@@ -148,7 +148,7 @@ class Network:
         }
 
     def __repr__(self) -> str:
-        """Its name."""
+        """The network as "Network('skin')"."""
         return f"Network({self.name!r})"
 
     def __getattr__(self, part: str) -> Any:
@@ -183,7 +183,7 @@ def no_name(plan: Any) -> str:
 
 
 def kind_of(summary: Any) -> str:
-    """By its kind."""
+    """The kind of network that a summary is of."""
     kind: str = summary["kind"]
     return kind
 

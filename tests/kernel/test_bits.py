@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from innervate.dialect import arith, rng
-from innervate.kernel import bits, door
+from innervate.kernel import bits, compilation
 from innervate.networks.skin.protocol import cell as skin
 
 SIGNED = st.integers(-(2**63), 2**63 - 1)
@@ -16,7 +16,7 @@ HALF = st.integers(0, 2**30 - 1)
 @pytest.fixture(scope="module")
 def compiled():
     """Compiled twins of the small functions."""
-    door.register(arith, rng, skin)
+    compilation.register(arith, rng, skin)
 
     @numba.njit
     def mix(state, word):

@@ -12,7 +12,7 @@ from innervate.web import messages
 from innervate.web.errors import Refused, WatchError
 from innervate.web.history import LOG, SERIES, TIMELINE
 from innervate.web.simulated import Simulated
-from innervate.web.snapshot import Part, Snapshot, Teller
+from innervate.web.snapshot import DeltaEncoder, Part, Snapshot
 from tests.networks.skin.runs import patch
 from tests.web.runs import KINDS, MESH, RADIO, SKIN, go_to, simulated
 
@@ -297,12 +297,12 @@ def test_a_thousand_cells_cost_little():
         {"row": 0, "column": 10}, {"row": 24, "column": 30}])  # fmt: skip
     go_to(made, 0.2)
     scene, before, sizes = Part({"type": "scene"}), None, []
-    teller = Teller(made.history)
+    encoder = DeltaEncoder(made.history)
     began = time.thread_time()
     for _ in range(30):
         made.carry_out(messages.Step())
         before = Snapshot(scene, made.fields(), made.history.newest, before)
-        sizes.append(sum(len(message) for message in teller.messages(before)))
+        sizes.append(sum(len(message) for message in encoder.messages(before)))
     assert (time.thread_time() - began) / 30 < 0.02  # of 0.033 s; measured 0.002
     assert sum(sizes) / 30 < 100_000
 

@@ -13,16 +13,16 @@ from innervate.web import history
 from innervate.web.errors import Refused
 from innervate.web.history import LOG, SERIES, TIMELINE, History, Logbook
 from innervate.web.messages import Command, Cut, Go, Pause, Seek, Speed, name_of, parse
-from innervate.web.pace import Pace
-from innervate.web.snapshot import Part, Snapshot, Teller
+from innervate.web.playback import Playback
+from innervate.web.snapshot import DeltaEncoder, Part, Snapshot
 from innervate.web.stage import Stage
 from tests.web.runs import SKIN, simulated
 
 SCENE = Part({"type": "scene"})
 
 
-def told(teller, snapshot):
-    return [json.loads(message) for message in teller.messages(snapshot)]
+def told(encoder, snapshot):
+    return [json.loads(message) for message in encoder.messages(snapshot)]
 
 
 def snapshot(record, before=None, scene=SCENE, **fields):
@@ -31,22 +31,22 @@ def snapshot(record, before=None, scene=SCENE, **fields):
 
 def test_only_what_changed_is_told():
     record = History()
-    teller = Teller(record)
+    encoder = DeltaEncoder(record)
     first = snapshot(record, t_s=0.0, up=np.array([1, 1]), load=np.array([0.5]))
-    scene, state = told(teller, first)
+    scene, state = told(encoder, first)
     assert scene == {"type": "scene"}
     assert state == {"type": "state", "t_s": 0.0, "up": [1, 1], "load": [0.5]}
     second = snapshot(record, first, t_s=0.1, up=np.array([1, 1]), load=np.array([0.6]))
     assert second.parts["up"] is first.parts["up"]
-    assert told(teller, second) == [{"type": "state", "t_s": 0.1, "load": [0.6]}]
+    assert told(encoder, second) == [{"type": "state", "t_s": 0.1, "load": [0.6]}]
     third = snapshot(record, second, t_s=0.1, up=np.array([1, 1]), load=np.array([0.6]))
     assert third.same_as(second)
-    assert told(teller, third) == []
+    assert told(encoder, third) == []
 
 
 def test_who_missed_states_is_told_what_changed_in_all_of_them():
     record = History()
-    slow = Teller(record)
+    slow = DeltaEncoder(record)
     before = snapshot(record, t_s=0.0, up=np.array([1]), load=np.array([0.0]))
     told(slow, before)
     for i in range(1, 6):
@@ -59,12 +59,12 @@ def test_who_missed_states_is_told_what_changed_in_all_of_them():
 
 def test_another_scene_begins_anew():
     record = History()
-    teller = Teller(record)
+    encoder = DeltaEncoder(record)
     record.add(SERIES, 7, {"loss": 1.0})
     first = snapshot(record, t_s=0.0, up=np.array([1]))
-    told(teller, first)
+    told(encoder, first)
     other = Part({"type": "scene", "name": "other"})
-    scene, state = told(teller, snapshot(record, first, other, t_s=0.0, up=np.array([1])))
+    scene, state = told(encoder, snapshot(record, first, other, t_s=0.0, up=np.array([1])))
     assert scene["name"] == "other"
     assert state["series"] == {"loss": [[7e-06, 1.0]]}
     assert state["up"] == [1]
@@ -72,7 +72,7 @@ def test_another_scene_begins_anew():
 
 def test_points_boxes_and_lines_are_never_lost_and_never_told_twice():
     record, slow_points, fast_points = History(), [], []
-    fast, slow = Teller(record), Teller(record)
+    fast, slow = DeltaEncoder(record), DeltaEncoder(record)
     before = None
     for i in range(9_000):
         record.add(SERIES, i, {"loss": float(i)})
@@ -104,19 +104,19 @@ def test_what_is_kept_is_bounded(monkeypatch):
 
 def test_gone_back_what_came_later_is_forgotten_and_told_anew():
     record = History()
-    teller = Teller(record)
+    encoder = DeltaEncoder(record)
     for at in (100, 200, 300):
         record.add(SERIES, at, {"loss": at})
         record.add(LOG, at, {"type": "log", "text": str(at)})
     first = snapshot(record, t_s=0.0003)
-    told(teller, first)
+    told(encoder, first)
     record.go_back(200)
     record.add(SERIES, 250, {"loss": 250})
     second = snapshot(record, first, t_s=0.00025)
-    (state,) = told(teller, second)
+    (state,) = told(encoder, second)
     assert state["back_s"] == 0.0002
     assert state["series"] == {"loss": [[0.00025, 250]]}
-    late = Teller(record)
+    late = DeltaEncoder(record)
     _scene, state, *lines = told(late, second)
     assert "back_s" not in state
     assert [value for _, value in state["series"]["loss"]] == [100, 200, 250]
@@ -144,37 +144,37 @@ class Clock:
 
 def test_a_pace_goes_holds_and_changes():
     clock = Clock()
-    pace = Pace(0.5, clock)
+    playback = Playback(0.5, clock)
     clock.now += 2
-    assert pace.due_us(10_000_000) == 1_000_000
-    pace.hold(1_000_000)
+    assert playback.due_us(10_000_000) == 1_000_000
+    playback.hold(1_000_000)
     clock.now += 50
-    assert pace.due_us(10_000_000) == 1_000_000
-    pace.go(1_000_000)
+    assert playback.due_us(10_000_000) == 1_000_000
+    playback.go(1_000_000)
     clock.now += 1
-    assert pace.due_us(10_000_000) == 1_500_000
-    pace.set_speed(2.0, 1_500_000)
+    assert playback.due_us(10_000_000) == 1_500_000
+    playback.set_speed(2.0, 1_500_000)
     clock.now += 1
-    assert pace.due_us(10_000_000) == 3_500_000
-    assert pace.due_us(2_000_000) == 2_000_000
-    pace.set_speed(0, 3_500_000)
-    assert pace.due_us(10_000_000) == 10_000_000
+    assert playback.due_us(10_000_000) == 3_500_000
+    assert playback.due_us(2_000_000) == 2_000_000
+    playback.set_speed(0, 3_500_000)
+    assert playback.due_us(10_000_000) == 10_000_000
 
 
 def test_a_network_that_cannot_keep_up_is_waited_for():
     clock = Clock()
-    pace = Pace(1.0, clock)
+    playback = Playback(1.0, clock)
     clock.now += 5
-    pace.note(1_000_000, pace.due_us(10_000_000))
-    assert pace.due_us(10_000_000) == 1_000_000
+    playback.note(1_000_000, playback.due_us(10_000_000))
+    assert playback.due_us(10_000_000) == 1_000_000
     clock.now += 1
-    assert pace.due_us(10_000_000) == 2_000_000
+    assert playback.due_us(10_000_000) == 2_000_000
 
 
 @pytest.mark.parametrize("speed", [-1.0, 0.0009, 1e7, float("nan"), float("inf")])
 def test_speeds_have_limits(speed):
     with pytest.raises(Refused, match=r"0\.001"):
-        Pace().set_speed(speed, 0)
+        Playback().set_speed(speed, 0)
 
 
 def test_commands_are_read():

@@ -64,7 +64,7 @@ def test_a_step_is_one_event():
     go_to(made, 0.4)
     before = made.engine.now_us
     made.carry_out(messages.Step())
-    assert made.pace.paused
+    assert made.playback.paused
     assert before < made.engine.now_us < before + 4_000
     made.work()
     assert made.engine.now_us == made.engine.next_us() or made.engine.next_us() is not None

@@ -63,7 +63,7 @@ class Recorder:
         self.sealed: list[str] = []
 
     async def run(self, for_s: float) -> int:
-        """Capture; 0."""
+        """Capture until a signal comes or `for_s` seconds are over; the exit code, 0."""
         ending = asyncio.Event()
         loop = asyncio.get_running_loop()
         for number in (signal.SIGTERM, signal.SIGINT):

@@ -1,4 +1,4 @@
-"""`innervate compare`."""
+"""`innervate compare`: what two runs or sweeps have in common, and where they part."""
 
 from __future__ import annotations
 

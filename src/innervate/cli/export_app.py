@@ -1,4 +1,4 @@
-"""`innervate export`: its options."""
+"""`innervate export`: its options, checked before anything is loaded."""
 
 from __future__ import annotations
 

@@ -84,5 +84,5 @@ def _of_network(
 
 def check(file: str, sets: list[str], seed: int | None) -> int:
     """Say what a scenario holds."""
-    print(scenario.check(file, sets, seed))
+    print(scenario.check(file, overrides=sets, seed=seed))
     return 0

@@ -11,7 +11,7 @@ from innervate.cli.seeds import Seed, Sets
 
 
 def scenarios() -> int:
-    """List the bundled scenarios."""
+    """List the bundled scenarios, each with what it shows."""
     from innervate.cli import files as command
 
     return command.scenarios()

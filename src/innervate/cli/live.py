@@ -116,7 +116,7 @@ def change(name: str, port: int, what: str) -> int:
 
 
 def medium(where: str, slot_us: int, turnaround_us: int) -> int:
-    """Run a shared channel."""
+    """Run a radio channel for stations that are processes, until a signal comes."""
     from innervate.live import channel as room
 
     asyncio.run(room.run(where, slot_us, turnaround_us))

@@ -1,4 +1,4 @@
-"""`innervate live`: its commands."""
+"""`innervate live`: its commands and their options."""
 
 from __future__ import annotations
 

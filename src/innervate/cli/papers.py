@@ -1,4 +1,4 @@
-"""`innervate papers`."""
+"""`innervate papers`: figures and claims of a paper, made anew."""
 
 from __future__ import annotations
 

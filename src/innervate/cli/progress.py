@@ -111,7 +111,7 @@ class Progress(Display):
 
 def is_compiled(plan: Any) -> bool:
     """True if the loop that a plan runs on is compiled, or needs no compiling."""
-    from innervate.kernel import door
+    from innervate.kernel import compilation
 
     name = networks()[plan.kind].loop_name(plan)
-    return not name or door.is_compiled(name)
+    return not name or compilation.is_compiled(name)

@@ -1,4 +1,4 @@
-"""`innervate run`."""
+"""`innervate run`: one scenario, its report and its files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What --seed takes."""
+"""What --seed takes: a whole number from 0, below 2^63."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`innervate size`."""
+"""`innervate size`: how many interface ports and which periods a skin needs."""
 
 from __future__ import annotations
 

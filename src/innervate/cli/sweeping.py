@@ -1,4 +1,4 @@
-"""`innervate sweep`."""
+"""`innervate sweep`: many runs of a scenario with settings varied."""
 
 from __future__ import annotations
 

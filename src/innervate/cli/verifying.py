@@ -1,4 +1,4 @@
-"""`innervate verify`."""
+"""`innervate verify`: explore small networks, tell what breaks."""
 
 from __future__ import annotations
 

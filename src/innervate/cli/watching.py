@@ -1,4 +1,4 @@
-"""`innervate watch`."""
+"""`innervate watch`: a simulation or live nodes as a page in the browser."""
 
 from __future__ import annotations
 
@@ -71,10 +71,10 @@ def watch(what: str, nodes: list[str], settings: Settings, place: Place) -> int:
 
 def _check_speed(speed: float) -> None:
     from innervate.web.errors import Refused
-    from innervate.web.pace import Pace
+    from innervate.web.playback import Playback
 
     try:
-        Pace(speed)
+        Playback(speed)
     except Refused as error:
         raise errors.UserError(f"--speed: {error}, not {speed:g}") from None
 

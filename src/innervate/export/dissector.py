@@ -60,7 +60,7 @@ def install(folder: Path | None = None) -> Path:
 
 
 def source() -> str:
-    """The dissector."""
+    """The Wireshark dissector of all networks' frames, as Lua."""
     known = [one for one in networks().values() if one.has("dissector") or one.has("frames")]
     head = f"-- Frames of innervate {innervate.__version__}: {', '.join(n.name for n in known)}. "
     head += "Generated: `innervate export --dissector` writes it anew."

@@ -55,7 +55,7 @@ class Place(NamedTuple):
 
 
 def describe(what: str, number: int = -1, port: int = -1, cable: tuple[str, str] = ("", "")) -> str:
-    """A description."""
+    """What an interface is, as "cell 3 port 0; c3 to c4"."""
     text = what
     if number >= 0:
         text += f" {number}"

@@ -98,7 +98,7 @@ class Reader:
         return self.places[packet.interface]
 
     def take(self, packet: Packet) -> None:
-        """The next packet."""
+        """Take in the next packet of a capture; they come in order of time."""
         raise NotImplementedError
 
     def end(self, last_ns: int) -> None:
@@ -106,7 +106,7 @@ class Reader:
         raise NotImplementedError
 
     def depart(self, key: Any, packet: Packet) -> None:
-        """A frame left."""
+        """A frame left: it may come in elsewhere, by the same key."""
         self.left.setdefault(key, deque()).append(packet)
 
     def arrive(self, key: Any, packet: Packet, keep: bool) -> Packet | None:
@@ -133,7 +133,7 @@ class Reader:
         """A frame came in nowhere."""
 
     def note(self, way: Way, sent: Packet | None, packet: Packet) -> None:
-        """A frame came in."""
+        """A frame came in by a way; `sent` is how it left, None if that was not seen."""
         way.got += 1
         if sent is not None:
             way.delays_us.append((packet.time_ns - sent.time_ns) / 1000)

@@ -73,7 +73,7 @@ def lines(kind: int, thickness: float, rgb: tuple[float, ...], points: list[Poin
 
 
 def text(place: Point, words: str) -> Any:
-    """Words above a place."""
+    """Words 1.5 m above a place, as a primitive of the scene."""
     above = (place[0], place[1], place[2] + 1.5)
     return {
         "pose": _pose(above), "billboard": True, "font_size": 12, "scale_invariant": True,

@@ -1,1 +1,1 @@
-"""The compile door: what Numba may compile, record types, where compiled code is kept."""
+"""Compilation: what Numba may compile, record types, where compiled code is kept."""

@@ -110,7 +110,7 @@ class Medium:
         return host, port
 
     def close(self) -> None:
-        """Silence."""
+        """Stop what is on the air, and listen no more."""
         if self._socket is not None:
             asyncio.get_running_loop().remove_reader(self._socket.fileno())
             self._socket.close()

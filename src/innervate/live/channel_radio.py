@@ -50,7 +50,7 @@ class MediumRadio:
         self._again: asyncio.TimerHandle | None = None
 
     async def start(self, listener: Listener) -> None:
-        """Join the channel."""
+        """Join the channel; `listener` is told of carriers and frames."""
         self._listener = listener
         sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         sock.setblocking(False)
@@ -69,7 +69,7 @@ class MediumRadio:
         self._again = asyncio.get_running_loop().call_later(JOIN_S, self._join)
 
     def send(self, at: int, data: bytes, slots: int) -> None:
-        """Send a frame."""
+        """Send a frame of so many slots, from the time `at` on, us."""
         assert self._socket is not None
         self.mode = "sending"
         with suppress(OSError):  # no channel there: it is lost
@@ -83,7 +83,7 @@ class MediumRadio:
                 self._socket.send(PLUG.pack(b"P", self.number, plugged))
 
     def stop(self) -> None:
-        """Leave the channel."""
+        """Leave the channel: nothing is heard or sent any more."""
         if self._again is not None:
             self._again.cancel()
         if self._socket is not None:

@@ -79,7 +79,7 @@ class DeclaredStack:
         self.path_of_port = {port: path for path, port in enumerate(ports)}
 
     def on_start(self, now: int, cause: int) -> None:
-        """Switch on."""
+        """Switch the node on at `now`, us; `cause` 0 is the first time."""
         self._do.on_start(self.node, self.params, now, cause, self.out)
 
     def on_frame(self, now: int, port: int) -> None:
@@ -88,7 +88,7 @@ class DeclaredStack:
         self._do.on_frame(self.node, self.params, now, own, self.inbox, self.out)
 
     def on_timer(self, now: int, timer: int) -> None:
-        """A timer fires."""
+        """A timer of the node's protocol fires at `now`, us."""
         self._do.on_timer(self.node, self.params, now, timer, self.out)
 
     def on_input(self, now: int, kind: int, item: Any) -> None:
@@ -175,7 +175,7 @@ class DeclaredNode(LiveNode):
         return self.arrivals.receive(callback)
 
     def streams(self, request: dict[str, Any]) -> list[Stream]:
-        """What is delivered."""
+        """What is delivered to the node, for those who follow it by its status socket."""
         return [(self.receive(), partial(_line, self.name))]
 
     def counters(self) -> Counter[str]:

@@ -24,13 +24,13 @@ class Stage(Protocol):
     deployment: Deployment
 
     def socket(self, name: str) -> Path:
-        """A node's status socket."""
+        """Where a node's status socket lies."""
 
     async def change(self, cable: int, what: str, loss: float = 0.0) -> None:
         """Cut, restore or loosen a cable, at both its ends."""
 
     async def end_node(self, name: str, gently: bool) -> None:
-        """End a node's process."""
+        """End a node's process; `gently` lets it say goodbye, else it is killed."""
 
     async def begin_node(self, name: str) -> None:
         """Start a node's process, or start it again."""

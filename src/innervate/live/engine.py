@@ -32,13 +32,13 @@ class Stack(Protocol):
     silent_us: int
 
     def on_start(self, now: int, cause: int) -> None:
-        """Switch on."""
+        """Switch the node on at `now`, us; `cause` 0 is the first time."""
 
     def on_frame(self, now: int, port: int) -> None:
         """The frame in `inbox` was received."""
 
     def on_timer(self, now: int, timer: int) -> None:
-        """A timer fires."""
+        """A timer of the node's protocol fires at `now`, us."""
 
     def on_input(self, now: int, kind: int, item: Any) -> None:
         """The node's own user hands something down."""

@@ -1,4 +1,4 @@
-"""Node files as text."""
+"""Node files as text: what `live up` writes and nodes read."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from innervate.live.deployment import Table
 
 
 def text(head: Table, tables: dict[str, Table], links: list[Table]) -> str:
-    """A node file."""
+    """The text of a node file: keys of its head, tables, one [[link]] a cable."""
     lines = _lines(head)
     for name, table in tables.items():
         lines += ["", f"[{name}]", *_lines(table)]

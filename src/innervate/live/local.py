@@ -20,7 +20,7 @@ class LocalLink(Link):
         self.paths = [self.path]
 
     async def open(self, receive: Receiver) -> None:
-        """Start to receive."""
+        """Hand what comes in to `receive` from now on."""
         self.path.receive = receive
 
     def close(self) -> None:
@@ -45,7 +45,7 @@ class LocalPath(Path):
         asyncio.get_running_loop().call_soon(self.other.take, data)
 
     def take(self, data: bytes) -> None:
-        """Bytes come in."""
+        """Bytes come in from the other end; lost while the cable is cut."""
         if self.receive is not None and not self.cut:
             self.receive(self, data)
 

@@ -7,7 +7,7 @@ import re
 import socket
 from collections.abc import Iterator
 
-from innervate.live.door import Bounds, Door
+from innervate.live.admission import BoundedListener, Bounds
 from innervate.live.errors import LiveError
 from innervate.live.node import LiveNode
 
@@ -28,7 +28,7 @@ class MetricsPage:
     def __init__(self, where: tuple[str, int], node: LiveNode) -> None:
         self.where = where
         self.node = node
-        self.door: Door | None = None
+        self.listener: BoundedListener | None = None
 
     async def start(self) -> None:
         """Listen.
@@ -41,13 +41,13 @@ class MetricsPage:
         except OSError as error:
             host, port = self.where
             raise LiveError(f"metrics: cannot use {host}:{port}: {error.strerror}") from None
-        self.door = Door("metrics", sock, self._serve, BOUNDS, self.node.callers)
-        self.door.open()
+        self.listener = BoundedListener("metrics", sock, self._serve, BOUNDS, self.node.callers)
+        self.listener.open()
 
     async def stop(self) -> None:
-        """Close."""
-        if self.door is not None:
-            self.door.close()
+        """Stop listening, and hang up on whoever is served."""
+        if self.listener is not None:
+            self.listener.close()
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         try:

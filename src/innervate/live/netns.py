@@ -43,7 +43,7 @@ class Lab:
                 raise LiveError(f"network namespaces need {tool}; install {package}")
 
     def name(self, node: int) -> str:
-        """A node's namespace."""
+        """What a node's network namespace is called."""
         return f"{self.prefix}-{node}"
 
     def address(self, link: int, node: int) -> str:
@@ -116,7 +116,7 @@ class Lab:
         self._set("add", link)
 
     def restore(self, link: int) -> None:
-        """Undo `cut`."""
+        """Let frames over a link again, as before `cut`."""
         self._set("delete", link)
 
     def isolate(self, node: int) -> None:
@@ -124,7 +124,7 @@ class Lab:
         self._change("add", node, self.interfaces(node))
 
     def rejoin(self, node: int) -> None:
-        """Undo `isolate`."""
+        """Let a node's frames out again, as before `isolate`."""
         self._change("delete", node, self.interfaces(node))
 
     def _set(self, what: str, link: int) -> None:

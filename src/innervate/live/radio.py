@@ -40,7 +40,7 @@ class Radio(Protocol):
         """Pull the aerial's plug, or push it in: without it nothing is heard, nor does it reach."""
 
     def stop(self) -> None:
-        """Switch it off."""
+        """Switch the radio off: nothing is heard or sent any more."""
 
 
 class Aerial(Path):

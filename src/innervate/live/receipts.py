@@ -50,7 +50,7 @@ class Receipt:
         return str(await future)
 
     def move(self, state: str, reason: str = "") -> None:
-        """The state changes."""
+        """The message's state changes; whoever waits for that is woken."""
         self.state, self.reason = state, reason
         told = self._changes
         self._changes = []

@@ -52,7 +52,7 @@ class SerialLink(Link):
         self._try_open()
 
     def close(self) -> None:
-        """Close the port."""
+        """Close the port, and do not open it again."""
         self._closed = True
         if self._again is not None:
             self._again.cancel()

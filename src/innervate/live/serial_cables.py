@@ -44,7 +44,7 @@ class Cables:
         self._thread.start()
 
     def stop(self) -> None:
-        """Close all."""
+        """End the thread that carries bytes, and close all ports."""
         os.write(self._end[1], b".")
         if self._thread.is_alive():
             self._thread.join()

@@ -13,7 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from innervate.live.door import Bounds, Door
+from innervate.live.admission import BoundedListener, Bounds
 from innervate.live.errors import LiveError
 
 LINE_MAX = 65_536
@@ -43,7 +43,7 @@ class Writer:
         self._stream = stream
 
     async def line(self, answer: dict[str, Any]) -> None:
-        """Write one answer."""
+        """Write one answer as a line of JSON, and wait until there is room for more."""
         self._stream.write(json.dumps(answer).encode() + b"\n")
         await self._stream.drain()
 
@@ -61,7 +61,7 @@ class Server:
         self.path = path
         self._counts = Counter() if counts is None else counts
         self._handle = handle
-        self.door: Door | None = None
+        self.listener: BoundedListener | None = None
 
     async def start(self) -> None:
         """Listen.
@@ -82,15 +82,15 @@ class Server:
             except OSError:
                 sock.close()
                 raise
-            self.door = Door("status", sock, self._serve, BOUNDS, self._counts)
-            self.door.open()
+            self.listener = BoundedListener("status", sock, self._serve, BOUNDS, self._counts)
+            self.listener.open()
         except OSError as error:
             raise LiveError(f"{self.path}: no socket here: {error.strerror or error}") from None
 
     async def stop(self) -> None:
         """Close the socket and every connection."""
-        if self.door is not None:
-            self.door.close()
+        if self.listener is not None:
+            self.listener.close()
             with suppress(OSError):
                 self.path.unlink()
 
@@ -183,6 +183,6 @@ def sockets() -> list[Path]:
 
 
 def _in_order(path: Path) -> tuple[str, int]:
-    """n2 comes before n10."""
+    """A key by which n2 comes before n10."""
     letters = path.stem.rstrip("0123456789")
     return letters, int(path.stem[len(letters) :] or -1)

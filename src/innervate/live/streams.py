@@ -32,7 +32,7 @@ class Arrivals(Generic[Item]):
         self._waiting: list[Item] = []
 
     def put(self, item: Item) -> None:
-        """Something came."""
+        """Add an item behind those that wait."""
         self._waiting.append(item)
 
     def hand_up(self) -> None:

@@ -32,7 +32,7 @@ class UdpPath(Path):
         self.address = address
 
     def send(self, data: bytes) -> None:
-        """Send a datagram."""
+        """Send a datagram to the path's address; what has no room is counted and lost."""
         sock = self.link.socket
         if sock is None:
             self.counters["unsent: closed"] += 1
@@ -96,7 +96,7 @@ class UdpLink(Link):
         return sock
 
     def close(self) -> None:
-        """Close the socket."""
+        """Close the socket, and do not open it again."""
         self._closed = True
         if self._again is not None:
             self._again.cancel()
@@ -207,4 +207,4 @@ class MulticastLink(UdpLink):
 
 
 def _nobody(path: Path, data: bytes) -> None:
-    """Receives until somebody does."""
+    """Drop what comes in before a receiver is known."""

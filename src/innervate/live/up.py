@@ -144,7 +144,7 @@ class Processes:
         await ask(self.socket(self.names[number]), request)
 
     def socket(self, name: str) -> Path:
-        """A node's status socket."""
+        """Where a node's status socket lies."""
         return self.folder / f"{name}.sock"
 
     async def down(self) -> None:

@@ -1,4 +1,7 @@
-"""Line charts with marked moments, and bars."""
+"""Line charts with marked moments, and bars: as they are drawn on pages.
+
+Steps and Bars say what is shown; plot/figures.py draws the same with matplotlib.
+"""
 
 from __future__ import annotations
 
@@ -17,6 +20,7 @@ LEFT, RIGHT, BOTTOM = 46.0, 14.0, 40.0
 LETTER = 7.2  # width of a letter at 12 px, on the safe side
 LABEL_ROW = 15.0
 BARS_MAX = 24
+STEPS_MAX = 2000  # of the curve of a distribution
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +38,73 @@ class Axis:
     low: float
     high: float
     name: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """A drawing with its caption."""
+
+    drawing: svg.Drawing
+    head: str
+    text: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Steps:
+    """A step function (`values[i]` from `times[i]` on) with marked moments, and its caption."""
+
+    times: Any
+    values: Any
+    x: Axis
+    y: Axis
+    head: str
+    text: str = ""
+    marks: Sequence[Mark] = ()
+    height: float = 190.0
+    label: str = ""  # for a screen reader; else the head
+
+    @property
+    def drawing(self) -> svg.Drawing:
+        """It as it stands on a page."""
+        label = self.label or self.head
+        return step_chart(self.times, self.values, self.x, self.y, self.marks, label, self.height)
+
+
+@dataclass(frozen=True, slots=True)
+class Bar:
+    """One bar: its name, its length, the words behind it, and its class."""
+
+    name: str
+    value: float
+    words: str
+    kind: str = "bar"
+
+
+@dataclass(frozen=True, slots=True)
+class Bars:
+    """Bars with a caption; `even` is marked as the fair share."""
+
+    bars: Sequence[Bar]
+    head: str
+    text: str = ""
+    even: float | None = None
+    label: str = ""
+
+    @property
+    def drawing(self) -> svg.Drawing:
+        """It as it stands on a page."""
+        return bar_chart(self.bars, self.label or self.head, self.even)
+
+
+def distribution(
+    values: Any, x: Axis, head: str, text: str = "", marks: Sequence[Mark] = (), top: float = 105.0
+) -> Steps:
+    """Which share of values, in ascending order and at least one, is at most so large, in %."""
+    shares = 100.0 * np.arange(1, len(values) + 1) / len(values)
+    every = max(1, len(values) // STEPS_MAX)
+    at = np.concatenate([[0.0], values[::every], values[-1:]])
+    shares = np.concatenate([[0.0], shares[::every], shares[-1:]])
+    return Steps(at, shares, x, Axis(0.0, top), head, text, marks)
 
 
 def ticks(low: float, high: float, count: int = 5) -> list[float]:
@@ -154,16 +225,6 @@ def _rows(marks: Sequence[Mark], across: Any) -> list[tuple[int, str]]:
         taken[row].append(span)
         found[index] = (row, anchor)
     return [found[i] for i in range(len(marks))]
-
-
-@dataclass(frozen=True, slots=True)
-class Bar:
-    """One bar: its name, its length, the words behind it, and its class."""
-
-    name: str
-    value: float
-    words: str
-    kind: str = "bar"
 
 
 def bar_chart(bars: Sequence[Bar], label: str, even: float | None = None) -> svg.Drawing:

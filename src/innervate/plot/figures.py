@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from innervate.plot import style
+from innervate.plot import charts, style
+
+MARKS_MAX = 12
 
 
 def draw(run: Any, figure: str = "delivered", **options: Any) -> Figure:
@@ -17,14 +20,66 @@ def draw(run: Any, figure: str = "delivered", **options: Any) -> Figure:
     Raises:
         ValueError: no figure of that name.
     """
-    if figure not in FIGURES:
-        raise ValueError(f'no figure "{figure}"; there are {", ".join(FIGURES)}')
+    return draw_one(FIGURES, run, figure, options)
+
+
+def draw_one(
+    figures: Mapping[str, Callable[..., Figure]], run: Any, figure: str, options: dict[str, Any]
+) -> Figure:
+    """The figure of that name, in the house's style.
+
+    Raises:
+        ValueError: no figure of that name.
+    """
+    if figure not in figures:
+        raise ValueError(f'no figure "{figure}"; there are {", ".join(figures)}')
     with style.house():
-        return FIGURES[figure](run.result, **options)
+        return figures[figure](run, **options)
 
 
-def delivered(result: Any) -> Figure:
+def chart(one: charts.Steps | charts.Bars | None) -> Figure:
+    """What a report shows as a drawing; None if there is nothing to be shown."""
+    made, (ax,) = style.panels(style.COLUMN_IN, 2.2)
+    if isinstance(one, charts.Bars):
+        _bars(ax, one)
+    elif one is not None:
+        _steps(ax, one)
+    ax.set_title("nothing to show" if one is None else one.head)
+    return made
+
+
+def _steps(ax: Axes, shown: charts.Steps) -> None:
+    at = np.append(shown.times, shown.x.high)
+    values = np.append(shown.values, shown.values[-1:] if len(shown.values) else [0])
+    ax.fill_between(at, 0, values, step="post", color=style.BLUE, alpha=0.18, lw=0)
+    ax.step(at, values, where="post", color=style.BLUE, lw=1)
+    for i, mark in enumerate(shown.marks):
+        ax.axvline(mark.at, color=style.INK, lw=0.8, ls="--")
+        if len(shown.marks) <= MARKS_MAX:
+            right = mark.at > (shown.x.low + shown.x.high) / 2
+            ax.text(
+                mark.at, 0.99 - 0.08 * (i % 3), f" {mark.label} ", ha="right" if right else "left",
+                va="top", transform=ax.get_xaxis_transform(), fontsize=6.5,
+            )  # fmt: skip
+    ax.set_xlim(shown.x.low, shown.x.high)
+    ax.set_ylim(shown.y.low, shown.y.high)
+    ax.set_xlabel(shown.x.name)
+
+
+def _bars(ax: Axes, shown: charts.Bars) -> None:
+    places = range(len(shown.bars))
+    ax.bar(places, [bar.value for bar in shown.bars], 0.7, color=style.BLUE, alpha=0.5)
+    if shown.even is not None:
+        ax.axhline(shown.even, color=style.INK, lw=0.9, ls="--")
+        ax.set_xlabel(f"dashed: even share, {shown.even:.4g}")
+    if len(places) <= MARKS_MAX:
+        ax.set_xticks(places, [bar.name for bar in shown.bars], rotation=30, ha="right")
+    ax.grid(axis="x", visible=False)
+
+
+def delivered(run: Any) -> Figure:
     """Messages delivered, and reports of nodes, so far, over time."""
+    result = run.result
     made, (ax,) = style.panels(style.COLUMN_IN, 2.2)
     for name, label in (("deliveries", "messages delivered"), ("rows", "reports")):
         if name in result.rows:
@@ -39,10 +94,10 @@ def delivered(result: Any) -> Figure:
     return made
 
 
-def latency(result: Any) -> Figure:
+def latency(run: Any) -> Figure:
     """Share of the messages that were delivered within a time."""
     made, (ax,) = style.panels(style.COLUMN_IN, 2.2)
-    some = result.rows.get("deliveries")
+    some = run.result.rows.get("deliveries")
     known = np.sort(some["latency"]) / 1e3 if some is not None else np.zeros(0)
     ax.step(known, np.arange(1, len(known) + 1) / max(1, len(known)), where="post", lw=1)
     ax.set_xlabel("latency (ms)")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from innervate.plot.svg import Drawing, Value, attribute, clean, number
+from innervate.plot.svg import Drawing, Value, clean, number, opening
 
 Step = tuple[float, float]
 
@@ -82,10 +82,5 @@ class Film(Drawing):
     def _element(
         self, tag: str, content: str | None, inner: str, attributes: dict[str, Value]
     ) -> None:
-        words = [tag]
-        for name, value in attributes.items():
-            if value is not None:
-                text = value if isinstance(value, str) else number(value)
-                words.append(f"{name.rstrip('_').replace('_', '-')}={attribute(text)}")
         text = clean(content) if content is not None else ""
-        self._parts.append(f"<{' '.join(words)}>{text}{inner}</{tag}>")
+        self._parts.append(f"<{opening(tag, attributes)}>{text}{inner}</{tag}>")

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
+from typing import Any
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK
 from innervate.plot import theme
+from innervate.plot.charts import Bars, Panel, Steps
 from innervate.plot.svg import Drawing, clean
+from innervate.plot.words import count_words
 
+ROWS_MAX = 200
 LEVEL_CLASSES = {OK: "status", DEGRADED: "status warn", DOWN: "status bad", NO_DATA: "status none"}
 
 # Parts of a page, wherever they stand.
@@ -93,6 +97,43 @@ def headline(found: Mapping[str, str]) -> str:
     return element("h1", found["text"]) + element("p", level, LEVEL_CLASSES[level])
 
 
+def joined(*parts: str) -> str:
+    """Those parts of a page that have something to say."""
+    return "\n".join(part for part in parts if part)
+
+
+def top(over: str, summary: Mapping[str, Any], *parts: str) -> str:
+    """What a report begins with: what it is about, what came of it, parts as HTML."""
+    begin = element("p", over, "over") + headline(summary["headline"])
+    return f"<header>\n{begin}{''.join(parts)}</header>"
+
+
+def paragraphs(sentences: Iterable[str], kind: str = "") -> str:
+    """A paragraph for each sentence."""
+    return "".join(element("p", sentence, kind) for sentence in sentences)
+
+
+def ended_early(summary: Mapping[str, Any]) -> str:
+    """A word on a run that was interrupted."""
+    if "interrupted_at_s" not in summary:
+        return ""
+    early = f"Ended early, at {summary['interrupted_at_s']:.3f} s of simulated time."
+    return element("p", early, "status bad")
+
+
+def took(summary: Mapping[str, Any], simulated_s: float) -> tuple[str, str]:
+    """The figure on how long the simulation took."""
+    wall = f"{summary['wall_s']:.2g} s" if summary["wall_s"] >= 0.01 else "10 ms"
+    return wall, f"to simulate {simulated_s:.4g} s, {count_words(summary['events'])} events"
+
+
+def beginning(head: Sequence[str], rows: Sequence[Sequence[str]], rest: str = "") -> str:
+    """The first rows of a table, and how many more there are; `rest` says where."""
+    more = len(rows) - ROWS_MAX
+    note = element("p", f"And {more:,} more{rest}.", "note") if more > 0 else ""
+    return table(head, rows[:ROWS_MAX]) + note
+
+
 def section(head: str, inside: str) -> str:
     """A section with a heading; nothing if there is nothing inside."""
     return f"<section>\n{element('h2', head)}{inside}</section>" if inside else ""
@@ -103,6 +144,11 @@ def figure(drawing: Drawing, head: str, text: str = "") -> str:
     words = element("figcaption", text) if text else ""
     title = element("h3", head) if head else ""
     return f"<figure>\n{title}{drawing.render()}\n{words}</figure>\n"
+
+
+def panel(one: Panel | Steps | Bars) -> str:
+    """A figure that has its caption with it."""
+    return figure(one.drawing, one.head, one.text)
 
 
 def pictures(figures: Iterable[str], columns: str) -> str:

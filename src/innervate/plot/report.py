@@ -16,7 +16,7 @@ class Reportable(Protocol):
 
     @property
     def scenario(self) -> Any:
-        """The scenario as resolved."""
+        """The scenario as resolved: all keys, with defaults filled in."""
 
     @property
     def result(self) -> Any:
@@ -24,11 +24,11 @@ class Reportable(Protocol):
 
     @property
     def summary(self) -> Mapping[str, Any]:
-        """The summary."""
+        """The figures of the run, as in summary.json."""
 
     @property
     def provenance(self) -> dict[str, Any]:
-        """Versions, seeds, fingerprint."""
+        """Versions, seeds and fingerprint: what made this run."""
 
 
 def render(run: Reportable) -> str:

@@ -7,7 +7,7 @@ Drawings carry their natural size; in a page they shrink to the width there is. 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
 
@@ -67,6 +67,16 @@ def cross(x: float, y: float, size: float) -> str:
     return f"M{near},{far}l{whole},{whole}M{near},{number(y + size)}l{whole},-{whole}"
 
 
+def opening(tag: str, attributes: Mapping[str, Value]) -> str:
+    """What begins an element; those attributes that are None are left out."""
+    words = [tag]
+    for name, value in attributes.items():
+        if value is not None:
+            text = value if isinstance(value, str) else number(value)
+            words.append(f"{name.rstrip('_').replace('_', '-')}={attribute(text)}")
+    return " ".join(words)
+
+
 class Drawing:
     """An SVG drawing that is filled piece by piece.
 
@@ -83,13 +93,7 @@ class Drawing:
 
     def add(self, tag: str, content: str | None = None, **attributes: Value) -> None:
         """An element; `class_` stands for class, underscores for hyphens. `content` is text."""
-        words = [tag]
-        for name, value in attributes.items():
-            if value is None:
-                continue
-            text = value if isinstance(value, str) else number(value)
-            words.append(f"{name.rstrip('_').replace('_', '-')}={attribute(text)}")
-        head = " ".join(words)
+        head = opening(tag, attributes)
         inside = None if content is None else clean(content)
         self._parts.append(f"<{head}/>" if inside is None else f"<{head}>{inside}</{tag}>")
 
@@ -102,7 +106,7 @@ class Drawing:
             self.add("path", class_=kind, d=data)
 
     def line(self, start: Point, end: Point, kind: str) -> None:
-        """A straight line."""
+        """A straight line of a style class."""
         self.add("line", class_=kind, x1=start[0], y1=start[1], x2=end[0], y2=end[1])
 
     def rect(self, corner: Point, size: Point, kind: str, tip: str = "") -> None:
@@ -112,7 +116,7 @@ class Drawing:
         self.path(f"{data}h{number(-wide)}z", kind, tip)
 
     def circle(self, centre: Point, radius: float, kind: str) -> None:
-        """A circle."""
+        """A circle of a style class, its radius in the drawing's units."""
         self.add("circle", class_=kind, cx=centre[0], cy=centre[1], r=radius)
 
     def text(self, at: Point, words: str, kind: str = "", anchor: str = "start") -> None:

@@ -4,10 +4,10 @@ from typing import Any
 
 from innervate.network import first, networks
 from innervate.scenario.bundled import bundled
-from innervate.scenario.check import check, summary
 from innervate.scenario.emit import dump, inline
 from innervate.scenario.errors import ScenarioError
 from innervate.scenario.explain import nearest
+from innervate.scenario.given import check, summary
 from innervate.scenario.load import Scenario, from_dict, load, loads, read
 
 __all__ = [

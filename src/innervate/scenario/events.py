@@ -60,7 +60,7 @@ def exact(value: float) -> Fraction:
 
 
 def micros(seconds: float) -> int:
-    """Seconds in whole microseconds."""
+    """Seconds as the nearest whole number of microseconds."""
     return round(exact(seconds) * 1_000_000)
 
 

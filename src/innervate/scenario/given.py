@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from innervate.scenario.check import summary
+from innervate.network import networks
 from innervate.scenario.emit import dump
 from innervate.scenario.load import Scenario, from_dict, loads
 from innervate.scenario.load import load as load_file
@@ -51,3 +51,13 @@ def check(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) 
         ScenarioError: it cannot be run as written.
     """
     return summary(load(scenario, seed=seed, overrides=overrides))
+
+
+def summary(loaded: Scenario) -> str:
+    """What a scenario holds, several lines, without a newline at the end.
+
+    Raises:
+        ScenarioError: it cannot be run as written.
+    """
+    network = networks()[loaded.kind]
+    return str(network.describe(network.plan(loaded)))

@@ -13,9 +13,9 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from innervate.kernel import door
+from innervate.kernel import compilation
+from innervate.kernel.clock import wall_s
 from innervate.kernel.stop import Stop
-from innervate.kernel.wall import wall_s
 from innervate.sim import taps
 from innervate.sim.counts import Counts
 from innervate.sim.status import BROKEN, DONE
@@ -75,7 +75,7 @@ class Simulation(ABC):
         """Compile the loop, or load what was compiled; nothing is due before time 0."""
         self._advance(self.world, 0, 1)
         if self.name:
-            door.mark_compiled(self.name)
+            compilation.mark_compiled(self.name)
 
     def advance(self, until_us: int, budget: int) -> int:
         """Run the loop until a time, a budget of events or the room in a table is used up.
@@ -89,7 +89,7 @@ class Simulation(ABC):
         self._advance(self.world, until_us, budget)
         status = int(get(self.world.run, 0, "status"))
         if status == BROKEN:
-            raise InvariantBroken(self.story())
+            raise InvariantBroken(self.broken_line())
         self.grow(status)
         move_rows(self.world, self._kept, self.tables, self.wide)
         return status
@@ -161,5 +161,5 @@ class Simulation(ABC):
         """Something is to be done to the network at `fault.at_us`, which has not come yet."""
 
     @abstractmethod
-    def story(self) -> str:
+    def broken_line(self) -> str:
         """The broken invariant, in one line."""

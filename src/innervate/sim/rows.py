@@ -1,7 +1,7 @@
 """Rows that every kind of run keeps in its loop's tables."""
 
 
-def keep_row(world, time, node, code, a, b):
+def record_row(world, time, node, code, a, b):
     """A row of what nodes report."""
     run = world.run[0]
     if run.row_limit > 0:
@@ -14,7 +14,7 @@ def keep_row(world, time, node, code, a, b):
         row.b = b
 
 
-def keep_step(world, node, time, handler, port):
+def record_step(world, node, time, handler, port):
     """A row of the trail of all handler calls."""
     run = world.run[0]
     if run.trail_limit > 0:

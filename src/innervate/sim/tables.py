@@ -31,7 +31,7 @@ Names = tuple[Name, ...]
 
 
 class Out(NamedTuple):
-    """The outbox (see protocol/outbox.py)."""
+    """The outbox, as tables that are compiled with (see dialect/outbox.py)."""
 
     count: Any
     limit: Any
@@ -53,7 +53,7 @@ class Tables:
         self.word = word
 
     def numbers(self, count: int, value: int = 0, kind: type = np.int32) -> Any:
-        """`count` integers."""
+        """`count` whole numbers of a value: a list if plain, else an array."""
         if self.plain:
             return [value] * count
         return np.full(count, value, kind) if value else np.zeros(count, kind)

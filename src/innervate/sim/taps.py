@@ -24,7 +24,7 @@ SPOILT = 8
 Tap = Callable[[Any, Any, int], None]
 
 
-def keep(world, time, start, at, sender, out, why, frame, copy_frame):
+def record_frame(world, time, start, at, sender, out, why, frame, copy_frame):
     """Keep a frame; the caller has looked at `tap_limit`."""
     run = world.run[0]
     row = world.taps[run.taps]
@@ -38,10 +38,10 @@ def keep(world, time, start, at, sender, out, why, frame, copy_frame):
     row.why = why
 
 
-def keep_queue(world, end, time, why, copy_frame):
+def record_queue(world, end, time, why, copy_frame):
     """Keep what waits at a port of a skin and is lost."""
     run, buffer = world.run[0], world.buffers[end]
     if run.tap_limit > 0:
         for i in range(buffer.queued):
             place = end * run.queue_frames + (buffer.first + i) % run.queue_frames
-            keep(world, time, time, end, 0, 1, why, world.queue[place], copy_frame)
+            record_frame(world, time, time, end, 0, 1, why, world.queue[place], copy_frame)

@@ -10,7 +10,7 @@ from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from dataclasses import dataclass, field
 from typing import Any
 
-from innervate.kernel import door
+from innervate.kernel import compilation
 from innervate.scenario.explain import nearest
 from innervate.sweeping.engines import Engine
 from innervate.sweeping.errors import SweepError
@@ -88,7 +88,7 @@ class Scheduler:
         self._mean_s = 0.0
         self._known = False
         # When the first results came, and how many: all before was starting and compiling.
-        self._pace: tuple[float, int] | None = None
+        self._first_ran: tuple[float, int] | None = None
 
     def run(self) -> None:
         """Run what is missing.
@@ -158,7 +158,7 @@ class Scheduler:
 
     def _first_alone(self) -> None:
         """On a machine that has compiled nothing yet, one run goes first, and compiles for all."""
-        folder = door.cache_root() / door.source_hash()
+        folder = compilation.cache_root() / compilation.source_hash()
         if self._ready and not any(folder.glob("*.compiled")):
             self._submit(self._next_jobs(1))
             self._collect()
@@ -199,8 +199,8 @@ class Scheduler:
             suspects += self._take(others)
         if suspects:
             self._isolate(suspects)
-        if self._pace is None and self.ran > 0:
-            self._pace = (time.perf_counter(), self.ran)
+        if self._first_ran is None and self.ran > 0:
+            self._first_ran = (time.perf_counter(), self.ran)
         self._progress(self)
 
     def _take(self, ended: Iterable[Future[Done]]) -> list[list[Job]]:
@@ -274,7 +274,7 @@ class Scheduler:
     @property
     def left_s(self) -> float | None:
         """About how long it will still take, s; None if nobody knows yet."""
-        if self._pace is None or self.ran == self._pace[1]:
+        if self._first_ran is None or self.ran == self._first_ran[1]:
             return None
-        took, count = time.perf_counter() - self._pace[0], self.ran - self._pace[1]
+        took, count = time.perf_counter() - self._first_ran[0], self.ran - self._first_ran[1]
         return took / count * (self.total - self.done)

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 from innervate.dialect import plain
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
-from innervate.kernel.wall import wall_s
+from innervate.kernel.clock import wall_s
 from innervate.network import Network
 from innervate.topology import PORTS, Graph, TopologyError, free_graph
 from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent, lines_of

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from innervate.kernel import door, tables
-from innervate.kernel.wall import wall_s
+from innervate.kernel import compilation, tables
+from innervate.kernel.clock import wall_s
 from innervate.verify import search as s
 from innervate.verify.errors import VerifyError
 from innervate.verify.tally import Tally
@@ -57,20 +57,20 @@ def compiled_engine(parts: Callable[[], Any]) -> s.Engine:
     system = parts()
     images = (s.compare, s.is_smaller_image, s.choose_image)
     known = (s.hash_of, s.covers, s.look_up, s.insert, s.refill)
-    walking = (s.keep_words, s.fetch_words, s.append, s.room_left)
-    door.register_functions(s.fetch_row, *images, *known, *walking, hot=True)
+    walking = (s.save_row, s.restore_row, s.append, s.room_left)
+    compilation.register_functions(s.fetch_row, *images, *known, *walking, hot=True)
     engine = s.build(system)
-    door.register_functions(*engine.parts, system.variants, hot=False)
-    expand = door.compiled(engine.expand)
-    wander = door.compiled(engine.wander)
-    return s.Engine(engine.parts, door.compiled(s.insert), expand, wander)
+    compilation.register_functions(*engine.parts, system.variants, hot=False)
+    expand = compilation.compiled(engine.expand)
+    wander = compilation.compiled(engine.wander)
+    return s.Engine(engine.parts, compilation.compiled(s.insert), expand, wander)
 
 
 @functools.cache
 def compiled_refill(parts: Callable[[], Any]) -> Callable[..., None]:
     """The function that enters all rows into a new table."""
     compiled_engine(parts)
-    return door.compiled(s.refill)
+    return compilation.compiled(s.refill)
 
 
 def explore(
@@ -235,13 +235,13 @@ class _Driver:
         tally.depth = len(self.levels) - 2
 
     def row(self, index: int) -> bytes:
-        """A kept state."""
+        """The state of this index, as bytes."""
         words = self.lay.width // 8
         part = self.search.rows[index * words : (index + 1) * words]
         return bytes(part.tobytes())
 
     def result(self, tally: Tally) -> Result:
-        """What came of it."""
+        """What came of the search: counts, and the path to what is broken."""
         run = self.search.run
         count, words = int(run[s.COUNT]), self.lay.width // 8
         kept = self.search.rows[: count * words]

@@ -162,7 +162,7 @@ def refill(search):
         search.table[slot] = (mark & ~LOW32) | (index + 1)
 
 
-def keep_words(world, search):
+def save_row(world, search):
     """Remember the row in the last place of the rows, to come back to."""
     words = search.run[WORDS]
     last = (search.run[LIMIT] - 1) * words
@@ -170,8 +170,8 @@ def keep_words(world, search):
         search.rows[last + i] = world.work_words[i]
 
 
-def fetch_words(world, search):
-    """Come back to it."""
+def restore_row(world, search):
+    """Make the row that `save_row` remembered the present state."""
     fetch_row(world, search, search.run[LIMIT] - 1)
 
 
@@ -273,10 +273,10 @@ def build(system):
                 move, variant = choose(world, (run[RANDOM] >> 20) & LOW32)
                 if move < 0:
                     break
-                keep_words(world, search)
+                save_row(world, search)
                 asked = step(world, move, variant, (run[RANDOM] >> 8) & 1)
                 if asked < 0 or world.found[0] == TOO_MANY:
-                    fetch_words(world, search)  # not that way; the next number is another
+                    restore_row(world, search)  # not that way; the next number is another
                     run[GENERATED] += 1
                     run[RANDOM] = mix(run[RANDOM], 7)
                     if run[RANDOM] & 63 == 0:

@@ -40,7 +40,7 @@ class Twin:
         self.world.work[:] = row
 
     def row(self) -> bytes:
-        """The present state."""
+        """The present state, as bytes."""
         return bytes(self.world.work)
 
     def image(self) -> bytes:

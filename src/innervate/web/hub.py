@@ -12,7 +12,7 @@ import msgspec
 
 from innervate.web.errors import Refused
 from innervate.web.messages import parse
-from innervate.web.snapshot import Snapshot, Teller
+from innervate.web.snapshot import DeltaEncoder, Snapshot
 from innervate.web.source import Source
 from innervate.web.stage import Stage, next_due
 
@@ -33,7 +33,7 @@ class Page:
         self._hub = hub
         self._send = send
         self._answers: deque[dict[str, Any]] = deque(maxlen=ANSWERS_MAX)
-        self._teller = Teller(hub.source.history)
+        self._deltas = DeltaEncoder(hub.source.history)
         self._told: Snapshot | None = None
         self.wake = asyncio.Event()
 
@@ -64,9 +64,9 @@ class Page:
             newest = self._hub.newest
             if newest is not None and (behind or newest is not self._told):
                 self._told = newest
-                for message in self._teller.messages(newest):
+                for message in self._deltas.messages(newest):
                     await self._send(message.decode())
-                behind = self._teller.is_behind(newest)
+                behind = self._deltas.is_behind(newest)
             while self._answers:
                 await self._send(msgspec.json.encode(self._answers.popleft()).decode())
             due = next_due(due, time.monotonic())

@@ -347,5 +347,5 @@ class Live(Source):
         return sum(path in one["ports"] for one in near) > 1
 
     def close(self) -> None:
-        """Stop asking the nodes."""
+        """Stop asking the nodes how they are."""
         self._poller.close()

@@ -12,7 +12,7 @@ from innervate.sim.driver import InvariantBroken
 from innervate.web.engine import Engine, Mark, engine_of
 from innervate.web.errors import Refused
 from innervate.web.messages import Command, Go, Pause, Save, Seek, Speed, Step
-from innervate.web.pace import Pace
+from innervate.web.playback import Playback
 from innervate.web.saving import saved
 from innervate.web.source import Source
 from innervate.web.view import View
@@ -30,7 +30,7 @@ MARKS_BYTES = 256 * 1024 * 1024
 Progress = Callable[[int, int], None]
 
 
-class Kept(NamedTuple):
+class Checkpoint(NamedTuple):
     """A moment to go back to."""
 
     engine: Mark
@@ -57,12 +57,12 @@ class Simulated(Source):
         self.view: View = networks()[plan.kind].view(self.engine, self.history)
         saves = ("save",) if self.view.saves else ()
         self.can = ("pause", "step", "speed", "seek", *self.view.can, *saves)
-        self.pace = Pace(self.view.speed if speed is None else speed)
+        self.playback = Playback(self.view.speed if speed is None else speed)
         self.broken = ""
         self._budget = BUDGET
         self._target_us: int | None = None  # where a seek leads
         self._next_point_us = self._point_us()
-        self._marks: list[Kept] = []
+        self._marks: list[Checkpoint] = []
         self._apart_us = APART_US
 
     def prepare(self) -> None:
@@ -91,42 +91,42 @@ class Simulated(Source):
 
     def fields(self) -> dict[str, Any]:
         """What pages get of the present state, by name."""
-        self.view.is_still = self.pace.paused or self.at_end
-        paced = self.pace.paused or 0 < self.pace.speed <= self.view.slow
+        self.view.is_still = self.playback.paused or self.at_end
+        is_paced = self.playback.paused or 0 < self.playback.speed <= self.view.slow
         return {
             "t_s": self.engine.now_us / 1e6,
-            "paused": self.pace.paused,
-            "speed": self.pace.speed,
+            "paused": self.playback.paused,
+            "speed": self.playback.speed,
             "at_end": self.at_end,
-            **self.view.fields(flights=paced and self._target_us is None),
+            **self.view.fields(flights=is_paced and self._target_us is None),
         }
 
     def work(self) -> float:
-        """Go on as far as the pace says."""
+        """Go on as far as the playback says."""
         now_us, end_us = self.engine.now_us, self.plan.duration_us
         if self._target_us is not None:
             self._advance(self._target_us)
             if self.engine.now_us >= self._target_us or self.at_end:
                 self._target_us = None
                 self._plan_point()
-                self.pace.start_from(self.engine.now_us)
+                self.playback.start_from(self.engine.now_us)
             return 0.0
-        due_us = self.pace.due_us(end_us)
+        due_us = self.playback.due_us(end_us)
         if self.at_end or due_us <= now_us:
-            return 1.0 if self.at_end or self.pace.paused else BEAT_S
+            return 1.0 if self.at_end or self.playback.paused else BEAT_S
         self._advance(due_us)
-        self.pace.note(self.engine.now_us, due_us)
+        self.playback.note(self.engine.now_us, due_us)
         return BEAT_S if self.engine.now_us >= due_us else 0.0
 
     def do(self, command: Command) -> dict[str, Any] | None:
         """Carry out a page's command; what to tell all pages of it, or None."""
         now_us = self.engine.now_us
         if isinstance(command, Pause):
-            self.pace.hold(now_us)
+            self.playback.hold(now_us)
         elif isinstance(command, Go):
-            self.pace.go(now_us)
+            self.playback.go(now_us)
         elif isinstance(command, Speed):
-            self.pace.set_speed(command.value, now_us)
+            self.playback.set_speed(command.value, now_us)
             self._plan_point()
         elif isinstance(command, Seek):
             self._seek(command.t_s)
@@ -159,7 +159,7 @@ class Simulated(Source):
         self.history.go_back(kept.engine.now_us)
         self.broken = ""
         self._plan_point()
-        self.pace.start_from(self.engine.now_us)
+        self.playback.start_from(self.engine.now_us)
 
     def _advance(self, until_us: int) -> None:
         """Go on towards a time, for about a slice."""
@@ -189,9 +189,9 @@ class Simulated(Source):
     def _point_us(self) -> int:
         """Time between two points of the plots now."""
         whole_us = max(POINT_US[0], int(self.plan.duration_us) // POINTS)
-        if self.pace.speed == 0 or self._target_us is not None:
+        if self.playback.speed == 0 or self._target_us is not None:
             return whole_us
-        return min(whole_us, max(POINT_US[1], round(1e6 * self.pace.speed / POINTS_PER_S)))
+        return min(whole_us, max(POINT_US[1], round(1e6 * self.playback.speed / POINTS_PER_S)))
 
     def _plan_point(self) -> None:
         every_us = self._point_us()
@@ -213,7 +213,7 @@ class Simulated(Source):
         newest_us = self._marks[-1].engine.now_us if self._marks else -self._apart_us
         if self.engine.now_us < newest_us + self._apart_us:
             return
-        self._marks.append(Kept(self.engine.mark(), self.view.remember()))
+        self._marks.append(Checkpoint(self.engine.mark(), self.view.remember()))
         most = max(2, min(MARKS, MARKS_BYTES // self._marks[-1].engine.bytes))
         if len(self._marks) > most:
             self._marks = self._marks[::2]
@@ -227,12 +227,12 @@ class Simulated(Source):
         self._plan_point()
 
     def _step(self) -> None:
-        self.pace.hold(self.engine.now_us)
+        self.playback.hold(self.engine.now_us)
         at_us = self.engine.next_us()
         if at_us is None or at_us >= self.plan.duration_us or self.at_end:
             raise Refused("nothing more happens")
         self._advance(at_us + 1)
-        self.pace.start_from(self.engine.now_us)
+        self.playback.start_from(self.engine.now_us)
 
     def _change(self, command: Command) -> None:
         """Something is done to the network, now."""
@@ -242,4 +242,4 @@ class Simulated(Source):
         self.view.apply(command)
         self._marks = [kept for kept in self._marks if kept.engine.now_us <= at_us]
         self._advance(at_us + 1)
-        self.pace.start_from(self.engine.now_us)
+        self.playback.start_from(self.engine.now_us)

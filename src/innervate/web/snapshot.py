@@ -75,7 +75,7 @@ class Snapshot:
         )
 
 
-class Teller:
+class DeltaEncoder:
     """What one page has been told."""
 
     def __init__(self, history: History) -> None:

@@ -29,7 +29,7 @@ def tables_of(_result: Any) -> tuple[Table, ...]:
 
 def written_of(result: Any) -> tuple[Table, ...]:
     """Those that are written: without samples where none were kept."""
-    kept = result.received_kept
+    kept = result.has_deliveries
     return tuple(table for table in tables.TABLES if kept or table is not tables.RECEIVED)
 
 

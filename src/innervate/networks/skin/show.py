@@ -50,7 +50,7 @@ def event_lines(run: Run) -> list[str]:
 
 
 def state_lines(summary: SkinSummary) -> list[str]:
-    """Samples, ports, loops."""
+    """Lines on samples, interface ports and loops of a run."""
     lines = []
     data, loads = summary["data"], summary["port_loads"]
     if data["loss_ratio"] is not None:

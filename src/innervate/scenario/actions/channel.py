@@ -13,6 +13,6 @@ TABLE = (
 ACTIONS, HARM = words(TABLE), harmful(TABLE)
 BEGIN, JOIN, KILL, LEAVE, GARBLE, FADE = range(6)
 # What a scenario calls them; stations begin by themselves.
-NUMBERS = {
+WORDS = {
     "join": JOIN, "leave": LEAVE, "kill": KILL, "revive": JOIN, "garble": GARBLE, "fade": FADE,
 }  # fmt: skip

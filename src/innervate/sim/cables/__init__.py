@@ -8,7 +8,7 @@ What a network brings (`declared.py` makes all of it from declarations):
 
 - `build.Records`: the declared fields of nodes, frames, parameters, inputs, a sink; the names of
   the columns of its deliveries, and of its recorder's own numbers.
-- Functions, in a module `do` (see `kernel/door.bound`), with the world first. The protocol's:
+- Functions, in a module `do` (`kernel/compilation.bound`), with the world first. The protocol's:
   `on_start(world, node, now, cause)`, `on_frame(world, node, time, port, frame)`,
   `on_timer(world, node, now, timer)`, `on_input(world, node, now, kind)` with the item in
   `world.sample[0]`; they fill `world.out`, which the medium carries out: SEND (port, delay, flags),

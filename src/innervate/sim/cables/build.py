@@ -45,7 +45,7 @@ class Records(NamedTuple):
     outbox: int = 16
 
 
-class Kept(NamedTuple):
+class Recorded(NamedTuple):
     """What a run keeps.
 
     Attributes:
@@ -91,7 +91,7 @@ class _Sizes(NamedTuple):
     tapped: int
 
 
-def build(plan: Any, of: Records, tables: Tables, kept: Kept, added: Added) -> w.World:
+def build(plan: Any, of: Records, tables: Tables, kept: Recorded, added: Added) -> w.World:
     """The world of a plan, before its first event.
 
     Args:
@@ -144,7 +144,7 @@ def build(plan: Any, of: Records, tables: Tables, kept: Kept, added: Added) -> w
     return world
 
 
-def _sizes(plan: Any, of: Records, kept: Kept, added: Added) -> _Sizes:
+def _sizes(plan: Any, of: Records, kept: Recorded, added: Added) -> _Sizes:
     graph, ends = plan.graph, len(plan.graph.peer)
     nodes = graph.cells + bool(of.sink)
     tx_slots = nodes * w.TIMER_SLOTS
@@ -179,7 +179,7 @@ def _sink(tables: Tables, of: Records, ports: int) -> Any:
 
 
 def _wheel(tables: Tables, pool_slots: int, pool: int) -> w.Wheel:
-    """An empty event queue."""
+    """An empty event queue with room for `pool` events and a slot for each wait."""
     wheel = w.Wheel(
         clock=tables.numbers(2, 0, np.int64),
         links=tables.numbers(BUCKETS + pool_slots + pool),
@@ -230,7 +230,7 @@ def _fill(table: Any, name: str, values: Any, count: int) -> None:
         table[name][:count] = values
 
 
-def _set_run(world: w.World, plan: Any, size: _Sizes, kept: Kept) -> None:
+def _set_run(world: w.World, plan: Any, size: _Sizes, kept: Recorded) -> None:
     low, high = plan.latency_us
     put(
         world.run,

@@ -69,7 +69,7 @@ def look(world, do, node, time, handler, port):
         do.check(world, node)
         if run.broken and run.broken_at < 0:
             run.broken_at = time
-    rows.keep_step(world, node, time, handler, port)
+    rows.record_step(world, node, time, handler, port)
 
 
 def switch_on(world, do, node, time, cause):

@@ -14,13 +14,13 @@ from types import ModuleType
 from typing import Any
 
 from innervate.dialect.arith import MASK30
-from innervate.kernel import door
+from innervate.kernel import compilation
 from innervate.kernel.bits import mix
 from innervate.network import networks
 from innervate.scenario.actions.cables import GIVE
 from innervate.sim import clocks
 from innervate.sim.cables import loop, recorder
-from innervate.sim.cables.build import Added, Kept, Records, build
+from innervate.sim.cables.build import Added, Recorded, Records, build
 from innervate.sim.cables.simulation import Cables
 from innervate.sim.cables.world import ALIVE, SOURCE, World
 from innervate.sim.tables import Tables, put
@@ -118,7 +118,7 @@ def _users_side(do: ModuleType, is_timed: bool) -> dict[str, Callable[..., Any]]
         on_deliver(world, time, node, port, frame)
         recorder.keep_latency(world, (time - frame.made_at) & MASK30)
 
-    door.register_functions(copy_frame, kind_of, take_input, on_deliver)
+    compilation.register_functions(copy_frame, kind_of, take_input, on_deliver)
     return {"take_input": take_timed, "sense": sense_timed, "on_deliver": deliver_timed}
 
 
@@ -130,16 +130,16 @@ def plain_loop(kind: str) -> Callable[..., None]:
 
 @functools.cache
 def compiled_loop(kind: str) -> Callable[..., None]:
-    """The same, compiled."""
+    """The loop of a network over cables, compiled with its protocol."""
     network = networks()[kind]
     do = functions(network.protocol, network.fields)
-    door.register_functions(*(f for f in vars(do).values() if callable(f)))
-    hot = (recorder, *door.modules_of(network.protocol))
+    compilation.register_functions(*(f for f in vars(do).values() if callable(f)))
+    hot = (recorder, *compilation.modules_of(network.protocol))
     advance: Callable[..., None] = loop.compiled(do, hot, ())
     return advance
 
 
-def world_of(plan: Any, plain: bool, kept: Kept) -> World:
+def world_of(plan: Any, plain: bool, kept: Recorded) -> World:
     """The world of a plan (see `scenario/cables.py`), before its first event."""
     network = networks()[plan.kind]
     tables, fields = Tables(plain), network.fields
@@ -157,4 +157,4 @@ def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> Cables:
     """A plan's network before its first event; `kept` as in `cables.build.Kept`."""
     advance = (plain_loop if plain else compiled_loop)(plan.kind)
     name = "" if plain else plan.kind
-    return Cables(plan, world_of(plan, plain, Kept(**kept)), advance, name)
+    return Cables(plan, world_of(plan, plain, Recorded(**kept)), advance, name)

@@ -6,13 +6,13 @@ A row of every report, one of every delivered frame, and the declared range of e
 from innervate.sim import delays
 from innervate.sim.cables.wires import DELIVERED
 from innervate.sim.cables.world import BROKEN_RANGE
-from innervate.sim.rows import keep_row
+from innervate.sim.rows import record_row
 
 
 def on_report(world, time, node, code, a, b):
-    """A node reported something."""
+    """A row of a node's report, if reports are observed."""
     if world.run[0].observe:
-        keep_row(world, time, node, code, a, b)
+        record_row(world, time, node, code, a, b)
 
 
 def keep_delivered(world, time, node, port, kind):
@@ -46,11 +46,11 @@ def before_change(world):
 
 
 def on_change(world, time, node, index):
-    """They did."""
+    """A cable or node changed: nothing is noted of that here."""
 
 
 def check(world, node):
-    """After every handler."""
+    """Check the ranges of a node's fields, after every handler."""
     check_range(world, node)
 
 

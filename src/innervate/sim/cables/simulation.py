@@ -24,7 +24,7 @@ class Result:
 
     `rows` are what nodes and the recorder reported, `deliveries` what users received, `trail` all
     handler calls; structured arrays with the fields of the simulation's `tables`, times in us.
-    `received_kept`: `deliveries` holds all of it, rather than nothing.
+    `has_deliveries`: `deliveries` holds all of it, rather than nothing.
     """
 
     plan: Any
@@ -39,7 +39,7 @@ class Result:
     handled: int
     arrived: int
     interrupted: bool
-    received_kept: bool = False
+    has_deliveries: bool = False
 
 
 class Cables(Simulation):
@@ -70,11 +70,11 @@ class Cables(Simulation):
             handled=int(get(world.run, 0, "handled")),
             arrived=sum(int(world.counters[ARRIVED + block]) for block in BLOCKS),
             interrupted=ended.interrupted,
-            received_kept=kept,
+            has_deliveries=kept,
             **ended.rows,
         )
 
-    def story(self) -> str:
+    def broken_line(self) -> str:
         """The broken invariant, in one line."""
         run, label = self.world.run, self.plan.graph.label
         node, other = (int(get(run, 0, name)) for name in ("broken_node", "broken_other"))

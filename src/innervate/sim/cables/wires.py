@@ -61,13 +61,13 @@ LOSSY = 2
 def tap_out(world, do, end, frame, time, why):
     """Keep a copy of a frame that leaves at this end of a cable, if a capture is wanted."""
     if world.run[0].tap_limit > 0:
-        taps.keep(world, time, time, end, 0, 1, why, frame, do.copy_frame)
+        taps.record_frame(world, time, time, end, 0, 1, why, frame, do.copy_frame)
 
 
 def tap_in(world, do, end, frame, time, why):
     """Keep a copy of a frame that comes in at this end of a cable, if a capture is wanted."""
     if world.run[0].tap_limit > 0:
-        taps.keep(world, time, time, end, 0, 0, why, frame, do.copy_frame)
+        taps.record_frame(world, time, time, end, 0, 0, why, frame, do.copy_frame)
 
 
 def transmit(world, do, end, frame, time, flags):
@@ -203,7 +203,7 @@ def give_up_queue(world, do, end, time, reason, why):
     for i in range(buffer.queued):
         frame = world.queue[end * room + (buffer.first + i) % room]
         world.counters[reason + do.block_of(frame)] += 1
-    taps.keep_queue(world, end, time, why, do.copy_frame)
+    taps.record_queue(world, end, time, why, do.copy_frame)
     buffer.queued = 0
 
 

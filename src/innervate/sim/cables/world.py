@@ -66,7 +66,7 @@ class Sink(NamedTuple):
 
 
 class World(NamedTuple):
-    """All of it."""
+    """All tables of a network over cables, as the loop takes them."""
 
     run: Any
     wheel: Wheel

@@ -7,13 +7,13 @@ start, not lost to noise), and what a radio hears of the carrier (`medium`). It 
 What a network brings:
 
 - `build.Records`: the declared fields of stations, parameters, frames and packets.
-- Functions, in a module `do` (see `kernel/door.bound`), with the world first. The protocol's:
+- Functions, in a module `do` (`kernel/compilation.bound`), with the world first. The protocol's:
   `on_start(world, node, now, cause)`, `on_frame(world, node, now, frame)`,
   `on_timer(world, node, now, timer)`, `on_input(world, node, now, kind)` with the item in
   `world.item[0]`, `on_carrier(world, node, now, cd, voc)`: cd 1 = somebody sends, voc 1 = one and
   no more. Inputs and the reports that count stand in `dialect/access.py`. Of frames:
   `copy_frame(to, frame)`, `digest(frame)`.
-- The recorder's: `keep_sent(world, node, frame, time)`, `keep_received(world, node, what, time,
+- The recorder's: `record_sent(world, node, frame, time)`, `record_received(world, node, what, time,
   clear, received)`, `watch(world, node, time, handler, port)` after every call.
 - What becomes of packets: `note_sent(world, node, frame, time)`, `note_received(world, node, frame,
   time)`, `note_delivered(world, node, handle, time)`: `traffic`, or a protocol above.

@@ -37,7 +37,7 @@ from innervate.sim.heap import (
     TIME_SHIFT,
     TIMER,
 )
-from innervate.sim.rows import keep_row
+from innervate.sim.rows import record_row
 from innervate.sim.status import (
     BROKEN,
     BUDGET,
@@ -90,7 +90,7 @@ def drain(world, do, node, time, now):
             medium.break_off(world, node, time)
         elif kind == SEND:
             mark = mix(mark, do.digest(out.frame[i]))
-            do.keep_sent(world, node, out.frame[i], time)
+            do.record_sent(world, node, out.frame[i], time)
             if out.frame[i].count > 0:
                 do.note_sent(world, node, out.frame[i], time)
             medium.transmit(world, node, out.frame[i], time, do.copy_frame)
@@ -100,7 +100,7 @@ def drain(world, do, node, time, now):
                 world.due[node * TIMERS + a] = at
                 queue.push(world.heap, queue.key_of(at, TIMER, node, a))
         elif kind == REPORT:
-            keep_row(world, time, node, a, b, c)
+            record_row(world, time, node, a, b, c)
             if a == REPORT_DELIVERED:
                 for k in range(c):
                     do.note_delivered(world, node, (b + k) & MASK16, time)
@@ -224,7 +224,7 @@ def edge(world, do, rank, node, what, time):
         medium.go_on(world, ENDS, what, air.end, air.at_end)
         clear = radio.candidate == what
         received = medium.end_signal(world, node, what)
-        do.keep_received(world, node, what, time, clear, received)
+        do.record_received(world, node, what, time, clear, received)
         if received:
             world.run[0].decoded += 1
             now = time + radio.offset

@@ -44,7 +44,7 @@ class Heap(NamedTuple):
 
 
 class World(NamedTuple):
-    """All of it."""
+    """All tables of a radio channel, as the loop takes them."""
 
     run: Any
     heap: Heap

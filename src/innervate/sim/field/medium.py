@@ -38,7 +38,7 @@ def reserve(world, node, state):
 
 
 def release(world, place):
-    """The frame is gone."""
+    """Give back the place of a frame that nobody needs any more."""
     run = world.run[0]
     world.air[place].state = FREE
     world.free[run.free] = place
@@ -111,7 +111,7 @@ def note_interference(world):
 
 
 def leave(world, place):
-    """The frame's signal ends."""
+    """A frame's signal ends: it disturbs nobody from now on."""
     run = world.run[0]
     node = world.air[place].node
     last = run.on_air - 1

@@ -7,9 +7,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from innervate.networks.radio.scenario.traffic import exponential
-from innervate.scenario import ScenarioError, check, dump, from_dict, load, loads, plan, template
+from innervate.scenario import (
+    ScenarioError,
+    check,
+    dump,
+    from_dict,
+    load,
+    loads,
+    plan,
+    summary,
+    template,
+)
 from innervate.scenario.actions.channel import JOIN, KILL
-from innervate.scenario.check import summary
 from innervate.trace.streams import stream
 
 SMALL = """\

@@ -8,7 +8,7 @@ from innervate.networks.radio.scenario.model import ChannelTable, MediumAccessTa
 from innervate.networks.radio.scenario.slotted import EVENT_ONLY, UNUSED, USED_BY
 from innervate.networks.radio.slotted.drive import USED_BY as OPTIONS
 from innervate.scenario import ScenarioError, from_dict
-from innervate.scenario.check import summary as check
+from innervate.scenario import summary as check
 
 MACS = [mac for mac in EVERY_MAC if mac not in EVENT_ONLY]
 # Another value of every key whose table says what a protocol does.

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.kernel import door
+from innervate.kernel import compilation
 from innervate.networks.radio.slotted import draws as draws
 from innervate.networks.radio.slotted.drive import BIANCHI_BASIC, BY_CHANCE, MACS, loop
 from innervate.networks.radio.slotted.model import slotted
@@ -55,7 +55,7 @@ def test_infinite_populations(mac):
 @settings(deadline=None)  # the first call loads compiled code
 @given(st.integers(0, 2**40), st.integers(1, draws.UNIT), st.integers(1, draws.MEAN_MAX))
 def test_draws(seed, n, mean):
-    compiled = loop(draws.exponential, plain=False), door.compiled(draws.draw)
+    compiled = loop(draws.exponential, plain=False), compilation.compiled(draws.draw)
     one, two = draws.generator(seed, "a"), draws.generator(seed, "a")
     assert draws.exponential(one, mean) == compiled[0](two, mean)
     assert 0 <= draws.draw(one, n) == compiled[1](two, n) < n

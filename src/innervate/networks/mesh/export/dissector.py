@@ -5,18 +5,18 @@ from __future__ import annotations
 from innervate.export.dissector import Frames, fields_of, kinds, lua, meanings
 from innervate.networks.mesh import frames, payloads
 from innervate.networks.mesh.meanings import MEANINGS
-from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol.fields import FRAME
 
 FLAGS = (
-    (words.ACK_WANTED, "ack wanted"),
-    (words.END_TO_END, "end-to-end ack"),
-    (words.FLOOD, "flood"),
-    (words.SOURCE_ROUTE, "source route"),
-    (words.DETOURED, "detoured"),
-    (words.PRIORITY, "priority"),
-    (words.FIRST, "first after boot"),
-    (words.PARITY, "parity of the retry"),
+    (const.ACK_WANTED, "ack wanted"),
+    (const.END_TO_END, "end-to-end ack"),
+    (const.FLOOD, "flood"),
+    (const.SOURCE_ROUTE, "source route"),
+    (const.DETOURED, "detoured"),
+    (const.PRIORITY, "priority"),
+    (const.FIRST, "first after boot"),
+    (const.PARITY, "parity of the retry"),
 )
 
 
@@ -25,17 +25,17 @@ def dissector() -> Frames:
     says = meanings(FRAME)
     layouts = (
         f"{{ kinds = {kinds(payloads.LAYOUTS, MEANINGS)},\n"
-        f'  others = {{[{words.ACK}] = "ack"}},\n'
+        f'  others = {{[{const.ACK}] = "ack"}},\n'
         f"  common = {fields_of(frames.COMMON, says)},\n"
         f"  ack = {fields_of(frames.HOP_ACK, says)} }}"
     )
     constants = {
         "VERSION": frames.VERSION,
-        "ACK": words.ACK,
-        "ACK_BYTES": words.ACK_BYTES,
-        "PATH_MAX": words.PATH_MAX,
-        "SOURCE_ROUTE": words.SOURCE_ROUTE,
-        "DETOURED": words.DETOURED,
+        "ACK": const.ACK,
+        "ACK_BYTES": const.ACK_BYTES,
+        "PATH_MAX": const.PATH_MAX,
+        "SOURCE_ROUTE": const.SOURCE_ROUTE,
+        "DETOURED": const.DETOURED,
         "FLAGS": "{" + ", ".join(f'{{{bit}, "{name}"}}' for bit, name in FLAGS) + "}",
     }
     return Frames(layouts, lua(__package__), constants)

@@ -13,7 +13,7 @@ from innervate.export.errors import ExportError
 from innervate.export.measured import Measured
 from innervate.export.reading import Capture, Packet
 from innervate.networks.mesh import frames
-from innervate.networks.mesh.protocol import constants as words
+from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol import fields
 from innervate.networks.mesh.scenario.profiles import PROFILES
 
@@ -83,10 +83,10 @@ class Reader(measure.Reader):
     def _look(self, packet: Packet) -> None:
         """What traffic there is: messages as their origin sends them first."""
         frame = self.frame
-        own = frame.kind != words.ACK and frame.link_src == frame.origin
-        if own and frame.kind == words.REQUEST:
+        own = frame.kind != const.ACK and frame.link_src == frame.origin
+        if own and frame.kind == const.REQUEST:
             self.found.gateway = frame.origin
-        elif own and frame.kind == words.DATA:
+        elif own and frame.kind == const.DATA:
             seen = self.sent.setdefault((frame.origin, frame.dest), {})
             seen.setdefault(frame.seq, (packet.time_ns, frame.length))
 

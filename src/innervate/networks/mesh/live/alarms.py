@@ -82,7 +82,7 @@ class Alarms:
         self.recent: deque[tuple[float, Alarm]] = deque(maxlen=SHOWN)
 
     def note(self, alarm: Alarm) -> None:
-        """One came."""
+        """An alarm came: remember it, and tell those who asked."""
         self.recent.append((time.time(), alarm))
         self.arrivals.put(alarm)
 

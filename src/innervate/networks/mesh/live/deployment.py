@@ -18,16 +18,16 @@ class MeshDeployment(Deployment):
     """The nodes of a mesh; a cable for every good link."""
 
     def layout(self) -> tuple[list[str], Pairs]:
-        """See Deployment."""
+        """Names n0, n1 .. of the nodes, and the good links as pairs."""
         return [f"n{i}" for i in range(self.plan.nodes)], list(self.plan.good)
 
     def check(self, cables: str, sealed: bool) -> None:
-        """See Deployment."""
+        """Refuse cables that mesh nodes cannot have."""
         if cables == "pty":
             raise LiveError("--pty joins the cells of a skin; mesh nodes take --netns or UDP")
 
     def file(self, number: int, cables: list[int]) -> tuple[Table, dict[str, Table]]:
-        """See Deployment."""
+        """The head of a node's file, and its tables."""
         plan, rank = self.plan, self.plan.ranks[number]
         head: Table = {"nodes": plan.nodes}
         head["role"] = "node" if rank < 0 else "gateway" if rank == 0 else "standby"
@@ -42,7 +42,7 @@ class MeshDeployment(Deployment):
         return head, tables
 
     def cable_of(self, fault: Any) -> int:
-        """See Deployment."""
+        """The number of the link that a fault is done to; -1 if it is done to none."""
         if self.word(fault) not in ON_LINKS:
             return -1
         pair = (min(fault.node, fault.other), max(fault.node, fault.other))

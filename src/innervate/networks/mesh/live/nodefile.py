@@ -40,7 +40,7 @@ class MeshFile(NodeFile, frozen=True, forbid_unknown_fields=True, kw_only=True):
     fence: FenceTable | None = None
 
     def check(self, where: str) -> None:
-        """See NodeFile."""
+        """Refuse a file without "nodes", then what any node's file must not be."""
         if self.nodes is None:
             raise LiveError(f'{where}: "nodes" is missing: how many ids the mesh has, 1 to 254')
         super().check(where)

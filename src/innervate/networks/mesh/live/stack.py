@@ -132,7 +132,7 @@ class MeshStack:
             known.insert(0, port)
 
     def on_timer(self, now: int, timer: int) -> None:
-        """A timer fires."""
+        """A timer of the router fires at `now`, us."""
         mesh.on_timer(self.node, self.gate, self.params, now, timer, self.out)
 
     def on_input(self, now: int, kind: int, item: Any) -> None:

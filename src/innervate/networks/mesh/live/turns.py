@@ -52,7 +52,7 @@ class Turns:
         return self._total < MOST or self._count[self._name(recipient)] < FEW
 
     def put(self, handle: int, item: Any) -> None:
-        """A message waits."""
+        """A message waits behind others to the same recipient; urgent ones apart."""
         queues = self._urgent if item.flags & PRIORITY else self._others
         name = self._name(item.dest)
         queues.setdefault(name, deque()).append((handle, item))

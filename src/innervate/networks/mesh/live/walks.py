@@ -86,7 +86,7 @@ class Robot:
             self.close()
 
     def close(self) -> None:
-        """Hang up."""
+        """Hang up on the node that is told where its robot is."""
         if self._streams is not None:
             self._streams[1].close()
             self._streams = None

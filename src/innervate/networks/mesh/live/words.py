@@ -33,7 +33,7 @@ def lines(told: dict[str, Any]) -> list[str]:
 
 
 def alarm_text(alarm: dict[str, Any]) -> str:
-    """What an alarm says."""
+    """What an alarm says, as "cross, robot 3 at 1.00, 2.00 m (from node 3)"."""
     x, y, margin = (alarm[key] / 100 for key in ("x_cm", "y_cm", "margin_cm"))
     where = "" if alarm["kind"] == "lost" else f" at {x:.2f}, {y:.2f} m, margin {margin:.2f} m"
     return f"{alarm['kind']}, robot {alarm['robot']}{where} (from node {alarm['reporter']})"

@@ -15,41 +15,24 @@ from innervate.networks.mesh.plot import map as mesh_map
 from innervate.networks.mesh.plot import node_report as mesh_node_report
 from innervate.networks.mesh.plot.sheet import Sheet
 from innervate.networks.mesh.plot.words import REPORTS, fault_words, sentences
-from innervate.plot import svg, words
-from innervate.plot.page import (
-    details,
-    element,
-    figure,
-    film_controls,
-    headline,
-    keys,
-    pictures,
-    section,
-    table,
-    tiles,
-)
-
-ROWS_MAX = 200
+from innervate.plot import page, svg, words
+from innervate.plot.page import ROWS_MAX, details, figure, keys, pictures, section, table, tiles
 
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
     """Headline, status, numbers and pictures of a mesh run, as HTML."""
     crossings = all_crossings(result)
     sheet = Sheet(result.plan)
-    return "\n".join(
-        part
-        for part in (
-            top(result, summary),
-            field(result, sheet, crossings),
-            _film(result, sheet, crossings),
-            _charts(result, summary, crossings),
-            _crossings(result, crossings),
-            mesh_node_report.section_of(result),
-            _flows(result, summary),
-            _events(result),
-            _reports(result),
-        )
-        if part
+    return page.joined(
+        top(result, summary),
+        field(result, sheet, crossings),
+        _film(result, sheet, crossings),
+        _charts(result, summary, crossings),
+        _crossings(result, crossings),
+        mesh_node_report.section_of(result),
+        _flows(result, summary),
+        _events(result),
+        _reports(result),
     )
 
 
@@ -66,10 +49,8 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         f"{words.number_of(summary['links'], 'good link')}, radio {model.radio.profile}, "
         f"failover {model.protocol.failover}; seed {summary['seed']}"
     )
-    parts = [element("p", over, "over"), headline(summary["headline"])]
-    parts += [element("p", sentence) for sentence in sentences(result, summary)]
-    parts.append(tiles(_figures(result, summary)))
-    return "<header>\n" + "".join(parts) + "</header>"
+    said = page.paragraphs(sentences(result, summary))
+    return page.top(over, summary, said, tiles(_figures(result, summary)))
 
 
 def _figures(result: Any, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -88,10 +69,7 @@ def _figures(result: Any, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     busiest = summary["airtime"]["busiest_share"]
     name = result.plan.names[summary["airtime"]["busiest"]]
     found.append((words.share_words(busiest), f"of the time node {name}, the busiest, sent"))
-    took = f"{summary['wall_s']:.2g} s" if summary["wall_s"] >= 0.01 else "10 ms"
-    count = words.count_words(summary["events"])
-    found.append((took, f"to simulate {result.ended_us / 1e6:.4g} s, {count} events"))
-    return found
+    return [*found, page.took(summary, result.ended_us / 1e6)]
 
 
 def shown_crossing(crossings: list[Crossing]) -> Crossing | None:
@@ -138,7 +116,7 @@ def _film(result: Any, sheet: Sheet, crossings: list[Crossing]) -> str:
         "flood; grey lines and rings all other packets. Acks of hops are left out."
     )
     inside = figure(drawing, "", text)
-    controls = film_controls(mesh_film.CYCLE_S)
+    controls = page.film_controls(mesh_film.CYCLE_S)
     steps = details("The same, step by step", _steps(result, shown))
     return section(
         "A crossing, in slow motion", f'<div class="wide film">{inside}{controls}</div>{steps}'
@@ -169,7 +147,7 @@ def _charts(result: Any, summary: Mapping[str, Any], crossings: list[Crossing]) 
         mesh_charts.alarms(result.plan, crossings),
         mesh_charts.airtime(summary),
     ]
-    return section("How well it went", pictures([part for part in figures if part], "two"))
+    return section("How well it went", pictures([page.panel(one) for one in figures if one], "two"))
 
 
 def _crossings(result: Any, crossings: list[Crossing]) -> str:
@@ -178,7 +156,7 @@ def _crossings(result: Any, crossings: list[Crossing]) -> str:
         return ""
     names = [svg.clean(name) for name in result.plan.names]
     rows = []
-    for i, crossing in enumerate(crossings[:ROWS_MAX], 1):
+    for i, crossing in enumerate(crossings, 1):
         came = crossing.accepted_us != NEVER
         by = "nobody noticed" if crossing.raised_by == NEVER else names[crossing.raised_by]
         warned = crossing.warned_us != NEVER
@@ -195,9 +173,7 @@ def _crossings(result: Any, crossings: list[Crossing]) -> str:
             if warned else "no",
         ))  # fmt: skip
     head = ("", "at", "robot", "raised by", "monitor knew after", "hops", "overrun", "warned")
-    more = len(crossings) - len(rows)
-    note = element("p", f"And {more:,} more, in crossings.parquet.", "note") if more > 0 else ""
-    return section("Crossings", table(head, rows) + note)
+    return section("Crossings", page.beginning(head, rows, ", in crossings.parquet"))
 
 
 def _flows(result: Any, summary: Mapping[str, Any]) -> str:
@@ -224,15 +200,8 @@ def _flows(result: Any, summary: Mapping[str, Any]) -> str:
 def _events(result: Any) -> str:
     """The section on events that the scenario brings about; "" if there are none."""
     plan = result.plan
-    rows = [
-        (f"{fault.at_us / 1e6:.3f} s", svg.clean(fault_words(plan, fault)))
-        for fault in plan.faults[:ROWS_MAX]
-    ]
-    if not rows:
-        return ""
-    more = len(plan.faults) - len(rows)
-    note = element("p", f"And {more:,} more.", "note") if more > 0 else ""
-    return section("Events", table(("at", "what"), rows) + note)
+    rows = [(f"{f.at_us / 1e6:.3f} s", svg.clean(fault_words(plan, f))) for f in plan.faults]
+    return section("Events", page.beginning(("at", "what"), rows) if rows else "")
 
 
 def _reports(result: Any) -> str:

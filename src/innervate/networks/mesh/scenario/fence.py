@@ -157,19 +157,7 @@ def parameters(
     """
     rings = rings_cm(fence)
     x0, y0 = origin_of(rings)
-    points = [*rings[0], *visited]
-    extent = max(max(p[i] for p in points) - min(p[i] for p in points) for i in (0, 1))
-    fitting = [unit for unit in UNITS_CM if extent <= EXTENT_MAX * unit]
-    if not fitting:
-        message = f"the fence and its robots spread over {extent / 100:g} m; 23 km is the most"
-        raise source.error(("fence", "polygon"), message)
-    unit = fence.unit_cm or fitting[0]
-    if unit < fitting[0]:
-        message = (
-            f"fence.unit_cm = {unit} reaches {EXTENT_MAX * unit // 100} m, but the fence and its "
-            f"robots spread over {extent / 100:g} m; make it {fitting[0]}"
-        )
-        raise source.error(("fence", "unit_cm"), message)
+    unit = _unit_cm(source, fence, [*rings[0], *visited])
     scaled = [[(round((x - x0) / unit), round((y - y0) / unit)) for x, y in ring]
               for ring in rings]  # fmt: skip
     if unit > 1:
@@ -194,3 +182,20 @@ def parameters(
         "after": after,
         "fence": fence.number,
     }
+
+
+def _unit_cm(source: Source, fence: FenceTable, points: list[Point]) -> int:
+    """The unit asked for, or the smallest in which all points can be told."""
+    extent = max(max(p[i] for p in points) - min(p[i] for p in points) for i in (0, 1))
+    fitting = [unit for unit in UNITS_CM if extent <= EXTENT_MAX * unit]
+    if not fitting:
+        message = f"the fence and its robots spread over {extent / 100:g} m; 23 km is the most"
+        raise source.error(("fence", "polygon"), message)
+    unit = fence.unit_cm or fitting[0]
+    if unit < fitting[0]:
+        message = (
+            f"fence.unit_cm = {unit} reaches {EXTENT_MAX * unit // 100} m, but the fence and its "
+            f"robots spread over {extent / 100:g} m; make it {fitting[0]}"
+        )
+        raise source.error(("fence", "unit_cm"), message)
+    return unit

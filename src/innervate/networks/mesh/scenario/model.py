@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from msgspec import Meta, field
 
 from innervate.networks.mesh.scenario.settings import MeshProtocolTable
+from innervate.networks.radio.scenario.model import MACS
 from innervate.scenario import keys
 from innervate.scenario.actions.field import ACTIONS
 
@@ -38,14 +39,13 @@ Degree = Annotated[
 ]
 Rate = Annotated[float, Meta(gt=0, le=10_000, description="messages per second > 0")]
 Unit = Annotated[Literal[1, 10, 100], Meta(description="a unit of 1, 10 or 100 cm")]
-MeshMac = Literal[
-    "csma", "none", "csma-cd-r", "csma-cd-d1", "csma-cd-d2", "csma-cd-d2p", "slotted-aloha",
-    "nonpersistent", "p-persistent", "dcf", "tree", "tdma",
-]  # fmt: skip
+MESH_MACS = ("csma", "none", *(mac for mac in MACS if mac not in ("token-ring", "polling")))
+# Words that tables give a type, which a type checker cannot see.
 if TYPE_CHECKING:
+    MeshMac = str
     Action = str
 else:
-    Action = Literal[ACTIONS]
+    MeshMac, Action = Literal[MESH_MACS], Literal[ACTIONS]
 
 
 class NodeTable(keys.Table, frozen=True, kw_only=True):

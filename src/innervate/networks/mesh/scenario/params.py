@@ -5,26 +5,14 @@ from __future__ import annotations
 from math import ceil
 from typing import Any
 
-from innervate.networks.mesh.protocol.constants import (
-    ALTERNATE,
-    EACH,
-    LIST,
-    LOUDEST,
-    MONITOR,
-    RANDOM,
-    SEARCH,
-    TABLE_FREE,
-    TABLES,
-    TREE,
-    WHOLE_GRAPH,
-)
+from innervate.networks.mesh.protocol import constants as w
 from innervate.networks.mesh.protocol.fields import NEIGHBOURS, PARAMS, POINTS, words
 from innervate.networks.mesh.scenario.plan import CLASSES
 from innervate.networks.mesh.scenario.profiles import REPORT_CDB, Profile
 
-DISCOVERY = {"list": LIST, "tree": TREE, "each": EACH}
-FAILOVER = {"random": RANDOM, "rssi": LOUDEST, "alternate": ALTERNATE, "search": SEARCH,
-            "graph": SEARCH}  # fmt: skip
+DISCOVERY = {"list": w.LIST, "tree": w.TREE, "each": w.EACH}
+FAILOVER = {"random": w.RANDOM, "rssi": w.LOUDEST, "alternate": w.ALTERNATE, "search": w.SEARCH,
+            "graph": w.SEARCH}  # fmt: skip
 STANDBY_PERIODS = 2.5  # without a request, until the first standby takes over
 FORGET_S = 30.0
 FORGET_TICKS_MAX = 255
@@ -36,6 +24,8 @@ NO_FENCE: dict[str, Any] = {
 # Keys of [protocol] whose parameter is called something else.
 KEYS = {"tick": "beacon_s", "jobs": "table_window", "job": "table_retry_s",
         "job_tries": "table_tries", "min_rssi": "min_rssi_dbm"}  # fmt: skip
+# Parameters, keys of [protocol] and parts of a profile that are called the same.
+OF_PROFILE = ("mtu", "transmissions", "hop_acks", "ack_us", "e2e_adapt", "e2e_tries", "copies")
 IN_TICKS = ("period", "period_max", "dead", "dead_step", "forget")
 
 
@@ -63,7 +53,7 @@ def parameters(
     nodes: int,
     *,
     standbys: int = 0,
-    monitor: int = MONITOR,
+    monitor: int = w.MONITOR,
     min_rssi_dbm: int | None = None,
 ) -> dict[str, Any]:
     """The protocol's parameters without a fence.
@@ -81,7 +71,6 @@ def parameters(
     """
     width: int = next(size for size in CLASSES if nodes <= size)
     chosen = _Chosen(settings, profile.beacon)
-    graph = settings.failover == "graph"
     if min_rssi_dbm is None:
         min_rssi_dbm = round((profile.rssi50_cdb + REPORT_CDB) / 100)
     params: dict[str, Any] = {
@@ -89,33 +78,34 @@ def parameters(
         "row": words(width),
         "places": min(width, NEIGHBOURS),
         "width": width,
-        "mtu": chosen.value("mtu", profile.mtu),
-        "mode": WHOLE_GRAPH if graph else TABLES if settings.tables else TABLE_FREE,
-        "discovery": DISCOVERY[settings.discovery],
-        "failover": FAILOVER[settings.failover],
-        "avoid_origin": int(settings.avoid == "origin"),
-        "retry": int(settings.retry),
-        "reliable": int(settings.reliable),
-        "activation": int(settings.activation),
         "told": int(profile.collisions),
-        "transmissions": chosen.value("transmissions", profile.transmissions),
-        "hop_acks": int(chosen.value("hop_acks", profile.hop_acks)),
-        "ack_us": chosen.value("ack_us", profile.ack_us),
         "suspect_us": chosen.micros("suspect_s", profile.suspect),
         "min_rssi": chosen.value("min_rssi_dbm", min_rssi_dbm),
         "e2e_us": chosen.micros("e2e_s", profile.e2e),
-        "e2e_adapt": int(chosen.value("e2e_adapt", profile.e2e_adapt)),
-        "e2e_tries": chosen.value("e2e_tries", profile.e2e_tries),
         "monitor": monitor,
-        **_rounds(profile, chosen),
         "standby": int(standbys > 0),
         "jobs": chosen.value("table_window", profile.jobs),
         "job_us": chosen.micros("table_retry_s", profile.job),
         "job_tries": chosen.value("table_tries", 3),
+        **_routing(settings),
+        **{name: int(chosen.value(name, getattr(profile, name))) for name in OF_PROFILE},
+        **_rounds(profile, chosen),
         **NO_FENCE,
     }
     _check(params)
     return params
+
+
+def _routing(settings: Any) -> dict[str, int]:
+    """What a scenario says of routes, whatever the radio."""
+    graph = settings.failover == "graph"
+    return {
+        "mode": w.WHOLE_GRAPH if graph else w.TABLES if settings.tables else w.TABLE_FREE,
+        "discovery": DISCOVERY[settings.discovery],
+        "failover": FAILOVER[settings.failover],
+        "avoid_origin": int(settings.avoid == "origin"),
+        **{name: int(getattr(settings, name)) for name in ("retry", "reliable", "activation")},
+    }
 
 
 def _rounds(profile: Profile, chosen: _Chosen) -> dict[str, int]:
@@ -127,7 +117,6 @@ def _rounds(profile: Profile, chosen: _Chosen) -> dict[str, int]:
     return {
         "jitter_us": chosen.micros("jitter_s", profile.jitter),
         "flood_us": chosen.micros("flood_s", profile.jitter / 8),
-        "copies": chosen.value("copies", profile.copies),
         "listen_us": listen_us,
         "spread_us": spread_us,
         "collect_us": chosen.micros("collect_s", (listen_us + spread_us) / 1e6 + rest_s),
@@ -153,7 +142,7 @@ def _check(params: dict[str, Any]) -> None:
         raise ValueError(
             "period_max_s:protocol.period_max_s is below period_s; make it as long or longer"
         )
-    if params["collect_us"] <= params["listen_us"] and params["discovery"] != EACH:
+    if params["collect_us"] <= params["listen_us"] and params["discovery"] != w.EACH:
         listen_s = params["listen_us"] / 1e6
         raise ValueError(
             f"collect_s:protocol.collect_s must be more than listen_s, {listen_s:g} s: before that "

@@ -47,10 +47,7 @@ def plan(scenario: Any) -> MeshPlan:
         params |= mesh_fence.parameters(source, model.fence, visited, len(walks))
     flows = mesh_traffic.pairs(model, nodes, gateway, monitor)
     robots = {walk.node for walk in walks}
-    spared = {*roles.values(), *robots}
-    for flow, ends in zip(model.flow, flows, strict=True):
-        spared.update(a for a, _ in ends if flow.from_ != "all")
-        spared.update(b for _, b in ends if b not in (MONITOR, ALL))
+    spared = {*roles.values(), *robots, *_ends(model, flows)}
     mac, mac_params = access(model, network, profile, params["mtu"], walks)
     return MeshPlan(
         scenario=scenario,
@@ -78,6 +75,15 @@ def plan(scenario: Any) -> MeshPlan:
         ),
         faults=mesh_events.faults(model, nodes, network.good, spared, roles, profile.rssi50_cdb),
     )
+
+
+def _ends(model: MeshScenario, flows: list[list[tuple[int, int]]]) -> set[int]:
+    """Who sends or receives messages that not all send."""
+    found: set[int] = set()
+    for flow, ends in zip(model.flow, flows, strict=True):
+        found.update(a for a, _ in ends if flow.from_ != "all")
+        found.update(b for _, b in ends if b not in (MONITOR, ALL))
+    return found
 
 
 def _network(model: MeshScenario, nodes: Nodes, profile: Profile) -> Network:

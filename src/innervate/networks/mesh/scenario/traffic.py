@@ -41,14 +41,10 @@ def _pairs(
         dest = -1
     else:
         dest = real = nodes.number((*key, "to"), flow.to)
-    if flow.from_ == "all":
+    if flow.from_ in ("all", "random"):
         sources = [node for node in everyone if node != real]
-    elif flow.from_ == "random":
-        free = [node for node in everyone if node != real]
-        if flow.pairs > len(free):
-            message = f"flow.{index}.pairs = {flow.pairs}, but only {len(free)} nodes can be drawn"
-            raise nodes.source.error((*key, "pairs"), message)
-        sources = [free.pop(draw.draw(len(free))) for _ in range(flow.pairs)]
+        if flow.from_ == "random":
+            sources = _drawn(nodes, index, flow, sources, draw)
     else:
         sources = [gateway if flow.from_ == "gateway" else
                    nodes.number((*key, "from"), flow.from_)] * flow.pairs  # fmt: skip
@@ -67,6 +63,14 @@ def _pairs(
             )
         found.append((source, other))
     return found
+
+
+def _drawn(nodes: Nodes, index: int, flow: FlowTable, free: list[int], draw: Stream) -> list[int]:
+    """So many senders, drawn from those that are free."""
+    if flow.pairs > len(free):
+        message = f"flow.{index}.pairs = {flow.pairs}, but only {len(free)} nodes can be drawn"
+        raise nodes.source.error(("flow", index, "pairs"), message)
+    return [free.pop(draw.draw(len(free))) for _ in range(flow.pairs)]
 
 
 def offers(

@@ -108,7 +108,7 @@ def build(stack, layer):
             elif kind == SET_TIMER:
                 set_timer(world, node, a, b, time, now)
             elif kind == REPORT:
-                rows.keep_row(world, time, node, a, b, c)
+                rows.record_row(world, time, node, a, b, c)
                 if a == REPORT_GRAPH:
                     recorder.record_round(world, node, time)
             elif kind == DELIVER:
@@ -128,7 +128,7 @@ def build(stack, layer):
         if run.watchful:
             if run.checks and not is_sound(world, node):
                 recorder.breaks(world, recorder.BROKEN_RANGE, node)
-            rows.keep_step(world, node, time, handler, port)
+            rows.record_step(world, node, time, handler, port)
 
     def tell_sent(world, node, time, ok):
         """The router's frame has left the air, or could not."""

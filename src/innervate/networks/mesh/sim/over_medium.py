@@ -92,7 +92,7 @@ def down(stack):
         if out.overflow[0]:
             recorder.breaks(world, recorder.BROKEN_OUTBOX, node)
         if run.watchful:
-            rows.keep_step(world, node, time, handler, 0)
+            rows.record_step(world, node, time, handler, 0)
         return handed_up
 
     def hand_down(world, node, frame, attempt, urgent, time, now):

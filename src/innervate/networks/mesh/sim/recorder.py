@@ -56,7 +56,7 @@ def tap(world, place, at, time, out, why):
     if world.run[0].tap_limit > 0:
         air = world.air[place]
         frame = world.frames[place]
-        taps.keep(world, time, air.start, at, air.node, out, why, frame, copy_frame)
+        taps.record_frame(world, time, air.start, at, air.node, out, why, frame, copy_frame)
 
 
 def record_delivered(world, node, frame, time):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, ClassVar
 
-from innervate.kernel import door, tables
+from innervate.kernel import compilation, tables
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.sim import build as builder
 from innervate.networks.mesh.sim import channel, loop, over_channel, over_medium, recorder, stacks
@@ -82,22 +82,24 @@ def _compiled(entry: ModuleType, access: radio_stacks.Protocol | None) -> Callab
     from innervate.dialect import arith, outbox, rng
     from innervate.networks.mesh.protocol import csma
 
-    door.register(arith, outbox, rng, heap)
-    door.register(*door.modules_of(entry), csma, medium, motion, recorder, rows, taps, hot=False)
-    door.register_functions(powers.strength, powers.chance, powers.loss)
-    door.register_functions(loop.pressing, loop.wipe, set_timer, hot=False)
+    compilation.register(arith, outbox, rng, heap)
+    compilation.register(
+        *compilation.modules_of(entry), csma, medium, motion, recorder, rows, taps, hot=False
+    )
+    compilation.register_functions(powers.strength, powers.chance, powers.loss)
+    compilation.register_functions(loop.pressing, loop.wipe, set_timer, hot=False)
     layer: Any = over_medium
     if access is None:
         below = (over_medium.give_up, over_medium.short, over_medium.due, over_medium.step)
-        door.register_functions(*below, hot=False)
+        compilation.register_functions(*below, hot=False)
     else:
         layer = over_channel.layer(radio_simulate.registered(access, over_channel))
-        door.register_functions(layer.step, hot=False)
+        compilation.register_functions(layer.step, hot=False)
     stack = stacks.bind(entry)
-    door.register_functions(*stack, hot=False)
+    compilation.register_functions(*stack, hot=False)
     parts = loop.build(stack, layer)
-    door.register_functions(*parts.below, *parts.above, *parts.own, hot=False)
-    advance = door.compiled_as_one(parts.advance)
+    compilation.register_functions(*parts.below, *parts.above, *parts.own, hot=False)
+    advance = compilation.compiled_as_one(parts.advance)
     return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
 
 
@@ -160,9 +162,9 @@ class MeshSimulation(Field):
         if status == loop.DUPLICATES_FULL:
             self.world = builder.grow_duplicates(self.world)
 
-    def story(self) -> str:
+    def broken_line(self) -> str:
         """The broken invariant, in one line."""
-        return story(self.plan, self.world)
+        return broken_line(self.plan, self.world)
 
 
 def simulation(
@@ -200,7 +202,7 @@ def _check_mac(mac: str) -> None:
 
 
 def loop_name(plan: Any) -> str:
-    """Which loop a plan runs on, for `kernel.door.is_compiled`."""
+    """Which loop a plan runs on, for `kernel.compilation.is_compiled`."""
     access = radio_stacks.PROTOCOLS.get(plan.mac)
     below = f"-{access.entry.__name__.rpartition('.')[2]}" if access else ""
     return f"mesh-{plan.capacity}{below}"
@@ -214,10 +216,10 @@ def _plain_layer(mac: str) -> Any:
     return over_channel.layer(radio_stacks.bind(entry, radio_recorder, over_channel))
 
 
-def story(plan: Any, world: w.World) -> str:
+def broken_line(plan: Any, world: w.World) -> str:
     """A broken invariant in one line."""
     if int(get(world.run, 0, "broken")) == recorder.BROKEN_BELOW:
-        return radio_simulate.story(plan, world.below)
+        return radio_simulate.broken_line(plan, world.below)
     at = int(get(world.run, 0, "now")) / 1e6
     name = plan.names[int(get(world.run, 0, "broken_node"))]
     what = {

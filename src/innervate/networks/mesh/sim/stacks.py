@@ -101,7 +101,7 @@ def _router(entry: ModuleType) -> tuple[Callable[..., Any], ...]:
 
 
 def _csma() -> tuple[Callable[..., Any], ...]:
-    """The medium access's."""
+    """The handlers of CSMA, over the world's tables of radios."""
     start, frame_in, timer_due = csma.on_start, csma.on_frame, csma.on_timer
     given, carrier = csma.on_input, csma.on_carrier
 

@@ -11,7 +11,7 @@ from array import array
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from innervate.kernel.wall import wall_s
+from innervate.kernel.clock import wall_s
 from innervate.networks.mesh.verify import fair as mesh_fair
 from innervate.networks.mesh.verify import local as mesh_local
 from innervate.networks.mesh.verify.model import MeshModel

@@ -30,7 +30,7 @@ class RadioDeployment(Deployment):
         return [f"s{i}" for i in range(plan.stations)], []
 
     def check(self, cables: str, sealed: bool) -> None:
-        """See Deployment."""
+        """Refuse cables and sealing: stations share a channel."""
         if cables != "udp" or sealed:
             raise LiveError("stations share a channel: leave --pty, --netns and --sealed out")
 

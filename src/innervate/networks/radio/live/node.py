@@ -52,16 +52,16 @@ class RadioNode(LiveNode):
         await self.radio.start(self)
 
     async def stop(self) -> None:
-        """Switch off."""
+        """Switch the radio off, then the node."""
         self.radio.stop()
         await super().stop()
 
     def send_request(self, request: dict[str, Any]) -> Receipt:
-        """A packet to all."""
+        """Send the payload of a status request to all stations."""
         return self.send_packet(bytes.fromhex(request["payload"]))
 
     def streams(self, request: dict[str, Any]) -> list[Stream]:
-        """Packets of other stations."""
+        """Packets of other stations, for those who follow them by the status socket."""
         return [(self.receive_packets(), message_line)]
 
     def receive_packets(

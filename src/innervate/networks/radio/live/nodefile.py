@@ -8,6 +8,6 @@ from innervate.live.nodefile import NodeFile
 
 
 class StationFile(NodeFile, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """A station."""
+    """The file of a station on a shared channel."""
 
     roles: ClassVar[tuple[str, ...]] = ("station",)

@@ -43,7 +43,7 @@ class StationStack:
         self.inbox = Frame()
 
     def on_start(self, now: int, cause: int) -> None:
-        """Switch on."""
+        """Switch the station on at `now`, us; `cause` 0 is the first time."""
         radio_practical.on_start(self.station, self.params, now, cause, self.out)
 
     def on_frame(self, now: int, port: int) -> None:
@@ -51,11 +51,11 @@ class StationStack:
         radio_practical.on_frame(self.station, self.params, now, port, self.inbox, self.out)
 
     def on_timer(self, now: int, timer: int) -> None:
-        """A timer fires."""
+        """A timer of the station's protocol fires at `now`, us."""
         radio_practical.on_timer(self.station, self.params, now, timer, self.out)
 
     def on_input(self, now: int, kind: int, item: Any) -> None:
-        """A packet to send."""
+        """Hand the station a packet to send, or another input of `kind`."""
         radio_practical.on_input(self.station, self.params, now, kind, item, self.out)
 
     def on_carrier(self, now: int, cd: bool, voc: bool) -> None:
@@ -75,7 +75,7 @@ class StationStack:
         return ""
 
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
-        """There is one channel."""
+        """Ports that a frame leaves by: none, it goes to the radio."""
         return []
 
     def status(self, now: int) -> dict[str, Any]:

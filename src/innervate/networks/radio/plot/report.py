@@ -6,46 +6,27 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from innervate.networks.radio.analysis import summary as radio
+from innervate.networks.radio.plot import charts as radio_charts
 from innervate.networks.radio.plot import scene as radio_scene
 from innervate.networks.radio.plot import slotted_report as radio_slotted_report
 from innervate.networks.radio.plot import timeline as radio_timeline
-from innervate.networks.radio.plot.words import (
-    fault_words,
-    off_words,
-    protocol_words,
-    report_kind,
-    report_words,
-    robots,
-    slots_words,
-    time_words,
-)
+from innervate.networks.radio.plot import words as told
 from innervate.networks.radio.scenario.words import warnings
-from innervate.plot import charts, svg, words
-from innervate.plot.page import details, element, figure, headline, pictures, section, table, tiles
-
-ROWS_MAX = 200
-MARKS_MAX = 8
-BINS = 60
-STEPS_MAX = 2000  # of a cumulative curve
+from innervate.plot import page, svg, words
+from innervate.plot.page import ROWS_MAX, details, figure, pictures, section, table, tiles
 
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
     """Headline, numbers and pictures of a radio run, as HTML."""
     if summary.get("level") == "slotted":
         return radio_slotted_report.body(result, summary)
-    return "\n".join(
-        part
-        for part in (
-            top(result, summary),
-            _timelines(result),
-            _charts(result, summary),
-            _events(result),
-            _reports(result, summary),
-        )
-        if part
+    return page.joined(
+        top(result, summary),
+        _timelines(result),
+        _charts(result, summary),
+        _events(result),
+        _reports(result, summary),
     )
 
 
@@ -63,17 +44,12 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
     switch = f"in {words.ms_words(params['ta_us'] / 1e3)}" if params["ta_us"] else "at once"
     over = (
         f"{summary['name']}: {words.number_of(summary['stations'], 'station')} on one radio "
-        f"channel, {protocol_words(summary['protocol'])}, packets of "
+        f"channel, {told.protocol_words(summary['protocol'])}, packets of "
         f"{params['packet_slots']} slots of {params['slot_us']} us, radios that switch {switch}; "
         f"seed {summary['seed']}"
     )
-    parts = [element("p", over, "over"), headline(summary["headline"])]
-    parts += [element("p", sentence) for sentence in sentences(result, summary)]
-    if "interrupted_at_s" in summary:
-        early = f"Ended early, at {summary['interrupted_at_s']:.3f} s of simulated time."
-        parts.append(element("p", early, "status bad"))
-    parts.append(tiles(_figures(result, summary)))
-    return "<header>\n" + "".join(parts) + "</header>"
+    said = page.paragraphs(sentences(result, summary)) + page.ended_early(summary)
+    return page.top(over, summary, said, tiles(_figures(result, summary)))
 
 
 def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
@@ -81,7 +57,7 @@ def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
     telling = {"saturated": _saturated, "disaster": _disaster}.get(summary["traffic"], _arrivals)
     return [
         telling(result, summary),
-        *off_words(summary),
+        *told.off_words(summary),
         *warnings(result.plan),
         *_collisions(result, summary),
         _silence(summary),
@@ -93,10 +69,10 @@ def _disaster(result: Any, summary: Mapping[str, Any]) -> str:
     starts = [times[0] for times in plan.arrivals if len(times)]
     spread_us = max(starts, default=0) - min(starts, default=0)
     how = f"within {words.ms_words(spread_us / 1e3)}" if spread_us else "at once"
-    begin = f"{robots(offered)} started {how}" if offered > 1 else "1 robot started"
+    begin = f"{told.robots(offered)} started {how}" if offered > 1 else "1 robot started"
     if summary["duration_slots"] is None:
         return f"{begin}; no packet was delivered in {summary['duration_s']:g} s."
-    took = time_words(summary["duration_slots"], plan.params["slot_us"])
+    took = told.time_words(summary["duration_slots"], plan.params["slot_us"])
     if summary["delivered"] == offered:
         return f"{begin}; every packet was delivered {took} later."
     missing = offered - summary["delivered"]
@@ -105,7 +81,7 @@ def _disaster(result: Any, summary: Mapping[str, Any]) -> str:
 
 
 def _saturated(result: Any, summary: Mapping[str, Any]) -> str:
-    begin = f"{robots(summary['stations'])} always had something to send"
+    begin = f"{told.robots(summary['stations'])} always had something to send"
     if summary["throughput"] is None:
         return f"{begin}; no packet was delivered in {result.ended_us / 1e6:g} s."
     index = summary["jain"]
@@ -116,13 +92,13 @@ def _saturated(result: Any, summary: Mapping[str, Any]) -> str:
 
 def _arrivals(result: Any, summary: Mapping[str, Any]) -> str:
     expected = summary["offered"] - summary["abandoned"]
-    begin = f"{robots(summary['stations'])} had {expected:,} packets to send"
+    begin = f"{told.robots(summary['stations'])} had {expected:,} packets to send"
     if not summary["delivered"]:
         return f"{begin}; none was delivered."
     share = words.share_words(summary["delivered"] / expected)
     if summary["delay_slots"]["p50"] is None:
         return f"{begin}; {share} of them were delivered."
-    half = time_words(summary["delay_slots"]["p50"], result.plan.params["slot_us"])
+    half = told.time_words(summary["delay_slots"]["p50"], result.plan.params["slot_us"])
     return f"{begin}; {share} of them were delivered, half within {half}."
 
 
@@ -155,16 +131,13 @@ def _figures(result: Any, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         found.append((share, "of the time filled with delivered packets"))
     delay = summary["delay_slots"]
     if delay["p50"] is not None:
-        found.append((slots_words(delay["p50"]),
+        found.append((told.slots_words(delay["p50"]),
                       f"median delay, {words.ms_words(delay['p50'] * slot / 1e3)}"))  # fmt: skip
-        found.append((slots_words(delay["p99"]), "99 % were delivered within that"))
+        found.append((told.slots_words(delay["p99"]), "99 % were delivered within that"))
     if summary["jain"] is not None:
         found.append((f"{summary['jain']:.3f}", "Jain's index of fairness, 1 is even"))
     found.append((f"{summary['collisions']:,}", "collisions"))
-    took = f"{summary['wall_s']:.2g} s" if summary["wall_s"] >= 0.01 else "10 ms"
-    count = words.count_words(summary["events"])
-    found.append((took, f"to simulate {result.ended_us / 1e6:.4g} s, {count} events"))
-    return found
+    return [*found, page.took(summary, result.ended_us / 1e6)]
 
 
 def on_air(result: Any) -> str:
@@ -207,117 +180,41 @@ def _listing(result: Any, shown: radio_scene.Scene) -> str:
     rows = result.rows[(result.rows["time"] >= low) & (result.rows["time"] < high)]
     protocol = result.plan.protocol
     for row in rows[:ROWS_MAX]:
-        what = report_words(protocol, int(row["code"]), int(row["a"]), int(row["b"]))
+        what = told.report_words(protocol, int(row["code"]), int(row["a"]), int(row["b"]))
         lines.append((int(row["time"]), int(row["node"]), what))
     lines.sort(key=lambda line: line[:2])
     slot = shown.slot_us
     cells = [
         (f"{(at - origin) / 1e3:.3f}", f"{(at - origin) / slot:.2f}", str(node), svg.clean(what))
-        for at, node, what in lines[:ROWS_MAX]
+        for at, node, what in lines
     ]
-    more = len(lines) - len(cells)
-    note = element("p", f"And {more:,} more.", "note") if more > 0 else ""
-    return table(("ms", "slots", "station", "what"), cells) + note
+    return page.beginning(("ms", "slots", "station", "what"), cells)
 
 
 def _charts(result: Any, summary: Mapping[str, Any]) -> str:
     if not summary["delivered"]:
         return ""
-    figures = [_over_time(result, summary), _fairness(result, summary)]
-    if summary["delay_slots"]["p50"] is not None:
-        figures.insert(1, _delays(result, summary))
-    return section("How well it went", pictures(figures, "two"))
-
-
-def _over_time(result: Any, summary: Mapping[str, Any]) -> str:
-    """Throughput over time; in a disaster the packets delivered."""
-    slot = result.plan.params["slot_us"]
-    begin = radio.first_offer_us(result)
-    if summary["traffic"] == "disaster":
-        ends = (radio.successes(result)["end"] - begin) / slot
-        head = "Packets delivered over time"
-        x = charts.Axis(0.0, 1.02 * float(ends[-1]), "slots after the first start")
-        y = charts.Axis(0.0, 1.08 * len(ends))
-        times, counts = np.append(0.0, ends), np.arange(len(ends) + 1)
-        return figure(charts.step_chart(times, counts, x, y, (), head), head)
-    steps = radio.airtime_steps(result, BINS)
-    seconds = steps.time_us / 1e6
-    width = float(seconds[1] - seconds[0])
-    head = "The channel, filled with delivered packets"
-    share = 100.0 * steps.values
-    x = charts.Axis(float(seconds[0]), float(seconds[-1]) + width, "seconds")
-    y = charts.Axis(0.0, 1.08 * max(100.0, float(share.max())))
-    marks = [
-        charts.Mark(fault.at_us / 1e6, fault_words(fault))
-        for fault in result.plan.faults[:MARKS_MAX]
-        if x.low <= fault.at_us / 1e6 <= x.high
+    disaster = summary["traffic"] == "disaster"
+    shown = [
+        radio_charts.came(result) if disaster else radio_charts.filled(result),
+        radio_charts.delays(result, summary),
+        radio_charts.waits(result) if disaster else radio_charts.shares(result, summary),
     ]
-    text = f"In % of the time, in steps of {words.ms_words(1e3 * width)}."
-    return figure(charts.step_chart(seconds, share, x, y, marks, head), head, text)
-
-
-def _delays(result: Any, summary: Mapping[str, Any]) -> str:
-    """How many packets were delivered within which delay."""
-    found = np.sort(radio.delays(result))
-    shares = 100.0 * np.arange(1, len(found) + 1) / len(found)
-    every = max(1, len(found) // STEPS_MAX)
-    at = np.concatenate([[0.0], found[::every], found[-1:]])
-    shares = np.concatenate([[0.0], shares[::every], shares[-1:]])
-    delay = summary["delay_slots"]
-    marks = [
-        charts.Mark(delay[key], name)
-        for key, name in (("p50", "half"), ("p95", "95 %"), ("p99", "99 %"))
-    ]
-    # Quantiles that coincide get one mark: two labels would name the same line.
-    marks = [mark for i, mark in enumerate(marks) if i == 0 or mark.at > 1.001 * marks[i - 1].at]
-    x = charts.Axis(0.0, 1.15 * max(float(found[-1]), 1.0), "slots from offer to end of frame")
-    head = "Packets delivered within a delay, in %"
-    half, most, nearly = (slots_words(delay[key]) for key in ("p50", "p95", "p99"))
-    text = f"Half of them within {half}, 95 % within {most}, 99 % within {nearly}."
-    drawing = charts.step_chart(at, shares, x, charts.Axis(0.0, 105.0), marks, head)
-    return figure(drawing, head, text)
-
-
-def _fairness(result: Any, summary: Mapping[str, Any]) -> str:
-    """What each station got: packets, or in a disaster when it was served."""
-    steady, n = radio.settled(result), result.plan.stations
-    if summary["traffic"] == "disaster":
-        head = "When each station's packet was delivered"
-        who = radio.timed(result)["node"].tolist()
-        waits = dict(zip(who, radio.delays(result).tolist(), strict=True))
-        bars = [
-            charts.Bar(f"station {i}", waits.get(i, 0.0),
-                       slots_words(waits[i]) if i in waits else "never")
-            for i in range(n)
-        ]  # fmt: skip
-        text = "Slots from the offer to the end of the frame."
-        return figure(charts.bar_chart(bars, head), head, text)
-    head = "Packets delivered, station by station"
-    counts = np.bincount(steady["node"], minlength=n).tolist()
-    bars = [charts.Bar(f"station {i}", count, f"{count:,}") for i, count in enumerate(counts)]
-    drawing = charts.bar_chart(bars, head, sum(counts) / n if n > 1 else None)
-    text = f"Jain's index {summary['jain']:.4f}; 1 is even."
-    if summary["jain_round"] is not None:
-        text += f" Over one round of {n} turns: {summary['jain_round']:.3f}."
-    return figure(drawing, head, text)
+    return section("How well it went", pictures([page.panel(one) for one in shown if one], "two"))
 
 
 def _events(result: Any) -> str:
     """The section on events that the scenario brings about; "" if there are none."""
     faults = result.plan.faults
-    rows = [(f"{f.at_us / 1e6:.3f} s", svg.clean(fault_words(f))) for f in faults[:ROWS_MAX]]
-    if not rows:
-        return ""
-    more = len(faults) - len(rows)
-    note = element("p", f"And {more:,} more.", "note") if more > 0 else ""
-    return section("Events", table(("at", "what"), rows) + note)
+    rows = [(f"{f.at_us / 1e6:.3f} s", svg.clean(told.fault_words(f))) for f in faults]
+    return section("Events", page.beginning(("at", "what"), rows) if rows else "")
 
 
 def _reports(result: Any, summary: Mapping[str, Any]) -> str:
     """How often stations reported what, and what became of frames and packets."""
     rows = result.rows
     kinds = Counter(
-        report_kind(code, b)
+        told.report_kind(code, b)
         for code, b in zip(rows["code"].tolist(), rows["b"].tolist(), strict=True)
     )
     for key, what in (

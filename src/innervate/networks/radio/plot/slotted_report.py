@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from innervate.networks.radio.plot.charts import stations
 from innervate.networks.radio.plot.words import robots
 from innervate.networks.radio.scenario.words import warnings
-from innervate.plot import charts, words
-from innervate.plot.page import element, figure, headline, pictures, section, tiles
-
-STEPS_MAX = 2000
+from innervate.plot import charts, page, words
+from innervate.plot.page import panel, pictures, section, tiles
 
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
@@ -44,30 +43,17 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         (f"{summary['jain']:.3f}", "fairness (Jain), 1 is even"),
         (f"{summary['collisions']:,}", "collisions"),
     ]
-    parts = [element("p", over, "over"), headline(summary["headline"]), element("p", head)]
-    parts += [element("p", warning) for warning in warnings(result.plan)]
-    parts.append(tiles(found))
-    return "<header>\n" + "".join(parts) + "</header>"
+    said = page.paragraphs([head, *warnings(result.plan)])
+    return page.top(over, summary, said, tiles(found))
 
 
 def charts_of(result: Any, summary: Mapping[str, Any]) -> str:
     """Delays and shares, as figures."""
-    figures = []
     delays = np.sort(result.found.delay_slots)
+    head = "Packets delivered by each station"
+    shown: list[charts.Steps | charts.Bars] = [charts.Bars(stations(result.found.successes), head)]
     if len(delays):
-        every = max(1, len(delays) // STEPS_MAX)
-        at = np.concatenate([[0.0], delays[::every], delays[-1:]])
-        shares = np.concatenate([[0.0], 100.0 * np.arange(len(delays))[::every] / len(delays)])
-        shares = np.append(shares, 100.0)
         x = charts.Axis(0.0, 1.02 * float(max(delays[-1], 1.0)), "slots from offer to end")
         head = "Delay: packets delivered within, %"
-        figures.append(
-            figure(charts.step_chart(at, shares, x, charts.Axis(0.0, 108.0), (), head), head)
-        )
-    head = "Packets delivered by each station"
-    bars = [
-        charts.Bar(f"station {i}", count, f"{count:,}")
-        for i, count in enumerate(result.found.successes)
-    ]
-    figures.append(figure(charts.bar_chart(bars, head), head))
-    return pictures(figures, "two")
+        shown.insert(0, charts.distribution(delays, x, head, top=108.0))
+    return pictures([panel(one) for one in shown], "two")

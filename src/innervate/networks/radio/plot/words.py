@@ -9,24 +9,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from innervate.dialect.access import REPORT_DELIVERED, REPORT_LEFT
-from innervate.networks.radio.protocol.constants import (
-    CRR,
-    DATA,
-    HEARD_TAIL,
-    NO_PROOF,
-    NOT_HEARD,
-    OPEN,
-    REPORT,
-    REPORT_BOUNDS,
-    REPORT_COLLISION,
-    REPORT_DROPPED,
-    REPORT_FAILED,
-    REPORT_ROLE,
-    REPORT_SKIPPED,
-    REPORT_STOPPED,
-    REPORT_TURN,
-    REPORT_WIDER,
-)
+from innervate.networks.radio.protocol import constants as w
 from innervate.plot.words import ms_words, number_of
 from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 
@@ -49,16 +32,16 @@ class FrameWords(NamedTuple):
 
 
 _FRAMES = {
-    DATA: FrameWords("D", "data", "p0", 1.0, "data: packets"),
-    OPEN: FrameWords("O", "open", "p2 outlined", 1.0, "opening of a sequence"),
-    CRR: FrameWords("C", "CR-R", "p1", 0.45, "CR-R: collision report with reservation"),
-    REPORT: FrameWords("R", "report", "p3", 0.72, "report: who was heard, what follows"),
+    w.DATA: FrameWords("D", "data", "p0", 1.0, "data: packets"),
+    w.OPEN: FrameWords("O", "open", "p2 outlined", 1.0, "opening of a sequence"),
+    w.CRR: FrameWords("C", "CR-R", "p1", 0.45, "CR-R: collision report with reservation"),
+    w.REPORT: FrameWords("R", "report", "p3", 0.72, "report: who was heard, what follows"),
 }
 _UNKNOWN = FrameWords("?", "frame", "p7", 0.6, "another frame")
 
 # Kinds of frames that a protocol uses otherwise: (protocol, kind).
 _FRAMES_OF: dict[tuple[str, int], FrameWords] = {
-    ("csma-cd-r/practical", CRR): _FRAMES[CRR]._replace(
+    ("csma-cd-r/practical", w.CRR): _FRAMES[w.CRR]._replace(
         meaning='CR-R: "I want a turn", or a pulse: "heard"'
     ),
 }
@@ -79,26 +62,26 @@ PROTOCOLS = {
     "polling": "polling",
 }
 
-# What the numbers of a turn mean (a and b of REPORT_TURN).
+# What the numbers of a turn mean (a and b of w.REPORT_TURN).
 _TURNS = {"csma-cd-r/practical": "place {a} of the round", "csma-cd-r/paper": "turn {a} of {b}"}
 
 REPORTS = {
     REPORT_DELIVERED: "packet delivered",
-    REPORT_FAILED: "packet not delivered, stays in the queue",
-    REPORT_COLLISION: "own collision noticed",
-    REPORT_TURN: "own turn begins",
-    REPORT_ROLE: "role after a collision",
-    REPORT_BOUNDS: "pair delay outside the configured bounds",
-    REPORT_DROPPED: "packet refused, the queue is full",
+    w.REPORT_FAILED: "packet not delivered, stays in the queue",
+    w.REPORT_COLLISION: "own collision noticed",
+    w.REPORT_TURN: "own turn begins",
+    w.REPORT_ROLE: "role after a collision",
+    w.REPORT_BOUNDS: "pair delay outside the configured bounds",
+    w.REPORT_DROPPED: "packet refused, the queue is full",
     REPORT_LEFT: "left",
-    REPORT_SKIPPED: "own place in the round passed over",
-    REPORT_STOPPED: "own transmission broken off",
-    REPORT_WIDER: "greater delays are believed in from now on",
+    w.REPORT_SKIPPED: "own place in the round passed over",
+    w.REPORT_STOPPED: "own transmission broken off",
+    w.REPORT_WIDER: "greater delays are believed in from now on",
 }
 _REASONS = {
-    NO_PROOF: "nobody confirmed it",
-    HEARD_TAIL: "others were still sending",
-    NOT_HEARD: "nobody answered",
+    w.NO_PROOF: "nobody confirmed it",
+    w.HEARD_TAIL: "others were still sending",
+    w.NOT_HEARD: "nobody answered",
 }
 _ACTIONS = {
     JOIN: "switched on",
@@ -127,17 +110,17 @@ def turn_words(protocol: str, a: int, b: int) -> str:
 def report_kind(code: int, b: int) -> str:
     """What kind of report this is; those of a kind are counted together."""
     words = REPORTS.get(code, f"report {code}")
-    return f"{words}: {_REASONS.get(b, f'reason {b}')}" if code == REPORT_FAILED else words
+    return f"{words}: {_REASONS.get(b, f'reason {b}')}" if code == w.REPORT_FAILED else words
 
 
 def report_words(protocol: str, code: int, a: int, b: int) -> str:
     """What a station reports, in words."""
     words = report_kind(code, b)
-    if code == REPORT_TURN:
+    if code == w.REPORT_TURN:
         return f"{words}: {turn_words(protocol, a, b)}"
     if code == REPORT_DELIVERED and b > 1:
         return f"{b} packets delivered"
-    if code == REPORT_ROLE:
+    if code == w.REPORT_ROLE:
         return f"{words}: {a}"
     return words
 

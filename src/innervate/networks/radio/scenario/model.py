@@ -9,20 +9,18 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from msgspec import Meta
 
+from innervate.networks.radio.scenario.baselines import NUMBERS
 from innervate.scenario import keys
-from innervate.scenario.actions.channel import NUMBERS
+from innervate.scenario.actions.channel import WORDS
 
-MACS = (
-    "csma-cd-r", "csma-cd-d1", "csma-cd-d2", "csma-cd-d2p", "slotted-aloha", "nonpersistent",
-    "p-persistent", "dcf", "tree", "tdma", "token-ring", "polling",
-)  # fmt: skip
+MACS = ("csma-cd-r", *NUMBERS)
 Station = Annotated[int, Meta(ge=0, le=1022, description="a station, counted from 0")]
 # Words that tables give a type, which a type checker cannot see.
 if TYPE_CHECKING:
     Mac = str
     Action = str
 else:
-    Mac, Action = Literal[MACS], Literal[tuple(NUMBERS)]
+    Mac, Action = Literal[MACS], Literal[tuple(WORDS)]
 
 
 class TrafficTable(keys.Table, frozen=True, kw_only=True):

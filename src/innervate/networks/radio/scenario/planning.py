@@ -9,7 +9,7 @@ from innervate.networks.radio.scenario.model import MACS, RadioScenario
 from innervate.networks.radio.scenario.plan import RadioFault, RadioPlan, parameters
 from innervate.networks.radio.scenario.rules import pair
 from innervate.networks.radio.scenario.traffic import OFFERS_MAX, arrivals, mean_interval_us, sizes
-from innervate.scenario.actions.channel import JOIN, KILL, LEAVE, NUMBERS, TABLE
+from innervate.scenario.actions.channel import JOIN, KILL, LEAVE, TABLE, WORDS
 from innervate.scenario.events import at_us
 from innervate.trace.streams import stream
 
@@ -114,7 +114,7 @@ def _check_offers(scenario: Any, slot_us: int, duration_us: int) -> None:
 def _faults(model: RadioScenario) -> list[RadioFault]:
     found = []
     for index, event in enumerate(model.event):
-        draw, action = stream(model.seed, f"event/{index}"), NUMBERS[event.action]
+        draw, action = stream(model.seed, f"event/{index}"), WORDS[event.action]
         at = at_us(event, draw)
         node = draw.draw(model.stations) if isinstance(event.station, str) else event.station
         value = (event.frames or 1) if TABLE[action].key == "frames" else 0

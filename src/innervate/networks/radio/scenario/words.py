@@ -92,5 +92,5 @@ def unwatchable(plan: RadioPlan) -> str:
 
 
 def loop_name(plan: RadioPlan) -> str:
-    """Which loop a plan runs on, for `kernel.door.is_compiled`."""
+    """Which loop a plan runs on, for `kernel.compilation.is_compiled`."""
     return plan.protocol.replace("/", "-")

@@ -4,19 +4,19 @@ from innervate.networks.radio.protocol.constants import DATA
 from innervate.networks.radio.protocol.station import copy_frame
 from innervate.sim import taps
 from innervate.sim.heap import AIR_BITS
-from innervate.sim.rows import keep_step
+from innervate.sim.rows import record_step
 
 BROKEN_RANGE = 4
 BROKEN_TURNS = 5
 
 
-def keep_sent(world, node, frame, time):
+def record_sent(world, node, frame, time):
     """A row of what goes on the air."""
     run = world.run[0]
     start = time + run.ta_us
     end = start + frame.slots * run.slot_us
     if run.tap_limit > 0:
-        taps.keep(world, start, start, node, node, 1, taps.FINE, frame, copy_frame)
+        taps.record_frame(world, start, start, node, node, 1, taps.FINE, frame, copy_frame)
     if run.exclusive and frame.kind == DATA:
         if start < run.data_until and run.broken == 0:
             run.broken, run.broken_node = BROKEN_TURNS, node
@@ -36,7 +36,7 @@ def keep_sent(world, node, frame, time):
         row.more = frame.more
 
 
-def keep_received(world, node, what, time, clear, received):
+def record_received(world, node, what, time, clear, received):
     """A signal has ended at a station: a capture says if its frame was received, or why not.
 
     `clear` = it was alone, and heard from its start.
@@ -49,7 +49,9 @@ def keep_received(world, node, what, time, clear, received):
             if clear:
                 why = taps.SPOILT if air.spoilt else taps.NOISE
         sender = what >> AIR_BITS
-        taps.keep(world, time, air.start, node, sender, 0, why, world.frames[what], copy_frame)
+        taps.record_frame(
+            world, time, air.start, node, sender, 0, why, world.frames[what], copy_frame
+        )
 
 
 def watch(world, node, time, handler, port):
@@ -60,4 +62,4 @@ def watch(world, node, time, handler, port):
         for i in range(len(world.low)):
             if words[i] < world.low[i] or words[i] > world.high[i]:
                 run.broken, run.broken_node = BROKEN_RANGE, node
-    keep_step(world, node, time, handler, port)
+    record_step(world, node, time, handler, port)

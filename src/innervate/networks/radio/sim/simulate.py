@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, ClassVar
 
-from innervate.kernel import door, tables
+from innervate.kernel import compilation, tables
 from innervate.networks.radio.sim import build as builder
 from innervate.networks.radio.sim import recorder, stacks
 from innervate.scenario.actions.channel import KILL, LEAVE
@@ -55,7 +55,7 @@ def compiled_loop(name: str) -> Callable[..., None]:
 @functools.cache
 def _compiled(protocol: stacks.Protocol) -> Callable[..., None]:
     """Its loop; all names of one protocol share it."""
-    advance = door.compiled(loop.bind(registered(protocol, traffic)))
+    advance = compilation.compiled(loop.bind(registered(protocol, traffic)))
     return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
 
 
@@ -63,14 +63,14 @@ def registered(protocol: stacks.Protocol, packets: ModuleType) -> ModuleType:
     """What the medium calls of a protocol; that and the medium may be compiled from now on."""
     from innervate.dialect import arith, outbox, rng
 
-    door.register(traffic, rows, taps, hot=False)
-    door.register(arith, outbox, rng, heap, medium)
-    door.register(*protocol.modules, hot=False)
-    door.register(recorder, hot=False)
-    door.register(packets, hot=False)
-    door.register_functions(loop.pressing, *loop.FUNCTIONS, hot=False)
+    compilation.register(traffic, rows, taps, hot=False)
+    compilation.register(arith, outbox, rng, heap, medium)
+    compilation.register(*protocol.modules, hot=False)
+    compilation.register(recorder, hot=False)
+    compilation.register(packets, hot=False)
+    compilation.register_functions(loop.pressing, *loop.FUNCTIONS, hot=False)
     do = stacks.bind(protocol.entry, recorder, packets)
-    door.register_functions(*(one for one in vars(do).values() if callable(one)))
+    compilation.register_functions(*(one for one in vars(do).values() if callable(one)))
     return do
 
 
@@ -119,7 +119,7 @@ class RadioSimulation(Channel):
             same = stacks.PROTOCOLS[self.plan.protocol]
             for name, protocol in stacks.PROTOCOLS.items():
                 if protocol == same:
-                    door.mark_compiled(name.replace("/", "-"))
+                    compilation.mark_compiled(name.replace("/", "-"))
 
     def schedule(self, fault: Any) -> None:
         """As a plan with such events has it: turns may overlap, who is gone delivers no more."""
@@ -128,9 +128,9 @@ class RadioSimulation(Channel):
         if fault.action in (KILL, LEAVE):
             put(self.world.run, 0, wanted=0)
 
-    def story(self) -> str:
+    def broken_line(self) -> str:
         """The broken invariant, in one line."""
-        return story(self.plan, self.world)
+        return broken_line(self.plan, self.world)
 
 
 def simulation(
@@ -152,7 +152,7 @@ def simulation(
     return RadioSimulation(plan, world, advance, name)
 
 
-def story(plan: Any, world: w.World) -> str:
+def broken_line(plan: Any, world: w.World) -> str:
     """A broken invariant in one line."""
     node = int(get(world.run, 0, "broken_node"))
     at = max(int(get(world.run, 0, "broken_at")), 0) / 1e6

@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import ModuleType
 from typing import Any, NamedTuple
 
-from innervate.kernel import door
+from innervate.kernel import compilation
 from innervate.networks.radio.baselines import common, contend, passing, slots, station, tree
 from innervate.networks.radio.baselines.fields import BASELINE
 from innervate.networks.radio.protocol import bounds as radio_bounds
@@ -84,7 +84,7 @@ def bind(entry: ModuleType, recorder: Any, packets: Any = traffic) -> ModuleType
 
     Args:
         entry: the module with its five functions.
-        recorder: keeps rows and checks: keep_sent, keep_received, watch.
+        recorder: keeps rows and checks: record_sent, record_received, watch.
         packets: follows what becomes of packets (note_sent, note_received, note_delivered):
             `traffic`, or a protocol above whose frames they are.
     """
@@ -106,9 +106,9 @@ def bind(entry: ModuleType, recorder: Any, packets: Any = traffic) -> ModuleType
     def on_carrier(world, node, now, cd, voc):  # type: ignore[no-untyped-def]
         carrier(world.stations[node], world.params[0], now, cd, voc, world.out)
 
-    return door.bound(
+    return compilation.bound(
         f"{entry.__name__} on a channel",
         (on_start, on_frame, on_timer, on_input, on_carrier, digest, copy_frame),
-        (recorder.keep_sent, recorder.keep_received, recorder.watch),
+        (recorder.record_sent, recorder.record_received, recorder.watch),
         (packets.note_sent, packets.note_received, packets.note_delivered),
     )

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from innervate.kernel import door
+from innervate.kernel import compilation
 from innervate.networks.radio.scenario.slotted import BACKOFF, BY_CHANCE, TURNAROUND
 from innervate.networks.radio.slotted import chance as chance
 from innervate.networks.radio.slotted import contend as contend
@@ -225,9 +225,9 @@ def loop(function: Callable[..., Any], plain: bool) -> Callable[..., Any]:
 
 @functools.cache
 def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
-    door.register_functions(
+    compilation.register_functions(
         draws.step, draws.draw, draws.shuffle, draws.exponential, draws.choose,
         rec.going, rec.deliver, rec.ready, rec.opening,
         *contend.PARTS, *turns.PARTS, *chance.PARTS,
     )  # fmt: skip
-    return door.compiled(function)
+    return compilation.compiled(function)

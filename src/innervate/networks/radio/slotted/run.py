@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from innervate.kernel.wall import wall_s
+from innervate.kernel.clock import wall_s
 from innervate.networks.radio.analysis.headline import RadioFacts, headline
 from innervate.networks.radio.analysis.summary_keys import Delays, SlottedSummary
 from innervate.networks.radio.scenario.slotted import TURNAROUND, USED_BY
@@ -29,7 +29,7 @@ class SlottedRun:
     wall_s: float
     fingerprint: str
     interrupted: bool = False
-    received_kept: bool = False
+    has_deliveries: bool = False
 
 
 def simulate(plan: Any, plain: bool) -> SlottedRun:

@@ -16,7 +16,7 @@ import numpy as np
 
 from innervate import scenario as scenarios
 from innervate.dialect import rng
-from innervate.kernel.wall import wall_s
+from innervate.kernel.clock import wall_s
 from innervate.networks.radio.protocol.constants import DATA, WINDOWS
 from innervate.networks.radio.sim import build as builder
 from innervate.networks.radio.sim import simulate as simulator

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from innervate.dialect import rng
-from innervate.kernel.wall import wall_s
+from innervate.kernel.clock import wall_s
 from innervate.networks.radio.sim import build as builder
 from innervate.networks.radio.sim import recorder, stacks
 from innervate.networks.radio.verify import grid as grid

@@ -22,8 +22,8 @@ from innervate.networks.skin.analysis.rows import (
 )
 from innervate.networks.skin.analysis.summary_keys import Recovery, StartUp
 from innervate.networks.skin.protocol.constants import NONE, PORTS
-from innervate.networks.skin.scenario.plan import Fault
 from innervate.scenario.actions.cables import ACTIONS, CUT, KILL, RESTART, RESTORE, REVIVE
+from innervate.scenario.cables import Fault
 
 NOBODY = -1
 

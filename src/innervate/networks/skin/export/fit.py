@@ -87,7 +87,7 @@ class Reader(measure.Reader):
         return self.found.way(*key)
 
     def _look(self, place: Place, packet: Packet) -> None:
-        """What traffic there is."""
+        """Note what traffic a capture has, to choose a scenario by."""
         kind = _kind(packet)
         if kind == BEACON:
             self.beacons.setdefault(place.here, []).append(packet.time_ns)

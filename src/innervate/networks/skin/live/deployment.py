@@ -14,7 +14,7 @@ class SkinDeployment(Deployment):
     """The cells of a skin and the PC."""
 
     def layout(self) -> tuple[list[str], Pairs]:
-        """See Deployment."""
+        """Names c0, c1 .. of the cells and "pc", and the cables as pairs."""
         return [*(f"c{i}" for i in range(self.plan.graph.cells)), "pc"], self.cables()
 
     def in_order(self, number: int, cables: list[int]) -> list[int]:
@@ -24,7 +24,7 @@ class SkinDeployment(Deployment):
         return sorted(cables, key=lambda k: self.port_of(number, k))
 
     def file(self, number: int, cables: list[int]) -> tuple[Table, dict[str, Table]]:
-        """See Deployment."""
+        """The head of a node's file, and its tables."""
         plan, tables = self.plan, {"protocol": dict(self.plan.params)}
         if number == plan.graph.cells:
             return {"role": "sink"}, tables

@@ -49,7 +49,7 @@ class CellNode(LiveNode):
         self.requests["command"] = refuse_command
 
     def streams(self, request: dict[str, Any]) -> list[Stream]:
-        """Commands for this cell."""
+        """Commands for this cell, for those who follow them by the status socket."""
         return [(self.receive_commands(), _command_line)]
 
     def receive_commands(
@@ -59,14 +59,14 @@ class CellNode(LiveNode):
         return self.arrivals.receive(callback)
 
     async def start(self) -> None:
-        """Switch on."""
+        """Switch on, and sample from now on if there is a rate."""
         await super().start()
         if self._period_s:
             self._due = asyncio.get_running_loop().time()
             self._sample_again()
 
     async def stop(self) -> None:
-        """Switch off."""
+        """Stop sampling, then switch the node off."""
         if self._beat is not None:
             self._beat.cancel()
         await super().stop()
@@ -132,7 +132,7 @@ class SinkNode(LiveNode):
         self.requests["command"] = self._asked_for_command
 
     def streams(self, request: dict[str, Any]) -> list[Stream]:
-        """Samples of all cells."""
+        """Samples of all cells, for those who follow them by the status socket."""
         return [(self.receive_touch(), _touch_line)]
 
     def receive_touch(

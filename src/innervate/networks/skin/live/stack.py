@@ -74,7 +74,7 @@ class CellStack(SkinStack):
         self.moves = 0
 
     def on_start(self, now: int, cause: int) -> None:
-        """Switch on."""
+        """Switch the cell on at `now`, us; `cause` 0 is the first time."""
         skin.on_start(self.cell, self.params, now, cause, self.out)
 
     def on_frame(self, now: int, port: int) -> None:
@@ -82,7 +82,7 @@ class CellStack(SkinStack):
         skin.on_frame(self.cell, self.params, now, self.port_of_path[port], self.inbox, self.out)
 
     def on_timer(self, now: int, timer: int) -> None:
-        """A timer fires."""
+        """A timer of the cell's protocol fires at `now`, us."""
         skin.on_timer(self.cell, self.params, now, timer, self.out)
 
     def on_input(self, now: int, kind: int, item: Any) -> None:
@@ -135,7 +135,7 @@ class SinkStack(SkinStack):
         self.pc.own[0].ports = ports
 
     def on_start(self, now: int, cause: int) -> None:
-        """Switch on."""
+        """Switch the PC on at `now`, us; `cause` 0 is the first time."""
         skin_sink.on_start(self.pc, self.params, now, cause, self.out)
 
     def on_frame(self, now: int, port: int) -> None:
@@ -144,7 +144,7 @@ class SinkStack(SkinStack):
         skin_sink.on_frame(self.pc, self.params, now, port, self.inbox, self.out)
 
     def on_timer(self, now: int, timer: int) -> None:
-        """A timer fires."""
+        """A timer of the PC's protocol fires at `now`, us."""
         skin_sink.on_timer(self.pc, self.params, now, timer, self.out)
 
     def on_input(self, now: int, kind: int, item: Any) -> None:

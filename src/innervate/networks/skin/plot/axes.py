@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -14,17 +14,6 @@ from innervate.networks.skin.protocol.constants import PORTS
 from innervate.plot import style
 from innervate.topology import Graph
 
-# Pale fills, so that dark arrows show on them.
-PORT_FILLS = (
-    "#b9d4ea",
-    "#f7dca8",
-    "#b5e0d1",
-    "#efd0e2",
-    "#d8e9f5",
-    "#f3eeb8",
-    "#e2d3c3",
-    "#dedede",
-)
 NO_ROUTE = "#ffffff"
 ARROWS_MAX = 600  # more get lines without heads
 
@@ -127,8 +116,3 @@ class SkinAxes:
                 *place, words, color="white", fontsize=5.5, ha="center", va="center_baseline",
                 zorder=6,
             )  # fmt: skip
-
-
-def port_fills(servers: Iterable[int]) -> list[str]:
-    """A fill by the interface port that serves a cell; NO_ROUTE without one."""
-    return [PORT_FILLS[int(port) % len(PORT_FILLS)] if port >= 0 else NO_ROUTE for port in servers]

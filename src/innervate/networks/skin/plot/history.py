@@ -10,8 +10,8 @@ import numpy as np
 from innervate.networks.skin.analysis import load, recovery, rows
 from innervate.networks.skin.analysis.rows import Numbers
 from innervate.networks.skin.protocol.constants import NONE, PORTS
-from innervate.networks.skin.scenario.plan import Fault
 from innervate.scenario.actions.cables import CUT, KILL, RESTART, RESTORE, REVIVE
+from innervate.scenario.cables import Fault
 
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from innervate.networks.skin.scenario.plan import LOSS_ONE, Fault
 from innervate.plot.words import ms_words, number_of, share_words
 from innervate.scenario.actions.cables import CUT, KILL, LOOSE, LOSE, RESTART, RESTORE, REVIVE
+from innervate.scenario.cables import LOSS_ONE, Fault
 from innervate.topology import PORTS, Graph
 
 LOST = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -55,6 +56,15 @@ def build_graph(scenario: Scenario) -> Graph:
     return graph
 
 
+@contextmanager
+def _told_at(source: Source, key: Key, name: str = "") -> Iterator[None]:
+    """What the topology refuses inside is the error of a key; `name` if that is not the key's."""
+    try:
+        yield
+    except TopologyError as error:
+        raise source.error(key, f"{name or dotted(key)}: {error}") from None
+
+
 def check_reach(source: Source, graph: Graph, depths: list[int], max_depth: int) -> None:
     """Refuse cells without a way to the PC, and skins deeper than `max_depth` hops."""
     if graph.interfaces == 0:
@@ -101,7 +111,8 @@ def _patched(source: Source, model: SkinScenario) -> Graph:
         key: Key = ("cable", index)
         a = end_at(source, graph, cable.a, (*key, "a"))
         b = end_at(source, graph, cable.b, (*key, "b"))
-        _connect(source, graph, a, b, key)
+        with _told_at(source, key):
+            graph.connect(a, b)
     for index, interface in enumerate(model.interface):
         _interface(source, graph, interface, ("interface", index))
     _copies(source, graph, model)
@@ -111,34 +122,22 @@ def _patched(source: Source, model: SkinScenario) -> Graph:
 def _interface(source: Source, graph: Graph, interface: InterfaceTable, key: Key) -> None:
     where = CellTable(patch=interface.patch, row=interface.row, column=interface.column)
     cell = cell_at(source, graph, where, key)
-    try:
+    with _told_at(source, key if interface.port is None else (*key, "port"), dotted(key)):
         graph.add_interface(cell, interface.port)
-    except TopologyError as error:
-        part = key if interface.port is None else (*key, "port")
-        raise source.error(part, f"{dotted(key)}: {error}") from None
 
 
 def _copies(source: Source, graph: Graph, model: SkinScenario) -> None:
     """Join the copies that `count` makes, and give every n-th one an interface port."""
     first = 0
     for index, patch in enumerate(model.patch):
-        try:
+        with _told_at(source, ("patch", index)):
             if patch.joined:
                 join_chain(graph, first, patch.count)
             for copy in range(0, patch.count, patch.interfaces_every or patch.count + 1):
                 if patch.interfaces_every:
                     there = graph.patches[first + copy]
                     graph.add_interface(there.cell(0, there.columns // 2))
-        except TopologyError as error:
-            raise source.error(("patch", index), f"patch.{index}: {error}") from None
         first += patch.count
-
-
-def _connect(source: Source, graph: Graph, a: int, b: int, key: Key) -> None:
-    try:
-        graph.connect(a, b)
-    except TopologyError as error:
-        raise source.error(key, f"{dotted(key)}: {error}") from None
 
 
 def _body(source: Source, body: BodyTable) -> Graph:
@@ -193,18 +192,14 @@ def end_at(source: Source, graph: Graph, where: CellTable | str, key: Key) -> in
         port = -1 if where.port is None else port_at(source, where.port, (*key, "port"))
     if port >= 0:
         return PORTS * node + port
-    try:
+    with _told_at(source, key):
         return graph.free_end(node)
-    except TopologyError as error:
-        raise source.error(key, f"{dotted(key)}: {error}") from None
 
 
 def port_at(source: Source, port: int | str, key: Key) -> int:
     """0..3 from a port's number or name."""
-    try:
+    with _told_at(source, key):
         return port_number(port)
-    except TopologyError as error:
-        raise source.error(key, f"{dotted(key)}: {error}") from None
 
 
 def node_and_port(source: Source, graph: Graph, text: str, key: Key) -> tuple[int, int]:

@@ -14,15 +14,13 @@ from innervate.networks.skin.scenario.script import Step, steps
 from innervate.networks.skin.scenario.targets import Damage, target
 from innervate.networks.skin.scenario.touch import Touch, sample
 from innervate.scenario.actions.cables import ACTIONS
-from innervate.scenario.cables import LOSS_ONE as LOSS_ONE
-from innervate.scenario.cables import Fault as Fault
+from innervate.scenario.cables import LOSS_ONE, CablesPlan, Fault
 from innervate.scenario.events import at_us, exact, micros
 from innervate.scenario.load import Scenario
 from innervate.scenario.source import Source
 from innervate.topology import Graph
 from innervate.trace.streams import stream
 
-WIRE_US = 60  # a frame of 240 bit at 4 Mbit/s [skin 2]
 K = 5
 DEPTH_EXPECTED = 32  # MAXD' [skin 4]
 DATA_CELLS_MAX = 65_536
@@ -33,41 +31,18 @@ UPDATES = ("periodic", "triggered", "wave")
 
 
 @dataclass(slots=True)
-class Plan:
+class Plan(CablesPlan):
     """Everything a run needs, as whole numbers.
 
     Attributes:
-        params: the protocol's parameters (see `protocol/fields.py`, PARAMS).
-        drift_ppm: clocks run up to this much fast or slow.
-        latency_us: least and greatest hop latency, wire time included, us.
-        latency_per_frame: drawn for every frame; else once for each link and direction.
         lock_step: all nodes tick at the same moment, without drift.
-        data_period_us: between a cell's samples; 0 = no data.
-        queue_frames: data frames a port can hold.
-        wire_us: time a frame occupies the wire.
-        loss_q15: share of the frames that every cable loses, in 1/32768.
-        faults: in order of time, then of the file.
         touch: the touch, or None.
         script: steps that replace the clock; empty = free running.
         orders: commands of the PC, in order of time.
         depths: hops of every cell to the PC over the whole graph.
     """
 
-    scenario: Scenario
-    graph: Graph
-    kind: str
-    seed: int
-    duration_us: int
-    params: dict[str, int]
-    drift_ppm: int
-    latency_us: tuple[int, int]
-    latency_per_frame: bool
-    lock_step: bool
-    data_period_us: int
-    queue_frames: int
-    wire_us: int = WIRE_US
-    loss_q15: int = 0
-    faults: list[Fault] = field(default_factory=list)
+    lock_step: bool = False
     touch: Touch | None = None
     script: tuple[Step, ...] = ()
     orders: list[Order] = field(default_factory=list)
@@ -77,11 +52,6 @@ class Plan:
     def depth_max(self) -> int:
         """Hops of the deepest cell."""
         return max(self.depths)
-
-    @property
-    def start_us(self) -> int:
-        """Nodes are switched on within so long: a period of beacons."""
-        return 1 if self.lock_step else self.params["beacon_us"]
 
 
 def plan(scenario: Scenario) -> Plan:
@@ -97,13 +67,15 @@ def plan(scenario: Scenario) -> Plan:
     if model.data.rate_hz and graph.cells > DATA_CELLS_MAX:
         message = f"{graph.cells:,} cells cannot send data: a data frame numbers {DATA_CELLS_MAX:,}"
         raise source.error(("data", "rate_hz"), f"{message}; set data.rate_hz = 0")
+    params = parameters(model.protocol, max(depths))
     return Plan(
         scenario=scenario,
         graph=graph,
         kind=scenario.kind,
         seed=scenario.seed,
         duration_us=max(1, micros(model.duration_s)),
-        params=parameters(model.protocol, max(depths)),
+        params=params,
+        start_us=1 if model.timing.lock_step else params["beacon_us"],
         drift_ppm=0 if model.timing.lock_step else model.timing.drift_ppm,
         latency_us=model.timing.hop_latency_us,
         latency_per_frame=model.timing.latency == "per_frame",

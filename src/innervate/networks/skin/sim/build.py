@@ -10,7 +10,7 @@ from innervate.networks.skin.protocol import fields
 from innervate.networks.skin.sim.observer import NUMBERS
 from innervate.networks.skin.sim.orders import SLOTS
 from innervate.scenario.actions.cables import GIVE
-from innervate.sim.cables.build import Added, Kept, Records
+from innervate.sim.cables.build import Added, Recorded, Records
 from innervate.sim.cables.build import build as cables
 from innervate.sim.cables.world import World
 from innervate.sim.tables import Tables
@@ -75,7 +75,7 @@ def build(plan: Any, plain: bool = False, orders: bool = False, **kept: bool) ->
         queues=has_data or orders,  # beacons alone never wait
         ways=(plan.graph.interfaces if has_data else 0) + orders,
     )
-    return cables(plan, RECORDS, tables, Kept(**kept), added)
+    return cables(plan, RECORDS, tables, Recorded(**kept), added)
 
 
 def order_row(plan: Any, order: Any) -> tuple[int, ...]:

@@ -50,7 +50,7 @@ def note(world, time, node, code, a, b):
 
 
 def on_report(world, time, node, code, a, b):
-    """A node reported something."""
+    """Count what a node reports, and judge what follows from it for routes."""
     if code == REPORT_DROP:
         world.counters[DROPS + a] += 1
         if a == DROP_NO_ROUTE and world.run[0].observe and world.watch.had[node] == 0:

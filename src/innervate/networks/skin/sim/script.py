@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from innervate.dialect import plain
-from innervate.networks.skin.protocol import constants as skin_words
+from innervate.networks.skin.protocol import constants as skin_const
 from innervate.networks.skin.scenario import script as steps
 from innervate.networks.skin.sim.build import build
 from innervate.scenario import ScenarioError
@@ -67,11 +67,11 @@ def _take(
     if step.action == steps.DETECT:
         cell, port = world.cells[step.node], step.end - 4 * step.node
         cell.heard[port] = 0
-        cell.pf[port] = max(cell.pf[port], skin_words.ONE - 1)
+        cell.pf[port] = max(cell.pf[port], skin_const.ONE - 1)
         missed.add(step.end)
     elif step.action in (steps.TICK, steps.SOON):
-        timer = skin_words.TICK if step.action == steps.TICK else skin_words.SOON
-        if timer == skin_words.TICK and plan.scenario.model.script.keepalive:
+        timer = skin_const.TICK if step.action == steps.TICK else skin_const.SOON
+        if timer == skin_const.TICK and plan.scenario.model.script.keepalive:
             _keep_alive(world, step.node, missed)
         slot = timer * get(world.run, 0, "nodes") + step.node
         if world.wheel.events[slot].bucket == NIL:
@@ -100,11 +100,11 @@ def _keep_alive(world: World, node: int, missed: set[int]) -> None:
     if node == get(world.run, 0, "cells"):
         return
     cell = world.cells[node]
-    for port in range(skin_words.PORTS):
+    for port in range(skin_const.PORTS):
         end = 4 * node + port
         if world.ends[end].peer < 0:
             continue
-        works = not world.ends[end].impaired & DOWN or cell.pf[port] < skin_words.ONE
+        works = not world.ends[end].impaired & DOWN or cell.pf[port] < skin_const.ONE
         cell.heard[port] = int(works and end not in missed)
         missed.discard(end)
 

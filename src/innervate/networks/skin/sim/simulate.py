@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from types import ModuleType
 from typing import Any, ClassVar
 
-from innervate.kernel.wall import wall_s
+from innervate.kernel.clock import wall_s
 from innervate.networks.skin.sim import build as builder
 from innervate.networks.skin.sim import observer, script, static_stack
 from innervate.networks.skin.sim import stack as skin_stack
@@ -49,19 +49,19 @@ def compiled_loop(static: bool) -> Callable[..., None]:
 
 
 def loop_name(plan: Any) -> str:
-    """Which loop a plan runs on, for `kernel.door.is_compiled`; a script needs none."""
+    """Which loop a plan runs on, for `kernel.compilation.is_compiled`; a script needs none."""
     if plan.script:
         return ""
     return "static" if plan.params["rule"] == RULE_STATIC else "skin"
 
 
 def plain_loop(static: bool) -> Callable[..., None]:
-    """The same loop, uncompiled."""
+    """The loop as plain Python: the same events, no compiler."""
     return loop.bind(static_stack if static else skin_stack)
 
 
 class SkinSimulation(Cables):
-    """A skin under way."""
+    """A skin that is simulated in slices: its plan, its world, its loop."""
 
     tables: ClassVar[Mapping[str, Names]] = {
         "rows": w.ROW, "deliveries": builder.DELIVERY, "trail": w.TRAIL,
@@ -118,6 +118,6 @@ def _played(plan: Any, checks: bool, trail: bool) -> Result:
     world, now = script.play(plan, stack, checks, trail)
     played = SkinSimulation(plan, world, lambda *_: None)
     if int(get(world.run, 0, "status")) == BROKEN:
-        raise InvariantBroken(played.story())
+        raise InvariantBroken(played.broken_line())
     move_rows(world, played._kept, played.tables, played.wide)
     return played.result(Ended(now, wall_s() - started, False, played.take()), False)

@@ -20,7 +20,7 @@ __all__ = ["before_change", "copy_frame", "on_change", "sense", "take_input"]
 
 
 def on_start(world, node, now, cause):
-    """Switch a node on."""
+    """Switch a cell or the PC on at its own clock's `now`, us."""
     if node == world.run[0].cells:
         skin_sink.on_start(world.pc, world.params[0], now, cause, world.out)
     else:
@@ -47,7 +47,7 @@ def local(world, node, time):
 
 
 def on_timer(world, node, now, timer):
-    """A node's timer fires."""
+    """A timer of a cell or the PC fires at its own clock's `now`, us."""
     if node == world.run[0].cells:
         skin_sink.on_timer(world.pc, world.params[0], now, timer, world.out)
     else:
@@ -82,7 +82,7 @@ def digest(frame):
 
 
 def on_report(world, time, node, code, a, b):
-    """A node reported something."""
+    """Note a report; one that changes a route is checked at once."""
     observer.on_report(world, time, node, code, a, b)
     if world.run[0].checks and code <= REPORT_BALANCE:
         check_route(world, node)
@@ -95,7 +95,7 @@ def on_stop(world, time, node):
 
 
 def check(world, node):
-    """After every handler."""
+    """Check the ranges of a cell's fields, after every handler."""
     if node < world.run[0].cells:
         check_range(world, node)
 

@@ -18,7 +18,7 @@ from innervate.networks.skin.sim.stack import take_input as take_input
 
 
 def on_start(world, node, now, cause):
-    """Switch a node on."""
+    """Switch a cell or the PC on at its own clock's `now`, us."""
     if node == world.run[0].cells:
         skin_sink.on_start(world.pc, world.params[0], now, cause, world.out)
     else:
@@ -35,7 +35,7 @@ def on_frame(world, node, time, port, frame):
 
 
 def on_timer(world, node, now, timer):
-    """A node's timer fires."""
+    """A timer of a cell or the PC fires at its own clock's `now`, us."""
     if node == world.run[0].cells:
         skin_static.sink_timer(world.pc, world.params[0], now, timer, world.out)
     else:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
-from innervate.kernel import door
+from innervate.kernel import compilation
 from innervate.networks.skin.verify import cases
 from innervate.networks.skin.verify.mutants import MUTANTS, hunt
 from innervate.verify import cases as common
@@ -21,7 +21,7 @@ COMPILED = "explorer"
 
 def notice(options: Any) -> str:
     """What to say before the first."""
-    return "" if options.plain or door.is_compiled(COMPILED) else COMPILING
+    return "" if options.plain or compilation.is_compiled(COMPILED) else COMPILING
 
 
 def explorations(_network: Any, options: Any) -> Iterator[Explore]:
@@ -51,7 +51,7 @@ def _explore(model: Any, wanted: cases.Wanted, tell: Tell) -> Case:
 
     case = cases.run(model, wanted, progress)
     if not wanted.plain:
-        door.mark_compiled(COMPILED)
+        compilation.mark_compiled(COMPILED)
     return Case(
         lines=_lines(case),
         record=case.as_dict(),

@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from innervate.kernel import door, tables
-from innervate.kernel.wall import wall_s
+from innervate.kernel import compilation, tables
+from innervate.kernel.clock import wall_s
 from innervate.networks.skin.verify import calm as skin_calm
 from innervate.networks.skin.verify import system as skin_system
 from innervate.networks.skin.verify import world as w
@@ -124,9 +124,9 @@ def _compiled() -> Callable[..., None]:
     engine = ex.compiled_engine(skin_system.compiled_parts)
     system = skin_system.compiled_parts()
     parts = build(system)
-    door.register(skin_calm, hot=False)
-    door.register_functions(*engine.parts, *parts[:-1], hot=False)
-    return door.compiled(parts[-1])
+    compilation.register(skin_calm, hot=False)
+    compilation.register_functions(*engine.parts, *parts[:-1], hot=False)
+    return compilation.compiled(parts[-1])
 
 
 def bound_of(model: Any) -> int:

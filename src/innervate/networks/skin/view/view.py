@@ -20,7 +20,6 @@ from innervate.networks.skin.protocol.constants import (
     REPORT_BROKEN,
     REPORT_PARENT,
 )
-from innervate.networks.skin.scenario.plan import Fault
 from innervate.networks.skin.sim.observer import APART, CUT_OFF, LOOP_OPEN, UNROUTED
 from innervate.networks.skin.sim.orders import ORDER_CAME, ORDER_GIVEN
 from innervate.networks.skin.view import giving
@@ -29,6 +28,7 @@ from innervate.networks.skin.view.scene import places
 from innervate.networks.skin.view.state import SkinCables
 from innervate.plot.words import number_of
 from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE
+from innervate.scenario.cables import Fault
 from innervate.sim.cables.wires import EARLY, LOOPED, LOST_BROKEN, LOST_CUT, NO_ROUTE, OFFERED
 from innervate.sim.cables.world import DEAD
 from innervate.topology import PORTS

@@ -14,23 +14,14 @@ from innervate.networks.skin.plot import map as skinmap
 from innervate.networks.skin.plot import words as skin_words
 from innervate.networks.skin.plot.history import History
 from innervate.networks.skin.plot.sheet import Sheet
-from innervate.networks.skin.scenario.plan import Fault
-from innervate.plot import charts, svg, words
+from innervate.plot import charts, words
 from innervate.scenario.actions.cables import ACTIONS
+from innervate.scenario.cables import Fault
 
 WINDOW_PERIODS = 1.25
 ZOOMS_MAX = 6
 OUTAGE_US = 1000
 MARKS_MAX = 8
-
-
-@dataclass(frozen=True, slots=True)
-class Panel:
-    """A drawing with its caption."""
-
-    drawing: svg.Drawing
-    head: str
-    text: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +52,7 @@ class Incident:
         return self.at_us + round(1e3 * float(routed_ms))
 
 
-class Story:
+class Digest:
     """A run of a skin, as pictures are made from it."""
 
     def __init__(self, result: Any, summary: Mapping[str, Any]) -> None:
@@ -109,7 +100,7 @@ class Story:
         last = incident.until_us >= self.result.ended_us
         return "at the end" if last else "when the next event came"
 
-    def maps(self) -> list[Panel]:
+    def maps(self) -> list[charts.Panel]:
         """Routes before, during and after the worst event; without one, at the end."""
         hero = self.hero
         if hero is None:
@@ -152,12 +143,12 @@ class Story:
             parts.append(f"{off:,} switched off")
         return ", ".join(parts)
 
-    def _map(self, time_us: int, head: str, text: str = "") -> Panel:
+    def _map(self, time_us: int, head: str, text: str = "") -> charts.Panel:
         moment = self.history.at(time_us)
         drawing = skinmap.route_map(self.sheet, moment, f"Routes of the skin: {head} {text}")
-        return Panel(drawing, head, text)
+        return charts.Panel(drawing, head, text)
 
-    def zooms(self) -> list[Panel]:
+    def zooms(self) -> list[charts.Steps]:
         """Cells without a route round each event that cost some of them theirs."""
         hurt = [i for i in self.incidents if self._is_outage(i)]
         return [self._zoom(incident) for incident in hurt[:ZOOMS_MAX]]
@@ -167,7 +158,7 @@ class Story:
         most = self.history.lacking_max(incident.at_us, incident.until_us - 1)[1]
         return most > 0 and lasted_us >= OUTAGE_US
 
-    def _zoom(self, incident: Incident) -> Panel:
+    def _zoom(self, incident: Incident) -> charts.Steps:
         recovery, start = incident.recovery, incident.at_us
         marks = [charts.Mark(0.0, ACTIONS[incident.fault.action])]
         reach = (incident.routed_us - start) / 1e3
@@ -181,13 +172,13 @@ class Story:
         inside = self.history.lacking_max(start, start + round(1e3 * reach))[1]
         x = charts.Axis(-0.12 * reach, 1.6 * reach, "ms after the event")
         y = charts.Axis(0.0, 1.08 * max(inside, 1))
-        label = self.headline(incident)
-        drawing = charts.step_chart((times - start) / 1e3, cells, x, y, marks, label)
         what = skin_words.fault_words(self.graph, incident.fault)
         text = f"{what[0].upper()}{what[1:]} at {start / 1e6:.3f} s."
-        return Panel(drawing, "Cells without a way to the PC", text)
+        head = "Cells without a way to the PC"
+        at, label = (times - start) / 1e3, self.headline(incident)
+        return charts.Steps(at, cells, x, y, head, text, marks, label=label)
 
-    def overview(self) -> list[Panel]:
+    def overview(self) -> list[charts.Steps]:
         """The whole run: cells without a route, samples received."""
         times, cells = self.history.steps()
         end_s = max(self.result.ended_us, 1) / 1e6
@@ -198,11 +189,11 @@ class Story:
         most = 1.08 * max(int(cells.max(initial=0)), 1)
         y = charts.Axis(0.0, most)
         head = "Cells without a way to the PC, whole run"
-        panels = [Panel(charts.step_chart(times / 1e6, cells, x, y, marks, head, 165.0), head)]
+        panels = [charts.Steps(times / 1e6, cells, x, y, head, "", marks, 165.0)]
         received = self._received(x, marks)
         return panels + ([received] if received else [])
 
-    def _received(self, x: charts.Axis, marks: list[charts.Mark]) -> Panel | None:
+    def _received(self, x: charts.Axis, marks: list[charts.Mark]) -> charts.Steps | None:
         """Samples received in each sample period, as a share of the cells."""
         period, times = self.plan.data_period_us, self.result.deliveries["time"]
         if not period or len(times) == 0:
@@ -215,9 +206,9 @@ class Story:
         at = np.arange(bins) * width / 1e6
         head = "Tactile samples received, whole run"
         text = f"In % of what all cells measure, in steps of {words.ms_words(width / 1e3)}."
-        return Panel(charts.step_chart(at, share, x, y, marks, head, 165.0), head, text)
+        return charts.Steps(at, share, x, y, head, text, marks, 165.0)
 
-    def images(self) -> list[Panel]:
+    def images(self) -> list[charts.Panel]:
         """What the PC received before, during and after the worst event."""
         period = self.plan.data_period_us
         if not period or len(self.result.deliveries) == 0:
@@ -225,15 +216,16 @@ class Story:
         window_us = round(WINDOW_PERIODS * period)
         hero = self.hero
         if hero is None:
-            return [self._image(self.result.ended_us, window_us, "At the end")]
+            return [self.image(self.result.ended_us, window_us, "At the end")]
         after_us = min(hero.routed_us + window_us + 5000, hero.until_us, self.result.ended_us)
         return [
-            self._image(hero.at_us, window_us, "Before"),
-            self._image(hero.routed_us, window_us, "During the recovery"),
-            self._image(after_us, window_us, "After"),
+            self.image(hero.at_us, window_us, "Before"),
+            self.image(hero.routed_us, window_us, "During the recovery"),
+            self.image(after_us, window_us, "After"),
         ]
 
-    def _image(self, time_us: int, window_us: int, head: str) -> Panel:
+    def image(self, time_us: int, window_us: int, head: str) -> charts.Panel:
+        """What had come in a window before a time."""
         image = touch.received_image(self.result, time_us / 1e6, window_us / 1e6)
         force_n = np.where(image.known, image.force_mn / 1e3, np.nan)
         missing = int(np.count_nonzero(~image.known))
@@ -248,9 +240,9 @@ class Story:
             at = min(max(0, time_us - window_us // 2) // pressed.step_us, len(pressed.x_um) - 1)
             place = (pressed.x_um[at] / 1e3, pressed.y_um[at] / 1e3)
             skinmap.touch_ring(drawing, self.bare_sheet, *place, pressed.radius_um / 1e3)
-        return Panel(drawing, head, text)
+        return charts.Panel(drawing, head, text)
 
-    def loads(self) -> Panel | None:
+    def loads(self) -> charts.Bars | None:
         """Cells that each interface port serves at the end."""
         loads = self.summary["port_loads"]
         if not loads:
@@ -260,16 +252,16 @@ class Story:
             for i, load in enumerate(loads)
         ]
         even = sum(loads) / len(loads) if len(loads) > 1 else None
-        drawing = charts.bar_chart(bars, "Cells served by each interface port at the end", even)
         factor = self.summary["balance_factor"]
         text = f"Balance factor {factor:.3f}; 1 is even." if factor is not None else ""
-        return Panel(drawing, "Cells behind each interface port", text)
+        label = "Cells served by each interface port at the end"
+        return charts.Bars(bars, "Cells behind each interface port", text, even, label)
 
     @property
     def _tells(self) -> bool:
         return not skinmap.shows_depth(self.graph.interfaces)
 
-    def losses(self) -> Panel | None:
+    def losses(self) -> charts.Bars | None:
         """Bars of how many samples were lost for which reason; None if none was."""
         data = self.summary["data"]
         lost = {k: n for k, n in data.get("lost_by", {}).items() if n}
@@ -279,6 +271,6 @@ class Story:
             charts.Bar(skin_words.LOST.get(reason, reason), count, f"{count:,}")
             for reason, count in sorted(lost.items(), key=lambda item: -item[1])
         ]
-        drawing = charts.bar_chart(bars, "Lost samples by reason")
         total = f"{data['lost']:,} of {data['sent']:,} samples were lost"
-        return Panel(drawing, "Where samples were lost", f"{total}.")
+        return charts.Bars(bars, "Where samples were lost", f"{total}.",
+                           label="Lost samples by reason")  # fmt: skip

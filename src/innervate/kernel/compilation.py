@@ -1,4 +1,4 @@
-"""The compile door: which plain functions Numba may compile, and where compiled code is kept.
+"""Compilation: which plain functions Numba may compile, and where compiled code is kept.
 
 Numba's own cache does not notice an edit in another file, so the cache folder carries a hash of
 every source that can end up in compiled code, of where it lies, and of the compiler's version.
@@ -22,12 +22,12 @@ from typing import Any
 import numba
 from numba.extending import register_jitable
 
-from innervate.kernel.whole import as_one
+from innervate.kernel.linking import as_one
 
 # What of the sources ends up in compiled code: rooms, and of every network these parts.
 SOURCE_ROOMS = ("dialect", "kernel", "sim", "verify")
 PARTS = ("protocol", "sim", "verify", "baselines", "slotted", "invariants.py")
-FOLDERS_KEPT = 8
+CACHE_FOLDERS_MAX = 8
 ROOT = Path(__file__).resolve().parent.parent
 
 _registered: set[Callable[..., Any]] = set()
@@ -157,7 +157,7 @@ def open_cache() -> Path:
 def _forget_old(keep: Path) -> None:
     others = [p for p in keep.parent.iterdir() if p.is_dir() and p != keep and len(p.name) == 20]
     others.sort(key=lambda p: p.stat().st_mtime, reverse=True)
-    for stale in others[FOLDERS_KEPT - 1 :]:
+    for stale in others[CACHE_FOLDERS_MAX - 1 :]:
         shutil.rmtree(stale, ignore_errors=True)
 
 

@@ -11,7 +11,7 @@ SPEED_MIN, SPEED_MAX = 0.001, 1_000_000.0
 LATE_S = 0.25  # a network that is too large for the speed runs as fast as it can
 
 
-class Pace:
+class Playback:
     """Says how far the network's time should be.
 
     Args:

@@ -1,4 +1,4 @@
-"""The compile door: what the cache of compiled code is known by, so that none of it is stale."""
+"""Compilation: what the cache of compiled code is known by, so that none of it is stale."""
 
 import shutil
 
@@ -6,22 +6,22 @@ import pytest
 
 from innervate.analysis import intervals
 from innervate.dialect import arith
-from innervate.kernel import door
+from innervate.kernel import compilation
 from innervate.networks.mesh.protocol import node
 
 
 @pytest.fixture
 def copied(tmp_path):
     shutil.copytree(
-        door.ROOT, tmp_path / "innervate", ignore=shutil.ignore_patterns("page", "*.pyc")
+        compilation.ROOT, tmp_path / "innervate", ignore=shutil.ignore_patterns("page", "*.pyc")
     )
     return tmp_path / "innervate"
 
 
 @pytest.fixture
 def foreign(monkeypatch):
-    monkeypatch.setattr(door, "_foreign", set())
-    return door._foreign
+    monkeypatch.setattr(compilation, "_foreign", set())
+    return compilation._foreign
 
 
 @pytest.mark.parametrize("file", [
@@ -30,20 +30,20 @@ def foreign(monkeypatch):
     "networks/radio/slotted/drive.py",
 ])  # fmt: skip
 def test_an_edit_of_what_is_compiled_changes_the_cache(copied, file):
-    before = door.source_hash(copied)
+    before = compilation.source_hash(copied)
     (copied / file).write_text("# another\n")
-    assert door.source_hash(copied) != before
+    assert compilation.source_hash(copied) != before
 
 
 def test_an_edit_of_anything_else_does_not(copied):
-    before = door.source_hash(copied)
+    before = compilation.source_hash(copied)
     for file in ("analysis/intervals.py", "networks/mesh/papers/lossy.py", "networks/mesh/run.py"):
         (copied / file).write_text("# another\n")
-    assert door.source_hash(copied) == before
+    assert compilation.source_hash(copied) == before
 
 
 def test_the_same_sources_elsewhere_have_a_cache_of_their_own(copied):
-    assert door.source_hash(copied) != door.source_hash()
+    assert compilation.source_hash(copied) != compilation.source_hash()
 
 
 def test_a_file_elsewhere_is_part_of_it(tmp_path):
@@ -51,23 +51,23 @@ def test_a_file_elsewhere_is_part_of_it(tmp_path):
     found = []
     for text in ("a", "b"):
         file.write_text(text)
-        found.append(door.source_hash(more=[file]))
-    assert len({*found, door.source_hash()}) == 3
+        found.append(compilation.source_hash(more=[file]))
+    assert len({*found, compilation.source_hash()}) == 3
 
 
 def test_only_what_the_cache_is_known_by_can_be_compiled(foreign):
-    door.register(arith, node)
+    compilation.register(arith, node)
     assert not foreign
     with pytest.raises(RuntimeError, match=r"intervals\.py is compiled, and no part of"):
-        door.register(intervals)
+        compilation.register(intervals)
 
 
 def test_functions_of_other_packages_are_noted_for_the_next_loop(foreign, tmp_path, monkeypatch):
     monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path))
-    before = door.numba.config.CACHE_DIR
-    door.register_functions(lambda: None)
-    assert {path.name for path in foreign} == {"test_door.py"}
-    with_ours = door.open_cache()
+    before = compilation.numba.config.CACHE_DIR
+    compilation.register_functions(lambda: None)
+    assert {path.name for path in foreign} == {"test_compilation.py"}
+    with_ours = compilation.open_cache()
     assert not foreign
-    assert door.open_cache() != with_ours
-    door.numba.config.CACHE_DIR = before
+    assert compilation.open_cache() != with_ours
+    compilation.numba.config.CACHE_DIR = before

@@ -19,7 +19,7 @@ Serve = Callable[[asyncio.StreamReader, asyncio.StreamWriter], Awaitable[None]]
 
 
 class Bounds(NamedTuple):
-    """How much a door stands.
+    """How much a listener stands.
 
     Attributes:
         most: callers that may be in at once.
@@ -34,7 +34,7 @@ class Bounds(NamedTuple):
     limit: int
 
 
-class Door:
+class BoundedListener:
     """A listening socket with a bound on who is in at once, and on how fast they come in.
 
     Args:
@@ -59,7 +59,7 @@ class Door:
         self._loop = asyncio.get_running_loop()
 
     def open(self) -> None:
-        """Listen."""
+        """Begin to listen; callers are let in from now on."""
         self._sock.setblocking(False)
         self._sock.listen(BACKLOG)
         self._loop.add_reader(self._sock.fileno(), self._knock)
