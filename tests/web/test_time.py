@@ -122,7 +122,7 @@ def test_a_run_folder_is_shown_as_it_was(kind, tmp_path):
 
 
 def test_of_an_interrupted_run_only_what_was_is_simulated_and_shown(tmp_path, monkeypatch):
-    monkeypatch.setattr("innervate.networks.skin.sim.simulate.SLICE_EVENTS", 2_000)
+    monkeypatch.setattr("innervate.sim.driver.Simulation.slice_events", 2_000)
 
     def interrupt(now_us, _end_us):
         if now_us > 200_000:
