@@ -170,11 +170,11 @@ def draw() -> None:
     import innervate
     from innervate.networks.skin.plot import map as skinmap
     from innervate.networks.skin.plot.report import legend
-    from innervate.networks.skin.plot.story import Story
+    from innervate.networks.skin.plot.digest import Digest
     from innervate.plot import svg, theme
 
     done = innervate.run("demo")
-    story = Story(done.result, done.summary)
+    story = Digest(done.result, done.summary)
     sheet = story.sheet
     step, head = sheet.width - 30, 46.0
     picture = svg.Drawing(4 * step + 30, sheet.height + head + 26, story.headlines()[0])

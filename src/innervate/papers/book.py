@@ -84,13 +84,16 @@ def main(
     started = time.perf_counter()
     with style.house():
         book.work(experiments)
-    some = names if len(names) < len(paper.FIGURES) else []
-    words = ["innervate papers", system, *(["--quick"] if quick else [])]
-    command = " ".join([*words, *(f"--only {name}" for name in some)])
+    command = _command(system, quick, names if len(names) < len(paper.FIGURES) else [])
     heading = output.Heading(
         system, paper.TITLE, paper.AUTHORS, quick, mark, redraw, command, paper.READINGS
     )
     return output.write(folder, heading, experiments, book.claims, time.perf_counter() - started)
+
+
+def _command(system: str, quick: bool, only: Sequence[str]) -> str:
+    words = ["innervate papers", system, *(["--quick"] if quick else [])]
+    return " ".join([*words, *(f"--only {name}" for name in only)])
 
 
 def papers() -> list[str]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import inf
+from types import ModuleType
 from typing import Any
 
+import numpy as np
 from matplotlib.figure import Figure
 
 HOLDS = "holds"
@@ -36,6 +38,48 @@ class Point:
         """The point that calls `work` with these arguments."""
         return cls(key, partial(work, *args), cost_s)
 
+    @classmethod
+    def each(
+        cls, what: str, cost_s: float, seeds: Sequence[int], measure: Callable[..., Any], *case: Any
+    ) -> Point:
+        """The series that calls `measure(*case, seed)` for every seed.
+
+        Its result is a list of what came, or a list under each name where a dict came.
+
+        Args:
+            what: says the case, all of it; the seeds are added to it.
+            cost_s: of one seed.
+            seeds: of the runs.
+            measure: runs a case with a seed and measures it.
+            case: the first arguments of `measure`.
+        """
+        key = f"{what}, seeds {seeds[0]}-{seeds[-1]}"
+        return cls(key, partial(columns, measure, case, seeds), cost_s * len(seeds))
+
+
+def columns(measure: Callable[..., Any], case: Sequence[Any], seeds: Sequence[int]) -> Any:
+    """What is measured of every seed: a list, or a list under each name."""
+    rows = [measure(*case, seed) for seed in seeds]
+    if not isinstance(rows[0], dict):
+        return rows
+    return {name: [row[name] for row in rows] for name in rows[0]}
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """What the points of a figure gave, in its small or its full size."""
+
+    values: Results
+    quick: bool
+
+    def __getitem__(self, point: Point) -> Any:
+        """The result of a point."""
+        return self.values[point.key]
+
+    def floats(self, point: Point, name: str) -> Any:
+        """An array of what each seed gave under a name; NaN where it gave None."""
+        return np.array(self.values[point.key][name], float)
+
 
 @dataclass(frozen=True, slots=True)
 class Claim:
@@ -58,11 +102,15 @@ class Claim:
     reason: str = ""
 
 
+Claims = Iterator[Claim]
+
+
 @dataclass(frozen=True, slots=True)
 class Experiment:
     """A figure: its points, its drawing, its rows of the table.
 
-    All three take `quick`: fewer seeds and settings, the same code.
+    All three take `quick`: fewer seeds and settings, the same code. As a module it is TITLE,
+    CAPTION, `points(quick)`, and `draw` and `judge`, which take what was measured.
     """
 
     name: str
@@ -71,6 +119,20 @@ class Experiment:
     points: Callable[[bool], list[Point]]
     draw: Callable[[Results, bool], Figure]
     judge: Callable[[Results, bool], list[Claim]]
+
+    @classmethod
+    def of(cls, module: ModuleType) -> Experiment:
+        """The experiment that a module is."""
+
+        def draw(results: Results, quick: bool) -> Figure:
+            made: Figure = module.draw(Measured(results, quick))
+            return made
+
+        def judge(results: Results, quick: bool) -> list[Claim]:
+            return list(module.judge(Measured(results, quick)))
+
+        name = module.__name__.rpartition(".")[2]
+        return cls(name, module.TITLE, module.CAPTION, module.points, draw, judge)
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +145,10 @@ class Span:
     def has(self, *values: float) -> bool:
         """True if all lie inside, and there is one; what never happened (NaN) does not."""
         return bool(values) and all(self.low <= value <= self.high for value in values)
+
+    def share(self, values: Any) -> float:
+        """Which share of the values lies inside, 0 to 1; what never happened (NaN) does not."""
+        return float(np.mean((self.low <= values) & (values <= self.high)))
 
 
 def about(value: float) -> Span:

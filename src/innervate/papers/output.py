@@ -49,6 +49,7 @@ figure:not(.narrow) img{min-width:640px}
 .claims td:nth-child(4):not(:empty)::before{content:"why: ";color:var(--soft)}
 }
 </style>"""
+Sections = Sequence[tuple[Experiment, Sequence[Claim]]]
 NARROW_PT = 400  # a figure of one column is not blown up
 
 
@@ -121,10 +122,7 @@ def as_markdown(heading: Heading, rows: Sequence[Claim], origin: Mapping[str, st
     """The table for people, with where it comes from."""
     names = [field.name for field in fields(Claim)]
     lines = [
-        f"# {heading.title}",
-        "",
-        summary(rows),
-        "",
+        *(f"# {heading.title}", "", summary(rows), ""),
         "| " + " | ".join(names) + " |",
         "|" + "---|" * len(names),
         *("| " + " | ".join(_cell(value) for value in astuple(row)) + " |" for row in rows),
@@ -159,21 +157,19 @@ def as_page(
     origin: Mapping[str, str],
 ) -> str:
     """One self-contained page: every figure with its claims, all of it in one file."""
-    rows = [claim for experiment in experiments for claim in claims[experiment.name]]
+    sections = [(experiment, claims[experiment.name]) for experiment in experiments]
+    rows = [row for _, some in sections for row in some]
     parts = [
         _LAYOUT,
         page.element("p", f"{heading.authors}, redrawn by innervate", "over"),
         page.element("h1", heading.title),
         page.element("p", summary(rows)),
-        _failed(experiments, claims, heading.readings),
-        page.section("Contents", _contents(experiments, claims, heading.readings)),
+        page.section("Does not hold", _failed(sections, heading.readings)),
+        page.section("Contents", _contents(sections, heading.readings)),
     ]
-    for experiment in experiments:
-        inside = (
-            _figure(folder, experiment)
-            + _table(claims[experiment.name], heading.readings)
-            + _simulated(experiment, heading.quick)
-        )
+    for experiment, some in sections:
+        inside = _figure(folder, experiment) + _table(some, heading.readings)
+        inside += _simulated(experiment, heading.quick)
         parts.append(_anchored(experiment.name, page.section(experiment.title, inside)))
     parts.append(_anchored("readings", page.section("Readings", _readings(rows, heading))))
     origin_rows = [[clean(key), clean(value)] for key, value in origin.items()]
@@ -204,31 +200,21 @@ def failing_first(rows: Sequence[Claim]) -> list[Claim]:
     return sorted(rows, key=lambda row: row.verdict != FAILS)
 
 
-def _failed(
-    experiments: Sequence[Experiment],
-    claims: Mapping[str, Sequence[Claim]],
-    readings: Mapping[str, str],
-) -> str:
+def _failed(sections: Sections, readings: Mapping[str, str]) -> str:
     """What does not hold, each with a link to its figure."""
     items = [
         f'<li><a href="#{clean(experiment.name)}">{clean(row.figure)}</a>: '
         f"{linked(row.claim, readings)}</li>"
-        for experiment in experiments
-        for row in claims[experiment.name]
+        for experiment, rows in sections
+        for row in rows
         if row.verdict == FAILS
     ]
-    inside = f'<ul class="failed">{"".join(items)}</ul>\n' if items else ""
-    return page.section("Does not hold", inside)
+    return f'<ul class="failed">{"".join(items)}</ul>\n' if items else ""
 
 
-def _contents(
-    experiments: Sequence[Experiment],
-    claims: Mapping[str, Sequence[Claim]],
-    readings: Mapping[str, str],
-) -> str:
+def _contents(sections: Sections, readings: Mapping[str, str]) -> str:
     items = []
-    for experiment in experiments:
-        rows = claims[experiment.name]
+    for experiment, rows in sections:
         bad = sum(row.verdict == FAILS for row in rows)
         words = f'<span class="good">{len(rows) - bad} hold</span>'
         words += f', <span class="bad">{bad} not</span>' if bad else ""
@@ -252,20 +238,14 @@ def linked(text: str, readings: Mapping[str, str]) -> str:
 def _readings(rows: Sequence[Claim], heading: Heading) -> str:
     """The sentences of the labels that the claims use; nothing if they use none."""
     said = " ".join(f"{row.claim} {row.measurement} {row.verdict} {row.reason}" for row in rows)
-    used = set(re.findall(r"\b[A-Z]\d+\b", said))
+    names = set(re.findall(r"\b[A-Z]\d+\b", said))
+    used = {label: said for label, said in heading.readings.items() if label in names}
     items = [
-        f'<dt id="{label}">{label}</dt><dd>{linked(sentence, _others(heading.readings, used))}</dd>'
-        for label, sentence in heading.readings.items()
-        if label in used
+        f'<dt id="{label}">{label}</dt><dd>{linked(sentence, used)}</dd>'
+        for label, sentence in used.items()
     ]
-    if not items:
-        return ""
     note = page.element("p", "All labels: docs/readings.md.", "note")
-    return f'<dl class="readings">{"".join(items)}</dl>\n{note}'
-
-
-def _others(readings: Mapping[str, str], used: set[str]) -> dict[str, str]:
-    return {label: sentence for label, sentence in readings.items() if label in used}
+    return f'<dl class="readings">{"".join(items)}</dl>\n{note}' if items else ""
 
 
 def _simulated(experiment: Experiment, quick: bool) -> str:
@@ -276,16 +256,12 @@ def _simulated(experiment: Experiment, quick: bool) -> str:
 
 
 def _table(rows: Sequence[Claim], readings: Mapping[str, str]) -> str:
-    cells = [
-        [
-            f'<b class="{"bad" if row.verdict == FAILS else "good"}">'
-            f"{linked(row.verdict, readings)}</b>",
-            linked(row.claim, readings),
-            linked(row.measurement, readings),
-            linked(row.reason, readings),
-        ]
-        for row in failing_first(rows)
-    ]
+    cells = []
+    for row in failing_first(rows):
+        said = (row.verdict, row.claim, row.measurement, row.reason)
+        verdict, *others = (linked(text, readings) for text in said)
+        colour = "bad" if row.verdict == FAILS else "good"
+        cells.append([f'<b class="{colour}">{verdict}</b>', *others])
     return page.table(("verdict", "claim", "measured", "why"), cells, "claims")
 
 

@@ -89,7 +89,7 @@ class Simulation(ABC):
         self._advance(self.world, until_us, budget)
         status = int(get(self.world.run, 0, "status"))
         if status == BROKEN:
-            raise InvariantBroken(self.story())
+            raise InvariantBroken(self.broken_line())
         self.grow(status)
         move_rows(self.world, self._kept, self.tables, self.wide)
         return status
@@ -161,5 +161,5 @@ class Simulation(ABC):
         """Something is to be done to the network at `fault.at_us`, which has not come yet."""
 
     @abstractmethod
-    def story(self) -> str:
+    def broken_line(self) -> str:
         """The broken invariant, in one line."""

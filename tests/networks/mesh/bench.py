@@ -43,10 +43,10 @@ class Bench:
             setattr(self.params, name, value)
         self.nodes = [Node() for _ in range(count)]
         self.gates = [None] * count
-        self.near = {i: set() for i in range(count)}
+        self.neighbours = {i: set() for i in range(count)}
         for a, b in links:
-            self.near[a].add(b)
-            self.near[b].add(a)
+            self.neighbours[a].add(b)
+            self.neighbours[b].add(a)
         self.dead = set()
         self.lost = lambda frame, to: False
         self.now = 0
@@ -88,7 +88,7 @@ class Bench:
                 copy_frame(frame, out.frame[k])
                 self.sent.append((self.now, i, frame))
                 took = ACK_US if act.c & URGENT else FRAME_US
-                for to in sorted(self.near[i]):
+                for to in sorted(self.neighbours[i]):
                     if not self.lost(frame, to):
                         self.push(self.now + took, ("frame", to, self.heard(i, to, frame)))
                 if self.params.told and not act.c & URGENT:

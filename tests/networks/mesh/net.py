@@ -28,12 +28,12 @@ class Net(Bench):
         self.lose_by_chance()
 
     def cut(self, a, b):
-        self.near[a].discard(b)
-        self.near[b].discard(a)
+        self.neighbours[a].discard(b)
+        self.neighbours[b].discard(a)
 
     def join(self, a, b):
-        self.near[a].add(b)
-        self.near[b].add(a)
+        self.neighbours[a].add(b)
+        self.neighbours[b].add(a)
 
     def kill(self, i):
         self.dead.add(i)
@@ -79,7 +79,7 @@ class Net(Bench):
     def fork(self, seed):
         """The same net once more, from here on with other chances."""
         other = copy.copy(self)
-        for name in ("nodes", "gates", "near", "dead", "queue", "due", "out"):
+        for name in ("nodes", "gates", "neighbours", "dead", "queue", "due", "out"):
             setattr(other, name, copy.deepcopy(getattr(self, name)))
         other.reports, other.delivered, other.sent = [], [], []
         other.chance = random.Random(seed)

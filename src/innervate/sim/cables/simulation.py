@@ -74,7 +74,7 @@ class Cables(Simulation):
             **ended.rows,
         )
 
-    def story(self) -> str:
+    def broken_line(self) -> str:
         """The broken invariant, in one line."""
         run, label = self.world.run, self.plan.graph.label
         node, other = (int(get(run, 0, name)) for name in ("broken_node", "broken_other"))

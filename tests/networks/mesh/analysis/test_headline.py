@@ -29,7 +29,7 @@ def chain(named, links, *, gateway=0, off=(), leads=(0,), near=(), goes_back=Tru
     known = Choices(
         gateway=np.array(ends or [gateway] * count),
         named=np.array(filled),
-        near=around,
+        neighbours=around,
         goes_back=goes_back,
     )
     on = ~flags(count, *off)

@@ -9,7 +9,6 @@ import pytest
 from innervate.networks.mesh import papers as mesh
 from innervate.networks.mesh.papers import (
     FIGURES,
-    alarms,
     crossing,
     experiment,
     gateway,
@@ -19,7 +18,7 @@ from innervate.networks.mesh.papers import (
 from innervate.networks.mesh.papers.bars import wire_bytes
 from innervate.networks.mesh.papers.testbed import GATEWAY, MeshTestbed, dying, kill, send_rounds
 from innervate.papers import main
-from innervate.papers.experiment import FAILS, HOLDS
+from innervate.papers.experiment import FAILS, HOLDS, Measured
 from innervate.plot import style
 from tests.fixtures.papers import read
 from tests.networks.skin.papers.test_figures import overlapping
@@ -149,7 +148,7 @@ def test_a_robot_walks_straight_out(seed):
 
 
 def test_a_crossing_is_measured():
-    run = crossing.measure(crossing.BOTH, 1, 8)
+    run = crossing.measure(crossing.BOTH, 8, 1)
     assert run["joined"]
     assert run["came"]
     assert 0 < run["ms"] <= run["flood_ms"]
@@ -192,9 +191,12 @@ def test_state_grows_with_the_class_only():
 
 
 def test_what_never_came_is_slowest():
-    runs = [{"ms": 3.0}, {"ms": None}, {"ms": 1.0}]
-    assert alarms.waits(runs).tolist() == [1.0, 3.0, np.inf]
-    assert gateway.takeovers([{"takeover_s": None}, {"takeover_s": 26.0}]) == [26.0, np.inf]
+    crossings = {"joined": [True, True, False, True], "ms": [3.0, None, 2.0, 1.0]}
+    taken = {"takeover_s": [None, 26.0]}
+    one, other = crossing.point(crossing.BOTH, 8, True), gateway.point(gateway.ONE, True)
+    got = Measured({one.key: crossings, other.key: taken}, True)
+    assert crossing.told(got, crossing.BOTH, 8)["ms"].tolist() == [3.0, np.inf, 1.0]
+    assert gateway.takeovers(got, gateway.ONE) == [26.0, np.inf]
 
 
 @pytest.mark.slow

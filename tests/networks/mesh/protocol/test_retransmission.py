@@ -59,7 +59,7 @@ def test_no_packet_goes_so_far_ahead_that_an_older_one_could_not_come_any_more()
     for to in (1, 2):
         net.send(0, to, b"first")
     net.run(READY + 200_000)
-    net.near[0].discard(1)
+    net.neighbours[0].discard(1)
     net.send(0, 1, b"late", handle=7)
     for k in range(AHEAD_MAX):
         net.send(0, 2, b"%d" % k)
@@ -67,7 +67,7 @@ def test_no_packet_goes_so_far_ahead_that_an_older_one_could_not_come_any_more()
     assert heard(net, 2)[1:] == [b"%d" % k for k in range(AHEAD_MAX)]
     net.send(0, 1, b"ahead", handle=9)
     assert codes(net, 0, REPORT_FULL) == [(9, NO_ROOM)]
-    net.near[0].add(1)
+    net.neighbours[0].add(1)
     net.run(net.now + 10_000_000)
     assert 7 in [handle for handle, _ in codes(net, 0, REPORT_ARRIVED)]
     net.send(0, 1, b"ahead", handle=9)

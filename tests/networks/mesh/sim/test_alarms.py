@@ -105,7 +105,7 @@ def test_a_robot_that_crossed_before_it_knew_a_gateway_is_not_forgotten():
 def test_a_witness_raises_it_for_a_robot_that_cannot():
     """1 hears 2, 2 hears nobody: its own alarm is never acknowledged."""
     net = fenced(3, line(3), 2)
-    net.near[1].discard(2)
+    net.neighbours[1].discard(2)
     net.params.instances = 0
     net.params.flood = 0
     net.lost = lambda frame, to: frame.kind == ALARM and frame.link_src == 2

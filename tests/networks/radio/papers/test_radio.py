@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from innervate.networks.radio.papers import FIGURES, experiment
-from innervate.networks.radio.papers.common import first_from, slope, spans
+from innervate.networks.radio.papers.common import first_from, slope
 from innervate.networks.radio.papers.fairness import longest
 from innervate.papers import main
 from innervate.papers.experiment import FAILS, HOLDS
+from innervate.papers.words import spans
 from innervate.plot import style
 from tests.networks.skin.papers.test_figures import overlapping
 from tests.plot.self_contained import check_paper

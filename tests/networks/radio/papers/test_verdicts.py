@@ -5,7 +5,7 @@ import pytest
 from innervate.networks.radio.papers import capture, fig12, members
 from innervate.networks.radio.papers.common import RESERVED, SIZES
 from innervate.networks.radio.papers.members import ALLOWED, is_harmless
-from innervate.papers.experiment import FAILS, HOLDS
+from innervate.papers.experiment import FAILS, HOLDS, Measured
 
 PLAIN_S, PLAIN_T = [0.4, 0.5, 0.6], [100, 130, 160]
 
@@ -49,7 +49,7 @@ def small(values, size=5):
             key = capture.curve(mac, one, True).key
             made[key] = {"throughput": [[of_n] for _ in capture.NS],
                          "jain_round": [[0.2] for _ in capture.NS]}  # fmt: skip
-    return capture._small(made, True, size)
+    return capture._small(Measured(made, True), size)
 
 
 def test_the_fixed_time_explains_what_is_left_without_capture():
@@ -96,5 +96,5 @@ def test_the_moment_between_collision_and_report_is_looked_at():
 
 def test_numbers_are_no_part_of_the_protocols():
     for mode in members.MODES:
-        found = members.same_air(mode, True)
-        assert found["same"] == found["runs"] == 10
+        found = members.renumbered(mode, True).work()
+        assert found == [True] * 10

@@ -19,10 +19,10 @@ PACKETS = 1500
 
 
 def mean_delay(mac, n, load, per_turn=1, size=5):
-    found = Offered(mac, per_turn, size, n, load, PACKETS).measure([1])
-    assert found["silent"] == [0]
-    assert found["open"] == [0]
-    return found["mean"][0]
+    found = Offered(mac, per_turn, size, n, load, PACKETS).measure(1)
+    assert found["silent"] == 0
+    assert found["open"] == 0
+    return found["mean"]
 
 
 def test_a_lone_packet_in_an_idle_channel_takes_the_turnaround_and_its_opening():

@@ -43,7 +43,7 @@ def recovered(one, seeds, converged, routed=None, detected=None, loops=0):
 
     routed = converged if routed is None else routed
     return {
-        one.key(seeds): {
+        one.point(seeds).key: {
             "converged_ms": ms(converged),
             "routed_ms": ms(routed),
             "detected_ms": ms(one.k if detected is None else detected),
@@ -56,8 +56,9 @@ def recovered(one, seeds, converged, routed=None, detected=None, loops=0):
 def _fig5(lock=3.0, late=3.0, free=3.0, line=3.0):
     beyond = dict(zip(fig5.CASES, (lock, late, free, line), strict=True))
     return {
-        fig5._key(name, QUICK): {str(k): [[k, k + beyond[name]]] * 2 for k in fig5.ks(QUICK)}
+        fig5.runs(name, k, QUICK).key: [[k, k + beyond[name]]] * 2
         for name in fig5.CASES
+        for k in fig5.ks(QUICK)
     }
 
 
@@ -65,12 +66,12 @@ def _fig6(calm=0.0, alert=1.0, rare=0.0, off=0.0, replug=1.0):
     found = {}
     for case, share in zip(fig6.FOUND, (calm, alert, rare), strict=True):
         within = round(100 * share)
-        found[fig6._found_key(*case, QUICK)] = [20.0] * within + [None] * (100 - within)
+        found[fig6.watched(case, QUICK).key] = [20.0] * within + [None] * (100 - within)
     x = np.array(fig6.losses(QUICK))
     for _, r_f, r_r in fig6.SETTINGS:
         half = r_r / (r_f + r_r) + off
         shares = np.interp(x, [half - 0.25, half + 0.25], [0.0, 1.0])
-        found[fig6._sweep_key(r_f, r_r, QUICK)] = shares.tolist()
+        found[fig6.swept(r_f, r_r, QUICK).key] = [shares.tolist()]
     found[f"fig6 replug k={fig6.joined(fig6.REPLUG_K)}"] = {
         str(k): [k + replug] for k in fig6.REPLUG_K
     }
@@ -79,7 +80,7 @@ def _fig6(calm=0.0, alert=1.0, rare=0.0, off=0.0, replug=1.0):
 
 def _startup(beyond=1.0):
     return {
-        startup._key(setup, rule, flag, QUICK): {"periods": [10 + beyond], "depth": 10}
+        startup.point(setup, rule, flag, QUICK).key: {"periods": [10 + beyond], "depth": [10]}
         for setup in startup.SETUPS
         for rule in RULES
         for flag in (True, False)
@@ -88,37 +89,38 @@ def _startup(beyond=1.0):
 
 def _eq3(printed=1.0, beta=1.0, moves=0, sizes=1.0):
     found = {}
-    for setup, periods, rule in eq3._settings(QUICK):
-        betas = [printed if rule == "paper" else beta] * 2
-        found[eq3._key(setup, periods, rule, QUICK)] = {"moves": [0, moves], "beta": betas}
     for setup in eq3.SETUPS:
+        for rate in eq3.rates(QUICK):
+            found[eq3.point(setup, rate, QUICK).key] = {"moves": [0, moves], "beta": [beta] * 2}
+        unsigned = {"moves": [0, moves], "beta": [printed] * 2}
+        found[eq3.point(setup, eq3.USUAL, QUICK, "paper").key] = unsigned
         for flag in (True, False):
-            most = [sizes * 2 * eq3.skin(setup)[0]]
-            found[eq3._stale_key(setup, flag, QUICK)] = {"periods": most}
+            found[eq3.sizes(setup, flag, QUICK).key] = [[sizes * 2 * eq3.skin(setup)[0]]]
     return found
 
 
 def _delay(mean=6.0):
     one = {"mean": mean, "samples": 9, "hop_us": [80, 160], "percentiles": [1.0, 2.0]}
-    return {delay._key(rate, QUICK): one for rate in delay.RATES_HZ}
+    return {delay.point(rate, QUICK).key: one for rate in delay.RATES_HZ}
 
 
 def _fig8a(off=0.0, detected=0.0):
     found = {}
-    for rule, hz, k in fig8a._all(QUICK):
-        seeds = fig8a.grid(QUICK).seeds
-        found |= recovered(fig8a.case(*rule, hz, k), seeds, 7 + k + off, detected=k + detected)
+    sweep = fig8a.grid(QUICK)
+    for one in [one for rule in RULES for one in fig8a._cells(sweep, rule)]:
+        k = one[2]
+        found |= recovered(fig8a.case(*one), sweep.seeds, 7 + k + off, detected=k + detected)
     return found
 
 
 def _fig8b(off=0.0, slope=0.0, scatter=0.0):
-    found = {fig8b._last_key(QUICK): {"outer": 1, "runs": 8, "middle": 8.0}}
-    for rule, m in RULES:
-        for place, (setup, h) in enumerate(fig8b.SETUPS):
+    found = {fig8b.last(QUICK).key: {"outer": [True] + [False] * 7, "middle": [8.0] * 8}}
+    for rule in RULES:
+        for place, (setup, h) in enumerate(fig8b.SETUPS.items()):
             for k in fig8b.KS:
                 seeds = fig8b.seeds(QUICK)
                 value = ceil(h / 2) + k + off + slope * h + scatter * (-1) ** place
-                found |= recovered(fig8b.case(setup, k, rule, m), seeds, value)
+                found |= recovered(fig8b.case(setup, k, rule), seeds, value)
     return found
 
 
@@ -157,7 +159,7 @@ def _fig10(beta=1.0, over=0.0, gain=0.10, even=0.10, worst=0.30, wild=0.0, less=
         largest = {fig10.DYNAMIC: each, fig10.QUEUED: each}
         for mode in (*fig10.DRAWN, fig10.QUEUED):
             seeds = list(fig10_runs.seeds(QUICK, mode))
-            for seed in seeds:
+            for seed, point in zip(seeds, fig10_runs.runs(setup, mode, QUICK), strict=True):
                 loss = dynamic
                 if mode is fig10.STATIC:
                     loss += _tree(seed, len(seeds), gain, worst if setup == "setup-7" else gain)
@@ -167,7 +169,7 @@ def _fig10(beta=1.0, over=0.0, gain=0.10, even=0.10, worst=0.30, wild=0.0, less=
                     loss += wild * (seed - 1)
                 top = largest.get(mode, each / (1 - less))
                 loads = [top] + [(cells - top) / (ports - 1)] * (ports - 1)
-                found[fig10_runs._key(setup, mode, seed, QUICK)] = {
+                found[point.key] = {
                     "beta": beta, "loss": loss, "loads": loads, "cells": cells,
                 }  # fmt: skip
     return found
@@ -186,31 +188,30 @@ def _eq9(off=0.0, printed=1.0, wave=0.05):
             value = share * (1 + (wave if updates == "wave" else off))
             if printed != 1.0 and updates == "periodic" and hz in eq9.PRINTED:
                 value = eq9.PRINTED[hz] * (printed - 1)
-            found[eq9._key(updates, hz)] = value
+            found[eq9.point(updates, hz).key] = value
     return found
 
 
 def _fig11(ms=500.0, apart=1.0, fast=1.0, down=2000.0):
     found = {}
-    for seed in fig11.seeds(QUICK):
-        for name, *_ in fig11.CASES:
-            off = {"dynamic": apart, "static tree": 20.0}.get(name, 0.0)
-            angle = [[0.0, 50.0, 0.0 + off], [0.0, 40.0, 0.0]]
-            found[fig11._key(name, seed)] = {
-                "angle": angle, "speed_max": 10 * (fast if name == "dynamic" else 1),
-                "unrouted_max": 3, "converged_ms": ms, "detected_ms": 400.0,
-                "routed_ms": 400.0 + down,
-            }  # fmt: skip
+    for name, *_ in fig11.CASES:
+        off = {"dynamic": apart, "static tree": 20.0}.get(name, 0.0)
+        one = {
+            "angle": [[0.0, 50.0, 0.0 + off], [0.0, 40.0, 0.0]],
+            "speed_max": 10 * (fast if name == "dynamic" else 1),
+            "unrouted_max": 3, "converged_ms": ms, "detected_ms": 400.0, "routed_ms": 400.0 + down,
+        }  # fmt: skip
+        found[fig11.runs(name, QUICK).key] = {what: [value] * 3 for what, value in one.items()}
     return found
 
 
 def _loop(printed=0, lax=0, slower=0, cured=0):
     found = {}
     counts = (printed, lax, slower, cured, cured)
-    for (rule, m), count in zip((*loop.LOOPING, *loop.CURED), counts, strict=True):
-        one = {"episodes": count, "longest_ms": 4.0 * count, "cells": 4, "routed_ms": 40.0}
-        rows = [one] * len(loop.seeds(QUICK))
-        found[f"loops of {loop._case(rule, m).key(loop.seeds(QUICK))}"] = rows
+    rules = (loop.PRINTED, loop.LAX, loop.SLOWER, *loop.CURED)
+    for rule, count in zip(rules, counts, strict=True):
+        one = {"episodes": count, "longest_ms": 4.0 * count, "cells": 4}
+        found[loop.loops(rule, QUICK).key] = {name: [value] * 5 for name, value in one.items()}
     return found
 
 
@@ -227,5 +228,5 @@ def _modes(wave=0.5, close=0.1, triggered=8.0, often=-0.2, longer=0):
                 found |= recovered(one, modes.seeds(QUICK), (floor + ms) / one.period_ms)
         for variant in steady.VARIANTS:
             cells = longer if variant == steady.WAVE else 3
-            found[steady._key(setup, variant, QUICK)] = [[[cells] * 3] * 2] * 3
+            found[steady.point(setup, variant, QUICK).key] = [[[cells] * 3] * 2] * 3
     return found

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from innervate.networks.skin.papers import arm, eq7, fig8a, fig8b, fig10_runs, modes, steady
-from innervate.networks.skin.papers.common import RULES, Case, measure_recoveries, seeds_of
-from innervate.papers.experiment import FAILS, HOLDS
+from innervate.networks.skin.papers.common import RULES, Case, recovery, seeds_of
+from innervate.papers.experiment import FAILS, HOLDS, Measured, columns
 
 
 def verdicts(made, name):
@@ -47,12 +47,13 @@ def test_fig8b_the_printed_rule_is_slower_and_more_so_than_its_laxer_reading(mad
         "rule feasible", "printed rule", "printed rule, laxer reading",
     ]  # fmt: skip
     assert printed.verdict == lax.verdict == FAILS
+    got = Measured(made.values, True)
     off = {
-        rule: np.mean([
-            np.nanmean(fig8b.converged(made.values, True, setup, k, rule, 1)) - k
-            for setup, _ in fig8b.SETUPS for k in fig8b.KS
+        rule.name: np.mean([
+            np.nanmean(fig8b.converged(got, setup, k, rule)) - k
+            for setup in fig8b.SETUPS for k in fig8b.KS
         ])
-        for rule in ("paper", "paper-lax")
+        for rule in RULES[1:]
     }  # fmt: skip
     assert off["paper"] > off["paper-lax"] + 2
 
@@ -119,7 +120,7 @@ def test_the_drawn_ring_is_a_ring(made):
 @pytest.mark.parametrize("k", [2, 5])
 def test_setup_1_lies_in_the_band_of_eq_4(k):
     case = Case("setup-1", 250, k)
-    found = measure_recoveries(case, seeds_of(3))
+    found = columns(recovery, (case,), seeds_of(3))
     off = np.array(found["converged_ms"]) / case.period_ms - 7 - k
     assert np.abs(off).max() <= fig8a.BAND
     late = np.array(found["detected_ms"]) / case.period_ms - k
@@ -128,7 +129,7 @@ def test_setup_1_lies_in_the_band_of_eq_4(k):
 
 def test_a_case_says_all_that_decides_it():
     keys = {
-        Case("setup-1", 250, 3, gap_us=gap, m=m, cut=cut).key(seeds_of(2))
+        Case("setup-1", 250, 3, gap_us=gap, m=m, cut=cut).point(seeds_of(2)).key
         for gap in (-1, 0, 60)
         for m in (0, 1)
         for cut in ("interface 1", "random link")
@@ -137,13 +138,13 @@ def test_a_case_says_all_that_decides_it():
 
 
 def test_waves_are_near_the_floor():
-    found = measure_recoveries(modes.case("setup-1", 3, modes.WAVE), seeds_of(3))
+    found = columns(recovery, (modes.case("setup-1", 3, modes.WAVE),), seeds_of(3))
     after = np.array(found["routed_ms"]) - np.array(found["detected_ms"])
     assert after.max() < modes.floor_ms(3, 7) - 12 + 2
 
 
 def test_random_cables_cut_off_few():
-    found = measure_recoveries(eq7.case("setup-3", RULES[0], "random link"), seeds_of(3))
+    found = columns(recovery, (eq7.case("setup-3", RULES[0], "random link"),), seeds_of(3))
     bound = (eq7.depth("setup-3") + eq7.K) * 4
     assert all(ms is None or ms <= bound for ms in found["converged_ms"])
 

@@ -5,7 +5,7 @@ from collections import Counter
 import pytest
 
 from innervate.networks.skin.papers import FIGURES, eq3, experiment
-from innervate.papers.experiment import FAILS, Span, about
+from innervate.papers.experiment import FAILS, Measured, Span, about
 from tests.networks.skin.papers.results import QUICK, of
 
 # Figure, words of its claims, and what the runs left: with which they hold, with which they do not.
@@ -101,15 +101,15 @@ def test_who_may_balance_is_counted(monkeypatch, tied, holds):
 def test_more_deterministic_means_a_third_of_the_spread():
     from innervate.networks.skin.papers import fig10, fig10_gain
 
-    results = of("fig10", worst=0.30)
-    losses = [fig10.values(results, QUICK, "setup-7", fig10.STATIC, "loss")]
+    got = Measured(of("fig10", worst=0.30), QUICK)
+    losses = [fig10.values(got, "setup-7", fig10.STATIC, "loss")]
     spread = max(losses[0]) - min(losses[0])
     # In quick mode there is one dynamic run; its spread is given here.
     for share, holds in ((0.33, True), (0.34, False)):
         values = {fig10.STATIC: losses[0], fig10.DYNAMIC: [0.0, share * spread]}
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(fig10_gain, "values", lambda r, q, s, mode, n, v=values: v[mode])
-            assert (fig10_gain._spread(results, QUICK).verdict != FAILS) == holds
+            patch.setattr(fig10_gain, "values", lambda got, s, mode, n, v=values: v[mode])
+            assert (fig10_gain._spread(got).verdict != FAILS) == holds
 
 
 def test_a_span_has_its_ends_and_nothing_beyond():

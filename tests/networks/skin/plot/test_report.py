@@ -6,7 +6,7 @@ from html.parser import HTMLParser
 import pytest
 
 from innervate import run
-from innervate.networks.skin.plot.story import Story
+from innervate.networks.skin.plot.digest import Digest
 from innervate.plot import report
 from innervate.sim.driver import Simulation
 
@@ -80,19 +80,19 @@ def test_every_kind_of_event(many):
 
 
 def test_pictures_of_the_worst_event(cut):
-    story = Story(cut.result, cut.summary)
-    assert [panel.head for panel in story.maps()] == [
+    digest = Digest(cut.result, cut.summary)
+    assert [panel.head for panel in digest.maps()] == [
         "Before", "The worst moment", "On the way back", "Afterwards",
     ]  # fmt: skip
-    before, during, after = story.images()
+    before, during, after = digest.images()
     assert before.text == after.text == "all samples came"
     lost = int(re.match(r"nothing from (\d+) of 30 cells", during.text)[1])
     assert 0 < lost <= cut.summary["recoveries"][0]["cut_cells"]
 
 
 def test_a_cut_cable_and_lost_cells_are_marked_by_shape(cut, parse):
-    story = Story(cut.result, cut.summary)
-    before, worst, _, after = (parse(panel.drawing) for panel in story.maps())
+    digest = Digest(cut.result, cut.summary)
+    before, worst, _, after = (parse(panel.drawing) for panel in digest.maps())
 
     def count(tree, kind):
         return sum(node.get("class") == kind for node in tree.iter())
@@ -131,7 +131,7 @@ def test_captions_count_the_cells_that_are_crossed_out(tables, parse):
     assert "All 30 cells are cut off since 0.300 s: no cable joins them with the PC" in text
     assert "down" in text
     assert "kept its way" not in text
-    worst = Story(done.result, done.summary).maps()[1]
+    worst = Digest(done.result, done.summary).maps()[1]
     assert worst.text.endswith("30 cells without a way, all cut off")
     assert sum(node.get("class") == "none" for node in parse(worst.drawing).iter()) == 30
 
@@ -139,7 +139,7 @@ def test_captions_count_the_cells_that_are_crossed_out(tables, parse):
 def test_a_cell_that_is_off_is_told_in_captions(tables):
     event = [{"at_s": 0.3, "action": "kill", "cell": {"row": 5, "column": 3}}]
     done = run(tables(event=event))
-    captions = [panel.text for panel in Story(done.result, done.summary).maps()]
+    captions = [panel.text for panel in Digest(done.result, done.summary).maps()]
     assert captions[-1].endswith("no cell without a way, 1 switched off")
 
 

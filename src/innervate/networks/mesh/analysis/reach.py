@@ -43,13 +43,13 @@ class Choices(NamedTuple):
         gateway: per node whom it follows, NOWHERE nobody.
         named: (n, k), k at least 1, in order: the gateway if it is a strong neighbour, the table's
             next hop and alternate, the uplinks; NOWHERE where there is none, or it is silent.
-        near: (n, n) flags: neighbours that are tried after those.
+        neighbours: (n, n) flags: neighbours that are tried after those.
         goes_back: a packet that got stuck is given back, and tried another way from there.
     """
 
     gateway: Numbers
     named: Numbers
-    near: Flags
+    neighbours: Flags
     goes_back: bool
 
 
@@ -130,7 +130,7 @@ def _searched(known: Choices, live: Flags, leads: Flags, over: Flags, rest: Numb
     if known.goes_back:
         # It comes to everybody whom anybody there can hand it to, if need be.
         count = len(leads)
-        hands = known.near.copy()
+        hands = known.neighbours.copy()
         to = known.named[over]
         hands[np.repeat(np.arange(count), over.sum(axis=1)), to] = True
         hands &= live
@@ -151,7 +151,7 @@ def _walks(known: Choices, live: Flags, leads: Flags, node: int) -> bool:
         return False
     while path[-1] != gateway and len(path) <= PATH_MAX:
         here = path[-1]
-        order = [*known.named[here].tolist(), *np.flatnonzero(known.near[here]).tolist()]
+        order = [*known.named[here].tolist(), *np.flatnonzero(known.neighbours[here]).tolist()]
         fits = (to for to in order if to != NOWHERE and to not in path and live[here, to])
         onward = next(fits, NOWHERE)
         if onward == NOWHERE:
@@ -220,7 +220,7 @@ def choices(world: Any, plan: Any) -> Choices:
     return Choices(
         gateway=np.where(gateway < count, gateway, NOWHERE),
         named=_packed(np.stack(named, axis=1)),
-        near=is_near[:, :count],
+        neighbours=is_near[:, :count],
         goes_back=bool(goes_back),
     )
 

@@ -23,9 +23,7 @@ FIGURES = (
 
 def experiment(name: str) -> Experiment:
     """The experiment of a figure, loaded when it is asked for."""
-    found = import_module(f"innervate.networks.mesh.papers.{name}").EXPERIMENT
-    assert isinstance(found, Experiment)
-    return found
+    return Experiment.of(import_module(f"{__name__}.{name}"))
 
 
 def warm_up() -> None:

@@ -8,18 +8,23 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.summary import summarize
-from innervate.networks.mesh.papers import alarms, crossing, gateway, sending
+from innervate.networks.mesh.papers import crossing, gateway, sending
 from innervate.networks.mesh.papers.testbed import MeshTestbed
-from innervate.networks.mesh.papers.words import seeds_of
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.scenario.plan import CLASSES
-from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
 from innervate.plot import style
 
+TITLE = "What was asked for"
+CAPTION = (
+    "30 nodes, mean degree 8, 250 kbit/s. Bars: how much of what is allowed was used, up to the "
+    "line; then what was asked for, what was measured, of how many."
+)
 DEAD = 8
-ROUND = MeshTestbed()  # ends before the second discovery round
 STATE_NODES = 50
 STATE_MAX = 4096
+RULES = (sending.SEARCH, sending.GRAPH, sending.DOCUMENT)
+TAKEN = (gateway.SILENT, gateway.ONE)
 
 
 class Bar(NamedTuple):
@@ -45,34 +50,27 @@ def measure_round(testbed: MeshTestbed, seed: int) -> dict[str, Any]:
     return {name: summary["discovery"][name] for name in ("recall", "tables_s", "with_tables")}
 
 
-def crossings(quick: bool) -> range:
-    """Seeds of the crossings: those of the figure of alarms."""
-    return alarms.seeds_of(quick)
+def rounds(quick: bool) -> Point:
+    """Networks in which one round is looked at, which end before the second one.
+
+    A mean of a few says nothing of two percent.
+    """
+    return MeshTestbed().point("round", range(1, 31 if quick else 101), measure_round)
 
 
-def rounds(quick: bool) -> range:
-    """Networks in which one round is looked at: a mean of a few says nothing of two percent."""
-    return range(1, 31 if quick else 101)
-
-
-def sent(quick: bool) -> range:
+def sent(rule: sending.Rule, quick: bool) -> Point:
     """Networks in which messages are sent."""
-    return range(1, 5 if quick else 101)
+    return sending.point(rule, DEAD, range(1, 5 if quick else 101))
 
 
 def points(quick: bool) -> list[Point]:
     """A round; messages and crossings with 8 dead; the gateway's death."""
     return [
-        ROUND.point("round", rounds(quick), measure_round),
-        *(sending.point(sending.make_testbed(rule), DEAD, sent(quick)) for rule in _RULES),
-        *(crossing.point(scheme, DEAD, crossings(quick)) for scheme in _SCHEMES),
-        *(gateway.point(setting, seeds_of(quick)) for setting in _TAKEN),
+        rounds(quick),
+        *(sent(rule, quick) for rule in RULES),
+        crossing.point(crossing.BOTH, DEAD, quick),
+        *(gateway.point(setting, quick) for setting in TAKEN),
     ]
-
-
-_RULES = (sending.SEARCH, sending.GRAPH, sending.DOCUMENT)
-_SCHEMES = (crossing.BOTH,)
-_TAKEN = (gateway.SILENT, gateway.ONE)
 
 
 def wire_bytes(nodes: int) -> int:
@@ -90,34 +88,33 @@ def wire_bytes(nodes: int) -> int:
     return total
 
 
-def bars(results: Results, quick: bool) -> list[Bar]:
+def bars(got: Measured) -> list[Bar]:
     """All of them, in the order they were asked for."""
-    first = results[ROUND.key_of("round", rounds(quick))]
     size = wire_bytes(STATE_NODES)
     return [
-        *_rounds(first),
-        _first(results, quick, sending.SEARCH, 0.01),
-        _first(results, quick, sending.GRAPH, 0.0),
-        *_alarms(results, quick),
-        *(_taken(results, quick, setting) for setting in _TAKEN),
-        _twice(results, quick),
+        *_rounds(got[rounds(got.quick)]),
+        _first(got, sending.SEARCH, 0.01),
+        _first(got, sending.GRAPH, 0.0),
+        *_alarms(got),
+        *(_taken(got, setting) for setting in TAKEN),
+        _twice(got),
         Bar(f"state of a node at N = {STATE_NODES}", f"<= {STATE_MAX} B", f"{size} B",
             size / STATE_MAX, "class of 64, whole bytes"),
     ]  # fmt: skip
 
 
-def _rounds(runs: list[dict[str, Any]]) -> list[Bar]:
-    recalls = [run["recall"] for run in runs]
-    without = sum(run["with_tables"] < ROUND.nodes for run in runs)
-    times = [np.inf if run["tables_s"] is None else run["tables_s"] for run in runs]
+def _rounds(runs: dict[str, Any]) -> list[Bar]:
+    recalls, count = runs["recall"], len(runs["recall"])
+    without = sum(some < MeshTestbed().nodes for some in runs["with_tables"])
+    times = [np.inf if time is None else time for time in runs["tables_s"]]
     recall = float(np.mean(recalls))
     return [
         Bar("discovery recall after one round", ">= 0.98", f"{recall:.4f}", (1 - recall) / 0.02,
-            f"mean of {len(runs)} networks; least {min(recalls):.3f}"),
+            f"mean of {count} networks; least {min(recalls):.3f}"),
         Bar("every node with tables after one round", "all", f"{without} without",
-            _none(without), f"{len(runs)} networks"),
+            _none(without), f"{count} networks"),
         Bar("tables complete", "<= 5 s", f"{max(times):.2f} s", max(times) / 5,
-            f"most of {len(runs)}; median {np.median(times):.2f} s"),
+            f"most of {count}; median {np.median(times):.2f} s"),
     ]  # fmt: skip
 
 
@@ -126,31 +123,30 @@ def _none(count: int) -> float:
     return 2.0 if count else 0.0
 
 
-def _first(results: Results, quick: bool, rule: sending.Rule, most: float) -> Bar:
-    runs = sending.told(results, sending.make_testbed(rule), DEAD, sent(quick))
-    came, of = sending.share(runs, "first")
+def _first(got: Measured, rule: sending.Rule, most: float) -> Bar:
+    came, of = sending.share(got[sent(rule, got.quick)], "first")
     lost = (of - came) / of
     words = f"first packets with {DEAD} unknown dead, {rule.name}"
     used = lost / most if most else _none(of - came)
     return Bar(words, f">= {1 - most:g}", f"{came / of:.4f}", used, f"{came} of {of} came")
 
 
-def _alarms(results: Results, quick: bool) -> list[Bar]:
-    runs = crossing.told(results, crossing.BOTH, DEAD, crossings(quick))
-    came = sum(run["came"] for run in runs)
-    ms = float(np.percentile([run["ms"] for run in runs if run["came"]], 99))
-    over = float(np.percentile([run["overrun_m"] for run in runs], 99))
+def _alarms(got: Measured) -> list[Bar]:
+    runs = crossing.told(got, crossing.BOTH, DEAD)
+    came, count = int(runs["came"].sum()), len(runs["came"])
+    ms = float(np.percentile(runs["ms"][np.isfinite(runs["ms"])], 99))
+    over = float(np.percentile(runs["overrun_m"], 99))
     return [
-        Bar(f"alarms with {DEAD} dead: delivered", "all", f"{came / len(runs):.4f}",
-            _none(len(runs) - came), f"{came} of {len(runs)} crossings"),
+        Bar(f"alarms with {DEAD} dead: delivered", "all", f"{came / count:.4f}",
+            _none(count - came), f"{came} of {count} crossings"),
         Bar("... latency, 99 %", "<= 70 ms", f"{ms:.1f} ms", ms / 70, f"{came} crossings"),
         Bar("... overrun at 1 m/s, 99 %", "<= 0.15 m", f"{over:.3f} m", over / 0.15,
-            f"{len(runs)} crossings"),
+            f"{count} crossings"),
     ]  # fmt: skip
 
 
-def _taken(results: Results, quick: bool, setting: gateway.Setting) -> Bar:
-    times = gateway.takeovers(gateway.told(results, setting, seeds_of(quick)))
+def _taken(got: Measured, setting: gateway.Setting) -> Bar:
+    times = gateway.takeovers(got, setting)
     sends = f"messages every {setting.every_s} s" if setting.every_s else "no messages"
     median, most = (
         f"{s:.1f} s" if np.isfinite(s) else "never" for s in (np.median(times), times[-1])
@@ -159,20 +155,15 @@ def _taken(results: Results, quick: bool, setting: gateway.Setting) -> Bar:
                times[-1] / gateway.SOONEST, f"most of {len(times)}; median {median}")  # fmt: skip
 
 
-def _twice(results: Results, quick: bool) -> Bar:
-    runs: list[dict[str, Any]] = []
-    for rule in _RULES:
-        runs += sending.told(results, sending.make_testbed(rule), DEAD, sent(quick))
-    runs += results[crossing.key(crossing.BOTH, DEAD, crossings(quick))]
-    for setting in _TAKEN:
-        runs += gateway.told(results, setting, seeds_of(quick))
-    twice = sum(run["duplicates"] for run in runs)
-    return Bar("delivered twice", "never", f"{twice} messages", _none(twice), f"{len(runs)} runs")
+def _twice(got: Measured) -> Bar:
+    found = [got[point]["duplicates"] for point in points(got.quick)[1:]]
+    twice, runs = sum(map(sum, found)), sum(map(len, found))
+    return Bar("delivered twice", "never", f"{twice} messages", _none(twice), f"{runs} runs")
 
 
-def draw(results: Results, quick: bool) -> Figure:
+def draw(got: Measured) -> Figure:
     """How much of what is allowed was used."""
-    found = bars(results, quick)
+    found = bars(got)
     figure, (ax,) = style.panels(style.WIDE_IN, 0.5 + 0.24 * len(found))
     rows = range(len(found))
     colours = [style.BLUE if bar.used <= 1 else style.VERMILION for bar in found]
@@ -184,43 +175,28 @@ def draw(results: Results, quick: bool) -> Figure:
         ax.text(3.1, row, bar.of, va="center", color=style.SOFT)
     ax.set_yticks(rows, [bar.words for bar in found])
     ax.invert_yaxis()
-    ax.set_xlim(0, 5.5)
-    ax.set_xticks((0, 0.5, 1))
+    ax.set(xlim=(0, 5.5), xticks=(0, 0.5, 1))
     ax.grid(visible=False, axis="y")
     ax.set_xlabel("share used of what is allowed", loc="left")
     return figure
 
 
-def judge(results: Results, quick: bool) -> list[Claim]:
+def judge(got: Measured) -> Claims:
     """One row each; and how the document's rule does."""
-    rows = [
-        Claim("asked", f"{bar.words} {bar.asked}", f"{bar.got} ({bar.of})", verdict(bar.used <= 1),
-              "" if bar.used <= 1 else _off(bar))
-        for bar in bars(results, quick)
-    ]  # fmt: skip
-    runs = sending.told(results, sending.make_testbed(sending.DOCUMENT), DEAD, sent(quick))
-    came, of = sending.share(runs, "first")
-    reason = "one transmission a hop, the packet is not sent again, a random neighbour comes next"
-    return [
-        *rows,
-        Claim("2.2", f"the document's own rule loses one in five of the first packets with {DEAD} "
-              "unknown dead", f"{of - came} of {of} lost ({1 - came / of:.3f})",
-              verdict((of - came) / of >= 0.15), reason),
-    ]  # fmt: skip
-
-
-def _off(bar: Bar) -> str:
-    """Why a bar is missed; only how far is known here."""
-    known = f"{bar.used:.2f} times what is allowed"
-    return known if np.isfinite(bar.used) else "not all of them got there; see the other figures"
-
-
-EXPERIMENT = Experiment(
-    "bars",
-    "What was asked for",
-    "30 nodes, mean degree 8, 250 kbit/s. Bars: how much of what is allowed was used, up to the "
-    "line; then what was asked for, what was measured, of how many.",
-    points,
-    draw,
-    judge,
-)
+    for bar in bars(got):
+        off = f"{bar.used:.2f} times what is allowed"
+        if not np.isfinite(bar.used):
+            off = "not all of them got there; see the other figures"
+        passed = bar.used <= 1
+        measured = f"{bar.got} ({bar.of})"
+        yield Claim(
+            "asked", f"{bar.words} {bar.asked}", measured, verdict(passed), "" if passed else off
+        )
+    came, of = sending.share(got[sent(sending.DOCUMENT, got.quick)], "first")
+    yield Claim(
+        "2.2",
+        f"the document's own rule loses one in five of the first packets with {DEAD} unknown dead",
+        f"{of - came} of {of} lost ({1 - came / of:.3f})",
+        verdict((of - came) / of >= 0.15),
+        "one transmission a hop, the packet is not sent again, a random neighbour comes next",
+    )

@@ -10,15 +10,29 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.messages import DELIVERED, messages
 from innervate.networks.mesh.analysis.summary import summarize
-from innervate.networks.mesh.papers.testbed import BYTES, GATEWAY, MeshTestbed, Options, kill
-from innervate.networks.mesh.papers.words import percent, seeds_of
+from innervate.networks.mesh.papers.testbed import (
+    BYTES,
+    GATEWAY,
+    MeshTestbed,
+    Options,
+    kill,
+    seeds_of,
+)
 from innervate.networks.mesh.protocol.constants import END_TO_END, MONITOR
 from innervate.networks.mesh.scenario.plan import Offer
 from innervate.networks.mesh.sim.simulate import simulate
-from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
+from innervate.papers import drawing
+from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.words import percent
 from innervate.plot import style
 from innervate.trace.streams import stream
 
+TITLE = "1.1: the gateway dies"
+CAPTION = (
+    "30 nodes; the gateway is switched off at some moment of a discovery period. Everyone sends "
+    "one message to the gateway (a: whoever it is) and one to another node (b) every 10 s; 'many': "
+    "every 2 s. c: until the last node has the new gateway's table."
+)
 DIES_S = 22.0  # at the earliest; up to a discovery period later
 PERIOD_S = 10
 AFTER_S = 60
@@ -48,13 +62,20 @@ BUSY = Setting("one standby, many messages", (1,), (GATEWAY,), 2)
 SETTINGS = (ALONE, ONE, SECOND, SILENT, BUSY)
 
 
-def make_testbed(setting: Setting) -> MeshTestbed:
+def point(setting: Setting, quick: bool) -> Point:
     """Networks with a setting's standbys that run until the table after next."""
     more: Options = (("standby", list(setting.standbys)),) if setting.standbys else ()
-    return MeshTestbed(duration_s=DIES_S + PERIOD_S + AFTER_S + 3, more=more)
+    testbed = MeshTestbed(duration_s=DIES_S + PERIOD_S + AFTER_S + 3, more=more)
+    what = f"gateway dies, {setting.name}, every {setting.every_s} s"
+    return testbed.point(what, seeds_of(quick), measure, setting)
 
 
-def measure(of: MeshTestbed, seed: int, setting: Setting) -> dict[str, Any]:
+def points(quick: bool) -> list[Point]:
+    """A point for each setting of standbys."""
+    return [point(setting, quick) for setting in SETTINGS]
+
+
+def measure(of: MeshTestbed, setting: Setting, seed: int) -> dict[str, Any]:
     """Takeover; delivery to the gateway and among others, by the time since the death."""
     plan = of.plan(seed)
     dies_us = round(DIES_S * 1e6) + stream(seed, "papers/death").draw(PERIOD_S * 1_000_000)
@@ -65,17 +86,13 @@ def measure(of: MeshTestbed, seed: int, setting: Setting) -> dict[str, Any]:
     found = messages(result)
     place = (found.offered_us - dies_us) // (BIN_S * 1_000_000) + BEFORE
     bins = BEFORE + AFTER_S // BIN_S
+    came = found.state == DELIVERED
     counts = [
         [np.bincount(place[which], minlength=bins).tolist() for which in (mine & came, mine)]
         for mine in (found.flow == 0, found.flow == 1)
-        for came in (found.state == DELIVERED,)
     ]
     summary = summarize(result)
-    return {
-        "takeover_s": summary["takeover_s"],
-        "bins": counts,
-        "duplicates": summary["duplicates"],
-    }
+    return {"bins": counts, **{name: summary[name] for name in ("takeover_s", "duplicates")}}
 
 
 def _send(plan: Any, setting: Setting, dies_us: int) -> None:
@@ -93,108 +110,77 @@ def _send(plan: Any, setting: Setting, dies_us: int) -> None:
     plan.offers.sort(key=lambda offer: offer.at_us)
 
 
-def point(setting: Setting, seeds: range) -> Point:
-    """The point of a setting."""
-    return make_testbed(setting).point(_what(setting), seeds, measure, setting)
-
-
-def _what(setting: Setting) -> str:
-    return f"gateway dies, {setting.name}, every {setting.every_s} s"
-
-
-def told(results: Results, setting: Setting, seeds: range) -> list[dict[str, Any]]:
-    """What was measured of a setting, one dict for each seed."""
-    runs: list[dict[str, Any]] = results[make_testbed(setting).key_of(_what(setting), seeds)]
-    return runs
-
-
-def takeovers(runs: list[dict[str, Any]]) -> list[float]:
+def takeovers(got: Measured, setting: Setting) -> list[float]:
     """Seconds from the death to the last node's new tables; infinite where that never came."""
-    return sorted(np.inf if run["takeover_s"] is None else run["takeover_s"] for run in runs)
+    found = got.floats(point(setting, got.quick), "takeover_s")
+    return sorted(np.nan_to_num(found, nan=np.inf).tolist())
 
 
-def points(quick: bool) -> list[Point]:
-    """A point for each setting of standbys."""
-    return [point(setting, seeds_of(quick)) for setting in SETTINGS]
-
-
-def _shares(runs: list[dict[str, Any]], flow: int) -> tuple[Any, Any]:
+def _shares(got: Measured, setting: Setting, flow: int) -> tuple[Any, Any]:
     """(seconds since the death, share delivered) of every bin."""
-    came, sent = np.sum([run["bins"][flow] for run in runs], axis=0)
+    bins = got[point(setting, got.quick)]["bins"]
+    came, sent = np.sum([one[flow] for one in bins], axis=0)
     return (np.arange(len(sent)) - BEFORE + 0.5) * BIN_S, came / np.maximum(sent, 1)
 
 
-def draw(results: Results, quick: bool) -> Figure:
+def draw(got: Measured) -> Figure:
     """Delivery over the time since the death; times to new tables."""
     figure, axes = style.panels(style.WIDE_IN, 2.8, 1, 3, width_ratios=(1.2, 1.2, 1))
-    seeds = seeds_of(quick)
-    for flow, ax in enumerate(axes[:2]):
+    for flow, title in enumerate(("a  to the gateway", "b  among others")):
+        ax = axes[flow]
         for i, setting in enumerate((ALONE, ONE, SECOND, BUSY)):
-            x, y = _shares(told(results, setting, seeds), flow)
-            ax.plot(x, 100 * y, color=style.SERIES[i], ls=style.DASHES[i],
-                    marker=style.MARKERS[i], markevery=(i, 5), label=setting.name)  # fmt: skip
+            x, y = _shares(got, setting, flow)
+            ax.plot(x, 100 * y, markevery=(i, 5), label=setting.name, **drawing.look(i))
         ax.axvline(0, color=style.INK, lw=0.8)
-        ax.set_ylim(-4, 104)
-        ax.set_xlabel("offered so long after the death (s)")
-        ax.set_title(("a  to the gateway", "b  among others")[flow])
+        ax.set(ylim=(-4, 104), xlabel="offered so long after the death (s)", title=title)
     axes[0].set_ylabel("delivered (%)")
     axes[1].set_yticklabels([])
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower left", ncols=4)
-    _times(axes[2], results, seeds)
+    drawing.legend(figure, axes[0], ncols=4)
+    _times(axes[2], got)
     return figure
 
 
-def _times(ax: Axes, results: Results, seeds: range) -> None:
+def _times(ax: Axes, got: Measured) -> None:
     for i, setting in ((1, ONE), (2, SECOND), (4, SILENT)):
-        times = takeovers(told(results, setting, seeds))
-        share = 100 * np.arange(1, len(times) + 1) / len(times)
-        ax.step(times, share, where="post", color=style.SERIES[i], ls=style.DASHES[i % 4],
-                label=setting.name)  # fmt: skip
+        drawing.cumulated(ax, takeovers(got, setting), color=style.SERIES[i],
+                          ls=style.DASHES[i % 4], label=setting.name)  # fmt: skip
     ax.axvline(SOONEST, color=style.INK, lw=0.8, ls=":", label="asked for")
-    ax.set_xlim(18, 44)
-    ax.set_ylim(0, 150)
-    ax.set_yticks(range(0, 101, 20))
-    ax.set_xlabel("last new table after the death (s)")
-    ax.set_ylabel("networks (%)")
-    ax.set_title("c  new tables")
+    ax.set(xlim=(18, 44), ylim=(0, 150), yticks=range(0, 101, 20), title="c  new tables",
+           xlabel="last new table after the death (s)", ylabel="networks (%)")  # fmt: skip
     ax.legend(loc="upper left")
 
 
-def judge(results: Results, quick: bool) -> list[Claim]:
+def judge(got: Measured) -> Claims:
     """The document's single gateway; ours."""
-    seeds = seeds_of(quick)
-    alone = told(results, ALONE, seeds)
-    gone, after = (_shares(alone, flow)[1][BEFORE:] for flow in range(2))
-    twice = sum(run["duplicates"] for s in SETTINGS for run in told(results, s, seeds))
-    return [
-        Claim(
-            "1.1",
-            '"The routing tables are computed centrally, by the gateway node": the network '
-            "outlives the gateway",
-            f"no standby, {AFTER_S} s after its death: {percent(gone.mean())} of the messages to "
-            f"the gateway and {percent(after.mean(), 1)} of those among others are delivered; "
-            f"{len(alone)} networks",
-            verdict(gone.mean() > 0.9),
-            "tables in place keep forwarding, but what is for the gateway is lost for good, nobody "
-            "can join, and failures are bypassed but never repaired",
-        ),
-        *(_taken(results, setting, seeds) for setting in (SILENT, ONE, SECOND)),
-        _busy(results, seeds),
-        Claim(
-            "beyond",
-            "nothing is delivered twice, to the old gateway or the new one",
-            f"{twice} messages in {len(SETTINGS) * len(alone)} runs",
-            verdict(twice == 0),
-            "a copy was on its way for longer than its recipient remembers",
-        ),
-    ]
+    gone, after = (_shares(got, ALONE, flow)[1][BEFORE:] for flow in range(2))
+    twice = [sum(got[point(setting, got.quick)]["duplicates"]) for setting in SETTINGS]
+    networks = len(seeds_of(got.quick))
+    yield Claim(
+        "1.1",
+        '"The routing tables are computed centrally, by the gateway node": the network '
+        "outlives the gateway",
+        f"no standby, {AFTER_S} s after its death: {percent(gone.mean())} of the messages to "
+        f"the gateway and {percent(after.mean(), 1)} of those among others are delivered; "
+        f"{networks} networks",
+        verdict(gone.mean() > 0.9),
+        "tables in place keep forwarding, but what is for the gateway is lost for good, nobody "
+        "can join, and failures are bypassed but never repaired",
+    )
+    for setting in (SILENT, ONE, SECOND):
+        yield _taken(got, setting)
+    yield _busy(got)
+    yield Claim(
+        "beyond",
+        "nothing is delivered twice, to the old gateway or the new one",
+        f"{sum(twice)} messages in {len(SETTINGS) * networks} runs",
+        verdict(not any(twice)),
+        "a copy was on its way for longer than its recipient remembers",
+    )
 
 
-def _taken(results: Results, setting: Setting, seeds: range) -> Claim:
-    runs = told(results, setting, seeds)
-    times = takeovers(runs)
-    late = _shares(runs, 0)[1][-5:].mean()
+def _taken(got: Measured, setting: Setting) -> Claim:
+    times = takeovers(got, setting)
+    late = _shares(got, setting, 0)[1][-5:].mean()
     sent = f"; of the last messages to the gateway {percent(late, 1)} come" if late else ""
     most = SOONEST + 5 * (setting is SECOND)
     within = sum(time <= most for time in times)
@@ -208,30 +194,17 @@ def _taken(results: Results, setting: Setting, seeds: range) -> Claim:
     )
 
 
-def _busy(results: Results, seeds: range) -> Claim:
-    runs = told(results, BUSY, seeds)
-    x, share = _shares(runs, 1)
+def _busy(got: Measured) -> Claim:
+    x, share = _shares(got, BUSY, 1)
     before, during = share[x < 0].mean(), share[x > 0].mean()
-    taken = sum(np.isfinite(takeovers(runs)))
+    times = takeovers(got, BUSY)
     return Claim(
         "beyond",
         "who looks for a dead gateway does not disturb the others, however many do",
         f"everyone sends to it every {BUSY.every_s} s: of messages among others "
         f"{percent(before, 1)} come before its death and {percent(during, 1)} after it; tables of "
-        f"the standby are complete in {taken} of {len(runs)} networks",
+        f"the standby are complete in {sum(np.isfinite(times))} of {len(times)} networks",
         verdict(during > 0.98),
         "each packet looks at every node for a recipient that is dead; who is not acknowledged "
         "pauses, but until the first searches have ended they fill the channel",
     )
-
-
-EXPERIMENT = Experiment(
-    "gateway",
-    "1.1: the gateway dies",
-    "30 nodes; the gateway is switched off at some moment of a discovery period. Everyone sends "
-    "one message to the gateway (a: whoever it is) and one to another node (b) every 10 s; 'many': "
-    "every 2 s. c: until the last node has the new gateway's table.",
-    points,
-    draw,
-    judge,
-)

@@ -9,11 +9,18 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.summary import summarize
 from innervate.networks.mesh.papers.testbed import MeshTestbed, Options
-from innervate.networks.mesh.papers.words import joined
 from innervate.networks.mesh.scenario.plan import ONE
-from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
+from innervate.papers import drawing
+from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.words import joined
 from innervate.plot import style
 
+TITLE = "1: how small is small"
+CAPTION = (
+    "Mean degree 8. Airtime of one discovery round and of all that it distributes, as heard where "
+    "it is busiest, as a share of the period; only sizes at which everyone got a table. Dotted: "
+    "half."
+)
 HALF = 0.5
 SMALL = 70  # "sufficient for small networks": more than that, we would not call small
 
@@ -40,18 +47,29 @@ RADIOS = (
     Radio("38k4", 60, (10, 20, 30, 45, 64, 85, 120), 85, 8.0),
 )
 SOME = (10, 20, 30)
-SCHEMES: tuple[tuple[str, Options], ...] = (
-    ("tables", ()),
-    ("graph", (("failover", "graph"),)),
-    ("table-free", (("tables", False),)),
-)
+SCHEMES: dict[str, Options] = {
+    "tables": (),
+    "graph": (("failover", "graph"),),
+    "table-free": (("tables", False),),
+}
 
 
-def make_testbed(radio: Radio, protocol: Options, nodes: int) -> MeshTestbed:
+def point(radio: Radio, scheme: str, nodes: int, quick: bool) -> Point:
     """A single round, and time for all its tables."""
     alone: Options = (("period_s", 3600.0), ("period_max_s", 3600.0))
     duration = 20 + radio.per_node_s * nodes
-    return MeshTestbed(nodes, 8, radio.profile, (*alone, *protocol), duration)
+    testbed = MeshTestbed(nodes, 8, radio.profile, (*alone, *SCHEMES[scheme]), duration)
+    return testbed.point("a full round", range(1, 2 if quick else 4), measure)
+
+
+def points(quick: bool) -> list[Point]:
+    """Every radio, scheme and size."""
+    return [
+        point(radio, scheme, n, quick)
+        for radio in RADIOS
+        for scheme in SCHEMES
+        for n in _ns(radio, scheme, quick)
+    ]
 
 
 def measure(of: MeshTestbed, seed: int) -> dict[str, Any]:
@@ -61,12 +79,8 @@ def measure(of: MeshTestbed, seed: int) -> dict[str, Any]:
     spent = np.bincount(sent["node"], sent["end"] - sent["time"], plan.nodes) / 1e6
     hears = np.array(plan.radio.prob_q15).reshape(plan.nodes, plan.nodes) >= ONE // 2
     found = summarize(result)["discovery"]
-    return {"busy_s": float((spent @ hears + spent).max()), "with_tables": found["with_tables"],
-            "tables_s": found["tables_s"], "recall": found["recall"]}  # fmt: skip
-
-
-def _seeds(quick: bool) -> range:
-    return range(1, 2 if quick else 4)
+    busy_s = float((spent @ hears + spent).max())
+    return {"busy_s": busy_s, **{name: found[name] for name in ("with_tables", "tables_s")}}
 
 
 def _ns(radio: Radio, scheme: str, quick: bool) -> list[int]:
@@ -74,27 +88,12 @@ def _ns(radio: Radio, scheme: str, quick: bool) -> list[int]:
     return [n for n in (SOME if quick else radio.nodes) if n <= most]
 
 
-def points(quick: bool) -> list[Point]:
-    """Every radio, scheme and size."""
-    return [
-        make_testbed(radio, protocol, n).point("a full round", _seeds(quick), measure)
-        for radio in RADIOS
-        for scheme, protocol in SCHEMES
-        for n in _ns(radio, scheme, quick)
-    ]
-
-
-def shares(results: Results, radio: Radio, scheme: int, quick: bool) -> tuple[list[int], Any]:
+def shares(got: Measured, radio: Radio, scheme: str) -> tuple[list[int], Any]:
     """(N, share of the period that the busiest channel is busy, all tables new each round)."""
-    name, protocol = SCHEMES[scheme]
-    ns, found = [], []
-    for n in _ns(radio, name, quick):
-        runs = results[make_testbed(radio, protocol, n).key_of("a full round", _seeds(quick))]
-        # A round that leaves nodes out costs less than a full one: it says nothing here.
-        if all(run["with_tables"] in (None, n) for run in runs):
-            ns.append(n)
-            found.append(np.mean([run["busy_s"] for run in runs]) / radio.period_s)
-    return ns, np.array(found)
+    runs = {n: got[point(radio, scheme, n, got.quick)] for n in _ns(radio, scheme, got.quick)}
+    # A round that leaves nodes out costs less than a full one: it says nothing here.
+    ns = [n for n, one in runs.items() if all(some in (None, n) for some in one["with_tables"])]
+    return ns, np.array([np.mean(runs[n]["busy_s"]) / radio.period_s for n in ns])
 
 
 def half_full(ns: list[int], share: Any) -> tuple[float, bool]:
@@ -107,71 +106,65 @@ def half_full(ns: list[int], share: Any) -> tuple[float, bool]:
     return float(np.exp(x[k] + (np.log(HALF) - y[k]) / slope)), reached
 
 
-def draw(results: Results, quick: bool) -> Figure:
+def draw(got: Measured) -> Figure:
     """Busy share over N, for both radios."""
     figure, axes = style.panels(style.WIDE_IN, 2.7, 1, 2, sharey=True)
     for ax, radio, letter in zip(axes, RADIOS, "ab", strict=True):
-        for i, (name, _) in enumerate(SCHEMES):
-            ns, share = shares(results, radio, i, quick)
-            ax.plot(ns, 100 * share, style.MARKERS[i], ls=style.DASHES[i], color=style.SERIES[i],
-                    label=name)  # fmt: skip
+        for i, scheme in enumerate(SCHEMES):
+            ns, share = shares(got, radio, scheme)
+            ax.plot(ns, 100 * share, label=scheme, **drawing.look(i))
         ax.axhline(100 * HALF, color=style.INK, lw=0.8, ls=":")
-        ax.set_xscale("log")
         ax.set_yscale("log")
-        ticks = SOME if quick else (10, 30, 100, 250)
-        ax.set_xticks(ticks, [str(n) for n in ticks])
-        ax.minorticks_off()
-        ax.set_xlabel("nodes N")
-        ax.set_title(f"{letter}  {radio.profile}, a round every {radio.period_s:g} s")
+        drawing.logarithmic(ax, SOME if got.quick else (10, 30, 100, 250))
+        title = f"{letter}  {radio.profile}, a round every {radio.period_s:g} s"
+        ax.set(xlabel="nodes N", title=title)
     axes[0].set_ylabel("busiest channel busy (%)")
     axes[0].legend()
     return figure
 
 
-def _in_words(found: tuple[float, bool]) -> str:
-    n, reached = found
-    return f"N = {n:.0f}" if reached else f"N = {n:.0f} by extension"
-
-
-def judge(results: Results, quick: bool) -> list[Claim]:
+def judge(got: Measured) -> Claims:
     """How small is small; the other two schemes."""
-    rows = []
     for radio in RADIOS:
-        halves = [half_full(*shares(results, radio, i, quick)) for i in range(len(SCHEMES))]
-        ns, share = shares(results, radio, 0, quick)
+        found = {scheme: half_full(*shares(got, radio, scheme)) for scheme in SCHEMES}
+        words = {
+            scheme: f"half full at N = {n:.0f}" + ("" if reached else " by extension")
+            for scheme, (n, reached) in found.items()
+        }
+        ns, share = shares(got, radio, "tables")
         growth = float(np.polyfit(np.log(ns), np.log(share), 1)[0])
-        rows.append(Claim(
+        tables, *others = (n for n, _ in found.values())
+        yield Claim(
             "1",
             '"This is not scalable, but sufficient for small networks": tables leave half of the '
             f"channel at {radio.profile} up to N = {SMALL}",
-            f"half full at {_in_words(halves[0])}; grows as N^{growth:.2f}; at N = 30 "
+            f"{words['tables']}; grows as N^{growth:.2f}; at N = 30 "
             f"{100 * share[ns.index(30)]:.1f} %",
-            verdict(halves[0][0] >= SMALL),
+            verdict(tables >= SMALL),
             "if every round changes every table, as with robots that move; an unchanged table is "
             "not sent",
-        ))  # fmt: skip
-        rows.append(Claim(
-            "beyond", f"at {radio.profile} the flooded graph and the table-free mode go further "
-            "than tables",
-            joined(f"{SCHEMES[i][0]}: half full at {_in_words(halves[i])}" for i in (1, 2)),
-            verdict(min(halves[1][0], halves[2][0]) > halves[0][0]),
+        )
+        yield Claim(
+            "beyond",
+            f"at {radio.profile} the flooded graph and the table-free mode go further than tables",
+            joined(f"{scheme}: {words[scheme]}" for scheme in ("graph", "table-free")),
+            verdict(min(others) > tables),
             f"the graph fits {radio.graph_max} nodes at most",
-        ))  # fmt: skip
-    rows.append(_complete(results, quick))
-    return rows
+        )
+    yield _complete(got)
 
 
-def _complete(results: Results, quick: bool) -> Claim:
+def _complete(got: Measured) -> Claim:
     words, fine = [], True
     for radio in RADIOS:
-        for name, protocol in SCHEMES[:2]:
-            n = _ns(radio, name, quick)[-1]
-            runs = results[make_testbed(radio, protocol, n).key_of("a full round", _seeds(quick))]
-            least = min(run["with_tables"] for run in runs)
+        for scheme in ("tables", "graph"):
+            n = _ns(radio, scheme, got.quick)[-1]
+            runs = got[point(radio, scheme, n, got.quick)]
+            least = min(runs["with_tables"])
             fine = fine and least == n
-            times = [run["tables_s"] for run in runs if run["tables_s"] is not None]
+            times = [time for time in runs["tables_s"] if time is not None]
             took = f"{np.mean(times):.0f} s" if times else "never all"
-            words.append(f"{radio.profile} {name}, N = {n}: {least} with tables, {took}")
+            words.append(f"{radio.profile} {scheme}, N = {n}: {least} with tables, {took}")
     return Claim(
         "beyond",
         "at the largest N everyone gets its table in the end",
@@ -179,15 +172,3 @@ def _complete(results: Results, quick: bool) -> Claim:
         verdict(fine),
         "" if fine else "not every node was found, or its table was given up",
     )
-
-
-EXPERIMENT = Experiment(
-    "scale",
-    "1: how small is small",
-    "Mean degree 8. Airtime of one discovery round and of all that it distributes, as heard where "
-    "it is busiest, as a share of the period; only sizes at which everyone got a table. Dotted: "
-    "half.",
-    points,
-    draw,
-    judge,
-)

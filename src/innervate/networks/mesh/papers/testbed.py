@@ -24,6 +24,11 @@ LITERAL: Options = (
 )  # fmt: skip
 
 
+def seeds_of(quick: bool) -> range:
+    """One network each."""
+    return range(1, 5 if quick else 31)
+
+
 @dataclass(frozen=True, slots=True)
 class MeshTestbed:
     """Networks of nodes anywhere in a square of 100 m, node 0 the gateway.
@@ -43,8 +48,7 @@ class MeshTestbed:
     duration_s: float = 6.0
     more: Options = ()
 
-    @property
-    def key(self) -> str:
+    def __str__(self) -> str:
         """All of it in words."""
         words = [f"mesh n={self.nodes} degree={self.degree:g} {self.profile} {self.duration_s:g} s"]
         words += [f"{name}={value}" for name, value in (*self.protocol, *self.more)]
@@ -74,23 +78,12 @@ class MeshTestbed:
     def point(
         self, what: str, seeds: Sequence[int], measure: Callable[..., Any], *args: Any
     ) -> Point:
-        """The point that measures every seed with `measure(testbed, seed, *args)`.
+        """The point that measures every seed with `measure(testbed, *args, seed)`.
 
         Its key says `what` is measured with which arguments.
         """
-        cost = (0.01 + 2e-4 * self.nodes * self.duration_s) * len(seeds)
-        return Point.of(self.key_of(what, seeds), cost, each, measure, self, seeds, *args)
-
-    def key_of(self, what: str, seeds: Sequence[int]) -> str:
-        """The key of that point."""
-        return f"{what}: {self.key} seeds {seeds[0]}-{seeds[-1]}"
-
-
-def each(
-    measure: Callable[..., Any], testbed: MeshTestbed, seeds: Sequence[int], *args: Any
-) -> list[Any]:
-    """What is measured of every seed."""
-    return [measure(testbed, seed, *args) for seed in seeds]
+        cost = 0.01 + 2e-4 * self.nodes * self.duration_s
+        return Point.each(f"{what}: {self}", cost, seeds, measure, self, *args)
 
 
 def dying(plan: MeshPlan, count: int, spared: Sequence[int] = (GATEWAY,)) -> list[int]:
@@ -117,11 +110,26 @@ def send_rounds(
     left = list(nodes)
     order = [left.pop(draw.draw(len(left))) for _ in nodes]
     to = {node: [one for one in nodes if one != node][draw.draw(len(nodes) - 1)] for node in order}
-    flags = END_TO_END if plan.params["reliable"] else 0
     gap_us = every_us * 3 // (4 * len(order))
     plan.offers += [
-        Offer(since_us + k * every_us + i * gap_us, node, to[node], flags, BYTES, k)
+        Offer(since_us + k * every_us + i * gap_us, node, to[node], _flags(plan), BYTES, k)
         for k in range(rounds)
         for i, node in enumerate(order)
     ]
     plan.offers.sort(key=lambda offer: offer.at_us)
+
+
+def send_anywhere(plan: MeshPlan, from_s: int, until_s: int, every_s: int) -> None:
+    """Every node sends to somebody drawn anew, at a drawn moment of each span."""
+    draw = stream(plan.seed, "papers/senders")
+    for since in range(from_s, until_s, every_s):
+        for node in range(plan.nodes):
+            dest = draw.draw(plan.nodes - 1)
+            dest += dest >= node
+            at = since * 1_000_000 + draw.draw(every_s * 1_000_000)
+            plan.offers.append(Offer(at, node, dest, _flags(plan), BYTES, 0))
+    plan.offers.sort(key=lambda offer: offer.at_us)
+
+
+def _flags(plan: MeshPlan) -> int:
+    return END_TO_END if plan.params["reliable"] else 0

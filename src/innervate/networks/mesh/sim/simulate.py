@@ -162,9 +162,9 @@ class MeshSimulation(Field):
         if status == loop.DUPLICATES_FULL:
             self.world = builder.grow_duplicates(self.world)
 
-    def story(self) -> str:
+    def broken_line(self) -> str:
         """The broken invariant, in one line."""
-        return story(self.plan, self.world)
+        return broken_line(self.plan, self.world)
 
 
 def simulation(
@@ -216,10 +216,10 @@ def _plain_layer(mac: str) -> Any:
     return over_channel.layer(radio_stacks.bind(entry, radio_recorder, over_channel))
 
 
-def story(plan: Any, world: w.World) -> str:
+def broken_line(plan: Any, world: w.World) -> str:
     """A broken invariant in one line."""
     if int(get(world.run, 0, "broken")) == recorder.BROKEN_BELOW:
-        return radio_simulate.story(plan, world.below)
+        return radio_simulate.broken_line(plan, world.below)
     at = int(get(world.run, 0, "now")) / 1e6
     name = plan.names[int(get(world.run, 0, "broken_node"))]
     what = {

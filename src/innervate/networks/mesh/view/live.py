@@ -68,7 +68,7 @@ class MeshState(State):
         known = Choices(
             gateway=np.array([place_of.get(one.get("gateway"), NOWHERE) for one in said]),
             named=np.array([row + [NOWHERE] * (wide - len(row)) for row in onward]),
-            near=near,
+            neighbours=near,
             goes_back=all(one.get("gives_back", True) for one in said),
         )
         leads = np.array([one.get("role") == "gateway" for one in said], np.bool_)

@@ -65,7 +65,7 @@ class MeshView(View):
         for a, b in self.plan.good:
             near[a].append(b)
             near[b].append(a)
-        self.near = near
+        self.neighbours = near
         self.recorder = TrafficRecorder(engine)
         self._found: tuple[int, Ways] | None = None
         if self.plan.mac not in MACS:  # a channel on which everybody hears everybody
@@ -224,7 +224,7 @@ class MeshView(View):
             part = round(min(1.0, max(0.0, (now - start) / max(1, end - start))), 3)
             a, to = int(air["node"]), int(frame["link_dst"])
             kind = KINDS.get(int(frame["kind"]), "frame")
-            for b in self.near[a] if to == c.ALL else [to]:
+            for b in self.neighbours[a] if to == c.ALL else [to]:
                 found.append({"a": a, "b": b, "kind": kind, "p": part})
         return found[:FLIGHTS_MAX]
 

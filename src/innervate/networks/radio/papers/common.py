@@ -1,8 +1,8 @@
-"""What the figures of the radio paper share: runs of the slotted level, words, looks of curves."""
+"""What the figures of the radio paper share: runs of the slotted level, looks of curves."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -11,7 +11,9 @@ from matplotlib.axes import Axes
 
 from innervate.networks.radio.slotted.drive import SLOT
 from innervate.networks.radio.slotted.model import slotted
-from innervate.papers.experiment import Point, Results
+from innervate.papers import drawing
+from innervate.papers.experiment import Measured, Point, columns
+from innervate.papers.words import spans
 from innervate.plot import style
 
 TAU_US = 104
@@ -20,7 +22,10 @@ TURNAROUND = TURNAROUND_US / SLOT
 SIZES = (5, 25)  # T of Figs. 4 to 7
 RESERVED = "csma-cd-r"
 CONTENDING = ("csma-cd-d1", "csma-cd-d2", "csma-cd-d2p")
-MACS = (RESERVED, *CONTENDING, "p-persistent", "slotted-aloha", "dcf", "tree", "tdma")
+SHORT = dict(zip(CONTENDING, ("D1", "D2", "D2'"), strict=True))
+PEERS = ("p-persistent", "slotted-aloha", "dcf", "tree", "tdma")
+MACS = (RESERVED, *CONTENDING, *PEERS)
+READING_B = f"{RESERVED} B"
 WHOLE = tuple(range(2, 101))
 FEW = (2, 3, 4, 5, 7, 10, 15, 20, 30, 50, 70, 100)
 
@@ -59,12 +64,8 @@ class Curve:
 
     def measure(self) -> dict[str, list[list[float]]]:
         """Of every n, the numbers of each seed."""
-        found: dict[str, list[list[float]]] = {}
-        for n in self.ns:
-            runs = [self._run(n, seed) for seed in range(1, self.seeds + 1)]
-            for name in runs[0]:
-                found.setdefault(name, []).append([run[name] for run in runs])
-        return found
+        rows = [columns(self._run, (n,), range(1, self.seeds + 1)) for n in self.ns]
+        return {name: [row[name] for row in rows] for name in rows[0]}
 
     def _run(self, n: int, seed: int) -> dict[str, float]:
         packets = max(20, self.successes // n // 10 * 10)  # so that the warm-up ends with a round
@@ -74,31 +75,26 @@ class Curve:
         )  # fmt: skip
         if self.traffic == "disaster":
             return {"duration": run.duration_slots}
-        return {"throughput": run.throughput, "jain": run.jain, "jain_round": run.jain_round}
+        return {"throughput": run.throughput, "jain_round": run.jain_round}
 
     def point(self) -> Point:
         """The point that measures it."""
         cost = 5e-5 if self.traffic == "disaster" else 1e-6 * self.successes
         return Point.of(self.key, cost * len(self.ns) * self.seeds, self.measure)
 
-    def all(self, results: Results, name: str) -> Any:
-        """A number of every n and seed."""
-        return np.array(results[self.key][name])
+    def all(self, got: Measured, name: str = "") -> Any:
+        """A number of every n and seed: throughput or duration, if none is named."""
+        name = name or {"saturated": "throughput", "disaster": "duration"}[self.traffic]
+        return np.array(got.values[self.key][name])
 
-    def mean(self, results: Results, name: str) -> Any:
+    def mean(self, got: Measured, name: str = "") -> Any:
         """Its mean over the seeds, of every n."""
-        return self.all(results, name).mean(axis=1)
+        return self.all(got, name).mean(axis=1)
 
-
-def spans(numbers: Sequence[int]) -> str:
-    """Ascending numbers with runs joined, as "2-45,50,70"."""
-    parts: list[list[int]] = []
-    for n in numbers:
-        if parts and parts[-1][-1] == n - 1:
-            parts[-1].append(n)
-        else:
-            parts.append([n])
-    return ",".join(str(p[0]) if len(p) == 1 else f"{p[0]}-{p[-1]}" for p in parts)
+    def draw(self, ax: Axes, got: Measured, name: str = "") -> None:
+        """The means as a line, and a band behind it."""
+        line(ax, LOOKS[self.mac], self.ns, self.mean(got, name))
+        band(ax, LOOKS[self.mac], self.ns, self.all(got, name))
 
 
 def first_from(ns: Iterable[int], holds: Iterable[bool]) -> int | None:
@@ -115,16 +111,6 @@ def slope(x: Any, y: Any) -> tuple[float, float, float]:
     rise, start = np.polyfit(x, y, 1)
     left = ((y - rise * x - start) ** 2).sum()
     return float(rise), float(start), float(1 - left / ((y - y.mean()) ** 2).sum())
-
-
-def percent(share: float, digits: int = 0) -> str:
-    """A share, 0 to 1, as "12 %"."""
-    return f"{100 * share:.{digits}f} %"
-
-
-def joined(words: Iterable[Any], between: str = ", ") -> str:
-    """Things as text, with `between` between them."""
-    return between.join(str(word) for word in words)
 
 
 class Look(NamedTuple):
@@ -182,6 +168,18 @@ def band(ax: Axes, look: Look, x: Sequence[float], runs: Any) -> None:
     """From 5 to 95 % of the runs, as a band behind a curve."""
     low, high = (np.percentile(runs, share, axis=1) for share in SPREAD)
     ax.fill_between(x, low, high, color=look.colour, alpha=0.18, lw=0)
+
+
+def everybody(ax: Axes, got: Measured, curves: Mapping[str, Curve]) -> None:
+    """All protocols, named at the right ends of their curves; bands behind those that contend."""
+    ends = []
+    for mac, one in curves.items():
+        look, values = LOOKS[mac], one.mean(got)
+        line(ax, look, one.ns, values)
+        if mac in CONTENDING:
+            band(ax, look, one.ns, one.all(got))
+        ends.append((float(values[-1]), look.name, look.colour))
+    drawing.end_labels(ax, ends)
 
 
 def stations_axis(ax: Axes, ticks: Sequence[int] = (2, 5, 10, 20, 50, 100)) -> None:

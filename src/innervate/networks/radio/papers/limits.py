@@ -6,22 +6,20 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from innervate.networks.radio.analysis import formulas as forms
-from innervate.networks.radio.papers.common import (
-    RESERVED,
-    SIZES,
-    TAU_US,
-    Curve,
-    first_from,
-    joined,
-    percent,
-    stations_axis,
-)
+from innervate.networks.radio.papers import common
+from innervate.networks.radio.papers.common import RESERVED, SIZES, TAU_US, Curve
 from innervate.networks.radio.papers.medium import START_US, Channel
 from innervate.networks.radio.protocol.constants import DATA
 from innervate.networks.radio.slotted.drive import SLOT
-from innervate.papers.experiment import Claim, Experiment, Point, Results, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.words import joined, percent
 from innervate.plot import style
 
+TITLE = "F5: what the throughput settles at"
+CAPTION = (
+    "Slotted level, both readings of what a packet costs (Q1). Dashed: the limit of both; dotted: "
+    "without slots. Grey: where the paper calls S independent of n."
+)
 SETTLED = {5: 0.83, 25: 0.96}
 REACHED = {5: 0.825, 25: 0.955}  # what is rounded to it
 COLOURS = (style.BLUE, style.SKY)  # readings A and B, as in Figs. 4 to 7
@@ -40,133 +38,102 @@ def points(quick: bool) -> list[Point]:
     return [*made, Point.of(f"turns without slots n={CHAIN}", 0.1, turns)]
 
 
-def turns() -> dict[str, list[float]]:
+def turns() -> dict[str, float]:
     """Share of the time that packets fill in a chain of turns on the event level, and its gaps."""
-    found: dict[str, list[float]] = {"share": [], "gap_us": []}
-    for size in (25,):
-        starts = tuple((SLOT + 1) * i for i in range(CHAIN))
-        result = Channel("paper", CHAIN, size, starts_us=starts).run(1)
-        sent = result.sent[result.sent["kind"] == DATA]
-        frames = np.sort(np.stack([sent["time"], sent["end"]], axis=1)[CHAIN:] - START_US, axis=0)
-        gaps = frames[1:, 0] - frames[:-1, 1]
-        whole = frames[-1, 0] - frames[0, 0]
-        found["gap_us"] += [float(gaps.min()), float(gaps.max())]
-        found["share"].append(float((CHAIN - 1) * size * SLOT / whole))
-    return found
+    starts = tuple((SLOT + 1) * i for i in range(CHAIN))
+    result = Channel("paper", CHAIN, 25, starts_us=starts).run(1)
+    sent = result.sent[result.sent["kind"] == DATA]
+    frames = np.sort(np.stack([sent["time"], sent["end"]], axis=1)[CHAIN:] - START_US, axis=0)
+    gaps = frames[1:, 0] - frames[:-1, 1]
+    share = (CHAIN - 1) * 25 * SLOT / (frames[-1, 0] - frames[0, 0])
+    return {"share": float(share), "low_us": float(gaps.min()), "high_us": float(gaps.max())}
 
 
-def draw(results: Results, quick: bool) -> Figure:
+def draw(got: Measured) -> Figure:
     """S against its limit, both readings."""
     figure, axes = style.panels(style.WIDE_IN, 2.6, 1, 2)
     for ax, letter, size in zip(axes, "ab", SIZES, strict=True):
         for i, reading in enumerate("AB"):
-            one = curve(reading, size)
-            ax.plot(NS, one.mean(results, "throughput"), color=COLOURS[i],
+            ax.plot(NS, curve(reading, size).mean(got), color=COLOURS[i],
                     ls=style.DASHES[i], label=f"CSMA/CD-R, reading {reading}")  # fmt: skip
-            n = reached(results, reading, size)
+            n = reached(got, reading, size)
             ax.plot([n], [REACHED[size]], style.MARKERS[i], color=COLOURS[i],
                     label=f"rounds to {SETTLED[size]} from n = {n}")  # fmt: skip
-        limit = forms.slotted_bound(size)
+        limit, free = forms.slotted_bound(size), forms.handover_bound(size)
         ax.axhline(limit, color=style.BLACK, lw=0.8, ls="--", label=f"T / (T + 1) = {limit:.4f}")
-        free = forms.handover_bound(size)
         ax.axhline(free, color=style.SOFT, lw=0.8, ls=":", label=f"T / (T + 0.5) = {free:.3f}")
         ax.axvspan(30, 100, color=style.PALE, lw=0, zorder=0)
         ax.text(55, 0.31, "n = 30..100", ha="center", color=style.SOFT, fontsize=6.5)
-        stations_axis(ax, (2, 5, 10, 30, 100, 300, 1000))
-        ax.set_ylim(0.28, 1.01)
-        ax.set_title(f"{letter}  T = {size}")
+        common.stations_axis(ax, (2, 5, 10, 30, 100, 300, 1000))
+        ax.set(ylim=(0.28, 1.01), title=f"{letter}  T = {size}")
         ax.legend(loc="lower right", bbox_to_anchor=(1, 0.09))
     axes[0].set_ylabel("channel throughput S")
     return figure
 
 
-def at(results: Results, reading: str, size: int, n: int) -> float:
+def at(got: Measured, reading: str, size: int, n: int) -> float:
     """Throughput S with n stations, packets of `size` slots."""
-    return float(curve(reading, size).mean(results, "throughput")[NS.index(n)])
+    return float(curve(reading, size).mean(got)[NS.index(n)])
 
 
-def reached(results: Results, reading: str, size: int) -> int:
+def reached(got: Measured, reading: str, size: int) -> int:
     """The least n with the settling value to two digits."""
-    values = curve(reading, size).mean(results, "throughput")
-    found = first_from(NS, values >= REACHED[size] - 1e-12)
+    values = curve(reading, size).mean(got)
+    found = common.first_from(NS, values >= REACHED[size] - 1e-12)
     assert found is not None
     return found
 
 
-def judge(results: Results, quick: bool) -> list[Claim]:
+def judge(got: Measured) -> Claims:
     """The values, the flatness, where, and without slots."""
-    return [
-        *(_settles(results, size) for size in SIZES),
-        _flat(results),
-        _inside(results),
-        _free(results),
-    ]
-
-
-def _settles(results: Results, size: int) -> Claim:
-    ends = [at(results, reading, size, 1000) for reading in "AB"]
-    passed = all(round(value, 2) == SETTLED[size] for value in ends)
-    return Claim(
-        str(SIZES.index(size) + 4),
-        f"settling value of CSMA/CD-R: {SETTLED[size]} when T = {size}",
-        f"n = 1000: A {ends[0]:.4f}, B {ends[1]:.4f}; limit {forms.slotted_bound(size):.4f}",
-        verdict(passed, "Q1"),
-        "T / (T + 1): one slot a packet beside the packet, whichever way it comes about",
-    )
-
-
-def _flat(results: Results) -> Claim:
-    words, gains = [], []
     for size in SIZES:
-        low, high = (at(results, "A", size, n) for n in (30, 100))
-        gains.append(high / low - 1)
-        words.append(f"T = {size}: {low:.3f} to {high:.3f} ({percent(high / low - 1, 1)} more)")
-    return Claim(
+        a, b = (at(got, reading, size, 1000) for reading in "AB")
+        yield Claim(
+            str(SIZES.index(size) + 4),
+            f"settling value of CSMA/CD-R: {SETTLED[size]} when T = {size}",
+            f"n = 1000: A {a:.4f}, B {b:.4f}; limit {forms.slotted_bound(size):.4f}",
+            verdict(round(a, 2) == round(b, 2) == SETTLED[size], "Q1"),
+            "T / (T + 1): one slot a packet beside the packet, whichever way it comes about",
+        )
+    ends = {size: [at(got, "A", size, n) for n in (30, 100)] for size in SIZES}
+    gains = {size: high / low - 1 for size, (low, high) in ends.items()}
+    words = (
+        f"T = {size}: {low:.3f} to {high:.3f} ({percent(gains[size], 1)} more)"
+        for size, (low, high) in ends.items()
+    )
+    yield Claim(
         "4, 5",
         "S is independent of n on higher n than 30 (within 5 %)",
         f"n = 30..100, {joined(words)}",
-        verdict(max(gains) < 0.05, "F5"),
+        verdict(max(gains.values()) < 0.05, "F5"),
         "not flat: what is missing to the limit falls as 2 / n, the round's collision and window",
     )
+    yield from _inside(got)
 
 
-def _inside(results: Results) -> Claim:
-    words = [
-        f"T = {size}: {at(results, 'A', size, 100):.3f} at n = 100, {REACHED[size]} from n = "
-        f"{reached(results, 'A', size)} (A), {reached(results, 'B', size)} (B)"
-        for size in SIZES
-    ]
-    passed = all(reached(results, reading, size) <= 100 for size in SIZES for reading in "AB")
-    return Claim(
+def _inside(got: Measured) -> Claims:
+    where = {size: [reached(got, reading, size) for reading in "AB"] for size in SIZES}
+    words = (
+        f"T = {size}: {at(got, 'A', size, 100):.3f} at n = 100, {REACHED[size]} from n = "
+        f"{a} (A), {b} (B)"
+        for size, (a, b) in where.items()
+    )
+    yield Claim(
         "4, 5",
         "the curves have settled at 0.83 and 0.96 where they are called independent of n",
         joined(words, "; "),
-        verdict(passed),
+        verdict(max(map(max, where.values())) <= 100),
         "F5: the two numbers are the limits for n to infinity, not values at n up to 100",
     )
-
-
-def _free(results: Results) -> Claim:
-    found = results[f"turns without slots n={CHAIN}"]
-    low, high = found["gap_us"]
+    found = got.values[f"turns without slots n={CHAIN}"]
+    low, high = found["low_us"], found["high_us"]
     limits = [forms.handover_bound(size) for size in SIZES]
-    return Claim(
+    yield Claim(
         "2.2",
         "an asynchronous protocol: the external synchronisation signal is not necessary",
         f"event level, {CHAIN} robots: turns {low:.0f} to {high:.0f} us apart, packets fill "
-        f"{found['share'][0]:.4f} of them (T = 25)",
+        f"{found['share']:.4f} of them (T = 25)",
         verdict(low == high == TAU_US, "F4"),
         "without slots a hand-over costs tau, half a slot: limits "
         f"{limits[0]:.3f} and {limits[1]:.3f}; 0.83 and 0.96 come from slotting",
     )
-
-
-EXPERIMENT = Experiment(
-    "limits",
-    "F5: what the throughput settles at",
-    "Slotted level, both readings of what a packet costs (Q1). Dashed: the limit of both; dotted: "
-    "without slots. Grey: where the paper calls S independent of n.",
-    points,
-    draw,
-    judge,
-)

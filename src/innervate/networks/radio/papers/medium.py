@@ -46,8 +46,7 @@ class Channel:
     load: float = 0.0
     options: Options = ()
 
-    @property
-    def key(self) -> str:
+    def __str__(self) -> str:
         """All of it in words."""
         words = [f"event {self.mode} n={self.n} T={self.packet_slots} ta={self.ta_us} us"]
         words.append(self.traffic)
@@ -103,22 +102,10 @@ class Channel:
         """Simulate the plan of a seed to its end, compiled."""
         return simulate(self.plan(seed))
 
-    def measure(self, seeds: Sequence[int]) -> dict[str, list[Any]]:
-        """One number a seed of all that is counted."""
-        found: dict[str, list[Any]] = {}
-        for seed in seeds:
-            for name, value in measured(self.run(seed)).items():
-                found.setdefault(name, []).append(value)
-        return found
-
-    def key_of(self, seeds: Sequence[int]) -> str:
-        """The key of its point."""
-        return f"{self.key} seeds {seeds[0]}-{seeds[-1]}"
-
     def point(self, seeds: Sequence[int]) -> Point:
         """The point that measures it."""
         cost = 0.004 + 8e-5 * self.n * self.packets
-        return Point.of(self.key_of(seeds), cost * len(seeds), self.measure, seeds)
+        return Point.each(str(self), cost, seeds, measure, self)
 
 
 def _delays(n: int, seed: int, low: int, high: int) -> list[list[int]]:
@@ -127,24 +114,22 @@ def _delays(n: int, seed: int, low: int, high: int) -> list[list[int]]:
     return [[0 if i == j else drawn[min(i, j) * n + max(i, j)] for j in range(n)] for i in range(n)]
 
 
-def measured(result: RadioResult) -> dict[str, Any]:
+def measure(channel: Channel, seed: int) -> dict[str, Any]:
     """What the figures need of a run."""
+    result = channel.run(seed)
     length, slot = radio.duration_us(result), result.plan.params["slot_us"]
-    spent = np.bincount(radio.settled(result)["node"], minlength=result.plan.stations)
     return {
         "throughput": radio.throughput(result),
         "duration": None if length is None else length / slot,
-        "jain": radio.jain(spent),
         "jain_round": radio.jain_round(result),
         "fifo": radio.fifo(result),
         "ordered": is_ordered(result) if radio.traffic_of(result.plan) == "disaster" else None,
-        "collisions": int(np.count_nonzero(radio.groups(result).collision)),
         "open": sum(len(times) for times in result.plan.arrivals) - result.counts["completed"]
         if not result.plan.saturated
         else result.plan.wanted - min(result.plan.wanted, result.counts["completed"]),
         "delay": radio.delay_slots(result),
         "waits": waits(result) if result.plan.saturated else None,
-        **{name: result.counts[name] for name in ("completed", "silent", "partial")},
+        **{name: result.counts[name] for name in ("completed", "silent")},
     }
 
 
@@ -152,11 +137,9 @@ def waits(result: Any) -> list[float]:
     """Slots between two packets of a station that got through: 50, 95, 99 % and the longest."""
     found = radio.settled(result)
     slot = result.plan.params["slot_us"]
-    gaps = [
-        np.diff(found["end"][found["node"] == node]) / slot for node in range(result.plan.stations)
-    ]
-    together = np.concatenate(gaps)
-    percentiles: list[float] = np.percentile(together, (50, 95, 99, 100)).tolist()
+    ends = (found["end"][found["node"] == node] for node in range(result.plan.stations))
+    gaps = np.concatenate([np.diff(one) / slot for one in ends])
+    percentiles: list[float] = np.percentile(gaps, (50, 95, 99, 100)).tolist()
     return percentiles
 
 

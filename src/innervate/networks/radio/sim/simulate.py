@@ -128,9 +128,9 @@ class RadioSimulation(Channel):
         if fault.action in (KILL, LEAVE):
             put(self.world.run, 0, wanted=0)
 
-    def story(self) -> str:
+    def broken_line(self) -> str:
         """The broken invariant, in one line."""
-        return story(self.plan, self.world)
+        return broken_line(self.plan, self.world)
 
 
 def simulation(
@@ -152,7 +152,7 @@ def simulation(
     return RadioSimulation(plan, world, advance, name)
 
 
-def story(plan: Any, world: w.World) -> str:
+def broken_line(plan: Any, world: w.World) -> str:
     """A broken invariant in one line."""
     node = int(get(world.run, 0, "broken_node"))
     at = max(int(get(world.run, 0, "broken_at")), 0) / 1e6

@@ -7,19 +7,17 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from innervate.networks.skin.papers.common import (
-    RULE_NAMES,
-    RULES,
-    Case,
-    joined,
-    percent,
-    periods,
-    recovery_point,
-    seeds_of,
-)
-from innervate.papers.experiment import Claim, Experiment, Point, Results, Span, verdict
+from innervate.networks.skin.papers.common import RULES, Case, Rule, rule_panels, seeds_of
+from innervate.papers import drawing
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.words import joined, percent
 from innervate.plot import style
 
+TITLE = "Abstract, IV: recovery in at most 50 ms, 40 ms"
+CAPTION = (
+    "Cut of interface 1 at 250 Hz; share of the recoveries that were over after a time. Dotted: 40 "
+    "and 50 ms."
+)
 # The largest skins whose recovery the paper measured.
 SKINS = (("setup-1", 99), ("setup-8", 204))
 HZ = 250
@@ -34,64 +32,55 @@ def seeds(quick: bool) -> range:
     return seeds_of(6 if quick else 40)
 
 
-def case(setup: str, rule: tuple[str, int], k: int) -> Case:
+def case(setup: str, rule: Rule, k: int) -> Case:
     """The case of one setting, with periodic beacons."""
-    return Case(setup, HZ, k, rule[0], "periodic", rule[1])
+    return Case(setup, HZ, k, rule.name, "periodic", rule.m)
 
 
 def points(quick: bool) -> list[Point]:
     """Both skins, all rules and k."""
-    return [
-        recovery_point(case(setup, rule, k), seeds(quick))
-        for rule in RULES
-        for setup, _ in SKINS
-        for k in KS
-    ]
+    found = [case(setup, rule, k) for rule in RULES for setup, _ in SKINS for k in KS]
+    return [one.point(seeds(quick)) for one in found]
 
 
-def converged_ms(results: Results, quick: bool, setup: str, rule: tuple[str, int], k: int) -> Any:
+def converged_ms(got: Measured, setup: str, rule: Rule, k: int) -> Any:
     """Time from the failure to the last change of a parent, ms, one value a seed."""
     one = case(setup, rule, k)
-    return periods(results, one, seeds(quick), "converged_ms") * one.period_ms
+    return one.periods(got, seeds(got.quick), "converged_ms") * one.period_ms
 
 
-def draw(results: Results, quick: bool) -> Figure:
+def draw(got: Measured) -> Figure:
     """Share of the recoveries over their time, a panel a rule."""
-    figure, axes = style.panels(style.WIDE_IN, 3.0, 1, len(RULES), sharey=True)
-    for ax, letter, rule in zip(axes, "abc", RULES, strict=True):
+    figure, axes = rule_panels(3.0)
+    for ax, rule in zip(axes, RULES, strict=True):
         for i, k in enumerate(KS):
             for j, (setup, cells) in enumerate(SKINS):
-                ms = np.sort(converged_ms(results, quick, setup, rule, k))
-                share = 100 * np.arange(1, len(ms) + 1) / len(ms)
-                ax.step(ms, share, where="post", color=style.SERIES[i], ls=style.DASHES[j],
-                        label=f"k = {k}, {cells} cells")  # fmt: skip
+                ms = np.sort(converged_ms(got, setup, rule, k))
+                drawing.cumulated(ax, ms, color=style.SERIES[i], ls=style.DASHES[j],
+                                  label=f"k = {k}, {cells} cells")  # fmt: skip
         for _, limit in PRINTED:
             ax.axvline(limit, color=style.BLACK, lw=0.9, ls=":")
-        ax.set_xscale("log")
-        ax.set_xlim(20, 600)
+        ax.set(xscale="log", xlim=(20, 600), xlabel="convergence (ms)")
         ax.set_xticks([20, 40, 50, 100, 200, 500], ["20", "40", "", "100", "200", "500"])
         ax.minorticks_off()
-        ax.set_xlabel("convergence (ms)")
-        ax.set_title(f"{letter}  {RULE_NAMES[rule[0]]}")
-    axes[0].set_ylabel("recoveries (%)")
-    axes[0].set_ylim(0, 103)
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    axes[0].set(ylabel="recoveries (%)", ylim=(0, 103))
+    drawing.legend(figure, axes[0], "upper center", ncols=3)
     return figure
 
 
-def judge(results: Results, quick: bool) -> list[Claim]:
+def judge(got: Measured) -> Claims:
     """Both numbers, for every rule."""
-    return [
-        _claim(results, quick, where, limit, rule) for where, limit in PRINTED for rule in RULES
-    ]
+    for where, limit in PRINTED:
+        for rule in RULES:
+            yield _within(got, where, limit, rule)
 
 
-def _claim(results: Results, quick: bool, where: str, limit: float, rule: tuple[str, int]) -> Claim:
+def _within(got: Measured, where: str, limit: float, rule: Rule) -> Claim:
     words, decisive = [], []
     for k in KS:
         for setup, cells in SKINS:
-            ms = converged_ms(results, quick, setup, rule, k)
-            share = float((ms <= limit).mean())
+            ms = converged_ms(got, setup, rule, k)
+            share = Span(high=limit).share(ms)
             words.append(
                 f"k = {k}, {cells} cells: {percent(share)} (mean {np.nanmean(ms):.0f}, worst "
                 f"{np.nanmax(ms):.0f} ms)"
@@ -100,22 +89,11 @@ def _claim(results: Results, quick: bool, where: str, limit: float, rule: tuple[
                 decisive.append(share)
     return Claim(
         where,
-        f"{RULE_NAMES[rule[0]]}: a recovery converges in at most {limit:.0f} ms (250 Hz; k is not "
+        f"{rule.words}: a recovery converges in at most {limit:.0f} ms (250 Hz; k is not "
         f"given, judged at k = {K})",
-        f"share within it, of {len(seeds(quick))} cuts of an interface cable each: "
+        f"share within it, of {len(seeds(got.quick))} cuts of an interface cable each: "
         + joined(words),
         verdict(ALL.has(*decisive), "E29"),
         "E29: 40 ms is the mean of Eq. 4 at k = 3, 50 ms the upper end of its band at k = 2 to 3: "
         "neither is a bound; 204 cells are deeper than the 99 that Eq. 4 is about",
     )
-
-
-EXPERIMENT = Experiment(
-    "at_most",
-    "Abstract, IV: recovery in at most 50 ms, 40 ms",
-    "Cut of interface 1 at 250 Hz; share of the recoveries that were over after a time. Dotted: 40 "
-    "and 50 ms.",
-    points,
-    draw,
-    judge,
-)

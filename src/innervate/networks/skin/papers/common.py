@@ -1,32 +1,75 @@
-"""What several figures of the skin paper share: setups, recoveries after a cut, words."""
+"""What several figures of the skin paper share: rules, skins, recoveries after a cut."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from innervate import scenario
 from innervate.networks.skin.analysis.rows import loop_episodes
 from innervate.networks.skin.analysis.summary import recoveries
 from innervate.networks.skin.scenario.plan import Plan
 from innervate.networks.skin.sim.simulate import simulate
-from innervate.papers.experiment import Point, Results
+from innervate.papers.experiment import Measured, Point
+from innervate.plot import style
+from innervate.scenario import Scenario
 from innervate.sim.cables.simulation import Result
 
-# Rules of which several figures show the recoveries, with their M (0 = min(k, 5)), and their names.
-RULES = (("feasible", 0), ("paper", 1), ("paper-lax", 1))
-RULE_NAMES = {
-    "feasible": "rule feasible",
-    "paper": "printed rule",
-    "paper-lax": "printed rule, laxer reading",
-}
+SETUPS = tuple(f"setup-{i}" for i in range(1, 9))
 SETTLE_PERIODS = 60  # until nothing changes any more: listening, the deepest cell, its fresh number
 DRAWN_PERIODS = 5  # the cut comes at a random moment of these
 WATCH_PERIODS = 100
 INTERFACE = 1  # the port whose cable is cut
+SILENT = {"data.rate_hz": 0}
+
+
+class Rule(NamedTuple):
+    """A rule of Algorithm 2, its M (0 = min(k, 5)), and what claims call it."""
+
+    name: str
+    m: int
+    words: str = ""
+
+
+# Those of which several figures show the recoveries.
+RULES = (
+    Rule("feasible", 0, "rule feasible"),
+    Rule("paper", 1, "printed rule"),
+    Rule("paper-lax", 1, "printed rule, laxer reading"),
+)
+
+
+def loaded(
+    setup: str, seed: int, duration_s: float, more: Mapping[str, Any] | None = None, **protocol: Any
+) -> Scenario:
+    """A bundled skin without its events.
+
+    Args:
+        setup: its name.
+        seed: of the run.
+        duration_s: of the run.
+        more: other keys of the scenario, dotted.
+        protocol: keys of [protocol]; None leaves one as it is.
+    """
+    set_ = {f"protocol.{name}": value for name, value in protocol.items() if value is not None}
+    changes = {**set_, "event": [], "duration_s": duration_s, **(more or {})}
+    return scenario.load(setup, changes.items(), seed)
+
+
+def simulated(tables: dict[str, Any], seed: int, **options: Any) -> Result:
+    """Run a scenario given as tables."""
+    return simulate(scenario.plan(scenario.from_dict(tables, seed=seed)), **options)
+
+
+def plan_of(setup: str) -> Plan:
+    """A bundled skin in which nothing happens."""
+    made: Plan = scenario.plan(scenario.load(setup, [("event", [])]))
+    return made
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,62 +97,43 @@ class Case:
         """The beacon period T_b, ms."""
         return 1000.0 / self.beacon_hz
 
-    def key(self, seeds: Sequence[int]) -> str:
+    def __str__(self) -> str:
         """All of it in words."""
         number = f"m={self.m}" if self.m else "m=min(k,5)"
         number += f", gap {self.gap_us} us" if self.gap_us >= 0 else ""
         return (
             f"recovery {self.setup} {self.rule} {self.updates} {self.beacon_hz:g} Hz k={self.k} "
-            f"{number}, {self.cut}, seeds {seeds[0]}-{seeds[-1]}"
+            f"{number}, {self.cut}"
         )
 
     def plan(self, seed: int) -> Plan:
         """The plan of one run."""
         period = 1 / self.beacon_hz
         settled = SETTLE_PERIODS * period
-        event: dict[str, Any] = {
-            "action": "cut",
-            "at_s": [settled, settled + DRAWN_PERIODS * period],
-        }
         what, which = self.cut.split()
-        event |= {"random": which} if what == "random" else {what: int(which)}
-        overrides: list[tuple[str, Any]] = [
-            ("protocol.rule", self.rule),
-            ("protocol.updates", self.updates),
-            ("protocol.beacon_hz", self.beacon_hz),
-            ("protocol.k", self.k),
-            ("data.rate_hz", 0),
-            ("event", [event]),
-            ("duration_s", settled + (DRAWN_PERIODS + self.k + WATCH_PERIODS) * period),
-        ]
-        if self.m:
-            overrides.append(("protocol.m", self.m))
-        if self.gap_us >= 0:
-            overrides.append(("protocol.gap_us", self.gap_us))
-        made: Plan = scenario.plan(scenario.load(self.setup, overrides, seed))
+        whose = {"random": which} if what == "random" else {what: int(which)}
+        event = {"action": "cut", "at_s": [settled, settled + DRAWN_PERIODS * period], **whose}
+        duration_s = settled + (DRAWN_PERIODS + self.k + WATCH_PERIODS) * period
+        made: Plan = scenario.plan(loaded(
+            self.setup, seed, duration_s, SILENT | {"event": [event]}, rule=self.rule,
+            updates=self.updates, beacon_hz=self.beacon_hz, k=self.k, m=self.m or None,
+            gap_us=self.gap_us if self.gap_us >= 0 else None,
+        ))  # fmt: skip
         return made
 
+    def point(self, seeds: range) -> Point:
+        """The point that measures its recoveries."""
+        return Point.each(str(self), 0.02, seeds, recovery, self)
 
-def measure_recoveries(case: Case, seeds: Sequence[int]) -> dict[str, list[Any]]:
-    """One number a seed of everything a recovery has, and how many loops there were."""
-    found: dict[str, list[Any]] = {}
-    for seed in seeds:
-        result = simulate(case.plan(seed))
-        one = recoveries(result)[0] | {"loops": len(loop_episodes(result).cell)}
-        for name, value in one.items():
-            found.setdefault(name, []).append(value)
-    return found
+    def periods(self, got: Measured, seeds: range, name: str) -> Any:
+        """A time of every seed in beacon periods; NaN where it did not happen."""
+        return got.floats(self.point(seeds), name) / self.period_ms
 
 
-def recovery_point(case: Case, seeds: Sequence[int]) -> Point:
-    """The point of a case: measure_recoveries over the seeds."""
-    return Point.of(case.key(seeds), 0.02 * len(seeds), measure_recoveries, case, seeds)
-
-
-def periods(results: Results, case: Case, seeds: Sequence[int], name: str) -> Any:
-    """A time of every seed in beacon periods; NaN where it did not happen."""
-    values = results[case.key(seeds)][name]
-    return np.array([np.nan if ms is None else ms for ms in values]) / case.period_ms
+def recovery(case: Case, seed: int) -> dict[str, Any]:
+    """Everything a recovery has, and how many loops there were."""
+    result = simulate(case.plan(seed))
+    return {**recoveries(result)[0], "loops": len(loop_episodes(result).cell)}
 
 
 def seeds_of(count: int) -> range:
@@ -117,21 +141,19 @@ def seeds_of(count: int) -> range:
     return range(1, count + 1)
 
 
-def simulated(tables: dict[str, Any], seed: int, **options: Any) -> Result:
-    """Run a scenario given as tables."""
-    return simulate(scenario.plan(scenario.from_dict(tables, seed=seed)), **options)
-
-
-def percent(share: float, digits: int = 0) -> str:
-    """A share, 0 to 1, as "12 %"."""
-    return f"{100 * share:.{digits}f} %"
-
-
 def mean_of(values: Any) -> float:
     """Mean of what did happen."""
     return float(np.nanmean(values))
 
 
-def joined(words: Iterable[Any]) -> str:
-    """Things as text, with commas between them."""
-    return ", ".join(str(word) for word in words)
+def rule_panels(height_in: float) -> tuple[Figure, list[Axes]]:
+    """A panel a rule, with its letter and name."""
+    figure, axes = style.panels(style.WIDE_IN, height_in, 1, len(RULES), sharey=True)
+    for ax, letter, rule in zip(axes, "abc", RULES, strict=True):
+        ax.set_title(f"{letter}  {rule.words}")
+    return figure, axes
+
+
+def number(setup: str) -> str:
+    """A setup in claims and at axes."""
+    return f"setup {setup[-1]}"

@@ -11,23 +11,31 @@ from matplotlib.figure import Figure
 
 from innervate import scenario
 from innervate.networks.skin.papers.common import (
-    RULE_NAMES,
     RULES,
+    SETUPS,
     Case,
-    percent,
-    recovery_point,
+    Rule,
+    plan_of,
+    rule_panels,
     seeds_of,
-)
-from innervate.papers.experiment import Claim, Experiment, Point, Results, Span, verdict
+)  # fmt: skip
+from innervate.papers import drawing
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.words import percent
 from innervate.plot import style
 
-SETUPS = tuple(f"setup-{i}" for i in range(1, 9))
+TITLE = "Eq. 7: convergence after any single failure"
+CAPTION = (
+    "One cable fails at a random moment at 250 Hz; dots: failures that cut some cell off. Line and "
+    "grey band: (d_m + k) T and the error bar of 3 T."
+)
 HZ = 250
 K = 3
 BAND = 3
 ALL = Span(1.0, 1.0)  # share of the failures: a bound has no exceptions
 # ceil(h/2) where the interfaces lie opposite each other.
 HALF = {"setup-1": 7, "setup-2": 5, "setup-3": 4, "setup-4": 3}
+KINDS = {"random": "a random cable", "interface": "an interface cable"}
 
 
 def seeds(quick: bool, cut: str) -> range:
@@ -47,144 +55,78 @@ def cuts(setup: str) -> list[str]:
 @cache
 def depth(setup: str) -> int:
     """The deepest cell of a setup, d_m."""
-    return int(scenario.plan(scenario.load(setup)).depth_max)
+    return int(plan_of(setup).depth_max)
 
 
-def case(setup: str, rule: tuple[str, int], cut: str) -> Case:
+def case(setup: str, rule: Rule, cut: str) -> Case:
     """The case of one setting, with periodic beacons and one cut."""
-    return Case(setup, HZ, K, rule[0], "periodic", rule[1], cut)
+    return Case(setup, HZ, K, rule.name, "periodic", rule.m, cut)
 
 
 def points(quick: bool) -> list[Point]:
     """All setups, all cuts, all rules."""
     return [
-        recovery_point(case(setup, rule, cut), seeds(quick, cut))
+        case(setup, rule, cut).point(seeds(quick, cut))
         for rule in RULES
         for setup in SETUPS
         for cut in cuts(setup)
     ]
 
 
-def ratios(results: Results, quick: bool, setup: str, rule: tuple[str, int], kind: str) -> Any:
+def ratios(got: Measured, setup: str, rule: Rule, kind: str) -> Any:
     """(convergence, routed) in periods of all failures that cut somebody off, a row each."""
-    rows = []
+    rows = [np.empty((0, 2))]
     for cut in cuts(setup):
         if cut.startswith(kind):
-            found = results[case(setup, rule, cut).key(seeds(quick, cut))]
-            columns = (found["converged_ms"], found["routed_ms"], found["cut_cells"])
-            for converged, routed, cells in zip(*columns, strict=True):
-                if cells:
-                    rows.append([np.nan if ms is None else ms for ms in (converged, routed)])
-    return np.array(rows).reshape(-1, 2) * HZ / 1e3
+            point = case(setup, rule, cut).point(seeds(got.quick, cut))
+            both = [got.floats(point, name) for name in ("converged_ms", "routed_ms")]
+            rows.append(np.stack(both, axis=1)[got.floats(point, "cut_cells") > 0])
+    return np.concatenate(rows) * HZ / 1e3
 
 
-def draw(results: Results, quick: bool) -> Figure:
+def draw(got: Measured) -> Figure:
     """Every failure as a dot over the bound of its setup, a panel a rule."""
-    figure, axes = style.panels(style.WIDE_IN, 3.2, 1, len(RULES), sharey=True)
-    for ax, letter, rule in zip(axes, "abc", RULES, strict=True):
-        _panel(ax, results, quick, rule)
-        ax.set_title(f"{letter}  {RULE_NAMES[rule[0]]}")
+    figure, axes = rule_panels(3.2)
+    for ax, rule in zip(axes, RULES, strict=True):
+        _panel(ax, got, rule)
     axes[0].set_ylabel("convergence (periods)")
-    axes[0].set_yscale("log")
-    axes[0].set_yticks([2, 5, 10, 20, 50, 100], ["2", "5", "10", "20", "50", "100"])
-    axes[0].minorticks_off()
+    drawing.logarithmic(axes[0], y=[2, 5, 10, 20, 50, 100])
     axes[0].set_ylim(1.5, 140)
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    drawing.legend(figure, axes[0], "upper center", ncols=4)
     return figure
 
 
-_WORDS = {
-    "deepest": "Eq. 7, $d_m$ = deepest cell, and its band",
-    "half": "Eq. 7, $d_m$ = ceil(h/2)",
-    "random": "a random cable",
-    "interface": "an interface cable",
-}
-
-
-def _once(place: int, what: str) -> str | None:
-    """What the legend says; once a panel."""
-    return _WORDS[what] if place == 0 else None
-
-
-def _panel(ax: Axes, results: Results, quick: bool, rule: tuple[str, int]) -> None:
+def _panel(ax: Axes, got: Measured, rule: Rule) -> None:
     rng = np.random.default_rng(1)
     for x, setup in enumerate(SETUPS):
+        said = (lambda words: words) if x == 0 else (lambda words: None)
         bound = depth(setup) + K
         edges = [x - 0.42, x + 0.42]
         ax.fill_between(edges, bound - BAND, bound + BAND, color=style.FAINT, lw=0)
-        ax.plot(edges, [bound, bound], color=style.BLACK, lw=1, label=_once(x, "deepest"))
+        ax.plot(edges, [bound, bound], color=style.BLACK, lw=1,
+                label=said("Eq. 7, $d_m$ = deepest cell, and its band"))  # fmt: skip
         if setup in HALF:
-            middle = HALF[setup] + K
-            ax.plot(edges, [middle] * 2, color=style.BLACK, lw=0.8, ls=":", label=_once(x, "half"))
-        for kind, i, offset in (("random", 0, -0.2), ("interface", 1, 0.2)):
-            values = ratios(results, quick, setup, rule, kind)[:, 0]
+            ax.plot(edges, [HALF[setup] + K] * 2, color=style.BLACK, lw=0.8, ls=":",
+                    label=said("Eq. 7, $d_m$ = ceil(h/2)"))  # fmt: skip
+        for i, (kind, words) in enumerate(KINDS.items()):
+            values = ratios(got, setup, rule, kind)[:, 0]
             values = values[np.isfinite(values)]
-            jitter = rng.uniform(-0.13, 0.13, len(values))
-            ax.plot(
-                x + offset + jitter,
-                values,
-                style.MARKERS[i],
-                color=style.SERIES[i],
-                ms=1.8,
-                mew=0,
-                alpha=0.6,
-                label=_once(x, kind),
-            )
+            at = x + (-0.2, 0.2)[i] + rng.uniform(-0.13, 0.13, len(values))
+            ax.plot(at, values, style.MARKERS[i], color=style.SERIES[i], ms=1.8, mew=0, alpha=0.6,
+                    label=said(words))  # fmt: skip
     ax.set_xticks(range(len(SETUPS)), [setup[-1] for setup in SETUPS])
     ax.set_xlabel("setup")
 
 
-def judge(results: Results, quick: bool) -> list[Claim]:
+def judge(got: Measured) -> Claims:
     """Bounded, for all rules; a mean for interface cables."""
-    return [
-        *(_bound(results, quick, rule, band) for rule in RULES for band in (BAND, 0)),
-        _mean(results, quick),
-    ]
-
-
-def _all(results: Results, quick: bool, rule: tuple[str, int], kinds: tuple[str, ...]) -> Any:
-    """Convergence minus Eq. 7, and the time until routed minus Eq. 7, of all setups."""
-    parts = [
-        ratios(results, quick, setup, rule, kind) - depth(setup) - K
-        for setup in SETUPS
-        for kind in kinds
-    ]
-    together = np.concatenate(parts)
-    return together[np.isfinite(together[:, 0])]
-
-
-def _bound(results: Results, quick: bool, rule: tuple[str, int], band: int) -> Claim:
-    over = _all(results, quick, rule, ("random", "interface"))
-    share = float((over[:, 0] <= band).mean())
-    routed = float((over[:, 1] <= band).mean())
-    last = ratios(results, quick, SETUPS[-1], rule, "interface")[:, 0] - depth(SETUPS[-1]) - K
-    words = (
-        f"{percent(share, 1)} of {len(over)} failures (setup 8, interface "
-        f"cables: {(last <= band).sum()} of {len(last)}), mean {over[:, 0].mean():+.1f} T, 95 % "
-        f"within {np.percentile(over[:, 0], 95):+.1f} T, worst {over[:, 0].max():+.1f} T; routed "
-        f"within it: {percent(routed, 1)}"
-    )
-    claim = (
-        f"{RULE_NAMES[rule[0]]}: any single failure converges within (d_m + k) T (k = {K}, {HZ} Hz)"
-    )
-    claim += f" + {band} T" if band else ", without the error bar"
-    if rule[0] == "feasible":
-        reason = "with d_m the deepest cell of the setup (E22), not ceil(h/2)"
-    else:
-        reason = (
-            "E25: recoveries count up round loops; E26: with M = 1 parents go on changing long "
-            "after every cell has a route again (phases drift, a nearer port is allowed now and "
-            "then), so the last one comes late"
-        )
-    return Claim("Eq. 7", claim, words, verdict(ALL.has(share), "E21", "E22"), reason)
-
-
-def _mean(results: Results, quick: bool) -> Claim:
-    over = np.concatenate(
-        [ratios(results, quick, s, RULES[0], "interface")[:, 0] - h - K for s, h in HALF.items()]
-    )
+    for rule in RULES:
+        for band in (BAND, 0):
+            yield _bound(got, rule, band)
+    over = np.concatenate([ratios(got, s, RULES[0], "interface")[:, 0] - h - K
+                           for s, h in HALF.items()])  # fmt: skip
     above = float((over > 0).mean())
-    return Claim(
+    yield Claim(
         "Eq. 7",
         "rule feasible: a bound also with d_m = ceil(h/2) (setups 1-4, interface cables)",
         f"{percent(above)} of {len(over)} failures above it, mean {over.mean():+.2f} T",
@@ -193,12 +135,24 @@ def _mean(results: Results, quick: bool) -> Claim:
     )
 
 
-EXPERIMENT = Experiment(
-    "eq7",
-    "Eq. 7: convergence after any single failure",
-    "One cable fails at a random moment at 250 Hz; dots: failures that cut some cell off. Line and "
-    "grey band: (d_m + k) T and the error bar of 3 T.",
-    points,
-    draw,
-    judge,
-)
+def _bound(got: Measured, rule: Rule, band: int) -> Claim:
+    parts = [ratios(got, s, rule, kind) - depth(s) - K for s in SETUPS for kind in KINDS]
+    over = np.concatenate(parts)
+    over = over[np.isfinite(over[:, 0])]
+    share, routed = (Span(high=band).share(part) for part in over.T)
+    last = parts[-1][:, 0]
+    return Claim(
+        "Eq. 7",
+        f"{rule.words}: any single failure converges within (d_m + k) T (k = {K}, {HZ} Hz)"
+        + (f" + {band} T" if band else ", without the error bar"),
+        f"{percent(share, 1)} of {len(over)} failures (setup 8, interface "
+        f"cables: {(last <= band).sum()} of {len(last)}), mean {over[:, 0].mean():+.1f} T, 95 % "
+        f"within {np.percentile(over[:, 0], 95):+.1f} T, worst {over[:, 0].max():+.1f} T; routed "
+        f"within it: {percent(routed, 1)}",
+        verdict(ALL.has(share), "E21", "E22"),
+        "with d_m the deepest cell of the setup (E22), not ceil(h/2)"
+        if rule.name == "feasible"
+        else "E25: recoveries count up round loops; E26: with M = 1 parents go on changing long "
+        "after every cell has a route again (phases drift, a nearer port is allowed now and "
+        "then), so the last one comes late",
+    )

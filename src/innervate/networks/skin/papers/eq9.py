@@ -8,15 +8,19 @@ from matplotlib.figure import Figure
 from innervate import scenario
 from innervate.networks.skin.analysis import formulas
 from innervate.networks.skin.analysis.frames import beacon_share
-from innervate.networks.skin.papers.common import joined
+from innervate.networks.skin.papers.common import loaded
 from innervate.networks.skin.sim.simulate import simulate
-from innervate.papers.experiment import Claim, Experiment, Point, Results, Span, verdict
+from innervate.papers import drawing
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.words import joined
 from innervate.plot import style
 
 SETUP = "setup-1"
 UPDATES = ("periodic", "triggered", "wave")
 PRINTED = {10: 0.006, 100: 0.06}
 PERIODS = 400
+TITLE = "Eq. 9: bandwidth of beacons"
+CAPTION = f"Setup 1, {PERIODS} periods without a failure; mean over all directions of all cables."
 ON_FORMULA = Span(-0.02, 0.02)  # share off Eq. 9
 ON_PRINTED = Span(0.9, 1.1)  # of the printed number
 MORE = Span(-1.0, 0.1)  # beacons of the wave mode beyond Eq. 9
@@ -27,98 +31,70 @@ def hz(quick: bool) -> tuple[int, ...]:
     return (10, 100, 250) if quick else (10, 20, 50, 100, 150, 200, 250)
 
 
-def _key(updates: str, beacon_hz: int) -> str:
-    return f"eq9 {SETUP} {updates} {beacon_hz} Hz, {PERIODS} periods, seed 1"
+def point(updates: str, beacon_hz: int) -> Point:
+    """A run of a frequency and mode."""
+    key = f"eq9 {SETUP} {updates} {beacon_hz} Hz, {PERIODS} periods, seed 1"
+    return Point.of(key, 0.1, measure, updates, beacon_hz)
 
 
 def points(quick: bool) -> list[Point]:
     """A run a frequency and mode."""
-    return [
-        Point.of(_key(updates, f), 0.1, measure, updates, f)
-        for updates in UPDATES
-        for f in hz(quick)
-    ]
+    return [point(updates, f) for updates in UPDATES for f in hz(quick)]
 
 
 def measure(updates: str, beacon_hz: int) -> float | None:
     """Share of the cables' capacity that beacons took, start-up included, nothing failing."""
-    overrides = [
-        ("protocol.updates", updates),
-        ("protocol.beacon_hz", beacon_hz),
-        ("event", []),
-        ("duration_s", PERIODS / beacon_hz),
-    ]
-    return beacon_share(simulate(scenario.plan(scenario.load(SETUP, overrides, 1))))
+    made = loaded(SETUP, 1, PERIODS / beacon_hz, updates=updates, beacon_hz=beacon_hz)
+    return beacon_share(simulate(scenario.plan(made)))
 
 
-def draw(results: Results, quick: bool) -> Figure:
+def draw(got: Measured) -> Figure:
     """Eq. 9 as it computes, as printed, and as measured."""
     figure, (ax,) = style.panels(style.WIDE_IN, 2.8)
     fine = np.array([8, 300])
     shares = [100 * formulas.beacon_share(f) for f in fine]
     ax.plot(fine, shares, color=style.SOFT, label="Eq. 9", zorder=1)
     for i, updates in enumerate(UPDATES):
-        ax.plot(
-            hz(quick),
-            [100 * results[_key(updates, f)] for f in hz(quick)],
-            style.MARKERS[i],
-            color=style.SERIES[i],
-            mfc="none" if i else style.SERIES[i],
-            ms=3.5 + 1.5 * i,
-            label=f"measured, {updates}",
-        )
-    ax.plot(
-        list(PRINTED), [100 * share for share in PRINTED.values()], "x", color=style.BLACK, ms=5,
-        mew=1.4, label="printed numbers",
-    )  # fmt: skip
-    ax.set_xscale("log")
-    ax.set_yscale("log")
-    ax.set_xticks([10, 20, 50, 100, 250], ["10", "20", "50", "100", "250"])
-    ax.set_yticks([0.05, 0.1, 0.5, 1, 5, 10], ["0.05", "0.1", "0.5", "1", "5", "10"])
-    ax.minorticks_off()
-    ax.set_ylim(0.03, 14)
-    ax.set_xlabel("beacon frequency $f_b$ (Hz)")
+        colour = style.SERIES[i]
+        ax.plot(hz(got.quick), [100 * got[point(updates, f)] for f in hz(got.quick)],
+                style.MARKERS[i], color=colour, mfc="none" if i else colour, ms=3.5 + 1.5 * i,
+                label=f"measured, {updates}")  # fmt: skip
+    printed = [100 * share for share in PRINTED.values()]
+    ax.plot(list(PRINTED), printed, "x", color=style.BLACK, ms=5, mew=1.4, label="printed numbers")
+    drawing.logarithmic(ax, [10, 20, 50, 100, 250], [0.05, 0.1, 0.5, 1, 5, 10])
+    ax.set(ylim=(0.03, 14), xlabel="beacon frequency $f_b$ (Hz)")
     ax.set_ylabel("share of the bandwidth (%)")
     ax.legend(loc="lower right")
     return figure
 
 
-def judge(results: Results, quick: bool) -> list[Claim]:
+def judge(got: Measured) -> Claims:
     """The formula, the printed numbers, the price of waves."""
-    periodic = {f: results[_key("periodic", f)] for f in hz(quick)}
-    off = [share / formulas.beacon_share(f) - 1 for f, share in periodic.items()]
-    wave = [results[_key("wave", f)] / formulas.beacon_share(f) - 1 for f in hz(quick)]
-    shown = {f: periodic[f] for f in (10, 100, 250) if f in periodic}
-    words = joined(f"{100 * share:.3f} % at {f} Hz" for f, share in shown.items())
-    return [
-        Claim(
-            "Eq. 9",
-            f"beacons take f_b * 240 bit / 4 Mbit/s (within {100 * ON_FORMULA.high:.0f} %)",
-            f"{words}; {100 * min(off):+.1f} to {100 * max(off):+.1f} % off the formula",
-            verdict(ON_FORMULA.has(*off)),
-        ),
-        Claim(
-            "Eq. 9",
-            "0.6 % at 10 Hz, 6 % at 100 Hz",
-            joined(f"{100 * periodic[f]:.3f} % at {f} Hz" for f in PRINTED),
-            verdict(ON_PRINTED.has(*(periodic[f] / share for f, share in PRINTED.items()))),
-            "E28: the printed numbers are ten times what Eq. 9 gives",
-        ),
-        Claim(
-            "Eq. 9",
-            "beyond the paper: wave mode needs at most a tenth more beacons than Eq. 9",
-            f"{100 * min(wave):+.1f} % to {100 * max(wave):+.1f} %, nothing failing",
-            verdict(MORE.has(*wave)),
-            "a tick stays silent when its beacon went out with a wave shortly before",
-        ),
-    ]
-
-
-EXPERIMENT = Experiment(
-    "eq9",
-    "Eq. 9: bandwidth of beacons",
-    f"Setup 1, {PERIODS} periods without a failure; mean over all directions of all cables.",
-    points,
-    draw,
-    judge,
-)
+    periodic, wave = (
+        {f: got[point(updates, f)] for f in hz(got.quick)} for updates in ("periodic", "wave")
+    )
+    off, more = (
+        [share / formulas.beacon_share(f) - 1 for f, share in found.items()]
+        for found in (periodic, wave)
+    )
+    yield Claim(
+        "Eq. 9",
+        f"beacons take f_b * 240 bit / 4 Mbit/s (within {100 * ON_FORMULA.high:.0f} %)",
+        joined(f"{100 * periodic[f]:.3f} % at {f} Hz" for f in (10, 100, 250))
+        + f"; {100 * min(off):+.1f} to {100 * max(off):+.1f} % off the formula",
+        verdict(ON_FORMULA.has(*off)),
+    )
+    yield Claim(
+        "Eq. 9",
+        "0.6 % at 10 Hz, 6 % at 100 Hz",
+        joined(f"{100 * periodic[f]:.3f} % at {f} Hz" for f in PRINTED),
+        verdict(ON_PRINTED.has(*(periodic[f] / share for f, share in PRINTED.items()))),
+        "E28: the printed numbers are ten times what Eq. 9 gives",
+    )
+    yield Claim(
+        "Eq. 9",
+        "beyond the paper: wave mode needs at most a tenth more beacons than Eq. 9",
+        f"{100 * min(more):+.1f} % to {100 * max(more):+.1f} %, nothing failing",
+        verdict(MORE.has(*more)),
+        "a tick stays silent when its beacon went out with a wave shortly before",
+    )

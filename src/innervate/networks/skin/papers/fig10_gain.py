@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from innervate.analysis.intervals import mean_interval
-from innervate.networks.skin.papers.common import joined, percent
+from innervate.networks.skin.papers.common import number
 from innervate.networks.skin.papers.fig10_runs import (
     DYNAMIC,
     EVEN,
@@ -15,8 +15,9 @@ from innervate.networks.skin.papers.fig10_runs import (
     Mode,
     seeds,
     values,
-)
-from innervate.papers.experiment import Claim, Results, Span, about, verdict
+)  # fmt: skip
+from innervate.papers.experiment import Claim, Claims, Measured, Span, about, verdict
+from innervate.papers.words import joined, percent
 
 TEN_POINTS = about(0.10)
 ASKED_POINTS = Span(0.10)
@@ -27,37 +28,34 @@ FIFTH = about(0.20)
 UPPER = 95  # percentile of the trees that stands for "at most"
 
 
-def judge(results: Results, quick: bool) -> list[Claim]:
+def judge(got: Measured) -> Claims:
     """Points gained, with uneven and even forwarding, at most, spread, the largest subnetwork."""
-    return [
-        *(_gain(results, quick, setup) for setup in SETUPS),
-        _even(results, quick),
-        _asked(results, quick),
-        _most(results, quick),
-        _spread(results, quick),
-        _largest(results, quick),
-    ]
+    for setup in SETUPS:
+        yield _gain(got, setup)
+    yield from _means(got)
+    yield _most(got)
+    yield _spread(got)
+    yield _largest(got)
 
 
-def gains(results: Results, quick: bool, setup: str, mode: Mode = STATIC) -> np.ndarray:
+def gains(got: Measured, setup: str, mode: Mode = STATIC) -> np.ndarray:
     """Loss of every static tree minus the mean dynamic loss."""
-    static = values(results, quick, setup, mode, "loss")
-    return static - float(values(results, quick, setup, DYNAMIC, "loss").mean())
+    return values(got, setup, mode, "loss") - float(values(got, setup, DYNAMIC, "loss").mean())
 
 
 def _points(share: float) -> str:
     return f"{100 * share:.1f}"
 
 
-def _gain(results: Results, quick: bool, setup: str) -> Claim:
-    found = gains(results, quick, setup)
-    static = values(results, quick, setup, STATIC, "loss")
+def _gain(got: Measured, setup: str) -> Claim:
+    found = gains(got, setup)
+    static = values(got, setup, STATIC, "loss")
     mean = mean_interval(static.tolist())
     low, middle, high = np.percentile(found, [5, 50, 95])
     passed = TEN_POINTS.has(float(found.mean()))
     return Claim(
         "10",
-        f"setup {setup[-1]}: about 10 points less loss than the static tree (the mean "
+        f"{number(setup)}: about 10 points less loss than the static tree (the mean "
         f"{_points(TEN_POINTS.low)} to {_points(TEN_POINTS.high)})",
         f"{100 * found.mean():.2f} points less: static {percent(mean.value, 1)} (95 % interval "
         f"{percent(mean.low, 1)} to {percent(mean.high, 1)}) over {len(found)} trees, dynamic "
@@ -69,41 +67,38 @@ def _gain(results: Results, quick: bool, setup: str) -> Claim:
     )
 
 
-def _even(results: Results, quick: bool) -> Claim:
-    means = {s: float(gains(results, quick, s, EVEN).mean()) for s in SETUPS}
-    words = joined(f"setup {s[-1]} {_points(means[s])}" for s in SETUPS)
-    return Claim(
+def _means(got: Measured) -> Claims:
+    even = {setup: float(gains(got, setup, EVEN).mean()) for setup in SETUPS}
+    yield Claim(
         "10",
         "about 10 points in every setup also where cells forward what sets the tree up evenly "
         f"(after {EVEN.forward_us[0]} to {EVEN.forward_us[1]} us, at most a hop's latency)",
-        f"points less loss: {words}; {len(seeds(quick, EVEN))} trees each",
-        verdict(TEN_POINTS.has(*means.values()), "E32", "E34"),
+        f"points less loss: {joined(f'{number(s)} {_points(mean)}' for s, mean in even.items())}; "
+        f"{len(seeds(got.quick, EVEN))} trees each",
+        verdict(TEN_POINTS.has(*even.values()), "E32", "E34"),
         "how evenly cells of the static protocol forward is not published, and decides how uneven "
         "the trees are: the figure's gains rest on it",
     )
-
-
-def _asked(results: Results, quick: bool) -> Claim:
-    means = {s: float(gains(results, quick, s).mean()) for s in ASKED}
-    return Claim(
+    means = {setup: float(gains(got, setup).mean()) for setup in ASKED}
+    yield Claim(
         "10",
         "setups 5 and 6: at least 10 points less loss than the static tree (asked for)",
-        joined(f"setup {s[-1]} {_points(mean)}" for s, mean in means.items()),
+        joined(f"{number(setup)} {_points(mean)}" for setup, mean in means.items()),
         verdict(ASKED_POINTS.has(*means.values())),
     )
 
 
-def _most(results: Results, quick: bool) -> Claim:
-    found = {s: gains(results, quick, s) for s in SETUPS}
-    upper = {s: float(np.percentile(found[s], UPPER)) for s in SETUPS}
-    top = max(upper, key=lambda s: upper[s])
+def _most(got: Measured) -> Claim:
+    found = {setup: gains(got, setup) for setup in SETUPS}
+    upper = {setup: float(np.percentile(found[setup], UPPER)) for setup in SETUPS}
+    top = max(upper, key=lambda setup: upper[setup])
     reach = float((found[top] >= THIRTY_POINTS.low).mean())
-    words = joined(f"setup {s[-1]} {_points(upper[s])}" for s in SETUPS)
+    words = joined(f"{number(setup)} {_points(upper[setup])}" for setup in SETUPS)
     return Claim(
         "10",
         "at most about 30 points less loss (in one setup, of its trees the "
         f"{UPPER}th percentile, {_points(THIRTY_POINTS.low)} to {_points(THIRTY_POINTS.high)})",
-        f"{UPPER}th percentile over {len(found[top])} trees: {words}; setup {top[-1]}: mean "
+        f"{UPPER}th percentile over {len(found[top])} trees: {words}; {number(top)}: mean "
         f"{_points(found[top].mean())}, {percent(reach)} of the trees reach "
         f"{_points(THIRTY_POINTS.low)}, the worst {_points(found[top].max())}",
         verdict(THIRTY_POINTS.has(upper[top]), "E32", "E34"),
@@ -111,29 +106,28 @@ def _most(results: Results, quick: bool) -> Claim:
     )
 
 
-def _spread(results: Results, quick: bool) -> Claim:
-    spread = {
-        mode: max(float(np.ptp(values(results, quick, s, mode, "loss"))) for s in SETUPS)
-        for mode in MODES
-    }
+def _spread(got: Measured) -> Claim:
+    static, dynamic = (
+        max(float(np.ptp(values(got, setup, mode, "loss"))) for setup in SETUPS) for mode in MODES
+    )
     return Claim(
         "10",
         "more deterministic results (loss spreads at most a third as much as between static trees)",
-        f"loss differs by up to {_points(spread[STATIC])} points between static trees, "
-        f"{_points(spread[DYNAMIC])} dynamic",
-        verdict(STEADIER.has(spread[DYNAMIC] / spread[STATIC])),
+        f"loss differs by up to {_points(static)} points between static trees, "
+        f"{_points(dynamic)} dynamic",
+        verdict(STEADIER.has(dynamic / static)),
     )
 
 
-def _largest(results: Results, quick: bool) -> Claim:
+def _largest(got: Measured) -> Claim:
     less = {}
     for setup in SETUPS:
-        static, dynamic = (values(results, quick, setup, m, "loads").max(axis=1) for m in MODES)
+        static, dynamic = (values(got, setup, mode, "loads").max(axis=1) for mode in MODES)
         less[setup] = 1 - float(dynamic.mean()) / static
     words = joined(
-        f"setup {s[-1]} {percent(found.mean())} (by tree {percent(found.min())} to "
+        f"{number(setup)} {percent(found.mean())} (by tree {percent(found.min())} to "
         f"{percent(found.max())})"
-        for s, found in less.items()
+        for setup, found in less.items()
     )
     return Claim(
         "IV",

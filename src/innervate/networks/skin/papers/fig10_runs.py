@@ -6,12 +6,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from innervate import scenario
 from innervate.networks.skin.analysis import formulas
 from innervate.networks.skin.analysis.load import balance_factor, port_loads
-from innervate.networks.skin.papers.common import seeds_of
+from innervate.networks.skin.papers.common import loaded, seeds_of
 from innervate.networks.skin.papers.steps import Steps
-from innervate.papers.experiment import Point, Results
+from innervate.papers.experiment import Measured, Point
+from innervate.plot import style
 from innervate.sim.cables.wires import DELIVERED, OFFERED
 
 SETUPS = ("setup-5", "setup-6", "setup-7")
@@ -36,7 +36,7 @@ QUEUED = Mode("feasible", "dynamic, longer queues", 40.0, 16)
 # How unevenly cells forward what sets the tree up is not published: at most a hop's latency.
 EVEN = Mode("static", "static tree, even", 4.0, forward_us=(0, 160))
 MODES = (STATIC, DYNAMIC)
-DRAWN = (STATIC, EVEN, DYNAMIC)
+DRAWN = {STATIC: style.VERMILION, EVEN: style.ORANGE, DYNAMIC: style.BLUE}
 
 
 def seeds(quick: bool, mode: Mode) -> range:
@@ -48,68 +48,50 @@ def seeds(quick: bool, mode: Mode) -> range:
     return seeds_of(10 if mode is DYNAMIC else 40)
 
 
-def window_s(quick: bool) -> float:
-    """How long data are counted."""
-    return 4.0 if quick else 10.0
-
-
-def _key(setup: str, mode: Mode, seed: int, quick: bool) -> str:
-    return (
-        f"fig10 {setup} {mode.rule} {BEACON_HZ} Hz, data {RATE_HZ} Hz, "
-        f"queue {mode.queue}, forwarded after {mode.forward_us[0]}-{mode.forward_us[1]} us, "
-        f"settled {mode.settle_s:g} s, counted {window_s(quick):g} s, "
-        f"seed {seed}"
+def runs(setup: str, mode: Mode, quick: bool) -> list[Point]:
+    """A run each."""
+    window_s = 4.0 if quick else 10.0
+    low, high = mode.forward_us
+    words = (
+        f"fig10 {setup} {mode.rule} {BEACON_HZ} Hz, data {RATE_HZ} Hz, queue {mode.queue}, "
+        f"forwarded after {low}-{high} us, settled {mode.settle_s:g} s, counted {window_s:g} s, "
     )
-
-
-def points(quick: bool) -> list[Point]:
-    """A run each; the long ones first."""
-    runs = [(setup, mode) for mode in reversed(DRAWN) for setup in SETUPS]
+    cost_s = 0.04 * (mode.settle_s + window_s)
     return [
-        Point.of(
-            _key(setup, mode, seed, quick),
-            0.04 * (mode.settle_s + window_s(quick)),
-            *(measure, setup, mode, seed, window_s(quick)),
-        )
-        for setup, mode in [*runs, (SETUPS[-1], QUEUED)]
+        Point.of(f"{words}seed {seed}", cost_s, measure, setup, mode, seed, window_s)
         for seed in seeds(quick, mode)
     ]
 
 
-def measure(setup: str, mode: Mode, seed: int, window: float) -> dict[str, Any]:
+def points(quick: bool) -> list[Point]:
+    """The long ones first."""
+    cases = [(setup, mode) for mode in reversed(DRAWN) for setup in SETUPS]
+    return [one for case in (*cases, (SETUPS[-1], QUEUED)) for one in runs(*case, quick)]
+
+
+def measure(setup: str, mode: Mode, seed: int, window_s: float) -> dict[str, Any]:
     """Balance factor, loads and loss after settling."""
-    overrides = [
-        ("protocol.rule", mode.rule),
-        ("protocol.updates", "periodic"),
-        ("protocol.beacon_hz", BEACON_HZ),
-        ("data.rate_hz", RATE_HZ),
-        ("protocol.forward_us", list(mode.forward_us)),
-        ("data.queue", mode.queue),
-        ("duration_s", mode.settle_s + window),
-    ]
-    steps = Steps(scenario.load(setup, overrides, seed))
+    steps = Steps(loaded(
+        setup, seed, mode.settle_s + window_s, {"data.rate_hz": RATE_HZ, "data.queue": mode.queue},
+        rule=mode.rule, updates="periodic", beacon_hz=BEACON_HZ, forward_us=list(mode.forward_us),
+    ))  # fmt: skip
     steps.to(mode.settle_s)
     before = steps.counters()
-    steps.to(mode.settle_s + window)
+    steps.to(mode.settle_s + window_s)
     after = steps.counters()
     offered, delivered = (after[word] - before[word] for word in (OFFERED, DELIVERED))
     loads = port_loads(steps)
-    return {
-        "beta": balance_factor(loads),
-        "loads": loads,
-        "loss": 1 - delivered / offered,
-        "cells": steps.plan.graph.cells,
-    }
+    return {"beta": balance_factor(loads), "loads": loads, "loss": 1 - delivered / offered,
+            "cells": steps.plan.graph.cells}  # fmt: skip
 
 
-def values(results: Results, quick: bool, setup: str, mode: Mode, name: str) -> np.ndarray:
+def values(got: Measured, setup: str, mode: Mode, name: str) -> np.ndarray:
     """A measured value of each seed, as an array."""
-    keys = [_key(setup, mode, seed, quick) for seed in seeds(quick, mode)]
-    return np.array([results[key][name] for key in keys])
+    return np.array([got[point][name] for point in runs(setup, mode, got.quick)])
 
 
-def bound(results: Results, quick: bool, setup: str) -> float:
+def bound(got: Measured, setup: str) -> float:
     """Least loss that the interface ports allow."""
-    cells = int(values(results, quick, setup, DYNAMIC, "cells")[0])
-    ports = values(results, quick, setup, DYNAMIC, "loads").shape[1]
+    cells = int(values(got, setup, DYNAMIC, "cells")[0])
+    ports = values(got, setup, DYNAMIC, "loads").shape[1]
     return formulas.loss_bound(cells, ports, RATE_HZ, BEACON_HZ)

@@ -12,11 +12,18 @@ from innervate.networks.skin.analysis import formulas
 from innervate.networks.skin.analysis.rows import unrouted_steps
 from innervate.networks.skin.analysis.summary import recoveries
 from innervate.networks.skin.papers import arm
-from innervate.networks.skin.papers.common import joined, seeds_of
+from innervate.networks.skin.papers.common import loaded, seeds_of
 from innervate.networks.skin.sim.simulate import simulate
-from innervate.papers.experiment import Claim, Experiment, Point, Results, Span, about, verdict
+from innervate.papers import drawing
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, about, verdict
+from innervate.papers.words import joined
 from innervate.plot import style
 
+TITLE = "Fig. 11: a failure at a controlled arm"
+CAPTION = (
+    "A two-joint arm gives way to a hand that strokes round its forearm, controlled by what the PC "
+    "hears of 35 cells (100 Hz). Interface 1 is unplugged at 2.6 s. Beacons at 20 Hz, k = 8."
+)
 SETUP = "setup-4"  # 7 columns along the forearm, 5 rows round it; h = 5, so ceil(h/2) = 3
 COLUMNS, ROWS, DEPTH = 7, 5, 3
 BEACON_HZ, K = 20, 8
@@ -24,13 +31,11 @@ DATA_HZ = 100
 LEAD_S = 4.0  # until the slowest start-up is over; the figure's time starts here
 UNPLUG_S = 2.6
 DURATION_S = 8.0
-SHOWN_SEED = 1
 AROUND_500 = about(500.0)  # ms, the mean
 OFF = Span(0.0, 0.1)  # largest difference from no failure, of the whole movement
 FASTER = Span(0.0, 1.1)  # highest joint speed after the unplugging, of the usual one
 TWO_SECONDS = about(2000.0)  # ms without a route beyond the detection
 KEPT = 5  # of the arm's steps one in five is stored
-
 # Name, rule, unplugged.
 CASES = (
     ("no failure", "feasible", False),
@@ -41,32 +46,24 @@ LOOKS = (("no failure", style.INK, "-"), ("dynamic", style.BLUE, (0, (4, 1.5))),
          ("static tree", style.VERMILION, (0, (1.5, 1.2))))  # fmt: skip
 
 
-def seeds(quick: bool) -> range:
-    """Seeds of the runs of each case: 20, or 3 if `quick`."""
-    return seeds_of(3 if quick else 20)
-
-
-def _key(name: str, seed: int) -> str:
-    return f"fig11 {name} {BEACON_HZ} Hz k={K} seed {seed}"
+def runs(name: str, quick: bool) -> Point:
+    """Runs of a case."""
+    _, rule, cut = next(case for case in CASES if case[0] == name)
+    seeds = seeds_of(3 if quick else 20)
+    return Point.each(f"fig11 {name} {BEACON_HZ} Hz k={K}", 0.4, seeds, measure, rule, cut)
 
 
 def points(quick: bool) -> list[Point]:
-    """Each case with each seed."""
-    return [
-        Point.of(_key(name, seed), 0.4, measure, rule, cut, seed)
-        for seed in seeds(quick)
-        for name, rule, cut in CASES
-    ]
+    """Each case."""
+    return [runs(name, quick) for name, *_ in CASES]
 
 
 def touch() -> list[list[float]]:
     """A hand that strokes round the forearm and along it: [t_s, x_mm, y_mm] on the skin."""
     path = [[0.0, 20.0, -150.0], [1.0, 20.0, -150.0]]
     for t in np.arange(1.2, 6.01, 0.1):
-        y = 24.2 - 34.0 * np.cos(2 * np.pi * (t - 0.2) / 4.0)
-        path.append(
-            [round(float(t), 3), round(20.0 + 12.0 * (float(t) - 1.2), 2), round(float(y), 2)]
-        )
+        x, y = 20.0 + 12.0 * (float(t) - 1.2), 24.2 - 34.0 * np.cos(2 * np.pi * (t - 0.2) / 4.0)
+        path.append([round(float(t), 3), round(x, 2), round(float(y), 2)])
     path.append([6.2, 80.0, -150.0])
     return [[round(LEAD_S + t, 3), x, y] for t, x, y in path]
 
@@ -74,94 +71,73 @@ def touch() -> list[list[float]]:
 def measure(rule: str, cut: bool, seed: int) -> dict[str, Any]:
     """The arm's joints, the cells heard, and how the network recovered."""
     event = [{"action": "cut", "interface": 1, "at_s": LEAD_S + UNPLUG_S}] if cut else []
-    overrides: list[tuple[str, Any]] = [
-        ("protocol.rule", rule),
-        ("protocol.updates", "periodic"),
-        ("protocol.beacon_hz", BEACON_HZ),
-        ("protocol.k", K),
-        ("data.rate_hz", DATA_HZ),
-        ("touch", {"path": touch(), "radius_mm": 26.0, "force_n": 1.5}),
-        ("event", event),
-        ("duration_s", LEAD_S + DURATION_S),
-    ]
-    result = simulate(scenario.plan(scenario.load(SETUP, overrides, seed)), deliveries=True)
+    hand = {"path": touch(), "radius_mm": 26.0, "force_n": 1.5}
+    more = {"data.rate_hz": DATA_HZ, "touch": hand, "event": event}
+    plan = scenario.plan(loaded(SETUP, seed, LEAD_S + DURATION_S, more, rule=rule,
+                                updates="periodic", beacon_hz=BEACON_HZ, k=K))  # fmt: skip
+    result = simulate(plan, deliveries=True)
     steps = slice(round(LEAD_S * 1e6 / arm.STEP_US), None)
     moved = arm.move(result.deliveries, arm.torque_table(ROWS, COLUMNS), result.ended_us)
     moved = {name: values[steps] for name, values in moved.items()}
+    late = moved["speed"][round(UNPLUG_S * 1e6 / arm.STEP_US) :]
     unrouted = unrouted_steps(result)
     found: dict[str, Any] = {
         "angle": np.degrees(moved["angle"])[::KEPT].round(3).T.tolist(),
-        "speed_max": float(np.degrees(np.abs(_after(moved["speed"])).max())),
+        "speed_max": float(np.degrees(np.abs(late).max())),
         "heard": moved["heard"][::KEPT].astype(int).tolist(),
         "unrouted_max": int(unrouted.cells[unrouted.time_us > 1e6 * LEAD_S].max(initial=0)),
     }
-    if cut:
-        found |= recoveries(result)[0]
-    return found
+    return {**found, **(recoveries(result)[0] if cut else {})}
 
 
-def _after(values: Any) -> Any:
-    """The part of values by step that lies behind the unplugging."""
-    return values[round(UNPLUG_S * 1e6 / arm.STEP_US) :]
+def apart(got: Measured, name: str) -> Any:
+    """Largest difference from the run without a failure, degrees, of every seed."""
+    off = got.floats(runs(name, got.quick), "angle") - _calm(got)
+    return np.abs(off).max(axis=(1, 2))
 
 
-def angles(results: Results, name: str, seed: int) -> Any:
-    """Both joints over time, degrees, shape (2, steps)."""
-    return np.array(results[_key(name, seed)]["angle"])
+def _calm(got: Measured) -> Any:
+    """Both joints over time without a failure, degrees, shape (seeds, 2, steps)."""
+    return got.floats(runs("no failure", got.quick), "angle")
 
 
-def apart(results: Results, name: str, seed: int) -> float:
-    """Largest difference from the run without a failure, degrees."""
-    off = angles(results, name, seed) - angles(results, "no failure", seed)
-    return float(np.abs(off).max())
-
-
-def draw(results: Results, quick: bool) -> Figure:
-    """Joints, their difference from no failure, cells heard."""
+def draw(got: Measured) -> Figure:
+    """Joints, their difference from no failure, cells heard; of the first seed."""
     figure, axes = style.panels(
         style.WIDE_IN, 4.6, 4, 1, sharex=True, height_ratios=(1.2, 1.2, 0.9, 0.9)
     )
-    time = np.arange(len(angles(results, "dynamic", SHOWN_SEED)[0])) * KEPT * arm.STEP_US / 1e6
+    calm = _calm(got)[0]
+    time = np.arange(calm.shape[1]) * KEPT * arm.STEP_US / 1e6
     for name, colour, dash in LOOKS:
-        joints = angles(results, name, SHOWN_SEED)
-        for ax, values in zip(axes[:2], joints, strict=True):
-            ax.plot(time, values, color=colour, ls=dash, lw=1.1, label=name)
-        off = np.abs(joints - angles(results, "no failure", SHOWN_SEED)).max(axis=0)
-        axes[2].plot(time, off, color=colour, ls=dash, lw=1.1)
-        heard = results[_key(name, SHOWN_SEED)]["heard"]
-        axes[3].plot(time, heard, color=colour, ls=dash, lw=1.1)
-    for ax in axes:
-        ax.axvline(UNPLUG_S, color=style.SOFT, lw=0.8, ls="--")
+        found = runs(name, got.quick)
+        joints = got.floats(found, "angle")[0]
+        off = np.abs(joints - calm).max(axis=0)
+        for ax, values in zip(axes, (*joints, off, got[found]["heard"][0]), strict=True):
+            label = name if ax in axes[:2] else None
+            ax.plot(time, values, color=colour, ls=dash, lw=1.1, label=label)
     words = ("joint 1 (°)", "joint 2 (°)", "off by (°)", "cells heard")
     for ax, word in zip(axes, words, strict=True):
+        ax.axvline(UNPLUG_S, color=style.SOFT, lw=0.8, ls="--")
         ax.set_ylabel(word)
     axes[1].text(UNPLUG_S + 0.08, 0.04, "unplugged", transform=axes[1].get_xaxis_transform(),
                  fontsize=6.5)  # fmt: skip
     axes[3].set_xlabel("time (s)")
     axes[0].set_xlim(0, DURATION_S)
     axes[3].set_ylim(0, 1.12 * ROWS * COLUMNS)
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    drawing.legend(figure, axes[0], "upper center", ncols=3)
     figure.align_ylabels(axes)
     return figure
 
 
-def judge(results: Results, quick: bool) -> list[Claim]:
+def judge(got: Measured) -> Claims:
     """Convergence of about 500 ms; joints before, during and after."""
-    return [_converged(results, quick), _smooth(results, quick), _static(results, quick)]
-
-
-def _all(results: Results, quick: bool, name: str, value: str) -> Any:
-    return np.array([results[_key(name, seed)][value] for seed in seeds(quick)])
-
-
-def _converged(results: Results, quick: bool) -> Claim:
-    found = _all(results, quick, "dynamic", "converged_ms")
+    dynamic, calm = (runs(name, got.quick) for name in ("dynamic", "no failure"))
+    found, detected = (got.floats(dynamic, f"{what}_ms") for what in ("converged", "detected"))
     middle = 1e3 * formulas.convergence_by_depth_s(DEPTH, K, BEACON_HZ)
     half = 1e3 * formulas.convergence_error_s(BEACON_HZ)
     setup_1 = 1e3 * formulas.convergence_s(BEACON_HZ, K)
-    detected = _all(results, quick, "dynamic", "detected_ms")
-    inside = float((np.abs(found - middle) <= half).mean())
-    return Claim(
+    inside = Span(-half, half).share(found - middle)
+    yield Claim(
         "11",
         f"{BEACON_HZ} Hz, k = {K}: total convergence of around 500 ms (the mean "
         f"{AROUND_500.low:.0f} to {AROUND_500.high:.0f} ms)",
@@ -171,14 +147,10 @@ def _converged(results: Results, quick: bool) -> Claim:
         verdict(AROUND_500.has(float(found.mean())), "E30"),
         f"a patch with d_m = {DEPTH}; a skin like setup 1 would take {setup_1:.0f} ms",
     )
-
-
-def _smooth(results: Results, quick: bool) -> Claim:
-    off = np.array([apart(results, "dynamic", seed) for seed in seeds(quick)])
-    span = float(np.ptp(angles(results, "no failure", SHOWN_SEED), axis=1).max())
-    fast, usual = (_all(results, quick, n, "speed_max") for n in ("dynamic", "no failure"))
-    ratio = float((fast / usual).max())
-    return Claim(
+    off = apart(got, "dynamic")
+    span = float(np.ptp(_calm(got)[0], axis=1).max())
+    ratio = float((got.floats(dynamic, "speed_max") / got.floats(calm, "speed_max")).max())
+    yield Claim(
         "11",
         f"joint states show no negative effect of the failure (at most {100 * OFF.high:.0f} % of "
         f"the movement off, at most {FASTER.high:g} times as fast)",
@@ -189,19 +161,15 @@ def _smooth(results: Results, quick: bool) -> Claim:
         "cells that are not heard keep their last force until their route is back, so the arm lags "
         "behind the hand for half a second",
     )
+    yield _static(got)
 
 
-def _static(results: Results, quick: bool) -> Claim:
-    off, dynamic = (
-        np.array([apart(results, name, seed) for seed in seeds(quick)])
-        for name in ("static tree", "dynamic")
-    )
-    outage = _all(results, quick, "static tree", "routed_ms").astype(float)
-    lost = {
-        name: int(_all(results, quick, name, "unrouted_max").max()) for name, _, c in CASES if c
-    }
-    detected = _all(results, quick, "static tree", "detected_ms").astype(float)
+def _static(got: Measured) -> Claim:
+    cut = {name: runs(name, got.quick) for name in ("dynamic", "static tree")}
+    off, dynamic = (apart(got, name) for name in ("static tree", "dynamic"))
+    outage, detected = (got.floats(cut["static tree"], f"{w}_ms") for w in ("routed", "detected"))
     down = outage - detected
+    lost = joined(f"{name} {max(got[one]['unrouted_max'])}" for name, one in cut.items())
     return Claim(
         "11",
         "the static tree needs a restart of about two seconds (without a route "
@@ -210,19 +178,8 @@ def _static(results: Results, quick: bool) -> Claim:
         f"static: routed again after {np.nanmean(outage):.0f} ms, {np.nanmean(down):.0f} ms of it "
         f"after the detection; difference {off.mean():.1f} deg "
         f"(worst {off.max():.1f}), {off.mean() / dynamic.mean():.1f} times the dynamic one; cells "
-        "without a route at most " + joined(f"{name} {n}" for name, n in lost.items()),
+        f"without a route at most {lost}",
         verdict(TWO_SECONDS.has(*down) and bool(off.mean() > dynamic.mean())),
         "detection of 400 ms and the restart, which is set to 2 s (restart_s); all cells are "
         "silent meanwhile",
     )
-
-
-EXPERIMENT = Experiment(
-    "fig11",
-    "Fig. 11: a failure at a controlled arm",
-    "A two-joint arm gives way to a hand that strokes round its forearm, controlled by what the PC "
-    "hears of 35 cells (100 Hz). Interface 1 is unplugged at 2.6 s. Beacons at 20 Hz, k = 8.",
-    points,
-    draw,
-    judge,
-)

@@ -9,67 +9,56 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from innervate.networks.skin.analysis.recovery import next_hops, recoveries
+from innervate.networks.skin.analysis.recovery import next_hops
 from innervate.networks.skin.analysis.rows import loop_episodes, parent_changes
-from innervate.networks.skin.papers.common import RULE_NAMES, Case, joined, seeds_of
+from innervate.networks.skin.papers.common import RULES, Case, Rule, seeds_of
 from innervate.networks.skin.plot.history import Moment
 from innervate.networks.skin.plot.map import route_map
 from innervate.networks.skin.plot.sheet import Sheet
 from innervate.networks.skin.protocol.constants import NONE
 from innervate.networks.skin.sim.observer import LOOP_OPEN
 from innervate.networks.skin.sim.simulate import simulate
-from innervate.papers.experiment import Claim, Experiment, Point, Results, Span, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.words import joined
 from innervate.plot import paint, style, svg
 from innervate.plot.svg import Drawing
 
+TITLE = "Erratum E25: a forwarding loop under the printed rule"
+CAPTION = (
+    "Setup 1, 250 Hz, k = 5. a: cells served by port 1 in orange. b: parents when the "
+    "longest-standing ring of the recovery closed (purple); pale purple: sends into the ring; "
+    "hollow: no parent, or behind one. Red cross: the cable that fails. c: loops in each recovery."
+)
 SHOWN = Case("setup-1", 250, 5, "paper", "periodic", 1)
 SHOWN_SEED = 1
-# Printed, the laxer reading, printed and counted slower; those that are to be loop-free.
-LOOPING = (("paper", 1), ("paper-lax", 1), ("paper", 5))
-CURED = (("strict", 0), ("feasible", 0))
+PRINTED, LAX = RULES[1:]
+SLOWER = Rule("paper", 5)  # printed and counted slower
+CURED = (Rule("strict", 0), Rule("feasible", 0))
 NONE_AT_ALL = Span(0, 0)
 CUT_PORT, INTO_RING = 1, 3  # which port's colour cells have
 MAP_IN = 2.3
 
 
-def seeds(quick: bool) -> range:
-    """Recoveries a rule; E25 counts twenty."""
-    return seeds_of(5 if quick else 20)
-
-
-def _case(rule: str, m: int) -> Case:
-    return Case("setup-1", 250, 5, rule, "periodic", m)
+def loops(rule: Rule, quick: bool) -> Point:
+    """Recoveries of a rule; E25 counts twenty."""
+    case = Case("setup-1", 250, 5, rule.name, "periodic", rule.m)
+    return Point.each(f"loops of {case}", 0.02, seeds_of(5 if quick else 20), count, case)
 
 
 def points(quick: bool) -> list[Point]:
     """The picture's run, and the loops of every rule."""
-    made = [
-        Point.of(
-            f"loops of {_case(rule, m).key(seeds(quick))}",
-            0.02 * len(seeds(quick)),
-            *(count_all, _case(rule, m), seeds(quick)),
-        )
-        for rule, m in (*LOOPING, *CURED)
-    ]
+    made = [loops(rule, quick) for rule in (PRINTED, LAX, SLOWER, *CURED)]
     return [*made, Point.of(f"loop picture seed {SHOWN_SEED}", 0.2, picture)]
 
 
-def count_all(case: Case, some: Sequence[int]) -> list[dict[str, Any]]:
-    """See count; one entry a seed."""
-    return [count(case, seed) for seed in some]
-
-
 def count(case: Case, seed: int) -> dict[str, Any]:
-    """Loops of one recovery: how many, the longest in ms, the largest in cells; routed in ms."""
+    """Loops of one recovery: how many, the longest in ms, the largest in cells."""
     result = simulate(case.plan(seed))
     found = loop_episodes(result)
     stood = np.where(found.closed_us < 0, result.ended_us, found.closed_us) - found.opened_us
-    return {
-        "episodes": len(stood),
-        "longest_ms": float(stood.max()) / 1e3 if len(stood) else 0.0,
-        "cells": int(found.length.max()) if len(stood) else 0,
-        "routed_ms": recoveries(result)[0]["routed_ms"],
-    }
+    longest_ms = float(stood.max(initial=0)) / 1e3
+    return {"episodes": len(stood), "longest_ms": longest_ms,
+            "cells": int(found.length.max(initial=0))}  # fmt: skip
 
 
 def picture() -> dict[str, Any]:
@@ -77,17 +66,15 @@ def picture() -> dict[str, Any]:
     result = simulate(SHOWN.plan(SHOWN_SEED))
     found = loop_episodes(result)
     longest = int(np.argmax(found.closed_us - found.opened_us))
-    opened = int(found.opened_us[longest])
+    opened, cell = int(found.opened_us[longest]), int(found.cell[longest])
     cut_us = result.plan.faults[0].at_us
     rows = result.rows
-    at_ring = (rows["code"] == LOOP_OPEN) & (rows["node"] == found.cell[longest])
-    row = int(np.flatnonzero(at_ring & (rows["time"] == opened))[0])
-    parents = _parents(result, row)
-    ring = _ring(result.plan.graph, parents, int(found.cell[longest]))
+    at_ring = (rows["code"] == LOOP_OPEN) & (rows["node"] == cell) & (rows["time"] == opened)
+    parents = _parents(result, int(np.flatnonzero(at_ring)[0]))
     return {
         "before": _parents(result, int(np.searchsorted(rows["time"], cut_us))),
         "then": parents,
-        "ring": ring,
+        "ring": _ring(result.plan.graph, parents, cell),
         "after_ms": (opened - cut_us) / 1e3,
         "stood_ms": float(found.closed_us[longest] - opened) / 1e3,
     }
@@ -111,9 +98,9 @@ def _ring(graph: Any, parents: list[int], start: int) -> list[int]:
     return ring
 
 
-def draw(results: Results, quick: bool) -> Figure:
+def draw(got: Measured) -> Figure:
     """The skin before the cut and with the ring; loops of all recoveries."""
-    shown = results[f"loop picture seed {SHOWN_SEED}"]
+    shown = got.values[f"loop picture seed {SHOWN_SEED}"]
     graph = SHOWN.plan(SHOWN_SEED).graph
     figure = style.figure(style.WIDE_IN, 3.3)
     before, then, bars = figure.subplots(1, 3, width_ratios=(1, 1, 0.95))
@@ -124,7 +111,7 @@ def draw(results: Results, quick: bool) -> Figure:
     before.set_title("a  the cable of port 1 fails")
     _draw_ring(then, graph, shown)
     then.set_title(f"b  {shown['after_ms']:.1f} ms later")
-    _bars(bars, results, quick)
+    _bars(bars, got)
     return figure
 
 
@@ -169,79 +156,53 @@ def _map(graph: Any, hops: Any, servers: Sequence[int], ring: Sequence[int] = ()
     return drawing
 
 
-def _found(results: Results, quick: bool, rule: str, m: int) -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = results[f"loops of {_case(rule, m).key(seeds(quick))}"]
-    return found
-
-
-def _bars(ax: Axes, results: Results, quick: bool) -> None:
-    found = [[one["episodes"] for one in _found(results, quick, *rule)] for rule in LOOPING[:2]]
-    for i, (counts, (rule, _)) in enumerate(zip(found, LOOPING, strict=False)):
+def _bars(ax: Axes, got: Measured) -> None:
+    looks: Any = ({"color": style.PURPLE}, {"fc": "white", "ec": style.PURPLE, "lw": 0.7})
+    most = 0
+    for i, (rule, look) in enumerate(zip((PRINTED, LAX), looks, strict=True)):
+        counts = got[loops(rule, got.quick)]["episodes"]
+        most = max(most, *counts)
         place = np.arange(1, len(counts) + 1) + 0.2 * (2 * i - 1)
-        look = {"color": style.PURPLE} if i == 0 else {"fc": "white", "ec": style.PURPLE, "lw": 0.7}
-        ax.bar(place, counts, width=0.36, label=RULE_NAMES[rule], **look)
-    ax.set_xlabel("recovery (seed)")
-    ax.set_ylabel("forwarding loops")
-    ax.set_xticks([1, *range(5, len(found[0]) + 1, 5)])
+        ax.bar(place, counts, width=0.36, label=rule.words, **look)
+    ax.set(xlabel="recovery (seed)", ylabel="forwarding loops")
+    ax.set(xticks=[1, *range(5, len(counts) + 1, 5)], ylim=(0, 1.4 * most))
     ax.grid(axis="x", visible=False)
-    ax.set_ylim(0, 1.4 * max(map(max, found)))
     ax.plot([], [], " ", label="strict, feasible: none")
     ax.legend(loc="upper left")
     ax.set_title("c  loops in each recovery")
 
 
-def judge(results: Results, quick: bool) -> list[Claim]:
+def judge(got: Measured) -> Claims:
     """Is the printed rule loop-free? Are strict and feasible? Does M alone cure it?"""
-    printed, lax, slower = (_found(results, quick, *rule) for rule in LOOPING)
-    cured = {rule: _found(results, quick, rule, m) for rule, m in CURED}
-    return [
-        _guarantee(printed, "printed rule"),
-        _guarantee(lax, "its laxer reading"),
-        Claim(
+    for rule, name in ((PRINTED, "printed rule"), (LAX, "its laxer reading")):
+        found = got[loops(rule, got.quick)]
+        yield Claim(
             "II-B.2",
-            "no loop under the rules strict (F1) and feasible (F2) in the same recoveries",
-            joined(f"{rule}: {_episodes(found)} loops" for rule, found in cured.items())
-            + f" in {len(printed)} recoveries each",
-            verdict(NONE_AT_ALL.has(*map(_episodes, cured.values()))),
-        ),
-        Claim(
-            "II-B.2",
-            "counting slower (M = 5, F3) alone prevents loops under the printed rule",
-            f"{_looping(slower)} of {len(slower)} recoveries with a loop",
-            verdict(NONE_AT_ALL.has(_looping(slower))),
-            "numbers below the cut stay equal whatever M is" if _looping(slower) else "",
-        ),
-    ]
-
-
-def _episodes(found: list[dict[str, Any]]) -> int:
-    return sum(one["episodes"] for one in found)
-
-
-def _looping(found: list[dict[str, Any]]) -> int:
-    return sum(one["episodes"] > 0 for one in found)
-
-
-def _guarantee(found: list[dict[str, Any]], name: str) -> Claim:
-    return Claim(
+            f"sequence numbers guarantee a loop-free convergence ({name}, setup 1, k = 5)",
+            f"{_looping(found)} of {len(found['cells'])} recoveries with a forwarding loop, "
+            f"{sum(found['episodes'])} loops, the longest stood {max(found['longest_ms']):.0f} ms, "
+            f"up to {max(found['cells'])} cells",
+            verdict(NONE_AT_ALL.has(_looping(found))),
+            "E25: while the cut is detected all cells below it end with the same number, then >= "
+            "lets every stale route pass",
+        )
+    cured = {rule.name: sum(got[loops(rule, got.quick)]["episodes"]) for rule in CURED}
+    slower = got[loops(SLOWER, got.quick)]
+    yield Claim(
         "II-B.2",
-        f"sequence numbers guarantee a loop-free convergence ({name}, setup 1, k = 5)",
-        f"{_looping(found)} of {len(found)} recoveries with a forwarding loop, {_episodes(found)} "
-        f"loops, the longest stood {max(one['longest_ms'] for one in found):.0f} ms, up to "
-        f"{max(one['cells'] for one in found)} cells",
-        verdict(NONE_AT_ALL.has(_looping(found))),
-        "E25: while the cut is detected all cells below it end with the same number, then >= lets "
-        "every stale route pass",
+        "no loop under the rules strict (F1) and feasible (F2) in the same recoveries",
+        joined(f"{rule}: {episodes} loops" for rule, episodes in cured.items())
+        + f" in {len(slower['cells'])} recoveries each",
+        verdict(NONE_AT_ALL.has(*cured.values())),
+    )
+    yield Claim(
+        "II-B.2",
+        "counting slower (M = 5, F3) alone prevents loops under the printed rule",
+        f"{_looping(slower)} of {len(slower['cells'])} recoveries with a loop",
+        verdict(NONE_AT_ALL.has(_looping(slower))),
+        "numbers below the cut stay equal whatever M is" if _looping(slower) else "",
     )
 
 
-EXPERIMENT = Experiment(
-    "loop",
-    "Erratum E25: a forwarding loop under the printed rule",
-    "Setup 1, 250 Hz, k = 5. a: cells served by port 1 in orange. b: parents when the "
-    "longest-standing ring of the recovery closed (purple); pale purple: sends into the ring; "
-    "hollow: no parent, or behind one. Red cross: the cable that fails. c: loops in each recovery.",
-    points,
-    draw,
-    judge,
-)
+def _looping(found: dict[str, Any]) -> int:
+    return sum(episodes > 0 for episodes in found["episodes"])

@@ -6,7 +6,7 @@ to the border of the cut-off part and a route back; its floor is the hops' laten
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,10 +14,16 @@ from matplotlib.figure import Figure
 
 from innervate.analysis.intervals import mean_interval
 from innervate.networks.skin.papers import steady
-from innervate.networks.skin.papers.common import Case, joined, periods, recovery_point, seeds_of
-from innervate.papers.experiment import Claim, Experiment, Point, Results, Span, verdict
+from innervate.networks.skin.papers.common import Case, number, seeds_of
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.words import joined
 from innervate.plot import style
 
+TITLE = "Beyond the paper: how fast can a skin recover?"
+CAPTION = (
+    "Cut of interface 1 at 250 Hz, rule feasible. Markers: mean; bars: 5 to 95 % of all seeds; "
+    "black: asked for of waves at k = 3."
+)
 HZ = 250
 KS = (2, 3, 4, 5)
 # Setup, cells, depth of the cut-off part between the interfaces, most ms asked for at k = 3.
@@ -58,27 +64,21 @@ def case(setup: str, k: int, mode: Mode) -> Case:
 
 def points(quick: bool) -> list[Point]:
     """Recoveries of all modes, and steady routes at k = 3."""
-    made = [
-        recovery_point(case(setup, k, mode), seeds(quick))
-        for setup, *_ in SKINS
-        for k in KS
-        for mode in MODES
-    ]
-    return made + [point for setup, *_ in SKINS for point in steady.points(setup, quick)]
+    made = [case(setup, k, mode) for setup, *_ in SKINS for k in KS for mode in MODES]
+    settled = [steady.point(setup, v, quick) for setup, *_ in SKINS for v in steady.VARIANTS]
+    return [one.point(seeds(quick)) for one in made] + settled
 
 
-def routed(results: Results, quick: bool, setup: str, k: int, mode: Mode) -> np.ndarray:
-    """Time until every reachable cell has a route again, in ms, of every seed."""
+def time_ms(got: Measured, setup: str, k: int, mode: Mode, name: str = "routed_ms") -> Any:
+    """Time until every reachable cell has a route again, of every seed."""
     one = case(setup, k, mode)
-    found: np.ndarray = periods(results, one, seeds(quick), "routed_ms") * one.period_ms
-    return found
+    return one.periods(got, seeds(got.quick), name) * one.period_ms
 
 
-def after_detection(results: Results, quick: bool, setup: str, k: int, mode: Mode) -> float:
+def after_detection(got: Measured, setup: str, k: int, mode: Mode) -> float:
     """The same from the moment of detection on, mean in ms."""
-    one = case(setup, k, mode)
-    detected = periods(results, one, seeds(quick), "detected_ms") * one.period_ms
-    return float((routed(results, quick, setup, k, mode) - detected).mean())
+    routed, detected = (time_ms(got, setup, k, mode, name) for name in ("routed_ms", "detected_ms"))
+    return float((routed - detected).mean())
 
 
 def floor_ms(k: int, depth: int) -> float:
@@ -86,76 +86,71 @@ def floor_ms(k: int, depth: int) -> float:
     return k * 1e3 / HZ + 2 * (depth - 1) * LATENCY_MS
 
 
-def draw(results: Results, quick: bool) -> Figure:
+def draw(got: Measured) -> Figure:
     """One panel a skin: mean and 5 to 95 % of all seeds over k."""
     figure, axes = style.panels(style.WIDE_IN, 3.0, 1, 2, sharey=True)
     for ax, letter, (setup, cells, depth, bar) in zip(axes, "ab", SKINS, strict=True):
-        _panel(ax, results, quick, setup, depth)
+        _panel(ax, got, setup, depth)
         ax.plot([2.55, 3.45], [bar, bar], color=style.BLACK, lw=1.6, label=f"asked for: {bar:g} ms")
-        ax.set_title(f"{letter}  setup {setup[-1]}, {cells} cells")
+        ax.set_title(f"{letter}  {number(setup)}, {cells} cells")
         ax.legend(loc="upper left", ncols=2, columnspacing=1)
         ax.set_xticks(KS, [f"k = {k}" for k in KS])
         ax.grid(axis="x", visible=False)
-    axes[0].set_ylabel("until every cell has a route (ms)")
-    axes[0].set_ylim(0, 95)
+    axes[0].set(ylabel="until every cell has a route (ms)", ylim=(0, 95))
     return figure
 
 
-def _panel(ax: Axes, results: Results, quick: bool, setup: str, depth: int) -> None:
+def _panel(ax: Axes, got: Measured, setup: str, depth: int) -> None:
     for i, mode in enumerate(DRAWN):
         for k in KS:
-            found = routed(results, quick, setup, k, mode)
+            found = time_ms(got, setup, k, mode)
             x = k + 0.17 * (i - 1.5)
-            low, high = np.percentile(found, [5, 95])
-            colour = style.SERIES[i]
-            ax.plot([x, x], [low, high], color=colour, lw=1)
-            ax.plot(
-                x, found.mean(), style.MARKERS[i], color=colour, label=mode.name if k == 2 else None
-            )
+            ax.plot([x, x], np.percentile(found, [5, 95]), color=style.SERIES[i], lw=1)
+            ax.plot(x, found.mean(), style.MARKERS[i], color=style.SERIES[i],
+                    label=mode.name if k == 2 else None)  # fmt: skip
     for k in KS:
         edges = [k - 0.42, k + 0.42]
-        detected = k * 1e3 / HZ
-        ax.fill_between(edges, 0, detected, color=style.FAINT, lw=0, zorder=0,
+        ax.fill_between(edges, 0, k * 1e3 / HZ, color=style.FAINT, lw=0, zorder=0,
                         label="detection, k periods" if k == 2 else None)  # fmt: skip
         ax.plot(edges, [floor_ms(k, depth)] * 2, color=style.SOFT, lw=0.9, ls="--",
                 label="floor: and latency out, back" if k == 2 else None)  # fmt: skip
 
 
-def judge(results: Results, quick: bool) -> list[Claim]:
+def judge(got: Measured) -> Claims:
     """The bar of the wave mode, the floor, modes compared, M = 1."""
-    return [
-        *(_bar(results, quick, *skin) for skin in SKINS),
-        *(_floor(results, quick, *skin[:3]) for skin in SKINS),
-        *(_compared(results, quick, skin[0], skin[1]) for skin in SKINS),
-        _sooner(results, quick),
-        *(steady.judge(*skin[:2], results, quick) for skin in SKINS),
-    ]
+    for setup, cells, _, bar in SKINS:
+        found = time_ms(got, setup, 3, WAVE)
+        mean = mean_interval(found.tolist())
+        yield Claim(
+            "beyond",
+            f"wave, 250 Hz, k = 3, {cells} cells: all routed again in {bar:g} ms on the mean "
+            "(asked for)",
+            f"{mean.value:.2f} ms (95 % interval {mean.low:.2f} to {mean.high:.2f}, worst "
+            f"{found.max():.1f}) of {len(found)} recoveries",
+            verdict(Span(high=bar).has(mean.value)),
+            "the paper's periodic updates take 40 to 50 ms",
+        )
+    for setup, cells, depth, _ in SKINS:
+        yield _floor(got, setup, cells, depth)
+    for setup, cells, *_ in SKINS:
+        means = {mode: float(time_ms(got, setup, 3, mode).mean()) for mode in MODES}
+        yield Claim(
+            "beyond",
+            f"{cells} cells, k = 3: triggered is faster than periodic, wave faster than both",
+            joined(f"{mode.name} {ms:.1f} ms" for mode, ms in means.items()),
+            verdict(means[PERIODIC] > means[TRIGGERED] > means[WAVE]),
+        )
+    yield _sooner(got)
+    for setup, cells, *_ in SKINS:
+        yield steady.judge(setup, cells, got)
 
 
-def _bar(results: Results, quick: bool, setup: str, cells: int, depth: int, bar: float) -> Claim:
-    found = routed(results, quick, setup, 3, WAVE)
-    mean = mean_interval(found.tolist())
-    return Claim(
-        "beyond",
-        f"wave, 250 Hz, k = 3, {cells} cells: all routed again in {bar:g} ms on the mean "
-        "(asked for)",
-        f"{mean.value:.2f} ms (95 % interval {mean.low:.2f} to {mean.high:.2f}, worst "
-        f"{found.max():.1f}) of {len(found)} recoveries",
-        verdict(Span(high=bar).has(mean.value)),
-        "the paper's periodic updates take 40 to 50 ms",
-    )
-
-
-def _floor(results: Results, quick: bool, setup: str, cells: int, depth: int) -> Claim:
-    above = {
-        mode: [after_detection(results, quick, setup, k, mode) for k in KS]
-        for mode in (WAVE, CLOSE)
-    }
+def _floor(got: Measured, setup: str, cells: int, depth: int) -> Claim:
+    above = {mode: [after_detection(got, setup, k, mode) for k in KS] for mode in (WAVE, CLOSE)}
     least = 2 * (depth - 1) * LATENCY_MS
     words = joined(
         f"{mode.name}: detection + {min(ms):.2f} to {max(ms):.2f} ms" for mode, ms in above.items()
     )
-    sooner = float(routed(results, quick, setup, 3, CLOSE).mean())
     return Claim(
         "beyond",
         f"wave, {cells} cells: within 2 ms of the floor, which is detection (k periods) and "
@@ -163,25 +158,15 @@ def _floor(results: Results, quick: bool, setup: str, cells: int, depth: int) ->
         f"{words}, k {joined(KS)}",
         verdict(FROM_FLOOR_MS.has(*(ms - least for ms in above[WAVE]))),
         f"what is left above the floor is the gap of 0.5 ms between two beacons of a cell; with a "
-        f"gap of {GAP_US} µs all are routed after {sooner:.2f} ms at k = 3 (floor "
-        f"{floor_ms(3, depth):.1f} ms). Below it only a smaller k or more beacons lead",
+        f"gap of {GAP_US} µs all are routed after {time_ms(got, setup, 3, CLOSE).mean():.2f} ms at "
+        f"k = 3 (floor {floor_ms(3, depth):.1f} ms). Below it only a smaller k or more beacons "
+        "lead",
     )
 
 
-def _compared(results: Results, quick: bool, setup: str, cells: int) -> Claim:
-    means = {mode: float(routed(results, quick, setup, 3, mode).mean()) for mode in MODES}
-    return Claim(
-        "beyond",
-        f"{cells} cells, k = 3: triggered is faster than periodic, wave faster than both",
-        joined(f"{mode.name} {ms:.1f} ms" for mode, ms in means.items()),
-        verdict(means[PERIODIC] > means[TRIGGERED] > means[WAVE]),
-    )
-
-
-def _sooner(results: Results, quick: bool) -> Claim:
+def _sooner(got: Measured) -> Claim:
     gains = [
-        after_detection(results, quick, setup, k, WAVE)
-        - after_detection(results, quick, setup, k, OFTEN)
+        after_detection(got, setup, k, WAVE) - after_detection(got, setup, k, OFTEN)
         for setup, *_ in SKINS
         for k in KS
     ]
@@ -192,14 +177,3 @@ def _sooner(results: Results, quick: bool) -> Claim:
         verdict(SOONER_MS.has(min(gains))),
         "detection takes longer than a number: by then a newer one has come from the other side",
     )
-
-
-EXPERIMENT = Experiment(
-    "modes",
-    "Beyond the paper: how fast can a skin recover?",
-    "Cut of interface 1 at 250 Hz, rule feasible. Markers: mean; bars: 5 to 95 % of all seeds; "
-    "black: asked for of waves at k = 3.",
-    points,
-    draw,
-    judge,
-)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,71 +9,58 @@ from matplotlib.figure import Figure
 
 from innervate import scenario
 from innervate.networks.skin.analysis.rows import unrouted_steps
-from innervate.networks.skin.papers.common import RULE_NAMES, RULES, joined, seeds_of
+from innervate.networks.skin.papers import common
+from innervate.networks.skin.papers.common import RULES, SETUPS, Rule, seeds_of
 from innervate.networks.skin.protocol.constants import PORTS
 from innervate.networks.skin.sim.simulate import simulate
-from innervate.papers.experiment import Claim, Experiment, Point, Results, Span, verdict
+from innervate.papers import drawing
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.words import joined
 from innervate.plot import style
 
-SETUPS = tuple(f"setup-{i}" for i in range(1, 9))
 HZ = 250
 K = 3
 PERIODS = 60
+TITLE = "II-B.1: start-up"
+CAPTION = (
+    f"{HZ} Hz; time from the PC's first beacon until no cell is without a route. Line: max(H), the "
+    "depth of the skin, in periods."
+)
+CLOCKS = {True: "lock-step", False: "free running"}
 # Periods beyond max(H): our PC listens for k periods before its first beacon (E27), by which time
 # its ports have been found broken, and a period goes by until they are taken back; and a hop's
 # latency, 0.16 ms of a period of 4 ms.
 WITHIN = Span(high=1.04)
 
 
-def seeds(quick: bool, lock_step: bool) -> range:
-    """Lock-step leaves nothing to chance but latencies."""
-    return seeds_of((1 if lock_step else 2) if quick else (2 if lock_step else 20))
-
-
-def _key(setup: str, rule: tuple[str, int], lock_step: bool, quick: bool) -> str:
-    clocks = "lock-step" if lock_step else "free running"
-    last = seeds(quick, lock_step)[-1]
-    return f"start-up {setup} {rule[0]} m={rule[1]} {HZ} Hz k={K} {clocks}, seeds 1-{last}"
+def point(setup: str, rule: Rule, lock_step: bool, quick: bool) -> Point:
+    """Start-ups; lock-step leaves nothing to chance but latencies."""
+    what = f"start-up {setup} {rule.name} m={rule.m} {HZ} Hz k={K} {CLOCKS[lock_step]}"
+    seeds = seeds_of((1 if lock_step else 2) if quick else (2 if lock_step else 20))
+    return Point.each(what, 0.02, seeds, measure, setup, rule, lock_step)
 
 
 def points(quick: bool) -> list[Point]:
     """All setups, all rules; in lock-step and free running."""
     return [
-        Point.of(
-            _key(setup, rule, lock_step, quick),
-            0.02 * len(seeds(quick, lock_step)),
-            *(measure, setup, rule, lock_step, seeds(quick, lock_step)),
-        )
+        point(setup, rule, lock_step, quick)
         for rule in RULES
         for setup in SETUPS
-        for lock_step in (True, False)
+        for lock_step in CLOCKS
     ]
 
 
-def measure(
-    setup: str, rule: tuple[str, int], lock_step: bool, some: Sequence[int]
-) -> dict[str, Any]:
+def measure(setup: str, rule: Rule, lock_step: bool, seed: int) -> dict[str, Any]:
     """Periods from the PC's first beacon until every cell has a route; the skin's depth."""
-    overrides: list[tuple[str, Any]] = [
-        ("protocol.rule", rule[0]),
-        ("protocol.updates", "periodic"),
-        ("protocol.beacon_hz", HZ),
-        ("protocol.k", K),
-        ("timing.lock_step", lock_step),
-        ("data.rate_hz", 0),
-        ("event", []),
-        ("duration_s", PERIODS / HZ),
-    ]
-    if rule[1]:
-        overrides.append(("protocol.m", rule[1]))
-    found = []
-    for seed in some:
-        plan = scenario.plan(scenario.load(setup, overrides, seed))
-        first = _First(PORTS * plan.graph.cells)
-        steps = unrouted_steps(simulate(plan, tap=first))
-        done = steps.time_us[-1] if steps.cells[-1] == 0 else np.nan
-        found.append(float(done - first.time_us) * HZ / 1e6)
-    return {"periods": found, "depth": plan.depth_max}
+    more = {**common.SILENT, "timing.lock_step": lock_step}
+    plan = scenario.plan(common.loaded(
+        setup, seed, PERIODS / HZ, more, rule=rule.name, updates="periodic", beacon_hz=HZ, k=K,
+        m=rule.m or None,
+    ))  # fmt: skip
+    first = _First(PORTS * plan.graph.cells)
+    steps = unrouted_steps(simulate(plan, tap=first))
+    done = steps.time_us[-1] if steps.cells[-1] == 0 else np.nan
+    return {"periods": float(done - first.time_us) * HZ / 1e6, "depth": plan.depth_max}
 
 
 class _First:
@@ -91,66 +77,45 @@ class _First:
                 self.time_us = int(sent["start"][0])
 
 
-def beyond(results: Results, quick: bool, rule: tuple[str, int], lock_step: bool) -> Any:
-    """Periods beyond max(H) of every start-up, all setups."""
-    found = [results[_key(setup, rule, lock_step, quick)] for setup in SETUPS]
-    return np.concatenate([np.array(one["periods"], float) - one["depth"] for one in found])
-
-
-def draw(results: Results, quick: bool) -> Figure:
+def draw(got: Measured) -> Figure:
     """Each start-up over the depth of its skin."""
-    figure, axes = style.panels(style.WIDE_IN, 2.7, 1, len(RULES), sharey=True)
-    for ax, letter, rule in zip(axes, "abc", RULES, strict=True):
-        for i, (lock_step, name) in enumerate(((True, "lock-step"), (False, "free running"))):
+    figure, axes = common.rule_panels(2.7)
+    for ax, rule in zip(axes, RULES, strict=True):
+        for i, (lock_step, name) in enumerate(CLOCKS.items()):
             for place, setup in enumerate(SETUPS):
-                one = results[_key(setup, rule, lock_step, quick)]
+                one = got[point(setup, rule, lock_step, got.quick)]
                 x = np.full(len(one["periods"]), place + 0.2 * (2 * i - 1))
                 ax.plot(x, one["periods"], style.MARKERS[i], color=style.SERIES[i], ms=2.6,
                         label=name if place == 0 else None)  # fmt: skip
-                ax.plot([place - 0.4, place + 0.4], [one["depth"]] * 2, color=style.BLACK, lw=1,
+                ax.plot([place - 0.4, place + 0.4], one["depth"][:1] * 2, color=style.BLACK, lw=1,
                         label="max(H)" if place == i == 0 else None)  # fmt: skip
-        ax.set_xticks(range(len(SETUPS)), [setup[-1] for setup in SETUPS])
+        drawing.each_mode(ax, [setup[-1] for setup in SETUPS])
         ax.set_xlabel("setup")
-        ax.set_title(f"{letter}  {RULE_NAMES[rule[0]]}")
-        ax.grid(axis="x", visible=False)
-    axes[0].set_ylabel("until all have a route (periods)")
-    axes[0].set_ylim(0, None)
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    axes[0].set(ylabel="until all have a route (periods)", ylim=(0, None))
+    drawing.legend(figure, axes[0], "upper center", ncols=3)
     return figure
 
 
-def judge(results: Results, quick: bool) -> list[Claim]:
+def judge(got: Measured) -> Claims:
     """Within max(H) periods of the PC's first beacon, for every rule."""
-    return [_claim(results, quick, rule) for rule in RULES]
-
-
-def _claim(results: Results, quick: bool, rule: tuple[str, int]) -> Claim:
-    words, both = [], []
-    for lock_step, name in ((True, "lock-step"), (False, "free running")):
-        found = beyond(results, quick, rule, lock_step)
-        both += found.tolist()
-        words.append(
-            f"{name}: max(H) {found.min():+.2f} to {found.max():+.2f} T, mean {found.mean():+.2f}, "
-            f"{len(found)} start-ups"
+    for rule in RULES:
+        words, both = [], []
+        for lock_step, name in CLOCKS.items():
+            series = [point(setup, rule, lock_step, got.quick) for setup in SETUPS]
+            off = [got.floats(one, "periods") - got.floats(one, "depth") for one in series]
+            found = np.concatenate(off)
+            both += found.tolist()
+            words.append(
+                f"{name}: max(H) {found.min():+.2f} to {found.max():+.2f} T, mean "
+                f"{found.mean():+.2f}, {len(found)} start-ups"
+            )
+        yield Claim(
+            "II-B.1",
+            f"{rule.words}: after max(H) T all nodes know a route (setups 1-8; from the PC's "
+            "first beacon; one period more because it listened before)",
+            joined(words),
+            verdict(WITHIN.has(*both), "E20", "E27"),
+            "E20: in lock-step a hop takes a period, free running half of one on the mean; E27: "
+            "the PC listens for k periods first, so its ports count as broken and are taken back "
+            "a period later",
         )
-    return Claim(
-        "II-B.1",
-        f"{RULE_NAMES[rule[0]]}: after max(H) T all nodes know a route (setups 1-8; from the PC's "
-        "first beacon; one period more because it listened before)",
-        joined(words),
-        verdict(WITHIN.has(*both), "E20", "E27"),
-        "E20: in lock-step a hop takes a period, free running half of one on the mean; E27: the PC "
-        "listens for k periods first, so its ports count as broken and are taken back a period "
-        "later",
-    )
-
-
-EXPERIMENT = Experiment(
-    "startup",
-    "II-B.1: start-up",
-    f"{HZ} Hz; time from the PC's first beacon until no cell is without a route. Line: max(H), the "
-    "depth of the skin, in periods.",
-    points,
-    draw,
-    judge,
-)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from innervate import scenario
-from innervate.networks.skin.papers.common import joined, seeds_of
+from innervate.networks.skin.papers.common import SILENT, loaded, seeds_of
 from innervate.networks.skin.papers.steps import Steps
 from innervate.networks.skin.protocol.constants import NONE
-from innervate.papers.experiment import Claim, Point, Results, Span, verdict
+from innervate.papers.experiment import Claim, Measured, Point, Span, verdict
+from innervate.papers.words import joined
 
 HZ = 250
 K = 3
@@ -41,56 +41,27 @@ VARIANTS = (
 )
 
 
-def seeds(quick: bool) -> range:
+def point(setup: str, variant: Variant, quick: bool) -> Point:
     """Skins that are looked at."""
-    return seeds_of(3 if quick else 20)
-
-
-def _key(setup: str, variant: Variant, quick: bool) -> str:
     rule, updates, m = variant
-    return f"steady {setup} {rule} {updates} m={m} k={K} seeds 1-{len(seeds(quick))}"
-
-
-def points(setup: str, quick: bool) -> list[Point]:
-    """A point for each variant of a setup."""
-    return [
-        Point.of(
-            _key(setup, variant, quick),
-            0.03 * len(seeds(quick)),
-            *(longer_all, setup, variant, seeds(quick)),
-        )
-        for variant in VARIANTS
-    ]
-
-
-def longer_all(setup: str, variant: Variant, some: Sequence[int]) -> list[list[list[int]]]:
-    """See longer; one entry a seed."""
-    return [longer(setup, variant, seed) for seed in some]
+    what = f"steady {setup} {rule} {updates} m={m} k={K}"
+    return Point.each(what, 0.03, seeds_of(3 if quick else 20), longer, setup, variant)
 
 
 def longer(setup: str, variant: Variant, seed: int) -> list[list[int]]:
     """Cells not on a shortest way: at LOOKS after switching on, and after interface 1 is cut."""
     rule, updates, m = variant
-    period = 1 / HZ
-    overrides: list[tuple[str, Any]] = [
-        ("protocol.rule", rule),
-        ("protocol.updates", updates),
-        ("protocol.beacon_hz", HZ),
-        ("protocol.k", K),
-        ("data.rate_hz", 0),
-        ("event", [{"action": "cut", "interface": 1, "at_s": CUT_AFTER * period}]),
-        ("duration_s", (CUT_AFTER + LOOKS[-1] + 1) * period),
-    ]
-    if m:
-        overrides.append(("protocol.m", m))
-    steps = Steps(scenario.load(setup, overrides, seed))
+    cut = {"action": "cut", "interface": 1, "at_s": CUT_AFTER / HZ}
+    steps = Steps(loaded(
+        setup, seed, (CUT_AFTER + LOOKS[-1] + 1) / HZ, SILENT | {"event": [cut]}, rule=rule,
+        updates=updates, beacon_hz=HZ, k=K, m=m or None,
+    ))  # fmt: skip
     found: list[list[int]] = []
     for start, depths in ((0, steps.plan.depths), (CUT_AFTER, _depths_after(setup))):
-        shortest = np.array(depths)
         found.append([])
         for look in LOOKS:
-            steps.to((start + look) * period)
-            found[-1].append(_count(steps.world.cells, shortest))
+            steps.to((start + look) / HZ)
+            found[-1].append(_count(steps.world.cells, np.array(depths)))
     return found
 
 
@@ -102,28 +73,25 @@ def _count(cells: Any, shortest: Any) -> int:
 
 def _depths_after(setup: str) -> list[int]:
     """Shortest ways without interface 1."""
-    ports = scenario.load(setup).model.interface
-    left = [{"row": port.row, "column": port.column} for port in ports[:1]]
-    depths: list[int] = scenario.plan(
-        scenario.load(setup, [("interface", left), ("event", [])])
-    ).depths
+    first = scenario.load(setup).model.interface[0]
+    left = [("interface", [{"row": first.row, "column": first.column}]), ("event", [])]
+    depths: list[int] = scenario.plan(scenario.load(setup, left)).depths
     return depths
 
 
-def judge(setup: str, cells: int, results: Results, quick: bool) -> Claim:
+def judge(setup: str, cells: int, got: Measured) -> Claim:
     """Does the wave mode with M = 1 leave longer ways, as the printed rule does?"""
-    first = LOOKS[0]
     words = []
     for variant in VARIANTS:
-        found = np.array(results[_key(setup, variant, quick)])  # skin, occasion, look
-        after_start, after_cut = ((found[:, i, 0] > 0).sum() for i in (0, 1))
+        found = np.array(got[point(setup, variant, got.quick)])  # skin, occasion, look
+        after_start, after_cut = (found[:, :, 0] > 0).sum(axis=0)
         number = f"M = {variant.m}" if variant.m else "M = 3"
         words.append(f"{variant.rule} {variant.updates} {number}: {after_start}, {after_cut}")
-    wave = np.array(results[_key(setup, WAVE, quick)])
+    wave = np.array(got[point(setup, WAVE, got.quick)])
     return Claim(
         "beyond",
         f"wave with M = 1 leaves no cell on a longer way, {cells} cells (E26)",
-        f"skins of {len(wave)} with a longer way {first} periods after start-up, after the cut: "
+        f"skins of {len(wave)} with a longer way {LOOKS[0]} periods after start-up, after the cut: "
         + joined(words),
         verdict(NOBODY.has(*wave.ravel())),
         "E26: with M = 1 a nearer neighbour whose number always comes later stays forbidden until "

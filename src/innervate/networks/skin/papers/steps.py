@@ -1,14 +1,21 @@
-"""A simulation in steps, to look into it while it runs: penalties, counters, loads."""
+"""A simulation in steps, to look into it while it runs: penalties, counters, loads, sizes."""
 
 from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from innervate import scenario
+from innervate.networks.skin.analysis.load import interfaces_along
+from innervate.networks.skin.papers.common import SILENT, loaded
 from innervate.networks.skin.scenario.plan import Plan
 from innervate.networks.skin.sim.simulate import simulation
 from innervate.scenario import Scenario
 from innervate.sim.status import DONE
+
+BEACON_HZ = 250
+STALE_FROM = 300  # periods until first routes and their sizes stand
 
 
 class Steps:
@@ -41,3 +48,39 @@ class Steps:
     def counters(self) -> list[int]:
         """The counters of sim/wires.py up to now."""
         return [int(count) for count in self.world.counters]
+
+
+def stale_sizes(setup: str, lock_step: bool, watched: int, seed: int) -> list[int]:
+    """Periods from a switch of a parent until all cells know the true size of their subnetwork.
+
+    Only of switches that were alone meanwhile.
+    """
+    more = {**SILENT, "timing.lock_step": lock_step}
+    duration_s = (STALE_FROM + watched + 1) / BEACON_HZ
+    steps = Steps(loaded(setup, seed, duration_s, more, updates="periodic", beacon_hz=BEACON_HZ))
+    before: Any = None
+    found: list[int] = []
+    since, fresh = -1, False
+    for period in range(STALE_FROM, STALE_FROM + watched):
+        steps.to((period + 0.5) / BEACON_HZ)
+        parents = steps.world.cells["parent"].astype(np.int64)
+        moved = 0 if before is None else int((parents != before).sum())
+        before = parents
+        if moved:
+            alone = moved == 1 and since < 0 and fresh
+            since = period if alone else -1
+        fresh = sizes_are_true(steps, parents)
+        if fresh and since >= 0:
+            found.append(period - since)
+            since = -1
+    return found
+
+
+def sizes_are_true(steps: Steps, parents: Any) -> bool:
+    """True if every cell knows how many cells its interface port serves."""
+    port = interfaces_along(steps.plan.graph, parents)
+    if (port < 0).any():
+        return False
+    loads = np.bincount(port, minlength=steps.plan.graph.interfaces)
+    known = steps.world.cells["size"][np.arange(len(parents)), np.maximum(parents, 0)]
+    return bool((known == loads[port]).all())

@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 
 from innervate.networks.skin.analysis.touch import WINDOW_S
 from innervate.networks.skin.plot import map as skinmap
+from innervate.networks.skin.plot.digest import Digest
 from innervate.networks.skin.plot.report import legend
-from innervate.networks.skin.plot.story import Story
 from innervate.networks.skin.plot.words import fault_words
 from innervate.plot import paint, style
 from innervate.plot.charts import Axis, Mark, Steps
@@ -31,7 +31,7 @@ def recovery(run: Any, from_s: float | None = None, to_s: float | None = None) -
 
     Without a time span it shows what happened round the events, else the whole run.
     """
-    history = Story(run.result, run.summary).history
+    history = Digest(run.result, run.summary).history
     times, cells = history.steps()
     first, last = _span(run, from_s, to_s)
     inside = cells[(times >= 1e6 * first) & (times <= 1e6 * last)]
@@ -63,20 +63,20 @@ def _span(run: Any, from_s: float | None, to_s: float | None) -> tuple[float, fl
 def routes(run: Any, time_s: float | None = None) -> Figure:
     """Who sends through whom at a time (default: the end), as on maps of reports."""
     at_us = run.result.ended_us if time_s is None else round(1e6 * time_s)
-    story, title = Story(run.result, run.summary), f"routes at {at_us / 1e6:.3f} s"
-    drawing = skinmap.route_map(story.sheet, story.history.at(at_us), title, tips=False)
-    return paint.figure(paint.keyed(drawing, legend(story)), title, style.COLUMN_IN)
+    digest, title = Digest(run.result, run.summary), f"routes at {at_us / 1e6:.3f} s"
+    drawing = skinmap.route_map(digest.sheet, digest.history.at(at_us), title, tips=False)
+    return paint.figure(paint.keyed(drawing, legend(digest)), title, style.COLUMN_IN)
 
 
 def loads(run: Any) -> Figure:
     """Cells that each interface port serves at the end, against the even split."""
-    return chart(Story(run.result, run.summary).loads())
+    return chart(Digest(run.result, run.summary).loads())
 
 
 def received(run: Any, time_s: float | None = None, window_s: float = WINDOW_S) -> Figure:
     """The force the PC knew of at a time; hollow: no sample in the window before."""
     at_us = run.result.ended_us if time_s is None else round(1e6 * time_s)
-    panel = Story(run.result, run.summary).image(at_us, round(1e6 * window_s), "")
+    panel = Digest(run.result, run.summary).image(at_us, round(1e6 * window_s), "")
     title = f"force known at {at_us / 1e6:.3f} s; {panel.text}"
     return paint.figure(panel.drawing, title, style.COLUMN_IN)
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from innervate.networks.skin.plot import words as skin_words
+from innervate.networks.skin.plot.digest import Digest
 from innervate.networks.skin.plot.map import CELLS_MAX, shows_depth
-from innervate.networks.skin.plot.story import Story
 from innervate.plot import page, svg, words
 from innervate.plot.page import ROWS_MAX, element, keys, panel, pictures, section, table, tiles
 from innervate.plot.theme import SHADES
@@ -18,19 +18,21 @@ BROKEN_MAX = 12
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
     """Headline, status, numbers and pictures of a skin's run, as HTML."""
-    story = Story(result, summary)
-    return page.joined(top(story), _recovery(story), _touch(story), _traffic(story), _events(story))
+    digest = Digest(result, summary)
+    return page.joined(
+        top(digest), _recovery(digest), _touch(digest), _traffic(digest), _events(digest)
+    )
 
 
 def notebook(result: Any, summary: Mapping[str, Any]) -> str:
     """What a notebook shows of a run, as HTML."""
-    story = Story(result, summary)
-    return top(story) + maps(story)
+    digest = Digest(result, summary)
+    return top(digest) + maps(digest)
 
 
-def top(story: Story) -> str:
+def top(digest: Digest) -> str:
     """What happened, what is broken, and the figures to know."""
-    summary, graph = story.summary, story.graph
+    summary, graph = digest.summary, digest.graph
     over = (
         f"{summary['name']}: a robot skin of {words.number_of(graph.cells, 'cell')}, "
         f"{words.number_of(graph.interfaces, 'interface port')}, at most "
@@ -38,20 +40,20 @@ def top(story: Story) -> str:
         f"seed {summary['seed']}"
     )
     warned = page.paragraphs((f"Warning: {text}." for text in summary["warnings"]), "status bad")
-    said = page.paragraphs(_sentences(story)) + page.ended_early(summary)
-    return page.top(over, summary, warned, said, _broken(summary), tiles(_figures(story)))
+    said = page.paragraphs(_sentences(digest)) + page.ended_early(summary)
+    return page.top(over, summary, warned, said, _broken(summary), tiles(_figures(digest)))
 
 
-def _sentences(story: Story) -> list[str]:
+def _sentences(digest: Digest) -> list[str]:
     """The worst event first, then others in order of time."""
-    lines = story.headlines()
+    lines = digest.headlines()
     if not lines:
-        routed = story.summary["start_up"]["routed_ms"]
+        routed = digest.summary["start_up"]["routed_ms"]
         if routed is None:
             return ["Not every cell found a way to the PC."]
         return [f"Nothing was broken; every cell had a way {words.ms_words(routed)} after start."]
-    hero = story.hero
-    first = story.incidents.index(hero) if hero is not None else 0
+    hero = digest.hero
+    first = digest.incidents.index(hero) if hero is not None else 0
     others = [line for i, line in enumerate(lines) if i != first]
     more = len(others) - SENTENCES_MAX
     tail = [f"And {words.number_of(more, 'more event')}, listed below."] if more > 0 else []
@@ -73,8 +75,8 @@ def _broken(summary: Mapping[str, Any]) -> str:
     return f'<div class="status bad">{inside}</div>'
 
 
-def _figures(story: Story) -> list[tuple[str, str]]:
-    summary = story.summary
+def _figures(digest: Digest) -> list[tuple[str, str]]:
+    summary = digest.summary
     data, found = summary["data"], []
     if data["sent"]:
         found.append((words.share_words(1 - data["loss_ratio"]), "of the samples not lost"))
@@ -98,43 +100,43 @@ def _figures(story: Story) -> list[tuple[str, str]]:
     return [*found, page.took(summary, done_s)]
 
 
-def maps(story: Story) -> str:
+def maps(digest: Digest) -> str:
     """The skin before, during and after the worst event, and what the colours mean."""
-    panels = story.maps()
-    columns = "four" if len(panels) > 1 and not story.sheet.wide else "two"
-    return pictures([panel(one) for one in panels], columns) + keys(legend(story))
+    panels = digest.maps()
+    columns = "four" if len(panels) > 1 and not digest.sheet.wide else "two"
+    return pictures([panel(one) for one in panels], columns) + keys(legend(digest))
 
 
-def _recovery(story: Story) -> str:
-    charts = [panel(one) for one in (*story.zooms(), *story.overview())]
-    head = "The recovery" if story.hero is not None else "The skin"
-    return section(head, maps(story) + pictures(charts, "two"))
+def _recovery(digest: Digest) -> str:
+    charts = [panel(one) for one in (*digest.zooms(), *digest.overview())]
+    head = "The recovery" if digest.hero is not None else "The skin"
+    return section(head, maps(digest) + pictures(charts, "two"))
 
 
-def _touch(story: Story) -> str:
-    images = story.images()
+def _touch(digest: Digest) -> str:
+    images = digest.images()
     if not images:
         return ""
-    period = words.ms_words(story.plan.data_period_us / 1e3)
+    period = words.ms_words(digest.plan.data_period_us / 1e3)
     entries = [(_icon("none", crossed=True), "nothing received in that time")]
     text = f"Every cell measures once in {period}; shown is what came in 1.25 times that."
-    if story.plan.touch is not None:
-        force = story.plan.touch.force_mn / 1e3
+    if digest.plan.touch is not None:
+        force = digest.plan.touch.force_mn / 1e3
         entries.insert(0, (_ramp("h"), f"0 to {force:g} N"))
         entries.append((_icon("touch", circle=True), "where the touch really is"))
-    shown = pictures([panel(one) for one in images], "two" if story.sheet.wide else "three")
+    shown = pictures([panel(one) for one in images], "two" if digest.sheet.wide else "three")
     return section(
         "Touch as the PC received it", element("p", text, "note") + shown + keys(entries)
     )
 
 
-def _traffic(story: Story) -> str:
-    panels = [story.loads(), story.losses()]
+def _traffic(digest: Digest) -> str:
+    panels = [digest.loads(), digest.losses()]
     return section(
         "Load and losses",
         pictures([panel(one) for one in panels if one is not None], "two")
-        + _latencies(story.summary["data"])
-        + _commands(story.summary["commands"]),
+        + _latencies(digest.summary["data"])
+        + _commands(digest.summary["commands"]),
     )
 
 
@@ -180,14 +182,14 @@ def _times(latency: Mapping[str, Any]) -> list[str]:
     return [words.ms_words(latency[name]) for name in ("p50", "p95", "p99", "max")]
 
 
-def _events(story: Story) -> str:
+def _events(digest: Digest) -> str:
     rows = []
-    for incident in story.incidents:
+    for incident in digest.incidents:
         recovery = incident.recovery
         times = [_ms(recovery[key]) for key in ("detected_ms", "others_ms", "converged_ms")]
         if recovery["others_ms"] == 0:
             times[1] = "had one all the time"
-        what = svg.clean(skin_words.fault_words(story.graph, incident.fault))
+        what = svg.clean(skin_words.fault_words(digest.graph, incident.fault))
         counts = [f"{recovery[key]:,}" for key in ("cut_cells", "cut_off_total")]
         rows.append((f"{recovery['at_s']:.3f} s", what, *counts, *times))
     if not rows:
@@ -201,9 +203,9 @@ def _ms(value: float | None) -> str:
     return "-" if value is None else words.ms_words(value)
 
 
-def legend(story: Story) -> list[tuple[svg.Drawing, str]]:
+def legend(digest: Digest) -> list[tuple[svg.Drawing, str]]:
     """What the colours and lines of the maps mean: samples with words."""
-    interfaces, cells = story.graph.interfaces, story.graph.cells
+    interfaces, cells = digest.graph.interfaces, digest.graph.cells
     if cells > CELLS_MAX:
         return [
             (_ramp("d"), "mean hops to the PC, few to many; a square stands for several cells"),
@@ -216,7 +218,7 @@ def legend(story: Story) -> list[tuple[svg.Drawing, str]]:
         entries += [(_icon(f"cell p{i}"), f"served by port {i}") for i in range(interfaces)]
     entries.append((_icon("tree", line=True), "to the parent"))
     entries.append((_icon("none", crossed=True), "no way to the PC"))
-    if story.incidents:
+    if digest.incidents:
         entries.append((_icon("cut", line=True), "cut cable"))
     return entries
 

@@ -117,6 +117,6 @@ def _played(plan: Any, checks: bool, trail: bool) -> Result:
     world, now = script.play(plan, stack, checks, trail)
     played = SkinSimulation(plan, world, lambda *_: None)
     if int(get(world.run, 0, "status")) == BROKEN:
-        raise InvariantBroken(played.story())
+        raise InvariantBroken(played.broken_line())
     move_rows(world, played._kept, played.tables, played.wide)
     return played.result(Ended(now, wall_s() - started, False, played.take()), False)

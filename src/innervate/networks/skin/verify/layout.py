@@ -67,7 +67,7 @@ class Layout:
         at[w.DIRECTIONS], at[w.PC_AT], at[w.LINK_AT] = self.ways, self.pc_at, self.link_at
         at[w.BUDGET_AT], at[w.MERGE], at[w.PROMPT] = self.budget_at, model.merges, model.prompt
         at[w.FEASIBLE], at[w.KEEP] = model.rule == "feasible", model.keep
-        at[w.WHOLE] = model.whole
+        at[w.UNREDUCED] = model.unreduced
         at[w.LEAN] = self._is_lean
         at[w.HELD] = self._held()
         at[w.RISING] = model.rule == "strict" and model.budget.restart == 0
@@ -78,7 +78,7 @@ class Layout:
 
     @property
     def _is_lean(self) -> bool:
-        return self.model.lean and not self.model.prompt and not self.model.whole
+        return self.model.lean and not self.model.prompt and not self.model.unreduced
 
     def _held(self) -> int:
         """For the fair schedule: how many values a time without a route can have, if it is

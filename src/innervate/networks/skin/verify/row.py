@@ -39,8 +39,8 @@ from innervate.networks.skin.verify.world import (
     SQ_OWN,
     TICKS,
     TOTAL,
+    UNREDUCED,
     WAIT,
-    WHOLE,
 )
 
 NOTHING_SENT = 254
@@ -194,7 +194,7 @@ def push(world, way, frame):
     dist = frame.dist
     sq = frame.sq & 255
     says = min(frame.load, 1) | (frame.parent << 1)
-    if world.at[WHOLE] == 0 and is_idle(world, way, count, dist, sq, says):
+    if world.at[UNREDUCED] == 0 and is_idle(world, way, count, dist, sq, says):
         return
     if count >= world.at[CAPACITY]:
         world.found[0] = NO_ROOM

@@ -53,7 +53,9 @@ def tell(result: Result, system: Any = None) -> Story:
     system = system or skin_system.system_of()
     found = Twin(result.model, system)
     real = Twin(
-        result.model.changed(merge=False, symmetric=False, keep=True, whole=True, capacity=ROOM),
+        result.model.changed(
+            merge=False, symmetric=False, keep=True, unreduced=True, capacity=ROOM
+        ),
         system,
     )
     story = Story("", graph=result.model.graph)

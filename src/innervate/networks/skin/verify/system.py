@@ -77,7 +77,7 @@ class SkinModel:
         capacity: most frames in flight per direction; states with more are left out, and counted.
             0 = what periodic cells can send within their budget; of triggered ones ROOM, or
             LEAN_ROOM.
-        whole: leave no beacon out, though it changes nothing.
+        unreduced: leave no beacon out, though it changes nothing.
         lean: forget what can no longer matter (see reduction.py), and follow no state of which a
             known one differs only in that more may still happen.
     """
@@ -92,7 +92,7 @@ class SkinModel:
     keep: bool = False
     symmetric: bool = True
     capacity: int = 0
-    whole: bool = False
+    unreduced: bool = False
     lean: bool = False
 
     @property

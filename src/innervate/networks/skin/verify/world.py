@@ -17,7 +17,7 @@ from innervate.networks.skin.protocol import fields as skin_fields
 
 # Places in `SkinWorld.at`.
 CELLS, LINKS, CAPACITY, DIRECTIONS, PC_AT, LINK_AT, BUDGET_AT = range(7)
-MERGE, PROMPT, FAIR, FEASIBLE, MAY_LOOP, KEEP, WHOLE, IMAGES, WIDTH, LEAN = range(7, 17)
+MERGE, PROMPT, FAIR, FEASIBLE, MAY_LOOP, KEEP, UNREDUCED, IMAGES, WIDTH, LEAN = range(7, 17)
 HELD, RISING, STEADY = range(17, 20)
 SETTINGS = 20
 

@@ -52,7 +52,7 @@ class Incident:
         return self.at_us + round(1e3 * float(routed_ms))
 
 
-class Story:
+class Digest:
     """A run of a skin, as pictures are made from it."""
 
     def __init__(self, result: Any, summary: Mapping[str, Any]) -> None:
