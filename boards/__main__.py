@@ -1,7 +1,8 @@
 """Makes the folder that a maker copies to a board.
 
-`python -m boards [FOLDER] [name=value ...]`: a cell of the skin, into build/board if no folder is
-given; names are parameters of the protocol (see docs/skin.md), which all cells must share.
+`python -m boards [NETWORK] [FOLDER] [name=value ...]`: a cell of the skin if no network is named,
+into build/board if no folder is; names are parameters of the protocol (of the skin see
+docs/skin.md), which all nodes must share.
 """
 
 from __future__ import annotations
@@ -13,34 +14,55 @@ from pathlib import Path
 from boards import join, records
 from boards.compile import mpy
 from boards.errors import BoardMissing
-from boards.roles import ROLES
+from boards.parity.record import part, plan_of
+from boards.roles import kind_of, roles
+from innervate.live.board import Program, Role
 from innervate.live.errors import LiveError
-from innervate.networks.skin.live.parameters import skin_parameters
+from innervate.live.parameters import check_parameters
+from innervate.network import networks
 
 HERE = Path(__file__).resolve().parent / "micropython"
 ROOM = Path(__file__).resolve().parent.parent / "src"
-SHARED = (
-    "networks/skin/protocol/constants", "networks/skin/frames",
-    "wire/bits", "wire/crc", "wire/layout", "wire/cobs",
-)  # fmt: skip
 
 
-def cell_files(params: dict[str, int]) -> dict[str, bytes]:
-    """Path and content of everything that a cell needs; main.py stays readable."""
-    role = ROLES["skin"]
+def program_of(role: Role) -> Program:
+    """What a maker's board runs.
+
+    Raises:
+        LiveError: there is no driver for it.
+    """
+    if role.program is None:
+        raise LiveError(f"{role.name}: there is no driver for boards")
+    return role.program
+
+
+def files_of(role: Role, params: dict[str, int]) -> dict[str, bytes]:
+    """Path and content of everything that a node needs; main.py stays readable.
+
+    Raises:
+        LiveError: there is no driver for it.
+    """
+    program = program_of(role)
     sources = {
-        "node": join.fixed(join.joined(role.entry), params),
+        "node": join.fixed(join.joined(role.entry, noted=role.noted), params),
         "records": records.module_source(
             params, State=role.state, Params=role.params, Frame=role.frame
         ),
-        **{name: (HERE / f"{name}.py").read_text() for name in ("outbox", "cell")},
-        **{f"innervate/{name}": (ROOM / f"innervate/{name}.py").read_text() for name in SHARED},
+        **{name: (HERE / f"{name}.py").read_text() for name in program.drivers},
+        **{f"innervate/{n}": (ROOM / f"innervate/{n}.py").read_text() for n in program.sources},
     }
+    network = networks()[kind_of(role)]
+    if network.has("frames") and network.has("protocol"):
+        frames, timers = network.frames, network.protocol.TIMERS
+        sources["layouts"] = (
+            f"LAYOUTS = {frames.LAYOUTS!r}\nKIND_BITS = {frames.KIND_BITS}\n"
+            f"TIMERS = {timers}\nROOM = {role.room}\n"
+        )
     made = {f"{name}.mpy": mpy(text, name.rpartition("/")[2]) for name, text in sources.items()}
-    return {**made, "main.py": (HERE / "main.py").read_bytes()}
+    return {**made, "main.py": (HERE / f"{program.main}.py").read_bytes()}
 
 
-def numbers_of(arguments: list[str]) -> dict[str, int]:
+def numbers_of(role: Role, arguments: list[str]) -> dict[str, int]:
     """`name=value` as parameters.
 
     Raises:
@@ -50,24 +72,32 @@ def numbers_of(arguments: list[str]) -> dict[str, int]:
     for argument in arguments:
         name, _, value = argument.partition("=")
         if not value.lstrip("-").isdigit():
-            raise LiveError(f"{argument}: give a whole number, like beacon_us=20000")
+            like = next((p[0] for p in role.params if p[4] == "us"), "name")
+            raise LiveError(f"{argument}: give a whole number, like {like}=20000")
         changes[name] = int(value)
-    return skin_parameters(changes, "boards")
+    parameters = program_of(role).parameters
+    if parameters:
+        made: dict[str, int] = part(parameters)(changes, "boards")
+        return made
+    check_parameters(changes, role.params, "boards")
+    return {**plan_of(role).params, **changes}
 
 
 def main(arguments: list[str]) -> int:
     """The command; its exit code."""
-    folders = [argument for argument in arguments if "=" not in argument]
-    if len(folders) > 1:
-        print(f"{folders[1]}: one folder is enough", file=sys.stderr)
+    known = roles()
+    words = [argument for argument in arguments if "=" not in argument]
+    named = words.pop(0) if words and words[0] in known else next(iter(known))
+    if len(words) > 1:
+        print(f"{words[1]}: one folder is enough", file=sys.stderr)
         return 2
-    folder = Path(folders[0] if folders else "build/board")
+    folder, role = Path(words[0] if words else "build/board"), known[named]
     try:
-        files = cell_files(numbers_of([a for a in arguments if "=" in a]))
+        files = files_of(role, numbers_of(role, [a for a in arguments if "=" in a]))
     except (LiveError, BoardMissing) as error:
         print(error, file=sys.stderr)
         return 2
-    if folder.exists() and not (folder / "cell.mpy").exists() and any(folder.iterdir()):
+    if folder.exists() and not (folder / "node.mpy").exists() and any(folder.iterdir()):
         print(f"{folder}: not empty and not made by this command; name another", file=sys.stderr)
         return 2
     shutil.rmtree(folder, ignore_errors=True)

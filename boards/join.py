@@ -11,11 +11,9 @@ import ast
 import importlib
 import inspect
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Set
 from types import ModuleType
 from typing import Any
-
-from innervate.networks.skin.protocol.fields import NOTED
 
 _COMPARE: dict[type, Callable[[Any, Any], bool]] = {
     ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Lt: operator.lt, ast.LtE: operator.le,
@@ -55,13 +53,12 @@ def reached(entry: str) -> list[ModuleType]:
     return found
 
 
-def functions(*entries: str) -> dict[str, str]:
+def functions(*entries: str, noted: Set[str] = frozenset()) -> dict[str, str]:
     """Name and source of every function that the entries' functions can reach, callees first.
-
-    What is noted for simulations only is left out.
 
     Args:
         entries: modules with the five functions, like "innervate.networks.skin.protocol.cell".
+        noted: fields that only a simulation fills in: assignments to them are left out.
     """
     modules: list[ModuleType] = []
     for entry in entries:
@@ -75,22 +72,26 @@ def functions(*entries: str) -> dict[str, str]:
                 known = _values(module, names)
                 node.name = names[module.__name__, node.name]
                 node.body = node.body[1:] or [ast.Pass()]  # without its docstring
-                made = ast.fix_missing_locations(_Unnoted().visit(_Names(known).visit(node)))
+                made = ast.fix_missing_locations(_Unnoted(noted).visit(_Names(known).visit(node)))
                 found[made.name] = ast.unparse(made)
     return found
 
 
-def joined(*entries: str) -> str:
+def joined(*entries: str, noted: Set[str] = frozenset()) -> str:
     """The same as the text of one module."""
-    return HEADER.format(", ".join(entries)) + "\n".join(functions(*entries).values()) + "\n"
+    found = functions(*entries, noted=noted)
+    return HEADER.format(", ".join(entries)) + "\n".join(found.values()) + "\n"
 
 
 class _Unnoted(ast.NodeTransformer):
     """Leaves out assignments to fields that only a simulation fills in."""
 
+    def __init__(self, noted: Set[str]) -> None:
+        self.noted = noted
+
     def visit_Assign(self, node: ast.Assign) -> Any:
         (target,) = node.targets
-        noted = isinstance(target, ast.Attribute) and target.attr in NOTED
+        noted = isinstance(target, ast.Attribute) and target.attr in self.noted
         return None if noted else node
 
 

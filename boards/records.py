@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from boards.roles import Declaration
+from innervate.live.board import Declaration
 
 # Type codes of `array`, narrowest first, with their ranges.
 CODES = (("B", 0, 255), ("b", -128, 127), ("H", 0, 65_535), ("h", -32_768, 32_767),

@@ -1,16 +1,22 @@
 """One scenario per protocol, run every way there is; the state's hash, and what it takes.
 
-`python -m boards.parity [--quick] [skin csma radio mesh]`: exit code 1 if two ways disagree, 2 if
-something is not installed. `--quick` plays the micro:bit the first calls only.
+`python -m boards.parity [--quick] [skin csma radio mesh] [NAME=FILE]`: exit code 1 if two ways
+disagree, 2 if something is not installed. Any network that declares its protocol and lies over
+cables can be named (see INNERVATE_NETWORKS); FILE is another scenario than its plainest, or than
+that of `boards/parity`. `--quick` plays the micro:bit the first calls only.
 """
 
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 
 from boards.errors import BoardFailed, BoardMissing
 from boards.parity import microbit, nodejs, record
 from boards.parity.record import Transcript
+from boards.roles import roles
+from innervate.live.board import Role
+from innervate.scenario import ScenarioError
 
 QUICK = 100  # calls
 CAP = nodejs.CAP
@@ -27,21 +33,21 @@ def agree(transcript: Transcript, marks: list[tuple[int, int]], way: str) -> str
     return f"0x{marks[-1][0]:08x} after {len(marks)} calls, each the same"
 
 
-def compare(name: str, quick: bool) -> bool:
+def compare(role: Role, file: Path | None, quick: bool) -> bool:
     """Run a protocol's scenario every way, and say what came of it; True if all agree."""
-    transcript = record.record(name)
+    transcript = record.record(role, file)
     plain = transcript.marks[-1][0]
-    compiled, fingerprint = record.compiled_mark(name)
+    compiled, fingerprint = record.compiled_mark(role, file)
     same = (compiled, fingerprint) == (plain, transcript.fingerprint)
-    watched = record.WATCHED[name]
-    print(f"{name}: {watched.scenario}.toml, node {watched.node}")
+    own = f"{role.watched.scenario}.toml" if role.watched.scenario else "as it is by itself"
+    print(f"{role.name}: {own if file is None else file.name}, node {role.watched.node}")
     print(f"  compiled     0x{compiled:08x} at the end")
     print(f"  plain        0x{plain:08x} after {len(transcript.marks)} calls")
     played = nodejs.play(transcript)
     said = agree(transcript, played.marks, "MicroPython")
     same = same and bool(said) and len(played.marks) == len(transcript.marks)
     print(f"  MicroPython  {said}")
-    if name == "skin":
+    if role.emulated is not None:
         marks = microbit.play(transcript, QUICK if quick else len(transcript.calls))
         said = agree(transcript, marks, "micro:bit")
         same = same and bool(said)
@@ -55,18 +61,20 @@ def compare(name: str, quick: bool) -> bool:
 
 def main(arguments: list[str]) -> int:
     """The command; its exit code."""
-    names = [name for name in arguments if name != "--quick"]
-    unknown = [name for name in names if name not in record.WATCHED]
+    known = roles()
+    named = [name.partition("=") for name in arguments if name != "--quick"]
+    files = {name: Path(file) for name, is_file, file in named if is_file}
+    wanted = [name for name, *_ in named] or list(known)
+    unknown = [name for name in wanted if name not in known]
     if unknown:
-        print(f"no protocol {unknown[0]!r}; known: {', '.join(record.WATCHED)}", file=sys.stderr)
+        print(f"no protocol {unknown[0]!r}; known: {', '.join(known)}", file=sys.stderr)
         return 2
-    names = names or list(record.WATCHED)
     try:
         nodejs.home()
-        if "skin" in names:
+        if any(known[name].emulated for name in wanted):
             microbit.look()
-        results = [compare(name, "--quick" in arguments) for name in names]
-    except BoardMissing as error:
+        results = [compare(known[n], files.get(n), "--quick" in arguments) for n in wanted]
+    except (BoardMissing, ScenarioError) as error:
         print(error, file=sys.stderr)
         return 2
     except BoardFailed as error:

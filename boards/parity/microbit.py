@@ -1,4 +1,4 @@
-"""The skin's core on an emulated micro:bit: a Cortex-M0 with 16 KiB of RAM, in QEMU.
+"""A small protocol on an emulated micro:bit: a Cortex-M0 with 16 KiB of RAM, in QEMU.
 
 Its MicroPython (1.9.2) has no precompiled modules: every function is typed in on the serial line,
 compiled there, and so is every call. What remains of the 16 KiB for programs are about 10,000
@@ -21,8 +21,7 @@ from boards import join, records
 from boards.errors import BoardFailed, BoardMissing
 from boards.parity.record import HANDLERS, Transcript, flat, layout_of, names_of
 from boards.parity.replay import SEND, START, TIMER, fold_out, fold_state
-from boards.roles import Declaration, Role
-from innervate.networks.skin.protocol.constants import BEACON
+from innervate.live.board import Declaration, Emulated, Role
 
 FIRMWARE = Path("/usr/share/firmware-microbit-micropython/firmware.hex")
 QEMU = "qemu-system-arm"
@@ -141,10 +140,6 @@ class Microbit:
         return bytes(heard)
 
 
-# Commands of the PC: they do not fit beside the rest, and the calls that are played have none.
-LEFT_OUT = ("hand_down", "accept_command")
-
-
 class Names:
     """Short names: every name costs a board memory, in functions and in objects."""
 
@@ -152,8 +147,8 @@ class Names:
         self.params = params
         declared = (name for fields in (role.state, role.frame) for name, *_ in fields)
         attributes = sorted({*declared, *OUTBOX})
-        found = join.functions(role.entry)
-        self.functions = {name: found[name] for name in found if name not in LEFT_OUT}
+        found, out = join.functions(role.entry, noted=role.noted), emulated(role).left_out
+        self.functions = {name: found[name] for name in found if name not in out}
         inner = [name for name in self.functions if not name.startswith("on_")]
         self.short = {name: join.short(i) for i, name in enumerate(attributes)}
         self.short |= {name: join.short(i + 26) for i, name in enumerate(inner)}
@@ -166,6 +161,12 @@ class Names:
     def of(self, record: str, fields: Iterable[str]) -> str:
         """Fields of a record, as a list of arguments."""
         return ",".join(f"{record}.{self.short[name]}" for name in fields)
+
+
+def emulated(role: Role) -> Emulated:
+    """What it has to know of a role that it can hold."""
+    assert role.emulated is not None
+    return role.emulated
 
 
 def _fields(names: Names, record: str, declaration: Declaration) -> Iterator[str]:
@@ -182,10 +183,11 @@ def _set_up(board: Microbit, role: Role, room: int, names: Names) -> None:
         board.run(source, once=True)
     board.run("class R:pass")
     short = names.short
-    beacon = [field for field in role.frame if field[0] in ("kind", *dict(role.kinds[BEACON]))]
+    sent = ("kind", *dict(role.kinds[emulated(role).repeated]))
+    small = [field for field in role.frame if field[0] in sent]
     # Four frames are enough for four ports: those that a call sends stand next to each other. One
-    # that is no beacon is the only one of its call, and may be the one that has come in.
-    frames = (("f", role.frame), ("g", beacon), ("j", beacon), ("k", beacon))
+    # of another type is the only one of its call, and may be the one that has come in.
+    frames = (("f", role.frame), ("g", small), ("j", small), ("k", small))
     for record, fields in (("c", role.state), *frames):
         for line in (f"{record}=R()", *_fields(names, record, fields)):
             board.run(line, once=True)
@@ -203,7 +205,7 @@ def _set_up(board: Microbit, role: Role, room: int, names: Names) -> None:
 
 
 def play(transcript: Transcript, rows: int) -> list[tuple[int, int]]:
-    """What came of the first calls of a skin cell's transcript, as `Transcript.marks`.
+    """What came of the first calls of a transcript, as `Transcript.marks`.
 
     Every value of the state and of the outbox is read back after each call.
 
@@ -237,13 +239,14 @@ def _call(board: Microbit, role: Role, names: Names, row: list[int]) -> None:
     else:
         values = iter(rest[1:])
         lines = []
-        for name, many in layout_of(role.frame):
+        for name, many in layout_of(role.frame, role.counted):
             place = f"f.{names.short[name]}"
             if many:
                 lines += [f"{place}[{i}]={next(values)}" for i in range(many)]
             else:
                 lines.append(f"{place}={next(values)}")
-        used = 6 if rest[1] == BEACON else len(lines)
+        repeated = emulated(role).repeated
+        used = 1 + len(role.kinds[repeated]) if rest[1] == repeated else len(lines)
         for at in range(0, used, AT_ONCE):
             board.run(";".join(lines[at : min(at + AT_ONCE, used)]))
         given = f"{rest[0]},f"

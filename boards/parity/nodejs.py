@@ -16,7 +16,7 @@ from boards.compile import mpy
 from boards.errors import BoardFailed, BoardMissing
 from boards.parity import replay
 from boards.parity.record import Transcript, flat, layout_of, names_of
-from boards.roles import Role
+from innervate.live.board import Role
 
 HERE = Path(__file__).resolve().parent
 BOARD = HERE.parent / "micropython"
@@ -93,7 +93,7 @@ def files_of(role: Role, params: dict[str, int] | None = None) -> dict[str, byte
 
     With `params` it is made for these, as a maker's cell is: it has no record of them.
     """
-    node = join.joined(role.entry)
+    node = join.joined(role.entry, noted=role.noted)
     role = role if params is None else role._replace(params=())
     sources = {
         "node": node if params is None else join.fixed(node, params),
@@ -115,15 +115,15 @@ def records_of(role: Role) -> str:
 
 def layouts_of(role: Role) -> str:
     """The module that says what a role's transcripts consist of."""
+    item = repr(flat(layout_of(role.item, role.counted)))
     lines = [
         f"NAMES = {tuple(names_of(role.state))!r}",
         f"PARAMS = {flat((name, many) for name, many, *_ in role.params)!r}",
-        f"HEARD = {flat(layout_of(role.frame))!r}",
-        f"GIVEN = {'HEARD' if role.item is role.frame else repr(flat(layout_of(role.item)))}",
+        f"HEARD = {flat(layout_of(role.frame, role.counted))!r}",
+        f"GIVEN = {'HEARD' if role.item is role.frame else item}",
         f"KINDS = { {kind: flat(fields) for kind, fields in role.kinds.items()}!r}",
     ]
-    has_gate = any(name == "rank" for name, *_ in role.state)
-    return "\n".join([*lines, f"HAS_GATE = {has_gate}", f"ROOM = {role.room}"]) + "\n"
+    return "\n".join([*lines, f"HAS_GATE = {role.has_gate}", f"ROOM = {role.room}"]) + "\n"
 
 
 def encoded(number: int) -> bytes:

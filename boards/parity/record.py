@@ -2,56 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 from unittest import mock
 
 from boards.parity import replay
-from boards.roles import COUNTED, ROLES, Declaration, Role
+from boards.roles import kind_of
 from innervate import scenario
 from innervate.dialect import plain
-from innervate.networks.mesh.protocol import csma
-from innervate.networks.mesh.protocol import node as mesh
-from innervate.networks.mesh.sim import simulate as mesh_simulate
-from innervate.networks.radio.protocol import practical as radio_practical
-from innervate.networks.radio.sim import simulate as radio_simulate
-from innervate.networks.skin.protocol import cell as skin
-from innervate.networks.skin.sim import simulate as skin_simulate
-from innervate.networks.skin.sim import stack as skin_stack
+from innervate.dialect.arith import MASK30
+from innervate.live.board import Declaration, Role
+from innervate.sim import clocks
+from innervate.sim.driver import Simulation
 
 HERE = Path(__file__).resolve().parent
 # Handlers in order of their number, and how many arguments stand between clock and outbox.
 HANDLERS = {"on_start": 1, "on_frame": 2, "on_timer": 1, "on_input": 2, "on_carrier": 2}
-
-
-@dataclass(frozen=True)
-class Watched:
-    """Whom to watch: a scenario, how it is simulated, and where the node's state is.
-
-    Attributes:
-        scenario: a file of this folder.
-        simulator: the module that runs it.
-        module: the protocol's module.
-        table: of the world, that holds the states.
-        node: which of them.
-    """
-
-    scenario: str
-    simulator: Any
-    module: Any
-    table: str
-    node: int
-
-
-WATCHED = {
-    "skin": Watched("skin", skin_simulate, skin, "cells", 4),
-    "csma": Watched("mesh", mesh_simulate, csma, "macs", 3),
-    "radio": Watched("radio", radio_simulate, radio_practical, "stations", 2),
-    "mesh": Watched("mesh", mesh_simulate, mesh, "nodes", 3),
-}
 
 
 @dataclass
@@ -80,11 +50,13 @@ def names_of(declaration: Declaration) -> list[str]:
     return [name for name, *_ in declaration]
 
 
-def layout_of(declaration: Declaration) -> list[tuple[str, Any]]:
+def layout_of(declaration: Declaration, counted: Mapping[str, str]) -> list[tuple[str, Any]]:
     """Fields as `replay.read_record` takes them: single ones first, as they count the others."""
-    fields = [(name, COUNTED.get(name, many)) for name, many, *_ in declaration]
-    if "path_len" not in names_of(declaration):
-        fields = [(name, "length" if name == "body" else many) for name, many in fields]
+    names = names_of(declaration)
+    fields = [
+        (name, counted[name] if counted.get(name) in names else many)
+        for name, many, *_ in declaration
+    ]
     return sorted(fields, key=lambda item: item[1] != 0)
 
 
@@ -104,20 +76,21 @@ def values_of(record: Any, layout: list[tuple[str, Any]]) -> list[int]:
 
 
 class Recorder:
-    """Stands between a simulation and the handlers of one node."""
+    """Stands between a plain simulation and the handlers of one node."""
 
-    def __init__(self, watched: Watched, role: Role) -> None:
-        self.watched = watched
+    def __init__(self, role: Role) -> None:
+        self.role, self.watched = role, role.watched
         self.transcript = Transcript(role)
         self.names = names_of(role.state)
-        self.heard, self.given = layout_of(role.frame), layout_of(role.item)
+        self.heard = layout_of(role.frame, role.counted)
+        self.given = layout_of(role.item, role.counted)
         self.kinds = {kind: flat(fields) for kind, fields in role.kinds.items()}
         self.last = self._copy(plain.make("Fresh", role.state)())
         self.world: Any = None
 
     def is_watched(self, state: Any) -> bool:
         """True for the state of the node that is recorded."""
-        return state is getattr(self.world, self.watched.table)[self.watched.node]
+        return state is self._state()
 
     def around(self, name: str, call: Callable[..., None]) -> Callable[..., None]:
         """A handler that is recorded; a gateway's record may stand behind the state."""
@@ -135,21 +108,19 @@ class Recorder:
 
         return recorded
 
-    def hear(self, world: Any, node: int, time: int, port: int, frame: Any) -> None:
-        """What stands for the skin's on_frame in the simulator, recorded."""
-        if node != self.watched.node:
-            HEAR(world, node, time, port, frame)
-            return
-        cell, params = world.cells[node], world.params[0]
-        now = skin_stack.local(world, node, time)
-        self.before(replay.FRAME, cell, params, now, (port, frame))
-        HEAR(world, node, time, port, frame)
-        self.after(cell, world.out)
+    def in_place(self, hear: Callable[..., None]) -> Callable[..., None]:
+        """What a run calls for the protocol's on_frame, recorded; it reads the clock itself."""
 
-    def build(self, *args: Any, **keep: Any) -> Any:
-        """Builds the world, and keeps it."""
-        self.world = self._build(*args, **keep)
-        return self.world
+        def recorded(world: Any, node: int, time: int, port: int, frame: Any) -> None:
+            if node != self.watched.node:
+                hear(world, node, time, port, frame)
+                return
+            state, now = self._state(), clocks.reading(world.clocks[node], time) & MASK30
+            self.before(replay.FRAME, state, world.params[0], now, (port, frame))
+            hear(world, node, time, port, frame)
+            self.after(state, world.out)
+
+        return recorded
 
     def before(self, handler: int, state: Any, params: Any, now: int, given: Any) -> None:
         """A call is about to be made."""
@@ -174,22 +145,28 @@ class Recorder:
         self.transcript.room = max(self.transcript.room, out.count[0])
         self.last = self._copy(state)
 
-    def run(self) -> Transcript:
+    def run(self, plan: Any) -> Transcript:
         """Simulate, and record."""
-        watched, simulator = self.watched, self.watched.simulator
-        self._build = simulator.builder.build
         with ExitStack() as stack:
-            patch = mock.patch.object
-            stack.enter_context(patch(simulator.builder, "build", self.build))
-            for name in HANDLERS:
-                if hasattr(watched.module, name) and (watched.module, name) != (skin, "on_frame"):
-                    made = self.around(name, getattr(watched.module, name))
-                    stack.enter_context(patch(watched.module, name, made))
-            if watched.module is skin:
-                stack.enter_context(patch(skin_stack, "on_frame", self.hear))
-            result = simulator.simulate(plan_of(watched), plain=True)
-        self.transcript.fingerprint = result.fingerprint
+            self._record(stack)
+            running = simulation(self.role, plan, plain=True)
+            self.world = running.world
+            running.finish()
+        self.transcript.fingerprint = running.fingerprint
         return self.transcript
+
+    def _record(self, stack: ExitStack) -> None:
+        """Put the recorder in place of the handlers."""
+        protocol, hears = import_module(self.role.entry), self.watched.on_frame
+        for name in HANDLERS:
+            if hasattr(protocol, name) and not (hears and name == "on_frame"):
+                made = self.around(name, getattr(protocol, name))
+                stack.enter_context(mock.patch.object(protocol, name, made))
+        if hears:
+            stack.enter_context(mock.patch(hears.replace(":", "."), self.in_place(part(hears))))
+
+    def _state(self) -> Any:
+        return getattr(self.world, self.watched.table)[self.watched.node]
 
     def _copy(self, state: Any) -> list[list[int]]:
         values = (getattr(state, name) for name in self.names)
@@ -204,26 +181,39 @@ class Recorder:
                     yield index, i if is_array else -1, other
 
 
-HEAR = skin_stack.on_frame
+def part(place: str) -> Any:
+    """What is meant by "module:name"."""
+    module, _, name = place.partition(":")
+    return getattr(import_module(module), name)
 
 
-def plan_of(watched: Watched) -> Any:
-    """The plan of what is watched."""
-    return scenario.plan(scenario.load(HERE / f"{watched.scenario}.toml"))
+def simulation(role: Role, plan: Any, plain: bool) -> Simulation:
+    """The run that a role is watched in, before its first event."""
+    made: Simulation = part(role.watched.simulation)(plan, plain=plain)
+    return made
 
 
-def record(name: str) -> Transcript:
+def plan_of(role: Role, file: Path | None = None) -> Any:
+    """The plan of what is watched: of a file, of the role's own, or of the network's plainest."""
+    if file is None and role.watched.scenario:
+        file = HERE / f"{role.watched.scenario}.toml"
+    if file is None:
+        return scenario.plan(scenario.from_dict({"kind": kind_of(role)}))
+    return scenario.plan(scenario.load(file))
+
+
+def record(role: Role, file: Path | None = None) -> Transcript:
     """What a role's node was told, and what came of it."""
-    return Recorder(WATCHED[name], ROLES[name]).run()
+    return Recorder(role).run(plan_of(role, file))
 
 
-def compiled_mark(name: str) -> tuple[int, str]:
+def compiled_mark(role: Role, file: Path | None = None) -> tuple[int, str]:
     """The state's hash at the end of the compiled run, and the run's fingerprint."""
-    watched, role = WATCHED[name], ROLES[name]
-    result = watched.simulator.simulate(plan_of(watched))
-    state = getattr(result.world, watched.table)[watched.node]
+    running = simulation(role, plan_of(role, file), plain=False)
+    running.finish()
+    state = getattr(running.world, role.watched.table)[role.watched.node]
     mark = 1
     for field_name, many, *_ in role.state:
         value = state[field_name]
         mark = replay.fold_field(mark, [int(word) for word in value] if many else int(value))
-    return mark, result.fingerprint
+    return mark, running.fingerprint

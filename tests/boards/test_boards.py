@@ -10,7 +10,7 @@ from boards import join, records
 from boards.errors import BoardFailed, BoardMissing
 from boards.parity import __main__ as parity
 from boards.parity import microbit, nodejs, record, replay
-from boards.roles import ROLES
+from boards.roles import roles
 
 CALLS = {
     "skin": 500,
@@ -19,11 +19,12 @@ CALLS = {
     "mesh": 120,
 }  # a minute of a mesh takes ten seconds
 MICROBIT_CALLS = 12
+ROLES = roles()
 
 
 @functools.cache
 def transcript(name):
-    return record.record(name)
+    return record.record(ROLES[name])
 
 
 def first(name, calls):
@@ -42,8 +43,8 @@ def changed_node(monkeypatch, old, new):
     """The next node's source with a mistake in it."""
     joined = join.joined
 
-    def wrong(entry):
-        source = joined(entry)
+    def wrong(entry, noted):
+        source = joined(entry, noted=noted)
         assert source.count(old) == 1, old
         return source.replace(old, new)
 
@@ -87,7 +88,7 @@ def test_joined_functions_are_the_same_functions(name):
     """On this Python, for whole transcripts, and with records as boards have them."""
     role, recorded = ROLES[name], transcript(name)
     space = {}
-    exec(join.joined(role.entry), space)
+    exec(join.joined(role.entry, noted=role.noted), space)
     exec(nodejs.records_of(role), space)
     exec(nodejs.layouts_of(role), space)
     outbox = {}
@@ -112,7 +113,7 @@ def test_joined_functions_are_the_same_functions(name):
 @pytest.mark.parametrize("name", ["skin", "radio", pytest.param("mesh", marks=pytest.mark.slow)])
 def test_the_compiled_run_ends_in_the_same_state(name):
     recorded = transcript(name)
-    assert record.compiled_mark(name) == (recorded.marks[-1][0], recorded.fingerprint)
+    assert record.compiled_mark(ROLES[name]) == (recorded.marks[-1][0], recorded.fingerprint)
 
 
 @pytest.mark.slow
@@ -126,7 +127,7 @@ def test_the_whole_command(capsys):
 
 def test_an_unknown_protocol_is_the_users_mistake(capsys):
     assert parity.main(["skni"]) == 2
-    assert "known: skin, csma, radio, mesh" in capsys.readouterr().err
+    assert "known: skin, radio, csma, mesh" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

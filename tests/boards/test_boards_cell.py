@@ -13,6 +13,7 @@ import pytest
 from boards import __main__ as build
 from boards.errors import BoardMissing
 from boards.parity import nodejs, replay
+from boards.roles import roles
 from innervate.dialect import outbox, rng
 from innervate.live import nodefile
 from innervate.live.serial import SerialLink
@@ -31,7 +32,7 @@ PARAMS = {"beacon_us": 40_000, "skip_us": 24_000, "k": 8, "r_f": 105, "r_r": 105
 def files():
     try:
         nodejs.home()
-        return build.cell_files(skin_parameters(PARAMS))
+        return build.files_of(roles()["skin"], skin_parameters(PARAMS))
     except BoardMissing as missing:
         pytest.skip(str(missing))
 
@@ -137,7 +138,7 @@ def test_the_readme_is_right():
 
 
 def test_what_the_boards_files_repeat_is_the_protocols():
-    for path in (build.HERE / "cell.py", nodejs.HERE / "replay.py"):
+    for path in (build.HERE / "driver.py", build.HERE / "cell.py", nodejs.HERE / "replay.py"):
         for node in ast.parse(path.read_text(encoding="utf-8")).body:
             if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant):
                 (name,) = (target.id for target in node.targets)

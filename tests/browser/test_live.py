@@ -15,7 +15,7 @@ from innervate.live import status
 from tests.browser.servers import WAIT_MS, click, expect, serving
 
 pytestmark = pytest.mark.slow
-RING = Path(__file__).parents[1] / "sim" / "cables" / "tokenring"
+RING = Path(__file__).parents[1] / "networks" / "tokenring"
 RADIO = """
 kind = "radio"
 duration_s = 60

@@ -12,10 +12,14 @@ from innervate.export import dissector
 @pytest.fixture(scope="session")
 def tshark(tmp_path_factory):
     """Runs tshark on a capture with some arguments: the lines that it prints."""
+    return runner(tmp_path_factory.mktemp("home"))
+
+
+def runner(home):
+    """The same, with the dissector as it is now in a user's folder."""
     program = shutil.which("tshark")
     if program is None:
         pytest.skip("tshark is not there (Debian package tshark)")
-    home = tmp_path_factory.mktemp("home")
     plugins = home / ".local/lib/wireshark/plugins"
     dissector.install(plugins)
     env = {"HOME": str(home), "PATH": os.environ["PATH"], "LC_ALL": "C.UTF-8"}

@@ -77,13 +77,15 @@ class Captured:
 
 
 def graph(plan: Any) -> Graph:
-    """Nodes and cables; a plan without cables has nodes alone."""
+    """Nodes, with their places if they have any, and cables; a plan without cables has none."""
     if not hasattr(plan, "graph"):
         return Graph(False, [(f"node {i}", {"number": i}) for i in range(plan.nodes)], [])
     made = plan.graph
+    has_places = bool(made.patches or made.positions)
+    places = cell_places(made) if has_places else [()] * made.cells
     nodes = [
-        (made.label(cell), {"number": cell, "x_mm": float(x), "y_mm": float(y)})
-        for cell, (x, y) in enumerate(cell_places(made))
+        (made.label(cell), dict(zip(("number", "x_mm", "y_mm"), (cell, *place), strict=False)))
+        for cell, place in enumerate(places)
     ]
     if made.interfaces:
         nodes.append((made.label(made.sink), {"number": made.sink}))

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from html import escape
 from typing import Any
 
 import numpy as np
 
+from innervate.analysis.spread import spread
 from innervate.network import networks
 from innervate.plot import charts, svg
 from innervate.plot.lines import traffic_lines
 from innervate.plot.page import element, figure, headline, pictures, section, table, tiles
 from innervate.plot.words import count_words, number_of
+from innervate.sim.tables import get
 
 SIDE = 420.0
 DRAWN_MAX = 400  # nodes of a graph that is drawn
@@ -25,7 +26,10 @@ Places = dict[str, tuple[float, float]]
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
     """All of it, as HTML."""
-    parts = (top(result, summary), graph(result.plan), _over_time(result), _events(result.plan))
+    parts = (
+        top(result, summary), graph(result.plan), _over_time(result), _nodes(result),
+        _events(result.plan),
+    )  # fmt: skip
     return "\n".join(part for part in parts if part)
 
 
@@ -57,7 +61,7 @@ def graph(plan: Any) -> str:
     made = networks()[plan.kind].graph(plan)
     if not 0 < len(made.nodes) <= DRAWN_MAX:
         return ""
-    places = _places(made.nodes)
+    places = _places(made.nodes, made.edges)
     size = (
         max(x for x, _ in places.values()) + 40,
         max(y for _, y in places.values()) + 40,
@@ -73,14 +77,14 @@ def graph(plan: Any) -> str:
     return section("The network", pictures([figure(drawing, "", text)], "two"))
 
 
-def _places(nodes: list[tuple[str, dict[str, Any]]]) -> Places:
-    """Where nodes are drawn: as their first two coordinates say, or else on a circle."""
+def _places(nodes: list[tuple[str, dict[str, Any]]], edges: Any) -> Places:
+    """Where nodes are drawn: as their first two coordinates say, or else by who is linked."""
     keys = [next((k for k in nodes[0][1] if k.startswith(axis)), "") for axis in ("x_", "y_")]
     if all(keys) and all(all(key in about for key in keys) for _, about in nodes):
         spots = np.array([[about[key] for key in keys] for _, about in nodes], np.float64)
     else:
-        turn = 2 * math.pi / len(nodes)
-        spots = np.array([(math.sin(i * turn), -math.cos(i * turn)) for i in range(len(nodes))])
+        number = {name: i for i, (name, _) in enumerate(nodes)}
+        spots = spread(len(nodes), [(number[a], number[b]) for a, b, _about in edges])
     spots -= spots.min(axis=0)
     spots *= (SIDE - 80) / max(float(spots.max()), 1e-9)
     spots += 40
@@ -105,12 +109,40 @@ def _series(result: Any) -> list[tuple[str, Any]]:
     """(name, times in us) of deliveries and of every kind of report, the most frequent first."""
     found = []
     rows, deliveries = result.rows.get("rows"), result.rows.get("deliveries")
+    names = _report_names(result.plan.kind)
     for code in np.unique(rows["code"]).tolist() if rows is not None else ():
-        found.append((f"reports {code}", rows["time"][rows["code"] == code]))
+        found.append((f"reports {names.get(code, code)}", rows["time"][rows["code"] == code]))
     found.sort(key=lambda one: -len(one[1]))
     if deliveries is not None and len(deliveries):
         found.insert(0, ("messages delivered", deliveries["time"]))
     return found
+
+
+def _report_names(kind: str) -> dict[int, str]:
+    """What a protocol calls the codes of its reports: its constants REPORT_..."""
+    network = networks()[kind]
+    constants = vars(network.protocol) if network.has("protocol") else {}
+    head = "REPORT_"
+    return {
+        code: name.removeprefix(head).lower().replace("_", " ")
+        for name, code in constants.items() if name.startswith(head)
+    }  # fmt: skip
+
+
+def _nodes(result: Any) -> str:
+    """What the nodes of a network that declares its fields were at the end, as a table."""
+    network = networks()[result.plan.kind]
+    nodes, cells = network.graph(result.plan).nodes, getattr(result.world, "cells", None)
+    declares = network.has("fields") and hasattr(network.fields, "STATE")
+    if cells is None or not declares or len(nodes) > NAMED_MAX:
+        return ""
+    shown = [field for field in network.fields.STATE if not field[1] and field[0] != "number"]
+    rows = [
+        (escape(name), *(str(int(get(cells, node, field[0]))) for field in shown))
+        for node, (name, _about) in enumerate(nodes)
+    ]
+    head = ("node", *(f'<span title="{escape(f[5])}">{f[0]}</span>, {escape(f[4])}' for f in shown))
+    return section("Nodes at the end", table(head, rows))
 
 
 def _events(plan: Any) -> str:

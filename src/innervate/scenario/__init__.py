@@ -45,9 +45,14 @@ def template(kind: str = "") -> str:
     """
     known, kind = networks(), kind or first()
     if kind in known:
-        return str(known[kind].template)
+        return str(known[kind].template) if known[kind].has("template") else _all_keys(kind)
     hint = nearest(kind, list(known)).replace("it knows", "there is")
     raise ScenarioError(f'there is no kind "{kind[:40]}"{hint}')
+
+
+def _all_keys(kind: str) -> str:
+    """A scenario of a kind that has no template: every key, as it is if left out."""
+    return f"# A {kind}: every key as it is if left out.\n{dump(from_dict({'kind': kind}))}"
 
 
 def json_schema() -> dict[str, Any]:

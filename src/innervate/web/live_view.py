@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from innervate.live.declared import DRIVERS
-from innervate.network import networks
+from innervate.network import Network, networks
 from innervate.web.errors import Refused
 from innervate.web.live_map import Map, Place, Status
 from innervate.web.live_scene import Drawn
@@ -15,6 +15,16 @@ from innervate.web.messages import Give
 
 # Asks a node something; None = it did not answer.
 Ask = Callable[[int, dict[str, Any]], dict[str, Any] | None]
+
+
+def shown_fields(network: Network) -> list[dict[str, str]]:
+    """The declared fields of a node's state that are numbers: name, unit, meaning."""
+    declared = getattr(network.fields, "STATE", ()) if network.has("fields") else ()
+    return [
+        {"name": name, "unit": unit, "meaning": meaning}
+        for name, length, _low, _high, unit, meaning in declared
+        if not length and name not in DRIVERS
+    ]
 
 
 class LiveView:
@@ -40,13 +50,7 @@ class LiveView:
 
     def scene(self, kind: str) -> dict[str, Any]:
         """What a scene has besides that of every network: the fields that nodes tell of."""
-        network = networks()[kind]
-        declared = getattr(network.fields, "STATE", ()) if network.has("fields") else ()
-        shown = [
-            {"name": name, "unit": unit, "meaning": meaning}
-            for name, length, _low, _high, unit, meaning in declared
-            if not length and name not in DRIVERS
-        ]
+        shown = shown_fields(networks()[kind])
         return {"fields": shown} if shown else {}
 
     def unknown(self, told: list[Status], count: int) -> list[Status]:

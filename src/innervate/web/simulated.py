@@ -55,7 +55,8 @@ class Simulated(Source):
         self.plan = plan
         self.engine: Engine = engine_of(plan)
         self.view: View = networks()[plan.kind].view(self.engine, self.history)
-        self.can = ("pause", "step", "speed", "seek", *self.view.can, "save")
+        saves = ("save",) if self.view.saves else ()
+        self.can = ("pause", "step", "speed", "seek", *self.view.can, *saves)
         self.playback = Playback(self.view.speed if speed is None else speed)
         self.broken = ""
         self._budget = BUDGET
@@ -130,6 +131,8 @@ class Simulated(Source):
         elif isinstance(command, Seek):
             self._seek(command.t_s)
         elif isinstance(command, Save):
+            if not self.view.saves:
+                raise Refused(f"how a {self.plan.kind} writes its events is not known here")
             return {"type": "saved", "toml": saved(self.view)}
         elif self._target_us is not None:
             raise Refused(f"on the way to {self._target_us / 1e6:g} s; try again in a moment")

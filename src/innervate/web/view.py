@@ -1,4 +1,4 @@
-"""What a simulated network looks like: what the three kinds have in common."""
+"""What a simulated network looks like: what all kinds have in common."""
 
 from __future__ import annotations
 
@@ -40,6 +40,7 @@ class View(ABC):
     # `check` is called at multiples of this time, us, while somebody has no way; 0 = never.
     check_us: ClassVar[int] = 0
     memory: Any
+    saves: bool = True  # what was done to it can be written as a scenario's events
     is_still: bool = True  # the network is held, so that there is time to count all anew
 
     def __init__(self, engine: Engine, history: History) -> None:

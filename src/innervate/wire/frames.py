@@ -20,6 +20,9 @@ class Codec:
     Args:
         layouts: of every kind of frame: its number, a name, its fields (see layout.py).
         kind_bits: how many bits the kind has, at the beginning.
+
+    Attributes:
+        SIZE_MAX: bytes of the longest frame.
     """
 
     def __init__(self, layouts: tuple, kind_bits: int) -> None:  # type: ignore[type-arg]
@@ -27,6 +30,7 @@ class Codec:
         self.fields = {kind: fields for kind, _name, fields in layouts}
         self.sizes = {kind: (kind_bits + width(fields) + 7) // 8 + CRC_BYTES
                       for kind, fields in self.fields.items()}  # fmt: skip
+        self.SIZE_MAX = max(self.sizes.values())
 
     def encode(self, frame: object) -> bytes:
         """The bytes of a frame record.
@@ -49,7 +53,7 @@ class Codec:
         was.
         """
         size = len(data)
-        if not min(self.sizes.values()) <= size <= max(self.sizes.values()):
+        if not min(self.sizes.values()) <= size <= self.SIZE_MAX:
             return BAD_LENGTH
         if not is_sealed(data):
             return BAD_CRC

@@ -43,5 +43,6 @@ NETWORK = Network(
     live_view="view.live:RadioLiveView",
     papers="papers",
     verify="verify.command",
+    boards="board:ROLES",
     random="verify.fuzz",
 )

@@ -122,7 +122,6 @@ def _users_side(do: ModuleType, is_timed: bool) -> dict[str, Callable[..., Any]]
     return {"take_input": take_timed, "sense": sense_timed, "on_deliver": deliver_timed}
 
 
-@functools.cache
 def plain_loop(kind: str) -> Callable[..., None]:
     """The loop of a network, uncompiled."""
     network = networks()[kind]

@@ -12,20 +12,12 @@ from innervate.topology.layout import cell_places
 from innervate.topology.patch import DOWN, UP, E, W
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
-Numbers = np.ndarray[Any, np.dtype[np.int64]]
 
 _HIGH = math.sqrt(3) / 2
 # Towards the six cells round a cell of a honeycomb.
 _AROUND = ((-1.0, 0.0), (1.0, 0.0), (-0.5, -_HIGH), (0.5, -_HIGH), (-0.5, _HIGH), (0.5, _HIGH))
 _TOWARDS = {W: (0,), E: (1,), UP: (3, 2), DOWN: (5, 4)}
 NEAR = 0.7  # what is nearer than that overlaps
-
-
-def nodes_of_ends(graph: Any) -> Numbers:
-    """The node every end belongs to; interface ports are the nodes behind the cells."""
-    ends = np.arange(len(graph.peer))
-    behind = ends - PORTS * graph.cells
-    return np.where(behind < 0, ends // PORTS, graph.cells + behind)
 
 
 def places(graph: Any) -> Floats:

@@ -25,7 +25,7 @@ from innervate.networks.skin.sim.orders import ORDER_CAME, ORDER_GIVEN
 from innervate.networks.skin.view import giving
 from innervate.networks.skin.view.engine import SkinEngine
 from innervate.networks.skin.view.scene import places
-from innervate.networks.skin.view.state import Cables
+from innervate.networks.skin.view.state import SkinCables
 from innervate.plot.words import number_of
 from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE
 from innervate.scenario.cables import Fault
@@ -70,7 +70,7 @@ class SkinView(View):
         super().__init__(engine, history)
         graph = self.plan.graph
         self.cells, self.ports = graph.cells, graph.interfaces
-        self.cables = Cables(self.plan)
+        self.cables = SkinCables(self.plan)
         self.rate_hz = (
             1e6 / self.plan.data_period_us if self.plan.data_period_us else HZ_WITHOUT_DATA
         )
@@ -94,10 +94,6 @@ class SkinView(View):
             {"id": self.cells + i, "label": f"pc.{i}", "x": x, "y": y, "role": "port", "port": i}
             for i, (x, y) in enumerate(where[self.cells :])
         ]
-        links = [
-            {"id": i, "a": int(self.cables.node_of[a]), "b": int(self.cables.node_of[b])}
-            for i, (a, b) in enumerate(self.cables.ends.tolist())
-        ]
         series = [
             {"id": "unconnected", "label": "cells without a way", "unit": "cells"},
             {"id": "balance", "label": "balance of the ports", "unit": ""},
@@ -106,7 +102,8 @@ class SkinView(View):
             series.append({"id": "loss", "label": "samples lost", "unit": "%"})
             series.append({"id": "latency", "label": "latency of samples", "unit": "ms"})
         return {
-            "nodes": nodes, "links": links, "ports": self.ports, "fence": None, "series": series,
+            "nodes": nodes, "links": self.cables.scene(), "ports": self.ports, "fence": None,
+            "series": series,
         }  # fmt: skip
 
     def note(self, rows: Rows) -> None:
@@ -241,7 +238,7 @@ class SkinView(View):
         none = np.zeros(self.ports, np.int64)
         fields = {
             "node_up": np.concatenate([up, none + 1]),
-            "link_up": 1 - (world.epoch[self.cables.ends[:, 0]] & 1),
+            "link_up": self.cables.up(world),
             **ways,
             "apart": int(np.count_nonzero(np.array(world.watch.apart) >= 0)),
             "load": np.concatenate([load, none]),

@@ -5,7 +5,6 @@ import json
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -22,17 +21,7 @@ from innervate.web.messages import Cut, Heal
 from tests.live.net import until
 
 FIRST_S = 40.0
-FOLDER = Path(__file__).parents[1] / "sim" / "cables" / "tokenring"
 RING = {"kind": "tokenring", "name": "round", "nodes": 3, "lost_us": 200_000}
-
-
-@pytest.fixture(autouse=True)
-def ring(monkeypatch):
-    """The network is there, here and in the processes of nodes."""
-    monkeypatch.setenv("INNERVATE_NETWORKS", str(FOLDER))
-    networks.cache_clear()
-    yield
-    networks.cache_clear()
 
 
 def asked(network, name, **request):

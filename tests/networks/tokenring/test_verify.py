@@ -7,7 +7,7 @@ import pytest
 from innervate.cli.verify_options import VerifyOptions
 from innervate.verify import declared
 from innervate.verify.errors import VerifyError
-from tests.sim.cables.tokenring import fields, protocol
+from tests.networks.tokenring import fields, protocol
 
 
 def explored(budget="", graph="ring", states=3_000, protocol=protocol, fields=fields):

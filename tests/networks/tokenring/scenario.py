@@ -42,7 +42,8 @@ def check(source, model):
 def plan(scenario):
     """The plan of a scenario."""
     model = scenario.model
-    graph = Graph(model.nodes, 0, array("i", [-1]) * (PORTS * model.nodes))
+    names = tuple(f"n{node}" for node in range(model.nodes))
+    graph = Graph(model.nodes, 0, array("i", [-1]) * (PORTS * model.nodes), names=names)
     for node in range(model.nodes):
         graph.connect(PORTS * node + EAST, PORTS * ((node + 1) % model.nodes) + WEST)
     faults = []

@@ -1,7 +1,5 @@
 """A network over cables of which no file of the toolkit knows, by the defaults of its medium."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -12,18 +10,8 @@ from innervate.sim import taps
 from innervate.sim.cables import declared
 from innervate.sim.driver import InvariantBroken
 
-RING = Path(__file__).parent / "tokenring"
 REPAIRED = [("cut", 0.1), ("restore", 0.15), ("kill", 0.2), ("revive", 0.25), ("restart", 0.3),
             ("loose", 0.35), ("lose", 0.4)]  # fmt: skip
-
-
-@pytest.fixture(autouse=True)
-def known(monkeypatch):
-    """The ring is one of the networks."""
-    monkeypatch.setenv("INNERVATE_NETWORKS", str(RING))
-    networks.cache_clear()
-    yield
-    networks.cache_clear()
 
 
 def tables(**keys):
@@ -70,7 +58,7 @@ def test_compiled_runs_of_a_declared_network_equal_plain_ones():
 
 
 def test_what_is_out_of_its_declared_range_is_found():
-    with pytest.raises(InvariantBroken, match="a value of cell 0 is out of its declared range"):
+    with pytest.raises(InvariantBroken, match="a value of n0 is out of its declared range"):
         finished(plan_of(duration_s=2.0, event=[]), plain=True)
 
 

@@ -1,0 +1,128 @@
+"""What of a network runs on a board (see `boards/`): its protocols, their records, their frames.
+
+A role is one protocol: a node's own, or a layer below it. A network whose protocol, fields and
+frame layouts are declared, and that lies over cables, has a role without saying so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from innervate.network import Network
+from innervate.wire.layout import SPARE
+
+Declaration = tuple[tuple[str, Any, int, int, str, str], ...]
+Kinds = dict[int, tuple[tuple[str, Any], ...]]
+OUTBOX = 16
+
+
+class Watched(NamedTuple):
+    """The plain run in which everything that one node is told is written down.
+
+    Attributes:
+        scenario: a file of `boards/parity`, without its ending; "" = one with its kind alone.
+        simulation: "module:function", (plan, plain=) -> sim.driver.Simulation.
+        on_frame: "module:function" that the run calls for the protocol's `on_frame`, with world,
+            node, time, port and frame; "" = the protocol's own.
+        table: of the world, that holds the states.
+        node: which of them.
+    """
+
+    scenario: str = ""
+    simulation: str = "innervate.sim.cables.declared:simulation"
+    on_frame: str = ""
+    table: str = "cells"
+    node: int = 1
+
+
+class Emulated(NamedTuple):
+    """What an emulated micro:bit (10,000 bytes for programs) has to know to hold a protocol.
+
+    Attributes:
+        left_out: functions that do not fit beside the rest, and that the calls played do not need.
+        repeated: the only type of frame that one call sends more than one of.
+    """
+
+    left_out: tuple[str, ...]
+    repeated: int
+
+
+class Program(NamedTuple):
+    """What a maker's board runs.
+
+    Attributes:
+        main: the file of `boards/micropython` that becomes main.py, without its ending.
+        drivers: files of `boards/micropython` that it needs.
+        sources: files of `src/innervate` that it needs.
+        parameters: "module:function", (changes, where) -> all parameters by name; "" = those of
+            the network's plainest scenario.
+    """
+
+    main: str
+    drivers: tuple[str, ...]
+    sources: tuple[str, ...]
+    parameters: str = ""
+
+
+class Role(NamedTuple):
+    """A node's protocol.
+
+    Attributes:
+        name: what commands call it.
+        entry: the module with the five functions.
+        state, params, frame, item: declarations of its records; `item` is what its user hands
+            down. One that looks into no frame declares none.
+        kinds: what a frame of each kind has on the wire: (field, how many: 0 one, a number, or
+            the field that says).
+        room: actions that its outbox must hold.
+        in_ram: 16 KiB hold its code, too.
+        noted: fields of a frame that only a simulation fills in.
+        counted: fields that say how much of an array is used, by the array's name.
+        has_gate: handlers are given a gateway's record behind the state.
+    """
+
+    name: str
+    entry: str
+    state: Declaration
+    params: Declaration
+    frame: Declaration
+    item: Declaration
+    kinds: Kinds
+    room: int = OUTBOX
+    in_ram: bool = False
+    noted: frozenset[str] = frozenset()
+    counted: Mapping[str, str] = {}
+    has_gate: bool = False
+    watched: Watched = Watched()
+    emulated: Emulated | None = None
+    program: Program | None = None
+
+
+PLAIN = Program(
+    "plain_main",
+    ("outbox", "driver"),
+    ("wire/bits", "wire/crc", "wire/layout", "wire/cobs", "wire/frames"),
+)
+
+
+def on_wire(fields: Any) -> tuple[tuple[str, Any], ...]:
+    """(name, how many) of a layout's fields."""
+    return tuple((name, many) for name, many, _bits, _signed in fields if name != SPARE)
+
+
+def roles_of(network: Network) -> tuple[Role, ...]:
+    """What of a network runs on a board: what it says itself, or its protocol if that is plain."""
+    if network.has("boards"):
+        own: tuple[Role, ...] = network.boards
+        return own
+    if not all(network.has(part) for part in ("protocol", "fields", "frames")):
+        return ()
+    if hasattr(network.frames, "encode"):
+        return ()
+    protocol, fields = network.protocol, network.fields
+    return (Role(
+        network.name, protocol.__name__, fields.STATE, fields.PARAMS, fields.FRAME, fields.FRAME,
+        {kind: on_wire(layout) for kind, _name, layout in network.frames.LAYOUTS},
+        getattr(protocol, "OUTBOX", OUTBOX), program=PLAIN,
+    ),)  # fmt: skip

@@ -1,0 +1,153 @@
+"""What pages show of any simulated network of cables: its nodes by the fields that they declare."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+
+from innervate.analysis.headline import Headline
+from innervate.analysis.spread import spread
+from innervate.analysis.summary import headline
+from innervate.analysis.ways import reach
+from innervate.network import networks
+from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE
+from innervate.scenario.cables import Fault
+from innervate.sim.cables.world import DEAD
+from innervate.topology import PORTS
+from innervate.topology.layout import cell_places
+from innervate.web.cables import Cables
+from innervate.web.engine import Engine, Rows
+from innervate.web.errors import Refused, WatchError
+from innervate.web.history import History
+from innervate.web.live_view import shown_fields
+from innervate.web.messages import number
+from innervate.web.view import Memory, View
+
+PITCH_MM = 14.0
+NODES_MAX = 1_000
+
+
+class DeclaredView(View):
+    """Nodes and cables; who is cut off has no cables that lead to the first node that is on."""
+
+    speed: ClassVar[float] = 0.1
+    slow: ClassVar[float] = 0.05
+    can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
+
+    def __init__(self, engine: Engine, history: History) -> None:
+        super().__init__(engine, history)
+        network = networks()[self.plan.kind]
+        if not hasattr(self.plan, "graph"):
+            raise WatchError(f"a {self.plan.kind} has no cables, and no view of its own")
+        if self.plan.graph.cells > NODES_MAX:
+            many = f"{self.plan.graph.cells:,} nodes are too many to be drawn"
+            raise WatchError(f"{many}; at most {NODES_MAX:,}")
+        self.saves = network.has("event")
+        layouts = network.frames.LAYOUTS if network.has("frames") else ()
+        self.graph = self.plan.graph
+        self.cables = Cables(self.plan, {kind: name for kind, name, _fields in layouts}, "data")
+        self.shown = shown_fields(network)
+        self.memory = Memory()
+
+    def scene(self) -> dict[str, Any]:
+        """Nodes, links, and the fields that nodes can be coloured by."""
+        nodes = [
+            {"id": i, "label": self.graph.label(i), "x": x, "y": y, "role": "node"}
+            for i, (x, y) in enumerate(self._places())
+        ]
+        series = [
+            {"id": "lost", "label": "frames lost so far", "unit": "frames"},
+            {"id": "delivered", "label": "messages delivered so far", "unit": ""},
+        ]
+        return {"nodes": nodes, "links": self.cables.scene(), "ports": 0, "fence": None,
+                "series": series, "fields": self.shown}  # fmt: skip
+
+    def note(self, rows: Rows) -> None:
+        """Take in what happened since the last call."""
+        self.tell_faults()
+
+    def points(self) -> dict[str, float | None]:
+        """A point of every plot, for now."""
+        counts = self.engine.running.counts()
+        return {"lost": float(sum(counts.lost_by.values())), "delivered": float(counts.delivered)}
+
+    def arrays(self, flights: bool) -> dict[str, Any]:
+        """The state's fields for nodes and links."""
+        world = self.engine.world
+        cells, apart = world.cells[: self.graph.cells], int(np.count_nonzero(self._apart()))
+        return {
+            "node_up": self._on().astype(np.int64),
+            "link_up": self.cables.up(world),
+            "unconnected": apart,
+            "apart": apart,
+            "fields": {one["name"]: cells[one["name"]].tolist() for one in self.shown},
+            "flights": self.cables.flights(world, self.engine.now_us) if flights else [],
+        }
+
+    def fields(self, flights: bool) -> dict[str, Any]:
+        """The present state; when such a network has recovered nobody has said."""
+        return {**super().fields(flights), "recovery": None}
+
+    def headline(self) -> Headline:
+        """Is all well, and if not, what is wrong: as in a run's summary."""
+        handled = int(self.engine.world.run["handled"][0])
+        return headline(self.engine.running.counts(), handled)
+
+    def words(self, fault: Any) -> str:
+        """What a fault does, as its scenario says it, without the time."""
+        said: str = networks()[self.plan.kind].fault_words(self.plan, fault)
+        return said.split(" s ", 1)[1]
+
+    def takes(self, fault: Any) -> bool:
+        """True if a fault takes something away, false if it gives it back."""
+        mends = fault.action in (RESTORE, REVIVE)
+        return not mends and not (fault.action == LOOSE and fault.loss_q15 == 0)
+
+    def cut(self, link: int, heal: bool) -> dict[str, int]:
+        """The fault that cuts a link, or puts it back."""
+        a, b = self.cables.ends[number("link", link, len(self.cables.ends))].tolist()
+        reasons = int(self.engine.world.ends["impaired"][a]) >> 2
+        dead = sum(not self._on()[self.cables.node_of[end]] for end in (a, b))
+        if heal and reasons <= dead:
+            raise Refused("this cable is not cut" if not reasons else "its node is switched off")
+        if not heal and reasons > dead:
+            raise Refused("this cable is cut already")
+        return {"action": RESTORE if heal else CUT, "end": a, "node": -1}
+
+    def kill(self, node: int, revive: bool) -> dict[str, int]:
+        """The fault that switches a node off, or on."""
+        if bool(self._on()[number("node", node, self.graph.cells)]) == revive:
+            raise Refused("this node is on" if revive else "this node is off already")
+        return {"action": REVIVE if revive else KILL, "end": -1, "node": node}
+
+    def make(self, at_us: int, index: int, fields: dict[str, int]) -> Fault:
+        """A fault of the plan's own type."""
+        return Fault(at_us=at_us, index=index, **fields)
+
+    def event(self, fault: Any) -> dict[str, Any]:
+        """The [[event]] table of a fault, without its time, as the network writes it."""
+        found: dict[str, Any] = networks()[self.plan.kind].event(self.plan, fault)
+        return found
+
+    def _on(self) -> Any:
+        """Per node, true while it is not switched off."""
+        return self.engine.world.alive[: self.graph.cells] != DEAD
+
+    def _apart(self) -> Any:
+        """Per node, true if it is on and no cables lead to the first that is."""
+        on, count = self._on(), self.graph.cells
+        first = np.zeros(count, np.bool_)
+        first[np.flatnonzero(on)[:1]] = True
+        a, b = self.cables.node_of[self.cables.ends].T
+        up = (self.cables.up(self.engine.world) == 1) & on[a] & on[b]
+        live = np.zeros((count, count), np.bool_)
+        live[a[up], b[up]] = live[b[up], a[up]] = True
+        return on & ~reach(live, first)
+
+    def _places(self) -> list[tuple[float, float]]:
+        """Where nodes are drawn: where they lie, or else by who is cabled to whom."""
+        if self.graph.patches or len(self.graph.positions):
+            return [(x / PITCH_MM, y / PITCH_MM) for x, y in cell_places(self.graph)]
+        links = [(a // PORTS, b // PORTS) for a, b in self.cables.ends.tolist()]
+        return [(x, y) for x, y in spread(self.graph.cells, links).round(3).tolist()]

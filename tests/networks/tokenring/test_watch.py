@@ -1,0 +1,83 @@
+"""The ring's scenario on the page of `innervate watch`."""
+
+import pytest
+
+from innervate import scenario
+from innervate.web.engine import engine_of
+from innervate.web.errors import Refused
+from innervate.web.messages import Cut, Heal, Kill, Save
+from innervate.web.simulated import Simulated
+from tests.browser.conftest import browser, look
+from tests.browser.servers import click, expect, serving
+
+__all__ = ["browser", "look"]
+RING = 'kind = "tokenring"\nname = "round"\nnodes = 6\nduration_s = 60\nlost_us = 50_000\n'
+
+
+@pytest.fixture
+def source():
+    made = Simulated(scenario.plan(scenario.from_dict({"kind": "tokenring", "nodes": 6})))
+    made.prepare()
+    return made
+
+
+def test_its_nodes_show_what_they_declare(source):
+    scene = source.scene()
+    assert [field["name"] for field in scene["fields"]] == ["lap", "passed", "made_at"]
+    assert {field["unit"] for field in scene["fields"]} == {"number", "tokens", "us"}
+    assert [node["label"] for node in scene["nodes"]] == [f"n{i}" for i in range(6)]
+    assert len({(node["x"], node["y"]) for node in scene["nodes"]}) == 6
+    assert "save" not in scene["can"]
+    source.run_to_end()
+    state = source.fields()
+    passed = state["fields"]["passed"]
+    assert sum(passed) == source.engine.running.counts().sent > 100
+    assert max(passed) - min(passed) <= 1
+    assert state["headline"]["level"] == "ok"
+
+
+def test_its_cables_are_cut_and_its_nodes_switched_off(source):
+    source.do(Cut(0))
+    assert source.fields()["link_up"].tolist() == [0, 1, 1, 1, 1, 1]
+    assert source.fields()["unconnected"] == 0  # the other way round
+    with pytest.raises(Refused, match="cut already"):
+        source.do(Cut(0))
+    source.do(Cut(3))
+    assert source.fields()["unconnected"] > 0
+    source.do(Heal(3))
+    source.do(Kill(2))
+    assert source.fields()["node_up"].tolist() == [1, 1, 0, 1, 1, 1]
+    with pytest.raises(Refused, match="off already"):
+        source.do(Kill(2))
+    with pytest.raises(Refused, match="writes its events"):
+        source.do(Save())
+    source.run_to_end()
+    assert source.fields()["headline"]["level"] == "degraded"
+
+
+def test_what_is_watched_is_what_is_run(source):
+    source.run_to_end()
+    plan = source.plan
+    running = engine_of(plan).running
+    running.finish()
+    assert source.engine.fingerprint == running.fingerprint
+
+
+@pytest.mark.slow
+def test_a_cable_is_cut_by_a_click(look, tmp_path):
+    path = tmp_path / "round.toml"
+    path.write_text(RING)
+    with serving(path, "--speed", 0.05) as address:
+        page = look(address)
+        expect(page.locator("#colour option")).to_have_text(["lap", "passed", "made_at"])
+        expect(page.locator("#level")).to_have_text("✓ ok")
+        click(page, "n0 - n1")
+        expect(page.locator("#selected-facts")).to_contain_text("cut")
+        expect(page.locator("#log")).to_contain_text("cut n0 E - n1 W")
+        expect(page.locator("#level")).to_have_text("! degraded")
+        click(page, "n0 - n1")
+        expect(page.locator("#selected-facts")).to_have_text("link, up")
+        click(page, "n3")
+        expect(page.locator("#selected-facts")).to_contain_text("switched off")
+        page.locator("#colour").select_option("passed")
+        expect(page.locator("#unconnected .more")).to_have_text("of 6 nodes")
