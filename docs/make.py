@@ -169,8 +169,8 @@ def draw() -> None:
     """The README's picture: four moments of the bundled scenario `demo`."""
     import innervate
     from innervate.networks.skin.plot import map as skinmap
-    from innervate.networks.skin.plot.report import legend
     from innervate.networks.skin.plot.digest import Digest
+    from innervate.networks.skin.plot.report import legend
     from innervate.plot import svg, theme
 
     done = innervate.run("demo")

@@ -5,6 +5,7 @@ from importlib import import_module
 import pytest
 
 from innervate import scenario
+from innervate.network import networks
 from innervate.networks.radio import frames as radio
 from innervate.networks.skin import frames as skin
 from tests.export.test_captures import RADIO, SKIN
@@ -39,8 +40,8 @@ class Frame:
 )
 def test_taps(keys, wire):
     plan = scenario.plan(scenario.from_dict(keys))
-    room = "innervate.sim" if plan.kind == "skin" else f"innervate.sim.{plan.kind}"
-    simulate = import_module(f"{room}.simulate").simulate
+    home = networks()[plan.kind].package
+    simulate = import_module(f"{home}.sim.simulate").simulate
     bare = simulate(plan)
     taps = [Tap(wire, plan.kind, plain) for plain in (False, True)]
     done = [simulate(plan, plain=tap.plain, tap=tap) for tap in taps]

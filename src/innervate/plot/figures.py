@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from matplotlib.figure import Figure
 from innervate.plot import charts, style
 
 MARKS_MAX = 12
+LETTERS = 62  # in a column
 
 
 def draw(run: Any, figure: str = "delivered", **options: Any) -> Figure:
@@ -63,7 +65,7 @@ def _steps(ax: Axes, shown: charts.Steps) -> None:
             )  # fmt: skip
     ax.set_xlim(shown.x.low, shown.x.high)
     ax.set_ylim(shown.y.low, shown.y.high)
-    ax.set_xlabel(shown.x.name)
+    _caption(ax, shown.x.name, shown.text)
 
 
 def _bars(ax: Axes, shown: charts.Bars) -> None:
@@ -71,10 +73,16 @@ def _bars(ax: Axes, shown: charts.Bars) -> None:
     ax.bar(places, [bar.value for bar in shown.bars], 0.7, color=style.BLUE, alpha=0.5)
     if shown.even is not None:
         ax.axhline(shown.even, color=style.INK, lw=0.9, ls="--")
-        ax.set_xlabel(f"dashed: even share, {shown.even:.4g}")
+    even = "" if shown.even is None else f"dashed: even share, {shown.even:.4g}"
+    _caption(ax, even, shown.text)
     if len(places) <= MARKS_MAX:
         ax.set_xticks(places, [bar.name for bar in shown.bars], rotation=30, ha="right")
     ax.grid(axis="x", visible=False)
+
+
+def _caption(ax: Axes, name: str, text: str) -> None:
+    """What the axis below is called, and the words of a chart."""
+    ax.set_xlabel("\n".join(line for line in (name, *wrap(text, LETTERS)) if line))
 
 
 def delivered(run: Any) -> Figure:

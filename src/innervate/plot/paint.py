@@ -32,13 +32,18 @@ def figure(drawing: Drawing, title: str = "", width_in: float = style.WIDE_IN) -
     """A figure that shows a drawing, `width_in` wide."""
     made = style.figure(width_in, width_in * drawing.height / drawing.width + 0.25 * bool(title))
     ax = made.subplots()
+    ax.set_title(title)
+    paint(ax, drawing, width_in)
+    return made
+
+
+def paint(ax: Axes, drawing: Drawing, width_in: float) -> None:
+    """Show a drawing on axes that are about `width_in` wide."""
     ax.set_xlim(0, drawing.width)
     ax.set_ylim(drawing.height, 0)
     ax.set_aspect("equal")
     ax.axis("off")
-    ax.set_title(title)
     _paint(ax, ElementTree.fromstring(drawing.render()), (0.0, 0.0), 72 * width_in / drawing.width)
-    return made
 
 
 def keyed(drawing: Drawing, entries: Iterable[tuple[Drawing, str]]) -> Drawing:

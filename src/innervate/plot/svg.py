@@ -13,6 +13,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 Point = tuple[float, float]
 Value = str | float | int | None
+ARROW_PX = 7.0
 
 # What XML 1.0 cannot hold, even escaped.
 _FORBIDDEN = {c: "\ufffd" for c in (*range(9), 11, 12, *range(14, 32), 0xFFFE, 0xFFFF)}
@@ -59,6 +60,20 @@ def polygon(x: float, y: float, corners: Sequence[Point]) -> str:
         steps.append(f"l{number(corner[0] - here[0])},{number(corner[1] - here[1])}")
         here = corner
     return "".join(steps) + "z"
+
+
+def arrow(start: Point, end: Point, gap: float) -> str:
+    """Path data of an arrow that keeps a distance from either end."""
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    long = max((dx * dx + dy * dy) ** 0.5, 1e-9)
+    gap = min(gap, 0.3 * long)
+    ux, uy = dx / long, dy / long
+    tip = (end[0] - gap * ux, end[1] - gap * uy)
+    head = min(ARROW_PX, 0.4 * long)
+    left = (tip[0] - head * (ux + 0.6 * uy), tip[1] - head * (uy - 0.6 * ux))
+    right = (tip[0] - head * (ux - 0.6 * uy), tip[1] - head * (uy + 0.6 * ux))
+    shaft = polyline([(start[0] + gap * ux, start[1] + gap * uy), tip])
+    return shaft + polyline([left, tip, right])
 
 
 def cross(x: float, y: float, size: float) -> str:

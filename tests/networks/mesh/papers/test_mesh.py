@@ -9,7 +9,7 @@ import pytest
 from innervate.networks.mesh import papers as mesh
 from innervate.networks.mesh.papers import (
     FIGURES,
-    crossing,
+    alarms,
     experiment,
     gateway,
     scale,
@@ -139,16 +139,16 @@ def test_everyone_sends_once_a_round_and_never_to_itself():
 
 @pytest.mark.parametrize("seed", range(1, 9))
 def test_a_robot_walks_straight_out(seed):
-    (start, end), start_s = crossing.walk(seed)
-    inside = [crossing.LOW_M < value < crossing.HIGH_M for value in start]
-    outside = [crossing.LOW_M <= value <= crossing.HIGH_M for value in end]
+    (start, end), start_s = alarms.walk(seed)
+    inside = [alarms.LOW_M < value < alarms.HIGH_M for value in start]
+    outside = [alarms.LOW_M <= value <= alarms.HIGH_M for value in end]
     assert all(inside)
     assert sorted(outside) == [False, True]
-    assert 0 <= start_s + crossing.INSIDE_M - crossing.CROSSED_S < 1
+    assert 0 <= start_s + alarms.INSIDE_M - alarms.CROSSED_S < 1
 
 
 def test_a_crossing_is_measured():
-    run = crossing.measure(crossing.BOTH, 8, 1)
+    run = alarms.measure(alarms.BOTH, 8, 1)
     assert run["joined"]
     assert run["came"]
     assert 0 < run["ms"] <= run["flood_ms"]
@@ -156,11 +156,11 @@ def test_a_crossing_is_measured():
 
 
 def test_whose_neighbours_are_all_dead_is_not_connected():
-    plan = crossing.make_testbed(crossing.BOTH, 1).plan(1)
-    everyone = [node for node in range(plan.nodes) if node not in (GATEWAY, crossing.ROBOT)]
-    at_us = round((crossing.walk(1)[1] + crossing.INSIDE_M) * 1e6)
-    assert crossing._joined(plan, [], at_us)
-    near = crossing._joined(plan, everyone, at_us)
+    plan = alarms.make_testbed(alarms.BOTH, 1).plan(1)
+    everyone = [node for node in range(plan.nodes) if node not in (GATEWAY, alarms.ROBOT)]
+    at_us = round((alarms.walk(1)[1] + alarms.INSIDE_M) * 1e6)
+    assert alarms._joined(plan, [], at_us)
+    near = alarms._joined(plan, everyone, at_us)
     assert near == (np.hypot(*np.subtract(plan.positions_cm[0], plan.positions_cm[29])) < 2000)
 
 
@@ -193,9 +193,9 @@ def test_state_grows_with_the_class_only():
 def test_what_never_came_is_slowest():
     crossings = {"joined": [True, True, False, True], "ms": [3.0, None, 2.0, 1.0]}
     taken = {"takeover_s": [None, 26.0]}
-    one, other = crossing.point(crossing.BOTH, 8, True), gateway.point(gateway.ONE, True)
+    one, other = alarms.point(alarms.BOTH, 8, True), gateway.point(gateway.ONE, True)
     got = Measured({one.key: crossings, other.key: taken}, True)
-    assert crossing.told(got, crossing.BOTH, 8)["ms"].tolist() == [3.0, np.inf, 1.0]
+    assert alarms.told(got, alarms.BOTH, 8)["ms"].tolist() == [3.0, np.inf, 1.0]
     assert gateway.takeovers(got, gateway.ONE) == [26.0, np.inf]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.summary import summarize
-from innervate.networks.mesh.papers import crossing, gateway, sending
+from innervate.networks.mesh.papers import alarms, failures, gateway
 from innervate.networks.mesh.papers.testbed import MeshTestbed
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.scenario.plan import CLASSES
@@ -23,7 +23,7 @@ CAPTION = (
 DEAD = 8
 STATE_NODES = 50
 STATE_MAX = 4096
-RULES = (sending.SEARCH, sending.GRAPH, sending.DOCUMENT)
+RULES = (failures.SEARCH, failures.GRAPH, failures.DOCUMENT)
 TAKEN = (gateway.SILENT, gateway.ONE)
 
 
@@ -58,9 +58,9 @@ def rounds(quick: bool) -> Point:
     return MeshTestbed().point("round", range(1, 31 if quick else 101), measure_round)
 
 
-def sent(rule: sending.Rule, quick: bool) -> Point:
+def sent(rule: failures.Rule, quick: bool) -> Point:
     """Networks in which messages are sent."""
-    return sending.point(rule, DEAD, range(1, 5 if quick else 101))
+    return failures.sending(rule, DEAD, range(1, 5 if quick else 101))
 
 
 def points(quick: bool) -> list[Point]:
@@ -68,7 +68,7 @@ def points(quick: bool) -> list[Point]:
     return [
         rounds(quick),
         *(sent(rule, quick) for rule in RULES),
-        crossing.point(crossing.BOTH, DEAD, quick),
+        alarms.point(alarms.BOTH, DEAD, quick),
         *(gateway.point(setting, quick) for setting in TAKEN),
     ]
 
@@ -93,8 +93,8 @@ def bars(got: Measured) -> list[Bar]:
     size = wire_bytes(STATE_NODES)
     return [
         *_rounds(got[rounds(got.quick)]),
-        _first(got, sending.SEARCH, 0.01),
-        _first(got, sending.GRAPH, 0.0),
+        _first(got, failures.SEARCH, 0.01),
+        _first(got, failures.GRAPH, 0.0),
         *_alarms(got),
         *(_taken(got, setting) for setting in TAKEN),
         _twice(got),
@@ -123,8 +123,8 @@ def _none(count: int) -> float:
     return 2.0 if count else 0.0
 
 
-def _first(got: Measured, rule: sending.Rule, most: float) -> Bar:
-    came, of = sending.share(got[sent(rule, got.quick)], "first")
+def _first(got: Measured, rule: failures.Rule, most: float) -> Bar:
+    came, of = failures.share(got[sent(rule, got.quick)], "first")
     lost = (of - came) / of
     words = f"first packets with {DEAD} unknown dead, {rule.name}"
     used = lost / most if most else _none(of - came)
@@ -132,7 +132,7 @@ def _first(got: Measured, rule: sending.Rule, most: float) -> Bar:
 
 
 def _alarms(got: Measured) -> list[Bar]:
-    runs = crossing.told(got, crossing.BOTH, DEAD)
+    runs = alarms.told(got, alarms.BOTH, DEAD)
     came, count = int(runs["came"].sum()), len(runs["came"])
     ms = float(np.percentile(runs["ms"][np.isfinite(runs["ms"])], 99))
     over = float(np.percentile(runs["overrun_m"], 99))
@@ -192,7 +192,7 @@ def judge(got: Measured) -> Claims:
         yield Claim(
             "asked", f"{bar.words} {bar.asked}", measured, verdict(passed), "" if passed else off
         )
-    came, of = sending.share(got[sent(sending.DOCUMENT, got.quick)], "first")
+    came, of = failures.share(got[sent(failures.DOCUMENT, got.quick)], "first")
     yield Claim(
         "2.2",
         f"the document's own rule loses one in five of the first packets with {DEAD} unknown dead",

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from innervate.networks.mesh.papers import sending
-from innervate.networks.mesh.papers.sending import (
-    DOCUMENT,
-    GRAPH,
-    RANDOM,
-    RSSI,
-    RULES,
-    SEARCH,
-    Rule,
-)
-from innervate.networks.mesh.papers.testbed import seeds_of
+from innervate.networks.mesh.analysis.messages import duplicates, messages
+from innervate.networks.mesh.analysis.paths import Ground
+from innervate.networks.mesh.analysis.summary import connected, looped
+from innervate.networks.mesh.papers import testbed as beds
+from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options, seeds_of
+from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
 from innervate.papers.words import joined, percent
@@ -28,7 +25,60 @@ CAPTION = (
     "a, b: nothing but acks of hops. c: messages are kept until acknowledged by their recipient. "
     "Counted are those whose ends are still connected by good links."
 )
+DEATHS_US = 7_000_000  # tables are there, and the next discovery is far
+ROUNDS = 4
+EVERY_US = 2_000_000
+# No discovery between the deaths and the last message.
+QUIET: Options = (("period_s", 60.0), ("period_max_s", 60.0))
+DURATION_S = (DEATHS_US + ROUNDS * EVERY_US) / 1e6 + 2.5
 WORST = 8
+
+
+class Rule(NamedTuple):
+    """What is done when a hop does not answer."""
+
+    name: str
+    protocol: Options
+
+
+DOCUMENT = Rule("document", LITERAL)
+RANDOM, RSSI, ALTERNATE, SEARCH, GRAPH = (
+    Rule(name, (("failover", name),)) for name in ("random", "rssi", "alternate", "search", "graph")
+)
+RULES = (DOCUMENT, RANDOM, RSSI, ALTERNATE, SEARCH, GRAPH)
+
+
+def sending(rule: Rule, dead: int, seeds: range, reliable: bool = True) -> Point:
+    """The networks of a rule; not `reliable` = no second try from end to end either."""
+    again: Options = () if reliable or rule is DOCUMENT else (("reliable", False),)
+    testbed = MeshTestbed(protocol=(*QUIET, *rule.protocol, *again), duration_s=DURATION_S)
+    return testbed.point(f"{dead} dead", seeds, measure, dead)
+
+
+def measure(of: MeshTestbed, dead: int, seed: int) -> dict[str, Any]:
+    """Messages of live nodes among themselves, after `dead` died; only of connected ones."""
+    plan = of.plan(seed)
+    gone = beds.dying(plan, dead)
+    beds.kill(plan, gone, DEATHS_US)
+    alive = [node for node in range(plan.nodes) if node not in gone]
+    beds.send_rounds(plan, alive, ROUNDS, DEATHS_US, EVERY_US)
+    result = simulate(plan)
+    found, ground = messages(result), Ground(plan)
+    rounds = [connected(found.only(found.flow == k), ground) for k in range(ROUNDS)]
+    return {
+        "first": [rounds[0]["delivered"], rounds[0]["sent"]],
+        "later": [sum(r[name] for r in rounds[1:]) for name in ("delivered", "sent")],
+        "duplicates": duplicates(result),
+        "looped": looped(result),
+    }
+
+
+def share(runs: dict[str, Any], which: str) -> tuple[int, int]:
+    """Delivered, of how many, in the "first" or "later" rounds."""
+    came, sent = (sum(counts) for counts in zip(*runs[which], strict=True))
+    return came, sent
+
+
 ORIGIN = Rule("random, not the origin", (("failover", "random"), ("avoid", "origin")))
 NAMES = {"document": "the document to the letter"}
 
@@ -40,7 +90,7 @@ def dead_of(quick: bool) -> tuple[int, ...]:
 
 def point(rule: Rule, dead: int, quick: bool, end: bool = False) -> Point:
     """The runs of a rule, without a second try from end to end, or with it."""
-    return sending.point(rule, dead, seeds_of(quick), reliable=end)
+    return sending(rule, dead, seeds_of(quick), reliable=end)
 
 
 def points(quick: bool) -> list[Point]:
@@ -52,7 +102,7 @@ def points(quick: bool) -> list[Point]:
 
 def lost(got: Measured, rule: Rule, which: str, dead: int = WORST, end: bool = False) -> float:
     """Share of the messages that did not come."""
-    came, sent = sending.share(got[point(rule, dead, got.quick, end)], which)
+    came, sent = share(got[point(rule, dead, got.quick, end)], which)
     return 1 - came / sent
 
 
@@ -88,7 +138,7 @@ def _reliable(ax: Axes, got: Measured) -> None:
 
 
 def _came(got: Measured, rule: Rule, which: str) -> str:
-    came, sent = sending.share(got[point(rule, WORST, got.quick)], which)
+    came, sent = share(got[point(rule, WORST, got.quick)], which)
     return f"{came} of {sent} ({percent(came / sent, 1)})"
 
 
@@ -190,7 +240,7 @@ def _again(got: Measured) -> Claim:
 def _loops(got: Measured) -> Claim:
     found = {rule: got[point(rule, WORST, got.quick)] for rule in RULES}
     looped = {rule: sum(runs["looped"]) for rule, runs in found.items()}
-    sent = sum(sending.share(found[GRAPH], which)[1] for which in ("first", "later"))
+    sent = sum(share(found[GRAPH], which)[1] for which in ("first", "later"))
     return Claim(
         "2.2",
         "to replace a next hop makes no loops",

@@ -10,14 +10,8 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.messages import DELIVERED, messages
 from innervate.networks.mesh.analysis.summary import summarize
-from innervate.networks.mesh.papers.testbed import (
-    BYTES,
-    GATEWAY,
-    MeshTestbed,
-    Options,
-    kill,
-    seeds_of,
-)
+from innervate.networks.mesh.papers import testbed as beds
+from innervate.networks.mesh.papers.testbed import GATEWAY, MeshTestbed, Options, seeds_of
 from innervate.networks.mesh.protocol.constants import END_TO_END, MONITOR
 from innervate.networks.mesh.scenario.plan import Offer
 from innervate.networks.mesh.sim.simulate import simulate
@@ -79,7 +73,7 @@ def measure(of: MeshTestbed, setting: Setting, seed: int) -> dict[str, Any]:
     """Takeover; delivery to the gateway and among others, by the time since the death."""
     plan = of.plan(seed)
     dies_us = round(DIES_S * 1e6) + stream(seed, "papers/death").draw(PERIOD_S * 1_000_000)
-    kill(plan, setting.dead, dies_us)
+    beds.kill(plan, setting.dead, dies_us)
     _send(plan, setting, dies_us)
     # Unchecked: a second delivery shall be counted, not end the figure.
     result = simulate(plan, checks=False)
@@ -106,7 +100,7 @@ def _send(plan: Any, setting: Setting, dies_us: int) -> None:
             to = [one for one in others if one != node][draw.draw(len(others) - 1)]
             for flow, dest in enumerate((MONITOR, to)):
                 at = since + draw.draw(every_us)
-                plan.offers.append(Offer(at, node, dest, END_TO_END, BYTES, flow))
+                plan.offers.append(Offer(at, node, dest, END_TO_END, beds.BYTES, flow))
     plan.offers.sort(key=lambda offer: offer.at_us)
 
 

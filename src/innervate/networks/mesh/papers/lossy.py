@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.messages import DELIVERED, messages
 from innervate.networks.mesh.analysis.paths import Ground, distances
-from innervate.networks.mesh.papers.sending import DOCUMENT, GRAPH, SEARCH, Rule
+from innervate.networks.mesh.papers.failures import DOCUMENT, GRAPH, SEARCH, Rule
 from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of, send_anywhere
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.mesh.sim.simulate import simulate

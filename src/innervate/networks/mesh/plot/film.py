@@ -112,7 +112,7 @@ class _Crossing:
             self.drawing.seen("circle", [(hop.start_us, 1.0)], class_="flooder",
                               cx=at[0], cy=at[1], r=ring)  # fmt: skip
             return
-        data = mesh_map.arrow_path(at, self.places[hop.to], self.sheet.dot + 3)
+        data = svg.arrow(at, self.places[hop.to], self.sheet.dot + 3)
         start, end = self._flash(hop.start_us, hop.end_us)
         kind = "way" if hop.receivers else "way failed"
         self.drawing.seen("path", [start, (end[0], STAYS)], class_=kind, d=data)

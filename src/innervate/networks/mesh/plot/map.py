@@ -19,7 +19,6 @@ NAMED_MAX = 120  # of more nodes only those with a part to play are named
 CROSSINGS_MAX = 24  # marks of more crossings would hide the field
 CORNERS_MAX = 40  # of a walk that keep names away
 RING_PX = 4.0
-ARROW_PX = 7.0
 
 
 def roles(plan: Any) -> dict[int, str]:
@@ -215,21 +214,7 @@ def symbol(drawing: Drawing, at: Point, dot: float, role: str, on: bool, tip: st
 
 def arrow(drawing: Drawing, start: Point, end: Point, gap: float, kind: str) -> None:
     """An arrow between two nodes."""
-    drawing.path(arrow_path(start, end, gap), kind)
-
-
-def arrow_path(start: Point, end: Point, gap: float) -> str:
-    """Path data of an arrow that keeps a distance from either end."""
-    dx, dy = end[0] - start[0], end[1] - start[1]
-    long = max((dx * dx + dy * dy) ** 0.5, 1e-9)
-    gap = min(gap, 0.3 * long)
-    ux, uy = dx / long, dy / long
-    tip = (end[0] - gap * ux, end[1] - gap * uy)
-    head = min(ARROW_PX, 0.4 * long)
-    left = (tip[0] - head * (ux + 0.6 * uy), tip[1] - head * (uy - 0.6 * ux))
-    right = (tip[0] - head * (ux - 0.6 * uy), tip[1] - head * (uy + 0.6 * ux))
-    shaft = svg.polyline([(start[0] + gap * ux, start[1] + gap * uy), tip])
-    return shaft + svg.polyline([left, tip, right])
+    drawing.path(svg.arrow(start, end, gap), kind)
 
 
 def legend(

@@ -7,18 +7,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.radio.analysis import formulas as forms
 from innervate.networks.radio.papers import common
-from innervate.networks.radio.papers.common import (
-    CONTENDING,
-    FEW,
-    LOOKS,
-    PEERS,
-    READING_B,
-    RESERVED,
-    SHORT,
-    SIZES,
-    WHOLE,
-    Curve,
-)  # fmt: skip
+from innervate.networks.radio.papers.common import RESERVED, SIZES, Curve
 from innervate.networks.radio.slotted.drive import SLOT, dcf_here
 from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
 from innervate.papers.words import joined, percent
@@ -36,26 +25,26 @@ ALLOWED = {"slotted-aloha": 0.02, "p-persistent": 0.02, "tree": 0.02, "tdma": 1e
 
 def curve(mac: str, size: int, quick: bool) -> Curve:
     """Throughput over n of one protocol."""
-    ns, seeds, successes = (FEW, 2, 4000) if quick else (WHOLE, 3, 10_000)
-    if mac == READING_B:
+    ns, seeds, successes = (common.FEW, 2, 4000) if quick else (common.WHOLE, 3, 10_000)
+    if mac == common.READING_B:
         return Curve(RESERVED, size, "saturated", ns, 1, 2000, (("reading", "B"),))
     if mac in (RESERVED, "tdma"):
         return Curve(mac, size, "saturated", ns, 1, 2000)
-    if mac in CONTENDING:
-        ns, seeds, successes = (CROSSING, 5, 4000) if quick else (WHOLE, 12, 8000)
+    if mac in common.CONTENDING:
+        ns, seeds, successes = (CROSSING, 5, 4000) if quick else (common.WHOLE, 12, 8000)
     return Curve(mac, size, "saturated", ns, seeds, successes)
 
 
 def points(quick: bool) -> list[Point]:
     """All protocols at both packet lengths."""
-    macs = (RESERVED, READING_B, *CONTENDING, *PEERS)
+    macs = (RESERVED, common.READING_B, *common.CONTENDING, *common.PEERS)
     return [curve(mac, size, quick).point() for size in SIZES for mac in macs]
 
 
 def draw(got: Measured) -> Figure:
     """One panel a packet length, every protocol by its name."""
     figure, axes = style.panels(style.WIDE_IN, 3.1, 1, 2)
-    macs = ("tdma", *PEERS[:-1], *reversed(CONTENDING), READING_B, RESERVED)
+    macs = ("tdma", *common.PEERS[:-1], *reversed(common.CONTENDING), common.READING_B, RESERVED)
     for ax, number, size in zip(axes, (4, 5), SIZES, strict=True):
         common.stations_axis(ax)
         ax.set(xlim=(1.9, 105), ylim=(0, 1.0), title=f"Fig. {number}  T = {size}")
@@ -66,7 +55,7 @@ def draw(got: Measured) -> Figure:
 
 def contended(got: Measured, size: int, place: int) -> list[float]:
     """S of each CSMA/CD at the first or the last n."""
-    return [curve(mac, size, got.quick).mean(got)[place] for mac in CONTENDING]
+    return [curve(mac, size, got.quick).mean(got)[place] for mac in common.CONTENDING]
 
 
 def judge(got: Measured) -> Claims:
@@ -96,7 +85,7 @@ def _small(got: Measured) -> Claim:
 
 def _crossing(got: Measured, size: int) -> Claim:
     found = {}
-    for mac, name in SHORT.items():
+    for mac, name in common.SHORT.items():
         one = curve(mac, size, got.quick)
         ours = np.array([forms.reserved_throughput(n, size) for n in one.ns])
         found[name] = common.first_from(one.ns, ours > one.mean(got))
@@ -138,7 +127,7 @@ def _formula(got: Measured) -> Claims:
     )
     worst = 0.0
     for size in SIZES:
-        for mac, letter in ((RESERVED, "A"), (READING_B, "B")):
+        for mac, letter in ((RESERVED, "A"), (common.READING_B, "B")):
             one = curve(mac, size, got.quick)
             exact = [forms.reserved_throughput(n, size, letter) for n in one.ns]
             worst = max(worst, float(np.abs(one.mean(got) - exact).max()))
@@ -165,7 +154,7 @@ def _peers(got: Measured) -> Claim:
         "beyond",
         "the protocols beside it agree with their closed forms (mean within 2 %, DCF 4 %)",
         "mean difference, n = 2..100, T = 5 and 25: "
-        + joined(f"{LOOKS[mac].name} {percent(mean, 1)}" for mac, mean in off.items()),
+        + joined(f"{common.LOOKS[mac].name} {percent(mean, 1)}" for mac, mean in off.items()),
         verdict(all(off[mac] < allowed for mac, allowed in ALLOWED.items())),
         "Bianchi's DCF is an approximation itself, roughest at n = 2",
     )

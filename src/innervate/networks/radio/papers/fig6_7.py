@@ -8,18 +8,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.radio.analysis import formulas as forms
 from innervate.networks.radio.papers import common
-from innervate.networks.radio.papers.common import (
-    CONTENDING,
-    FEW,
-    LOOKS,
-    PEERS,
-    READING_B,
-    RESERVED,
-    SHORT,
-    SIZES,
-    WHOLE,
-    Curve,
-)  # fmt: skip
+from innervate.networks.radio.papers.common import RESERVED, SIZES, Curve
 from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
@@ -34,26 +23,32 @@ CROSSING = (*range(2, 16), 20, 30, 50, 70, 100)
 
 def curve(mac: str, size: int, quick: bool) -> Curve:
     """T_D over n of one protocol."""
-    if mac == READING_B:
-        return Curve(RESERVED, size, "disaster", WHOLE, 1, options=(("reading", "B"),))
+    if mac == common.READING_B:
+        return Curve(RESERVED, size, "disaster", common.WHOLE, 1, options=(("reading", "B"),))
     if mac == RESERVED:
-        return Curve(mac, size, "disaster", WHOLE, 1)
-    if mac in CONTENDING:
-        ns, seeds = (CROSSING, 400) if quick else (WHOLE, 500)
+        return Curve(mac, size, "disaster", common.WHOLE, 1)
+    if mac in common.CONTENDING:
+        ns, seeds = (CROSSING, 400) if quick else (common.WHOLE, 500)
         return Curve(mac, size, "disaster", ns, seeds)
-    return Curve(mac, size, "disaster", FEW if quick else WHOLE, 30 if quick else 60)
+    return Curve(mac, size, "disaster", common.FEW if quick else common.WHOLE, 30 if quick else 60)
 
 
 def points(quick: bool) -> list[Point]:
     """All protocols at both packet lengths."""
-    macs = (RESERVED, READING_B, *CONTENDING, *PEERS)
+    macs = (RESERVED, common.READING_B, *common.CONTENDING, *common.PEERS)
     return [curve(mac, size, quick).point() for size in SIZES for mac in macs]
 
 
 def draw(got: Measured) -> Figure:
     """Above all protocols, logarithmic; below small n, T_D a station."""
     figure, axes = style.panels(style.WIDE_IN, 5.4, 2, 2, height_ratios=(1.25, 1))
-    macs = ("tdma", *reversed(PEERS[:-1]), *reversed(CONTENDING), READING_B, RESERVED)
+    macs = (
+        "tdma",
+        *reversed(common.PEERS[:-1]),
+        *reversed(common.CONTENDING),
+        common.READING_B,
+        RESERVED,
+    )
     for above, below, number, size in zip(axes[:2], axes[2:], (6, 7), SIZES, strict=True):
         common.stations_axis(above)
         above.set(yscale="log", xlim=(1.9, 105), title=f"Fig. {number}  T = {size}")
@@ -66,11 +61,11 @@ def draw(got: Measured) -> Figure:
 
 
 def _few(ax: Axes, got: Measured, size: int) -> None:
-    for mac in (*reversed(CONTENDING), RESERVED):
+    for mac in (*reversed(common.CONTENDING), RESERVED):
         one = curve(mac, size, got.quick)
-        common.line(ax, LOOKS[mac], one.ns[:9], one.mean(got)[:9], marks=range(2, 11))
-        if mac in CONTENDING:
-            common.band(ax, LOOKS[mac], one.ns[:9], one.all(got)[:9])
+        common.line(ax, common.LOOKS[mac], one.ns[:9], one.mean(got)[:9], marks=range(2, 11))
+        if mac in common.CONTENDING:
+            common.band(ax, common.LOOKS[mac], one.ns[:9], one.all(got)[:9])
     ax.set_ylim(0)
     ax.set(xticks=range(2, 11), xlabel="stations n")
     ax.legend(loc="upper left")
@@ -79,7 +74,7 @@ def _few(ax: Axes, got: Measured, size: int) -> None:
 def judge(got: Measured) -> Claims:
     """Linear; small n; large n; where they cross."""
     for size in SIZES:
-        rise, start, fit = common.slope(WHOLE, curve(RESERVED, size, got.quick).mean(got))
+        rise, start, fit = common.slope(common.WHOLE, curve(RESERVED, size, got.quick).mean(got))
         yield Claim(
             str(SIZES.index(size) + 6),
             f"T = {size}: T_D in CSMA/CD-R is proportional to n linearly",
@@ -93,7 +88,7 @@ def judge(got: Measured) -> Claims:
     gains = {
         size: [
             curve(mac, size, got.quick).mean(got)[-1] / forms.reserved_duration_slots(100, size)
-            for mac in CONTENDING
+            for mac in common.CONTENDING
         ]
         for size in SIZES
     }
@@ -132,7 +127,7 @@ def _small(got: Measured) -> Claim:
 
 def _crossing(got: Measured, size: int) -> Claim:
     found = {}
-    for mac, name in SHORT.items():
+    for mac, name in common.SHORT.items():
         one = curve(mac, size, got.quick)
         ours = np.array([forms.reserved_duration_slots(n, size) for n in one.ns])
         found[name] = common.first_from(one.ns, ours < one.mean(got))

@@ -10,15 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate import scenario
-from innervate.networks.skin.papers.common import (
-    RULES,
-    SETUPS,
-    Case,
-    Rule,
-    plan_of,
-    rule_panels,
-    seeds_of,
-)  # fmt: skip
+from innervate.networks.skin.papers import common
+from innervate.networks.skin.papers.common import RULES, SETUPS, Case, Rule, seeds_of
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
 from innervate.papers.words import percent
@@ -55,7 +48,7 @@ def cuts(setup: str) -> list[str]:
 @cache
 def depth(setup: str) -> int:
     """The deepest cell of a setup, d_m."""
-    return int(plan_of(setup).depth_max)
+    return int(common.plan_of(setup).depth_max)
 
 
 def case(setup: str, rule: Rule, cut: str) -> Case:
@@ -86,7 +79,7 @@ def ratios(got: Measured, setup: str, rule: Rule, kind: str) -> Any:
 
 def draw(got: Measured) -> Figure:
     """Every failure as a dot over the bound of its setup, a panel a rule."""
-    figure, axes = rule_panels(3.2)
+    figure, axes = common.rule_panels(3.2)
     for ax, rule in zip(axes, RULES, strict=True):
         _panel(ax, got, rule)
     axes[0].set_ylabel("convergence (periods)")

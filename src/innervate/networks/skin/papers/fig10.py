@@ -20,7 +20,7 @@ from innervate.networks.skin.papers.fig10_runs import (
     bound,
     points,
     values,
-)  # fmt: skip
+)
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Span, verdict
 from innervate.papers.words import joined, percent

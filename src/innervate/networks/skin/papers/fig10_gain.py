@@ -15,7 +15,7 @@ from innervate.networks.skin.papers.fig10_runs import (
     Mode,
     seeds,
     values,
-)  # fmt: skip
+)
 from innervate.papers.experiment import Claim, Claims, Measured, Span, about, verdict
 from innervate.papers.words import joined, percent
 

@@ -10,15 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate.networks.skin.analysis.rows import parent_changes
-from innervate.networks.skin.papers.common import (
-    RULES,
-    Case,
-    Rule,
-    mean_of,
-    number,
-    rule_panels,
-    seeds_of,
-)  # fmt: skip
+from innervate.networks.skin.papers import common
+from innervate.networks.skin.papers.common import RULES, Case, Rule, number, seeds_of
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
@@ -86,7 +79,7 @@ def converged(got: Measured, setup: str, k: int, rule: Rule) -> Any:
 
 def draw(got: Measured) -> Figure:
     """One panel a rule; grey boxes are Eq. 6 and its band."""
-    figure, axes = rule_panels(3.0)
+    figure, axes = common.rule_panels(3.0)
     for ax, rule in zip(axes, RULES, strict=True):
         _panel(ax, got, rule)
     axes[0].set_ylabel("convergence (ms)")
@@ -107,7 +100,7 @@ def _panel(ax: Axes, got: Measured, rule: Rule) -> None:
             ax.plot(edges, [middle, middle], color=style.SOFT, lw=0.9)
             ms = converged(got, setup, k, rule) * 1e3 / HZ
             ax.plot([x, x], [np.nanmin(ms), np.nanmax(ms)], color=style.SERIES[i], lw=1)
-            ax.plot(x, mean_of(ms), style.MARKERS[i], color=style.SERIES[i],
+            ax.plot(x, common.mean_of(ms), style.MARKERS[i], color=style.SERIES[i],
                     label=f"k = {k}" if place == 0 else None)  # fmt: skip
     drawing.each_mode(ax, [f"{distance}\n{number(setup)}" for setup, distance in SETUPS.items()])
     ax.set_xlabel("cells between the interface ports, h")
@@ -142,7 +135,9 @@ def _band(got: Measured, rule: Rule) -> Claim:
         f"{rule.words}: convergence = (ceil(h/2) + k) T +-2 T (Eq. 6) for setups 1-4 "
         f"at 250 Hz, k 3, 5, 8 (at least {percent(INSIDE.low)} inside)",
         f"inside the band of {len(off['setup-1'])} each (mean distance from Eq. 6): "
-        + joined(f"{number(s)} {percent(n)} ({mean_of(off[s]):+.1f} T)" for s, n in shares.items())
+        + joined(
+            f"{number(s)} {percent(n)} ({common.mean_of(off[s]):+.1f} T)" for s, n in shares.items()
+        )
         + f"; within +-3 T at least {percent(wider)}",
         verdict(fine, "E21", "E22"),
         "a mean with a band, not a bound" if fine else reason,
@@ -151,7 +146,7 @@ def _band(got: Measured, rule: Rule) -> Claim:
 
 def _slope(got: Measured, rule: Rule) -> Claim:
     h = np.array([distance for distance in SETUPS.values() for _ in KS], float)
-    mean = np.array([mean_of(converged(got, s, k, rule)) - k for s in SETUPS for k in KS])
+    mean = np.array([common.mean_of(converged(got, s, k, rule)) - k for s in SETUPS for k in KS])
     slope, offset = np.polyfit(h, mean, 1)
     fit = float(np.corrcoef(h, mean)[0, 1] ** 2)
     return Claim(

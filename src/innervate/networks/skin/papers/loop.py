@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,13 +12,16 @@ from matplotlib.figure import Figure
 from innervate.networks.skin.analysis.recovery import next_hops
 from innervate.networks.skin.analysis.rows import loop_episodes, parent_changes
 from innervate.networks.skin.papers.common import RULES, Case, Rule, seeds_of
-from innervate.networks.skin.plot.axes import NO_ROUTE, SkinAxes
+from innervate.networks.skin.plot.history import Moment
+from innervate.networks.skin.plot.map import route_map
+from innervate.networks.skin.plot.sheet import Sheet
 from innervate.networks.skin.protocol.constants import NONE
 from innervate.networks.skin.sim.observer import LOOP_OPEN
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
 from innervate.papers.words import joined
-from innervate.plot import style
+from innervate.plot import paint, style, svg
+from innervate.plot.svg import Drawing
 
 TITLE = "Erratum E25: a forwarding loop under the printed rule"
 CAPTION = (
@@ -31,9 +35,8 @@ PRINTED, LAX = RULES[1:]
 SLOWER = Rule("paper", 5)  # printed and counted slower
 CURED = (Rule("strict", 0), Rule("feasible", 0))
 NONE_AT_ALL = Span(0, 0)
-PALE_ROUTE = "#dfe7ee"
-PALE_CUT = "#fbe3c4"  # served by the port that fails
-PALE_RING = "#eddcea"  # sends into the ring
+CUT_PORT, INTO_RING = 1, 3  # which port's colour cells have
+MAP_IN = 2.3
 
 
 def loops(rule: Rule, quick: bool) -> Point:
@@ -103,10 +106,8 @@ def draw(got: Measured) -> Figure:
     before, then, bars = figure.subplots(1, 3, width_ratios=(1, 1, 0.95))
     hops = next_hops(graph, np.array(shown["before"]))
     below = _below(hops, graph)
-    skin = SkinAxes(before, graph)
-    skin.cells([PALE_CUT if cell in below else PALE_ROUTE for cell in range(graph.cells)])
-    skin.tree(hops)
-    skin.ports(cut=[1])
+    servers = [CUT_PORT if cell in below else 0 for cell in range(graph.cells)]
+    paint.paint(before, _map(graph, hops, servers), MAP_IN)
     before.set_title("a  the cable of port 1 fails")
     _draw_ring(then, graph, shown)
     then.set_title(f"b  {shown['after_ms']:.1f} ms later")
@@ -132,20 +133,27 @@ def _draw_ring(ax: Axes, graph: Any, shown: Any) -> None:
     root = graph.peer[4 * graph.cells + 1] // 4
     if hops[root] == graph.sink:
         hops[root] = -1  # its cable is dead
-    ring = set(shown["ring"])
-    fills = []
+    servers = []
     for cell in range(graph.cells):
         node, steps = cell, 0
         while 0 <= hops[node] < graph.cells and steps <= graph.cells:
             node, steps = int(hops[node]), steps + 1
-        fills.append(PALE_ROUTE if hops[node] == graph.sink else NO_ROUTE)
+        servers.append(0 if hops[node] == graph.sink else NONE)
         if steps > graph.cells:
-            fills[-1] = PALE_RING
-    skin = SkinAxes(ax, graph)
-    skin.cells(fills)
-    skin.tree(hops, only=[cell for cell in range(graph.cells) if cell not in ring])
-    skin.tree(hops, style.PURPLE, only=sorted(ring), strong=True)
-    skin.ports(cut=[1])
+            servers[-1] = INTO_RING
+    paint.paint(ax, _map(graph, hops, servers, shown["ring"]), MAP_IN)
+
+
+def _map(graph: Any, hops: Any, servers: Sequence[int], ring: Sequence[int] = ()) -> Drawing:
+    """A map whose cells have the colours of these ports, with arrows along a ring."""
+    sheet, down = Sheet(graph), graph.peer[4 * graph.cells + CUT_PORT]
+    served = np.array(servers)
+    moment = Moment(0, served, hops, served, frozenset({down}), frozenset())
+    drawing = route_map(sheet, moment, "", tips=False)
+    arrows = "".join(svg.arrow(sheet.cell(c), sheet.cell(int(hops[c])), 4.0) for c in ring)
+    if arrows:
+        drawing.add("path", class_="way", stroke=style.WINE, d=arrows)
+    return drawing
 
 
 def _bars(ax: Axes, got: Measured) -> None:

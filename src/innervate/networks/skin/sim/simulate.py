@@ -8,6 +8,7 @@ from types import ModuleType
 from typing import Any, ClassVar
 
 from innervate.kernel.clock import wall_s
+from innervate.networks.skin.protocol.constants import RULE_STATIC
 from innervate.networks.skin.sim import build as builder
 from innervate.networks.skin.sim import observer, script, static_stack
 from innervate.networks.skin.sim import stack as skin_stack
@@ -18,8 +19,6 @@ from innervate.sim.cables.simulation import Cables, Result
 from innervate.sim.driver import Ended, InvariantBroken, Progress
 from innervate.sim.status import BROKEN
 from innervate.sim.tables import Names, get, move_rows
-
-RULE_STATIC = 3
 
 
 def _modules() -> tuple[ModuleType, ...]:
