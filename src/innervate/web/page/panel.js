@@ -53,7 +53,8 @@ export function showNumbers(network) {
     if (isKnown && recovery.recovered_ms === 0) {
       const whom = recovery.apart ? `${recovery.apart} cut off, no other `
         : /cable|link/.test(recovery.cause) ? "no " : "no other ";
-      show("recovery", "–", `${recovery.cause}: ${whom}${WORDS[network.kind] ?? "node"} affected`, "");
+      const who = `${whom}${WORDS[network.kind] ?? "node"}`;
+      show("recovery", "–", `${recovery.cause}: ${who} affected`, "");
     } else show("recovery", shown, more, look);
   }
   const isRadio = network.kind === "radio"; // there everybody hears everybody

@@ -36,7 +36,7 @@ RULES = (DOCUMENT, THREE, PLAIN_SEARCH, PLAIN_GRAPH)
 
 
 def losses(quick: bool) -> tuple[int, ...]:
-    """Percent of the frames."""
+    """Shares of frames lost, in percent."""
     return (0, 5) if quick else (0, 1, 2, 5, 10, 20)
 
 

@@ -41,7 +41,7 @@ def jitters(quick: bool) -> tuple[int, ...]:
 
 
 def sizes(quick: bool) -> tuple[int, ...]:
-    """Nodes."""
+    """Sizes of the networks, in nodes."""
     return (10, 20, 30) if quick else (10, 20, 30, 45, 60)
 
 

@@ -29,7 +29,7 @@ FILLS = (style.BLUE, style.SKY, style.ORANGE, style.FAINT)
 
 
 def degrees(quick: bool) -> tuple[int, ...]:
-    """Mean degrees."""
+    """Mean degrees of the networks tried."""
     return (6, 8) if quick else (5, 6, 8, 10, 12)
 
 

@@ -25,7 +25,7 @@ LITERAL: Options = (
 
 
 def seeds_of(quick: bool) -> range:
-    """One network each."""
+    """Seeds, each of one network."""
     return range(1, 5 if quick else 31)
 
 

@@ -40,7 +40,7 @@ SCHEMES: dict[str, Options] = {
 
 
 def speeds(quick: bool) -> tuple[float, ...]:
-    """Metres a second."""
+    """Speeds of robots, metres a second."""
     return (0.5, 2.0) if quick else (0.1, 0.5, 1.0, 2.0)
 
 

@@ -28,7 +28,7 @@ SIX_MS = about(6.0)
 
 
 def point(rate_hz: int, quick: bool) -> Point:
-    """A rate of samples."""
+    """Runs at one rate of samples."""
     seeds = seeds_of(1 if quick else 5)
     key = f"delay {SETUP} data {rate_hz} Hz, beacons {BEACON_HZ} Hz, seeds 1-{seeds[-1]}"
     return Point.of(key, 0.3 * len(seeds), measure, rate_hz, seeds)

@@ -64,7 +64,7 @@ def skin(setup: str) -> tuple[int, int]:
 
 
 def rates(quick: bool) -> tuple[Rate, ...]:
-    """Those that are tried."""
+    """Pairs of rates that are tried."""
     return RATES[1:] if quick else RATES
 
 

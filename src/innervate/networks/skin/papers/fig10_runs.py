@@ -49,7 +49,7 @@ def seeds(quick: bool, mode: Mode) -> range:
 
 
 def runs(setup: str, mode: Mode, quick: bool) -> list[Point]:
-    """A run each."""
+    """One run for each seed."""
     window_s = 4.0 if quick else 10.0
     low, high = mode.forward_us
     words = (
@@ -64,7 +64,7 @@ def runs(setup: str, mode: Mode, quick: bool) -> list[Point]:
 
 
 def points(quick: bool) -> list[Point]:
-    """The long ones first."""
+    """All runs, the long ones first."""
     cases = [(setup, mode) for mode in reversed(DRAWN) for setup in SETUPS]
     return [one for case in (*cases, (SETUPS[-1], QUEUED)) for one in runs(*case, quick)]
 

@@ -47,14 +47,14 @@ LOOKS = (("no failure", style.INK, "-"), ("dynamic", style.BLUE, (0, (4, 1.5))),
 
 
 def runs(name: str, quick: bool) -> Point:
-    """Runs of a case."""
+    """All runs of one case."""
     _, rule, cut = next(case for case in CASES if case[0] == name)
     seeds = seeds_of(3 if quick else 20)
     return Point.each(f"fig11 {name} {BEACON_HZ} Hz k={K}", 0.4, seeds, measure, rule, cut)
 
 
 def points(quick: bool) -> list[Point]:
-    """Each case."""
+    """The runs of each case."""
     return [runs(name, quick) for name, *_ in CASES]
 
 

@@ -85,7 +85,7 @@ def points(quick: bool) -> list[Point]:
 
 
 def measure(k: int, case: tuple[int, bool, bool], seed: int) -> list[float]:
-    """[detected, converged] in periods."""
+    """[detected, converged], in periods of beacons."""
     one = recoveries(simulated(tables(k, *case), seed))[0]
     detected_ms, converged_ms = one["detected_ms"], one["converged_ms"]
     assert detected_ms is not None

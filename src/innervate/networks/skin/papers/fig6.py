@@ -74,7 +74,7 @@ def loose(r_f: float, r_r: float, loss: float, duration_s: float) -> Any:
 
 
 def shown(r_f: float, r_r: float) -> Point:
-    """A history of p_f."""
+    """A history of p_f, drawn."""
     key = f"fig6 history {r_f} {r_r} loss={LOSS} seed {SHOWN_SEED}"
     return Point.of(key, 0.5, history, r_f, r_r)
 
