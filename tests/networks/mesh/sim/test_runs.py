@@ -10,6 +10,7 @@ from innervate.networks.mesh.protocol.frames import copy_frame
 from innervate.networks.mesh.sim import simulate as simulation
 from innervate.networks.mesh.sim.build import build, grow_duplicates
 from innervate.networks.mesh.sim.recorder import place_of
+from innervate.sim import driver
 from innervate.sim.driver import InvariantBroken
 from tests.networks.mesh import pinger as mesh_pinger
 from tests.networks.mesh.runs import mesh_plan, run
@@ -59,7 +60,7 @@ def test_an_interrupt_keeps_what_was_done(monkeypatch):
     monkeypatch.setattr(simulation, "PLAIN_SLICE_EVENTS", 20)
     stops = []
 
-    class Asked(simulation.Stop):
+    class Asked(driver.Stop):
         def __enter__(self):
             stops.append(self)
             return self
@@ -67,7 +68,7 @@ def test_an_interrupt_keeps_what_was_done(monkeypatch):
         def __exit__(self, *_):
             pass
 
-    monkeypatch.setattr(simulation, "Stop", Asked)
+    monkeypatch.setattr(driver, "Stop", Asked)
 
     def progress(now, _):
         stops[-1].asked = now > 150_000
