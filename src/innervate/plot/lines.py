@@ -28,8 +28,10 @@ def traffic_lines(summary: Mapping[str, Any]) -> list[str]:
         f"{frames['lost']:,} lost{_reasons(frames['lost_by'])}"
     ]
     if messages["sent"] or messages["delivered"]:
+        # A protocol that hands up what no user gave (a token, say) delivers without being sent.
+        given = f"{messages['sent']:,} sent, " if messages["sent"] else ""
         lines.append(
-            f"Messages: {messages['sent']:,} sent, {messages['delivered']:,} delivered"
+            f"Messages: {given}{messages['delivered']:,} delivered"
             f"{_reasons(messages['dropped_by'])}"
         )
     latency = messages["latency_ms"]

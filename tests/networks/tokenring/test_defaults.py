@@ -118,3 +118,16 @@ def test_it_is_swept(file, tmp_path, capsys):
     found = polars.read_parquet(out / "results.parquet").group_by("hold_us")
     sent = dict(found.agg(polars.mean("frames.sent")).iter_rows())
     assert sent[1000] > 1.5 * sent[2000] > 100
+
+
+def test_nothing_is_said_to_be_sent_that_nobody_gave():
+    from innervate.plot.lines import traffic_lines
+
+    latency = {"p50": None}
+    messages = {"sent": 0, "delivered": 3, "dropped_by": {}, "latency_ms": latency}
+    frames = {"sent": 4, "arrived": 3, "lost": 1, "lost_by": {"cut": 1}}
+    assert traffic_lines({"frames": frames, "messages": messages}) == [
+        "Frames: 4 sent, 3 arrived, 1 lost, 1 cut", "Messages: 3 delivered",
+    ]  # fmt: skip
+    told = traffic_lines({"frames": frames, "messages": messages | {"sent": 5}})
+    assert told[1] == "Messages: 5 sent, 3 delivered"
