@@ -69,12 +69,12 @@ def house(
     at: dict[str, tuple[float, float]] = {}
     for floor, row in enumerate(rows):
         # Rooms over what they stand on, as far as there is space.
-        row.sort(key=lambda room: sum(at[b][0] for b in graph.successors(room) if b in at)
+        row.sort(key=lambda room: sum(at[b][0] for b in sorted(graph.successors(room)) if b in at)
                  / max(1, graph.out_degree(room)))  # fmt: skip
         for number, room in enumerate(row):
             x = left + WIDTH * (number + 0.5 + (wide - len(row)) / 2)
             at[room] = (x, FLOOR * floor)
-    for one, other in graph.edges:
+    for one, other in sorted(graph.edges):
         (x, y), (to_x, to_y) = at[one], at[other]
         ax.plot([x, to_x], [y - 0.22, to_y + 0.22], color=WALL, lw=0.6, alpha=0.55, zorder=1)
     for room, (x, y) in at.items():
@@ -106,6 +106,7 @@ def draw() -> Path:
     ax.set_xlim(-0.2, right + 0.2)
     ax.set_ylim(-0.9, None)
     ax.set_axis_off()
+    plt.rcParams["svg.hashsalt"] = "house"  # the same bytes for the same rooms
     figure.savefig(PICTURE, bbox_inches="tight", metadata={"Date": None})
     plt.close(figure)
     return PICTURE
