@@ -109,11 +109,19 @@ def summarize(result: Any) -> Summary:
     return made
 
 
+def known_latencies_us(deliveries: Any) -> Any:
+    """Latencies of what users handed in, us; rows of what nobody did say -1."""
+    if deliveries is None or "latency" not in (deliveries.dtype.names or ()):
+        return np.zeros(0)
+    return deliveries["latency"][deliveries["latency"] >= 0]
+
+
 def latency_ms(deliveries: Any) -> Percentiles:
     """Median, 99th percentile and maximum of deliveries' latencies, ms."""
-    if deliveries is None or not len(deliveries) or "latency" not in deliveries.dtype.names:
+    known = known_latencies_us(deliveries)
+    if not len(known):
         return {"p50": None, "p99": None, "max": None}
-    half, nearly, most = np.percentile(deliveries["latency"], (50, 99, 100), method="nearest") / 1e3
+    half, nearly, most = np.percentile(known, (50, 99, 100), method="nearest") / 1e3
     return {"p50": float(half), "p99": float(nearly), "max": float(most)}
 
 

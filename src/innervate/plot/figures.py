@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from innervate.analysis.summary import known_latencies_us
 from innervate.plot import charts, style
 
 MARKS_MAX = 12
@@ -106,7 +107,7 @@ def latency(run: Any) -> Figure:
     """Share of the messages that were delivered within a time."""
     made, (ax,) = style.panels(style.COLUMN_IN, 2.2)
     some = run.result.rows.get("deliveries")
-    known = np.sort(some["latency"]) / 1e3 if some is not None else np.zeros(0)
+    known = np.sort(known_latencies_us(some)) / 1e3
     ax.step(known, np.arange(1, len(known) + 1) / max(1, len(known)), where="post", lw=1)
     ax.set_xlabel("latency (ms)")
     ax.set_ylabel("share delivered")

@@ -126,6 +126,8 @@ def columns(table: Table, result: Any) -> dict[str, Any]:
         name = _FIELDS.get(column.name, column.name)
         has = name in rows.dtype.names
         found[column.name] = np.ascontiguousarray(rows[name]) if has else [None] * len(rows)
+        if name == "latency" and has:
+            found[column.name] = [us if us >= 0 else None for us in rows[name].tolist()]
     return found
 
 

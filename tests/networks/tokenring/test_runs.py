@@ -41,6 +41,12 @@ def test_a_declared_network_runs_and_its_token_goes_round():
     assert "4 cables" in networks()["tokenring"].describe(done.plan)
 
 
+def test_what_nobody_handed_in_has_no_latency():
+    done = run(tables(event=[], loads=False), plain=True)
+    assert done.tables["deliveries"].collect()["latency_us"].null_count() > 300
+    assert set(done.summary["messages"]["latency_ms"].values()) == {None}
+
+
 def test_a_declared_network_is_mended_after_every_fault():
     _, rows = finished(plan_of(), plain=True, deliveries=True)
     made = rows["rows"]["time"][rows["rows"]["code"] == 1]

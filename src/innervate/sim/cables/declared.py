@@ -3,7 +3,7 @@
 Of its `Network` it takes `protocol` (a module: `on_start`, `on_frame`, `on_timer`, `on_input` of a
 node; TIMERS; perhaps OUTBOX) and `fields` (STATE, FRAME, PARAMS). All nodes are equal but for
 `state.number`. A field `made_at` of a frame, where declared, is when its content was handed to its
-first sender: latencies are taken from it.
+first sender: latencies are taken from it; 0 is for what no user handed in, which has none.
 """
 
 from __future__ import annotations
@@ -108,15 +108,16 @@ def _users_side(do: ModuleType, is_timed: bool) -> dict[str, Callable[..., Any]]
 
     def take_timed(world, command):  # type: ignore[no-untyped-def]
         kind = take_input(world, command)
-        world.sample[0].made_at = command.at & MASK30
+        world.sample[0].made_at = max(command.at & MASK30, 1)
         return kind
 
     def sense_timed(world, node, time):  # type: ignore[no-untyped-def]
-        world.sample[0].made_at = time & MASK30
+        world.sample[0].made_at = max(time & MASK30, 1)
 
     def deliver_timed(world, time, node, port, frame):  # type: ignore[no-untyped-def]
         on_deliver(world, time, node, port, frame)
-        recorder.keep_latency(world, (time - frame.made_at) & MASK30)
+        if frame.made_at > 0:
+            recorder.keep_latency(world, (time - frame.made_at) & MASK30)
 
     compilation.register_functions(copy_frame, kind_of, take_input, on_deliver)
     return {"take_input": take_timed, "sense": sense_timed, "on_deliver": deliver_timed}
