@@ -228,16 +228,18 @@ class Live(Source):
             return
         at_us = self._now_us()
         recovery.cut_off(state.unconnected - state.lacking)
+        recovery.nobody = not state.left
         after_ms = round((at_us - recovery.at_us) / 1e3, 1)
         if recovery.detected_ms is None and state.lacking:
             recovery.detected_ms = after_ms
-        if recovery.recovered_ms is None and not state.lacking:
+        if recovery.recovered_ms is None and not state.lacking and state.left:
             kept = recovery.detected_ms is None
             recovery.recovered_ms = 0.0 if kept else after_ms
             how = "kept its way" if kept else f"has a way again after {after_ms:.0f} ms"
             apart = state.unconnected
             are = "is" if apart == 1 else "are"
-            who = "every node" if not apart else f"every node but {apart} that {are} cut off"
+            every = f"every node{'' if len(self._told) == len(self._last) else ' that answers'}"
+            who = every if not apart else f"{every} but {apart} that {are} cut off"
             self._log.say(at_us, f"{who} {how}, as they say", "info" if apart else "good")
 
     def _lose(self, cause: str) -> None:
