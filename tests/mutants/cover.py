@@ -8,6 +8,7 @@ lines; of that, the lines are known which its tests run uncompiled.
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import json
 import os
 import re
@@ -25,8 +26,17 @@ data_file = {folder}/lines
 source_pkgs = innervate
 parallel = true
 sigterm = true
+disable_warnings = module-not-measured, no-data-collected, already-imported
 context = ${{PYTEST_CURRENT_TEST-}}
 """
+
+
+NOTED = "noted.json"  # what the files were when lines were noted
+
+
+def digest(path: Path) -> str:
+    """What a file is known by."""
+    return hashlib.blake2b(path.read_bytes(), digest_size=10).hexdigest()
 
 
 def folder() -> Path:
@@ -40,7 +50,7 @@ class Recorder:
     def __init__(self) -> None:
         self.took_s: dict[str, float] = defaultdict(float)
         self.failed: set[str] = set()
-        self.lines = coverage.Coverage(config_file=str(folder() / "settings"), context="import")
+        self.lines = coverage.Coverage(config_file=str(folder() / "settings"))
         self.lines.start()
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
@@ -98,10 +108,13 @@ class Covered:
             failed.update(times["failed"])
         for test in failed:  # what fails without a fault finds none
             self.took_s.pop(test, None)
+        self._noted: dict[str, str] = json.loads((where / NOTED).read_text())
         self._of_file: dict[str, dict[int, frozenset[str]]] = {}
 
     def tests_of(self, path: str, line: int) -> frozenset[str]:
-        """Tests that run a line of a file, while they run."""
+        """Tests that run a line of a file; of a file that was edited since, any line."""
+        if self._noted.get(path) != digest(self.root / path):
+            return self.tests_of_file(path)
         return self._lines(path).get(line, frozenset())
 
     def tests_of_file(self, path: str) -> frozenset[str]:
@@ -110,7 +123,7 @@ class Covered:
 
     def _lines(self, path: str) -> dict[int, frozenset[str]]:
         if path not in self._of_file:
-            found = self._data.contexts_by_lineno(str(self.root / path))
+            found = self._data.contexts_by_lineno(str((self.root / path).resolve()))
             self._of_file[path] = {
                 line: frozenset(map(self._test, contexts)) & self.took_s.keys()
                 for line, contexts in found.items()

@@ -9,8 +9,8 @@ are the protocols, whose mutants are the explorer's (`networks/*/verify`).
 from __future__ import annotations
 
 import ast
-import random
-from collections import defaultdict
+import hashlib
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -29,7 +29,12 @@ CALLS = {"min": "max", "max": "min", "any": "all", "all": "any"}
 
 
 class Fault(NamedTuple):
-    """One edit: the bytes from `start` to `end` of a file become `new`."""
+    """One edit: the bytes from `start` to `end` of a file become `new`.
+
+    Attributes:
+        text: the line, without indentation.
+        nth: of several with the same text, old and new.
+    """
 
     path: str
     line: int
@@ -37,6 +42,13 @@ class Fault(NamedTuple):
     end: int
     old: str
     new: str
+    text: str = ""
+    nth: int = 0
+
+    @property
+    def key(self) -> tuple[str, str, str, str, int]:
+        """What it is known by, wherever in the file the line has moved."""
+        return self.path, self.text, self.old, self.new, self.nth
 
     @property
     def room(self) -> str:
@@ -50,20 +62,23 @@ class Fault(NamedTuple):
 
 
 def drawn(root: Path, seed: int, count: int) -> list[Fault]:
-    """Faults drawn over all rooms: some in each, the others by the rooms' size."""
-    stream = random.Random(f"mutants {seed}")
-    rooms = defaultdict(list)
-    for path in sorted((root / SOURCES).rglob("*.py")):
-        if "protocol" not in path.parts and "dialect" not in path.parts:
-            for fault in faults(path, path.relative_to(root).as_posix()):
-                rooms[fault.room].append(fault)
+    """Faults drawn over all rooms: some in each, the others by the rooms' size.
+
+    An edit of the sources changes the draw only there.
+    """
+    every = [
+        fault
+        for path in sorted((root / SOURCES).rglob("*.py"))
+        if "protocol" not in path.parts and "dialect" not in path.parts
+        for fault in faults(path, path.relative_to(root).as_posix())
+    ]
+    every.sort(key=lambda fault: hashlib.blake2b(f"{seed} {fault.key}".encode()).digest())
+    in_room = Counter[str]()
     first, rest = [], []
-    for room in sorted(rooms):
-        stream.shuffle(rooms[room])
-        first += rooms[room][:ROOM_MIN]
-        rest += rooms[room][ROOM_MIN:]
-    stream.shuffle(first)
-    return first[:count] + stream.sample(rest, max(0, min(len(rest), count - len(first))))
+    for fault in every:
+        in_room[fault.room] += 1
+        (first if in_room[fault.room] <= ROOM_MIN else rest).append(fault)
+    return (first + rest)[:count]
 
 
 def faults(path: Path, name: str) -> list[Fault]:
@@ -88,7 +103,16 @@ class Finder:
 
     def found(self) -> list[Fault]:
         """Every fault of the file, in order of places."""
-        return sorted(self._in(ast.parse(self.source)), key=lambda fault: (fault.start, fault.new))
+        bare = sorted(self._in(ast.parse(self.source)), key=lambda fault: (fault.start, fault.new))
+        lines = self.source.decode().splitlines()
+        same = Counter[tuple[str, ...]]()
+        made = []
+        for fault in bare:
+            text = lines[fault.line - 1].strip()
+            kind = (text, fault.old, fault.new)
+            made.append(fault._replace(text=text, nth=same[kind]))
+            same[kind] += 1
+        return made
 
     def _in(self, node: ast.AST) -> Iterator[Fault]:
         yield from self._of(node)
@@ -130,13 +154,8 @@ class Finder:
         elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
             if node.func.id in CALLS:
                 yield self._whole(node.func, CALLS[node.func.id])
-        elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Call | ast.Await):
+        elif is_left_out(node):
             yield self._whole(node, "pass")
-        elif isinstance(node, ast.Raise | ast.Break | ast.Continue | ast.Delete):
-            yield self._whole(node, "pass")
-        elif isinstance(node, ast.Assign) and not isinstance(node.targets[0], ast.Name):
-            if not isinstance(node.targets[0], ast.Tuple):
-                yield self._whole(node, "pass")
 
     def _number(self, node: ast.Constant) -> Iterator[Fault]:
         value = node.value
@@ -178,6 +197,15 @@ class Finder:
         return Fault(self.name, line, start, start + len(old.encode()), old, new)
 
 
+def is_left_out(node: ast.AST) -> bool:
+    """True for statements that a fault leaves out: calls, raises, jumps, attributes set."""
+    if isinstance(node, ast.Expr):
+        return isinstance(node.value, ast.Call | ast.Await)
+    if isinstance(node, ast.Assign):
+        return isinstance(node.targets[0], ast.Attribute | ast.Subscript)
+    return isinstance(node, ast.Raise | ast.Break | ast.Continue | ast.Delete)
+
+
 def is_for_types(node: ast.AST) -> bool:
     """True for what only type checkers and readers look at."""
     if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
@@ -192,8 +220,11 @@ def is_for_types(node: ast.AST) -> bool:
 def is_text(node: ast.BinOp) -> bool:
     """True for what is put together of strings, and for unions of types."""
     if isinstance(node.op, ast.BitOr):
-        return any(isinstance(one, ast.Constant) and one.value is None for one in (node.left, node.right))
+        return any(
+            isinstance(one, ast.Constant) and one.value is None for one in (node.left, node.right)
+        )
     return any(
-        isinstance(one, ast.JoinedStr) or (isinstance(one, ast.Constant) and isinstance(one.value, str))
+        isinstance(one, ast.JoinedStr)
+        or (isinstance(one, ast.Constant) and isinstance(one.value, str))
         for one in (node.left, node.right)
     )
