@@ -4,7 +4,6 @@ import pytest
 
 from innervate.analysis.intervals import mean_interval, quantile, t_quantile, wilson
 
-
 # Student's t as textbooks print it, to three places: shares, then a row for every freedom.
 SHARES = (0.75, 0.90, 0.95, 0.975, 0.99, 0.995, 0.9995)
 TABLE = {

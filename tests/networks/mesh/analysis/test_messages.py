@@ -4,15 +4,34 @@ import pytest
 
 from innervate.networks.mesh.analysis import messages
 from innervate.networks.mesh.analysis.messages import (
-    DELIVERED, IN_FLIGHT, LOST, REFUSED, SAME_US, UNASKED,
+    DELIVERED,
+    IN_FLIGHT,
+    LOST,
+    REFUSED,
+    SAME_US,
+    UNASKED,
 )  # fmt: skip
 from innervate.networks.mesh.protocol.constants import (
-    ALARM, ALL, DATA, NO_ACK, NO_ROOM, NO_ROUTE, PUT_OUT, REPORT_ACCEPTED, REPORT_EXPIRED,
+    ALARM,
+    ALL,
+    DATA,
+    NO_ACK,
+    NO_ROOM,
+    NO_ROUTE,
+    PUT_OUT,
+    REPORT_ACCEPTED,
+    REPORT_EXPIRED,
     REPORT_FULL,
 )  # fmt: skip
 from innervate.networks.mesh.scenario.plan import Offer
 from innervate.scenario.actions.field import (
-    ACTIONS, CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE,
+    CUT,
+    JAM,
+    KILL,
+    QUIET,
+    RESTART,
+    RESTORE,
+    REVIVE,
 )  # fmt: skip
 from tests.networks.mesh.analysis.test_summary import S, fault, given, made, offer
 
