@@ -91,7 +91,7 @@ def test_what_else_a_scenario_has_goes_on_beside_its_events():
 
     played(event("cut", 3.0), others=[other()])
     assert done == [pytest.approx(1.0)]
-    with pytest.raises(LiveError, match="^n2 ended: no message$"):
+    with pytest.raises(LiveError, match=r"^n2 ended: no message$"):
         played(event("cut", 3.0), others=[bad()])
 
 

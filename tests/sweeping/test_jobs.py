@@ -104,7 +104,7 @@ def test_a_folder_holds_one_sweep(tmp_path):
         table.claim({"scenario": "abc", "plan": "def"})
         with pytest.raises(SweepError, match=r"^scenario changed since the sweep in "):
             table.claim({"scenario": "other", "plan": "def"})
-        with pytest.raises(SweepError, match="^scenario and plan changed"):
+        with pytest.raises(SweepError, match=r"^scenario and plan changed"):
             table.claim({"scenario": "", "plan": ""})
         table.claim({"scenario": "abc"})
 
@@ -113,7 +113,7 @@ def test_a_table_of_another_layout_is_not_gone_on_with(tmp_path, monkeypatch):
     with Jobs(tmp_path) as table:
         table.claim({"plan": "def"})
     monkeypatch.setattr(jobs, "SCHEMA", jobs.SCHEMA + 1)
-    with Jobs(tmp_path) as table, pytest.raises(SweepError, match="^schema changed"):
+    with Jobs(tmp_path) as table, pytest.raises(SweepError, match=r"^schema changed"):
         table.claim({"plan": "def"})
 
 

@@ -102,7 +102,7 @@ def test_an_edge_of_no_length_is_a_point():
     ring = [*edges(SQUARE), ((0, 0), (0, 0))]
     assert fence.margin_cm(ring, (3, 4)) == 3
     assert fence.margin_cm(ring, (-3, -4)) == -5
-    with pytest.raises(ValueError, match="empty|arg"):
+    with pytest.raises(ValueError, match=r"empty|arg"):
         fence.margin_cm([], (1, 1))
 
 
