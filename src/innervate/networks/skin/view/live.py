@@ -134,8 +134,8 @@ class SkinLiveView(LiveView):
     def unknown(self, told: list[Status], count: int) -> list[Status]:
         """If the PC is not among those that answer, it is among those that do not."""
         found = super().unknown(told, count)
-        if count and all(one["role"] != "sink" for one in told):
-            found[0] |= {"role": "sink", "paths": [{"port": 0, "name": ""}]}
+        if count and all(one.get("role") != "sink" for one in told):
+            found[0] |= {"role": "sink", "paths": [{"port": 0, "name": "", "counters": {}}]}
         return found
 
     def can(self, last: Mapping[int, Status]) -> tuple[str, ...]:
