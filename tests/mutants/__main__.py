@@ -12,7 +12,9 @@ import subprocess
 import sys
 import tomllib
 from collections import Counter
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
@@ -24,6 +26,7 @@ from tests.mutants.trial import FOUND, Copy, Outcome, tests_for
 ROOT = Path(__file__).resolve().parents[2]
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 Tried = tuple[Fault, Outcome]
+Choose = Callable[[Fault], tuple[list[str], float]]  # which tests, and how long they took
 Before = dict[tuple[str, str, str, str, int], Outcome]  # by the key of the fault
 
 
@@ -40,7 +43,8 @@ def main() -> int:
     before = read(kept)
     if asked.again:
         before = {key: outcome for key, outcome in before.items() if outcome.verdict == FOUND}
-    tried = try_all(chosen, before, covered, kept, copies)
+    choose = partial(tests_for, covered=covered, budget_s=asked.budget_s)
+    tried = try_all(chosen, before, choose, kept, copies)
     return report(tried, asked.least)
 
 
@@ -52,6 +56,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--room", help="only those of one room: analysis, live, plot ...")
     parser.add_argument("--again", action="store_true", help="try those anew that were not found")
     parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--budget-s", type=float, default=60.0, help="of tests for one fault")
     parser.add_argument("--least", type=float, default=0.0, help="share that has to be found")
     parser.add_argument("--work", type=Path, default=ROOT / ".mutants", help="where it is kept")
     return parser.parse_args()
@@ -82,7 +87,7 @@ def is_test(name: str) -> bool:
 
 
 def try_all(
-    chosen: list[Fault], before: Before, covered: cover.Covered, kept: Path, copies: list[Copy]
+    chosen: list[Fault], before: Before, choose: Choose, kept: Path, copies: list[Copy]
 ) -> list[Tried]:
     """Try what was not tried before, in copies side by side."""
     free: SimpleQueue[Copy] = SimpleQueue()
@@ -92,7 +97,7 @@ def try_all(
     def one(fault: Fault) -> Tried:
         copy = free.get()
         try:
-            return fault, copy.try_out(fault, *tests_for(fault, covered))
+            return fault, copy.try_out(fault, *choose(fault))
         finally:
             free.put(copy)
 

@@ -18,7 +18,6 @@ from innervate.kernel import compilation
 from tests.mutants.cover import Covered
 from tests.mutants.draw import SOURCES, Fault
 
-BUDGET_S = 60.0  # of tests for one fault, as long as they took when nothing was planted
 COMPILING_S = 240.0  # more, in which loops are compiled anew
 FOUND, SURVIVED, UNRUN = "found", "survived", "not run by any test"
 
@@ -110,8 +109,14 @@ def stop(process: subprocess.Popen[Any]) -> None:
     process.communicate()
 
 
-def tests_for(fault: Fault, covered: Covered) -> tuple[list[str], float]:
-    """The tests to run, those of the file's own folder first; and how long they took."""
+def tests_for(fault: Fault, covered: Covered, budget_s: float) -> tuple[list[str], float]:
+    """The tests to run, those of the file's own folder first; and how long they took.
+
+    Args:
+        fault: what is planted.
+        covered: which tests run which lines.
+        budget_s: of tests for one fault, as long as they took when nothing was planted.
+    """
     tests = running(fault, covered)
     if is_compiled(fault.path):  # lines that run compiled are not noted
         folder = Path(fault.path).parent
@@ -120,7 +125,7 @@ def tests_for(fault: Fault, covered: Covered) -> tuple[list[str], float]:
     chosen: list[str] = []
     total_s = 0.0
     for test in sorted(tests, key=lambda test: (-nearness(test, fault.path), covered.took_s[test])):
-        if not chosen or total_s + covered.took_s[test] <= BUDGET_S:
+        if not chosen or total_s + covered.took_s[test] <= budget_s:
             chosen.append(test)
             total_s += covered.took_s[test]
     return chosen, total_s
