@@ -18,7 +18,7 @@ def made(ticks, counts, faults, graph, keys):
     """A plain world of a model, and its first row."""
     none = dict.fromkeys(("loss", "cut", "heal", "false", "restart"), 0)
     budget = Budget(ticks, counts, **none | dict(faults), faults=2)
-    model = SkinModel(graphs.parse(graph), budget=budget, lean=True, **dict(keys))
+    model = SkinModel(graphs.parse(graph), budget=budget, **dict(keys))
     twin = Twin(model, system_of())
     return twin, twin.row()
 
@@ -34,8 +34,9 @@ class Tiny:
     """
 
     def __init__(self, ticks=3, counts=2, faults=(), graph="pc-1 1-2", **keys):
-        self.twin, first = made(ticks, counts, tuple(dict(faults).items()), graph,
-                                tuple(({"updates": "triggered"} | keys).items()))  # fmt: skip
+        more = {"updates": "triggered", "lean": True} | keys
+        given = tuple(dict(faults).items()), graph, tuple(more.items())
+        self.twin, first = made(ticks, counts, *given)
         self.twin.put(first)
         self.model = self.twin.model
         self.world, self.lay = self.twin.world, self.twin.lay
@@ -50,6 +51,9 @@ class Tiny:
         for way in range(self.lay.ways):
             r.clear(self.world, way)
         self.row[self.lay.pc_at + w.PC_COUNTS] = counts
+        for link in range(len(self.lay.links)):
+            self.row[self.lay.link_at + link] = 0
+        self.world.found[0] = w.FINE
 
     def cell(self, c, **values):
         """Set bytes of a cell's head, by the names of world.py."""
@@ -108,3 +112,20 @@ class Tiny:
         """Forget what no future depends on."""
         reduction.tidy(self.world)
         return self
+
+    def move(self, kind, arg=0):
+        """The place of a move among the model's."""
+        return self.lay.moves().index((kind, arg))
+
+    def ways(self, kind, arg=0):
+        """In how many ways a move can be made."""
+        return self.twin.system.variants(self.world, self.move(kind, arg))
+
+    def step(self, kind, arg=0, variant=0):
+        """Make a move."""
+        assert self.twin.system.step(self.world, self.move(kind, arg), variant, 0) > 0
+        return self
+
+    def budget(self):
+        """What may still happen, and all together."""
+        return list(self.row[self.lay.budget_at : self.lay.budget_at + w.BUDGETS])
