@@ -139,9 +139,7 @@ def delivered_before(running):
     world = running.world
     for origin in range(5):
         for ahead in range(4):
-            frame = SimpleNamespace(
-                origin=origin, seq=(world.nodes[origin].seq + ahead) & 65535
-            )
+            frame = SimpleNamespace(origin=origin, seq=(world.nodes[origin].seq + ahead) & 65535)
             mesh_recorder.check_once(world, 2, frame, running.clock_us())
 
 
