@@ -116,6 +116,7 @@ class SkinLiveView(LiveView):
 
     map = SkinMap
     state = SkinState
+    lost = ("cells without a way", "cells")
 
     def drawn(self, plan: Any) -> Drawn:
         """Cells where the honeycomb has them, interface ports beside."""
