@@ -84,9 +84,18 @@ def test_serial_cables_are_drawn_and_cut(look, short, monkeypatch):
         click(page, "c0 - pc.0")
         expect(page.locator("#selected-facts")).to_have_text("link, cut")
         expect(page.locator("#unconnected output")).to_have_text("6")
+        expect(page.locator("#recovery .more")).to_contain_text("no cell is left")
         click(page, "c0 - pc.0")
         expect(page.locator("#selected-facts")).to_have_text("link, up")
         expect(page.locator("#unconnected output")).to_have_text("0")
+        page.locator("#tool").select_option("look")
+        click(page, "c4")
+        page.locator("#command summary").click()
+        page.locator("#command-code").fill("3")
+        page.locator("#command-send", has_text="Send to this cell").click()
+        expect(page.locator("#log")).to_contain_text("sent to c4")
+        expect(page.locator("#log")).to_contain_text("came to c4")
+        expect(page.locator("#selected-facts")).to_contain_text("came")
 
 
 def test_a_node_is_killed_and_started_and_the_page_finds_its_server_again(look, short, monkeypatch):
