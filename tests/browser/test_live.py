@@ -117,12 +117,15 @@ def test_a_node_is_killed_and_started_and_the_page_finds_its_server_again(look, 
             with serving("live", port=port):
                 expect(page.locator("#connection")).to_have_text("connected")
                 expect(page.locator("#selected-facts")).not_to_contain_text("does not answer")
+                well = "All 5 nodes have a way to the gateway."  # else it is n3 that recovers
+                expect(page.locator("#headline")).to_have_text(well, timeout=3 * WAIT_MS)
                 click(page, "n2 - n4")
                 expect(page.locator("#unconnected output")).to_have_text("1")
                 expect(page.locator("#recovery .more")).to_contain_text("n2 - n4")
+                expect(page.locator("#recovery .more")).to_contain_text("1 cut off")
                 click(page, "n2 - n4")
-                expect(page.locator("#unconnected output")).to_have_text("0", timeout=3 * WAIT_MS)
-                expect(page.locator("#recovery output")).to_have_text(re.compile(r"\d+.* m?s$"))
+                expect(page.locator("#headline")).to_have_text(well, timeout=3 * WAIT_MS)
+                expect(page.locator("#unconnected output")).to_have_text("0")
         finally:
             node.terminate()
             node.wait(timeout=20)
