@@ -69,6 +69,7 @@ def test_quantile():
     assert quantile(list(range(101)), 0.95) == pytest.approx(95)
     assert [quantile([5, 1, 3], share) for share in (0, 1)] == [1, 5]
     assert quantile([1, 2, 4], 0.75) == 3
+    assert quantile([1, 2, 9], 0.25) == 1.5
 
 
 def test_wilson():
@@ -82,7 +83,7 @@ def test_wilson():
 
 
 @pytest.mark.parametrize(("level", "z"), [(0.9, 1.644854), (0.95, 1.959964), (0.99, 2.575829)])
-@pytest.mark.parametrize(("hits", "trials"), [(1, 2), (19, 20), (3, 1000), (7, 7), (0, 4)])
+@pytest.mark.parametrize(("hits", "trials"), [(1, 2), (19, 20), (3, 1000), (7, 7), (0, 4), (1, 1)])
 def test_at_either_end_of_wilsons_interval_the_share_is_z_deviations_off(hits, trials, level, z):
     share, low, high = wilson(hits, trials, level)
     assert low <= share <= high
@@ -100,6 +101,7 @@ def test_at_either_end_of_wilsons_interval_the_share_is_z_deviations_off(hits, t
         lambda: quantile([1], 1.5),
         lambda: quantile([1], -0.1),
         lambda: wilson(-1, 2),
+        lambda: wilson(0, 0),
         lambda: t_quantile(0.49, 3),
         lambda: wilson(1, 0),
         lambda: wilson(3, 2),
