@@ -1,13 +1,15 @@
 """What runs and paper tables give, kept as data: the judge of a change that is to change nothing.
 
-`python -m tests.recorded.record` measures everything anew and writes `runs.json` and the tables of
-`papers/`; `--check` compares instead, and names what differs. The tests read the same files.
+`python -m tests.recorded.record` measures everything anew and writes `runs.json`, the tables of
+`papers/` and the rows that they were made of; `--check` compares instead, and names what differs.
+The tests read the same files. What is drawn of all that is kept by `tests.recorded.pictures`.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import gzip
 import json
 import sys
 import tempfile
@@ -17,6 +19,7 @@ from typing import Any
 import innervate
 from innervate import scenario as scenarios
 from innervate.papers import book
+from innervate.papers.store import Store
 from innervate.sweeping.planfile import is_plan
 
 HERE = Path(__file__).resolve().parent
@@ -54,6 +57,20 @@ def table(system: str, folder: Path) -> str:
     """The table of a paper in its small size, as CSV."""
     book.main(system, folder, quick=True)
     return (folder / f"papers-{system}.csv").read_text(encoding="utf-8")
+
+
+def rows(system: str) -> dict[str, Any]:
+    """What the runs of a paper in its small size left, by point."""
+    text = gzip.decompress((TABLES / f"{system}.rows.gz").read_bytes()).decode()
+    found: dict[str, Any] = json.loads(text)
+    return found
+
+
+def keep_rows(system: str, folder: Path) -> None:
+    """Keep what a paper's run left in a folder."""
+    values = Store(folder / book.RESULTS, "", any_stamp=True).values
+    text = json.dumps({key: values[key] for key in sorted(values)}, separators=(",", ":"))
+    (TABLES / f"{system}.rows.gz").write_bytes(gzip.compress(text.encode(), 9, mtime=0))
 
 
 def differences(name: str, recorded: Any, found: Any) -> list[str]:
@@ -102,13 +119,15 @@ def _papers(check: bool) -> list[str]:
     TABLES.mkdir(exist_ok=True)
     for system in book.papers():
         print(f"papers {system}", flush=True)
+        kept = TABLES / f"{system}.csv"
         with tempfile.TemporaryDirectory() as folder:
             text = table(system, Path(folder))
-        kept = TABLES / f"{system}.csv"
-        if check:
-            lost += differences(system, rows_of(kept.read_text(encoding="utf-8")), rows_of(text))
-        else:
-            kept.write_text(text, encoding="utf-8")
+            if check:
+                was = rows_of(kept.read_text(encoding="utf-8"))
+                lost += differences(system, was, rows_of(text))
+            else:
+                kept.write_text(text, encoding="utf-8")
+                keep_rows(system, Path(folder))
     return lost
 
 
