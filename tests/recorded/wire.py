@@ -129,7 +129,7 @@ def _sizes() -> Any:
 
 
 def _refused(module: Any) -> Any:
-    """What is said of bytes of some lengths, sealed and not, by their first byte and path length."""
+    """What is said of bytes of some lengths, by their first byte; of paths, of bytes not sealed."""
 
     def reason(data: bytes) -> str:
         if hasattr(module, "reason_of"):
