@@ -13,7 +13,7 @@ import sys
 import tomllib
 from collections import Counter
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import partial
 from pathlib import Path
 from queue import SimpleQueue
@@ -104,7 +104,8 @@ def try_all(
     tried = [(fault, before[fault.key]) for fault in chosen if fault.key in before]
     left = [fault for fault in chosen if fault.key not in before]
     with ThreadPoolExecutor(len(copies)) as pool, kept.open("a", encoding="utf-8") as file:
-        for fault, outcome in pool.map(one, left):
+        for job in as_completed([pool.submit(one, fault) for fault in left]):
+            fault, outcome = job.result()
             tried.append((fault, outcome))
             print(f"{len(tried)}/{len(chosen)} {outcome.verdict}: {fault} {outcome.by}", flush=True)
             file.write(json.dumps([fault, outcome]) + "\n")
