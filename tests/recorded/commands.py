@@ -1,8 +1,9 @@
 """What the command says, kept word for word: sessions in a shell, with exit codes.
 
-`python -m tests.recorded.commands` plays the sessions of `commands/*.sh` (one command a line, files
-between `cat > NAME <<END` and `END`) in this process, each in an empty folder, and writes all that
-was said beside them, as `*.txt`. What depends on machine and version stands there as `-`.
+`python -m tests.recorded.commands` plays the sessions of `commands/*.session` in this process, each
+in an empty folder, and writes all that was said beside them, as `*.txt`. A session has one command
+a line, and files between `cat > NAME <<END` and `END`. What depends on machine and version stands
+there as `-`.
 """
 
 from __future__ import annotations
@@ -27,11 +28,12 @@ from innervate.live.errors import LiveError
 from tests.recorded.record import differences
 
 FOLDER = Path(__file__).resolve().parent / "commands"
-NAMES = tuple(sorted(path.stem for path in FOLDER.glob("*.sh")))
+NAMES = tuple(sorted(path.stem for path in FOLDER.glob("*.session")))
 OF_THE_MACHINE = (
     (r"the bundled ones are .*", "the bundled ones are -"),
     (re.escape(innervate.__version__), "-"),
     (r'"(wall_s|events_per_s|seconds|states_per_s)": [0-9.e+-]+', r'"\1": "-"'),
+    (r"(points|runs) in [0-9.]+ s;", r"\1 in - s;"),
     (r"(successors|schedules) +[0-9.]+ s ", r"\1  - s "),
     (r"folder /\S+\)", "folder -)"),
     (r"\b[0-9]{4}-[0-9]{2}-[0-9]{2} [0-9]{2}:[0-9]{2}:", "-:"),
@@ -40,7 +42,7 @@ OF_THE_MACHINE = (
 
 def sessions(name: str) -> Iterator[tuple[str, str]]:
     """The commands of a session, and for those that write a file what goes into it."""
-    lines = iter((FOLDER / f"{name}.sh").read_text(encoding="utf-8").splitlines())
+    lines = iter((FOLDER / f"{name}.session").read_text(encoding="utf-8").splitlines())
     for line in lines:
         if line.startswith("cat > "):
             text = "".join(f"{more}\n" for more in iter(lines.__next__, "END"))
