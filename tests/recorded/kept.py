@@ -14,13 +14,18 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from tests.recorded import declared, plans
+from tests.recorded import declared, files, plans, wire
 from tests.recorded.data import tidy
 from tests.recorded.record import differences
 
 FOLDER = Path(__file__).resolve().parent / "kept"
 # What each file holds: pairs of a name and a function that measures it.
-SUBJECTS = {"plans": plans.found, "declared": declared.found}
+SUBJECTS = {
+    "plans": plans.found,
+    "declared": declared.found,
+    "wire": wire.found,
+    "files": files.found,
+}
 
 
 @cache

@@ -113,7 +113,7 @@ def plain(value: Any) -> str:
 
 
 GROUPS: dict[str, Callable[[], Iterator[tuple[str, Drawn]]]] = {
-    "mesh": scenes.of_mesh,
+    "skin": scenes.of_skin, "radio": scenes.of_radio, "mesh": scenes.of_mesh,
     "spine": scenes.of_spine,
     **{f"papers-{system}": partial(of_paper, system) for system in ("skin", "radio", "mesh")},
 }  # fmt: skip

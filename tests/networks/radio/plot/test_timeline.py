@@ -3,6 +3,7 @@ from types import SimpleNamespace
 import matplotlib.image
 import pytest
 
+from innervate import scenario
 from innervate.dialect.access import REPORT_DELIVERED
 from innervate.networks.radio.analysis import summary as radio
 from innervate.networks.radio.analysis.headline import headline
@@ -49,7 +50,8 @@ CASES = {
 @pytest.fixture(scope="module")
 def runs():
     # Plain, for small runs do not repay compiling; the large one would take long.
-    return {name: run(n, plain=n < 50, **more) for name, (n, more) in CASES.items()}
+    told = scenario.from_dict({"kind": "radio", "stations": 5})  # for what it says of delays
+    return {name: run(n, plain=n < 50, scenario=told, **more) for name, (n, more) in CASES.items()}
 
 
 def kinds(tree):
