@@ -24,7 +24,9 @@ from innervate.networks.mesh.live import alarms
 from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.parameters import fence_parameters, mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
+from innervate.networks.radio.live.parameters import radio_parameters
 from innervate.networks.skin.live import node as skin_node
+from innervate.networks.skin.live.parameters import skin_parameters
 from tests.live import time_by_hand
 from tests.live.net import Skin
 from tests.recorded.record import differences
@@ -189,7 +191,18 @@ async def skin(folder: Path) -> list[Any]:
         return house.said
 
 
-SCRIPTS: dict[str, Callable[[Path], Awaitable[list[Any]]]] = {"mesh": mesh, "skin": skin}
+async def parameters(_folder: Path) -> list[Any]:
+    """What nodes go by whose files say nothing of it."""
+    made = {"skin": skin_parameters({}), "mesh": mesh_parameters(3, {}),
+            "radio": radio_parameters({})}  # fmt: skip
+    return [[kind, name, value] for kind, found in made.items() for name, value in found.items()]
+
+
+SCRIPTS: dict[str, Callable[[Path], Awaitable[list[Any]]]] = {
+    "mesh": mesh,
+    "skin": skin,
+    "parameters": parameters,
+}
 
 
 def said(name: str) -> list[Any]:
