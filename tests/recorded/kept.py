@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from tests.recorded import declared, files, plans, wire
+from tests.recorded import declared, files, plans, simulated, wire
 from tests.recorded.data import tidy
 from tests.recorded.record import differences
 
@@ -25,6 +25,7 @@ SUBJECTS = {
     "declared": declared.found,
     "wire": wire.found,
     "files": files.found,
+    "simulated": simulated.found,
 }
 
 

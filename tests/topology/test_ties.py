@@ -1,0 +1,11 @@
+"""Cells between two interface ports, by hand."""
+
+from innervate.topology import free_graph
+from innervate.topology.ties import tied_at
+
+
+def test_cells_that_are_as_far_from_two_ports_are_counted_by_their_distance():
+    ring = [("pc.0", "a"), ("a", "b"), ("b", "c"), ("c", "pc.1")]
+    assert tied_at(free_graph(ring)) == {2: 1}
+    assert tied_at(free_graph([*ring, ("b", "d")])) == {2: 1, 3: 1}
+    assert tied_at(free_graph([("pc.0", "a"), ("a", "b"), ("b", "pc.1")])) == {}
