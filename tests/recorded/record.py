@@ -1,22 +1,27 @@
 """What runs and paper tables give, kept as data: the judge of a change that is to change nothing.
 
-`python -m tests.recorded.record` measures everything anew and writes `runs.json` and the tables of
-`papers/`; `--check` compares instead, and names what differs. The tests read the same files.
+`python -m tests.recorded.record` measures everything anew and writes `runs.json`, and of each paper
+in its small size the table and what every piece of work gave; `--check` compares instead, and names
+what differs. The tests read the same files.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import gzip
 import json
 import sys
 import tempfile
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import innervate
 from innervate import scenario as scenarios
 from innervate.papers import book
+from innervate.papers.experiment import Point, columns
+from innervate.papers.store import Store, stamp
 from innervate.sweeping.planfile import is_plan
 
 HERE = Path(__file__).resolve().parent
@@ -50,10 +55,53 @@ def measure(path: Path, plain: bool = False) -> dict[str, Any]:
     return found
 
 
-def table(system: str, folder: Path) -> str:
-    """The table of a paper in its small size, as CSV."""
+def paper(system: str, folder: Path) -> tuple[str, dict[str, Any]]:
+    """A paper in its small size: its table as CSV, what each piece of work gave by its key."""
     book.main(system, folder, quick=True)
-    return (folder / f"papers-{system}.csv").read_text(encoding="utf-8")
+    text = (folder / f"papers-{system}.csv").read_text(encoding="utf-8")
+    return text, Store(folder / book.RESULTS, stamp()).values
+
+
+def recorded_results(system: str) -> dict[str, Any]:
+    """What each piece of a paper's work in its small size gave, by its key."""
+    with gzip.open(TABLES / f"{system}.jsonl.gz", "rt", encoding="utf-8") as file:
+        return {entry["key"]: entry["value"] for entry in map(json.loads, file)}
+
+
+def keep_results(system: str, values: dict[str, Any]) -> None:
+    """Write what `recorded_results` reads."""
+    lines = [json.dumps({"key": key, "value": values[key]}) + "\n" for key in sorted(values)]
+    packed = gzip.compress("".join(lines).encode(), 9, mtime=0)
+    (TABLES / f"{system}.jsonl.gz").write_bytes(packed)
+
+
+def lay_out(system: str, folder: Path) -> None:
+    """The recorded results as a paper of the present sources finds them: nothing is to be run."""
+    store = Store(folder / book.RESULTS, stamp())
+    for key, value in recorded_results(system).items():
+        store.put(key, value)
+
+
+def seed_cost_s(point: Point) -> float:
+    """About how long `once_more` takes."""
+    run = point.work
+    is_series = isinstance(run, partial) and run.func is columns
+    return point.cost_s / (len(run.args[2]) if is_series else 1)
+
+
+def once_more(point: Point, recorded: Any) -> tuple[Any, Any]:
+    """A piece of work run again, and what is recorded of it; of a series the first seed."""
+    run = point.work
+    if not isinstance(run, partial) or run.func is not columns:
+        found = run()
+    else:
+        measure, case, seeds = run.args
+        found = columns(measure, case, seeds[:1])
+        recorded = (
+            {name: column[:1] for name, column in recorded.items()}
+            if isinstance(recorded, dict) else recorded[:1]
+        )  # fmt: skip
+    return json.loads(json.dumps(found)), recorded
 
 
 def differences(name: str, recorded: Any, found: Any) -> list[str]:
@@ -103,12 +151,14 @@ def _papers(check: bool) -> list[str]:
     for system in book.papers():
         print(f"papers {system}", flush=True)
         with tempfile.TemporaryDirectory() as folder:
-            text = table(system, Path(folder))
+            text, values = paper(system, Path(folder))
         kept = TABLES / f"{system}.csv"
         if check:
             lost += differences(system, rows_of(kept.read_text(encoding="utf-8")), rows_of(text))
+            lost += differences(system, recorded_results(system), values)
         else:
             kept.write_text(text, encoding="utf-8")
+            keep_results(system, values)
     return lost
 
 

@@ -3,12 +3,16 @@
 A change that is meant to alter runs records anew: python -m tests.recorded.record
 """
 
+import random
+
 import pytest
 
-from innervate.papers import book
+from innervate.network import networks
+from innervate.papers import book, output
 from tests.recorded import record
 
 SOURCES = record.sources()
+FIGURES = [(name, figure) for name in book.papers() for figure in networks()[name].papers.FIGURES]
 QUICK = ("line", "loop-three", "setup-4", "demo", "radio-disaster", "mesh-field")
 
 
@@ -50,10 +54,42 @@ def test_a_plain_run_is_as_recorded(name):
     assert not record.differences(name, recorded(name), found)
 
 
+def points(system, figure):
+    """A figure's pieces of work in its small size, those with the cheapest seeds first."""
+    found = networks()[system].papers.experiment(figure).points(True)
+    return sorted(found, key=lambda point: (record.seed_cost_s(point), point.key))
+
+
+@pytest.mark.parametrize("system", book.papers())
+def test_every_piece_of_a_papers_work_is_recorded(system):
+    figures = networks()[system].papers.FIGURES
+    wanted = {point.key for figure in figures for point in points(system, figure)}
+    assert set(record.recorded_results(system)) == wanted
+
+
+@pytest.mark.parametrize(("system", "figure"), FIGURES)
+def test_what_is_run_again_of_a_figure_is_as_recorded(system, figure):
+    cheap = points(system, figure)
+    cheap = cheap[: (len(cheap) + 1) // 2]
+    drawn = random.Random(figure).choice(cheap)
+    for point in {cheap[0].key: cheap[0], drawn.key: drawn}.values():
+        found, kept = record.once_more(point, record.recorded_results(system)[point.key])
+        assert not record.differences(point.key, kept, found)
+
+
+@pytest.mark.parametrize("system", book.papers())
+def test_the_recorded_results_give_the_recorded_table(system):
+    paper, values = networks()[system].papers, record.recorded_results(system)
+    claims = [c for name in paper.FIGURES for c in paper.experiment(name).judge(values, True)]
+    kept = (record.TABLES / f"{system}.csv").read_text(encoding="utf-8")
+    found = record.rows_of(output.as_csv(claims))
+    assert not record.differences(system, record.rows_of(kept), found)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("system", book.papers())
-def test_a_papers_table_is_as_recorded(system, tmp_path):
+def test_a_papers_table_and_results_are_as_recorded(system, tmp_path):
+    table, values = record.paper(system, tmp_path)
     kept = (record.TABLES / f"{system}.csv").read_text(encoding="utf-8")
-    assert not record.differences(
-        system, record.rows_of(kept), record.rows_of(record.table(system, tmp_path))
-    )
+    assert not record.differences(system, record.rows_of(kept), record.rows_of(table))
+    assert not record.differences(system, record.recorded_results(system), values)
