@@ -4,6 +4,7 @@
 #   make test     the tests in small sizes (minutes)     make full    all of them (long)
 #   make lint     style, types, import walls             make bench   how fast it is
 #   make papers   the published figures, redrawn         make parity  the same code on boards' Python
+#   make mutants  faults planted all over, and how many the tests find (an hour; see CONTRIBUTING.md)
 #   make boards   the folder to copy to a board          make page    build the page of `watch` (npm)
 #   make clean    remove what these made
 
@@ -21,7 +22,7 @@ PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 PAGE := src/innervate/web/page
 MODULES := $(PAGE)/node_modules/.package-lock.json
 
-.PHONY: help demo test full lint bench papers boards parity page page-check clean
+.PHONY: help demo test full mutants lint bench papers boards parity page page-check clean
 
 help:
 	@sed -n '2,/^$$/s/^# \{0,1\}//p' Makefile
@@ -57,6 +58,11 @@ test: $(STAMP)
 
 full: $(STAMP)
 	$(PYTEST)
+	$(BIN)/python -m tests.mutants --workers $(WORKERS) --seed $$(date +%Y%m%d) --count 40 --least 0.85
+
+# FAULTS="--room wire --seed 2": what tests/mutants/__main__.py takes.
+mutants: $(STAMP)
+	$(BIN)/python -m tests.mutants --workers $(WORKERS) $(FAULTS)
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
@@ -91,5 +97,5 @@ page-check: $(MODULES)
 
 clean:
 	rm -rf $(PAGE)/node_modules
-	rm -rf .venv build dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv .mutants build dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	find src tests benchmarks boards examples -name __pycache__ -type d -prune -exec rm -rf {} +

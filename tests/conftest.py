@@ -4,10 +4,13 @@ import os
 import shutil
 import subprocess
 from functools import cache
+from pathlib import Path
 
 import pytest
 
 pytest_plugins = ["tests.fixtures.papers", "tests.fixtures.plots", "tests.fixtures.scenarios"]
+HERE = Path(__file__).parent
+REAL_TIME = {"browser", "live"}  # folders of tests with processes, sockets, a browser
 NEEDS = {
     "needs_root": "root",
     "needs_netns": "network namespaces",
@@ -54,6 +57,13 @@ def fail_instead(report):
         "Install what is missing: pip install -e '.[all,dev]' for Python packages, the list "
         "in .ci/run for Debian packages."
     )
+
+
+def pytest_collection_modifyitems(items):
+    """What works against a clock outside this process has a second try, which is counted."""
+    for item in items:
+        if REAL_TIME & set(item.path.relative_to(HERE).parts):
+            item.add_marker(pytest.mark.flaky(reruns=1))
 
 
 @pytest.hookimpl(wrapper=True)

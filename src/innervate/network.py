@@ -30,7 +30,8 @@ PARTS = {
     "harm": "tuple of str: those of the actions that make it worse",
     "template": "str: a commented scenario to start from; if absent, all keys as they are by "
     "themselves",
-    "anchor": "(tables, source): makes relative paths in a scenario's tables absolute",
+    "anchor": "(tables, source): readies a scenario's tables to be written: relative paths become "
+    "absolute, what its runs refuse to be given is left out",
     "run": "module: simulate, summarize, tables_of, written_of, columns, trail, call_words",
     "tables": "tuple of Table: all tables that its runs can have",
     "received_image": "(result, time_s, window_s): what was felt, as it was received",

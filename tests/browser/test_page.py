@@ -98,6 +98,9 @@ def test_the_state_of_the_network_is_one_line(look, skin):
     click(page, "p0 r5 c6 - pc.1")
     expect(level).to_have_text("✕ down")
     expect(page.locator("#unconnected .more")).to_have_text("of 48 cells; cut off")
+    expect(page.locator("#recovery output")).to_have_text("\u2013")
+    expect(page.locator("#recovery .more")).to_contain_text("no cell is left that could have a way")
+    expect(page.locator("#recovery")).to_have_class("number bad")
     for cable in (CABLE, "p0 r5 c6 - pc.1"):
         click(page, cable)
     expect(page.locator("#unconnected output")).to_have_text("0")

@@ -64,16 +64,126 @@ def test_what_is_lost_on_a_live_cable_is_counted_though_beacons_are_alike(lost, 
     assert "hop_latency_us = [150, 150]" in text
 
 
-def test_on_the_air_a_frame_sent_again_is_the_newest(tmp_path):
+S = 1000 * MS
+OUT, IN = pcapng.OUTBOUND, pcapng.INBOUND
+HERE, THERE = ("c0.1", "pc.0"), ("pc.0", "c0.1")  # the ways of such a cable
+
+
+def moments(*packets, comment="innervate, live from two nodes"):
+    """The same cable; packets are (interface, time in ns, data, out or in, comment)."""
+    head = cable(set(), [])[1:3]
+    made = [
+        pcapng.packet(number, at, data, flags, *(text.encode() for text in more))
+        for number, at, data, flags, *more in packets
+    ]
+    return [pcapng.section(comment), *head, *made]
+
+
+def ways_of(tmp_path, *packets, **keys):
+    """(got, lost, delays) by way."""
+    found = measured(tmp_path, moments(*packets, **keys))
+    return {key: (way.got, way.lost, list(way.delays_us)) for key, way in found.ways.items()}
+
+
+@pytest.mark.parametrize(
+    ("wait_ns", "got"), [(S - 1, (1, 0, [999_999.999])), (S, (1, 0, [1e6])), (S + 1, (1, 1, []))]
+)
+def test_a_frame_is_waited_for_a_second(tmp_path, wait_ns, got):
+    packets = [(0, 5 * MS, sample(1), OUT), (1, 5 * MS + wait_ns, sample(1), IN)]
+    assert ways_of(tmp_path, *packets) == {HERE: got}
+
+
+@pytest.mark.parametrize(("behind_ns", "lost"), [(S - 1, 0), (S, 0), (S + 1, 1)])
+def test_what_may_still_come_in_when_the_capture_ends_is_not_lost(tmp_path, behind_ns, lost):
+    last = 9 * MS + behind_ns
+    packets = [(0, 5 * MS, sample(1), OUT), (1, 6 * MS, sample(1), IN),
+               (0, 9 * MS, sample(2), OUT), (1, last, sample(3), OUT)]  # fmt: skip
+    assert ways_of(tmp_path, *packets)[HERE] == (1, lost, [1000.0])
+
+
+def test_nothing_comes_in_before_it_has_left(tmp_path):
+    # Two nodes write a capture: what they hand over at one moment may stand in it out of order.
+    packets = [(0, 5 * MS, sample(7), OUT), (1, 4 * MS, sample(7), IN), (1, 8 * MS, sample(7), IN)]
+    assert ways_of(tmp_path, *packets) == {HERE: (2, 0, [3000.0])}
+
+
+def test_what_comes_in_as_it_leaves_took_no_time(tmp_path):
+    packets = [(0, 5 * MS, sample(7), OUT), (1, 5 * MS, sample(7), IN)]
+    assert ways_of(tmp_path, *packets) == {HERE: (1, 0, [0.0])}
+
+
+def test_equal_frames_come_in_as_they_left_and_each_once(tmp_path):
+    packets = [(0, MS, sample(7), OUT), (0, 2 * MS, sample(7), OUT), (1, 4 * MS, sample(7), IN),
+               (1, 7 * MS, sample(7), IN), (1, 8 * MS, sample(7), IN)]  # fmt: skip
+    assert ways_of(tmp_path, *packets) == {HERE: (3, 0, [3000.0, 5000.0])}
+
+
+def test_each_way_of_a_cable_is_measured_by_itself(tmp_path):
+    packets = [(0, MS, sample(7), OUT), (1, 2 * MS, sample(7), OUT), (1, 3 * MS, sample(7), IN),
+               (0, 6 * MS, sample(7), IN)]  # fmt: skip
+    assert ways_of(tmp_path, *packets) == {
+        HERE: (1, 0, [2000.0]), THERE: (1, 0, [4000.0])}  # fmt: skip
+
+
+NEVER_SENT = ["queue full", "port found broken", "switched off"]
+
+
+@pytest.mark.parametrize(
+    ("why", "lost", "cut"),
+    [("noise", 1, set()), ("cable cut", 0, {"c0.1"}), *((why, 0, set()) for why in NEVER_SENT)],
+)
+def test_a_simulations_capture_says_what_became_of_each_frame(tmp_path, why, lost, cut):
+    blocks = moments(
+        (0, MS, sample(1), OUT, measure.DROPPED + why), (0, 2 * MS, sample(2), OUT),
+        (0, 3 * MS, sample(3), OUT), (1, 4 * MS, sample(3), IN),
+        (1, 5 * MS, sample(2), IN, measure.DROPPED + "switched off"), (1, 3 * S, sample(9), OUT),
+        comment="innervate skin s, seed 1, simulated",
+    )  # fmt: skip
+    found = measured(tmp_path, blocks)
+    way = found.ways[HERE]
+    # Of its path's frames, 2 came in at a node that was off: it is no loss of the cable's.
+    assert (way.got, way.lost, list(way.delays_us)) == (1, lost, [1000.0])
+    assert found.cut == cut
+
+
+def test_beacons_of_a_port_and_samples_of_a_cell_give_their_rates(tmp_path):
+    packets = []
+    for k in range(6):
+        packets.append((0, 4 * MS * k, beacon(), OUT))
+        packets.append((1, 4 * MS * k + 10, beacon(1), OUT))
+    for k in range(5):  # of which cell 3 measured two: they only pass by
+        packets.append((0, (21 + k) * MS, sample(k, cell=3 * (k < 2)), OUT))
+        packets.append((1, (21 + k) * MS + 500, sample(k, cell=3 * (k < 2)), IN))
+    found = measured(tmp_path, moments(*packets))
+    assert found.beacon_us == 4000.0
+    assert found.seconds == pytest.approx(0.0250005)
+    assert found.rate_hz == pytest.approx(3 / found.seconds)
+
+
+def heard_on_air(*moments_):
+    """A frame from node 4 to node 7 in a live capture: (interface, us, out or in)."""
     frame = plain.make("Frame", mesh_fields.FRAME)()
     frame.kind, frame.link_src, frame.link_dst = mesh_const.ACK, 4, 7
-    data = mesh.encode(frame)
     blocks = [pcapng.section("innervate, live")]
     blocks += [pcapng.interface(148, f"n{i}", f"node {i}") for i in (4, 7, 9)]
-    for at in (0, 5 * MS):
-        blocks.append(pcapng.packet(0, at, data, pcapng.OUTBOUND))
-    blocks += [pcapng.packet(i, 5 * MS + 700_000, data, pcapng.INBOUND) for i in (1, 2)]
-    found = measured(tmp_path, blocks)
+    data = mesh.encode(frame)
+    return blocks + [
+        pcapng.packet(number, 1000 * at, data, flags) for number, at, flags in moments_
+    ]
+
+
+def test_on_the_air_nothing_is_heard_before_it_is_sent(tmp_path):
+    found = measured(
+        tmp_path, heard_on_air((0, 0, OUT), (0, 5000, OUT), (1, 700, IN), (2, 5900, IN))
+    )
+    assert {key: list(way.delays_us) for key, way in found.ways.items()} == {
+        (4, 7): [700.0], (4, 9): [900.0],
+    }  # fmt: skip
+
+
+def test_on_the_air_a_frame_sent_again_is_the_newest(tmp_path):
+    sent = [(0, 0, OUT), (0, 5000, OUT)]
+    found = measured(tmp_path, heard_on_air(*sent, (1, 5700, IN), (2, 5700, IN)))
     assert {key: list(way.delays_us) for key, way in found.ways.items()} == {
         (4, 7): [700.0], (4, 9): [700.0],
     }  # fmt: skip

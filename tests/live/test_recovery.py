@@ -11,7 +11,7 @@ from innervate.cli import app, capturing
 from innervate.export import capture, pcapng
 from innervate.export.errors import ExportError
 from innervate.live import status, tap
-from innervate.networks.skin.export.recovery import recoveries
+from innervate.networks.skin.export.recovery import line, recoveries
 from innervate.networks.skin.live.parameters import SKIN
 from tests.live.net import Skin, until
 from tests.networks.skin.runs import patch
@@ -41,6 +41,58 @@ def test_a_simulations_capture_says_what_its_summary_says(tmp_path):
     assert cut.lost > 0
     assert restored.what.startswith("restore")
     assert restored.cells == 0
+
+
+def line_of(cells, *events):
+    return patch(
+        cells, 1, (0, 0), duration_s=1.0, seed=3,
+        protocol={"beacon_hz": 250, "k": 5}, data={"rate_hz": 100}, event=list(events),
+    )  # fmt: skip
+
+
+def found_in(tables, path):
+    capture.write(scenario.plan(scenario.from_dict(tables)), path)
+    return recoveries(path)
+
+
+CUT_0 = {"at_s": 0.5, "action": "cut", "interface": 0}
+
+
+def test_who_is_cut_off_for_good_is_told_from_who_finds_another_way(tmp_path):
+    tables = line_of(3, CUT_0, {"at_s": 0.8, "action": "restore", "interface": 0})
+    gone, back = found_in(tables, tmp_path / "line.pcapng")
+    assert (gone.cells, gone.apart) == (0, ["c0", "c1", "c2"])
+    assert gone.watched_ms == pytest.approx(300, abs=PERIOD_MS)
+    assert line(gone).endswith("; 3 cells cut off, with no cables to the PC left (c0, c1, c2); "
+                               "no other cell had to find another way")  # fmt: skip
+    assert (back.cells, back.apart) == (3, [])
+    assert 0 < back.routed_ms < 50
+    assert "; 3 cells: first moved" in line(back)
+    # A cell amid others is switched off: its cables go dead, and theirs lead round it.
+    kill = {"at_s": 0.5, "action": "kill", "cell": {"row": 1, "column": 1}}
+    *_, last = found_in({**CUT, "event": [kill]}, tmp_path / "patch.pcapng")
+    assert last.apart == ["c5"]
+    told = innervate.run(scenario.from_dict({**CUT, "event": [kill]}), out=None).summary
+    assert told["recoveries"][0]["cut_off"] == 0  # switched off, which cables cannot show
+
+
+def test_a_second_cut_at_the_same_moment_is_reckoned_with(tmp_path):
+    """Of two cables to the PC one breaks a millisecond after the other, or a cell does."""
+    both = [CUT_0, {**CUT_0, "at_s": 0.501, "interface": 1}]
+    first, second = found_in({**CUT, "event": both}, tmp_path / "both.pcapng")
+    assert first.cells > 0
+    assert first.watched_ms < PERIOD_MS
+    assert f"all routed not within {first.watched_ms:.0f} ms" in line(first)
+    assert (second.cells, second.apart) == (0, [f"c{i}" for i in range(16)])
+    assert "16 cells cut off" in line(second)
+    assert "(c0, c1, c2, c3, c4, c5, c6, c7, ...)" in line(second)
+    # Where one cable is left, those that the first cut deprived of their way are watched on.
+    cable = {"at_s": 0.501, "action": "cut", "cell": {"row": 3, "column": 0}, "port": "E"}
+    first, second = found_in({**CUT, "event": [CUT_0, cable]}, tmp_path / "one.pcapng")
+    assert first.routed_ms is None
+    assert second.cells >= first.cells > 0
+    assert second.apart == []
+    assert 0 < second.routed_ms < 50
 
 
 def test_a_live_skins_capture_says_what_happened_to_it(tmp_path, capsys):
@@ -87,6 +139,7 @@ def test_a_live_skins_capture_says_what_happened_to_it(tmp_path, capsys):
     assert 0.5 * detected_ms < cut.wrong_ms <= cut.routed_ms < 3000
     assert cut.heard_ms > 0.5 * detected_ms
     assert (gone.what, gone.cells) == ("pc gone", 0)
+    assert (cut.apart, gone.apart) == ([], [f"c{i}" for i in range(6)])
     assert (back.what, back.cells) == ("pc back", 6)
     assert 0 < back.routed_ms < 3000
     assert app.main(["live", "recovery", str(path), "--json"]) == 0

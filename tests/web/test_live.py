@@ -180,6 +180,47 @@ def test_who_is_slow_once_has_not_ended(monkeypatch):
     assert levels == ["ok", "ok", "ok", "down"]
 
 
+CELLS = {
+    i: {"kind": "skin", "role": "cell", "number": i, "parent": 0, "load": 1, "counters": {},
+        "ports": [{"port": 0, "path": 0}, {"port": 1, "path": 1}],
+        "paths": [{"own": f"udp 127.0.0.1:{a}", "name": f"udp 127.0.0.1:{b}", "port": at,
+                   "up": True, "counters": {}} for at, (a, b) in enumerate(paths)]}
+    for i, paths in enumerate([[(2, 1), (3, 4)], [(4, 3), (9, 9)]])
+}  # fmt: skip
+LINE = CELLS | {2: {"kind": "skin", "role": "sink", "cells": [2], "counters": {},
+                    "paths": CELLS[0]["paths"][:1]}}  # fmt: skip
+LINE[2]["paths"] = [{**LINE[2]["paths"][0], "own": "udp 127.0.0.1:1", "name": "udp 127.0.0.1:2"}]
+TWO = {
+    i: {"kind": "mesh", "role": "node" if i else "gateway", "number": i, "gateway": 0,
+        "onward": [0] if i else [], "paths": [], "counters": {},
+        "neighbours": [{"node": j, "ports": [0], "suspect": False} for j in range(3) if j != i]}
+    for i in range(3)
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("told", "left", "nobody"),
+    [(LINE, [0, 2], False), (LINE, [2], True), (LINE, [0, 1], True), (LINE, [1, 2], True),
+     (TWO, [0, 1], False), (TWO, [0], True)],
+)  # fmt: skip
+def test_where_nobody_is_left_nothing_has_recovered(monkeypatch, told, left, nobody):
+    """Of a PC with two cells in a line, or a gateway with two nodes, `left` go on answering."""
+    some = {i: told[i] for i in left}
+    answers = [told, some, some, some]
+    monkeypatch.setattr(Poller, "ask_all", lambda self, request: dict(answers.pop(0)))
+    source = Live([Path("a"), Path("b"), Path("c")])
+    while answers:
+        source._poll()
+        source._look()
+    shown = source.fields()["recovery"]
+    assert shown["nobody"] == nobody
+    assert shown["recovered_ms"] == (None if nobody else 0.0)
+    said = [one.what["text"] for one in source.history.after("log", 0, source.history.newest, 99)]
+    kept = [text for text in said if "kept its way" in text]
+    assert kept == ([] if nobody else ["every node that answers kept its way, as they say"])
+    assert (source.fields()["headline"]["level"] == "degraded") != nobody
+
+
 def with_processes(plan, cables, do):
     """Have `do(network, page)` happen to a network of processes that a page looks at."""
 

@@ -169,11 +169,15 @@ def test_who_is_behind_a_dead_node_of_a_mesh_is_cut_off_until_it_is_back():
     made.carry_out(messages.Kill(1))
     state = made.fields()
     assert (state["unconnected"], state["apart"]) == (2, 2)
-    assert state["recovery"]["recovered_ms"] == 0.0  # there is nothing that it could do
+    assert state["recovery"]["recovered_ms"] is None  # there is nothing that it could do
     assert state["recovery"]["apart"] == 2
+    assert state["recovery"]["nobody"]
     made.carry_out(messages.Revive(1))
     made.run_to_end()
     assert (made.fields()["unconnected"], made.fields()["apart"]) == (0, 0)
+    shown = made.fields()["recovery"]
+    assert shown["recovered_ms"] > 0
+    assert not shown["nobody"]
 
 
 def test_the_recovery_of_a_mesh_does_not_depend_on_the_pace():

@@ -179,10 +179,10 @@ def sockets() -> list[Path]:
     here = folder()
     if not here.is_dir():
         return []
-    return sorted((path for path in here.glob("*.sock") if path.is_socket()), key=_in_order)
+    return sorted((path for path in here.glob("*.sock") if path.is_socket()), key=in_order)
 
 
-def _in_order(path: Path) -> tuple[str, int]:
+def in_order(path: Path) -> tuple[str, int]:
     """A key by which n2 comes before n10."""
     letters = path.stem.rstrip("0123456789")
     return letters, int(path.stem[len(letters) :] or -1)

@@ -4,24 +4,44 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Collection
 from typing import Any
 
 import msgspec
 
 from innervate.network import networks
+from innervate.scenario.lines import Key
 from innervate.scenario.load import Scenario
 
+ALWAYS = ("kind", "schema", "name", "seed")  # written even if they were not given
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
-def dump(scenario: Scenario) -> str:
+def dump(scenario: Scenario, whole: bool = True) -> str:
     """TOML that loads to the same scenario.
 
     Relative paths in it become full ones, since the text may be kept elsewhere.
+
+    Args:
+        scenario: to be written.
+        whole: with defaults; else only what was given, as fits a text that is still changed.
     """
     tables = msgspec.to_builtins(scenario.model)
     networks()[scenario.kind].anchor(tables, scenario.source)
+    if not whole:
+        given = scenario.source.given | {(name,) for name in ALWAYS}
+        tables = _given(tables, (), given)
     return to_toml(tables)
+
+
+def _given(value: Any, key: Key, given: Collection[Key]) -> Any:
+    """What of a value was given; lists stay as they are but for tables in them."""
+    if isinstance(value, dict):
+        return {name: _given(inner, (*key, name), given) for name, inner in value.items()
+                if (*key, name) in given}  # fmt: skip
+    if isinstance(value, list | tuple):
+        return [_given(inner, (*key, index), given) for index, inner in enumerate(value)]
+    return value
 
 
 def to_toml(tables: dict[str, Any]) -> str:

@@ -35,7 +35,7 @@ def load(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) -
         return load_file(scenario, changes, seed)
     if seed is None and not changes:
         return scenario
-    text, source = dump(scenario), scenario.source
+    text, source = dump(scenario, whole=False), scenario.source
     return loads(text, changes, seed, source.path, source.folder)
 
 

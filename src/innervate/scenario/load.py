@@ -17,7 +17,7 @@ from innervate.scenario.explain import alternatives, convert, nearest
 from innervate.scenario.keys import SCHEMA
 from innervate.scenario.lines import key_lines
 from innervate.scenario.overrides import Override, apply
-from innervate.scenario.source import Source, check_plain, shown
+from innervate.scenario.source import Source, check_plain, keys_of, shown
 
 SIZE_MAX = 64 * 1024 * 1024
 KEY_PARTS_MAX = 100
@@ -154,6 +154,7 @@ def _build(
     kind = _check_kind(source, raw.get("kind"), list(networks()))
     if not raw.get("name", "x"):
         del raw["name"]
+    source.given = frozenset(keys_of(raw))
     raw.setdefault("name", Path(source.path).stem or kind)
     network = networks()[kind]
     model = convert(source, raw, network.model)

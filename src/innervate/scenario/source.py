@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 import json
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -24,12 +25,15 @@ class Source:
         folder: where relative paths in it start; "" is the working folder.
         lines: line of every key (see lines.py).
         sets: the `--set` text that gave a key its value.
+        given: every key that has a value of its own, in the file, a dict or by `--set`; a run may
+            have no use for it, though the value is that which it has by itself.
     """
 
     path: str = ""
     folder: str = ""
     lines: dict[Key, int] = field(default_factory=dict)
     sets: dict[Key, str] = field(default_factory=dict)
+    given: frozenset[Key] = frozenset()
 
     def error(self, key: Key, message: str) -> ScenarioError:
         """The error for a key: placed at the nearest `--set` or line above it."""
@@ -49,6 +53,19 @@ class Source:
 def dotted(key: Key) -> str:
     """A key path as it is written after `--set`: "event.0.at_s"."""
     return ".".join(str(part) for part in key)
+
+
+def keys_of(value: Any, key: Key = ()) -> Iterator[Key]:
+    """The keys below a value that are given: tables, lists and what is in them; None is absent."""
+    inner: Iterable[tuple[Any, Any]] = ()
+    if isinstance(value, dict):
+        inner = value.items()
+    elif isinstance(value, list | tuple):
+        inner = enumerate(value)
+    for part, found in inner:
+        if found is not None:
+            yield (*key, part)
+            yield from keys_of(found, (*key, part))
 
 
 def table_name(key: Key) -> str:

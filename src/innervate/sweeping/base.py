@@ -83,7 +83,8 @@ def base_of(source: Source, changes: Iterable[str] | Mapping[str, Any]) -> Base:
     if isinstance(source, dict):
         source = scenarios.from_dict(source)
     if isinstance(source, Scenario):
-        text, label, folder = scenarios.dump(source), "scenario.toml", source.source.folder
+        text, label = scenarios.dump(source, whole=False), "scenario.toml"
+        folder = source.source.folder
     else:
         text, label, folder = scenarios.read(source)
     file = Path(label).name

@@ -11,6 +11,7 @@ from typing import Any
 from innervate import __version__
 from innervate.live import status
 from innervate.network import networks
+from innervate.web import live_known
 from innervate.web.errors import Refused, WatchError
 from innervate.web.history import LOSS, RETURN, SERIES, Logbook
 from innervate.web.live_map import Link, Place, Status
@@ -32,13 +33,18 @@ STATUS = {"do": "status"}
 def find(names: list[str]) -> list[Path]:
     """The sockets of nodes by name or path; without names, of all nodes of this user.
 
+    Of a folder in which node files lie it is all of their nodes, also those that have ended.
+
     Raises:
         LiveError: one of them is not there.
         WatchError: none is there.
     """
+    here = status.folder()
     found = [status.find(name) for name in names] if names else status.sockets()
+    if found and not names:
+        found = sorted([*found, *live_known.missing(here, found)], key=status.in_order)
     if not found:
-        where = f"no node runs here (folder {status.folder()})"
+        where = f"no node runs here (folder {here})"
         raise WatchError(f"{where}; start some with: innervate live up SCENARIO")
     return found
 
@@ -62,6 +68,7 @@ class Live(Source):
         self._missed: Counter[int] = Counter()  # how often in a row a node gave no answer
         self._asked_for: dict[Any, float] = {}  # what is cut or put back from here: until when
         self._last: dict[int, Status] = {}  # the newest word of those that do not answer, too
+        self._never: set[int] = set()
         self._log = Logbook(self.history)
         self._next = 0.0
         self._counters: Counter[str] = Counter()
@@ -75,14 +82,28 @@ class Live(Source):
             raise WatchError(f"{' and '.join(sorted(kinds))} nodes: name those of one network")
         self._kind = min(kinds)
         self._view: LiveView = networks()[self._kind].live_view()
-        for i in range(len(sockets)):
-            if i not in self._told:
-                self._log.often("none", 0, f"{self._names[i]}: nobody answers at its socket", "bad")
+        self._never = self._unheard(sockets)  # who has not answered yet
+        for i in sorted(self._never):
+            self._log.often("none", 0, f"{self._names[i]}: nobody answers at its socket", "bad")
         self._map = self._view.map(self._last)
         self._drawn = drawn(sockets, self._kind)
         self._off: set[Place] = set()  # cut off whole, from here
         self._state: State = self._view.state(self._map, self._told)
         self.can = self._possible()
+
+    def _unheard(self, sockets: list[Path]) -> set[int]:
+        """Those who do not answer; they are on the map as what their files say of them."""
+        there = {path.parent for path in sockets}
+        known = {at: node for folder in there for at, node in live_known.files(folder).items()}
+        silent = [i for i in range(len(sockets)) if i not in self._told]
+        for i in silent:
+            node = known.get(sockets[i])
+            if node is not None and node.table.kind == self._kind:
+                self._last[i] = live_known.unheard(node)
+        others = [i for i in silent if sockets[i] not in known]
+        stand_in = self._view.unknown(list(self._last.values()), len(others))
+        self._last |= dict(zip(others, stand_in, strict=True))
+        return set(silent)
 
     def scene(self) -> dict[str, Any]:
         """Who answered, and who is linked with whom as they say."""
@@ -172,7 +193,9 @@ class Live(Source):
             self._log.often("went", at_us, f"{self._names[i]} does not answer any more", "bad")
         for i in sorted(told.keys() - before.keys()):
             if i in self._last:
-                self._log.often("came", at_us, f"{self._names[i]} answers again", "good")
+                again = "" if i in self._never else " again"
+                self._log.often("came", at_us, f"{self._names[i]} answers{again}", "good")
+                self._never.discard(i)
         self._last = {**self._last, **told}
         if went:
             silent = len(self._last) - len(told)
@@ -228,16 +251,18 @@ class Live(Source):
             return
         at_us = self._now_us()
         recovery.cut_off(state.unconnected - state.lacking)
+        recovery.nobody = not state.left
         after_ms = round((at_us - recovery.at_us) / 1e3, 1)
         if recovery.detected_ms is None and state.lacking:
             recovery.detected_ms = after_ms
-        if recovery.recovered_ms is None and not state.lacking:
+        if recovery.recovered_ms is None and not state.lacking and state.left:
             kept = recovery.detected_ms is None
             recovery.recovered_ms = 0.0 if kept else after_ms
             how = "kept its way" if kept else f"has a way again after {after_ms:.0f} ms"
             apart = state.unconnected
             are = "is" if apart == 1 else "are"
-            who = "every node" if not apart else f"every node but {apart} that {are} cut off"
+            every = f"every node{'' if len(self._told) == len(self._last) else ' that answers'}"
+            who = every if not apart else f"{every} but {apart} that {are} cut off"
             self._log.say(at_us, f"{who} {how}, as they say", "info" if apart else "good")
 
     def _lose(self, cause: str) -> None:

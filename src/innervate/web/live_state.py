@@ -29,6 +29,7 @@ class State:
         root, depth: where its chain leads over live links, and how far that is.
         unconnected: how many that answer have no way.
         lacking: how many of those could have one, as links that are up join them.
+        left: how many could have one at all, with it or without: they answer and are joined.
     """
 
     noun = "node"
@@ -44,21 +45,22 @@ class State:
         self.node_up: Numbers = np.array(up, np.int64)
         self.link_up: Numbers = np.array([self._is_up(link) for link in where.links], np.int64)
         self.hop = self.depth = self.root = np.full(len(where.places), NOWHERE)
-        self.unconnected, self.lacking = self.look()
+        self.unconnected, self.lacking, self.left = self.look()
 
-    def look(self) -> tuple[int, int]:
-        """Find everybody's way; (who has none, who of those could have one).
+    def look(self) -> tuple[int, int, int]:
+        """Find everybody's way; (who has none, who of those could have one, who at all could).
 
         Of nodes that do not say what their ways are, those have one whom links that are up join
         with the first one that answers.
         """
         on = np.flatnonzero(self.node_up)
         if not self.map.links or not len(on):
-            return 0, 0
+            return 0, 0, len(on)
         first = np.zeros(len(self.node_up), np.bool_)
         first[on[0]] = True
         joined = reach(self.live(), first)
-        return int(np.count_nonzero(~joined & (self.node_up == 1))), 0
+        with_it = np.count_nonzero(joined) - 1
+        return int(np.count_nonzero(~joined & (self.node_up == 1))), 0, int(with_it)
 
     def changed_links(self, now: State) -> list[tuple[Link, bool]]:
         """Links that were cut or put back since, while their ends went on answering."""

@@ -55,7 +55,8 @@ class LiveView:
 
     def unknown(self, told: list[Status], count: int) -> list[Status]:
         """What stands for nodes that have not answered, beside those that have."""
-        return [{"kind": told[0]["kind"], "neighbours": [], "paths": []} for _ in range(count)]
+        one: Status = {"kind": told[0]["kind"], "neighbours": [], "paths": [], "counters": {}}
+        return [dict(one) for _ in range(count)]
 
     def note(self, state: State, now_us: int, told: Mapping[int, Status]) -> None:
         """A new state: what can only be told over some time is worked out."""

@@ -17,6 +17,8 @@ class Recovery:
         recovered_ms: everybody has a way again since then; None = not yet. Who is cut off, so that
             nothing leads to it whatever anybody does, does not count.
         apart: how many were cut off at worst.
+        nobody: nobody is left who could have a way: all are off, silent or cut off. Then nothing
+            has recovered, and nothing can before somebody comes back.
         closed: something else was done since everybody had: this does not change any more.
     """
 
@@ -25,6 +27,7 @@ class Recovery:
     detected_ms: float | None = None
     recovered_ms: float | None = None
     apart: int = 0
+    nobody: bool = False
     closed: bool = False
 
     def close(self) -> None:
@@ -43,4 +46,5 @@ class Recovery:
             "detected_ms": self.detected_ms,
             "recovered_ms": self.recovered_ms,
             "apart": self.apart,
+            "nobody": self.nobody,
         }

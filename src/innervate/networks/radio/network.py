@@ -11,6 +11,7 @@ NETWORK = Network(
     model="scenario.model:RadioScenario",
     check="scenario.rules:check",
     plan="scenario.planning:plan",
+    anchor="scenario.slotted:anchor",
     describe="scenario.words:describe",
     fault_words="scenario.words:fault_words",
     actions="innervate.scenario.actions.channel:ACTIONS",

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from innervate.networks.radio.analysis.state import hidden_pairs
 from innervate.networks.radio.plot.words import off_words, slots_words
+from innervate.networks.radio.scenario.rules import outside
 from innervate.networks.radio.scenario.words import warnings
 from innervate.plot import words
 
@@ -75,6 +76,8 @@ def _delivered(run: Run) -> str:
 def _noticed(run: Run) -> list[str]:
     summary = _summary(run)
     if "level" in summary or not summary["bounds_noticed"]["count"] or hidden_pairs(run.plan):
+        return []
+    if outside(run.plan.scenario.model):  # said already
         return []
     return [
         "Delays between stations lie outside the configured bounds; set protocol.tau_bounds_us "

@@ -27,7 +27,8 @@ def obey(world, do, command):
     elif action == CUT:
         change_link(world, command.end, 1)
     elif action == RESTORE:
-        change_link(world, command.end, -1)
+        if is_cut(world, command.end):
+            change_link(world, command.end, -1)
     elif action == KILL:
         switch_off(world, do, time, command.node)
     elif action == REVIVE:
@@ -50,6 +51,15 @@ def change_link(world, end, by):
     peer = world.ends[end].peer
     shift_end(world, end, by)
     shift_end(world, peer, by)
+
+
+def is_cut(world, end):
+    """True if a cable is down for more reasons than that a node at it is dead."""
+    reasons = world.ends[end].impaired >> 2
+    for own in (end, world.ends[end].peer):
+        if world.alive[min(own >> 2, world.run[0].cells)] == DEAD:
+            reasons -= 1
+    return reasons > 0
 
 
 def shift_end(world, end, by):

@@ -312,6 +312,9 @@ def run_until(world, do, until, budget):
         if run.status != DONE:
             return
         for _ in range(BATCH):
+            if run.broken:
+                run.status = BROKEN
+                return
             if run.completed >= run.wanted > 0:
                 return
             key = heap.keys[0]
@@ -325,8 +328,6 @@ def run_until(world, do, until, budget):
                 return
             run.now = time
             dispatch(world, do, key, time)
-        if run.broken:
-            break
     run.status = BUDGET
 
 

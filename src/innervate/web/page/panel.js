@@ -50,7 +50,10 @@ export function showNumbers(network) {
     const shown = isKnown || !isOpen ? text : "–";
     const cut = recovery.apart ? `${recovery.apart} cut off; the others: ` : "";
     const more = isKnown ? `${recovery.cause}: ${cut}${state}${noticed}` : recovery.cause;
-    if (isKnown && recovery.recovered_ms === 0) {
+    if (isKnown && recovery.nobody) {
+      const word = WORDS[network.kind] ?? "node";
+      show("recovery", "–", `${recovery.cause}: no ${word} is left that could have a way`, "bad");
+    } else if (isKnown && recovery.recovered_ms === 0) {
       const whom = recovery.apart ? `${recovery.apart} cut off, no other `
         : /cable|link/.test(recovery.cause) ? "no " : "no other ";
       const who = `${whom}${WORDS[network.kind] ?? "node"}`;

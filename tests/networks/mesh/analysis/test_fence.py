@@ -50,6 +50,62 @@ def test_to_touch_or_follow_the_fence_is_not_to_cross_it():
     assert fence.overrun_cm(RING, touch, 0, 1e6) == fence.overrun_cm(RING, along, 0, 1e6) == 0
 
 
+SIDES = [
+    (0, 0, 1000, 0),
+    (1000, 0, 1000, 1000),
+    (1000, 1000, 0, 1000),
+    (0, 1000, 0, 0),
+    (400, 400, 400, 600),
+    (400, 600, 600, 600),
+    (600, 600, 600, 400),
+    (600, 400, 400, 400),
+]
+
+
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize("turn", [1, -1])
+def test_the_fence_itself_is_inside_all_round_and_so_are_its_corners(side, turn):
+    a, b = (side[:2], side[2:])[::turn]
+    x, y = ((one + other) / 2 for one, other in zip(a, b, strict=True))
+    for place in (a, b, (x, y)):
+        assert fence.margin_cm(RING, place) == 0
+    along = Walk(0, ((0, *a), (1000, *b)))
+    standing = Walk(0, ((0, x, y),))
+    for walk in (along, standing):
+        assert fence.crossings(RING, walk, 1e6) == []
+        assert fence.overrun_cm(RING, walk, 0, 1e6) == 0
+
+
+def test_a_hair_beyond_the_fence_is_outside():
+    for place, inside in (((500, 1000 + 1e-10), True), ((500, 1000 + 1e-8), False),
+                          ((1000 + 1e-8, 500), False), ((1000 - 1e-8, 500), True)):  # fmt: skip
+        walk = Walk(0, ((0, 500, 500), (1000, *place)))
+        found = fence.crossings(RING[:4], walk, 1e6)
+        assert (found == []) == inside or found[-1].time_us == pytest.approx(1000)
+        assert (fence.margin_cm(RING, place) >= 0) == inside
+
+
+def test_until_a_time_is_before_that_time_and_a_walk_begins_at_its_first_point():
+    walk = Walk(0, ((1_000_000, 900, 500), (3_000_000, 1100, 500)))
+    assert fence.crossings(RING, walk, 2e6) == []
+    assert fence.crossings(RING, walk, 2e6 + 1) == [(pytest.approx(2e6), True)]
+    assert fence.crossings(RING, walk, 1e6) == []
+    assert fence.position_cm(walk, 0) == fence.position_cm(walk, 1_000_000) == (900, 500)
+    assert fence.position_cm(walk, 1_500_000) == (950, 500)
+    assert fence.position_cm(walk, 3_000_000) == fence.position_cm(walk, 9e9) == (1100, 500)
+    outside = Walk(0, ((0, 1100, 500), (1_000_000, 900, 500)))
+    assert fence.crossings(RING, outside, 1e6) == [(500_000, False)]
+    assert fence.overrun_cm(RING, outside, 250_000, 1e6) == pytest.approx(50)
+
+
+def test_an_edge_of_no_length_is_a_point():
+    ring = [*edges(SQUARE), ((0, 0), (0, 0))]
+    assert fence.margin_cm(ring, (3, 4)) == 3
+    assert fence.margin_cm(ring, (-3, -4)) == -5
+    with pytest.raises(ValueError, match=r"empty|arg"):
+        fence.margin_cm([], (1, 1))
+
+
 def test_a_robot_that_never_moves():
     outside = Walk(0, ((0, 1300, 1400),))
     assert fence.crossings(RING, outside, 1e6) == []

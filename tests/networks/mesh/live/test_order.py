@@ -11,6 +11,7 @@ from innervate.live.receipts import DELIVERED
 from innervate.networks.mesh.live.order import Message, Order, Orderly
 from innervate.networks.mesh.protocol import queue as mesh_queue
 from innervate.networks.mesh.protocol.constants import DATA
+from tests.live import time_by_hand
 from tests.live.net import Mesh, until
 
 LINE = [(0, 1), (1, 2)]
@@ -83,6 +84,107 @@ def test_a_sender_that_starts_anew_is_not_waited_for():
     assert order.take(12, 11, b"old", now=0) == []
     assert order.take(40_000, 40_000, b"new", now=1) == [b"old", b"new"]
     assert order.take(40_001, 40_000, b"next", now=2) == [b"next"]
+
+
+def handed_up(order, *messages):
+    """What each of these (seq, before) sets free, by number."""
+    return [[int(payload) for payload in order.take(seq, before, b"%d" % seq, now=0)]
+            for seq, before in messages]  # fmt: skip
+
+
+@pytest.mark.parametrize("start", [0, 65_500, 65_535])
+def test_what_was_sent_after_the_new_beginning_is_kept_behind_it(start):
+    def at(*numbers):
+        return [(start + number) & MASK16 for number in numbers]
+
+    last, old, anew, second, third = at(10, 12, 20_000, 20_001, 20_007)
+    order = Order(last, WAIT)
+    *_, ready = handed_up(order, (third, second), (old, *at(11)), (second, anew), (anew, anew))
+    assert ready == [old, anew, second, third]
+    assert (order.held, order.late, order.last) == ([], 0, third)
+
+
+@pytest.mark.parametrize("start", [0, 65_500])
+def test_a_beginning_after_messages_of_somebody_unheard_of_sorts_them_by_their_numbers(start):
+    early, anew, later_, behind = ((start + number) & MASK16 for number in (5, 20, 22, 30))
+    order = Order(None, WAIT)
+    *_, ready = handed_up(order, (behind, later_), (early, early - 1), (anew, anew))
+    assert ready == [early, anew]
+    assert [one.seq for one in order.held] == [behind]
+    assert handed_up(order, (later_, anew)) == [[later_, behind]]
+
+
+def test_of_those_that_wait_the_oldest_goes_first_when_one_more_comes_than_there_is_room_for():
+    order = Order(65_530, WAIT, buffer=2)
+    assert handed_up(order, (3, 1), (65_534, 65_532), (7, 5)) == [[], [], [65_534]]
+    assert handed_up(order, (9, 8)) == [[3]]  # and then the next oldest
+    assert handed_up(order, (5, 3)) == [[5, 7]]
+
+
+@pytest.mark.parametrize(("seq", "late"), [(99, 1), (100, 1), (101, 0), (100 + 32_767, 0),
+                                           (100 + 32_768, 1), (100 + 32_769, 1)])  # fmt: skip
+def test_a_number_that_is_not_later_than_the_newest_is_too_late(seq, late):
+    order = Order(100, WAIT)
+    assert handed_up(order, (seq, 50)) == [[]]
+    assert (order.late, len(order.held)) == (late, 1 - late)
+
+
+def listening(orderly):
+    got = []
+    orderly.arrivals.callbacks.append(lambda sender, payload: got.append((sender, payload)))
+    return got
+
+
+def test_who_begins_to_want_order_gets_it_from_the_newest_message_on():
+    async def main():
+        orderly = Orderly(WAIT)
+        orderly.take(Message(3, 16, 15, b"not heard"))
+        orderly.take(Message(3, 17, 16, b"not heard"))
+        got = listening(orderly)
+        orderly.take(Message(3, 19, 18, b"waits"))
+        orderly.take(Message(3, 18, 17, b"next"))
+        assert got == [(3, b"next"), (3, b"waits")]
+        orderly.take(Message(3, 17, 16, b"late"))
+        orderly.take(Message(4, 9, 8, b"of somebody else"))
+        assert (len(got), orderly.held()) == (2, 1)
+        assert orderly.counters() == {"dropped: after its turn": 1}
+        orderly.arrivals.callbacks.clear()
+        orderly.take(Message(4, 30, 29, b"not heard"))
+        again = listening(orderly)
+        assert orderly.held() == 0  # what waited for somebody who listens no more
+        orderly.take(Message(4, 31, 30, b"new"))
+        assert again == [(4, b"new")]
+        orderly.stop()
+
+    asyncio.run(main())
+    assert Orderly(WAIT).counters() == {}
+
+
+def test_each_sender_is_waited_for_as_long_as_it_may_and_at_the_end_for_none():
+    async def main():
+        orderly = Orderly(1_000_000)
+        got = listening(orderly)
+        for sender in (3, 4):
+            orderly.take(Message(sender, 10, 10, b"first"))
+        got.clear()
+        orderly.take(Message(3, 13, 12, b"gap"))
+        await asyncio.sleep(0.6)
+        orderly.take(Message(4, 13, 12, b"gap"))
+        await asyncio.sleep(0.399)
+        assert got == []
+        await asyncio.sleep(0.002)
+        assert got == [(3, b"gap")]
+        await asyncio.sleep(0.6)
+        assert got == [(3, b"gap"), (4, b"gap")]
+        orderly.take(Message(3, 17, 16, b"end"))
+        orderly.stop()
+        assert got[2:] == [(3, b"end")]
+        others = asyncio.all_tasks() - {asyncio.current_task()}
+        await asyncio.sleep(5)  # nothing is left that would go off
+        return others, orderly.held(), got
+
+    others, held, got = time_by_hand.run(main())
+    assert (others, held, len(got)) == (set(), 0, 3)
 
 
 def test_messages_that_say_nothing_of_order_go_up_at_once():

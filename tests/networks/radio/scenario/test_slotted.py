@@ -7,8 +7,9 @@ from innervate.networks.radio.scenario.model import MACS as EVERY_MAC
 from innervate.networks.radio.scenario.model import ChannelTable, MediumAccessTable, TrafficTable
 from innervate.networks.radio.scenario.slotted import EVENT_ONLY, UNUSED, USED_BY
 from innervate.networks.radio.slotted.drive import USED_BY as OPTIONS
-from innervate.scenario import ScenarioError, from_dict
+from innervate.scenario import ScenarioError, dump, from_dict, inline, loads
 from innervate.scenario import summary as check
+from innervate.scenario.given import load
 
 MACS = [mac for mac in EVERY_MAC if mac not in EVENT_ONLY]
 # Another value of every key whose table says what a protocol does.
@@ -72,6 +73,43 @@ def test_a_setting_changes_the_run_or_is_refused(mac, before):
                 from_dict(scenario(mac, **changes))
             assert f"{table}.{name} goes with " in str(found.value)
             assert "\n" not in str(found.value)
+
+
+@pytest.mark.parametrize("mac", MACS)
+def test_what_it_has_no_use_for_is_refused_at_its_default_too(mac):
+    whole = from_dict({"kind": "radio", "protocol": {"mac": mac}}).model  # on the event level
+    for table, name in KEYS:
+        by_itself = getattr(getattr(whole, table), name)
+        tables = scenario(mac, **{table: {name: by_itself}})
+        text = f"{table}.{name}={inline(by_itself)}"
+        if by_itself is None:
+            assert from_dict(tables) == from_dict(scenario(mac))
+        elif mac in USED_BY.get((table, name), ()):
+            assert from_dict(tables).model == from_dict(scenario(mac)).model
+        else:
+            for given in ((tables,), (scenario(mac), [text])):
+                with pytest.raises(ScenarioError, match=rf"{table}\.{name} goes with "):
+                    from_dict(*given)
+
+
+@pytest.mark.parametrize("mac", MACS)
+def test_what_is_written_of_it_is_read_back_and_can_be_changed(mac):
+    made = from_dict(scenario(mac))
+    text = dump(made)
+    assert loads(text).model == made.model
+    assert "tau_us" not in text
+    assert "packets = 20" in text
+    assert load(made, overrides={"packet_slots": 7}).model.packet_slots == 7
+
+
+def test_a_scenario_of_events_can_be_put_on_the_slotted_level():
+    """Nobody gave what it has by itself, though the scenario knows it."""
+    changes = {"channel.level": "slotted"}
+    made = load(from_dict({"kind": "radio", "stations": 3}), overrides=changes)
+    assert made.model.channel.level == "slotted"
+    given = from_dict({"kind": "radio", "stations": 3, "channel": {"loss": 0.0}})
+    with pytest.raises(ScenarioError, match=r"channel\.loss goes with"):
+        load(given, overrides=changes)
 
 
 @pytest.mark.parametrize("mac", MACS)

@@ -7,7 +7,7 @@ import pytest
 from innervate import scenario
 from innervate.networks.skin.analysis.recovery import recoveries, start_up
 from innervate.networks.skin.protocol.constants import REPORT_BALANCE, REPORT_BROKEN, REPORT_PARENT
-from innervate.networks.skin.sim.observer import CUT_OFF, UNROUTED
+from innervate.networks.skin.sim.observer import APART, CUT_OFF, JOINED, UNROUTED
 from innervate.scenario.actions.cables import KILL, LOOSE
 from innervate.sim.cables.simulation import Result
 from innervate.sim.cables.world import ROW
@@ -140,6 +140,83 @@ def test_a_dead_cell_uses_nothing_any_more(line):
     result = recorded(line, rows, events)
     assert [fault.action for fault in result.plan.faults] == [KILL, LOOSE]
     assert [found["cut_cells"] for found in recoveries(result)] == [1, 1]
+
+
+CELL_1 = {"row": 0, "column": 1}
+LATE = {"at_s": 1.5, "action": "loose", "interface": 1, "loss": 0.5}
+
+
+@pytest.mark.parametrize(
+    ("before", "parents", "cells"),
+    [
+        ({"action": "kill", "cell": CELL_1}, [], 1),
+        ({"action": "restart", "cell": CELL_1}, [], 1),  # its memory went: it has no parent
+        ({"action": "restart", "cell": CELL_1}, [1], 2),  # until it takes one again
+        ({"action": "restart", "cell": CELL_1}, [0], 1),
+        ({"action": "restart", "cell": CELL_1}, [0, 1], 2),
+        ({"action": "restart", "cell": {"row": 0, "column": 2}}, [], 0),  # 1 goes through 2
+        ({"action": "restart", "pc": True}, [], 2),  # that is no parent's memory
+        ({"action": "lose", "cell": CELL_1 | {"port": "E"}, "frames": 3}, [], 2),
+        ({"action": "loose", "cell": CELL_1 | {"port": "E"}, "loss": 0.1}, [], 2),
+    ],
+)
+def test_who_uses_a_cable_is_who_has_a_way_over_it_just_before(line, before, parents, cells):
+    rows = [*BEGIN, *SETTLED, (1_000_000, 1, CUT_OFF, 0, 0)]
+    rows += [(1_200_000 + k, 1, REPORT_PARENT, -1, port) for k, port in enumerate(parents)]
+    rows += [(1_500_000, -1, CUT_OFF, 1, 0), (1_600_000, 1, REPORT_PARENT, 1, 0)]
+    found = recoveries(recorded(line, rows, [{"at_s": 1.0, **before}, LATE]))
+    assert found[1]["cut_cells"] == cells
+
+
+@pytest.mark.parametrize(
+    ("action", "keys", "cells"),
+    [("cut", {"interface": 1}, 7), ("restore", {"interface": 1}, 0),
+     ("revive", {"cell": CELL_1}, 0), ("restart", {"pc": True}, 7),
+     ("restart", {"cell": CELL_1}, 1), ("lose", {"interface": 1, "frames": 1}, 2)],
+)  # fmt: skip
+def test_what_a_mark_says_counts_where_it_is_of_that_cable(line, action, keys, cells):
+    rows = [*BEGIN, *SETTLED, (1_000_000, -1, CUT_OFF, 0, 7)]
+    (found,) = recoveries(recorded(line, rows, [{"at_s": 1.0, "action": action, **keys}]))
+    assert (found["action"], found["cut_cells"]) == (action, cells)
+
+
+def test_cells_cut_off_and_joined_again_are_told_by_event(line):
+    events = [{"at_s": 1.0, "action": "cut", "interface": 1},
+              {"at_s": 1.2, "action": "cut", "interface": 0},
+              {"at_s": 1.2, "action": "restart", "pc": True},
+              {"at_s": 1.4, "action": "restore", "interface": 0}]  # fmt: skip
+    rows = [
+        *BEGIN, (0, -1, JOINED, 3, 0), *SETTLED,
+        (1_000_000, -1, CUT_OFF, 0, 0),
+        (1_200_000, -1, CUT_OFF, 1, 3), (1_200_000, -1, APART, 3, 3), (1_200_000, -1, JOINED, 0, 0),
+        (1_200_000, -1, CUT_OFF, 2, 0),
+        (1_400_000, -1, CUT_OFF, 3, 0), (1_400_000, -1, APART, 0, 0), (1_400_000, -1, JOINED, 3, 0),
+        (1_400_000, -1, UNROUTED, 2, 0), (1_430_000, 1, UNROUTED, 0, 0),
+    ]  # fmt: skip
+    names = ("cut_off", "cut_off_total", "joined_again", "routed_ms", "others_ms", "without_way")
+    found = [tuple(one[name] for name in names) for one in recoveries(recorded(line, rows, events))]
+    assert found == [
+        (0, 0, 0, 0.0, 0.0, 0), (3, 3, 0, None, None, 0), (3, 3, 0, None, None, 0),
+        (0, 0, 3, 30.0, 30.0, 0)]  # fmt: skip
+
+
+def test_who_never_got_a_way_is_counted(line):
+    rows = [*BEGIN, (0, -1, JOINED, 3, 0), (1_000_000, -1, CUT_OFF, 0, 0),
+            (1_100_000, 1, UNROUTED, 1, 0)]  # fmt: skip
+    (found,) = recoveries(recorded(line, rows))
+    assert (found["without_way"], found["routed_ms"]) == (1, None)
+    assert start_up(recorded(line, rows)) == {"converged_ms": None, "routed_ms": None}
+    assert start_up(recorded(line, [])) == {"converged_ms": None, "routed_ms": None}
+
+
+@pytest.mark.parametrize("end", [(2, 1), (1, 1), (2, 0), (0, 0)])
+def test_who_finds_a_cell_dead_is_a_neighbour_or_itself(line, end):
+    events = [{"at_s": 1.0, "action": "kill", "cell": CELL_1}]
+    cell, port = end
+    rows = [*BEGIN, *SETTLED, (1_000_000, 1, CUT_OFF, 0, 0),
+            (1_010_000, cell, REPORT_BROKEN, port, 1)]  # fmt: skip
+    hit = end in {(1, 1), (2, 0)}
+    assert recoveries(recorded(line, rows, events))[0]["detected_ms"] == (10.0 if hit else None)
 
 
 @pytest.mark.parametrize("seed", range(1, 6))

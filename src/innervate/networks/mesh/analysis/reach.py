@@ -84,6 +84,12 @@ class Ways(NamedTuple):
         return found
 
     @property
+    def served(self) -> Flags:
+        """Who is on and not cut off, and no gateway: with a way, or astray."""
+        found: Flags = self.on & ~self.cut_off & ~self.leads
+        return found
+
+    @property
     def lacks(self) -> Numbers:
         """Per node HAS_WAY (or it is off), ASTRAY or CUT_OFF."""
         return np.where(self.cut_off, CUT_OFF, np.where(self.astray, ASTRAY, HAS_WAY))

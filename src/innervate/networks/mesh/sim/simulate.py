@@ -216,18 +216,22 @@ def _plain_layer(mac: str) -> Any:
     return over_channel.layer(radio_stacks.bind(entry, radio_recorder, over_channel))
 
 
+# What is broken, with {node} for who it concerns; what is below has its own words.
+BROKEN_WORDS = {
+    medium.BROKEN_AIR: "node {node} has too many frames under way",
+    recorder.BROKEN_OUTBOX: "outbox of node {node} overflowed",
+    recorder.BROKEN_RANGE: "a value of node {node} is out of its declared range",
+    recorder.BROKEN_TWICE: "node {node} delivered a packet twice",
+    recorder.BROKEN_HELD: "node {node} handed down a frame while another was under way",
+    recorder.BROKEN_FRAME: "a receiver changed the frame that node {node} had sent",
+}
+
+
 def broken_line(plan: Any, world: w.World) -> str:
     """A broken invariant in one line."""
     if int(get(world.run, 0, "broken")) == recorder.BROKEN_BELOW:
         return radio_simulate.broken_line(plan, world.below)
     at = int(get(world.run, 0, "now")) / 1e6
     name = plan.names[int(get(world.run, 0, "broken_node"))]
-    what = {
-        medium.BROKEN_AIR: f"node {name} has too many frames under way",
-        recorder.BROKEN_OUTBOX: f"outbox of node {name} overflowed",
-        recorder.BROKEN_RANGE: f"a value of node {name} is out of its declared range",
-        recorder.BROKEN_TWICE: f"node {name} delivered a packet twice",
-        recorder.BROKEN_HELD: f"node {name} handed down a frame while another was under way",
-        recorder.BROKEN_FRAME: f"a receiver changed the frame that node {name} had sent",
-    }[int(get(world.run, 0, "broken"))]
+    what = BROKEN_WORDS[int(get(world.run, 0, "broken"))].format(node=name)
     return f"invariant broken at {at:.6f} s (seed {plan.seed}): {what}"

@@ -89,14 +89,10 @@ class Shape:
             if not length:
                 if not low <= value <= high:
                     raise OutOfRange(f"{name} = {value}")
-            elif low >= 0 and high <= 255:
-                value = bytes(value)
-                if max(value) > high:
-                    raise OutOfRange(f"{name} = {max(value)}")
+            elif min(value) < low or max(value) > high:
+                raise OutOfRange(f"{name} = {list(value)}")
             else:
-                value = tuple(value)
-                if min(value) < low or max(value) > high:
-                    raise OutOfRange(f"{name} = {value}")
+                value = bytes(value) if low >= 0 and high <= 255 else tuple(value)
             found.append(self.pool.setdefault(value, value) if length else value)
         return tuple(found)
 

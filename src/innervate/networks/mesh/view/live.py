@@ -39,12 +39,14 @@ class MeshMap(Map):
 class MeshState(State):
     """Which nodes reach their gateway."""
 
-    def look(self) -> tuple[int, int]:
-        """Find everybody's way anew: (how many have none, how many of these are astray)."""
+    def look(self) -> tuple[int, int, int]:
+        """Find everybody's way anew: (how many have none, of these are astray, could have one)."""
         self.ways = self._find_ways()
         self.hop, self.depth = self.ways.hop, self.ways.depth
-        found = self.ways.without & (self.node_up == 1), self.ways.astray
-        return int(np.count_nonzero(found[0])), int(np.count_nonzero(found[1]))
+        without = self.ways.without & (self.node_up == 1)
+        found = without, self.ways.astray, self.ways.served
+        none, astray, could = (int(np.count_nonzero(who)) for who in found)
+        return none, astray, could
 
     def judge(self) -> Headline:
         """The headline by the ways that `look` found; who is off is called silent."""

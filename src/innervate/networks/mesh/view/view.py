@@ -140,7 +140,8 @@ class MeshView(View):
         if recovery is None or recovery.recovered_ms is not None:
             return
         recovery.cut_off(int(np.count_nonzero(self._ways().cut_off)))
-        if self._lacking():
+        recovery.nobody = not self._ways().served.any()
+        if recovery.nobody or self._lacking():
             return
         after_us = self.engine.now_us - recovery.at_us
         kept = after_us <= 1

@@ -37,8 +37,8 @@ class RadioFacts(NamedTuple):
         still_ms: how long nothing has been delivered though somebody who is on had a packet.
         timeout_ms: how long that may take, see `timeout_us`.
         hidden: pairs that do not hear each other.
-        bounds: where delays were found wrong, "believed_us": [least, greatest]; None = nothing was
-            noticed.
+        bounds: where delays are not as believed, "believed_us": [least, greatest]; None = they are,
+            as far as is known.
         stations_wrong: who noticed it.
         ended: nothing more will happen.
     """

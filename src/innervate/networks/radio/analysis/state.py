@@ -20,7 +20,7 @@ def facts(
     faults: Iterable[Any] = (),
     ended: bool = False,
 ) -> RadioFacts:
-    """The facts of a simulation's world; `bounds` are not in it.
+    """The facts of a simulation's world; `bounds` as the plan has them, whoever noticed.
 
     Args:
         world: of the event level, arrays or lists.
@@ -57,6 +57,7 @@ def facts(
         still_ms=max(0, now_us - max(oldest, delivered_us)) / 1e3,
         timeout_ms=timeout / 1e3,
         hidden=hidden_pairs(plan),
+        bounds=wrong_bounds(plan),
         ended=ended,
     )
 
@@ -117,3 +118,12 @@ def hidden_pairs(plan: Any) -> tuple[tuple[int, int], ...]:
         for j in range(i + 1, plan.stations)
         if delays[i][j] < 0 or delays[j][i] < 0
     )
+
+
+def wrong_bounds(plan: Any) -> dict[str, list[int]] | None:
+    """What stations believe, [least, greatest], if the delay of a pair is outside; else None."""
+    believed = [plan.params["dmin_us"], plan.params["dmax_us"]]
+    count = plan.stations
+    apart = (plan.delays_us[i][j] for i in range(count) for j in range(count) if i != j)
+    outside = any(at >= 0 and not believed[0] <= at <= believed[1] for at in apart)
+    return {"believed_us": believed} if outside else None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -58,7 +60,7 @@ def draw(got: Measured) -> Figure:
                     ls=style.DASHES[i], label=f"CSMA/CD-R, reading {reading}")  # fmt: skip
             n = reached(got, reading, size)
             ax.plot([n], [REACHED[size]], style.MARKERS[i], color=COLOURS[i],
-                    label=f"rounds to {SETTLED[size]} from n = {n}")  # fmt: skip
+                    label=f"rounds to {SETTLED[size]} from n = {n:g}")  # fmt: skip
         limit, free = forms.slotted_bound(size), forms.handover_bound(size)
         ax.axhline(limit, color=style.BLACK, lw=0.8, ls="--", label=f"T / (T + 1) = {limit:.4f}")
         ax.axhline(free, color=style.SOFT, lw=0.8, ls=":", label=f"T / (T + 0.5) = {free:.3f}")
@@ -76,12 +78,11 @@ def at(got: Measured, reading: str, size: int, n: int) -> float:
     return float(curve(reading, size).mean(got)[NS.index(n)])
 
 
-def reached(got: Measured, reading: str, size: int) -> int:
-    """The least n with the settling value to two digits."""
+def reached(got: Measured, reading: str, size: int) -> float:
+    """The least n with the settling value to two digits; infinite if there is none."""
     values = curve(reading, size).mean(got)
     found = common.first_from(NS, values >= REACHED[size] - 1e-12)
-    assert found is not None
-    return found
+    return inf if found is None else found
 
 
 def judge(got: Measured) -> Claims:
@@ -115,7 +116,7 @@ def _inside(got: Measured) -> Claims:
     where = {size: [reached(got, reading, size) for reading in "AB"] for size in SIZES}
     words = (
         f"T = {size}: {at(got, 'A', size, 100):.3f} at n = 100, {REACHED[size]} from n = "
-        f"{a} (A), {b} (B)"
+        f"{a:g} (A), {b:g} (B)"
         for size, (a, b) in where.items()
     )
     yield Claim(

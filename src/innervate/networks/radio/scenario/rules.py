@@ -18,10 +18,10 @@ POSITIONS = 120
 
 def check(source: Source, model: RadioScenario) -> None:
     """Raise ScenarioError at the first thing that does not fit together."""
-    refuse(source, _findings(model))
+    refuse(source, _findings(model, source))
 
 
-def _findings(model: RadioScenario) -> Iterator[Finding]:
+def _findings(model: RadioScenario, source: Source) -> Iterator[Finding]:
     yield from _number(("packet_slots",), model.packet_slots, PACKET_SLOTS, "slots")
     yield from _number(("channel", "tau_us"), model.channel.tau_us, DELAY_US, "microseconds")
     yield from _channel(model)
@@ -30,12 +30,18 @@ def _findings(model: RadioScenario) -> Iterator[Finding]:
     for index, event in enumerate(model.event):
         yield from _event(model, index, event)
     if model.channel.level == "slotted":
-        yield from radio_slotted.check(model)
+        yield from radio_slotted.check(model, source.given)
 
 
 def pair(value: int | tuple[int, int]) -> tuple[int, int]:
     """[least, most] of a number or a range."""
     return value if isinstance(value, tuple) else (value, value)
+
+
+def outside(model: RadioScenario) -> bool:
+    """True if delays can be others than stations believe they are."""
+    real, believed = pair(model.channel.tau_us), model.protocol.tau_bounds_us
+    return believed is not None and (real[0] < believed[0] or real[1] > believed[1])
 
 
 def _number(

@@ -1,21 +1,18 @@
 """Which settings the slotted level of the radio uses; all others are refused there.
 
 The slotted level counts slots: whole collisions, no delays, no events. A setting that it has no use
-for would be read and never asked again, so a scenario that changes one is refused.
+for would be read and never asked again, so a scenario that gives one is refused, whatever it says.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import Any
 
-from innervate.networks.radio.scenario.model import (
-    ChannelTable,
-    MediumAccessTable,
-    RadioScenario,
-    TrafficTable,
-)
+from innervate.networks.radio.scenario.model import RadioScenario
 from innervate.scenario.events import Finding
+from innervate.scenario.lines import Key
+from innervate.scenario.source import Source
 
 TURNAROUND = frozenset({"csma-cd-r", "csma-cd-d2", "csma-cd-d2p"})
 BACKOFF = frozenset({"csma-cd-d1", "csma-cd-d2", "csma-cd-d2p"})
@@ -36,24 +33,19 @@ UNUSED = (
     *(("channel", name) for name in ("tau_us", "loss", "hidden")),
     *(("traffic", name) for name in ("spread_us", "start_s")),
 )  # fmt: skip
-_DEFAULTS: dict[str, Any] = {
-    "protocol": MediumAccessTable(),
-    "channel": ChannelTable(),
-    "traffic": TrafficTable(),
-}
 
 
-def check(model: RadioScenario) -> Iterator[Finding]:
+def check(model: RadioScenario, given: Collection[Key]) -> Iterator[Finding]:
     """The settings that a slotted run would ignore, and why they are refused."""
-    mac = model.protocol.mac
+    mac, unused = model.protocol.mac, unused_by(model.protocol.mac)
     if mac in EVENT_ONLY:
         yield ("protocol", "mac"), f'{mac} goes with level = "event"; the slotted level has none'
     for key in UNUSED:
-        if _is_changed(model, key):
+        if key in given:
             name = ".".join(key)
             yield key, f'{name} goes with level = "event"; the slotted level has no use for it'
     for key, macs in USED_BY.items():
-        if mac not in macs and _is_changed(model, key):
+        if key in unused and key in given:
             message = (
                 f"{'.'.join(key)} goes with {', '.join(sorted(macs))} on the slotted level; "
                 f"{mac} has no use for it there"
@@ -66,9 +58,16 @@ def check(model: RadioScenario) -> Iterator[Finding]:
         yield ("event", 0), 'events go with level = "event"; leave them out'
 
 
-def _is_changed(model: RadioScenario, key: tuple[str, str]) -> bool:
-    table, name = key
-    return bool(getattr(getattr(model, table), name) != getattr(_DEFAULTS[table], name))
+def unused_by(mac: str) -> list[tuple[str, str]]:
+    """(table, key) of what a protocol has no use for on the slotted level."""
+    return [*UNUSED, *(key for key, macs in USED_BY.items() if mac not in macs)]
+
+
+def anchor(tables: dict[str, Any], source: Source) -> None:
+    """Leave out of a scenario's tables what a slotted run would refuse to be given."""
+    if tables["channel"]["level"] == "slotted":
+        for table, name in unused_by(tables["protocol"]["mac"]):
+            tables[table].pop(name, None)
 
 
 def words(model: RadioScenario, slot_us: int) -> tuple[str, str]:

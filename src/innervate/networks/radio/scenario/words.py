@@ -5,7 +5,7 @@ from __future__ import annotations
 from innervate.networks.radio.scenario import slotted as radio_slotted
 from innervate.networks.radio.scenario.model import RadioScenario
 from innervate.networks.radio.scenario.plan import RadioFault, RadioPlan
-from innervate.networks.radio.scenario.rules import pair
+from innervate.networks.radio.scenario.rules import outside, pair
 from innervate.scenario.events import told
 
 PAIRS_SHOWN = 4
@@ -47,6 +47,14 @@ def warnings(made: RadioPlan) -> list[str]:
     found = []
     if made.stations == 1:
         found.append("One station alone: nobody can receive what it sends.")
+    if outside(made.scenario.model):
+        model: RadioScenario = made.scenario.model
+        assert model.protocol.tau_bounds_us is not None
+        found.append(
+            f"Delays of {_range(*pair(model.channel.tau_us), 'us')} lie outside the "
+            f"{_range(*model.protocol.tau_bounds_us, 'us')} that stations believe; set "
+            "protocol.tau_bounds_us to what is true."
+        )
     hidden = [
         f"{i} and {j}"
         for j in range(made.stations)

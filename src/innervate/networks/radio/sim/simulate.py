@@ -152,15 +152,19 @@ def simulation(
     return RadioSimulation(plan, world, advance, name)
 
 
+# What is broken, with {node} for who it concerns.
+BROKEN_WORDS = {
+    medium.BROKEN_DEAF: "station {node} sent while its radio could not",
+    medium.BROKEN_AIR: "station {node} has too many transmissions under way",
+    loop.BROKEN_OUTBOX: "outbox of station {node} overflowed",
+    recorder.BROKEN_TURNS: "station {node} began a turn while another station had its own",
+    recorder.BROKEN_RANGE: "a value of station {node} is out of its declared range",
+}
+
+
 def broken_line(plan: Any, world: w.World) -> str:
     """A broken invariant in one line."""
     node = int(get(world.run, 0, "broken_node"))
     at = max(int(get(world.run, 0, "broken_at")), 0) / 1e6
-    what = {
-        medium.BROKEN_DEAF: f"station {node} sent while its radio could not",
-        medium.BROKEN_AIR: f"station {node} has too many transmissions under way",
-        loop.BROKEN_OUTBOX: f"outbox of station {node} overflowed",
-        recorder.BROKEN_TURNS: f"station {node} began a turn while another station had its own",
-        recorder.BROKEN_RANGE: f"a value of station {node} is out of its declared range",
-    }[int(get(world.run, 0, "broken"))]
+    what = BROKEN_WORDS[int(get(world.run, 0, "broken"))].format(node=node)
     return f"invariant broken at {at:.6f} s (seed {plan.seed}): {what}"

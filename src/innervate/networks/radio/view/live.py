@@ -30,9 +30,10 @@ class RadioState(State):
     is_off_when_cut = True
     still_ms = 0.0
 
-    def look(self) -> tuple[int, int]:
+    def look(self) -> tuple[int, int, int]:
         """Everybody hears everybody, or nobody."""
-        return int(np.count_nonzero(self.node_up == 0)), 0
+        off = int(np.count_nonzero(self.node_up == 0))
+        return off, 0, len(self.node_up) - off
 
     def judge(self) -> Headline:
         """The headline by what the stations say of their queues and packets."""

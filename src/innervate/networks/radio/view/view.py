@@ -194,7 +194,7 @@ class RadioView(View):
             ended=engine.now_us >= self.plan.duration_us or engine.is_complete(),
         )
         wrong = tuple(sorted(memory.wrong))
-        return headline(found._replace(bounds={} if wrong else None, stations_wrong=wrong))
+        return headline(found._replace(bounds={} if wrong else found.bounds, stations_wrong=wrong))
 
     def _turns(self) -> list[int]:
         """Everybody's place in the round; -1 none."""

@@ -39,18 +39,24 @@ SEQ_AT = _bit_of(skin.TOUCH, "seq")
 CELL_BITS, SEQ_BITS = 16, 8
 SEQS = 1 << SEQ_BITS
 LATE_MAX = 16  # samples that one that comes late may be behind
+NAMED = 8  # cells that are cut off and are told one by one
 END_NS = 2_000_000_000  # nodes that went away so shortly before the end were ended
 
 
 @dataclass
 class Healing:
-    """What became of a skin after something happened to it; times from then, ms; None = never.
+    """What became of a skin after something happened to it.
+
+    Times are from then, ms; None = not while it was watched.
 
     Attributes:
         at_s: when, from the capture's first frame.
         what: "cut c1.2 - pc.0", "c6 gone", "pc back", "restore ...", "loose ...".
         cells: cells whose way to the PC it cut, and that still have cables to it; or that it
-            brought back.
+            brought back. Those that had none yet from what happened just before are among them.
+        apart: cells that it cut off: they run, and no cables lead from them to the PC any more, so
+            that they have a way again when somebody puts one back, and not before.
+        watched_ms: until something else happened, or the capture ended.
         first_ms: the first of them said in a beacon that it has another parent, or none.
         wrong_ms: the last one's last beacon whose parent did not lead to the PC.
         routed_ms: all had said in beacons that their parents lead to the PC.
@@ -62,6 +68,8 @@ class Healing:
     at_s: float
     what: str
     cells: int = 0
+    apart: list[str] = field(default_factory=list)
+    watched_ms: float = 0.0
     first_ms: float | None = None
     wrong_ms: float | None = None
     routed_ms: float | None = None
@@ -122,7 +130,7 @@ class Watcher:
 
     def end(self) -> list[Healing]:
         """That was the last packet: what was found."""
-        self._close()
+        self._close(self._last_ns)
         while (
             self.found
             and self.found[-1].what.endswith("gone")
@@ -168,14 +176,20 @@ class Watcher:
             and now.found.what.startswith(word)
             and (at_ns - now.at_ns < SAME_NS)
         ):
+            now.cells |= self.net.joined() - joined  # a cable is whole when both ends say so
+            now.found.cells = len(now.cells)
             return  # the other end says so, too
-        self._close()
+        self._close(at_ns)
         names = [f"{e.node}.{e.port}" for e in sorted({end, other})]
         text = f"{end.node} {word}" if is_node else f"{word} {' - '.join(names)}"
-        cells = self.net.joined() - joined  # those that it brings back, or that lose their way
+        still = {cell for cell in now.cells if ways[cell] is None} if now else set()
+        here = self.net.joined()
+        cells = here - joined  # those that it brings back, or that lose their way
         if word not in ("back", "restore"):
-            cells = {c for c in self.net.joined() if ways[c] and not self.net.way(c)}
-        found = Healing(round((at_ns - self._first_ns) / 1e9, 4), text, len(cells))
+            cells = {c for c in here if ways[c] and not self.net.way(c)}
+        cells |= {c for c in here & still if not self.net.way(c)}
+        apart = sorted(joined - here - self.net.away, key=lambda cell: int(cell[1:]))
+        found = Healing(round((at_ns - self._first_ns) / 1e9, 4), text, len(cells), apart)
         self._now = _Open(found, at_ns, key, cells)
 
     def _beacon(self, packet: Packet, end: End) -> None:
@@ -236,11 +250,12 @@ class Watcher:
         if cell not in now.heard and not _touched(now, ends):
             now.heard[cell] = packet.time_ns
 
-    def _close(self) -> None:
-        """What is known of the last event."""
+    def _close(self, at_ns: int) -> None:
+        """What is known of the last event, which is watched no longer."""
         now, self._now = self._now, None
         if now is None:
             return
+        now.found.watched_ms = round((at_ns - now.at_ns) / 1e6, 3)
         now.found.lost = len(now.missing)
         times = sorted((at - now.at_ns) / 1e6 for at in now.heard.values())
         if times and len(times) == len(now.cells):
@@ -276,10 +291,25 @@ def line(one: Healing) -> str:
 
 
 def _text(one: Healing) -> str:
+    apart = _apart(one.apart)
     if not one.cells:
-        return "; no cell had to find another way"
+        others = "no other cell" if one.apart else "no cell"
+        return f"{apart}; {others} had to find another way"
     words = ("first moved", "last wrong parent", "all routed", "all heard", "half of them heard")
     times = (one.first_ms, one.wrong_ms, one.routed_ms, one.heard_ms, one.heard_median_ms)
-    parts = [f"{word} {'never' if at is None else f'{at:.0f} ms'}"
+    not_yet = f"not within {one.watched_ms:.0f} ms"
+    nothing = {"last wrong parent": "never"}  # nobody named a parent that led nowhere
+    parts = [f"{word} {nothing.get(word, not_yet) if at is None else f'{at:.0f} ms'}"
              for word, at in zip(words, times, strict=True)]  # fmt: skip
-    return f"; {one.cells} cells: {', '.join(parts)}; {one.lost} samples lost"
+    cells = "1 cell" if one.cells == 1 else f"{one.cells} cells"
+    lost = "1 sample" if one.lost == 1 else f"{one.lost} samples"
+    return f"{apart}; {cells}: {', '.join(parts)}; {lost} lost"
+
+
+def _apart(cells: list[str]) -> str:
+    """Who is cut off, the first few by name."""
+    if not cells:
+        return ""
+    named = ", ".join(cells[:NAMED]) + (", ..." if len(cells) > NAMED else "")
+    who = "1 cell" if len(cells) == 1 else f"{len(cells)} cells"
+    return f"; {who} cut off, with no cables to the PC left ({named})"

@@ -271,8 +271,6 @@ def trace_cables(world):
     watch = world.watch
     for cell in range(run.cells):
         watch.joined[cell] = 0
-    if world.alive[run.cells] == DEAD:
-        return
     count = 0
     for end in range(4 * run.cells, len(world.ends)):
         peer = world.ends[end].peer

@@ -31,8 +31,8 @@ class SkinMap(Map):
 class SkinState(State):
     """Which cells have a way to the PC."""
 
-    def look(self) -> tuple[int, int]:
-        """Find everybody's way anew: (how many have none, how many of these are astray)."""
+    def look(self) -> tuple[int, int, int]:
+        """Find everybody's way anew: (how many have none, of these are astray, could have one)."""
         where = self.map
         count = len(where.places)
         none = np.zeros(count, np.bool_)
@@ -46,7 +46,10 @@ class SkinState(State):
             lost = np.array([self.word(place, "parent", 0) is None for place in where.places])
         joined = reach(live, roots) if where.links else ~none
         self._facts = self._skin_facts(lost, joined)
-        return int(np.count_nonzero(lost)), int(np.count_nonzero(lost & joined))
+        left = (self.node_up == 1) & joined & ~self._is_port()
+        found = lost, lost & joined, left
+        without, astray, could = (int(np.count_nonzero(who)) for who in found)
+        return without, astray, could
 
     def judge(self) -> Headline:
         """The headline by the ways and loads that `look` found."""
@@ -74,8 +77,10 @@ class SkinState(State):
 
     def _ports(self) -> Any:
         """Where a skin's ways lead: the PC's ports."""
-        found = [place.port >= 0 for place in self.map.places]
-        return np.array(found, np.bool_) & (self.node_up == 1)
+        return self._is_port() & (self.node_up == 1)
+
+    def _is_port(self) -> Any:
+        return np.array([place.port >= 0 for place in self.map.places], np.bool_)
 
     def _parents(self) -> Numbers:
         """Per place of a skin the one that its cell sends to."""
@@ -129,8 +134,8 @@ class SkinLiveView(LiveView):
     def unknown(self, told: list[Status], count: int) -> list[Status]:
         """If the PC is not among those that answer, it is among those that do not."""
         found = super().unknown(told, count)
-        if count and all(one["role"] != "sink" for one in told):
-            found[0] |= {"role": "sink", "paths": [{"port": 0, "name": ""}]}
+        if count and all(one.get("role") != "sink" for one in told):
+            found[0] |= {"role": "sink", "paths": [{"port": 0, "name": "", "counters": {}}]}
         return found
 
     def can(self, last: Mapping[int, Status]) -> tuple[str, ...]:

@@ -54,6 +54,7 @@ class SkinMemory(Memory):
     counted: tuple[int, int] = field(default=(0, 0))
     apart: int = 0  # cells that are cut off from the PC now
     apart_most: int = 0  # most cells that were cut off from the PC at the same time
+    dead: set[int] = field(default_factory=set)  # cells that were switched off
     given: dict[int, giving.Given] = field(default_factory=dict)
     told: Any = None  # per cell the newest command that came, -1 none
     waited: tuple[int, int] = (0, 0)  # samples since the last point, the sum of their latencies, us
@@ -125,7 +126,7 @@ class SkinView(View):
             if code == CUT_OFF and a >= 0:
                 self._fault(a, b)
             elif code == APART:
-                self._apart(a)
+                self._apart(at, a)
             elif code == UNROUTED:
                 self._unrouted(at, a)
             elif code == ORDER_GIVEN:
@@ -141,23 +142,37 @@ class SkinView(View):
                 label = self.plan.graph.label(node)
                 self.log.often("lost", at, f"{label} lost its parent", "bad")
 
-    def _apart(self, cells: int) -> None:
+    def _apart(self, at_us: int, cells: int) -> None:
         """So many cells are cut off from the PC from now on."""
-        memory = self.memory
+        memory, recovery = self.memory, self.memory.recovery
         memory.apart, memory.apart_most = cells, max(memory.apart_most, cells)
-        if memory.recovery is not None:
-            memory.recovery.cut_off(cells)
+        if recovery is None:
+            return
+        recovery.cut_off(cells)
+        were_none, recovery.nobody = recovery.nobody, self._nobody()
+        if recovery.nobody and at_us == recovery.at_us:
+            recovery.recovered_ms = None  # what seemed to hurt nobody has cut everybody off
+        if were_none and not recovery.nobody and not memory.unrouted:
+            recovery.recovered_ms = (at_us - recovery.at_us) / 1e3
+
+    def _nobody(self) -> bool:
+        """No cell is left that is on and that cables join with the PC."""
+        left: int = self.cells - self.memory.apart - len(self.memory.dead)
+        return left <= 0
 
     def _fault(self, index: int, cut_off: int) -> None:
         """A mark of the observer: something was done to the skin."""
         given = index - len(self.plan.scenario.model.event)
         fault = self._planned[index] if given < 0 else self.engine.given[given]
         self.begin_fault(fault)
+        if fault.action in (KILL, REVIVE):
+            (self.memory.dead.add if fault.action == KILL else self.memory.dead.discard)(fault.node)
         recovery = self.memory.recovery
         if recovery is not None:
             recovery.cut_off(self.memory.apart)
-        if self.memory.unrouted == 0 and self.takes(fault) and recovery is not None:
-            recovery.recovered_ms = 0.0
+            recovery.nobody = self._nobody()
+            if self.memory.unrouted == 0 and self.takes(fault) and not recovery.nobody:
+                recovery.recovered_ms = 0.0
         if cut_off:
             text = f"{number_of(cut_off, 'cell')} lost the way to the PC"
             self.log.say(fault.at_us, text, "bad")
@@ -167,8 +182,9 @@ class SkinView(View):
         memory, recovery = self.memory, self.memory.recovery
         memory.unrouted = cells
         if recovery is not None and not recovery.closed:
-            recovery.recovered_ms = None if cells else (at_us - recovery.at_us) / 1e3
-            recovery.closed = cells == 0 and memory.event_us > recovery.at_us
+            is_open = cells > 0 or self._nobody()
+            recovery.recovered_ms = None if is_open else (at_us - recovery.at_us) / 1e3
+            recovery.closed = not is_open and memory.event_us > recovery.at_us
         after_us = at_us - memory.event_us
         if cells == 0 and memory.apart < self.cells:
             who = "all other cells" if memory.apart else "all cells"

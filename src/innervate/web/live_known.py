@@ -1,0 +1,66 @@
+"""Nodes that a folder knows of besides those that answer: who died before anybody looked.
+
+`live up` leaves the file of every node beside their sockets. A node that was killed leaves its
+socket, one that ended does not; its file says where it would be, what it is and whom it has cables
+to, so that it has its place on the map.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from innervate.live import status
+from innervate.live.errors import LiveError
+from innervate.live.nodefile import Loaded, SerialTable, UdpTable, load
+from innervate.web.live_map import Status
+
+
+def missing(folder: Path, there: Iterable[Path]) -> list[Path]:
+    """Sockets that nodes of a folder had and that are not among those that are there.
+
+    A node that was never started is none of them: a scenario's event may still do so. `live up`
+    begins a log with each.
+    """
+    found, known = set(there), files(folder)
+    return [path for path in known if path not in found and _log(path).exists()]
+
+
+def files(folder: Path) -> dict[Path, Loaded]:
+    """The node files of a folder whose nodes have their sockets there, by those."""
+    found = {}
+    for path in sorted(folder.glob("*.toml"), key=status.in_order):
+        try:
+            node = load(path)
+        except LiveError:  # a scenario, or anything else
+            continue
+        at = folder / (node.table.socket or f"{node.name}.sock")
+        if at.parent.resolve() == folder.resolve():
+            found[folder / at.name] = node
+    return found
+
+
+def unheard(node: Loaded) -> Status:
+    """What stands for the words of a node that has not answered yet: what its file says."""
+    table = node.table
+    paths = [
+        {"port": port, "name": far, "own": own, "up": True, "counters": {}}
+        for port, (own, far) in enumerate(ends for link in table.link for ends in _ends(link))
+    ]
+    role = {} if table.role is None else {"role": table.role}
+    common = {"kind": table.kind, "number": table.number, "paths": paths}
+    return {**common, **role, "neighbours": [], "counters": {}}
+
+
+def _ends(link: object) -> list[tuple[str, str]]:
+    """The two ends of each path of a link, as its status calls them."""
+    if isinstance(link, UdpTable):
+        return [(f"udp {link.bind}", f"udp {peer}") for peer in link.peers]
+    if isinstance(link, SerialTable) and link.far:
+        name = f"serial {link.device} to {link.far}"
+        return [(f"serial {link.far} to {link.device}", name)]
+    return []
+
+
+def _log(socket: Path) -> Path:
+    return socket.with_suffix(".log")

@@ -1,0 +1,94 @@
+"""What watches a team's packets: delivered to nobody, to some only, or again."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from innervate.dialect.arith import HALF16, MASK16
+from innervate.networks.radio.sim import build
+from innervate.networks.radio.verify.fuzz import trouble
+from innervate.running import fuzz
+from innervate.sim.channel import traffic
+from innervate.sim.driver import InvariantBroken
+from tests.networks.radio.runs import radio_plan
+
+COUNTS = ("silent", "partial", "again", "completed")
+
+
+@pytest.fixture
+def world():
+    """Four stations that all hear each other; station 0 has made a packet."""
+    made = build.build(radio_plan(4), True, True, True, False)
+    made.run[0].hurt = 0
+    assert traffic.make(made, 0, 1_000) == 0
+    return made
+
+
+def hears(world, node, handle=0, count=1):
+    frame = SimpleNamespace(source=0, handle=handle, count=count)
+    traffic.note_received(world, node, frame, 2_000)
+
+
+def counted(world):
+    return {name: getattr(world.run[0], name) for name in COUNTS if getattr(world.run[0], name)}
+
+
+# Which stations received it, how many are off, and what is counted when its sender has it proved.
+PROVED = [
+    ([], 0, {"silent": 1, "completed": 1}),
+    ([1], 0, {"partial": 1, "completed": 1}),
+    ([1, 2], 0, {"partial": 1, "completed": 1}),
+    ([1, 2, 3], 0, {"completed": 1}),
+    ([1, 2], 1, {"completed": 1}),
+    ([], 3, {"silent": 1, "completed": 1}),
+    ([1, 2, 3, 3], 0, {"again": 1, "completed": 1}),
+    ([1, 1], 0, {"again": 1, "partial": 1, "completed": 1}),
+]
+
+
+@pytest.mark.parametrize(("who", "off", "expected"), PROVED)
+def test_who_received_what_is_taken_for_delivered_is_counted(world, who, off, expected):
+    world.run[0].hurt = off
+    for node in who:
+        hears(world, node)
+    traffic.note_delivered(world, 0, 0, 3_000)
+    assert counted(world) == expected
+    row = world.packets[0]
+    assert (row.node, row.receivers, row.listeners) == (0, len(set(who)), 3 - off)
+
+
+@pytest.mark.parametrize(
+    ("first", "then", "is_new"),
+    [
+        (5, 6, True), (5, 5, False), (5, 4, False), (MASK16, 0, True), (0, MASK16, False),
+        (5, 5 + HALF16 - 1, True), (5, 5 + HALF16, False),
+    ],
+)  # fmt: skip
+def test_a_packet_is_new_if_it_is_ahead_of_the_newest(world, first, then, is_new):
+    hears(world, 1, first)
+    hears(world, 1, then)
+    assert world.run[0].again == (not is_new)
+
+
+def test_every_count_of_packets_has_a_case():
+    assert {name for *_, expected in PROVED for name in expected} == set(COUNTS)
+
+
+@pytest.mark.parametrize(("lost", "said"), [(0, ""), (1, "1 packets lost silently")])
+def test_packets_lost_silently_are_trouble(lost, said):
+    assert trouble({"lost_silently": lost}) == said
+
+
+def drawn_team(monkeypatch, run):
+    monkeypatch.setattr(fuzz, "run", run)
+    return fuzz.trouble({"kind": "radio", "stations": 2, "traffic": {"kind": "disaster"}})
+
+
+def test_a_network_that_was_drawn_is_in_trouble_if_a_checker_or_its_summary_says_so(monkeypatch):
+    def stops(_):
+        raise InvariantBroken("invariant broken at 1.0 s")
+
+    assert drawn_team(monkeypatch, stops) == "invariant broken at 1.0 s"
+    for lost in (0, 2):
+        done = SimpleNamespace(summary={"lost_silently": lost})
+        assert bool(drawn_team(monkeypatch, lambda _, done=done: done)) == bool(lost)

@@ -1,0 +1,114 @@
+"""What `check` warns of, on both sides of where it begins; silent twins differ in that alone."""
+
+import ast
+import inspect
+
+import pytest
+
+from innervate import scenario
+from innervate.networks.mesh.scenario import words as mesh
+from innervate.networks.radio.scenario import words as radio
+from innervate.networks.skin.scenario import warnings as skin
+
+
+def links(*pairs):
+    return "".join(f"[[link]]\na = 'n{a}'\nb = 'n{b}'\n" for a, b in pairs)
+
+
+def line(nodes):
+    return links(*((n, n + 1) for n in range(nodes - 1)))
+
+
+def every_pair(nodes):
+    return [(a, b) for a in range(nodes) for b in range(a)]
+
+
+def star(leaves, joined=0):
+    """A hub with so many leaves, of which the first two are joined, or four in two pairs, ..."""
+    pairs = [(2 * k + 1, 2 * k + 2) for k in range(joined)]
+    return links(*((0, n) for n in range(1, leaves + 1)), *pairs)
+
+
+def grid(nodes):
+    return f"nodes = {nodes}\n[placement]\nlayout = 'grid'\n"
+
+
+def patch(rate_hz=0, more=""):
+    return (
+        f"{more}\n[[patch]]\ncolumns = 8\nrows = 10\n[[interface]]\nrow = 0\ncolumn = 3\n"
+        f"[data]\nrate_hz = {rate_hz}\n"
+    )
+
+
+# A way from n0 over n1 to n2 and n3, which have each other, and nothing else to the PC.
+TIGHT = "".join(f"[[link]]\na = '{a}'\nb = '{b}'\n" for a, b in (
+    ("pc.0", "n0"), ("pc.1", "n0"), ("n0", "n1"), ("n1", "n2"), ("n2", "n3"), ("n3", "n1"),
+))  # fmt: skip
+FENCE = "nodes = 10\n[radio]\nmean_degree = 8\n[fence]\npolygon = [[0, 0], [9, 0], [9, 9]]\n"
+ROBOT = "[[robot]]\nnode = 9\nrandom = true\nspeed_mps = 1\n"
+FLOW = "nodes = 10\n[radio]\nmean_degree = 8\n[[flow]]\nfrom = 1\nto = 2\n"
+
+# Kind, words, a scenario of which they are said, one of which they are not.
+CASES = [
+    # 8 x 10 cells. A port carries 1 / 60 us less 250 beacons: 16,416.7 a second, 205.2 a cell.
+    ("skin", "interface port carries at most", patch(206), patch(205)),
+    # Three cells behind one cable: 5,472.2 a second of each.
+    ("skin", "over the only cable between them", TIGHT + "[data]\nrate_hz = 5473",
+     TIGHT + "[data]\nrate_hz = 5472"),
+    ("skin", "nobody learns of it", patch(0) + "[touch]\n", patch(1) + "[touch]\n"),
+    ("skin", "the run may end before", patch(0, "duration_s = 0.01"), patch(0, "duration_s = 1")),
+    ("radio", "One station alone", "stations = 1", "stations = 2"),
+    ("radio", "Stations that do not hear each other (0 and 1)",
+     "stations = 3\n[channel]\nhidden = [[0, 1]]", "stations = 3"),
+    # Two thirds of the nodes: 6 leaves of 9, and 9 of 14.
+    ("mesh", "nearly a star", star(8, 1), star(13, 2)),
+    ("mesh", "fewer than 3 neighbours", links((0, 1), (0, 2), (0, 3), (0, 4), (0, 5),
+     (1, 2), (3, 4), (3, 5), (4, 5)), links(*every_pair(6))),
+    ("mesh", "the gateway n1 has 4 neighbours", links(*every_pair(5)), links(*every_pair(6))),
+    ("mesh", "n25: more than 24 hops", line(26), line(25)),
+    ("mesh", "n20: too far for tables at an MTU of 64", line(21) + "[protocol]\nmtu = 64",
+     line(20) + "[protocol]\nmtu = 64"),
+    ("mesh", "n20: too far for tables at an MTU of 64", line(21) + "[protocol]\nmtu = 64",
+     line(21) + "[protocol]\nmtu = 127"),
+    ("mesh", "tables for more than 70 nodes", grid(71) + "[radio]\nprofile = '38k4'",
+     grid(70) + "[radio]\nprofile = '38k4'"),
+    ("mesh", "tables for more than 150 nodes", grid(151), grid(150)),
+    ("mesh", "nobody can cross it", FENCE, FENCE + ROBOT),
+    ("mesh", "flow.0 sends nothing", "duration_s = 6\n" + FLOW, "duration_s = 60\n" + FLOW),
+]  # fmt: skip
+
+
+def said(kind, text):
+    made = scenario.plan(scenario.loads(f'kind = "{kind}"\n{text}'))
+    return {"skin": skin, "radio": radio, "mesh": mesh}[kind].warnings(made)
+
+
+@pytest.mark.parametrize(("kind", "words", "weak", "sound"), CASES)
+def test_a_warning_is_said_where_it_begins_and_not_before(kind, words, weak, sound):
+    assert sum(words in text for text in said(kind, weak)) == 1
+    what = words.partition(": ")[2] or words  # whoever it is said of
+    assert not any(what in text for text in said(kind, sound))
+
+
+def texts_of(*functions):
+    """The sentences of some functions, without what is filled in."""
+    found = []
+    for function in functions:
+        (made,) = ast.parse(inspect.getsource(function)).body
+        for node in made.body[1:]:
+            for part in ast.walk(node):
+                pieces = part.values if isinstance(part, ast.JoinedStr) else [part]
+                words = (piece.value for piece in pieces if isinstance(piece, ast.Constant))
+                found.append(" ".join(word for word in words if isinstance(word, str)))
+    return {text for text in found if len(text.split()) > 5}
+
+
+def test_every_warning_has_a_case():
+    left = texts_of(
+        skin._touch, skin._start_up, skin._load, radio.warnings, mesh.warnings, mesh._thin
+    )
+    for kind, words, weak, _ in CASES:
+        (found,) = (text for text in said(kind, weak) if words in text)
+        known = set(found.split())
+        left = {text for text in left if not {w for w in text.split() if w.isalpha()} <= known}
+    assert left == set()

@@ -1,0 +1,152 @@
+"""The job table: all of a batch or nothing, once and for good."""
+
+import json
+import sqlite3
+
+import pytest
+
+from innervate.sweeping import jobs
+from innervate.sweeping.errors import SweepError
+from innervate.sweeping.jobs import Jobs
+from innervate.sweeping.work import Outcome
+
+PLACE, OTHER = json.dumps({"host": "a"}), json.dumps({"host": "b"})
+
+
+def done(point, repeat, value=1):
+    return Outcome(point, repeat, 10 + repeat, json.dumps({"x": value}), "", 0.5, 100.0)
+
+
+def failed(point, repeat):
+    return Outcome(point, repeat, 10 + repeat, None, "it broke", 0.25, 200.0)
+
+
+@pytest.fixture
+def table(tmp_path):
+    with Jobs(tmp_path) as made:
+        yield made
+
+
+def interrupted():
+    yield done("p", 1)
+    raise KeyboardInterrupt
+
+
+UNFIT = done("p", 2)._replace(reason=object())
+
+
+@pytest.mark.parametrize(
+    ("batch", "error"),
+    [(interrupted(), KeyboardInterrupt), ([done("p", 1), UNFIT], SweepError),
+     ([done("p", 1), None], AttributeError)],
+    ids=["interrupted", "refused by the table", "our own mistake"],
+)  # fmt: skip
+def test_of_a_batch_that_fails_nothing_is_kept_and_the_next_one_is(table, batch, error):
+    table.add([done("p", 0)], PLACE)
+    with pytest.raises(error):
+        table.add(batch, OTHER)
+    assert list(table.runs("p", 9)) == [0]
+    assert list(table.places().values()) == [{"host": "a"}]
+    table.add([done("p", 1), done("p", 2)], OTHER)
+    assert list(table.runs("p", 9)) == [0, 1, 2]
+    assert list(table.places().values()) == [{"host": "a"}, {"host": "b"}]
+
+
+def test_what_is_kept_is_there_for_who_opens_the_table_next(tmp_path):
+    with Jobs(tmp_path) as first:
+        first.add([done("p", 0)], PLACE)
+        with pytest.raises(KeyboardInterrupt):
+            first.add(interrupted(), PLACE)
+    with Jobs(tmp_path) as again:
+        assert list(again.runs("p", 9)) == [0]
+        again.add([done("p", 1)], PLACE)
+        assert list(again.runs("p", 9)) == [0, 1]
+
+
+def test_a_run_that_is_done_stays_as_it_was_first(table):
+    table.add([done("p", 0, 1)], PLACE)
+    table.add([done("p", 0, 2), done("p", 1, 3), failed("p", 0)], OTHER)
+    assert {repeat: run.figures for repeat, run in table.runs("p", 9).items()} == {
+        0: {"x": 1}, 1: {"x": 3}}  # fmt: skip
+
+
+def test_runs_are_those_of_a_point_before_a_repeat_in_order(table):
+    table.add([done("p", 2), done("p", 0), done("q", 1), failed("p", 1), done("p", 3)], PLACE)
+    assert list(table.runs("p", 3)) == [0, 1, 2]
+    assert list(table.runs("p", 0)) == []
+    assert list(table.runs("r", 9)) == []
+    found = table.runs("p", 9)
+    assert found[0] == (10, {"x": 1}, "", 0.5, 100.0, 1)
+    assert found[1] == (11, None, "it broke", 0.25, 200.0, 1)
+
+
+def test_a_place_is_kept_once(table):
+    for repeat, place in enumerate((PLACE, OTHER, PLACE)):
+        table.add([done("p", repeat)], place)
+    assert table.places() == {1: {"host": "a"}, 2: {"host": "b"}}
+    assert [run.place for run in table.runs("p", 9).values()] == [1, 2, 1]
+
+
+def test_only_failed_runs_are_forgotten(table):
+    table.add([done("p", 0), failed("p", 1), failed("q", 0)], PLACE)
+    assert table.forget_failed() == 2
+    assert (list(table.runs("p", 9)), list(table.runs("q", 9))) == ([0], [])
+    assert table.forget_failed() == 0
+    table.add([done("q", 0)], PLACE)
+    assert table.runs("q", 9)[0].figures == {"x": 1}
+
+
+def test_a_folder_holds_one_sweep(tmp_path):
+    with Jobs(tmp_path) as table:
+        table.claim({"scenario": "abc", "plan": "def"})
+        table.claim({"scenario": "abc", "plan": "def"})
+    with Jobs(tmp_path) as table:
+        table.claim({"scenario": "abc", "plan": "def"})
+        with pytest.raises(SweepError, match=r"^scenario changed since the sweep in "):
+            table.claim({"scenario": "other", "plan": "def"})
+        with pytest.raises(SweepError, match=r"^scenario and plan changed"):
+            table.claim({"scenario": "", "plan": ""})
+        table.claim({"scenario": "abc"})
+
+
+def test_a_table_of_another_layout_is_not_gone_on_with(tmp_path, monkeypatch):
+    with Jobs(tmp_path) as table:
+        table.claim({"plan": "def"})
+    monkeypatch.setattr(jobs, "SCHEMA", jobs.SCHEMA + 1)
+    with Jobs(tmp_path) as table, pytest.raises(SweepError, match=r"^schema changed"):
+        table.claim({"plan": "def"})
+
+
+def test_one_process_is_at_work_on_a_table_and_lets_go_of_it(tmp_path):
+    with Jobs(tmp_path), pytest.raises(SweepError, match="another sweep is at work in"):
+        Jobs(tmp_path)
+    with Jobs(tmp_path):
+        pass
+
+
+def test_what_is_no_table_is_said_and_let_go_of(tmp_path):
+    (tmp_path / jobs.FILE).write_bytes(b"something else" * 100)
+    with pytest.raises(SweepError, match="is no job table, or damaged; move it away"):
+        Jobs(tmp_path)
+    with pytest.raises(SweepError, match="cannot be written; choose another folder"):
+        Jobs(tmp_path / "none")
+
+
+@pytest.mark.parametrize(
+    ("code", "words"),
+    [
+        ("SQLITE_BUSY", "another sweep is at work in /a; wait for it, or choose --out"),
+        ("SQLITE_LOCKED_SHAREDCACHE", "another sweep is at work in /a"),
+        ("SQLITE_READONLY_DBMOVED", "/a/b cannot be written"),
+        ("SQLITE_PERM", "/a/b cannot be written"),
+        ("SQLITE_FULL", "/a/b: no space left on the disk"),
+        ("SQLITE_IOERR_WRITE", "/a/b: no space left on the disk, or it fails"),
+        ("SQLITE_CORRUPT", "/a/b is no job table, or damaged"),
+        ("SQLITE_CONSTRAINT", "/a/b: words of its own"),
+        (None, "/a/b: words of its own"),
+    ],
+)
+def test_each_trouble_of_a_table_is_one_line(code, words):
+    error = sqlite3.OperationalError("words of its own")
+    error.sqlite_errorname = code
+    assert jobs._in_words("/a/b", error).startswith(words)
