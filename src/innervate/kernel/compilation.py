@@ -192,10 +192,9 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     name += [getattr(thing, "__name__", "") for thing in bound_to]
 
     def compile_once(signature: Any) -> Any:
-        words = f"{name} {signature}".encode()
-        with alone(folder / f"{hashlib.blake2b(words, digest_size=10).hexdigest()}.lock"):
-            with as_one(function.__qualname__):
-                return compile_or_load(signature)
+        known = hashlib.blake2b(f"{name} {signature}".encode(), digest_size=10).hexdigest()
+        with alone(folder / f"{known}.lock"), as_one(function.__qualname__):
+            return compile_or_load(signature)
 
     jitted.compile = compile_once
     return jitted
