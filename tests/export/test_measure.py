@@ -58,7 +58,7 @@ def test_what_is_lost_on_a_live_cable_is_counted_though_beacons_are_alike(lost, 
     way = found.ways["c0.1", "pc.0"]
     assert (way.got, way.lost) == (100 - len(lost), len(lost))
     assert set(way.delays_us) == {150.0}
-    assert found.beacon_us == pytest.approx(20_000, rel=0.3)
+    assert found.beacon_us == 20_000
     assert found.rate_hz == pytest.approx(20 / found.seconds, rel=0.01)
     text = fitting.scenario_of(found, "cable")
     assert "hop_latency_us = [150, 150]" in text

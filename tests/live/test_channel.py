@@ -158,7 +158,7 @@ async def test_without_its_aerial_a_station_neither_hears_nor_is_heard(team):
     await team.until(40_000)
     assert team.heard(1) == [("R", 20_000, NOBODY)]
     assert team.heard(2) == []
-    assert (len(team.medium.log), team.medium.collisions) == (0, 0)
+    assert (len(team.medium.log), team.medium.collisions, team.medium.unsound) == (0, 0, 0)
     team.send(0, 40_000, 2)  # from 45 to 65 ms
     await team.until(50_000)
     team.take(1, PLUG.pack(b"P", 1, 1))
@@ -284,6 +284,21 @@ def test_what_no_station_says_is_counted_and_changes_nothing(data):
         assert not team.medium.log
 
     play()
+
+
+@with_team(1)
+async def test_what_stations_say_comes_in_at_the_channels_address(team):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        sock.setblocking(False)
+        sock.connect(team.medium._socket.getsockname())
+        for data in (JOIN.pack(b"J", 7), b"nothing", SEND.pack(b"T", 7, team.began, 1) + b"f"):
+            sock.send(data)
+            await team.until(1_000)
+        await team.until(100_000)
+        assert read_heard(sock.recv(99))[0] == b"R"
+        assert [station for *_, station, _ in team.medium.log] == [7]
+        assert team.medium.unsound == 1
+        assert [told for what, _, told in team.heard(0) if what == "F"] == [b"f"]
 
 
 @with_team(2)

@@ -135,7 +135,8 @@ def test_progress_counts_and_ends(toy, tmp_path):
     assert [step.total for step in steps] == [5] * len(steps)
     assert [step.done for step in steps] == sorted(step.done for step in steps)
     assert steps[-1].done == 5
-    assert any(step.left_s is not None for step in steps)
+    assert [step.left_s is None for step in steps] == [step.done == 0 for step in steps]
+    assert steps[-1].left_s == 0
 
 
 def test_a_failing_point_ends_the_run(toy, tmp_path):

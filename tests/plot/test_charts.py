@@ -48,7 +48,11 @@ def test_step_chart_shows_marks_and_numbers(texts):
 
 def test_step_chart_of_nothing(parse):
     empty = np.array([])
-    parse(charts.step_chart(empty, empty, Axis(0, 1), Axis(0, 1), (), "nothing"))
+    drawing = parse(charts.step_chart(empty, empty, Axis(0, 1), Axis(0, 1), (), "nothing"))
+    (line,) = (n for n in drawing.iter() if n.get("class") == "series")
+    points = [point.split(",") for point in line.get("d")[1:].split("L")]
+    assert len({y for _, y in points}) == 1  # nothing, all the time
+    assert float(points[-1][0]) - float(points[0][0]) > 100
 
 
 def test_step_chart_starts_with_the_value_before_its_window(parse):

@@ -1,8 +1,8 @@
 """What runs and paper tables give, kept as data: the judge of a change that is to change nothing.
 
-`python -m tests.recorded.record` measures everything anew and writes `runs.json`, and of each paper
-in its small size the table and what every piece of work gave; `--check` compares instead, and names
-what differs. The tests read the same files.
+`python -m tests.recorded.record` measures everything anew and writes `runs.json`, the tables of
+`papers/` and the rows that they were made of; `--check` compares instead, and names what differs.
+The tests read the same files. What is drawn of all that is kept by `tests.recorded.pictures`.
 """
 
 from __future__ import annotations
@@ -55,30 +55,30 @@ def measure(path: Path, plain: bool = False) -> dict[str, Any]:
     return found
 
 
-def paper(system: str, folder: Path) -> tuple[str, dict[str, Any]]:
-    """A paper in its small size: its table as CSV, what each piece of work gave by its key."""
+def table(system: str, folder: Path) -> str:
+    """The table of a paper in its small size, as CSV."""
     book.main(system, folder, quick=True)
-    text = (folder / f"papers-{system}.csv").read_text(encoding="utf-8")
-    return text, Store(folder / book.RESULTS, stamp()).values
+    return (folder / f"papers-{system}.csv").read_text(encoding="utf-8")
 
 
-def recorded_results(system: str) -> dict[str, Any]:
-    """What each piece of a paper's work in its small size gave, by its key."""
-    with gzip.open(TABLES / f"{system}.jsonl.gz", "rt", encoding="utf-8") as file:
-        return {entry["key"]: entry["value"] for entry in map(json.loads, file)}
+def rows(system: str) -> dict[str, Any]:
+    """What the runs of a paper in its small size left, by point."""
+    text = gzip.decompress((TABLES / f"{system}.rows.gz").read_bytes()).decode()
+    found: dict[str, Any] = json.loads(text)
+    return found
 
 
-def keep_results(system: str, values: dict[str, Any]) -> None:
-    """Write what `recorded_results` reads."""
-    lines = [json.dumps({"key": key, "value": values[key]}) + "\n" for key in sorted(values)]
-    packed = gzip.compress("".join(lines).encode(), 9, mtime=0)
-    (TABLES / f"{system}.jsonl.gz").write_bytes(packed)
+def keep_rows(system: str, folder: Path) -> None:
+    """Keep what a paper's run left in a folder."""
+    values = Store(folder / book.RESULTS, "", any_stamp=True).values
+    text = json.dumps({key: values[key] for key in sorted(values)}, separators=(",", ":"))
+    (TABLES / f"{system}.rows.gz").write_bytes(gzip.compress(text.encode(), 9, mtime=0))
 
 
 def lay_out(system: str, folder: Path) -> None:
-    """The recorded results as a paper of the present sources finds them: nothing is to be run."""
+    """The kept rows as a paper of the present sources finds them: nothing is left to be run."""
     store = Store(folder / book.RESULTS, stamp())
-    for key, value in recorded_results(system).items():
+    for key, value in rows(system).items():
         store.put(key, value)
 
 
@@ -89,19 +89,17 @@ def seed_cost_s(point: Point) -> float:
     return point.cost_s / (len(run.args[2]) if is_series else 1)
 
 
-def once_more(point: Point, recorded: Any) -> tuple[Any, Any]:
-    """A piece of work run again, and what is recorded of it; of a series the first seed."""
+def once_more(point: Point, kept: Any) -> tuple[Any, Any]:
+    """A piece of a paper's work run again, and what is kept of it; of a series the first seed."""
     run = point.work
-    if not isinstance(run, partial) or run.func is not columns:
-        found = run()
+    if isinstance(run, partial) and run.func is columns:
+        measure_seed, case, seeds = run.args
+        found = columns(measure_seed, case, seeds[:1])
+        is_named = isinstance(kept, dict)
+        kept = {name: all_[:1] for name, all_ in kept.items()} if is_named else kept[:1]
     else:
-        measure, case, seeds = run.args
-        found = columns(measure, case, seeds[:1])
-        recorded = (
-            {name: column[:1] for name, column in recorded.items()}
-            if isinstance(recorded, dict) else recorded[:1]
-        )  # fmt: skip
-    return json.loads(json.dumps(found)), recorded
+        found = run()
+    return json.loads(json.dumps(found)), kept
 
 
 def differences(name: str, recorded: Any, found: Any) -> list[str]:
@@ -150,15 +148,17 @@ def _papers(check: bool) -> list[str]:
     TABLES.mkdir(exist_ok=True)
     for system in book.papers():
         print(f"papers {system}", flush=True)
-        with tempfile.TemporaryDirectory() as folder:
-            text, values = paper(system, Path(folder))
         kept = TABLES / f"{system}.csv"
-        if check:
-            lost += differences(system, rows_of(kept.read_text(encoding="utf-8")), rows_of(text))
-            lost += differences(system, recorded_results(system), values)
-        else:
-            kept.write_text(text, encoding="utf-8")
-            keep_results(system, values)
+        with tempfile.TemporaryDirectory() as folder:
+            text = table(system, Path(folder))
+            if check:
+                was = rows_of(kept.read_text(encoding="utf-8"))
+                lost += differences(system, was, rows_of(text))
+                found = Store(Path(folder) / book.RESULTS, stamp()).values
+                lost += differences(system, rows(system), found)
+            else:
+                kept.write_text(text, encoding="utf-8")
+                keep_rows(system, Path(folder))
     return lost
 
 

@@ -8,7 +8,8 @@ import random
 import pytest
 
 from innervate.network import networks
-from innervate.papers import book, output
+from innervate.papers import book
+from innervate.papers.store import Store, stamp
 from tests.recorded import record
 
 SOURCES = record.sources()
@@ -64,7 +65,7 @@ def points(system, figure):
 def test_every_piece_of_a_papers_work_is_recorded(system):
     figures = networks()[system].papers.FIGURES
     wanted = {point.key for figure in figures for point in points(system, figure)}
-    assert set(record.recorded_results(system)) == wanted
+    assert set(record.rows(system)) == wanted
 
 
 @pytest.mark.parametrize(("system", "figure"), FIGURES)
@@ -73,23 +74,15 @@ def test_what_is_run_again_of_a_figure_is_as_recorded(system, figure):
     cheap = cheap[: (len(cheap) + 1) // 2]
     drawn = random.Random(figure).choice(cheap)
     for point in {cheap[0].key: cheap[0], drawn.key: drawn}.values():
-        found, kept = record.once_more(point, record.recorded_results(system)[point.key])
+        found, kept = record.once_more(point, record.rows(system)[point.key])
         assert not record.differences(point.key, kept, found)
-
-
-@pytest.mark.parametrize("system", book.papers())
-def test_the_recorded_results_give_the_recorded_table(system):
-    paper, values = networks()[system].papers, record.recorded_results(system)
-    claims = [c for name in paper.FIGURES for c in paper.experiment(name).judge(values, True)]
-    kept = (record.TABLES / f"{system}.csv").read_text(encoding="utf-8")
-    found = record.rows_of(output.as_csv(claims))
-    assert not record.differences(system, record.rows_of(kept), found)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("system", book.papers())
-def test_a_papers_table_and_results_are_as_recorded(system, tmp_path):
-    table, values = record.paper(system, tmp_path)
+def test_a_papers_table_and_rows_are_as_recorded(system, tmp_path):
     kept = (record.TABLES / f"{system}.csv").read_text(encoding="utf-8")
-    assert not record.differences(system, record.rows_of(kept), record.rows_of(table))
-    assert not record.differences(system, record.recorded_results(system), values)
+    found = record.table(system, tmp_path)
+    assert not record.differences(system, record.rows_of(kept), record.rows_of(found))
+    values = Store(tmp_path / book.RESULTS, stamp()).values
+    assert not record.differences(system, record.rows(system), values)

@@ -133,13 +133,23 @@ def test_a_byte_order_mark_and_windows_lines(tmp_path: Path, small: str) -> None
 def test_json_schema_is_published() -> None:
     schema = json_schema()
     assert "SkinScenario" in schema["$defs"]
-    assert msgspec.json.encode(schema)
+    told = msgspec.json.decode(msgspec.json.encode(schema))
+    radio = told["$defs"]["RadioScenario"]
+    assert radio["required"] == ["kind"]
+    assert radio["properties"]["kind"] == {"enum": ["radio"]}
+    assert radio["additionalProperties"] is False
+    assert set(radio["properties"]) == {
+        "kind", "schema", "name", "duration_s", "seed", "stations", "packet_slots", "traffic",
+        "channel", "protocol", "event",
+    }  # fmt: skip
 
 
 def test_nothing_breaks_under_garbage_collection(small: str) -> None:
+    first = loads(small).model
     for _ in range(5):
-        loads(small)
+        again = loads(small).model
         gc.collect()
+        assert again == first
     json_schema()
     gc.collect()
 

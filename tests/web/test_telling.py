@@ -171,10 +171,27 @@ def test_a_network_that_cannot_keep_up_is_waited_for():
     assert playback.due_us(10_000_000) == 2_000_000
 
 
-@pytest.mark.parametrize("speed", [-1.0, 0.0009, 1e7, float("nan"), float("inf")])
+@pytest.mark.parametrize(("late_s", "waits"), [(0.2501, True), (0.2499, False)])
+@pytest.mark.parametrize("speed", [0.1, 4.0])
+def test_a_quarter_of_a_second_of_ours_is_caught_up(speed, late_s, waits):
+    clock = Clock()
+    playback = Playback(speed, clock)
+    clock.now += 1
+    due_us, late_us = playback.due_us(10_000_000), round(1e6 * late_s * speed)
+    assert due_us == round(1e6 * speed)
+    playback.note(due_us - late_us, due_us)
+    assert playback.due_us(10_000_000) == due_us - late_us * waits
+    playback.set_speed(0, 0)  # without a speed there is nothing to keep up with
+    playback.note(0, 10_000_000)
+    assert playback.due_us(10_000_000) == 10_000_000
+
+
+@pytest.mark.parametrize("speed", [-1.0, 0.0009, 1e6 + 1, 1e7, float("nan"), float("inf")])
 def test_speeds_have_limits(speed):
     with pytest.raises(Refused, match=r"0\.001"):
         Playback().set_speed(speed, 0)
+    for at_limit in (0.001, 1_000_000.0, 0):
+        Playback().set_speed(at_limit, 0)
 
 
 def test_commands_are_read():

@@ -16,6 +16,7 @@ from innervate.web.errors import Refused, WatchError
 from innervate.web.history import LOSS, RETURN, SERIES, Logbook
 from innervate.web.live_map import Link, Place, Status
 from innervate.web.live_poll import Poller
+from innervate.web.live_scene import Place as Spot
 from innervate.web.live_scene import drawn
 from innervate.web.live_state import State
 from innervate.web.live_view import LiveView
@@ -87,6 +88,7 @@ class Live(Source):
             self._log.often("none", 0, f"{self._names[i]}: nobody answers at its socket", "bad")
         self._map = self._view.map(self._last)
         self._drawn = drawn(sockets, self._kind)
+        self._places: list[Spot] | None = None  # of the newest scene, where a scenario has them
         self._off: set[Place] = set()  # cut off whole, from here
         self._state: State = self._view.state(self._map, self._told)
         self.can = self._possible()
@@ -109,12 +111,9 @@ class Live(Source):
         """Who answered, and who is linked with whom as they say."""
         known = self._drawn
         names = [self._label(place) for place in self._map.places]
-        as_drawn = known is not None and all(name in known.places for name in names)
-        places = (
-            [known.places[name] for name in names]
-            if known is not None and as_drawn
-            else self._map.spread().round(3).tolist()
-        )
+        self._places = self._as_drawn(names)
+        as_drawn = self._places is not None
+        places = self._places or self._map.spread().round(3).tolist()
         nodes = []
         for at, (place, (x, y)) in enumerate(zip(self._map.places, places, strict=True)):
             node = {
@@ -148,6 +147,24 @@ class Live(Source):
             "ports": sum(place.port >= 0 for place in self._map.places),
         }  # fmt: skip
 
+    def _as_drawn(self, names: list[str]) -> list[Spot] | None:
+        """The scenario's places of all that are on the map; None if it does not have them all."""
+        known = self._drawn
+        if known is None or not all(name in known.places for name in names):
+            return None
+        return [known.places[name] for name in names]
+
+    def _moved(self) -> dict[str, Any]:
+        """The field with everybody's place, where some say that they are elsewhere now."""
+        known = self._drawn
+        if self._places is None or known is None or not known.metres:
+            return {}
+        moved = self._view.moved(self._told, known)
+        if not moved:
+            return {}
+        spots = zip(self._map.places, self._places, strict=True)
+        return {"position": [list(moved.get(place.node, spot)) for place, spot in spots]}
+
     def _label(self, place: Place) -> str:
         name = self._names[place.node]
         return f"{name}.{place.port}" if place.port >= 0 else name
@@ -155,7 +172,7 @@ class Live(Source):
     def _role(self, place: Place) -> str:
         if place.port >= 0:
             return "port"
-        return str(self._last[place.node].get("role", "node"))
+        return self._view.role(self._last[place.node])
 
     def _now_us(self) -> int:
         return round((time.monotonic() - self._began) * 1e6)
@@ -234,6 +251,8 @@ class Live(Source):
         self._compare(before)
         self._recover()
         self._view.note(self._state, self._now_us(), self._told)
+        for text, level in self._view.news(self._told, self._names.__getitem__):
+            self._log.often("news", self._now_us(), text, level)
         at_us, lost = self._now_us(), self._state.unconnected
         total = self._frames()
         took_s = max(1e-3, (at_us - self._counted_us) / 1e6)
@@ -290,6 +309,7 @@ class Live(Source):
             "speed": 1.0,
             "at_end": False,
             **self._state.fields(),
+            **self._moved(),
             "headline": headline.shown(),
             "since_cut_s": None if recovery is None else round(t_s - recovery.at_us / 1e6, 6),
             "recovery": None if recovery is None else recovery.shown(),

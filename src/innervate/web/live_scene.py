@@ -22,6 +22,7 @@ class Drawn:
         labels: what the scenario calls them, where that is another name.
         fence: rings of places; None without one.
         metres: places are metres.
+        origin_m: the place from which nodes say where they are.
     """
 
     name: str
@@ -29,6 +30,7 @@ class Drawn:
     labels: dict[str, str] = field(default_factory=dict)
     fence: list[list[list[float]]] | None = None
     metres: bool = False
+    origin_m: Place = (0.0, 0.0)
 
 
 def drawn(sockets: Sequence[Path], kind: str) -> Drawn | None:

@@ -10,6 +10,7 @@ from innervate.network import Network, networks
 from innervate.web.errors import Refused
 from innervate.web.live_map import Map, Place, Status
 from innervate.web.live_scene import Drawn
+from innervate.web.live_scene import Place as Spot
 from innervate.web.live_state import State
 from innervate.web.messages import Give
 
@@ -52,6 +53,18 @@ class LiveView:
         """What a scene has besides that of every network: the fields that nodes tell of."""
         shown = shown_fields(networks()[kind])
         return {"fields": shown} if shown else {}
+
+    def role(self, one: Status) -> str:
+        """What a node is on the map."""
+        return str(one.get("role", "node"))
+
+    def moved(self, told: Mapping[int, Status], known: Drawn) -> dict[int, Spot]:
+        """Where nodes say they are that move about, by node; none unless they say so."""
+        return {}
+
+    def news(self, told: Mapping[int, Status], name: Callable[[int], str]) -> list[tuple[str, str]]:
+        """What nodes tell of that is not their own state, for the log: (text, level), once each."""
+        return []
 
     def unknown(self, told: list[Status], count: int) -> list[Status]:
         """What stands for nodes that have not answered, beside those that have."""

@@ -1,6 +1,8 @@
 // Names that keep out of each other's way.
 
 const SIDES = [[0, 1], [0, -1], [1, 0], [-1, 0], [1, 1], [-1, 1], [1, -1], [-1, -1]];
+const STEP_PX = 6; // between the points of a line that names keep off
+const LINE_PX = 2; // how far
 const CELL_PX = 40; // of the grid that finds what is near
 
 /** Finds room for names beside what they name. */
@@ -8,13 +10,22 @@ export class Labels {
   constructor(context, width, height) {
     Object.assign(this, { context, width, height });
     this.taken = new Map();
+    this.lines = new Map(); // where names would rather not be
   }
 
   /** Keep names away from a box. */
-  block(x0, y0, x1, y1) {
-    for (const key of cells(x0, y0, x1, y1)) {
-      if (!this.taken.has(key)) this.taken.set(key, []);
-      this.taken.get(key).push([x0, y0, x1, y1]);
+  block(...box) {
+    keep(this.taken, box);
+  }
+
+  /** Keep names off a line, as long as there is room elsewhere. */
+  avoid(x0, y0, x1, y1) {
+    const steps = Math.ceil(Math.hypot(x1 - x0, y1 - y0) / STEP_PX);
+    for (let i = 0; i <= steps; i++) {
+      const part = steps ? i / steps : 0;
+      const [x, y] = [x0 + part * (x1 - x0), y0 + part * (y1 - y0)];
+      if (x < 0 || y < 0 || x > this.width || y > this.height) continue;
+      keep(this.lines, [x - LINE_PX, y - LINE_PX, x + LINE_PX, y + LINE_PX]);
     }
   }
 
@@ -22,14 +33,17 @@ export class Labels {
   put(text, x, y, gap) {
     const wide = this.context.measureText(text).width + 4;
     const high = 14;
-    for (const [dx, dy] of SIDES) {
+    const boxes = SIDES.map(([dx, dy]) => {
       const far = dx && dy ? 0.75 * gap : gap;
       const left = x + dx * far + (dx < 0 ? -wide : dx ? 0 : -wide / 2);
       const top = y + dy * far + (dy < 0 ? -high : dy ? 0 : -high / 2);
-      const box = [left, top, left + wide, top + high];
-      if (this.claim(...box)) return [left + 2, top + high / 2];
-    }
-    return null;
+      return [left, top, left + wide, top + high];
+    });
+    const free = boxes.filter((box) => this.#isFree(box));
+    const box = free.find((one) => isFree(this.lines, one)) ?? free[0];
+    if (!box) return null;
+    this.block(...box);
+    return [box[0] + 2, box[1] + high / 2];
   }
 
   /** Take a box, if it is free and in sight. */
@@ -39,15 +53,27 @@ export class Labels {
     return true;
   }
 
-  #isFree([x0, y0, x1, y1]) {
+  #isFree(box) {
+    const [x0, y0, x1, y1] = box;
     if (x0 < 2 || y0 < 2 || x1 > this.width - 2 || y1 > this.height - 2) return false;
-    for (const key of cells(x0, y0, x1, y1)) {
-      for (const [a0, b0, a1, b1] of this.taken.get(key) ?? []) {
-        if (x0 < a1 && a0 < x1 && y0 < b1 && b0 < y1) return false;
-      }
-    }
-    return true;
+    return isFree(this.taken, box);
   }
+}
+
+function keep(taken, box) {
+  for (const key of cells(...box)) {
+    if (!taken.has(key)) taken.set(key, []);
+    taken.get(key).push(box);
+  }
+}
+
+function isFree(taken, [x0, y0, x1, y1]) {
+  for (const key of cells(x0, y0, x1, y1)) {
+    for (const [a0, b0, a1, b1] of taken.get(key) ?? []) {
+      if (x0 < a1 && a0 < x1 && y0 < b1 && b0 < y1) return false;
+    }
+  }
+  return true;
 }
 
 function* cells(x0, y0, x1, y1) {

@@ -13,6 +13,7 @@ const GOOD = 0.9; // links of this quality are drawn whole, worse ones dashed, p
 const FAIR = 0.6;
 const WAYS = ["", "no way to the gateway", "cut off from the gateway"];
 const CROSS_PX = 7; // round the cross of a cut, where no name goes
+const HEAD_PX = 24; // so much of both ends of an arrow names keep off
 const LINK_PX = 5; // how near a click must be to a link
 const FONT = "12px system-ui, sans-serif";
 
@@ -190,11 +191,13 @@ export class MeshView {
     const dot = this.dot();
     nodes.forEach((_, i) => {
       const next = now.node_up[i] ? network.parentOf(i) : -1;
-      if (next >= 0) arrow(routes, stage.x[i], stage.y[i], stage.x[next], stage.y[next], dot + 4);
+      if (next < 0) return;
+      arrow(routes, stage.x[i], stage.y[i], stage.x[next], stage.y[next], dot + 4);
     });
     stroke(context, colours.accent, 2.2, routes);
     context.font = FONT;
     const names = new Labels(context, stage.width, stage.height);
+    this.#keepOff(names, stage);
     nodes.forEach((node, i) => {
       const [x, y] = [stage.x[i], stage.y[i]];
       symbol(context, x, y, dot, node.role, now.node_up[i]);
@@ -211,6 +214,24 @@ export class MeshView {
     this.#names(context, stage, names, dot);
   }
 
+  /** Names keep off the fence and both ends of arrows, where there is room. */
+  #keepOff(names, stage) {
+    const { now, nodes, scene } = this.network;
+    for (const ring of scene.fence ?? []) {
+      const corners = ring.map((place) => stage.of(place));
+      corners.forEach((at, i) => names.avoid(...at, ...corners[(i + 1) % corners.length]));
+    }
+    nodes.forEach((_, i) => {
+      const next = now.node_up[i] ? this.network.parentOf(i) : -1;
+      if (next < 0) return;
+      const [dx, dy] = [stage.x[i] - stage.x[next], stage.y[i] - stage.y[next]];
+      const part = Math.min(1, HEAD_PX / (Math.hypot(dx, dy) || 1));
+      const [px, py] = [part * dx, part * dy];
+      names.avoid(stage.x[next], stage.y[next], stage.x[next] + px, stage.y[next] + py);
+      names.avoid(stage.x[i], stage.y[i], stage.x[i] - px, stage.y[i] - py);
+    });
+  }
+
   #ring(context, x, y, radius, dash, width) {
     const ring = new Path2D();
     ring.arc(x, y, radius, 0, 7);
@@ -224,15 +245,20 @@ export class MeshView {
     const order = [...nodes.keys()].sort((a, b) => told(b) - told(a) || a - b);
     context.textAlign = "left";
     for (const i of order) {
-      const { role, label } = nodes[i];
+      const { role, label, also } = nodes[i];
       const state = now.alarm[i] ? " ALARM" : now.outside[i] ? " outside" : "";
       const plain = role === "node" || role === "post" || label.includes(role);
-      const text = `${label}${plain ? "" : ` ${role}`}${state}`;
+      const called = also ? [`${also} (${label})`, also] : [label]; // the scenario's and its own
+      const texts = called.map((name) => `${name}${plain ? "" : ` ${role}`}${state}`);
+      texts.push(`${called.at(-1)}${state}`);
       const strong = told(i);
       context.font = strong ? `600 ${FONT}` : FONT;
-      const at = names.put(text, stage.x[i], stage.y[i], dot + (state ? 9 : 4));
       const colour = state ? colours.alarm : strong ? colours.ink : colours.soft;
-      if (at) word(context, text, ...at, colour, colours.ground, context.font);
+      for (const text of texts) {
+        const at = names.put(text, stage.x[i], stage.y[i], dot + (state ? 9 : 4));
+        if (at) word(context, text, ...at, colour, colours.ground, context.font);
+        if (at) break;
+      }
     }
   }
 }

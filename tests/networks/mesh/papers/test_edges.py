@@ -202,7 +202,8 @@ EDGES = [
     *[("scale", f"channel at {radio.profile}", filling(radio, "tables", 70.1),
        [filling(radio, "tables", 69.9)]) for radio in scale.RADIOS],
     *[("scale", f"^at {radio.profile} the flooded", filling(radio, "tables", 99.9),
-       [filling(radio, "graph", 99.9), filling(radio, "table-free", 99.9)])
+       [[*filling(radio, "graph", graph), *filling(radio, "table-free", free)]
+        for graph, free in ((99.9, 200), (200, 99.9))])
       for radio in scale.RADIOS],
     ("scale", "^at the largest N", [(scale.point(SLOW, "tables", 20, QUICK),
                                      {"with_tables": [19]})],

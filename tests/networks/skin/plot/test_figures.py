@@ -1,6 +1,7 @@
 """`Run.plot`: figures of one run by matplotlib."""
 
 import matplotlib.image
+import numpy as np
 import pytest
 
 from innervate import run
@@ -39,7 +40,11 @@ def test_each_figure_draws(skin, name, tmp_path):
 
 @pytest.mark.parametrize("name", figures.FIGURES)
 def test_each_figure_draws_a_free_graph(name):
-    run(FREE).plot(name).canvas.draw()
+    made = run(FREE).plot(name)
+    made.canvas.draw()
+    ink = np.asarray(made.canvas.buffer_rgba())[..., :3].min(axis=2) < 230
+    assert 0.003 < ink.mean() < 0.9
+    assert any(ax.has_data() for ax in made.axes)
 
 
 def test_recovery_shows_the_time_round_the_event(skin):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -13,12 +13,24 @@ from innervate.networks.mesh.analysis.headline import headline
 from innervate.networks.mesh.analysis.reach import Choices, Ways, ways
 from innervate.web.live_map import Link, Map, Place, Status
 from innervate.web.live_scene import Drawn
+from innervate.web.live_scene import Place as Spot
 from innervate.web.live_state import State
 from innervate.web.live_view import LiveView
 
+SAID = {"predict": "is about to cross the fence", "cross": "has crossed the fence",
+        "lost": "is lost", "clear": "is inside again"}  # fmt: skip
+LEVELS = {"clear": "good"}
+LATE_S = 5.0  # alarms that are older when they are seen are told with their age
+
 
 class MeshMap(Map):
-    """Nodes and who of them hears whom."""
+    """Nodes and who of them hears whom.
+
+    Attributes:
+        by_number: the places of nodes by the numbers that they know each other by.
+    """
+
+    by_number: Mapping[int, Place]
 
     def key(self, what: Link | Place) -> tuple[Any, ...]:
         """Two nodes hear each other, or not; the paths of a link come and go."""
@@ -26,7 +38,7 @@ class MeshMap(Map):
 
     def find_links(self, told: Mapping[int, Status]) -> list[Link]:
         """Neighbours that hear each other, at least one way."""
-        places = self.numbered(told)
+        self.by_number = places = self.numbered(told)
         ports: dict[tuple[Place, Place], tuple[int, ...]] = {}
         for i, one in told.items():
             for near in one["neighbours"]:
@@ -83,7 +95,22 @@ class MeshState(State):
             "depth": self.depth,
             "way": self.ways.lacks,
             "apart": int(self.ways.cut_off.sum()),
+            **self._robots(),
         }
+
+    def _robots(self) -> dict[str, Any]:
+        """Which robots are outside, as they say, and about whom an alarm holds, as monitors say."""
+        outside = [
+            int(self.word(place, "robot", {}).get("fence") == "outside")
+            for place in self.map.places
+        ]
+        raised = [0] * len(outside)
+        assert isinstance(self.map, MeshMap)
+        for robot, alarm in newest_alarms(self.told).items():
+            place = self.map.by_number.get(robot)
+            if place is not None:
+                raised[self.map.number[place]] = int(alarm["kind"] != "clear")
+        return {"outside": outside, "alarm": raised}
 
 
 class MeshLiveView(LiveView):
@@ -91,6 +118,40 @@ class MeshLiveView(LiveView):
 
     map = MeshMap
     state = MeshState
+
+    def __init__(self) -> None:
+        self._told: set[tuple[Any, ...]] = set()  # alarms that the log has
+
+    def role(self, one: Status) -> str:
+        """A robot is shown as one, unless it is the gateway."""
+        role = super().role(one)
+        return "robot" if role == "node" and "robot" in one else role
+
+    def moved(self, told: Mapping[int, Status], known: Drawn) -> dict[int, Spot]:
+        """Where robots say that they are, metres, y down."""
+        x, y = known.origin_m
+        at = {i: one["robot"]["at_cm"] for i, one in told.items() if "robot" in one}
+        return {
+            i: (round(x + place[0] / 100, 2), round(y - place[1] / 100, 2))
+            for i, place in at.items()
+            if place is not None
+        }
+
+    def news(self, told: Mapping[int, Status], name: Callable[[int], str]) -> list[tuple[str, str]]:
+        """Alarms as monitors received them, the oldest first."""
+        names = {one["number"]: name(i) for i, one in told.items()}
+        found = []
+        for i, one in told.items():
+            for alarm in one.get("alarms", ()):
+                key = tuple(alarm[part] for part in ("reporter", "robot", "kind", "number"))
+                if key not in self._told:
+                    self._told.add(key)
+                    found.append((alarm["ago_s"], name(i), alarm))
+        found.sort(key=lambda one: -one[0])
+        return [
+            (_alarm_words(ago_s, monitor, alarm, names), LEVELS.get(alarm["kind"], "bad"))
+            for ago_s, monitor, alarm in found
+        ]
 
     def drawn(self, plan: Any) -> Drawn:
         """Nodes where the scenario has them, and the fence."""
@@ -106,4 +167,20 @@ class MeshLiveView(LiveView):
             labels={name: own for name, own in zip(names, plan.names, strict=True) if name != own},
             fence=scene["fence"],
             metres=bool(scene["metres"]),
+            origin_m=(plan.origin_cm[0] / 100, -plan.origin_cm[1] / 100),
         )
+
+
+def newest_alarms(told: Mapping[int, Status]) -> dict[int, Status]:
+    """By robot what was said of it last, to any monitor."""
+    said = [alarm for one in told.values() for alarm in one.get("alarms", ())]
+    said.sort(key=lambda alarm: -float(alarm["ago_s"]))
+    return {int(alarm["robot"]): alarm for alarm in said}
+
+
+def _alarm_words(
+    ago_s: float, monitor: str, alarm: Mapping[str, Any], names: Mapping[int, str]
+) -> str:
+    robot = names.get(alarm["robot"], f"n{alarm['robot']}")
+    before = f", {ago_s:.0f} s ago" if ago_s > LATE_S else ""
+    return f"alarm at {monitor}: robot {robot} {SAID.get(alarm['kind'], 'raised an alarm')}{before}"

@@ -47,6 +47,7 @@ class CellNode(LiveNode):
         self._beat: asyncio.TimerHandle | None = None
         self._item = Frame()
         self.requests["command"] = refuse_command
+        self.command: int | None = None
 
     def streams(self, request: dict[str, Any]) -> list[Stream]:
         """Commands for this cell, for those who follow them by the status socket."""
@@ -94,8 +95,13 @@ class CellNode(LiveNode):
         if code == REPORT_PARENT:
             self.moves += 1
 
+    def status(self) -> dict[str, Any]:
+        """As of all nodes, and the number of the newest command that came for this cell."""
+        return {**super().status(), "command": self.command}
+
     def _deliver(self, kind: int, frame: Any) -> None:
         self.outcomes["commands received"] += 1
+        self.command = frame.sq
         to_all, at_us = frame.cell == EVERYBODY, time.time_ns() // 1000
         found = Command(frame.sq, frame.dist, frame.proximity, to_all, frame.hops, at_us)
         self.arrivals.put(found)

@@ -108,7 +108,9 @@ class SkinState(State):
             "depth": self.depth,
             "port": np.where(self.root == NOWHERE, NOWHERE, np.take(port, self.root)),
             "load": np.minimum(load, 1.0).round(3),
-        }
+            "told": [NOWHERE if (n := self.word(place, "command", None)) is None else n
+                     for place in places],
+        }  # fmt: skip
 
 
 class SkinLiveView(LiveView):
@@ -116,6 +118,10 @@ class SkinLiveView(LiveView):
 
     map = SkinMap
     state = SkinState
+    lost = ("cells without a way", "cells")
+
+    def __init__(self) -> None:
+        self._under_way: dict[int, int | None] = {}  # commands from here, and for which cell
 
     def drawn(self, plan: Any) -> Drawn:
         """Cells where the honeycomb has them, interface ports beside."""
@@ -164,7 +170,21 @@ class SkinLiveView(LiveView):
             raise Refused(f"the PC did not take it: {(answer or {}).get('error', 'no answer')}")
         if not answer["ports"]:
             raise Refused("no cell has the PC as its parent: nobody hands it down")
+        self._under_way[answer["number"]] = cell
         return f"command {answer['number']} sent to {whom}"
+
+    def news(self, told: Mapping[int, Status], name: Callable[[int], str]) -> list[tuple[str, str]]:
+        """Commands that were given here and have come."""
+        cells = {one["number"]: i for i, one in told.items() if one.get("role") == "cell"}
+        has = {number: told[i].get("command") for number, i in cells.items()}
+        found = []
+        for given, cell in list(self._under_way.items()):
+            whom = [cell] if cell is not None else list(has)
+            if whom and all(has.get(one) == given for one in whom):
+                del self._under_way[given]
+                who = name(cells[cell]) if cell is not None else f"all {len(whom):,} cells"
+                found.append((f"command {given} came to {who}", "good"))
+        return found
 
 
 def _pc(last: Mapping[int, Status]) -> int | None:
