@@ -33,7 +33,7 @@ NOT_CALLED = "linked into the loop that calls it; not to be called from Python"
 _top: list[str] = []
 _numbas_finalize = CPUCodeLibrary.finalize
 _numbas_executable = CPUContext.get_executable
-_numbas_count = getattr(NRTContext, "_call_incref_decref", None)
+_numbas_count: Any = getattr(NRTContext, "_call_incref_decref", None)
 
 
 @contextmanager

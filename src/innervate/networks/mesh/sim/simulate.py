@@ -99,7 +99,7 @@ def _compiled(entry: ModuleType, access: radio_stacks.Protocol | None) -> Callab
     compilation.register_functions(*stack, hot=False)
     parts = loop.build(stack, layer)
     compilation.register_functions(*parts.below, *parts.above, *parts.own, hot=False)
-    advance = compilation.compiled(parts.advance)
+    advance = compilation.compiled_as_one(parts.advance)
     return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
 
 
