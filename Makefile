@@ -18,6 +18,9 @@ STAMP := .venv/stamp-$(shell cksum < pyproject.toml | cut -d ' ' -f 1)
 WORKERS ?= 2
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
+# What many tests run is compiled before they start, where it is not compiled yet.
+LOOPS = $(BIN)/python -m tests.loops $(WORKERS)
+
 # Packages that the page is built with, as package-lock.json has them; no scripts of theirs are run.
 PAGE := src/innervate/web/page
 MODULES := $(PAGE)/node_modules/.package-lock.json
@@ -54,9 +57,11 @@ demo: $(STAMP)
 	@$(BIN)/innervate demo
 
 test: $(STAMP)
+	$(LOOPS)
 	$(PYTEST) -m "not slow"
 
 full: $(STAMP)
+	$(LOOPS)
 	$(PYTEST)
 	$(BIN)/python -m tests.mutants --workers $(WORKERS) --seed $$(date +%Y%m%d) --count 40 --least 0.85
 

@@ -1,7 +1,10 @@
 """Compilation: what the cache of compiled code is known by, so that none of it is stale."""
 
 import shutil
+import sys
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 from innervate.analysis import intervals
@@ -71,3 +74,54 @@ def test_functions_of_other_packages_are_noted_for_the_next_loop(foreign, tmp_pa
     assert not foreign
     assert compilation.open_cache() != with_ours
     compilation.numba.config.CACHE_DIR = before
+
+
+@pytest.fixture
+def own_cache(tmp_path, monkeypatch):
+    """A cache that holds nothing yet."""
+    monkeypatch.setattr(compilation.numba.config, "CACHE_DIR", compilation.numba.config.CACHE_DIR)
+    monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path))
+    return tmp_path
+
+
+def test_who_comes_while_another_compiles_waits(tmp_path):
+    fcntl = pytest.importorskip("fcntl", reason="files are locked as on POSIX")
+    path = tmp_path / "loop.lock"
+    with path.open("ab") as other:
+        with compilation.alone(path), pytest.raises(BlockingIOError):
+            fcntl.flock(other, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(other, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+def test_where_nothing_can_be_written_nobody_waits(tmp_path):
+    with compilation.alone(tmp_path / "no such folder" / "loop.lock"):
+        pass
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_loop_is_compiled_alone_and_once(own_cache, monkeypatch):
+    def increased(number):
+        return number + 1
+
+    entered = []
+    wait = compilation.alone
+    monkeypatch.setattr(compilation, "alone", lambda path: entered.append(path) or wait(path))
+    one, other = compilation.compiled(increased), compilation.compiled(increased)
+    assert (one(1), one(2), other(1)) == (2, 3, 2)
+    assert (sum(one.stats.cache_misses.values()), sum(other.stats.cache_hits.values())) == (1, 1)
+    assert len(entered) == 2  # to compile, and to load what is compiled
+    assert len(set(entered)) == 1
+    assert entered[0].parent == Path(compilation.numba.config.CACHE_DIR)
+
+
+def test_what_has_references_has_them_counted(own_cache):
+    def same(array):
+        kept = array
+        return kept
+
+    compiled = compilation.compiled(same)
+    array = np.zeros(3)
+    before = sys.getrefcount(array)
+    for _ in range(10):
+        compiled(array)
+    assert sys.getrefcount(array) == before

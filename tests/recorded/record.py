@@ -13,13 +13,15 @@ import gzip
 import json
 import sys
 import tempfile
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import innervate
 from innervate import scenario as scenarios
 from innervate.papers import book
-from innervate.papers.store import Store
+from innervate.papers.experiment import Point, columns
+from innervate.papers.store import Store, stamp
 from innervate.sweeping.planfile import is_plan
 
 HERE = Path(__file__).resolve().parent
@@ -71,6 +73,33 @@ def keep_rows(system: str, folder: Path) -> None:
     values = Store(folder / book.RESULTS, "", any_stamp=True).values
     text = json.dumps({key: values[key] for key in sorted(values)}, separators=(",", ":"))
     (TABLES / f"{system}.rows.gz").write_bytes(gzip.compress(text.encode(), 9, mtime=0))
+
+
+def lay_out(system: str, folder: Path) -> None:
+    """The kept rows as a paper of the present sources finds them: nothing is left to be run."""
+    store = Store(folder / book.RESULTS, stamp())
+    for key, value in rows(system).items():
+        store.put(key, value)
+
+
+def seed_cost_s(point: Point) -> float:
+    """About how long `once_more` takes."""
+    run = point.work
+    is_series = isinstance(run, partial) and run.func is columns
+    return point.cost_s / (len(run.args[2]) if is_series else 1)
+
+
+def once_more(point: Point, kept: Any) -> tuple[Any, Any]:
+    """A piece of a paper's work run again, and what is kept of it; of a series the first seed."""
+    run = point.work
+    if isinstance(run, partial) and run.func is columns:
+        measure_seed, case, seeds = run.args
+        found = columns(measure_seed, case, seeds[:1])
+        is_named = isinstance(kept, dict)
+        kept = {name: all_[:1] for name, all_ in kept.items()} if is_named else kept[:1]
+    else:
+        found = run()
+    return json.loads(json.dumps(found)), kept
 
 
 def differences(name: str, recorded: Any, found: Any) -> list[str]:
@@ -125,6 +154,8 @@ def _papers(check: bool) -> list[str]:
             if check:
                 was = rows_of(kept.read_text(encoding="utf-8"))
                 lost += differences(system, was, rows_of(text))
+                found = Store(Path(folder) / book.RESULTS, stamp()).values
+                lost += differences(system, rows(system), found)
             else:
                 kept.write_text(text, encoding="utf-8")
                 keep_rows(system, Path(folder))

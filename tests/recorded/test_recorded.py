@@ -3,12 +3,17 @@
 A change that is meant to alter runs records anew: python -m tests.recorded.record
 """
 
+import random
+
 import pytest
 
+from innervate.network import networks
 from innervate.papers import book
+from innervate.papers.store import Store, stamp
 from tests.recorded import record
 
 SOURCES = record.sources()
+FIGURES = [(name, figure) for name in book.papers() for figure in networks()[name].papers.FIGURES]
 QUICK = ("line", "loop-three", "setup-4", "demo", "radio-disaster", "mesh-field")
 
 
@@ -50,10 +55,34 @@ def test_a_plain_run_is_as_recorded(name):
     assert not record.differences(name, recorded(name), found)
 
 
+def points(system, figure):
+    """A figure's pieces of work in its small size, those with the cheapest seeds first."""
+    found = networks()[system].papers.experiment(figure).points(True)
+    return sorted(found, key=lambda point: (record.seed_cost_s(point), point.key))
+
+
+@pytest.mark.parametrize("system", book.papers())
+def test_every_piece_of_a_papers_work_is_recorded(system):
+    figures = networks()[system].papers.FIGURES
+    wanted = {point.key for figure in figures for point in points(system, figure)}
+    assert set(record.rows(system)) == wanted
+
+
+@pytest.mark.parametrize(("system", "figure"), FIGURES)
+def test_what_is_run_again_of_a_figure_is_as_recorded(system, figure):
+    cheap = points(system, figure)
+    cheap = cheap[: (len(cheap) + 1) // 2]
+    drawn = random.Random(figure).choice(cheap)
+    for point in {cheap[0].key: cheap[0], drawn.key: drawn}.values():
+        found, kept = record.once_more(point, record.rows(system)[point.key])
+        assert not record.differences(point.key, kept, found)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("system", book.papers())
-def test_a_papers_table_is_as_recorded(system, tmp_path):
+def test_a_papers_table_and_rows_are_as_recorded(system, tmp_path):
     kept = (record.TABLES / f"{system}.csv").read_text(encoding="utf-8")
-    assert not record.differences(
-        system, record.rows_of(kept), record.rows_of(record.table(system, tmp_path))
-    )
+    found = record.table(system, tmp_path)
+    assert not record.differences(system, record.rows_of(kept), record.rows_of(found))
+    values = Store(tmp_path / book.RESULTS, stamp()).values
+    assert not record.differences(system, record.rows(system), values)

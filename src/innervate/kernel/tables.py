@@ -27,6 +27,8 @@ from numba.extending import (
 )
 from numba.np import numpy_support
 
+INSIDE = {"forceinline": True, "no_cfunc_wrapper": True}  # becomes part of its callers
+
 
 class Table:
     """Borrows a contiguous one-dimensional array; keeps a reference to it."""
@@ -133,21 +135,21 @@ def _length(typing_context: Any, table: Any) -> Any:
     return types.int64(table), generate
 
 
-@overload(operator.getitem, jit_options={"forceinline": True})  # type: ignore[untyped-decorator]
+@overload(operator.getitem, jit_options=INSIDE)  # type: ignore[untyped-decorator]
 def _getitem(table, index):
     if isinstance(table, TableType):
         return lambda table, index: _load(table, index)
     return None
 
 
-@overload(operator.setitem, jit_options={"forceinline": True})  # type: ignore[untyped-decorator]
+@overload(operator.setitem, jit_options=INSIDE)  # type: ignore[untyped-decorator]
 def _setitem(table, index, value):
     if isinstance(table, TableType):
         return lambda table, index, value: _store(table, index, value)
     return None
 
 
-@overload(len, jit_options={"forceinline": True})  # type: ignore[untyped-decorator]
+@overload(len, jit_options=INSIDE)  # type: ignore[untyped-decorator]
 def _len(table):
     if isinstance(table, TableType):
         return lambda table: _length(table)
@@ -173,7 +175,7 @@ def fetch(table: Any, index: int, line: int) -> None:
     """Have the processor fetch a cache line of table[index]; changes nothing."""
 
 
-@overload(fetch, jit_options={"forceinline": True})  # type: ignore[untyped-decorator]
+@overload(fetch, jit_options=INSIDE)  # type: ignore[untyped-decorator]
 def _fetch(table, index, line):
     return lambda table, index, line: _prefetch(table, index, line)
 

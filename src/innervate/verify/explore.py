@@ -61,8 +61,8 @@ def compiled_engine(parts: Callable[[], Any]) -> s.Engine:
     compilation.register_functions(s.fetch_row, *images, *known, *walking, hot=True)
     engine = s.build(system)
     compilation.register_functions(*engine.parts, system.variants, hot=False)
-    expand = compilation.compiled(engine.expand)
-    wander = compilation.compiled(engine.wander)
+    expand = compilation.compiled_as_one(engine.expand)
+    wander = compilation.compiled_as_one(engine.wander)
     return s.Engine(engine.parts, compilation.compiled(s.insert), expand, wander)
 
 

@@ -144,5 +144,5 @@ def compiled(do: ModuleType, hot: tuple[ModuleType, ...], rare: tuple[ModuleType
     compilation.register(*rare, commands, rows, taps, hot=False)
     compilation.register(arith, outbox, rng, *hot, queue, clocks, wires, delays, calls)
     compilation.register_functions(pressing, foresee, dispatch, run_batch, run_until)
-    advance = compilation.compiled(bind(do))
+    advance = compilation.compiled_as_one(bind(do))
     return lambda world, until, budget: advance(tables.borrowed(world), until, budget)

@@ -27,7 +27,7 @@ def baseline_plans(draw):
 
 
 @given(baseline_plans())
-@settings(QUIET, max_examples=60)
+@settings(QUIET, max_examples=36)
 def test_baselines_compiled_equal_plain(plan):
     check(plan)
 

@@ -130,7 +130,7 @@ def check_compiled_equals_plain(keys, checks):
 
 
 @given(scenarios(), st.booleans())
-@settings(QUIET, max_examples=25)
+@settings(QUIET, max_examples=16)
 def test_compiled_runs_equal_plain_ones_row_for_row(keys, checks):
     check_compiled_equals_plain(keys, checks)
 
@@ -163,7 +163,7 @@ def check_wire(keys):
 
 
 @given(scenarios())
-@settings(QUIET, max_examples=10)
+@settings(QUIET, max_examples=6)
 def test_frames_as_bytes_change_nothing(keys):
     check_wire(keys)
 

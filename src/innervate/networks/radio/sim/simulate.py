@@ -55,7 +55,7 @@ def compiled_loop(name: str) -> Callable[..., None]:
 @functools.cache
 def _compiled(protocol: stacks.Protocol) -> Callable[..., None]:
     """Its loop; all names of one protocol share it."""
-    advance = compilation.compiled(loop.bind(registered(protocol, traffic)))
+    advance = compilation.compiled_as_one(loop.bind(registered(protocol, traffic)))
     return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
 
 

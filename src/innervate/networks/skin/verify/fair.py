@@ -126,7 +126,7 @@ def _compiled() -> Callable[..., None]:
     parts = build(system)
     compilation.register(skin_calm, hot=False)
     compilation.register_functions(*engine.parts, *parts[:-1], hot=False)
-    return compilation.compiled(parts[-1])
+    return compilation.compiled_as_one(parts[-1])
 
 
 def bound_of(model: Any) -> int:
