@@ -60,6 +60,10 @@ CASES = [
     ("radio", "One station alone", "stations = 1", "stations = 2"),
     ("radio", "Stations that do not hear each other (0 and 1)",
      "stations = 3\n[channel]\nhidden = [[0, 1]]", "stations = 3"),
+    ("radio", "that stations believe", *(
+        f"stations = 2\n[channel]\ntau_us = [50, {most}]\n[protocol]\ntau_bounds_us = [50, 104]"
+        for most in (105, 104)
+    )),
     # Two thirds of the nodes: 6 leaves of 9, and 9 of 14.
     ("mesh", "nearly a star", star(8, 1), star(13, 2)),
     ("mesh", "fewer than 3 neighbours", links((0, 1), (0, 2), (0, 3), (0, 4), (0, 5),
