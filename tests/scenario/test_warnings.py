@@ -61,7 +61,7 @@ CASES = [
     ("radio", "Stations that do not hear each other (0 and 1)",
      "stations = 3\n[channel]\nhidden = [[0, 1]]", "stations = 3"),
     ("radio", "that stations believe", *(
-        f"stations = 2\n[channel]\ntau_us = [50, {most}]\n[protocol]\ntau_bounds_us = [50, 104]"
+        f"stations = 2\n[channel]\ntau_us = [52, {most}]\n[protocol]\ntau_bounds_us = [52, 104]"
         for most in (105, 104)
     )),
     # Two thirds of the nodes: 6 leaves of 9, and 9 of 14.
