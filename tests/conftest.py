@@ -10,7 +10,7 @@ import pytest
 
 pytest_plugins = ["tests.fixtures.papers", "tests.fixtures.plots", "tests.fixtures.scenarios"]
 HERE = Path(__file__).parent
-REAL_TIME = {"browser", "live"}  # folders of tests with processes, sockets, a browser
+REAL_TIME = {"browser", "live", "sweeping"}  # folders of tests with processes and sockets
 NEEDS = {
     "needs_root": "root",
     "needs_netns": "network namespaces",
