@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from innervate import scenario
+from innervate.kernel import compilation
 from innervate.network import networks
 from innervate.running import run
 from innervate.sim import taps
@@ -61,6 +62,12 @@ def test_compiled_runs_of_a_declared_network_equal_plain_ones():
     assert list(one.world.counters) == list(other.world.counters)
     for name in ("rows", "deliveries", "trail"):
         assert np.array_equal(rows[name], plain[name]), name
+
+
+def test_a_plain_run_leaves_compiled_loops_where_they_are():
+    before = compilation.open_cache()
+    finished(plan_of(duration_s=0.05, event=[]), plain=True)
+    assert compilation.open_cache() == before
 
 
 def test_what_is_out_of_its_declared_range_is_found():

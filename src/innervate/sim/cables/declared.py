@@ -119,8 +119,10 @@ def _users_side(do: ModuleType, is_timed: bool) -> dict[str, Callable[..., Any]]
         if frame.made_at > 0:
             recorder.keep_latency(world, (time - frame.made_at) & MASK30)
 
-    compilation.register_functions(copy_frame, kind_of, take_input, on_deliver)
-    return {"take_input": take_timed, "sense": sense_timed, "on_deliver": deliver_timed}
+    return {
+        "take_input": take_timed, "sense": sense_timed, "on_deliver": deliver_timed,
+        "take_any_input": take_input, "on_any_deliver": on_deliver,
+    }  # fmt: skip
 
 
 def plain_loop(kind: str) -> Callable[..., None]:
