@@ -77,8 +77,7 @@ def pytest_configure(config: pytest.Config) -> None:
     """Start, in workers or where there are none; what is started from here notes its lines, too."""
     folder().mkdir(parents=True, exist_ok=True)
     settings = folder() / "settings"
-    if not settings.exists():
-        settings.write_text(SETTINGS.format(folder=folder()))
+    settings.write_text(SETTINGS.format(folder=folder()))
     if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
         os.environ["COVERAGE_PROCESS_START"] = str(settings)  # for what tests start
         config.pluginmanager.register(Recorder())

@@ -196,5 +196,7 @@ def compiled_files() -> frozenset[Path]:
 def nearness(test: str, path: str) -> int:
     """How much the place of a test has in common with that of a source."""
     words = set(re.split(r"[/_.]|::", test.split("[")[0]))
+    if "recorded" in words:  # they look at all that comes out
+        return 9
     parts = Path(path).relative_to(SOURCES).with_suffix("").parts
     return sum(part in words for part in parts)
