@@ -64,7 +64,7 @@ class LiveNode:
         self.callers: Counter[str] = Counter()
         self.requests: dict[str, Answerer] = {}
         self.engine: Engine | None = None
-        self.started_at = time.time()
+        self.started_at = time.monotonic()
 
     async def start(self) -> None:
         """Open the links and switch the protocol on.
@@ -204,7 +204,7 @@ class LiveNode:
         paths = [_path_status(path, now, self.stack.silent_us) for path in self.paths]
         return {
             "name": self.name,
-            "up_s": round(time.time() - self.started_at, 1),
+            "up_s": round(time.monotonic() - self.started_at, 1),
             "sealed": self.sealer is not None,
             "keys": self._keys_status(),
             "state": self.state.status(),

@@ -10,6 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from innervate.live import private
 from innervate.live.errors import LiveError
 from innervate.wire.seal import COUNTER_MAX
 
@@ -58,7 +59,7 @@ class State:
                     self.seen[name] = dict(map(_newest, value, value.values()))
                 else:
                     self.seen_before.update([_newest(name, value)])
-        except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             raise LiveError(
                 f"{path}: not a node's state; remove it, and give the network another key if it "
                 "has one, for frames that were sent under this one could be played back"
@@ -72,8 +73,8 @@ class State:
         kept = {"counter": self.counter, "seen": self.seen, "epoch": self.epoch}
         new = self.path.with_name(self.path.name + ".new")
         try:
-            with new.open("w") as file:
-                file.write(json.dumps(kept))
+            with private.create(new) as file:
+                file.write(json.dumps(kept).encode())
                 file.flush()
                 os.fsync(file.fileno())
             os.replace(new, self.path)
@@ -108,6 +109,6 @@ def _newest(sender: str, counter: Any) -> tuple[int, int]:
 
 
 def _whole(value: Any, most: int) -> int:
-    if not isinstance(value, int) or not 0 <= value <= most:
+    if type(value) is not int or not 0 <= value <= most:
         raise ValueError(f"{value} is no number from 0 to {most}")
     return value
