@@ -11,12 +11,13 @@ from pathlib import Path
 
 import pytest
 
-from innervate.live import main, node, private, status
+from innervate.live import main, private, status
 from innervate.live.channel import Medium
 from innervate.live.channel_radio import JOIN, PLUG, SEND
 from innervate.live.engine import clock_us
 from innervate.live.errors import LiveError
 from innervate.live.keys import Sealer
+from innervate.live.machine import Machine, on
 from innervate.live.metrics import MetricsPage
 from innervate.live.nodefile import load
 from innervate.live.state import State
@@ -182,19 +183,27 @@ def test_a_listener_that_has_stopped_takes_no_more_room_than_others(tmp_path, mo
     assert heard + missed == count
 
 
-def test_up_is_by_no_clock_that_can_be_set(monkeypatch):
-    monkeypatch.setattr(node.time, "time", lambda: 5e9)
+class Jumping(Machine):
+    """A machine whose clock is set back while nodes run."""
 
-    async def run():
-        mesh = Mesh(1, [])
-        one = mesh.nodes[0]
-        monkeypatch.setattr(node.time, "time", lambda: 1.0)
+    at_ns = 5_000_000_000 * 10**9
+
+    def time_ns(self):
+        return self.at_ns
+
+
+def test_up_is_by_no_clock_that_can_be_set():
+    async def run(jumping):
+        one = Mesh(1, []).nodes[0]
+        jumping.at_ns = 0
         await one.start()
         told = one.status()["up_s"]
         await one.stop()
         return told
 
-    assert 0 <= asyncio.run(run()) < 60
+    jumping = Jumping()
+    with on(jumping):
+        assert 0 <= asyncio.run(run(jumping)) < 60
 
 
 @pytest.mark.parametrize(

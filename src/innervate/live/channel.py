@@ -16,6 +16,7 @@ from typing import Any
 from innervate.live.channel_radio import DATAGRAM_MAX, HEARD, JOIN, PLUG, SEND
 from innervate.live.engine import clock_us
 from innervate.live.errors import LiveError
+from innervate.live.machine import machine
 from innervate.live.nodefile import address
 
 LOGGED = 4096  # transmissions
@@ -102,7 +103,7 @@ class Medium:
         Raises:
             LiveError: the address cannot be used.
         """
-        sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
         sock.setblocking(False)
         try:
             sock.bind(where)

@@ -6,7 +6,6 @@ was declared, so that its status and what it delivers can be told without knowin
 
 from __future__ import annotations
 
-import secrets
 from collections import Counter
 from collections.abc import AsyncGenerator, Callable
 from functools import partial
@@ -20,6 +19,7 @@ from innervate.live.build import links_of, sealer_of, state_of
 from innervate.live.errors import LiveError
 from innervate.live.keys import Sealer
 from innervate.live.links import Link
+from innervate.live.machine import machine
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import Loaded, NodeFile
 from innervate.live.parameters import check_parameters
@@ -224,7 +224,8 @@ def build(loaded: Loaded) -> DeclaredNode:
             f"{loaded.path}: ports must name the node's port of each of its {paths} paths, "
             "each once"
         )
-    stack = DeclaredStack(network, table.number, dict(table.protocol), secrets.randbits(60), ports)
+    seed = machine().chance.getrandbits(60)
+    stack = DeclaredStack(network, table.number, dict(table.protocol), seed, ports)
     return DeclaredNode(loaded.name, stack, links, sealer_of(loaded, state), state)
 
 

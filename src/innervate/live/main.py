@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
-import sys
 from collections import Counter
 from collections.abc import AsyncGenerator
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any
 from innervate.live import status, tap
 from innervate.live.build import build, keys_of
 from innervate.live.errors import LiveError
+from innervate.live.machine import machine
 from innervate.live.metrics import MetricsPage
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import Loaded, address, load
@@ -132,7 +132,7 @@ class Process:
         return text
 
     def _say(self, text: str) -> None:
-        print(f"{self.loaded.name}: {text}", file=sys.stderr, flush=True)
+        machine().say(f"{self.loaded.name}: {text}")
 
     async def _answer(self, request: dict[str, Any], writer: status.Writer) -> None:
         what = request.get("do")

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import errno
 import json
-import os
-import time
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from innervate.live import private
 from innervate.live.errors import LiveError
+from innervate.live.machine import machine
 from innervate.wire.seal import COUNTER_MAX
 
 SENDER_MAX = 65_535
@@ -47,11 +45,11 @@ class State:
         self.trouble = ""
         self.failed = 0
         self._errno = 0
-        self._written_at: float | None = None
-        if path is None or not path.exists():
+        self._written_at: int | None = None
+        if path is None or not machine().exists(path):
             return
         try:
-            kept = json.loads(path.read_text())
+            kept = json.loads(machine().read_text(path))
             self.counter = _whole(kept["counter"], COUNTER_MAX)
             self.epoch = _whole(kept["epoch"], 255)
             for name, value in kept["seen"].items():
@@ -73,18 +71,17 @@ class State:
         kept = {"counter": self.counter, "seen": self.seen, "epoch": self.epoch}
         new = self.path.with_name(self.path.name + ".new")
         try:
-            with private.create(new) as file:
-                file.write(json.dumps(kept).encode())
-                file.flush()
-                os.fsync(file.fileno())
-            os.replace(new, self.path)
+            with machine().create(new) as file:
+                file.write(json.dumps(kept))
+                machine().sync(file)
+            machine().replace(new, self.path)
         except OSError as error:
             with suppress(OSError):
-                new.unlink()
+                machine().remove(new)
             self.trouble, self._errno = error.strerror or str(error), error.errno or 0
             self.failed += 1
             return False
-        self.trouble, self._written_at = "", time.monotonic()
+        self.trouble, self._written_at = "", machine().monotonic_ns()
         return True
 
     def check_place(self) -> None:
@@ -100,7 +97,9 @@ class State:
         """The file, when it was written last (s ago; None = not by us), and what is the matter."""
         if self.path is None:
             return None
-        ago = None if self._written_at is None else round(time.monotonic() - self._written_at, 1)
+        ago = None
+        if self._written_at is not None:
+            ago = round((machine().monotonic_ns() - self._written_at) / 1e9, 1)
         return {"file": str(self.path), "written_s": ago, "trouble": self.trouble}
 
 

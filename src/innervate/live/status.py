@@ -16,11 +16,12 @@ from typing import Any
 from innervate.live import private
 from innervate.live.admission import BoundedListener, Bounds
 from innervate.live.errors import LiveError
+from innervate.live.machine import ANSWER_S, machine
+from innervate.live.machine import answers as answers
 
 LINE_MAX = 65_536
 FULL = b'{"error": "64 are connected to this node already; end a listen or a capture"}\n'
 BOUNDS = Bounds(most=64, burst=64, full=FULL, limit=LINE_MAX)
-ANSWER_S = 5.0
 
 # Answers a request; gets the means to write more lines.
 Handler = Callable[[dict[str, Any], "Writer"], Awaitable[None]]
@@ -83,22 +84,10 @@ class Server:
             LiveError: the socket cannot be made, or a running node has it.
         """
         try:
-            self.path.parent.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
             if self.is_ours:  # somebody else can have been quicker to make it
+                self.path.parent.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
                 private.checked(self.path.parent)
-            if self.path.exists():
-                if answers(self.path):
-                    raise LiveError(f"{self.path}: a node with this name runs already; stop it")
-                self.path.unlink()
-            sock = socket.socket(socket.AF_UNIX)
-            before = os.umask(0o177)
-            try:
-                sock.bind(str(self.path))
-            except OSError:
-                sock.close()
-                raise
-            finally:
-                os.umask(before)
+            sock = machine().listen_at(self.path)
             self.listener = BoundedListener("status", sock, self._serve, BOUNDS, self._counts)
             self.listener.open()
         except OSError as error:
@@ -109,7 +98,7 @@ class Server:
         if self.listener is not None:
             self.listener.close()
             with suppress(OSError):
-                self.path.unlink()
+                machine().remove(self.path)
 
     async def _serve(self, reader: asyncio.StreamReader, stream: asyncio.StreamWriter) -> None:
         writer = Writer(stream)
@@ -129,17 +118,6 @@ async def answer(line: bytes, handle: Handler, writer: Writer) -> None:
         await handle(request, writer)
     except (ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
         await writer.line({"error": str(error)})
-
-
-def answers(path: Path) -> bool:
-    """True if somebody listens on this socket."""
-    with socket.socket(socket.AF_UNIX) as sock:
-        sock.settimeout(ANSWER_S)
-        try:
-            sock.connect(str(path))
-        except OSError:
-            return False
-        return True
 
 
 def ask(path: Path, request: dict[str, Any]) -> Iterator[dict[str, Any]]:
