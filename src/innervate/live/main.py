@@ -56,6 +56,8 @@ class Process:
             self.page = MetricsPage(address(loaded.table.metrics, str(loaded.path)), self.node)
         self.ending = asyncio.Event()
         self.notices = Notices(self._say)
+        if sealer is not None:
+            sealer.said = self.notices.tell
         self._callers: Counter[str] = Counter()  # as they were told last
 
     async def run(self) -> None:
@@ -73,8 +75,8 @@ class Process:
             self._look()
             while not self.ending.is_set():
                 await self._sleep(SAVE_S)
-                if self.node.sealer is not None or self.node.state.trouble:
-                    self.node.save(False)
+                if self.node.state.trouble:
+                    self.node.save()
                 self._look()
             if not await self.node.drain(DRAIN_S):
                 self._say("stopped; messages were still under way")
@@ -89,9 +91,9 @@ class Process:
         """SIGHUP: read the file again; keys may be others, all else needs a restart."""
         try:
             fresh = load(self.loaded.path)
-            if self.rotation is None or fresh.table.keys is None:
-                raise LiveError(f"{fresh.path}: only other keys can be taken over without restart")
             keys = fresh.table.keys
+            if self.rotation is None or keys is None or keys.identity is not None:
+                raise LiveError(f"{fresh.path}: only other keys can be taken over without restart")
             self.rotation.begin(keys_of(keys, fresh), keys.use, keys.grace_s)
         except LiveError as error:
             self._say(f"not reloaded: {error}")
