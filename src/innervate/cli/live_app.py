@@ -242,6 +242,42 @@ def live_medium(
     return command.medium(address, slot_us, turnaround_us)
 
 
+@live_app.command(name="enrol")
+def live_enrol(folder: Path, /, *numbers: int, nodes: int = 0) -> int:
+    """Make an identity for each node of a network: one file for each, which is all that it needs.
+
+    Parameters
+    ----------
+    folder
+        Of the network's authority; made if it is not there. Its authority.key stays with you.
+    numbers
+        Of the nodes.
+    nodes
+        Those with numbers 0 to nodes - 1, besides.
+    """
+    from innervate.cli import live_enrol as command
+
+    return command.enrol(folder, list(numbers), nodes)
+
+
+@live_app.command(name="revoke")
+def live_revoke(where: Path, /, *numbers: int, json: Json = False) -> int:
+    """Put nodes out whose identity has leaked; running nodes are told and tell each other.
+
+    Parameters
+    ----------
+    where
+        The authority's folder; or a revoked.list from it, to tell nodes on this machine.
+    numbers
+        Of the nodes; none tells of the list as it is.
+    json
+        Print JSON.
+    """
+    from innervate.cli import live_enrol as command
+
+    return command.revoke(where, list(numbers), json)
+
+
 @live_app.command(name="cut")
 def live_cut(node: str, port: int, /, *, restore: Json = False) -> int:
     """Cut a cable in silence at one end, as if its plug had come out; or put it back.

@@ -6,6 +6,7 @@ could seal with it, too: with identities each frame is signed besides.
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -35,17 +36,18 @@ if TYPE_CHECKING:
 CALL_US = 5_000_000  # so often a node says that it is there, once the first calls are over
 CALLS = 4  # first calls, one with each wait
 SEEK_US = 1_000_000  # a stranger's frame makes us ask so often at most
-EPOCH_BYTES = 2
+EPOCH_BITS = 16
+GREETING = struct.Struct(">HI32s")  # epoch of our key, our next counter under it, the key
 EPOCHS = 2  # keys of a member: frames under the older one may come late
 
 
 class Heard:
-    """A member's key, and what was taken under it."""
+    """A member's key, and what was taken under it: nothing that it said before we knew it."""
 
-    def __init__(self, who: Proven, key: bytes) -> None:
+    def __init__(self, who: Proven, key: bytes, counter: int) -> None:
         self.who = who
         self.cipher = ChaCha20Poly1305(key)
-        self.window = seal.Window()
+        self.window = seal.Window(counter - 1)
 
 
 class GroupContact(Contact):
@@ -69,28 +71,29 @@ class GroupContact(Contact):
     def renew(self) -> None:
         """Another key for what we say, of which nobody knows who is not told from now on."""
         chance = machine().chance
-        self._epoch = chance.getrandbits(8 * EPOCH_BYTES)
+        self._epoch = chance.getrandbits(EPOCH_BITS)
         self._key = chance.randbytes(KEY_BYTES)
         self._cipher = ChaCha20Poly1305(self._key)
         self._counter = 0
         self._made_at = clock_us()
 
     def greeting(self, kind: int) -> bytes:
-        """Our key goes with "are you there" and "I am"."""
+        """Our key, and how far we are with it, go with "are you there" and "I am"."""
         if kind not in (ALIVE, ANSWER):
             return b""
-        return self._epoch.to_bytes(EPOCH_BYTES, "big") + self._key
+        return GREETING.pack(self._epoch, self._counter, self._key)
 
     def control(self, session: Session, data: bytes) -> None:
         """A member's key comes with what it says."""
-        if data[:1] in (bytes((ALIVE,)), bytes((ANSWER,))) and len(data) == 1 + EPOCH_BYTES + 32:
-            self._learn(session.who, int.from_bytes(data[1:3], "big"), data[3:])
+        if data[:1] in (bytes((ALIVE,)), bytes((ANSWER,))) and len(data) == 1 + GREETING.size:
+            self._learn(session.who, *GREETING.unpack_from(data, 1))
         super().control(session, data)
 
-    def _learn(self, who: Proven, epoch: int, key: bytes) -> None:
-        if (who.number, epoch) in self._heard:
+    def _learn(self, who: Proven, epoch: int, counter: int, key: bytes) -> None:
+        known = self._heard.get((who.number, epoch))
+        if known is not None and known.who.life == who.life:
             return
-        self._heard[who.number, epoch] = Heard(who, key)
+        self._heard[who.number, epoch] = Heard(who, key, counter)
         of = [place for place in self._heard if place[0] == who.number]
         for place in of[:-EPOCHS]:
             del self._heard[place]

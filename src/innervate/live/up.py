@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from innervate.live import files, private, status
+from innervate.live import files, hangup, private, status
 from innervate.live.asking import ask
 from innervate.live.deployment import Deployment, Table
 from innervate.live.errors import LiveError
@@ -108,7 +108,7 @@ class Processes:
         command = [sys.executable, "-m", "innervate.cli", "live", "node", f"{name}.toml"]
         if self.lab is not None:
             command = self.lab.inside(self.names.index(name), command)
-        with (self.folder / f"{name}.log").open("a") as log:
+        with (self.folder / f"{name}.log").open("a") as log, hangup.held():
             self.processes[name] = subprocess.Popen(
                 command, cwd=self.folder, stdin=subprocess.DEVNULL, stdout=log, stderr=log
             )
