@@ -43,7 +43,8 @@ raised again until the monitor has acknowledged them. Who hears a robot outside 
 `graph_jobs.py`, `pack.py`, `table.py` discovery and tables; `relay.py`, `send.py`, `route.py`,
 `search.py`, `upward.py`, `overheard.py` forwarding; `queue.py` what waits to be sent;
 `messages.py`, `retransmission.py`, `timeout.py` end to end; `neighbours.py`, `duplicates.py`,
-`backoff.py`, `hop.py` what is remembered; `alarm.py`, `fence.py`, `watch.py` the fence; `frames.py` bytes.
+`backoff.py`, `hop.py` what is remembered; `alarm.py`, `fence.py`, `watch.py` the fence; `frames.py`
+bytes.
 Below it lies an access protocol: `csma.py`, or one of the radio's.
 
 States
