@@ -156,14 +156,19 @@ class DeclaredNode(LiveNode):
         """
         if self.engine is None:
             raise ValueError("node not started")
+        ranges = {name: (low, high)
+                  for name, _length, low, high, *_ in self.stack.network.fields.FRAME}  # fmt: skip
         for name, value in values.items():
-            if not hasattr(self.stack.item, name):
+            if name not in ranges:
                 raise ValueError(f"{name} is no field of a frame")
             many = isinstance(getattr(self.stack.item, name), list)
             numbers = value if many and isinstance(value, list) else [value]
             count = len(getattr(self.stack.item, name)) if many else 1
-            if len(numbers) != count or not all(isinstance(one, int) for one in numbers):
-                raise ValueError(f"{name} has {count} values, whole numbers")
+            low, high = ranges[name]
+            if len(numbers) != count or not all(
+                type(one) is int and low <= one <= high for one in numbers
+            ):
+                raise ValueError(f"{name} has {count} values, whole numbers from {low} to {high}")
             setattr(self.stack.item, name, list(numbers) if many else value)
         self.outcomes["inputs"] += 1
         self.engine.input(kind, self.stack.item)

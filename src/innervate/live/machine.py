@@ -6,6 +6,7 @@ networks run in one process under simulated time; the loop is asyncio's, and can
 
 from __future__ import annotations
 
+import io
 import os
 import random
 import socket
@@ -17,6 +18,7 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import IO, Protocol
 
+from innervate.live import private
 from innervate.live.errors import LiveError
 
 ANSWER_S = 5.0
@@ -90,18 +92,20 @@ class Machine:
             LiveError: a running node has it.
             OSError: it cannot be made.
         """
-        path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        path.parent.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
         if path.exists():
             if answers(path):
                 raise LiveError(f"{path}: a node with this name runs already; stop it")
             path.unlink()
         sock = socket.socket(socket.AF_UNIX)
+        before = os.umask(0o177)
         try:
             sock.bind(str(path))
-            path.chmod(0o600)
         except OSError:
             sock.close()
             raise
+        finally:
+            os.umask(before)
         return sock
 
     def exists(self, path: Path) -> bool:
@@ -118,12 +122,12 @@ class Machine:
         return path.read_text(encoding="utf-8")
 
     def create(self, path: Path) -> IO[str]:
-        """An empty file to write into; one that is there is emptied.
+        """An empty file to write into, which only its owner reads; one that is there is emptied.
 
         Raises:
             OSError: it cannot be made.
         """
-        return path.open("w", encoding="utf-8")
+        return io.TextIOWrapper(private.create(path), encoding="utf-8")
 
     def sync(self, file: IO[str]) -> None:
         """What was written into a file is on the disk, whatever happens to the machine.

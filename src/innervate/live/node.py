@@ -63,7 +63,7 @@ class LiveNode:
         self.callers: Counter[str] = Counter()
         self.requests: dict[str, Answerer] = {}
         self.engine: Engine | None = None
-        self.started_at = machine().time_ns()
+        self.started_at = clock_us()
 
     async def start(self) -> None:
         """Open the links and switch the protocol on.
@@ -203,7 +203,7 @@ class LiveNode:
         paths = [_path_status(path, now, self.stack.silent_us) for path in self.paths]
         return {
             "name": self.name,
-            "up_s": round((machine().time_ns() - self.started_at) / 1e9, 1),
+            "up_s": round((clock_us() - self.started_at) / 1e6, 1),
             "sealed": self.sealer is not None,
             "keys": self._keys_status(),
             "state": self.state.status(),

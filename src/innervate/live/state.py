@@ -57,7 +57,7 @@ class State:
                     self.seen[name] = dict(map(_newest, value, value.values()))
                 else:
                     self.seen_before.update([_newest(name, value)])
-        except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             raise LiveError(
                 f"{path}: not a node's state; remove it, and give the network another key if it "
                 "has one, for frames that were sent under this one could be played back"
@@ -108,6 +108,6 @@ def _newest(sender: str, counter: Any) -> tuple[int, int]:
 
 
 def _whole(value: Any, most: int) -> int:
-    if not isinstance(value, int) or not 0 <= value <= most:
+    if type(value) is not int or not 0 <= value <= most:
         raise ValueError(f"{value} is no number from 0 to {most}")
     return value

@@ -13,6 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from innervate.live import private
 from innervate.live.admission import BoundedListener, Bounds
 from innervate.live.errors import LiveError
 from innervate.live.machine import ANSWER_S, machine
@@ -27,14 +28,18 @@ Handler = Callable[[dict[str, Any], "Writer"], Awaitable[None]]
 
 
 def folder() -> Path:
-    """Where sockets of running nodes are: INNERVATE_RUN, or a folder of the user's own."""
+    """Where sockets of running nodes are: INNERVATE_RUN, or a folder of the user's own.
+
+    Raises:
+        LiveError: the user's own folder was made by somebody else, or others may change it.
+    """
     named = os.environ.get("INNERVATE_RUN")
     if named:
         return Path(named)
     runtime = os.environ.get("XDG_RUNTIME_DIR")
     if runtime:
         return Path(runtime) / "innervate"
-    return Path(tempfile.gettempdir()) / f"innervate-{os.getuid()}"
+    return private.checked(Path(tempfile.gettempdir()) / f"innervate-{os.getuid()}")
 
 
 class Writer:
@@ -56,10 +61,18 @@ class Server:
         path: the socket; its folder is made, an old socket is replaced.
         handle: answers requests.
         counts: callers that could not be let in.
+        is_ours: the folder is to be nobody else's.
     """
 
-    def __init__(self, path: Path, handle: Handler, counts: Counter[str] | None = None) -> None:
+    def __init__(
+        self,
+        path: Path,
+        handle: Handler,
+        counts: Counter[str] | None = None,
+        is_ours: bool = False,
+    ) -> None:
         self.path = path
+        self.is_ours = is_ours
         self._counts = Counter() if counts is None else counts
         self._handle = handle
         self.listener: BoundedListener | None = None
@@ -71,6 +84,9 @@ class Server:
             LiveError: the socket cannot be made, or a running node has it.
         """
         try:
+            if self.is_ours:  # somebody else can have been quicker to make it
+                self.path.parent.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
+                private.checked(self.path.parent)
             sock = machine().listen_at(self.path)
             self.listener = BoundedListener("status", sock, self._serve, BOUNDS, self._counts)
             self.listener.open()
@@ -100,7 +116,7 @@ async def answer(line: bytes, handle: Handler, writer: Writer) -> None:
         if not isinstance(request, dict):
             raise ValueError("a request is a JSON object")
         await handle(request, writer)
-    except (ValueError, KeyError, TypeError, OverflowError) as error:
+    except (ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
         await writer.line({"error": str(error)})
 
 
