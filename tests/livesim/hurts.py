@@ -67,7 +67,6 @@ def power(stage):
         host.cut_power()
     elif host.life is not None:
         host.disk.cut_after = stage.chance.randint(1, 6)
-        host.life.node.save(False) if stage.chance.random() < 0 else None
     _back(stage, host)
 
 

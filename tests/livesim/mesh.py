@@ -1,7 +1,7 @@
 """A mesh of live nodes, its users, and what is done to it."""
 
 from innervate.live import files
-from tests.livesim.checks import ITEMS_MOST, Messages, Nonces, items_of
+from tests.livesim.checks import ITEMS_MOST, Messages, items_of
 from tests.livesim.host import HUP, TERM, Host
 from tests.livesim.net import Net, changed
 from tests.livesim.world import SECOND, inside
@@ -64,8 +64,6 @@ class Stage:
         self.world, self.plan = world, plan
         self.chance = world.chance("stage")
         self.net = Net(world)
-        self.nonces = Nonces(world)
-        self.net.sniffers.append(self.nonces)
         self.messages = Messages(world, ENDS_S)
         self.cables = {}
         self.ends = [[] for _ in range(plan.nodes)]
@@ -89,12 +87,7 @@ class Stage:
         host = Host(self.world, self.net, f"n{number}", addresses, self.file(number))
         host.number = number
         host.on_begin = lambda life: self._listen(number, life)
-        for address in addresses:
-            self.nonces.keys[address] = lambda key, host=host: self._key_of(host, key)
         return host
-
-    def _key_of(self, host, number):
-        return host.life, host.life.node.sealer.keys[number]
 
     def file(self, number):
         """The text of a node's file, with the keys as they are now."""

@@ -5,6 +5,7 @@ import zlib
 from typing import NamedTuple
 
 from tests.livesim import hurts, mesh
+from tests.livesim.checks import Nonces
 from tests.livesim.world import SECOND, Broken, World
 
 
@@ -56,11 +57,12 @@ def run_mesh(seed, **given):
 
     stage.net.sniffers.append(note)
     try:
-        stage.begin()
-        world.run(15.0)
-        for _ in range(plan.storms):
-            _storm(world, stage)
-        stage.end()
+        with Nonces(world):
+            stage.begin()
+            world.run(15.0)
+            for _ in range(plan.storms):
+                _storm(world, stage)
+            stage.end()
     except Broken:
         pass  # it is told by `world.broken`
     gc.collect()
