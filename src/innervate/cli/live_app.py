@@ -42,6 +42,7 @@ def live_up(
     netns: Json = False,
     pty: Json = False,
     sealed: Json = False,
+    identities: Json = False,
     folder: Path | None = None,
     for_: Annotated[float, Parameter(name=["--for"])] = 0.0,
     json: Json = False,
@@ -60,6 +61,8 @@ def live_up(
         Skin: serial cables (ptys) instead of UDP.
     sealed
         With a key made for this run.
+    identities
+        With an identity for each node, made for this run.
     folder
         Where node files, logs and sockets go; a temporary one if left out.
     for_
@@ -72,8 +75,11 @@ def live_up(
     if netns and pty:
         raise errors.UserError("--netns and --pty exclude each other; name one")
     errors.check_seconds("--for", for_)
+    if sealed and identities:
+        raise errors.UserError("--sealed and --identities exclude each other; name one")
     cables = "netns" if netns else "pty" if pty else "udp"
-    return command.up(file, set_ or [], cables, sealed, folder, for_, json)
+    how = "key" if sealed else "identities" if identities else ""
+    return command.up(file, set_ or [], cables, how, folder, for_, json)
 
 
 @live_app.command(name="status")

@@ -31,7 +31,8 @@ class Processes:
         plan: a scenario's plan.
         folder: where files, logs and sockets go.
         cables: "udp" (loopback), "pty" or "netns" (as root).
-        keys: a [keys] table for all nodes; None = frames go in the clear.
+        keys: a [keys] table for all nodes, "{number}" in its identity is each one's; None = frames
+            go in the clear.
 
     Attributes:
         deployment: what it knows of the plan's nodes.
@@ -202,7 +203,10 @@ class Processes:
         """Write a node's file, with the keys as they are now."""
         head, tables, links = self._tables[name]
         if self.keys is not None:
-            tables = {**tables, "keys": self.keys}
+            keys = {**self.keys}
+            if "identity" in keys:
+                keys["identity"] = keys["identity"].format(number=head["number"])
+            tables = {**tables, "keys": keys}
         path = self.folder / f"{name}.toml"
         private.write(path, files.text(head, tables, links))  # keys may stand in it
 
