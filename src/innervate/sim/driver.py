@@ -87,6 +87,8 @@ class Simulation(ABC):
             InvariantBroken: a checker found what must not happen.
         """
         self._advance(self.world, until_us, budget)
+        if get(self.world.run, 0, "checks") and not get(self.world.run, 0, "broken"):
+            self.check_rest()
         status = int(get(self.world.run, 0, "status"))
         if status == BROKEN:
             raise InvariantBroken(self.broken_line())
@@ -135,6 +137,9 @@ class Simulation(ABC):
     def fingerprint(self) -> str:
         """Of everything that has happened."""
         return f"{int(get(self.world.run, 0, 'fingerprint')) & (1 << 64) - 1:016x}"
+
+    def check_rest(self) -> None:
+        """Check what no event is checked for, and mark the run as broken; nothing here."""
 
     def is_complete(self) -> bool:
         """True if it ended before its time because there was no more to do."""

@@ -21,8 +21,9 @@ from innervate.sim import heap, rows, taps
 from innervate.sim.driver import Progress
 from innervate.sim.field import medium, motion, powers
 from innervate.sim.field.simulation import Field
-from innervate.sim.status import POOL_FULL
-from innervate.sim.tables import get
+from innervate.sim.ranges import is_in_range
+from innervate.sim.status import BROKEN, POOL_FULL
+from innervate.sim.tables import get, put
 
 SLICE_EVENTS = 200_000
 PLAIN_SLICE_EVENTS = 2_000
@@ -161,6 +162,15 @@ class MeshSimulation(Field):
             self.world = channel.grown(self.world)
         if status == loop.DUPLICATES_FULL:
             self.world = builder.grow_duplicates(self.world)
+
+    def check_rest(self) -> None:
+        """The ranges of gateways' records: of hundreds of words, which few events change."""
+        fields = mesh_fields.gate(self.plan.capacity)
+        for rank in range(len(self.world.gates) - 1):
+            if not is_in_range(self.world.gates[rank], fields):
+                put(self.world.run, 0, broken=recorder.BROKEN_RANGE,
+                    broken_node=self.plan.ranks.index(rank), status=BROKEN)  # fmt: skip
+                return
 
     def broken_line(self) -> str:
         """The broken invariant, in one line."""
