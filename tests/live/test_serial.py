@@ -6,7 +6,7 @@ from contextlib import suppress
 
 import pytest
 
-from innervate.live import serial
+from innervate.live import serial, serial_port
 from innervate.live.errors import LiveError
 from innervate.live.receipts import DELIVERED
 from innervate.live.serial import SerialLink
@@ -139,7 +139,7 @@ def test_what_the_line_does_not_take_at_once_waits_and_comes_in_order_then_all_i
             for _ in range(5):
                 port.path.send(b"no room for this one, or the next")
             assert (port.path.counters["sent"], port.path.counters["unsent: full"]) == (sent, 6)
-            monkeypatch.setattr(serial.os, "write", write)
+            monkeypatch.setattr(serial_port.os, "write", write)
             got = await port.read(sent)
             assert got == [bytes([k % 250 + 1, 7]) * 100 for k in range(sent)]
             assert len(written) > 1

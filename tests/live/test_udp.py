@@ -1,12 +1,12 @@
 import asyncio
 import errno
 import socket
-from types import SimpleNamespace
 
 import pytest
 
 from innervate.live import udp
 from innervate.live.errors import LiveError
+from innervate.live.machine import Machine
 from innervate.live.receipts import DELIVERED
 from innervate.live.udp import MulticastLink, UdpLink
 from innervate.networks.mesh.live.node import MeshNode
@@ -82,7 +82,7 @@ class Flaky(socket.socket):
 
 @pytest.fixture
 def flaky(monkeypatch):
-    monkeypatch.setattr(udp, "socket", SimpleNamespace(**vars(socket) | {"socket": Flaky}))
+    monkeypatch.setattr(Machine, "socket", lambda _, family, kind: Flaky(family, kind))
     for name, value in (("away", False), ("gone", False), ("refused", 0)):
         monkeypatch.setattr(Flaky, name, value)
 
@@ -270,7 +270,7 @@ def test_a_member_joins_anew_now_and_then_and_is_down_while_it_cannot(code, up, 
             super().setsockopt(level, name, value)
 
     async def main():
-        monkeypatch.setattr(udp, "socket", SimpleNamespace(**vars(socket) | {"socket": Joining}))
+        monkeypatch.setattr(Machine, "socket", lambda _, family, kind: Joining(family, kind))
         link = MulticastLink(("239.77.12.4", free_port()), "127.0.0.1")
         await link.open(print)
         assert (link.paths[0].up, len(joined)) == (True, 1)

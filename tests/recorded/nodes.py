@@ -13,19 +13,17 @@ import sys
 import tempfile
 from collections.abc import Awaitable, Callable
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 from unittest import mock
 
-from innervate.live import local, main, metrics, node, state
+from innervate.live import local, main, metrics, state
 from innervate.live.keys import Sealer
+from innervate.live.machine import on
 from innervate.live.nodefile import load
-from innervate.networks.mesh.live import alarms
 from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.parameters import fence_parameters, mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
 from innervate.networks.radio.live.parameters import radio_parameters
-from innervate.networks.skin.live import node as skin_node
 from innervate.networks.skin.live.parameters import skin_parameters
 from tests.live import time_by_hand
 from tests.live.net import Skin
@@ -42,6 +40,13 @@ bind = "127.0.0.1:1"
 peers = ["127.0.0.1:2"]
 """
 KEY = bytes(range(32))
+
+
+class Clocked(time_by_hand.Clocked):
+    """Both clocks are the loop's."""
+
+    def time_ns(self) -> int:
+        return round(self.loop.time() * 1e9)
 
 
 class House:
@@ -209,16 +214,8 @@ def said(name: str) -> list[Any]:
     """What is said in a script."""
 
     async def all_of_it() -> list[Any]:
-        loop = asyncio.get_running_loop()
-        clock = SimpleNamespace(time=loop.time, monotonic=loop.time,
-                                time_ns=lambda: round(loop.time() * 1e9))  # fmt: skip
-        with tempfile.TemporaryDirectory() as folder:
-            for room in (node, state, alarms, skin_node):
-                mock.patch.object(room, "time", clock).start()
-            try:
-                return await SCRIPTS[name](Path(folder))
-            finally:
-                mock.patch.stopall()
+        with tempfile.TemporaryDirectory() as folder, on(Clocked(asyncio.get_running_loop())):
+            return await SCRIPTS[name](Path(folder))
 
     found: list[Any] = time_by_hand.run(all_of_it())
     return found

@@ -103,7 +103,7 @@ def looked_at_between(running, declaration, record, code, node):
 
     def speaks():
         put(running.world.run, 0, broken=0, broken_node=-1, status=DONE)
-        running.check_rest()
+        running.mark_broken()
         said = tuple(int(get(running.world.run, 0, name)) for name in ("broken", "broken_node"))
         status = int(get(running.world.run, 0, "status"))
         assert (*said, status) in ((0, -1, DONE), (code, node, BROKEN))

@@ -1,4 +1,4 @@
-"""Where cells are drawn, to the millimetre: patches by their cables, in a grid, layers of a graph."""
+"""Where cells are drawn, to the millimetre: patches by their cables or in a grid, layers."""
 
 import math
 

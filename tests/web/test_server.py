@@ -195,7 +195,8 @@ def test_files_are_served_and_no_others(tmp_path, monkeypatch):
             assert (status, body) == (200, b"1")
             assert "javascript" in headers["content-type"]
             for path in ("/static/../secret", "/static/%2e%2e%2fsecret", "/static/..", "/secret",
-                         "/static/%00", "/static//etc/passwd", "/static/nothing.js"):  # fmt: skip
+                         "/static/%00", "/static//etc/passwd", "/static/nothing.js",
+                         "/static/" + 5000 * "a"):  # fmt: skip
                 status, _, body = await get(path)
                 assert status == 404, path
                 assert b"secret" not in body

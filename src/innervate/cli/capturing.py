@@ -15,7 +15,7 @@ import innervate
 from innervate.cli.errors import UserError, say
 from innervate.export import links, pcapng
 from innervate.export.errors import ExportError
-from innervate.live import status
+from innervate.live import private, status
 from innervate.network import networks
 
 # Nodes tell of their frames a little later, each when it gets to it: time to put them in order.
@@ -37,7 +37,7 @@ def capture(names: list[str], out: Path | None, for_s: float) -> int:
                             "wireshark -k -i -")  # fmt: skip
         return asyncio.run(Recorder(sockets, sys.stdout.buffer).run(for_s))
     try:
-        with out.open("wb") as file:
+        with private.create(out) as file:
             return asyncio.run(Recorder(sockets, file).run(for_s))
     except OSError as error:
         raise ExportError(f"{out} cannot be written: {error.strerror}") from None

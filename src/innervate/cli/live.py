@@ -82,6 +82,8 @@ def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:
     words = networks()[status.ask_one(where, {"do": "status"})["kind"]].live_words
     request = {"do": "listen", "alarms": True, **({"in_order": True} if in_order else {})}
     for answer in status.ask(where, request):
+        if "missed" in answer:
+            print(f"{answer['missed']} missed here: they were not read in time", file=sys.stderr)
         if "from" not in answer:
             continue
         if as_json:

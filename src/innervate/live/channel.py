@@ -16,6 +16,7 @@ from typing import Any
 from innervate.live.channel_radio import DATAGRAM_MAX, HEARD, JOIN, PLUG, SEND
 from innervate.live.engine import clock_us
 from innervate.live.errors import LiveError
+from innervate.live.machine import machine
 from innervate.live.nodefile import address
 
 LOGGED = 4096  # transmissions
@@ -24,6 +25,7 @@ TURNAROUND_US = 5_000
 LEASE_US = 2_500_000  # a station that joins no more for so long may come back at another address
 STATIONS = 1024
 SLOTS_MAX = 4095
+HEAD_BYTES = 32  # a frame may have so many more than its slots, a byte each
 EARLY_US, LATE_US = 1_000_000, 10_000_000  # when a station can have decided, from now
 DELAY_US = 500  # from a station to every other: who has sent listens again before an answer comes
 
@@ -57,6 +59,8 @@ class Ear:
         deaf_until: it sends, or turns round, until then, us; 0 = it listens.
         candidate: the signal that it may receive, None = none or disturbed.
         told: the carrier as told last.
+        told_at: when its plug's changes were told last, us; they are told once a slot at most.
+        owed: one is to be told when the slot is over.
     """
 
     where: Any
@@ -66,6 +70,8 @@ class Ear:
     deaf_until: int = 0
     candidate: Air | None = None
     told: tuple[bool, bool] = (False, False)
+    told_at: int = -LATE_US
+    owed: bool = False
 
 
 @dataclass(slots=True)
@@ -97,7 +103,7 @@ class Medium:
         Raises:
             LiveError: the address cannot be used.
         """
-        sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
         sock.setblocking(False)
         try:
             sock.bind(where)
@@ -152,18 +158,41 @@ class Medium:
             return True
         if station >= STATIONS or (known is not None and now - known.joined_at < LEASE_US):
             return False
+        if not self._makes_room(where, now):
+            return False
         self._ears[station] = ear = Ear(where, now)
         ear.told = self._carrier(ear)
         self._say(ear, b"R", now, b"")  # it may have sent when no channel was there
+        return True
+
+    def _makes_room(self, where: Any, now: int) -> bool:
+        """An address is one station: another number there has to be gone for a while."""
+        for station, ear in self._ears.items():
+            if ear.where == where:
+                if now - ear.joined_at < LEASE_US:
+                    return False
+                del self._ears[station]
+                return True
         return True
 
     def _plug(self, ear: Ear, plugged: bool) -> None:
         if plugged == ear.plugged:
             return
         ear.plugged, ear.candidate = plugged, None
-        if not ear.deaf_until:
+        if ear.owed:
+            return
+        wait_us = ear.told_at + self.slot_us - clock_us()
+        if wait_us <= 0:
+            self._tell_plug(ear)
+        else:  # a plug that comes and goes all the time is told of no more often than slots are
+            ear.owed = True
+            asyncio.get_running_loop().call_later(wait_us / 1e6, self._tell_plug, ear)
+
+    def _tell_plug(self, ear: Ear) -> None:
+        ear.owed, ear.told_at = False, clock_us()
+        if not ear.deaf_until and ear in self._ears.values():
             ear.told = self._carrier(ear)
-            self._say(ear, b"C", clock_us(), b"")
+            self._say(ear, b"C", ear.told_at, b"")
 
     def _carrier(self, ear: Ear) -> tuple[bool, bool]:
         """What a station hears: somebody, just one."""
@@ -175,6 +204,8 @@ class Medium:
         now = clock_us()
         start = max(now, at + self.turnaround_us)
         if not -LATE_US <= at - now <= EARLY_US or not 1 <= slots <= SLOTS_MAX or start < ear.ends:
+            return False
+        if len(data) > slots + HEAD_BYTES:
             return False
         self.late += start > at + self.turnaround_us
         air = Air(station, start, start + slots * self.slot_us, data)

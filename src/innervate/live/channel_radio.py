@@ -8,6 +8,7 @@ import struct
 from contextlib import suppress
 
 from innervate.live.engine import clock_us
+from innervate.live.machine import machine
 from innervate.live.radio import Listener
 
 DATAGRAM_MAX = 2048
@@ -52,7 +53,7 @@ class MediumRadio:
     async def start(self, listener: Listener) -> None:
         """Join the channel; `listener` is told of carriers and frames."""
         self._listener = listener
-        sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
         sock.setblocking(False)
         sock.connect(self.where)
         self._socket = sock

@@ -6,7 +6,6 @@ was declared, so that its status and what it delivers can be told without knowin
 
 from __future__ import annotations
 
-import secrets
 from collections import Counter
 from collections.abc import AsyncGenerator, Callable
 from functools import partial
@@ -20,6 +19,7 @@ from innervate.live.build import links_of, sealer_of, state_of
 from innervate.live.errors import LiveError
 from innervate.live.keys import Sealer
 from innervate.live.links import Link
+from innervate.live.machine import machine
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import Loaded, NodeFile
 from innervate.live.parameters import check_parameters
@@ -156,14 +156,19 @@ class DeclaredNode(LiveNode):
         """
         if self.engine is None:
             raise ValueError("node not started")
+        ranges = {name: (low, high)
+                  for name, _length, low, high, *_ in self.stack.network.fields.FRAME}  # fmt: skip
         for name, value in values.items():
-            if not hasattr(self.stack.item, name):
+            if name not in ranges:
                 raise ValueError(f"{name} is no field of a frame")
             many = isinstance(getattr(self.stack.item, name), list)
             numbers = value if many and isinstance(value, list) else [value]
             count = len(getattr(self.stack.item, name)) if many else 1
-            if len(numbers) != count or not all(isinstance(one, int) for one in numbers):
-                raise ValueError(f"{name} has {count} values, whole numbers")
+            low, high = ranges[name]
+            if len(numbers) != count or not all(
+                type(one) is int and low <= one <= high for one in numbers
+            ):
+                raise ValueError(f"{name} has {count} values, whole numbers from {low} to {high}")
             setattr(self.stack.item, name, list(numbers) if many else value)
         self.outcomes["inputs"] += 1
         self.engine.input(kind, self.stack.item)
@@ -219,7 +224,8 @@ def build(loaded: Loaded) -> DeclaredNode:
             f"{loaded.path}: ports must name the node's port of each of its {paths} paths, "
             "each once"
         )
-    stack = DeclaredStack(network, table.number, dict(table.protocol), secrets.randbits(60), ports)
+    seed = machine().chance.getrandbits(60)
+    stack = DeclaredStack(network, table.number, dict(table.protocol), seed, ports)
     return DeclaredNode(loaded.name, stack, links, sealer_of(loaded, state), state)
 
 

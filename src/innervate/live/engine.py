@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from collections import Counter
 from collections.abc import Callable
 from typing import Any, Protocol
 
 from innervate.dialect.arith import HALF30, MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
+from innervate.live.machine import machine
 
 OUTBOX = 32
 
@@ -64,7 +64,7 @@ class Stack(Protocol):
 
 def clock_us() -> int:
     """The driver's clock, us, 64 bits; monotonic."""
-    return time.monotonic_ns() // 1000
+    return machine().monotonic_ns() // 1000
 
 
 class Engine:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections import Counter
 from hashlib import blake2s
 from pathlib import Path
 from typing import NamedTuple
 
 from innervate.live.errors import LiveError
+from innervate.live.machine import machine
 from innervate.live.state import State
 from innervate.network import networks
 from innervate.wire import seal
@@ -28,7 +28,7 @@ def read_key(text: str, folder: Path) -> bytes:
     if text.startswith("file:"):
         path = folder / text[5:]
         try:
-            text = path.read_text().strip()
+            text = machine().read_text(path).strip()
         except (OSError, UnicodeDecodeError) as error:
             why = getattr(error, "strerror", None) or "no text"
             raise LiveError(f"{path}: the key cannot be read: {why}") from None
@@ -91,7 +91,7 @@ class Sealer:
             mark: _windows(seen) for mark, seen in state.seen.items()
         }
         # Without a file no counter comes twice while the clock is right: they never fall behind it.
-        self.counter = max(state.counter, int(time.time() * 1000) * PER_MS)
+        self.counter = max(state.counter, machine().time_ns() // 1_000_000 * PER_MS)
         if self.counter + AHEAD > seal.COUNTER_MAX:
             raise LiveError(
                 f"{state.path or 'clock'}: no counters are left for seals; set the clock, remove "

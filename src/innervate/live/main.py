@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import signal
-import sys
 from collections import Counter
 from collections.abc import AsyncGenerator
 from pathlib import Path
@@ -13,16 +13,19 @@ from typing import Any
 from innervate.live import status, tap
 from innervate.live.build import build, keys_of
 from innervate.live.errors import LiveError
+from innervate.live.machine import machine
 from innervate.live.metrics import MetricsPage
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import Loaded, address, load
 from innervate.live.notices import Notices
+from innervate.live.pending import Pending
 from innervate.live.receipts import FINAL
 from innervate.live.rotation import Rotation
 from innervate.live.streams import Form
 
 DRAIN_S = 2.0
 SAVE_S = 10.0
+HEARD_MAX = 4096  # what waits for a listener that reads slowly, or not at all
 REQUESTS = ("status", "send", "listen", "cut", "restore", "loose", "capture", "stop")
 
 
@@ -46,7 +49,8 @@ class Process:
         self.rotation = None if sealer is None else Rotation(sealer)
         named = loaded.table.socket
         where = Path(named) if named else status.folder() / f"{loaded.name}.sock"
-        self.server = status.Server(where, self._answer, self.node.callers)
+        is_ours = not named and not os.environ.get("INNERVATE_RUN")
+        self.server = status.Server(where, self._answer, self.node.callers, is_ours)
         self.page: MetricsPage | None = None
         if loaded.table.metrics is not None:
             self.page = MetricsPage(address(loaded.table.metrics, str(loaded.path)), self.node)
@@ -128,7 +132,7 @@ class Process:
         return text
 
     def _say(self, text: str) -> None:
-        print(f"{self.loaded.name}: {text}", file=sys.stderr, flush=True)
+        machine().say(f"{self.loaded.name}: {text}")
 
     async def _answer(self, request: dict[str, Any], writer: status.Writer) -> None:
         what = request.get("do")
@@ -166,11 +170,11 @@ class Process:
                 await writer.line({"state": told, "reason": receipt.reason})
 
     async def _listen(self, request: dict[str, Any], writer: status.Writer) -> None:
-        pumps = [
-            asyncio.ensure_future(_pump(stream, form, writer))
-            for stream, form in self.node.streams(request)
-        ]
+        heard: Pending[dict[str, Any]] = Pending(HEARD_MAX)
+        streams = self.node.streams(request)
         await writer.line({"listening": self.loaded.name})
+        pumps = [asyncio.ensure_future(_pump(stream, form, heard)) for stream, form in streams]
+        pumps.append(asyncio.ensure_future(_tell(heard, writer)))
         try:
             done, _ = await asyncio.wait(pumps, return_when=asyncio.FIRST_COMPLETED)
             for pump in done:
@@ -180,9 +184,20 @@ class Process:
                 pump.cancel()
 
 
-async def _pump(stream: AsyncGenerator[Any, None], form: Form, writer: status.Writer) -> None:
+async def _pump(
+    stream: AsyncGenerator[Any, None], form: Form, heard: Pending[dict[str, Any]]
+) -> None:
     try:
         async for item in stream:
-            await writer.line(form(item))
+            heard.put(form(item))
     finally:
         await stream.aclose()
+
+
+async def _tell(heard: Pending[dict[str, Any]], writer: status.Writer) -> None:
+    while True:
+        items, missed = await heard.take()
+        for item in items:
+            await writer.line(item)
+        if missed:
+            await writer.line({"missed": missed})

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 from innervate.live.admission import BoundedListener, Bounds
 from innervate.live.errors import LiveError
+from innervate.live.hosts import OwnNames
 from innervate.live.node import LiveNode
 
 REQUEST_MAX = 8192
@@ -28,6 +29,7 @@ class MetricsPage:
     def __init__(self, where: tuple[str, int], node: LiveNode) -> None:
         self.where = where
         self.node = node
+        self._names = OwnNames(where[0])
         self.listener: BoundedListener | None = None
 
     async def start(self) -> None:
@@ -53,11 +55,7 @@ class MetricsPage:
         try:
             async with asyncio.timeout(ASK_S):
                 head = await reader.readuntil(b"\r\n\r\n")
-                found = head.startswith(b"GET /metrics ")
-                body = (
-                    "".join(f"{line}\n" for line in lines(self.node)) if found else "see /metrics\n"
-                )
-                code = "200 OK" if found else "404 Not Found"
+                code, body = self._answer(head)
                 data = body.encode()
                 writer.write(
                     f"HTTP/1.1 {code}\r\nContent-Type: text/plain; version=0.0.4\r\n"
@@ -68,6 +66,20 @@ class MetricsPage:
         except (TimeoutError, ConnectionError, asyncio.IncompleteReadError,
                 asyncio.LimitOverrunError):  # fmt: skip
             pass
+
+    def _answer(self, head: bytes) -> tuple[str, str]:
+        """A page of somebody else's that has led a name of its own here reads nothing."""
+        if not self._is_ours(head):
+            return "421 Misdirected Request", "not the name of this node\n"
+        if not head.startswith(b"GET /metrics "):
+            return "404 Not Found", "see /metrics\n"
+        return "200 OK", "".join(f"{line}\n" for line in lines(self.node))
+
+    def _is_ours(self, head: bytes) -> bool:
+        """True if a request is addressed to us: by number, or by a name of this machine's."""
+        hosts = [line[5:].strip() for line in head.decode("latin-1").split("\r\n")
+                 if line[:5].lower() == "host:"]  # fmt: skip
+        return len(hosts) == 1 and self._names.hold(hosts[0])
 
 
 def lines(node: LiveNode) -> Iterator[str]:

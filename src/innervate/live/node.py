@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import random
-import time
 from collections import Counter
 from collections.abc import Callable
 from typing import Any
@@ -11,6 +9,7 @@ from typing import Any
 from innervate.live.engine import Engine, Stack, clock_us
 from innervate.live.keys import Sealer
 from innervate.live.links import Link, Path
+from innervate.live.machine import machine
 from innervate.live.receipts import Receipt
 from innervate.live.state import State
 from innervate.live.streams import Arrivals, Stream
@@ -64,7 +63,7 @@ class LiveNode:
         self.callers: Counter[str] = Counter()
         self.requests: dict[str, Answerer] = {}
         self.engine: Engine | None = None
-        self.started_at = time.time()
+        self.started_at = clock_us()
 
     async def start(self) -> None:
         """Open the links and switch the protocol on.
@@ -122,18 +121,18 @@ class LiveNode:
         if not 0 <= loss <= 1:
             raise ValueError(f"loss must be 0 to 1, the share that is lost, not {loss:g}")
         path.cut, path.loss = what == "cut", loss
-        self._tell(time.time_ns(), port, False, b"", f"event: {what}")
+        self._tell(machine().time_ns(), port, False, b"", f"event: {what}")
         return path
 
     def _receive(self, path: Path, data: bytes) -> None:
         if path.cut:
-            self._tell(time.time_ns() if self.taps else 0, path.port, False, data, CUT)
+            self._tell(machine().time_ns() if self.taps else 0, path.port, False, data, CUT)
             return
-        if path.loss and random.random() < path.loss:
+        if path.loss and machine().chance.random() < path.loss:
             return
         path.counters["received"] += 1
         path.counters["received bytes"] += len(data)
-        at_ns = time.time_ns() if self.taps else 0
+        at_ns = machine().time_ns() if self.taps else 0
         opened = None
         if self.sealer is not None:
             opened = self.sealer.open(data)
@@ -156,7 +155,7 @@ class LiveNode:
             data = self.sealer.close(data)
         ports = self.stack.ports_of(port, frame, attempt)
         for path in self.paths if ports is None else [self.paths[i] for i in ports]:
-            at_ns = time.time_ns() if self.taps else 0  # before anybody can have received it
+            at_ns = machine().time_ns() if self.taps else 0  # before anybody can have received it
             if not path.cut:
                 path.send(data)
             self._tell(at_ns, path.port, True, bare, CUT if path.cut else "")
@@ -204,7 +203,7 @@ class LiveNode:
         paths = [_path_status(path, now, self.stack.silent_us) for path in self.paths]
         return {
             "name": self.name,
-            "up_s": round(time.time() - self.started_at, 1),
+            "up_s": round((clock_us() - self.started_at) / 1e6, 1),
             "sealed": self.sealer is not None,
             "keys": self._keys_status(),
             "state": self.state.status(),

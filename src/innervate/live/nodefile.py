@@ -12,6 +12,7 @@ import msgspec
 from msgspec import Meta, Struct, field
 
 from innervate.live.errors import LiveError
+from innervate.live.machine import machine
 from innervate.network import networks
 
 Port = Annotated[int, Meta(ge=1, le=65_535)]
@@ -125,7 +126,7 @@ def load(path: Path) -> Loaded:
         LiveError: it cannot be read or says something that cannot be; one line.
     """
     try:
-        raw = tomllib.loads(path.read_text(encoding="utf-8"))
+        raw = tomllib.loads(machine().read_text(path))
     except OSError as error:
         raise LiveError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:

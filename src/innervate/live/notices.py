@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
+
+from innervate.live.machine import machine
 
 PERIOD_S = 60.0
 
@@ -21,7 +22,7 @@ class Notices:
         self,
         say: Callable[[str], None],
         period_s: float = PERIOD_S,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = lambda: machine().monotonic_ns() / 1e9,
     ) -> None:
         self._say = say
         self._period_s = period_s

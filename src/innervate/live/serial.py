@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-import os
-import termios
 from contextlib import suppress
 
 from innervate.live.errors import LiveError
 from innervate.live.links import Link, Path, Receiver
+from innervate.live.machine import SerialPort, machine
+from innervate.live.serial_port import is_speed
 from innervate.wire import cobs
 
 READ_BYTES = 4096
@@ -36,7 +36,7 @@ class SerialLink(Link):
             self.path.ends = (device, far)
         self.paths = [self.path]
         self.path.up = False
-        self._fd = -1
+        self._port: SerialPort | None = None
         self._receive: Receiver | None = None
         self._decoder = cobs.Decoder(FRAME_MAX)
         self._waiting = bytearray()
@@ -45,7 +45,7 @@ class SerialLink(Link):
 
     async def open(self, receive: Receiver) -> None:
         """Open the port, or wait until it is plugged in; a wrong speed is the user's mistake."""
-        if getattr(termios, f"B{self.baud}", None) is None:
+        if not is_speed(self.baud):
             raise LiveError(f"{self.device}: this system has no {self.baud} baud; try 115200")
         self._receive = receive
         self._closed = False
@@ -65,8 +65,9 @@ class SerialLink(Link):
                 return False
             self._waiting += data
             return True
+        assert self._port is not None
         try:
-            count = os.write(self._fd, data)
+            count = self._port.write(data)
         except BlockingIOError:
             count = 0
         except OSError:
@@ -74,25 +75,18 @@ class SerialLink(Link):
             return False
         if count < len(data):
             self._waiting += data[count:]
-            asyncio.get_running_loop().add_writer(self._fd, self._writable)
+            asyncio.get_running_loop().add_writer(self._port.fileno(), self._writable)
         return True
 
     def _try_open(self) -> None:
         try:
-            fd = os.open(self.device, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+            self._port = machine().open_serial(self.device, self.baud)
         except OSError:
             self._later()
             return
-        try:
-            _set_raw(fd, self.baud)
-        except (OSError, termios.error):
-            os.close(fd)
-            self._later()
-            return
-        self._fd = fd
         self._decoder = cobs.Decoder(FRAME_MAX)
         self.path.up = True
-        asyncio.get_running_loop().add_reader(fd, self._readable)
+        asyncio.get_running_loop().add_reader(self._port.fileno(), self._readable)
 
     def _later(self) -> None:
         if not self._closed:
@@ -106,21 +100,22 @@ class SerialLink(Link):
         self._later()
 
     def _drop(self) -> None:
-        if self._fd < 0:
+        port, self._port = self._port, None
+        if port is None:
             return
         with suppress(RuntimeError):  # the loop may be closed already
             loop = asyncio.get_running_loop()
-            loop.remove_reader(self._fd)
-            loop.remove_writer(self._fd)
+            loop.remove_reader(port.fileno())
+            loop.remove_writer(port.fileno())
         with suppress(OSError):
-            os.close(self._fd)
-        self._fd = -1
+            port.close()
         self._waiting.clear()
         self.path.up = False
 
     def _readable(self) -> None:
+        assert self._port is not None
         try:
-            data = os.read(self._fd, READ_BYTES)
+            data = self._port.read(READ_BYTES)
         except BlockingIOError:
             return
         except OSError:
@@ -137,8 +132,9 @@ class SerialLink(Link):
             self._receive(self.path, frame)
 
     def _writable(self) -> None:
+        assert self._port is not None
         try:
-            count = os.write(self._fd, self._waiting)
+            count = self._port.write(self._waiting)
         except BlockingIOError:
             return
         except OSError:
@@ -146,7 +142,7 @@ class SerialLink(Link):
             return
         del self._waiting[:count]
         if not self._waiting:
-            asyncio.get_running_loop().remove_writer(self._fd)
+            asyncio.get_running_loop().remove_writer(self._port.fileno())
 
 
 class SerialPath(Path):
@@ -164,17 +160,3 @@ class SerialPath(Path):
             self.sent(data)
         else:
             self.counters["unsent: full"] += 1
-
-
-def _set_raw(fd: int, baud: int) -> None:
-    """8 bits, no parity, no flow control, nothing translated."""
-    speed = getattr(termios, f"B{baud}")
-    mode = termios.tcgetattr(fd)
-    mode[0] = 0
-    mode[1] = 0
-    mode[2] = termios.CS8 | termios.CREAD | termios.CLOCAL
-    mode[3] = 0
-    mode[4] = mode[5] = speed
-    mode[6][termios.VMIN] = 0
-    mode[6][termios.VTIME] = 0
-    termios.tcsetattr(fd, termios.TCSANOW, mode)

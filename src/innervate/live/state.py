@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import errno
 import json
-import os
-import time
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from innervate.live.errors import LiveError
+from innervate.live.machine import machine
 from innervate.wire.seal import COUNTER_MAX
 
 SENDER_MAX = 65_535
@@ -46,11 +45,11 @@ class State:
         self.trouble = ""
         self.failed = 0
         self._errno = 0
-        self._written_at: float | None = None
-        if path is None or not path.exists():
+        self._written_at: int | None = None
+        if path is None or not machine().exists(path):
             return
         try:
-            kept = json.loads(path.read_text())
+            kept = json.loads(machine().read_text(path))
             self.counter = _whole(kept["counter"], COUNTER_MAX)
             self.epoch = _whole(kept["epoch"], 255)
             for name, value in kept["seen"].items():
@@ -58,7 +57,7 @@ class State:
                     self.seen[name] = dict(map(_newest, value, value.values()))
                 else:
                     self.seen_before.update([_newest(name, value)])
-        except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             raise LiveError(
                 f"{path}: not a node's state; remove it, and give the network another key if it "
                 "has one, for frames that were sent under this one could be played back"
@@ -72,18 +71,17 @@ class State:
         kept = {"counter": self.counter, "seen": self.seen, "epoch": self.epoch}
         new = self.path.with_name(self.path.name + ".new")
         try:
-            with new.open("w") as file:
+            with machine().create(new) as file:
                 file.write(json.dumps(kept))
-                file.flush()
-                os.fsync(file.fileno())
-            os.replace(new, self.path)
+                machine().sync(file)
+            machine().replace(new, self.path)
         except OSError as error:
             with suppress(OSError):
-                new.unlink()
+                machine().remove(new)
             self.trouble, self._errno = error.strerror or str(error), error.errno or 0
             self.failed += 1
             return False
-        self.trouble, self._written_at = "", time.monotonic()
+        self.trouble, self._written_at = "", machine().monotonic_ns()
         return True
 
     def check_place(self) -> None:
@@ -99,7 +97,9 @@ class State:
         """The file, when it was written last (s ago; None = not by us), and what is the matter."""
         if self.path is None:
             return None
-        ago = None if self._written_at is None else round(time.monotonic() - self._written_at, 1)
+        ago = None
+        if self._written_at is not None:
+            ago = round((machine().monotonic_ns() - self._written_at) / 1e9, 1)
         return {"file": str(self.path), "written_s": ago, "trouble": self.trouble}
 
 
@@ -108,6 +108,6 @@ def _newest(sender: str, counter: Any) -> tuple[int, int]:
 
 
 def _whole(value: Any, most: int) -> int:
-    if not isinstance(value, int) or not 0 <= value <= most:
+    if type(value) is not int or not 0 <= value <= most:
         raise ValueError(f"{value} is no number from 0 to {most}")
     return value

@@ -13,27 +13,33 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from innervate.live import private
 from innervate.live.admission import BoundedListener, Bounds
 from innervate.live.errors import LiveError
+from innervate.live.machine import ANSWER_S, machine
+from innervate.live.machine import answers as answers
 
 LINE_MAX = 65_536
 FULL = b'{"error": "64 are connected to this node already; end a listen or a capture"}\n'
 BOUNDS = Bounds(most=64, burst=64, full=FULL, limit=LINE_MAX)
-ANSWER_S = 5.0
 
 # Answers a request; gets the means to write more lines.
 Handler = Callable[[dict[str, Any], "Writer"], Awaitable[None]]
 
 
 def folder() -> Path:
-    """Where sockets of running nodes are: INNERVATE_RUN, or a folder of the user's own."""
+    """Where sockets of running nodes are: INNERVATE_RUN, or a folder of the user's own.
+
+    Raises:
+        LiveError: the user's own folder was made by somebody else, or others may change it.
+    """
     named = os.environ.get("INNERVATE_RUN")
     if named:
         return Path(named)
     runtime = os.environ.get("XDG_RUNTIME_DIR")
     if runtime:
         return Path(runtime) / "innervate"
-    return Path(tempfile.gettempdir()) / f"innervate-{os.getuid()}"
+    return private.checked(Path(tempfile.gettempdir()) / f"innervate-{os.getuid()}")
 
 
 class Writer:
@@ -55,10 +61,18 @@ class Server:
         path: the socket; its folder is made, an old socket is replaced.
         handle: answers requests.
         counts: callers that could not be let in.
+        is_ours: the folder is to be nobody else's.
     """
 
-    def __init__(self, path: Path, handle: Handler, counts: Counter[str] | None = None) -> None:
+    def __init__(
+        self,
+        path: Path,
+        handle: Handler,
+        counts: Counter[str] | None = None,
+        is_ours: bool = False,
+    ) -> None:
         self.path = path
+        self.is_ours = is_ours
         self._counts = Counter() if counts is None else counts
         self._handle = handle
         self.listener: BoundedListener | None = None
@@ -70,18 +84,10 @@ class Server:
             LiveError: the socket cannot be made, or a running node has it.
         """
         try:
-            self.path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-            if self.path.exists():
-                if answers(self.path):
-                    raise LiveError(f"{self.path}: a node with this name runs already; stop it")
-                self.path.unlink()
-            sock = socket.socket(socket.AF_UNIX)
-            try:
-                sock.bind(str(self.path))
-                self.path.chmod(0o600)
-            except OSError:
-                sock.close()
-                raise
+            if self.is_ours:  # somebody else can have been quicker to make it
+                self.path.parent.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
+                private.checked(self.path.parent)
+            sock = machine().listen_at(self.path)
             self.listener = BoundedListener("status", sock, self._serve, BOUNDS, self._counts)
             self.listener.open()
         except OSError as error:
@@ -92,7 +98,7 @@ class Server:
         if self.listener is not None:
             self.listener.close()
             with suppress(OSError):
-                self.path.unlink()
+                machine().remove(self.path)
 
     async def _serve(self, reader: asyncio.StreamReader, stream: asyncio.StreamWriter) -> None:
         writer = Writer(stream)
@@ -110,19 +116,8 @@ async def answer(line: bytes, handle: Handler, writer: Writer) -> None:
         if not isinstance(request, dict):
             raise ValueError("a request is a JSON object")
         await handle(request, writer)
-    except (ValueError, KeyError, TypeError, OverflowError) as error:
+    except (ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
         await writer.line({"error": str(error)})
-
-
-def answers(path: Path) -> bool:
-    """True if somebody listens on this socket."""
-    with socket.socket(socket.AF_UNIX) as sock:
-        sock.settimeout(ANSWER_S)
-        try:
-            sock.connect(str(path))
-        except OSError:
-            return False
-        return True
 
 
 def ask(path: Path, request: dict[str, Any]) -> Iterator[dict[str, Any]]:

@@ -5,10 +5,10 @@ They are told in the clear, opened where they are sealed: only the node's own us
 
 from __future__ import annotations
 
-import asyncio
 from typing import Any
 
 from innervate.live.node import LiveNode
+from innervate.live.pending import Pending
 from innervate.live.status import Writer
 
 PENDING_MAX = 20_000  # frames that wait for a slow reader
@@ -22,27 +22,17 @@ async def serve(node: LiveNode, writer: Writer) -> None:
     "frames", lists of what a Tap is given with the bytes in hexadecimal, and "missed", how many
     were left out because nobody read fast enough.
     """
-    pending: list[tuple[int, int, bool, str, str]] = []
-    missed = 0
-    some = asyncio.Event()
+    pending: Pending[tuple[int, int, bool, str, str]] = Pending(PENDING_MAX)
 
     def take(at_ns: int, port: int, out: bool, data: bytes, why: str) -> None:
-        nonlocal missed
-        if len(pending) >= PENDING_MAX:
-            missed += 1
-        else:
-            pending.append((at_ns, port, out, data.hex(), why))
-        some.set()
+        pending.put((at_ns, port, out, data.hex(), why))
 
     node.taps.append(take)
     try:
         await writer.line(about(node))
         while True:
-            await some.wait()
-            some.clear()
-            # A frame is told once it was handled, those that it caused before it.
-            told, pending[:] = sorted(pending), []
-            lost, missed = missed, 0
+            told, lost = await pending.take()
+            told.sort()  # a frame is told once it was handled, those that it caused before it
             for i in range(0, len(told), BATCH):
                 await writer.line({"frames": told[i : i + BATCH], "missed": lost})
                 lost = 0

@@ -10,6 +10,7 @@ from contextlib import suppress
 
 from innervate.live.errors import LiveError
 from innervate.live.links import Link, Path, Receiver
+from innervate.live.machine import machine
 
 Address = tuple[str, int]
 
@@ -86,7 +87,7 @@ class UdpLink(Link):
             path.up = True
 
     def _make(self) -> socket.socket:
-        sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             sock.setblocking(False)
             sock.bind(self.bind)
@@ -163,7 +164,7 @@ class MulticastLink(UdpLink):
         self._group: UdpPath = self.paths[0]
 
     def _make(self) -> socket.socket:
-        sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             sock.setblocking(False)
             sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from innervate.live import files, status
+from innervate.live import files, private, status
 from innervate.live.asking import ask
 from innervate.live.deployment import Deployment, Table
 from innervate.live.errors import LiveError
@@ -66,7 +66,7 @@ class Processes:
         Raises:
             LiveError: something is missing, or a node does not come up; its own line is in it.
         """
-        self.folder.mkdir(parents=True, exist_ok=True)
+        self.folder.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
         for name in self.names:
             if status.answers(self.socket(name)):
                 raise LiveError(
@@ -204,8 +204,7 @@ class Processes:
         if self.keys is not None:
             tables = {**tables, "keys": self.keys}
         path = self.folder / f"{name}.toml"
-        path.touch(mode=0o600)  # keys may stand in it
-        path.write_text(files.text(head, tables, links))
+        private.write(path, files.text(head, tables, links))  # keys may stand in it
 
     def _file(self, number: int, paths: dict[int, Table]) -> NodeTables:
         """What a node's file says: its own keys, tables, links."""

@@ -6,11 +6,11 @@ token, it cannot hide its origin, and a name that it has lead here (DNS rebindin
 
 from __future__ import annotations
 
-import ipaddress
 import os
 import secrets
-import socket
 from collections.abc import Mapping
+
+from innervate.live.hosts import OwnNames
 
 TOKEN_BYTES = 18
 TOKEN_GIVEN = "INNERVATE_WATCH_TOKEN"  # so that pages know a server that was started anew
@@ -26,19 +26,11 @@ class Guard:
 
     def __init__(self, host: str) -> None:
         self.token = os.environ.get(TOKEN_GIVEN) or secrets.token_urlsafe(TOKEN_BYTES)
-        own = socket.gethostname().lower()
-        self._names = {"localhost", host.lower(), own, f"{own}.local"}
+        self._names = OwnNames(host)
 
     def knows(self, headers: Mapping[str, str]) -> bool:
         """True if a request is addressed to us: by number, or by a name of ours."""
-        name = _without_port(headers.get("host", ""))
-        if name in self._names:
-            return True
-        try:
-            ipaddress.ip_address(name.strip("[]"))
-        except ValueError:
-            return False
-        return True
+        return self._names.hold(headers.get("host", ""))
 
     def is_own_page(self, headers: Mapping[str, str]) -> bool:
         """True if no page, or one that we served, is behind a request."""
@@ -51,10 +43,3 @@ class Guard:
     def has_token(self, given: str) -> bool:
         """True if that is the token."""
         return secrets.compare_digest(given.encode(), self.token.encode())
-
-
-def _without_port(host: str) -> str:
-    name = host.lower()
-    if name.startswith("["):
-        return name.partition("]")[0] + "]"
-    return name.partition(":")[0]

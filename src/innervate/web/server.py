@@ -20,6 +20,7 @@ from innervate.web.hub import Hub
 
 STATIC = Path(__file__).parent / "static"
 TRY_LATER = 1013
+NAME_MAX = 255  # longer ones no file system has, and asking for them is an error
 
 _PAGE_HEADERS = {
     "Content-Security-Policy": "default-src 'self'; base-uri 'none'; frame-ancestors 'none'",
@@ -97,7 +98,7 @@ async def _serve(hub: Hub, websocket: WebSocket) -> None:
 
 def _file(name: str) -> Response:
     path = STATIC / name
-    if not _NAME.fullmatch(name) or not path.is_file():
+    if len(name) > NAME_MAX or not _NAME.fullmatch(name) or not path.is_file():
         what = "the page is not in this installation" if name == "index.html" else "no such file"
         return PlainTextResponse(f"{what}\n", 404, _PAGE_HEADERS)
     return FileResponse(path, headers=_PAGE_HEADERS)

@@ -103,6 +103,9 @@ def test_its_events_are_played_and_its_users_give_and_hear(tmp_path):
                 asked(network, "n1", do="input", kind=1, item={"weight": 7})
             with pytest.raises(LiveError, match="load has 2 values"):
                 asked(network, "n1", do="input", kind=1, item={"load": 7})
+            for load in ([0, 2**60], [0, -1], [True, 0], [0, 1e999], [0, None]):
+                with pytest.raises(LiveError, match="whole numbers from 0 to 255"):
+                    asked(network, "n1", do="input", kind=1, item={"load": load})
             with pytest.raises(LiveError, match="a tokenring has no messages"):
                 asked(network, "n1", do="send", payload="00")
         finally:

@@ -16,7 +16,7 @@ from innervate.sim.counts import Counts
 from innervate.sim.driver import Ended, Simulation
 from innervate.sim.queue import with_command
 from innervate.sim.ranges import is_in_range
-from innervate.sim.status import BROKEN, POOL_FULL
+from innervate.sim.status import POOL_FULL
 from innervate.sim.tables import Names, get, put
 
 
@@ -87,12 +87,13 @@ class Cables(Simulation):
         at = max(int(get(run, 0, "broken_at")), 0) / 1e6
         return f"invariant broken at {at:.6f} s (seed {self.plan.seed}): {what}"
 
-    def check_rest(self) -> None:
+    def broken_between(self) -> tuple[int, int] | None:
         """The ranges of the node with a port per interface."""
         (own, of_port), pc = self.sink, self.world.pc
-        if pc and not (is_in_range(pc.own[0], own) and is_in_range(pc, of_port)):
-            put(self.world.run, 0, broken=w.BROKEN_RANGE, broken_node=self.plan.graph.cells,
-                broken_at=self.clock_us(), status=BROKEN)  # fmt: skip
+        if not pc or (is_in_range(pc.own[0], own) and is_in_range(pc, of_port)):
+            return None
+        put(self.world.run, 0, broken_at=self.clock_us())
+        return w.BROKEN_RANGE, self.plan.graph.cells
 
     def clock_us(self) -> int:
         """Time of the newest event, us."""

@@ -47,7 +47,8 @@ def build(
     `of` declares the records of its protocol.
 
     `keep` keeps a row per report, transmission and delivered packet, `trail` one per handler call,
-    `tap` copies of frames on the air; there is `room` for so many rows before the loop stops, not for `Tables.rows`.
+    `tap` copies of frames on the air; there is `room` for so many rows before the loop stops, if
+    that is said.
     """
     tables = Tables(plain)
     n = plan.stations

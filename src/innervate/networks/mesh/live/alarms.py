@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import time
 from collections import deque
 from typing import Any, NamedTuple
 
+from innervate.live.machine import machine
 from innervate.live.streams import Arrivals
 from innervate.networks.mesh.payloads import FIELDS
 from innervate.networks.mesh.protocol.constants import ALARM
@@ -83,10 +83,10 @@ class Alarms:
 
     def note(self, alarm: Alarm) -> None:
         """An alarm came: remember it, and tell those who asked."""
-        self.recent.append((time.time(), alarm))
+        self.recent.append((machine().time_ns() / 1e9, alarm))
         self.arrivals.put(alarm)
 
     def status(self) -> list[dict[str, Any]]:
         """The newest alarms, with how long ago they came, s."""
-        now = time.time()
+        now = machine().time_ns() / 1e9
         return [{**alarm._asdict(), "ago_s": round(now - at, 3)} for at, alarm in self.recent]

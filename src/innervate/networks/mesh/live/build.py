@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import secrets
-
 from innervate.live.build import links_of, sealer_of, state_of
+from innervate.live.machine import machine
 from innervate.live.nodefile import Loaded
 from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.nodefile import DeliverTable, MeshFile
@@ -28,7 +27,7 @@ def build(loaded: Loaded) -> MeshNode:
     if table.fence is not None:
         rings = [table.fence.polygon, *table.fence.holes]
         params.update(fence_parameters(rings, f"{loaded.path}"))
-    stack = MeshStack(table.number, rank, params, secrets.randbits(60), table.robot)
+    stack = MeshStack(table.number, rank, params, machine().chance.getrandbits(60), table.robot)
     state = state_of(loaded)
     sealer, deliver = sealer_of(loaded, state), table.deliver or DeliverTable()
     orderly = Orderly(1000 * deliver.wait_ms, deliver.buffer)

@@ -10,8 +10,9 @@ from innervate.live.errors import LiveError
 from innervate.networks.mesh.live import walks
 from innervate.scenario.actions import ON_LINKS
 
-# They follow from the file itself, or stand in its [fence].
-NOT_IN_FILES = ("nodes", "width", "row", "told", "places", "points", "px", "py", "after")
+# They follow from the file itself, stand in its [fence], or are of live links and no simulation.
+NOT_IN_FILES = ("nodes", "width", "row", "told", "places", "points", "px", "py", "after",
+                "ack_adapt")  # fmt: skip
 
 
 class MeshDeployment(Deployment):

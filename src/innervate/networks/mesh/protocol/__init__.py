@@ -27,6 +27,11 @@ drops what comes again (A12).
 *End to end.* An origin keeps a message until its recipient acknowledges it; both keep to a window
 of sequence numbers, so that a retransmission is delivered once. Timeouts adapt to round trips.
 
+*Hops.* Where `ack_adapt` is on, a hop's ack may take the smoothed round trip to that neighbour
+longer than `ack_us`, or four mean deviations if that is more [RFC 6298]. Retried frames tell no
+round trip (Karn): they double the wait, until one that was sent once is acknowledged; an ack of
+what was given up tells how late it is.
+
 *Backoff.* Acks that are missing make for growing pauses of searches, then of all messages, never of
 alarms: a full channel heals (decision 0016).
 
@@ -38,7 +43,8 @@ raised again until the monitor has acknowledged them. Who hears a robot outside 
 `graph_jobs.py`, `pack.py`, `table.py` discovery and tables; `relay.py`, `send.py`, `route.py`,
 `search.py`, `upward.py`, `overheard.py` forwarding; `queue.py` what waits to be sent;
 `messages.py`, `retransmission.py`, `timeout.py` end to end; `neighbours.py`, `duplicates.py`,
-`backoff.py` what is remembered; `alarm.py`, `fence.py`, `watch.py` the fence; `frames.py` bytes.
+`backoff.py`, `hop.py` what is remembered; `alarm.py`, `fence.py`, `watch.py` the fence; `frames.py`
+bytes.
 Below it lies an access protocol: `csma.py`, or one of the radio's.
 
 States
@@ -165,7 +171,7 @@ Timers
 |----------------|---------------------------------------------------------------------------------|
 | `TX = 0`       | until the first queued frame is due: floods within `flood_us`, requests         |
 |                | `jitter_us`                                                                     |
-| `ACK_WAIT = 1` | `ack_us` from SENT on                                                           |
+| `ACK_WAIT = 1` | `ack_us` from SENT on; with `ack_adapt` a round trip to that neighbour longer   |
 | `ROUND = 2`    | a node: 2 `jitter_us` to look again; `listen_us` and up to `spread_us` to       |
 |                | respond; the gateway: `collect_us`                                              |
 | `TICK = 3`     | `tick_us`, by itself: `period`, `period_max`, `dead`, `dead_step`, `forget`,    |
@@ -265,6 +271,7 @@ Constants and settings
 | `STRAIN_FREE = 12`, `STRAIN_HEAVY = 28`,       | decision 0016: acks missing before searches,    |
 | `STRAIN_MAX = 44`, `PER_DOUBLING = 4`          | then messages pause; how fast pauses double     |
 | `LONGEST_US = 65536`                           | of a pause before it is doubled                 |
+| `LONGEST_US = 1048576`, `DOUBLED_MAX = 2`      | of a hop's round trip; of its wait, doublings   |
 | `LONGEST_US = 134217728`,                      | bounds of timeouts, so that sums stay below     |
 | `TICK_MAX_US = 4194304`                        | 2^30                                            |
 | `LIFETIME_TIMEOUTS = 48`                       | timeouts: how long a message may be tried       |

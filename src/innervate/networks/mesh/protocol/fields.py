@@ -91,6 +91,10 @@ def neighbours(k):
         ("until", k, 0, TIME, "us", "... then it is trusted again"),
         ("round_rssi", k, -128, 127, "dBm", "of its request in this round"),
         ("round_depth", k, 0, 255, "hops", "it advertised in this round; 255 not heard"),
+        ("hop_trip", k, 0, 1048576, "us", "smoothed round trip to it; 0 unknown"),
+        ("hop_spread", k, 0, 1048576, "us", "... its mean deviation"),
+        ("hop_doubled", k, 0, 2, "doublings", "of the wait for its acks: retried frames came"),
+        ("hop_failed", k, -1, TIME, "us", "when a frame began that it did not answer; -1 none"),
     )
 
 
@@ -182,6 +186,8 @@ QUEUED = (
     ("q_order", QUEUE, 0, TIME, "number", "first in, first out"),
     ("q_due", QUEUE, 0, TIME, "us", "not to be sent before"),
     ("q_born", QUEUE, 0, TIME, "us", "since when it waits here"),
+    ("q_sent", QUEUE, 0, TIME, "us", "handed down last"),
+    ("q_begun", QUEUE, 0, TIME, "us", "handed down first, for this hop"),
     ("q_tries", QUEUE, 0, 255, "tries", "transmissions of this hop so far"),
     ("q_fails", QUEUE, 0, 255, "failures", "hops that failed here"),
     ("q_copies", QUEUE, 0, 15, "copies", "broadcasts: still to be sent"),
@@ -254,6 +260,7 @@ PARAMS = (
     ("transmissions", 0, 1, 15, "tries", "per hop"),
     ("hop_acks", 0, 0, 1, "flag", "hops acknowledge; 0 = SENT says that the frame was received"),
     ("ack_us", 0, 1, 16777215, "us", "wait for a hop's ack, from SENT"),
+    ("ack_adapt", 0, 0, 1, "flag", "a hop's ack may take its neighbour's round trip longer"),
     ("suspect_us", 0, 1, 268435455, "us", "a neighbour that does not answer is avoided"),
     ("min_rssi", 0, -128, 127, "dBm", "weaker links are not reported"),
     ("jitter_us", 0, 0, 16777215, "us", "requests are passed on within"),

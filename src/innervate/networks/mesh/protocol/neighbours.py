@@ -19,6 +19,15 @@ def clear_neighbours(node, params):
         node.neighbour[k] = FREE
         node.suspect[k] = 0
         node.round_depth[k] = UNHEARD
+        forget_trips(node, k)
+
+
+def forget_trips(node, k):
+    """Nothing is known of how long the neighbour in place k takes to answer."""
+    node.hop_trip[k] = 0
+    node.hop_spread[k] = 0
+    node.hop_doubled[k] = 0
+    node.hop_failed[k] = -1
 
 
 def place_of(node, params, who):
@@ -55,6 +64,7 @@ def hear(node, params, who, rssi):
     node.heard[k] = node.ticks
     node.suspect[k] = 0
     node.round_depth[k] = UNHEARD
+    forget_trips(node, k)
     return k
 
 

@@ -54,6 +54,7 @@ from innervate.networks.mesh.protocol.duplicates import (
 from innervate.networks.mesh.protocol.fields import WAITING
 from innervate.networks.mesh.protocol.frames import clear_queue, is_sound
 from innervate.networks.mesh.protocol.gateway import collect, lead, on_response, reset, tick
+from innervate.networks.mesh.protocol.hop import learn_late, learn_trip
 from innervate.networks.mesh.protocol.jobs import on_ack, retry_jobs
 from innervate.networks.mesh.protocol.messages import on_message, take
 from innervate.networks.mesh.protocol.neighbours import clear_neighbours, hear, hear_again, sweep
@@ -150,7 +151,7 @@ def on_frame(node, gate, params, now, port, frame, out):
         return
     k = hear(node, params, frame.link_src, frame.rssi)
     if frame.kind == ACK:
-        on_hop_ack(node, params, now, frame, out)
+        on_hop_ack(node, params, now, frame, k, out)
     elif frame.link_dst == ALL:
         on_broadcast(node, params, now, frame, k, out)
     else:
@@ -161,12 +162,16 @@ def on_frame(node, gate, params, now, port, frame, out):
             kick(node, params, now, out)
 
 
-def on_hop_ack(node, params, now, frame, out):
-    """A hop has taken over what we sent."""
+def on_hop_ack(node, params, now, frame, k, out):
+    """A hop, the neighbour in place k, has taken over what we sent."""
     i = take_ack(node, frame)
     if i >= 0:
+        if params.ack_adapt:
+            learn_trip(node, now, i, k)
         tell_hop(node, i, out)
         kick(node, params, now, out)
+    elif params.ack_adapt:
+        learn_late(node, now, k)
 
 
 def on_broadcast(node, params, now, frame, k, out):

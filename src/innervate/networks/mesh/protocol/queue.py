@@ -21,6 +21,7 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.networks.mesh.protocol.fields import QUEUE
 from innervate.networks.mesh.protocol.frames import load, store
+from innervate.networks.mesh.protocol.hop import hop_wait
 
 FREE = 0
 WAITS = 1
@@ -187,6 +188,13 @@ def wake(node, now, out):
         set_timer(out, TX, (now + soonest) & MASK30)
 
 
+def note_sent(node, now, i):
+    """The frame in place i has left, perhaps not for the first time."""
+    node.q_sent[i] = now
+    if node.q_tries[i] == 1:
+        node.q_begun[i] = now
+
+
 def settle(node, params, now, sent, out):
     """The frame under way has left, or could not (sent = 0)."""
     i = node.busy
@@ -204,7 +212,11 @@ def settle(node, params, now, sent, out):
     elif node.q_flags[i] & ACK_WANTED or not sent:
         node.q_state[i] = UNACKED
         node.q_tries[i] = node.q_tries[i] + 1
-        wait = params.ack_us if sent else 0
+        wait = 0
+        if sent:
+            wait = hop_wait(node, params, i)
+            if params.ack_adapt:
+                note_sent(node, now, i)
         set_timer(out, ACK_WAIT, (now + wait) & MASK30)
     else:
         node.q_state[i] = FREE

@@ -21,6 +21,7 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.duplicates import clear_skipped, skip
 from innervate.networks.mesh.protocol.fields import QUEUE
 from innervate.networks.mesh.protocol.frames import add_hop, was_at
+from innervate.networks.mesh.protocol.hop import note_failed
 from innervate.networks.mesh.protocol.neighbours import DOUBT, is_lively, place_of, suspect, trust
 from innervate.networks.mesh.protocol.queue import UNACKED, WAITS, drop, kick
 from innervate.networks.mesh.protocol.route import (
@@ -206,6 +207,8 @@ def on_ack_timeout(node, params, now, out):
         node.q_due[i] = now
     else:
         failed = node.q_link_dst[i]
+        if params.ack_adapt:
+            note_failed(node, who, i)
         hop_failed(node, params, now, i, out)
         turn_away(node, params, failed, out)
     kick(node, params, now, out)

@@ -25,7 +25,8 @@ NO_FENCE: dict[str, Any] = {
 KEYS = {"tick": "beacon_s", "jobs": "table_window", "job": "table_retry_s",
         "job_tries": "table_tries", "min_rssi": "min_rssi_dbm"}  # fmt: skip
 # Parameters, keys of [protocol] and parts of a profile that are called the same.
-OF_PROFILE = ("mtu", "transmissions", "hop_acks", "ack_us", "e2e_adapt", "e2e_tries", "copies")
+OF_PROFILE = ("mtu", "transmissions", "hop_acks", "ack_us", "ack_adapt", "e2e_adapt",
+              "e2e_tries", "copies")  # fmt: skip
 IN_TICKS = ("period", "period_max", "dead", "dead_step", "forget")
 
 

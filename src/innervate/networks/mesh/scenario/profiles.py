@@ -26,6 +26,7 @@ class Profile(NamedTuple):
         dead_step: more for every standby behind the first.
         settled: messages start then if nothing is said: the first tables are there.
         hop_acks: hops acknowledge; False where the medium access says what was received.
+        ack_adapt: a hop's ack may take its neighbour's round trip longer.
     """
 
     byte_ns: int
@@ -55,6 +56,7 @@ class Profile(NamedTuple):
     dead_step: float
     settled: float
     hop_acks: bool = True
+    ack_adapt: bool = False
 
 
 def _ack_us(turnaround_us: int, phy_bytes: int, byte_ns: int, backoff_us: int) -> int:

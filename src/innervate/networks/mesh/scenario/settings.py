@@ -32,6 +32,7 @@ class MeshProtocolTable(keys.Table, frozen=True, kw_only=True):
     transmissions: Annotated[int, keys.whole("tries", 1, 15)] | None = None
     hop_acks: bool | None = None
     ack_us: Annotated[int, keys.whole("microseconds", 1, limit=16_777_215)] | None = None
+    ack_adapt: bool | None = None
     suspect_s: Wait | None = None
     min_rssi_dbm: Annotated[int, keys.whole("dBm", -128, 127)] | None = None
     jitter_s: Short | None = None

@@ -22,8 +22,8 @@ from innervate.sim.driver import Progress
 from innervate.sim.field import medium, motion, powers
 from innervate.sim.field.simulation import Field
 from innervate.sim.ranges import is_in_range
-from innervate.sim.status import BROKEN, POOL_FULL
-from innervate.sim.tables import get, put
+from innervate.sim.status import POOL_FULL
+from innervate.sim.tables import get
 
 SLICE_EVENTS = 200_000
 PLAIN_SLICE_EVENTS = 2_000
@@ -163,14 +163,13 @@ class MeshSimulation(Field):
         if status == loop.DUPLICATES_FULL:
             self.world = builder.grow_duplicates(self.world)
 
-    def check_rest(self) -> None:
+    def broken_between(self) -> tuple[int, int] | None:
         """The ranges of gateways' records: of hundreds of words, which few events change."""
         fields = mesh_fields.gate(self.plan.capacity)
         for rank in range(len(self.world.gates) - 1):
             if not is_in_range(self.world.gates[rank], fields):
-                put(self.world.run, 0, broken=recorder.BROKEN_RANGE,
-                    broken_node=self.plan.ranks.index(rank), status=BROKEN)  # fmt: skip
-                return
+                return recorder.BROKEN_RANGE, self.plan.ranks.index(rank)
+        return None
 
     def broken_line(self) -> str:
         """The broken invariant, in one line."""

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import secrets
-
 from innervate.live.channel_radio import MediumRadio
 from innervate.live.errors import LiveError
+from innervate.live.machine import machine
 from innervate.live.nodefile import Loaded, MediumTable, address
 from innervate.networks.radio.live.node import RadioNode
 from innervate.networks.radio.live.parameters import check_slots, radio_parameters
@@ -25,6 +24,6 @@ def build(loaded: Loaded) -> RadioNode:
         raise LiveError(f"{where}: frames on a shared channel are not sealed; remove [keys]")
     params = radio_parameters(dict(table.protocol), where)
     check_slots(params)
-    stack = StationStack(table.number, params, secrets.randbits(60))
+    stack = StationStack(table.number, params, machine().chance.getrandbits(60))
     radio = MediumRadio(table.number, address(table.link[0].address, where))
     return RadioNode(loaded.name, stack, radio, f"medium {table.link[0].address}")

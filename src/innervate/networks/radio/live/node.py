@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import random
-import time
 from collections.abc import AsyncGenerator, Callable
 from typing import Any
 
 from innervate.dialect import plain
 from innervate.dialect.access import PACKET, QUEUE, REPORT_DELIVERED
+from innervate.live.machine import machine
 from innervate.live.node import LiveNode
 from innervate.live.radio import Aerial, Radio
 from innervate.live.receipts import DELIVERED, REFUSED, Receipt
@@ -101,12 +100,12 @@ class RadioNode(LiveNode):
     def on_frame(self, at: int, data: bytes) -> None:
         """The radio received a frame."""
         path = self.paths[0]
-        if path.loss and random.random() < path.loss:
+        if path.loss and machine().chance.random() < path.loss:
             return
         path.counters["received"] += 1
         path.counters["received bytes"] += len(data)
         assert self.engine is not None
-        at_ns = time.time_ns() if self.taps else 0
+        at_ns = machine().time_ns() if self.taps else 0
         why = self.engine.read(data)
         if not why:
             self._bytes = data
@@ -123,7 +122,7 @@ class RadioNode(LiveNode):
             payload += self._packets[(frame.handle + k) % HANDLES][0]
         assert self.engine is not None
         data = wire.encode(frame, payload)
-        at_ns = time.time_ns() if self.taps else 0
+        at_ns = machine().time_ns() if self.taps else 0
         self.radio.send(self.engine.now, data, frame.slots)
         self.paths[0].sent(data)
         self._tell(at_ns, 0, True, data, "")

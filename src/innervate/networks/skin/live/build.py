@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import secrets
-
 from innervate.live.build import links_of, sealer_of, state_of
 from innervate.live.errors import LiveError
+from innervate.live.machine import machine
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import Loaded
 from innervate.networks.skin.live.node import CellNode, SinkNode
@@ -33,5 +32,5 @@ def build(loaded: Loaded) -> LiveNode:
             f"{loaded.path}: ports must name the cell's port of each of its {paths} paths, "
             "each once: W, E, up, down = 0 to 3"
         )
-    stack = CellStack(table.number, params, secrets.randbits(60), ports)
+    stack = CellStack(table.number, params, machine().chance.getrandbits(60), ports)
     return CellNode(loaded.name, stack, links, sealer, state, table.rate_hz)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import AsyncGenerator, Callable
 from typing import Any
 
 from innervate.live.keys import Sealer
 from innervate.live.links import Link
+from innervate.live.machine import machine
 from innervate.live.node import LiveNode
 from innervate.live.state import State
 from innervate.live.streams import Stream
@@ -102,7 +102,7 @@ class CellNode(LiveNode):
     def _deliver(self, kind: int, frame: Any) -> None:
         self.outcomes["commands received"] += 1
         self.command = frame.sq
-        to_all, at_us = frame.cell == EVERYBODY, time.time_ns() // 1000
+        to_all, at_us = frame.cell == EVERYBODY, machine().time_ns() // 1000
         found = Command(frame.sq, frame.dist, frame.proximity, to_all, frame.hops, at_us)
         self.arrivals.put(found)
 
@@ -179,7 +179,7 @@ class SinkNode(LiveNode):
         self.arrivals.put(Touch(
             frame.cell, frame.seq, frame.hops, self.stack.port, frame.proximity,
             (frame.force[0], frame.force[1], frame.force[2]), frame.temperature,
-            (frame.accel[0], frame.accel[1], frame.accel[2]), time.time_ns() // 1000,
+            (frame.accel[0], frame.accel[1], frame.accel[2]), machine().time_ns() // 1000,
         ))  # fmt: skip
 
 

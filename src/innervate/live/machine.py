@@ -1,0 +1,187 @@
+"""What a node finds on its machine: clocks, chance, files, sockets, serial ports.
+
+Whatever runs live asks `machine()` for them. A test hands in another machine (`on`), and whole
+networks run in one process under simulated time; the loop is asyncio's, and can be replaced too.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import random
+import socket
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
+from pathlib import Path
+from typing import IO, Protocol
+
+from innervate.live import private
+from innervate.live.errors import LiveError
+
+ANSWER_S = 5.0
+
+Socket = socket.socket
+
+
+class SerialPort(Protocol):
+    """An open serial port, raw; it never waits."""
+
+    def fileno(self) -> int:
+        """What a loop knows it by."""
+
+    def read(self, count: int) -> bytes:
+        """At most so many bytes; none = hung up.
+
+        Raises:
+            OSError: nothing is there yet (BlockingIOError), or it was unplugged.
+        """
+
+    def write(self, data: bytes | bytearray) -> int:
+        """How many of these bytes went.
+
+        Raises:
+            OSError: there is no room now (BlockingIOError), or it was unplugged.
+        """
+
+    def close(self) -> None:
+        """Give the port back to the system."""
+
+
+class Machine:
+    """The machine that this process runs on.
+
+    Attributes:
+        chance: random numbers: seeds of protocols, loose plugs.
+    """
+
+    chance: random.Random = random.SystemRandom()
+
+    def monotonic_ns(self) -> int:
+        """A clock that never jumps."""
+        return time.monotonic_ns()
+
+    def time_ns(self) -> int:
+        """The machine's idea of the time, since 1970 (UTC)."""
+        return time.time_ns()
+
+    def say(self, text: str) -> None:
+        """A line for whoever reads the node's log."""
+        print(text, file=sys.stderr, flush=True)
+
+    def socket(self, family: int, kind: int) -> Socket:
+        """A socket, not yet bound."""
+        return socket.socket(family, kind)
+
+    def open_serial(self, device: str, baud: int) -> SerialPort:
+        """A serial port, raw.
+
+        Raises:
+            OSError: it is not there, or no serial port.
+        """
+        from innervate.live.serial_port import Port
+
+        return Port(device, baud)
+
+    def listen_at(self, path: Path) -> Socket:
+        """A Unix socket for callers of this user; its folder is made, an old socket replaced.
+
+        Raises:
+            LiveError: a running node has it.
+            OSError: it cannot be made.
+        """
+        path.parent.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
+        if path.exists():
+            if answers(path):
+                raise LiveError(f"{path}: a node with this name runs already; stop it")
+            path.unlink()
+        sock = socket.socket(socket.AF_UNIX)
+        before = os.umask(0o177)
+        try:
+            sock.bind(str(path))
+        except OSError:
+            sock.close()
+            raise
+        finally:
+            os.umask(before)
+        return sock
+
+    def exists(self, path: Path) -> bool:
+        """True if there is such a file."""
+        return path.exists()
+
+    def read_text(self, path: Path) -> str:
+        """What stands in a file.
+
+        Raises:
+            OSError: it cannot be read.
+            UnicodeDecodeError: it is no text.
+        """
+        return path.read_text(encoding="utf-8")
+
+    def create(self, path: Path) -> IO[str]:
+        """An empty file to write into, which only its owner reads; one that is there is emptied.
+
+        Raises:
+            OSError: it cannot be made.
+        """
+        return io.TextIOWrapper(private.create(path), encoding="utf-8")
+
+    def sync(self, file: IO[str]) -> None:
+        """What was written into a file is on the disk, whatever happens to the machine.
+
+        Raises:
+            OSError: it cannot be written.
+        """
+        file.flush()
+        os.fsync(file.fileno())
+
+    def replace(self, old: Path, new: Path) -> None:
+        """A file has another name from now on, whatever happens to the machine.
+
+        Raises:
+            OSError: it cannot be done.
+        """
+        os.replace(old, new)
+        with suppress(OSError):  # not every system can: it is as safe as it was
+            folder = os.open(new.parent, os.O_RDONLY)
+            try:
+                os.fsync(folder)
+            finally:
+                os.close(folder)
+
+    def remove(self, path: Path) -> None:
+        """A file, or a socket's name, is no more.
+
+        Raises:
+            OSError: there was none, or it cannot be removed.
+        """
+        path.unlink()
+
+
+_THIS = Machine()
+_MACHINE: ContextVar[Machine] = ContextVar("machine", default=_THIS)
+machine: Callable[[], Machine] = _MACHINE.get
+
+
+@contextmanager
+def on(other: Machine) -> Iterator[None]:
+    """What is called or scheduled within runs on another machine."""
+    token = _MACHINE.set(other)
+    try:
+        yield
+    finally:
+        _MACHINE.reset(token)
+
+
+def answers(path: Path) -> bool:
+    """True if somebody listens on this Unix socket."""
+    with socket.socket(socket.AF_UNIX) as sock:
+        sock.settimeout(ANSWER_S)
+        try:
+            sock.connect(str(path))
+        except OSError:
+            return False
+        return True
