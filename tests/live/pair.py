@@ -72,3 +72,13 @@ def begin(sealer, *wires):
 
 async def settle(seconds=0.2):
     await asyncio.sleep(seconds)
+
+
+async def two(make=network_sealer, ends=(("", ""), ("", ""))):
+    """Two nodes that have proved to each other who they are, if they can."""
+    a, b = Wire("a", ends=ends[0]), Wire("b", ends=ends[1])
+    join(a, b)
+    begin(make(1), a)
+    begin(make(2), b)
+    await settle()
+    return a, b

@@ -78,7 +78,7 @@ class Contact:
         self._timer = asyncio.get_running_loop().call_later(0, self.beat)
 
     def stop(self) -> None:
-        """Ask no more."""
+        """Ask no more who is there."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
@@ -122,7 +122,7 @@ class Contact:
         return is_worn(session, now)
 
     def ask(self, whom: int) -> None:
-        """Begin a handshake."""
+        """Begin a handshake with somebody, or with anybody."""
         index = self._draw_index()
         ring = self.sealer.ring
         handshake = ring.handshake(ring.use, True)

@@ -52,7 +52,7 @@ class Identity(NamedTuple):
 
     @property
     def certificate(self) -> bytes:
-        """What others are shown."""
+        """What others are shown of it."""
         return CERTIFICATE.pack(self.serial, signing_public(self.signing), self.signature)
 
     def text(self) -> str:

@@ -107,7 +107,7 @@ class Sealer:
             made.start()
 
     def stop(self) -> None:
-        """Ask no more."""
+        """Ask no more who is there."""
         for contact in self._contacts.values():
             contact.stop()
 

@@ -172,7 +172,7 @@ class Handshake:
         return self._state.h
 
     def write(self, payload: bytes) -> bytes:
-        """The next message, ours."""
+        """The next message, which is ours, with a payload."""
         out = b""
         for token in self._messages[self._at]:
             if token == "e":
