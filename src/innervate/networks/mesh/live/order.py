@@ -252,7 +252,7 @@ class Orderly:
 
 
 def _nobody(sender: int, seq: int) -> None:
-    """Nobody wants to know."""
+    """Nobody wants to know which were handed up."""
 
 
 def _in_turn(held: list[Held], near: int) -> list[Held]:
