@@ -111,17 +111,16 @@ def test_batches_take_a_while_and_leave_something_for_everybody(conducted):
     assert max(quick.sizes()) == scheduler.BATCH_MAX == 500
 
 
-def test_one_run_goes_first_where_nothing_is_compiled(conducted, tmp_path):
+@pytest.mark.parametrize("points", [1, 3])
+def test_one_run_goes_first_where_nothing_is_compiled(conducted, tmp_path, points):
     (compiled,) = (tmp_path / "cache").rglob("*.compiled")
     compiled.unlink()
-    for points in (1, 3):
-        engine = Noting()
-        seen = []
-        made = conducted(engine, points, repeat=3)
-        made._progress = lambda scheduler: seen.append(scheduler.ran)
-        made.run()
-        assert seen[:2] == [0, 1]  # nothing else was handed out until it came back
-        assert sum(engine.sizes()) == 3 * points
+    engine, seen = Noting(), []
+    made = conducted(engine, points, repeat=3)
+    made._progress = lambda scheduler: seen.append(scheduler.ran)
+    made.run()
+    assert seen[:2] == [0, 1]  # nothing else was handed out until it came back
+    assert sum(engine.sizes()) == 3 * points
 
 
 def test_the_time_left_is_by_what_came_after_the_first_results(conducted, monkeypatch):
