@@ -1,7 +1,5 @@
 """What the simulation shows and is not mended yet, by the line of issue 18 that names it."""
 
-import pytest
-
 from tests.livesim import runs
 
 SMALL = {"nodes": 6, "storms": 1, "storm_s": 60, "calm_s": 0, "rate": 20}
@@ -10,11 +8,6 @@ SMALL = {"nodes": 6, "storms": 1, "storm_s": 60, "calm_s": 0, "rate": 20}
 def broken_in(seeds, **given):
     """What is broken in these seeds."""
     return [line for seed in seeds for line in runs.run(seed, "mesh", **SMALL | given).broken]
-
-
-@pytest.mark.xfail(strict=True, reason='issue 18, 3: "delivered" is true, in order with restarts')
-def test_in_order_with_restarting_recipients_delivered_means_handed_up():
-    assert broken_in(range(1, 4), in_order=True, hurts=("crash", "restarts")) == []
 
 
 def test_no_nonce_comes_twice_where_the_disk_is_full_and_processes_are_killed():

@@ -27,6 +27,7 @@ class State:
         fresh: True if there was no such file: the node runs for the first time.
         epoch: newest epoch of a gateway that was followed; 0 = none.
         revoked: the newest list of identities that are put out, signed; b"" = none.
+        numbers: our packets may bear numbers from here on; -1 = nothing is known of any.
         trouble: why it could not be written, "" = it was when tried last.
         failed: how often it could not be written.
     """
@@ -36,6 +37,7 @@ class State:
         self.fresh = True
         self.epoch = 0
         self.revoked = b""
+        self.numbers = -1
         self.trouble = ""
         self.failed = 0
         self._errno = 0
@@ -46,6 +48,7 @@ class State:
             kept = json.loads(machine().read_text(path))
             self.epoch = _whole(kept["epoch"], 255)
             self.revoked = bytes.fromhex(kept.get("revoked", ""))
+            self.numbers = _whole(kept.get("numbers", -1), 65_535, -1)
         except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             raise LiveError(f"{path}: not a node's state; remove it") from None
         self.fresh = False
@@ -54,7 +57,7 @@ class State:
         """Write the file; False if it could not be, with the reason in `trouble`."""
         if self.path is None:
             return True
-        kept = {"epoch": self.epoch, "revoked": self.revoked.hex()}
+        kept = {"epoch": self.epoch, "numbers": self.numbers, "revoked": self.revoked.hex()}
         new = self.path.with_name(self.path.name + ".new")
         try:
             with machine().create(new) as file:
@@ -89,7 +92,7 @@ class State:
         return {"file": str(self.path), "written_s": ago, "trouble": self.trouble}
 
 
-def _whole(value: Any, most: int) -> int:
-    if type(value) is not int or not 0 <= value <= most:
-        raise ValueError(f"{value} is no number from 0 to {most}")
+def _whole(value: Any, most: int, least: int = 0) -> int:
+    if type(value) is not int or not least <= value <= most:
+        raise ValueError(f"{value} is no number from {least} to {most}")
     return value
