@@ -67,7 +67,6 @@ def power(stage):
         host.cut_power()
     elif host.life is not None:
         host.disk.cut_after = stage.chance.randint(1, 6)
-        host.life.node.save(False) if stage.chance.random() < 0 else None
     _back(stage, host)
 
 
@@ -129,9 +128,8 @@ BY_NAME = {hurt.__name__: hurt for hurt in USUAL}
 
 def storm(stage, seconds):
     """Hurt a network for so long."""
-    stage.storm = getattr(stage, "storm", 0) + 1
-    stage.rotated_at = getattr(stage, "rotated_at", None)
-    stage.messages.quiet_since = None
+    stage.storm += 1
+    stage.quiet_since = None
     named = stage.plan.hurts
     usual = {one: weight for one, weight in USUAL.items()
              if (one.__name__ in named if named is not None

@@ -41,14 +41,17 @@ def _storm(world, stage):
     world.run(mesh.ENDS_S - 10.0 + plan.calm_s)
     stage.messages.look()
     stage.check_memory()
+    stage.check_rest()
     world.check()
+    if plan.sealed:
+        stage.rotate_in_peace()
 
 
 def run_mesh(seed, **given):
     """A mesh, as a seed has it."""
     world = World(seed)
     plan = mesh.Plan(world, **given)
-    stage = mesh.Stage(world, plan)
+    stage = mesh.Mesh(world, plan)
     prints = [0]
 
     def note(source, _target, data):
