@@ -17,6 +17,11 @@ LIVE = "innervate.live."
 MESH = "innervate.networks.mesh.live."
 SEEDS = 12
 SMALL = {"nodes": 6, "storms": 1, "storm_s": 20, "calm_s": 0, "rate": 20}
+OF_KIND = {
+    "mesh": SMALL,
+    "skin": {"columns": 2, "rows": 2, "storms": 1, "storm_s": 20, "calm_s": 0},
+    "radio": {"nodes": 5, "storms": 1, "storm_s": 60, "calm_s": 0, "every_s": 1.0},
+}
 KILLS = {"hurts": ("crash", "restarts"), "storm_s": 60}
 LOSSES = {"hurts": ("lossy", "doubled", "cut")}
 
@@ -29,6 +34,7 @@ class Fault(NamedTuple):
     old: str
     new: str
     given: dict
+    kind: str = "mesh"
 
 
 FAULTS = (
@@ -70,7 +76,7 @@ FAULTS = (
           {**LOSSES, "in_order": True}),
     Fault("what comes after its turn is handed up", MESH + "order",
           "        if self._is_late(seq, before):\n", "        if False:\n",
-          {"hurts": ("lossy", "cut", "late", "stall"), "in_order": True, "storm_s": 60}),
+          {"hurts": ("lossy", "sluggish"), "in_order": True, "storm_s": 60}),
     Fault("no message names the one before it", MESH + "chains",
           "return self._open[dest][-1] if self._open.get(dest) else seq", "return seq",
           {**LOSSES, "in_order": True}),
@@ -108,6 +114,23 @@ FAULTS = (
           {"sealed": True, "hurts": ("replays",), "calm_s": 60, "storms": 2}),
     Fault("a node's timers are late by a second", LIVE + "engine",
           "wait = max(0, soonest - now) / 1e6", "wait = 1.0 + max(0, soonest - now) / 1e6", {}),
+    Fault("a station's frame is taken twice", "innervate.networks.radio.live.node",
+          "            self.engine.receive(0, at)\n",
+          "            self.engine.receive(0, at)\n            self.engine.receive(0, at)\n", {},
+          "radio"),
+    Fault("a packet is delivered when it is sent", "innervate.networks.radio.live.node",
+          '        self.outcomes["frames sent"] += 1\n',
+          "        for k in range(frame.count):\n"
+          "            self._packets[frame.handle + k][1].move(DELIVERED)\n",
+          {"hurts": ("channel", "unplugged"), "every_s": 0.5}, "radio"),
+    Fault("a radio stays deaf once it has sent", LIVE + "channel_radio",
+          '        if what == b"R":\n            self.mode = "listening"\n', "", {}, "radio"),
+    Fault("a serial line that was plugged in again is not heard", LIVE + "serial",
+          "asyncio.get_running_loop().add_reader(self._port.fileno(), self._readable)", "pass",
+          {"serial": True}, "skin"),
+    Fault("a damaged frame is taken", "innervate.networks.skin.frames",
+          "        return BAD_CRC\n", "        pass\n",
+          {"serial": True, "hurts": ("changing",), "storm_s": 60}, "skin"),
     Fault("packets' numbers begin anywhere after a restart", MESH + "node",
           "        self.stack.first = self.state.numbers\n", "",
           {**KILLS, "sealed": False, "in_order": False}),
@@ -151,7 +174,7 @@ def seek(number):
     from tests.livesim import runs
 
     for seed in range(1, SEEDS + 1):
-        found = runs.run(seed, "mesh", **SMALL | fault.given)
+        found = runs.run(seed, fault.kind, **OF_KIND[fault.kind] | fault.given)
         if found.broken:
             return f"seed {seed}: {found.broken[0]}"
     return ""

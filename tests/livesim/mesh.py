@@ -9,6 +9,7 @@ from tests.livesim.world import SECOND, inside
 
 AGAIN_S = 45.0  # so long after all is whole again everybody reaches everybody
 ENDS_S = 60.0  # a message has its end, if its sender lives
+GONE_S = 30.0  # a message to a node that is not there has its end
 ALL = 255
 
 
@@ -172,9 +173,21 @@ class Mesh(Stage):
         return sum(host.life.node.counters()["dropped: sealed: unknown key"]
                    for host in self.hosts if host.life is not None)  # fmt: skip
 
+    def leave(self):
+        """A node goes, and who sends to it is told."""
+        gone, *others = self.chance.sample(self.hosts, 4)
+        gone.kill()
+        sent = [self.send(host, gone.number) for host in others]
+        self.world.run(GONE_S)
+        for one in sent:
+            if one.receipt.state not in FINAL:
+                self.world.fail(f"message {one.ident} to a node that is gone has no end")
+        self.world.check()
+
     def drain(self):
         """Who is told to end first gets rid of what is under way."""
-        host, other = self.chance.sample(self.hosts, 2)
+        running = [host for host in self.hosts if host.life is not None]
+        host, other = self.chance.sample(running, 2)
         sent = [self.send(host, other.number) for _ in range(5)]
         host.signal(TERM)
         self.world.run(3.0)
@@ -184,6 +197,7 @@ class Mesh(Stage):
         self.world.check()
 
     def end(self):
-        """Everybody is told to stop, and does."""
+        """One goes, one is told to stop, then all are."""
+        self.leave()
         self.drain()
         super().end()
