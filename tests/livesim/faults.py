@@ -89,7 +89,7 @@ FAULTS = (
     Fault("SIGTERM does not wait for messages", LIVE + "main",
           "if not await self.node.drain(DRAIN_S):", "if False:", {}),
     Fault("SIGTERM is not heard", LIVE + "main",
-          "while not self.ending.is_set():", "while True:", {}),
+          "loop.add_signal_handler(number, self.ending.set)", "pass", {}),
     Fault("a state file is not synced", LIVE + "state",
           "                machine().sync(file)\n", "                pass\n",
           {"hurts": ("power",), "storm_s": 60}),
