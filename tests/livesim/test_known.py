@@ -12,11 +12,6 @@ def broken_in(seeds, **given):
     return [line for seed in seeds for line in runs.run(seed, "mesh", **SMALL | given).broken]
 
 
-@pytest.mark.xfail(strict=True, reason='issue 18, 3: "delivered" is true, in order with restarts')
-def test_in_order_with_restarting_recipients_delivered_means_handed_up():
-    assert broken_in(range(1, 4), in_order=True, hurts=("crash", "restarts")) == []
-
-
 @pytest.mark.xfail(strict=True, reason="issue 18, 3: no nonce used twice, whatever the state file")
 def test_no_nonce_comes_twice_where_the_disk_is_full_and_processes_are_killed():
     assert broken_in(range(1, 6), sealed=True, in_order=False, hurts=("full", "restarts")) == []

@@ -40,7 +40,7 @@ CLOSE = [
      [{"down": 1499.9}, {"down": 2500.1}, {"apart": 20.1}]),
     ("modes", "of the floor", [{"wave": -1.99}, {"wave": 1.99}], [{"wave": -2.01}, {"wave": 2.01}]),
     ("modes", "faster than periodic", [{"triggered": 0.51}, {"triggered": 19.9}],
-     [{"triggered": 0.49}, {"triggered": 20.1}]),
+     [{"triggered": 0.49}, {"triggered": 0.5}, {"triggered": 20.0}, {"triggered": 20.1}]),
     ("modes", "sooner than", [{"often": -0.101}], [{"often": -0.099}]),
     # Of 18 and 20 ms: three periods of 4 ms, and the floor of 2 x 6 and 2 x 9 hops of 0.12 ms.
     ("modes", "on the mean (asked for)", [{"wave": 4.55}], [{"wave": 5.85}]),
@@ -122,3 +122,11 @@ def test_almost_linear_is_an_r2_of_four_fifths(fit, holds):
         low, high = (scatter, high) if is_better else (low, scatter)
     results = of("fig8b", scatter=scatter, slope=slope)
     assert (verdicts("fig8b", "almost linearly", results) != {FAILS}) == holds
+
+
+@pytest.mark.parametrize(("off", "share"), [(2.9, 100), (-2.9, 100), (3.1, 0), (-3.1, 0)])
+def test_how_many_recoveries_are_within_a_period_more_is_said(off, share):
+    judged = experiment("fig8b").judge(of("fig8b", off=off), QUICK)
+    said = [claim.measurement for claim in judged if "(Eq. 6)" in claim.claim]
+    assert len(said) == len(RULES)
+    assert all(text.endswith(f"; within +-3 T at least {share} %") for text in said), said

@@ -18,7 +18,7 @@ def build(
     keep: bool,
     trail: bool,
     tap: bool = False,
-    room: int = channel.ROWS,
+    room: int | None = None,
 ) -> World:
     """The world of a plan, before its first event; arguments as of `channel.build`."""
     station = fields.STATION + PROTOCOLS[plan.protocol].fields
