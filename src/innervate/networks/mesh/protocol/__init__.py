@@ -27,10 +27,12 @@ drops what comes again (A12).
 *End to end.* An origin keeps a message until its recipient acknowledges it; both keep to a window
 of sequence numbers, so that a retransmission is delivered once. Timeouts adapt to round trips.
 
-*Hops.* Where `ack_adapt` is on, a hop's ack may take the smoothed round trip to that neighbour
-longer than `ack_us`, or four mean deviations if that is more [RFC 6298]. Retried frames tell no
-round trip (Karn): they double the wait, until one that was sent once is acknowledged; an ack of
-what was given up tells how late it is.
+*Hops.* Where `ack_adapt` is on, a hop's ack may take the smoothed round trip to that neighbour and
+four mean deviations [RFC 6298], never less than `ack_us`. Retried frames tell no round trip (Karn):
+they double the wait, until one that was sent once is acknowledged; an ack of what was given up
+tells how late it is. With `hop_frames` every neighbour has frames under way of its own, more of
+them with each ack and half as many after a missing one; with `gather` all that came is handled
+before something goes, and acks to one node go in one frame.
 
 *Backoff.* Acks that are missing make for growing pauses of searches, then of all messages, never of
 alarms: a full channel heals (decision 0016).

@@ -27,7 +27,8 @@ def hop_wait(node, params, i):
     k = place_of(node, params, node.q_link_dst[i])
     if k < 0:
         return params.ack_us
-    wait = node.hop_trip[k] + max(params.ack_us, 4 * node.hop_spread[k])
+    spare = max(params.ack_us >> 1, 4 * node.hop_spread[k])
+    wait = max(params.ack_us, node.hop_trip[k] + spare)
     return min(min(wait, LONGEST_US) << node.hop_doubled[k], max(LONGEST_US, params.ack_us))
 
 
