@@ -64,7 +64,7 @@ LAYOUTS = (
     ),
     (ACTIVATE, "activate", (("epoch", 0, 8, 0), ("table_version", 0, 16, 0))),
     (DATA, "data", (("data", REST, 8, 0),)),
-    (E2E_ACK, "end-to-end ack", (("acked", 0, 16, 0), ("more", REST, 16, 0))),
+    (E2E_ACK, "end-to-end ack", (("acked", REST, 16, 0),)),
     (
         ALARM,
         "alarm",

@@ -107,6 +107,7 @@ def neighbours(k):
         ("hop_doubled", k, 0, 2, "doublings", "of the wait for its acks: retried frames came"),
         ("hop_under", k, 0, PLACES_MAX, "frames", "under way to it"),
         ("hop_most", k, 1, PLACES_MAX, "frames", "may be under way to it"),
+        ("hop_cut", k, -1, TIME, "us", "when it was halved, if no ack came since; -1"),
         ("hop_failed", k, -1, TIME, "us", "when a frame began that it did not answer; -1 none"),
     )
 

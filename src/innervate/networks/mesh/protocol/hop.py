@@ -129,9 +129,18 @@ def widen(node, params, k):
     """The neighbour in place k has acknowledged: it may have a frame more."""
     if params.hop_frames and k >= 0:
         node.hop_most[k] = min(node.hop_most[k] + 1, params.hop_frames)
+        node.hop_cut[k] = NONE
 
 
-def narrow(node, params, k):
-    """The neighbour in place k did not acknowledge in time: half as many."""
-    if params.hop_frames and k >= 0:
-        node.hop_most[k] = max(node.hop_most[k] >> 1, 1)
+def narrow(node, params, now, k, i):
+    """The neighbour in place k did not acknowledge the frame in place i in time: half as many.
+
+    0 if the frame was under way already when another went unanswered: that is the same news.
+    """
+    if not params.hop_frames or k < 0:
+        return 1
+    if node.hop_cut[k] != NONE and not after(node.q_sent[i], node.hop_cut[k]):
+        return 0
+    node.hop_most[k] = max(node.hop_most[k] >> 1, 1)
+    node.hop_cut[k] = now
+    return 1

@@ -30,6 +30,7 @@ def forget_trips(node, k):
     node.hop_doubled[k] = 0
     node.hop_under[k] = 0
     node.hop_most[k] = HOP_FIRST
+    node.hop_cut[k] = -1
     node.hop_failed[k] = -1
 
 

@@ -219,7 +219,7 @@ def settle(node, params, now, sent, out):
         wait = 0
         if sent:
             wait = hop_wait(node, params, i)
-            if params.ack_adapt:
+            if params.ack_adapt or params.hop_frames:
                 note_sent(node, now, i)
         if params.hop_frames:
             node.busy = -1

@@ -221,9 +221,8 @@ def on_ack_timeout(node, params, now, out):
 def unanswered(node, params, now, i, out):
     """The frame in place i was not acknowledged: once more, or another way."""
     who = place_of(node, params, node.q_link_dst[i])
-    if who < 0 or is_lively(node, who):
+    if narrow(node, params, now, who, i) and (who < 0 or is_lively(node, who)):
         note_missed(node, params, now)
-    narrow(node, params, who)
     if node.q_tries[i] < most_tries(node, params, i, who):
         node.q_state[i] = WAITS
         node.q_due[i] = now
