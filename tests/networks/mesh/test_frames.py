@@ -352,7 +352,6 @@ def test_any_bytes_in_a_good_crc(body):
         ("48 00 00 00 00 00 0000 00 00 01", wire.BAD_LENGTH),
         ("48 00 00 00 00 00 0000 00 00", wire.BAD_LENGTH),
         ("48 08 00 00 00 00 0000 00 00 00 01", wire.BAD_PAYLOAD),
-        ("49 00 00 00 00 00 0000 00 00 00", wire.BAD_PAYLOAD),
         ("49 00 00 00 00 00 0000 00 00 00 aa bb cc", wire.BAD_PAYLOAD),
         ("50 03 04 09 0102 a1 05 0607 08", wire.BAD_LENGTH),
         ("42 00 00 00 00 00 0000 00 00 00 01 0002 12 08 b0 09", wire.BAD_PAYLOAD),

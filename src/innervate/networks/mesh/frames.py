@@ -117,8 +117,9 @@ def check(frame: Any) -> None:
     """
     is_ack = frame.kind == ACK
     pack(HOP_ACK if is_ack else COMMON, bytearray(MTU_MAX), AT, frame)
-    for name, count in (("path", "path_len"), ("body", "length")):
-        for item in getattr(frame, name)[: 0 if is_ack and name == "path" else getattr(frame, count)]:
+    parts = (("body", frame.length), ("path", 0 if is_ack else frame.path_len))
+    for name, count in parts:
+        for item in getattr(frame, name)[:count]:
             put_number(bytearray(1), 0, 8, 0, item, name)
 
 

@@ -107,7 +107,7 @@ def is_whole(kind: int, data: bytes | bytearray | memoryview, at: int, end: int)
     if kind in SIZES:
         return end - at == SIZES[kind]
     if kind == E2E_ACK:  # the most frequent of them
-        return at + 2 <= end and (end - at) % 2 == 0
+        return at <= end and (end - at) % 2 == 0
     return at <= end and read(FIELDS[kind], data, 8 * at, 8 * end, []) == 8 * end
 
 

@@ -65,8 +65,7 @@ from innervate.networks.mesh.protocol.queue import (
     kick,
     make_room,
     on_sent,
-    send_acks,
-    send_due,
+    send_all,
     take_ack,
     take_over,
     tell_hop,
@@ -272,9 +271,7 @@ def on_input(node, gate, params, now, kind, item, out):
 def on_timer(node, gate, params, now, timer, out):
     """One of six waits is over."""
     if timer == TX:
-        node.woken = 0
-        send_acks(node, out)
-        send_due(node, params, now, out)
+        send_all(node, params, now, out)
     elif timer == ACK_WAIT:
         on_ack_timeout(node, params, now, out)
     elif timer == ROUND:

@@ -1,4 +1,4 @@
-"""Frames that wait: one is under way at a time; alarms go before control, control before data."""
+"""Frames that wait, and those under way; alarms go before control, control before data."""
 
 from innervate.dialect.arith import MASK16, MASK30, after
 from innervate.dialect.outbox import URGENT, report, send, set_timer
@@ -177,7 +177,7 @@ def pick_due(node, params, now):
 
 
 def wake(node, params, now, out):
-    """Nothing is due, or may go: come back when something is. An ack calls for what waits for it."""
+    """Nothing is due, or may go: come back when something is; an ack calls what waits for it."""
     soonest = -1
     for i in range(node.places):
         if node.q_state[i] == WAITS and not is_full(node, params, i):
@@ -239,6 +239,13 @@ def kick(node, params, now, out):
     elif not node.woken:
         node.woken = 1
         set_timer(out, TX, now)
+
+
+def send_all(node, params, now, out):
+    """The acks that we owe, then what is due."""
+    node.woken = 0
+    send_acks(node, out)
+    send_due(node, params, now, out)
 
 
 def send_due(node, params, now, out):

@@ -20,7 +20,8 @@ MUTANTS = tuple(
     for texts in (
         ("nobody acknowledges a hop",
          "    if frame.flags & ACK_WANTED:\n        acknowledge(node, frame, out)\n", ""),
-        ("a hop's ack is ignored", "                drop(node, params, i)\n                return i\n",
+        ("a hop's ack is ignored",
+         "                drop(node, params, i)\n                return i\n",
          "                return -1\n"),
         ("a packet for us is taken for somebody else's",
          "    here = frame.dest == node.number\n", "    here = frame.dest == node.number + 1\n"),
