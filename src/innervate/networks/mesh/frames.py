@@ -69,7 +69,7 @@ REASONS = ("ok", "length", "crc", "version", "kind", "path", "payload")
 def size_of(frame: Any) -> int:
     """Bytes of a frame record on the wire."""
     if frame.kind == ACK:
-        return ACK_BYTES + frame.length
+        return int(ACK_BYTES + frame.length)
     size = HEADER_BYTES + frame.path_len + frame.length + CRC_BYTES
     return size  # type: ignore[no-any-return]
 
@@ -93,13 +93,30 @@ def encode(frame: Any, mtu: int = MTU_MAX) -> bytes:
     first = VERSION << 6 | kind
     try:
         if kind == ACK:
-            head = struct.pack(ACK_STRUCT, first, frame.link_src, frame.link_dst, frame.origin,
-                               frame.seq, frame.rssi)
+            head = struct.pack(
+                ACK_STRUCT,
+                first,
+                frame.link_src,
+                frame.link_dst,
+                frame.origin,
+                frame.seq,
+                frame.rssi,
+            )
             data = head + bytes(frame.body[: frame.length])
         else:
             head = struct.pack(
-                PACKET_STRUCT, first, frame.flags, frame.link_src, frame.link_dst, frame.origin,
-                frame.dest, frame.seq, frame.table_ver, frame.ttl, frame.path_len)
+                PACKET_STRUCT,
+                first,
+                frame.flags,
+                frame.link_src,
+                frame.link_dst,
+                frame.origin,
+                frame.dest,
+                frame.seq,
+                frame.table_ver,
+                frame.ttl,
+                frame.path_len,
+            )
             path, body = frame.path[: frame.path_len], frame.body[: frame.length]
             data = head + bytes(path) + bytes(body)
     except (struct.error, ValueError):
@@ -161,8 +178,18 @@ def decode(data: bytes | bytearray | memoryview, frame: Any, mtu: int = MTU_MAX)
     if data[0] & 63 == ACK:
         decode_ack(data, frame)
         return OK
-    (first, frame.flags, frame.link_src, frame.link_dst, frame.origin, frame.dest, frame.seq,
-     frame.table_ver, frame.ttl, hops) = struct.unpack_from(PACKET_STRUCT, data)
+    (
+        first,
+        frame.flags,
+        frame.link_src,
+        frame.link_dst,
+        frame.origin,
+        frame.dest,
+        frame.seq,
+        frame.table_ver,
+        frame.ttl,
+        hops,
+    ) = struct.unpack_from(PACKET_STRUCT, data)
     frame.kind = first & 63
     frame.path_len = hops
     at = HEADER_BYTES + hops
@@ -174,8 +201,9 @@ def decode(data: bytes | bytearray | memoryview, frame: Any, mtu: int = MTU_MAX)
 
 def decode_ack(data: bytes | bytearray | memoryview, frame: Any) -> None:
     """Read an ack that is one, as `decode` says."""
-    (first, frame.link_src, frame.link_dst, frame.origin, frame.seq,
-     frame.rssi) = struct.unpack_from(ACK_STRUCT, data)
+    (first, frame.link_src, frame.link_dst, frame.origin, frame.seq, frame.rssi) = (
+        struct.unpack_from(ACK_STRUCT, data)
+    )
     frame.kind = first & 63
     frame.dest = frame.link_dst
     frame.flags = frame.table_ver = frame.ttl = frame.path_len = 0
