@@ -23,7 +23,7 @@ RULES = {
     "graph": {"protocol": {"failover": "graph"}},
 }
 DEAD = (0, 4, 8)
-POSTS = (20, 30)
+POSTS = (20, 28)
 ENDS = ([50, 105], [105, 50], [50, -5], [-5, 50])  # where the robots go from the middle
 DIES_S = 14.0
 IN_TIME_MS = 100

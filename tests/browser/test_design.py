@@ -2,10 +2,19 @@
 
 import re
 from contextlib import ExitStack, suppress
+from pathlib import Path
 
 import pytest
 
+from innervate.scenario import load
 from tests.browser.servers import PHONE, SKIN, click, expect, place, seek, serving
+
+
+def text_of(name):
+    """A bundled scenario as it stands."""
+    source = load(name).source
+    return (Path(source.folder) / source.path).read_text()
+
 
 CABLE = "p0 r0 c2 - pc.0"
 CELL = "p0 r3 c3"
@@ -33,7 +42,10 @@ SCENARIOS = {
     "skin": (SKIN, "--speed", 0.1),
     "short": (SHORT, "--speed", 0.5),
     "ring": (RING, "--speed", 0.01),
+    "field": (text_of("mesh-field"), "--speed", 1),
+    "legs": (text_of("icub-leg"), "--speed", 0.1),
 }
+SIZES = [{"width": 1200, "height": 760}, {"width": 1920, "height": 1080}, PHONE]
 # What is written on canvases, as [text, x0, y0, x1, y1] in px of the canvas; the last drawing.
 WRITTEN = """
 window.written = new Map();
@@ -257,23 +269,28 @@ def test_a_large_screen_is_used(look, skin):
     assert large.evaluate("document.documentElement.scrollHeight") == 1080
 
 
-@pytest.mark.parametrize(
-    "size", [{"width": 1200, "height": 760}, {"width": 1920, "height": 1080}, PHONE]
-)
-def test_names_in_a_ring_of_twenty_keep_apart(look, served, size):
-    page = look(served("ring"), size)
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize(("what", "t_s", "names"), [
+    ("ring", 0.05, {str(i) for i in range(20)}),
+    ("field", 30.0, {"n0 gateway", "n29 robot outside"}),  # nodes are off, too
+    ("legs", 0.2, {"0", "1"}),
+])  # fmt: skip
+def test_names_on_maps_keep_apart_and_inside(look, served, size, what, t_s, names):
+    page = look(served(what), size)
     page.add_init_script(WRITTEN)
     page.reload()
-    hold(page, 0.05)
-    (words, *_) = page.evaluate(WORDS_OF, "#stage canvas")
-    names = [one for one in words if re.match(r"\d+$|turn \d+$", one[0])]
-    assert {text for text, *_ in names} >= {str(i) for i in range(20)}
-    assert overlapping(names) == []
+    hold(page, t_s)
+    canvases = page.evaluate(WORDS_OF, "#stage canvas")
+    written = [(str(text), *at) for words in canvases for text, *at in words]
+    words = [one for one in written if len(one[0]) > 1 or one[0].isdigit()]  # no marks of states
+    assert {text for text, *_ in words} >= names
+    assert overlapping(words) == []
     stage = box(page, "#stage")
-    assert all(
-        left >= 0 and right <= stage["width"] and top >= 0 and low <= stage["height"]
-        for _, left, top, right, low in names
-    )
+    outside = [
+        text for text, left, top, right, low in words
+        if left < 0 or right > stage["width"] or top < 0 or low > stage["height"]
+    ]  # fmt: skip
+    assert outside == []
 
 
 def overlapping(words):

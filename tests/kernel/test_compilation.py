@@ -1,6 +1,8 @@
 """Compilation: what the cache of compiled code is known by, so that none of it is stale."""
 
+import os
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -114,14 +116,49 @@ def test_a_loop_is_compiled_alone_and_once(own_cache, monkeypatch):
     assert entered[0].parent == Path(compilation.numba.config.CACHE_DIR)
 
 
-def test_what_has_references_has_them_counted(own_cache):
+@pytest.mark.parametrize("way", [compilation.compiled, compilation.compiled_as_one])
+def test_what_has_references_has_them_counted(own_cache, way):
     def same(array):
         kept = array
         return kept
 
-    compiled = compilation.compiled(same)
+    compiled = way(same)
     array = np.zeros(3)
     before = sys.getrefcount(array)
     for _ in range(10):
         compiled(array)
     assert sys.getrefcount(array) == before
+
+
+MAKES_ARRAYS = """
+import numpy as np
+from numba.core.runtime import rtsys
+
+from innervate.kernel import compilation
+
+
+def ones(count):
+    return np.ones(count)
+
+
+def total(count):
+    result = 0.0
+    for size in range(count):
+        result += ones(size).sum()
+    return result
+
+
+compilation.register_functions(ones, hot=False)
+print(compilation.compiled_as_one(total)(100))
+made = rtsys.get_allocation_stats()
+print(made.mi_alloc - made.mi_free)
+"""
+
+
+def test_the_first_loop_of_a_process_may_make_arrays(tmp_path):
+    """Once they ended the process: Numba's runtime had been left to be linked later."""
+    script = tmp_path / "makes_arrays.py"
+    script.write_text(MAKES_ARRAYS)
+    env = os.environ | {"INNERVATE_CACHE": str(tmp_path), "NUMBA_NRT_STATS": "1"}
+    done = subprocess.run([sys.executable, str(script)], env=env, capture_output=True, text=True)
+    assert (done.returncode, done.stdout.split()) == (0, ["4950.0", "0"]), done.stderr

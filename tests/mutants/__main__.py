@@ -74,6 +74,9 @@ def lines_noted(work: Path, copy: Copy, workers: int) -> Path:
         command = [sys.executable, "-m", "pytest", "-q", "-m", "not slow", "-n", str(workers),
                    "--dist", "worksteal", "-p", "tests.mutants.cover", *tests]  # fmt: skip
         env = copy.env | {cover.WHERE: str(where)}
+        loops = [sys.executable, "-m", "tests.loops", str(workers)]
+        if "tests/loops.py" in copy.names:
+            subprocess.run(loops, cwd=copy.folder, env=copy.env, check=False)
         subprocess.run(command, cwd=copy.folder, env=env, check=False)
         sources = {name: value for name, value in before.items() if not is_test(name)}
         kept = sources or {name: value for name, value in now.items() if not is_test(name)}

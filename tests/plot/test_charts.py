@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from innervate.plot import charts
-from innervate.plot.charts import Axis, Bar, Mark
+from innervate.plot.charts import Axis, Bar, Mark, Steps
 
 TIMES, VALUES = np.array([0.0, 5.0, 9.0]), np.array([0, 100, 0])
 
@@ -24,13 +24,10 @@ def test_ticks_of_nothing():
 @given(st.lists(st.floats(0, 10), min_size=1, max_size=8))
 def test_mark_labels_do_not_overlap(at):
     marks = [Mark(x, f"label {x:.2f}") for x in at]
-    inner = charts.WIDTH - charts.LEFT - charts.RIGHT
-    rows = charts._rows(marks, lambda x: charts.LEFT + inner * x / 10)
-    spans = []
-    for mark, (row, anchor) in zip(marks, rows, strict=True):
-        x = charts.LEFT + inner * mark.at / 10
-        long = charts.LETTER * len(mark.label)
-        spans.append((row, x, x + long) if anchor == "start" else (row, x - long, x))
+    x = Axis(0, 10)
+    rows = charts._rows(marks, x)
+    spans = [(row, *charts._span(mark, anchor, x))
+             for mark, (row, anchor) in zip(marks, rows, strict=True)]  # fmt: skip
     for i, (row, a, b) in enumerate(spans):
         assert a >= 0
         assert b <= charts.WIDTH
@@ -39,16 +36,31 @@ def test_mark_labels_do_not_overlap(at):
 
 def test_step_chart_shows_marks_and_numbers(texts):
     marks = [Mark(5.0, "cut"), Mark(9.0, "all routed 4 ms")]
-    drawing = charts.step_chart(
-        TIMES, VALUES, Axis(0, 10, "ms"), Axis(0, 110), marks, "cells without a way"
-    )
-    words = texts(drawing)
+    shown = Steps(TIMES, VALUES, Axis(0, 10, "ms"), Axis(0, 110), "cells", marks=marks)
+    words = texts(shown.drawing)
     assert {"cut", "all routed 4 ms", "ms", "0", "100", "10"} <= set(words)
+
+
+LONG = "a cable far away from here, between two cells"
+
+
+@pytest.mark.parametrize("marks", [
+    [Mark(5.0, LONG)],  # no room on either side
+    [Mark(6.0, "cut"), Mark(9.0, LONG[:39])],  # the first one's line would cross the second's name
+])  # fmt: skip
+def test_names_without_room_are_numbers_told_below(marks, texts):
+    drawing = Steps(TIMES, VALUES, Axis(0, 10), Axis(0, 110), "cells", marks=marks).drawing
+    words = texts(drawing)
+    assert not {mark.label for mark in marks} & set(words)
+    numbers = [str(i) for i in range(1, len(marks) + 1)]
+    assert set(numbers) <= set(words)
+    told = "; ".join(f"{i}) {mark.label}" for i, mark in enumerate(marks, 1))
+    assert " ".join(word for word in words if word).endswith(told)
 
 
 def test_step_chart_of_nothing(parse):
     empty = np.array([])
-    drawing = parse(charts.step_chart(empty, empty, Axis(0, 1), Axis(0, 1), (), "nothing"))
+    drawing = parse(Steps(empty, empty, Axis(0, 1), Axis(0, 1), "nothing").drawing)
     (line,) = (n for n in drawing.iter() if n.get("class") == "series")
     points = [point.split(",") for point in line.get("d")[1:].split("L")]
     assert len({y for _, y in points}) == 1  # nothing, all the time
@@ -57,7 +69,7 @@ def test_step_chart_of_nothing(parse):
 
 def test_step_chart_starts_with_the_value_before_its_window(parse):
     def first_level(low):
-        drawing = charts.step_chart(TIMES, VALUES, Axis(low, 10), Axis(0, 100), (), "x")
+        drawing = Steps(TIMES, VALUES, Axis(low, 10), Axis(0, 100), "x").drawing
         line = next(n for n in parse(drawing).iter() if n.get("class") == "series")
         return float(line.get("d")[1:].split("L")[0].split(",")[1])
 
@@ -68,11 +80,19 @@ def test_dense_steps_are_thinned_but_keep_their_extremes(parse):
     times = np.arange(200_000) / 20_000.0
     values = np.zeros(200_000)
     values[77_777] = 100.0
-    drawing = charts.step_chart(times, values, Axis(0, 10), Axis(0, 100), (), "x")
+    drawing = Steps(times, values, Axis(0, 10), Axis(0, 100), "x").drawing
     assert len(drawing.render()) < 60_000
     line = next(n for n in parse(drawing).iter() if n.get("class") == "series")
     levels = {point.split(",")[1] for point in line.get("d")[1:].split("L")}
     assert len(levels) == 2
+
+
+def test_an_even_level_is_dashed_where_it_is(parse):
+    shown = Steps(TIMES, VALUES, Axis(0, 10), Axis(0, 100), "x", even=25.0)
+    drawing = parse(shown.drawing)
+    (level,) = (float(n.get("y1")) for n in drawing.iter() if n.get("class") == "even")
+    grid = sorted(float(n.get("y1")) for n in drawing.iter() if n.get("class") == "grid")
+    assert level == pytest.approx(grid[-1] + 0.25 * (grid[0] - grid[-1]), abs=0.2)
 
 
 def test_bars(texts):
@@ -81,8 +101,12 @@ def test_bars(texts):
     assert words == ["port 0", "67 cells", "port 1", "0 cells", "even share: 33.5"]
 
 
-def test_bars_of_zeros(parse):
-    parse(charts.bar_chart([Bar("a", 0, "0")], "zeros"))
+def test_bars_of_zeros_have_no_length(parse):
+    drawing = parse(charts.bar_chart([Bar("a", 0, "0"), Bar("b", 0, "0")], "zeros"))
+    assert [float(n.get("width", 0)) for n in drawing.iter() if n.get("class") == "bar"] == [
+        0.0,
+        0.0,
+    ]
 
 
 def test_many_bars_become_a_profile(texts):

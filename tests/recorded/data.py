@@ -47,7 +47,11 @@ def plain(value: Any) -> Any:
             return plain(value._asdict())
         return shortened([plain(inner) for inner in value])
     if dataclasses.is_dataclass(value):
-        names = [field.name for field in dataclasses.fields(value) if field.name not in LEFT_OUT]
+        names = [
+            one.name
+            for one in dataclasses.fields(value)
+            if one.compare and one.name not in LEFT_OUT
+        ]
         return {name: plain(getattr(value, name)) for name in names}
     if isinstance(value, msgspec.Struct):
         return plain(msgspec.to_builtins(value))

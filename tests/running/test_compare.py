@@ -136,6 +136,17 @@ def test_pieces_of_any_length(cuts):
     assert (a["time"], b) == (4, None)
 
 
+@pytest.mark.parametrize("name", FIELDS)
+@pytest.mark.parametrize("place", [0, 3, 4])
+def test_one_word_of_one_call_makes_trails_differ(name, place):
+    one, other = (np.zeros(5, row_dtype(TRAIL)) for _ in range(2))
+    other[name][place] = 1
+    a, b = first_difference(iter([one]), iter(np.split(other, (2,))))
+    assert (a[name], b[name]) == (0, 1)
+    assert a["time"] == one["time"][place]
+    assert first_difference(iter([other]), iter([other.copy()])) is None
+
+
 def test_differences_by_dotted_key():
     a = {"x": 1, "y": {"z": [1, 2]}, "list": [{"u": 1}, {"u": 2}], "gone": 0}
     b = {"x": 1, "y": {"z": [1, 3]}, "list": [{"u": 1}], "new": None}

@@ -77,6 +77,10 @@ def cell_out_of_range(running):
     running.world.cells[1].last_command = 65536
 
 
+def pc_out_of_range(running):
+    running.world.pc.own[0].repair = 2
+
+
 def outbox_of_one(running):
     running.world.out.limit[0] = 1
 
@@ -134,6 +138,10 @@ def router_out_of_range(running):
     running.world.nodes[1].rssi[2] = 600
 
 
+def gateway_out_of_range(running):
+    running.world.gates[0].job_count[4] = 16
+
+
 def delivered_before(running):
     """Node 2 has had the next packets of everybody already."""
     world = running.world
@@ -170,6 +178,7 @@ CASES = [
      "feasible distance of p0 r0 c1 is not worse than that of its parent p0 r0 c0"),
     (SKIN, cables.BROKEN_RANGE, cell_out_of_range,
      "a value of p0 r0 c1 is out of its declared range"),
+    (SKIN, cables.BROKEN_RANGE, pc_out_of_range, "a value of pc is out of its declared range"),
     (SKIN, cables.BROKEN_OUTBOX, outbox_of_one, "outbox of "),
     (RADIO, channel_medium.BROKEN_DEAF, radios_deaf, "sent while its radio could not"),
     (RADIO, channel_medium.BROKEN_AIR, still_on_the_air, "has too many transmissions under way"),
@@ -182,6 +191,8 @@ CASES = [
     (MESH, mesh_recorder.BROKEN_OUTBOX, outbox_of_one, "outbox of node n"),
     (MESH, mesh_recorder.BROKEN_RANGE, router_out_of_range,
      "a value of node n1 is out of its declared range"),
+    (MESH, mesh_recorder.BROKEN_RANGE, gateway_out_of_range,
+     "a value of node n0 is out of its declared range"),
     (MESH, mesh_recorder.BROKEN_TWICE, delivered_before, "node n2 delivered a packet twice"),
     (MESH, mesh_recorder.BROKEN_HELD, frame_under_way,
      "handed down a frame while another was under way"),
@@ -230,7 +241,9 @@ def test_a_route_told_again_breaks_nothing():
     assert broken_by(SKIN, same_parent_again, 500_000) == ""
 
 
-@pytest.mark.parametrize("tamper", [child_as_parent, fd_like_the_parents, cell_out_of_range])
+@pytest.mark.parametrize(
+    "tamper", [child_as_parent, fd_like_the_parents, cell_out_of_range, pc_out_of_range]
+)
 def test_without_checks_nothing_is_said(tamper):
     running = skin_at(300_000, checks=False)
     tamper(running)

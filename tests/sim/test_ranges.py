@@ -10,7 +10,9 @@ import innervate
 from innervate.dialect import plain
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.sim import build as mesh_build
+from innervate.networks.mesh.sim import simulate as mesh_simulate
 from innervate.networks.mesh.sim import stacks as mesh_stacks
+from innervate.networks.mesh.sim.recorder import BROKEN_RANGE as BROKEN_MESH
 from innervate.networks.mesh.verify import shape as mesh_shape
 from innervate.networks.radio.protocol import fields as radio_fields
 from innervate.networks.radio.sim import build as radio_build
@@ -18,6 +20,7 @@ from innervate.networks.radio.sim import recorder as radio_recorder
 from innervate.networks.radio.sim.stacks import PROTOCOLS
 from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.networks.skin.sim import build as skin_build
+from innervate.networks.skin.sim import simulate as skin_simulate
 from innervate.networks.skin.sim import stack as skin_stack
 from innervate.networks.skin.sim import static_stack
 from innervate.networks.skin.verify import graphs, moves
@@ -25,6 +28,8 @@ from innervate.networks.skin.verify import system as skin_system
 from innervate.networks.skin.verify import world as skin_verify
 from innervate.sim.cables import recorder as cables_recorder
 from innervate.sim.cables.world import BROKEN_RANGE
+from innervate.sim.status import BROKEN, DONE
+from innervate.sim.tables import get, put
 from innervate.verify import declared
 from tests.networks.mesh.runs import mesh_plan
 from tests.networks.radio.runs import radio_plan
@@ -93,6 +98,37 @@ def routers(is_plain):
     return Watched(fields, world.nodes[NODE], lambda: not sound(world, NODE))
 
 
+def looked_at_between(running, declaration, record, code, node):
+    """A record that is looked at whenever the loop comes back."""
+
+    def speaks():
+        put(running.world.run, 0, broken=0, broken_node=-1, status=DONE)
+        running.mark_broken()
+        said = tuple(int(get(running.world.run, 0, name)) for name in ("broken", "broken_node"))
+        status = int(get(running.world.run, 0, "status"))
+        assert (*said, status) in ((0, -1, DONE), (code, node, BROKEN))
+        return said[0] == code
+
+    return Watched(declaration, record, speaks)
+
+
+def pc(which, is_plain):
+    running = skin_simulate.simulation(plan_of(line(3)), plain=is_plain)
+    own, of_port = running.sink
+    if which == "own":
+        return looked_at_between(running, own, running.world.pc.own[0], BROKEN_RANGE, 3)
+    ((name, _, *limits),) = of_port
+    ports = ((name, len(running.world.pc.size), *limits),)
+    return looked_at_between(running, ports, running.world.pc, BROKEN_RANGE, 3)
+
+
+def gateways(rank, is_plain):
+    plan = mesh_plan(3, capacity=4, ranks=[1, -1, 0])
+    running = mesh_simulate.simulation(plan, plain=is_plain)
+    record, node = running.world.gates[rank], plan.ranks.index(rank)
+    return looked_at_between(running, mesh_fields.gate(4), record, BROKEN_MESH, node)
+
+
 def explored_cells():
     world = skin_system.world_of(skin_system.SkinModel(graphs.parse("pair")), True)
 
@@ -152,6 +188,16 @@ WATCHES = {
     "networks.mesh.sim.stacks": [
         (f"routers, {form}", routers, (is_plain,)) for form, is_plain in FORMS.items()
     ],
+    "sim.ranges": [
+        (f"{name}, {form}", make, (which, is_plain))
+        for form, is_plain in FORMS.items()
+        for name, make, which in (
+            ("the PC", pc, "own"),
+            ("the PC's ports", pc, "ports"),
+            ("the gateway", gateways, 0),
+            ("a standby", gateways, 1),
+        )
+    ],
     "networks.skin.verify.moves": [("explored cells", explored_cells, ())],
     "networks.mesh.verify.shape": [
         ("explored routers", explored_routers, (0,)),
@@ -192,8 +238,14 @@ def test_every_checker_of_ranges_has_a_row():
     found = set()
     for path in home.rglob("*.py"):
         text = path.read_text(encoding="utf-8")
-        watches = ("low[i]", "< low or max(", "low <= one <= high", "world.low[i]")
+        watches = (
+            "low[i]",
+            "< low or max(",
+            "low <= one <= high",
+            "world.low[i]",
+            "low <= words.min()",
+        )
         if any(word in text for word in watches):
             found.add(".".join(path.relative_to(home).with_suffix("").parts))
-    # Where a lost memory is put back, no range is looked at.
-    assert found - {"networks.mesh.sim.loop"} == set(WATCHES)
+    # Where a lost memory is put back no range is looked at; what users give is refused in a line.
+    assert found - {"networks.mesh.sim.loop", "live.declared"} == set(WATCHES)

@@ -25,17 +25,22 @@ def server(node, folder):
     return status.Server(folder / f"{node.name}.sock", answer)
 
 
+async def watched(skin, folder, stack):
+    """The skin as a page finds it: by its nodes' sockets, which the stack closes."""
+    servers = [server(node, folder) for node in (*skin.cells, skin.pc)]
+    for one in servers:
+        await one.start()
+        stack.push_async_callback(one.stop)
+    return await asyncio.to_thread(Live, [one.path for one in servers])
+
+
 def test_a_command_goes_from_the_page_through_the_skin_and_is_shown_where_it_came():
     async def main(folder, stack):
         skin = await stack.enter_async_context(Skin(3, 1, [(0, 0)], rate_hz=20.0))
         heard = [[] for _ in skin.cells]
         for cell, list_ in zip(skin.cells, heard, strict=True):
             cell.receive_commands(list_.append)
-        servers = [server(node, folder) for node in (*skin.cells, skin.pc)]
-        for one in servers:
-            await one.start()
-            stack.push_async_callback(one.stop)
-        source = await asyncio.to_thread(Live, [one.path for one in servers])
+        source = await watched(skin, folder, stack)
         async with serving(source) as served, Page(served.address) as page:
             await page.take()
             assert "command" in page.scene["can"]
@@ -71,11 +76,7 @@ def test_a_command_that_no_cell_hands_down_is_refused_and_said():
         async with Skin(2, 1, [(0, 0)]) as skin, AsyncExitStack() as stack:
             for path in skin.cables["pc", 0]:
                 path.cut = True
-            servers = [server(node, folder) for node in (*skin.cells, skin.pc)]
-            for one in servers:
-                await one.start()
-                stack.push_async_callback(one.stop)
-            source = await asyncio.to_thread(Live, [one.path for one in servers])
+            source = await watched(skin, folder, stack)
             async with serving(source) as served, Page(served.address) as page:
                 await page.take()
                 refused = await page.ask("command", code=1)

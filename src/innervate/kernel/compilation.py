@@ -186,10 +186,7 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def compiled_as_one(function: Callable[..., Any]) -> Callable[..., Any]:
-    """As `compiled`, in half the time, for loops over hundreds of functions (see linking.py).
-
-    None of them may make an array.
-    """
+    """As `compiled`, in half the time, for loops over hundreds of functions (see linking.py)."""
     return _compiled(function, as_one)
 
 

@@ -13,7 +13,7 @@ import socket
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
 from typing import IO, Protocol
@@ -139,12 +139,18 @@ class Machine:
         os.fsync(file.fileno())
 
     def replace(self, old: Path, new: Path) -> None:
-        """A file has another name from now on; what had that name is gone.
+        """A file has another name from now on, whatever happens to the machine.
 
         Raises:
             OSError: it cannot be done.
         """
         os.replace(old, new)
+        with suppress(OSError):  # not every system can: it is as safe as it was
+            folder = os.open(new.parent, os.O_RDONLY)
+            try:
+                os.fsync(folder)
+            finally:
+                os.close(folder)
 
     def remove(self, path: Path) -> None:
         """A file, or a socket's name, is no more.

@@ -31,6 +31,7 @@ class State:
         seen: newest counter per sender, for each key (by its mark, see keys.py).
         seen_before: the same from a file of an older version, which did not say under which key.
         epoch: newest epoch of a gateway that was followed; 0 = none.
+        numbers: our packets may bear numbers from here on; -1 = nothing is known of any.
         trouble: why it could not be written, "" = it was when tried last.
         failed: how often it could not be written.
     """
@@ -42,6 +43,7 @@ class State:
         self.seen: dict[str, dict[int, int]] = {}
         self.seen_before: dict[int, int] = {}
         self.epoch = 0
+        self.numbers = -1
         self.trouble = ""
         self.failed = 0
         self._errno = 0
@@ -52,6 +54,7 @@ class State:
             kept = json.loads(machine().read_text(path))
             self.counter = _whole(kept["counter"], COUNTER_MAX)
             self.epoch = _whole(kept["epoch"], 255)
+            self.numbers = _whole(kept.get("numbers", -1), 65_535, -1)
             for name, value in kept["seen"].items():
                 if isinstance(value, dict):
                     self.seen[name] = dict(map(_newest, value, value.values()))
@@ -68,7 +71,8 @@ class State:
         """Write the file; False if it could not be, with the reason in `trouble`."""
         if self.path is None:
             return True
-        kept = {"counter": self.counter, "seen": self.seen, "epoch": self.epoch}
+        kept = {"counter": self.counter, "seen": self.seen, "epoch": self.epoch,
+                "numbers": self.numbers}  # fmt: skip
         new = self.path.with_name(self.path.name + ".new")
         try:
             with machine().create(new) as file:
@@ -107,7 +111,7 @@ def _newest(sender: str, counter: Any) -> tuple[int, int]:
     return _whole(int(sender), SENDER_MAX), _whole(counter, COUNTER_MAX)
 
 
-def _whole(value: Any, most: int) -> int:
-    if type(value) is not int or not 0 <= value <= most:
-        raise ValueError(f"{value} is no number from 0 to {most}")
+def _whole(value: Any, most: int, least: int = 0) -> int:
+    if type(value) is not int or not least <= value <= most:
+        raise ValueError(f"{value} is no number from {least} to {most}")
     return value

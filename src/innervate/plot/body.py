@@ -97,11 +97,12 @@ def _over_time(result: Any) -> str:
     marks = [charts.Mark(fault.at_us / 1e6, "") for fault in result.plan.faults]
     figures = []
     for name, times in _series(result)[:CHARTS_MAX]:
-        drawing = charts.step_chart(
+        shown = charts.Steps(
             np.sort(times) / 1e6, np.arange(1, len(times) + 1), charts.Axis(0, end_s, "s"),
-            charts.Axis(0, max(1, len(times))), marks[: charts.BARS_MAX], f"{name} over time",
+            charts.Axis(0, max(1, len(times))), f"{name} over time",
+            marks=marks[: charts.BARS_MAX],
         )  # fmt: skip
-        figures.append(figure(drawing, name, "So many so far."))
+        figures.append(figure(shown.drawing, name, "So many so far."))
     return section("Over time", pictures(figures, "two"))
 
 

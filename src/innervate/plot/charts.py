@@ -1,13 +1,11 @@
-"""Line charts with marked moments, and bars: as they are drawn on pages.
-
-Steps and Bars say what is shown; plot/figures.py draws the same with matplotlib.
-"""
+"""Line charts with marked moments, and bars: what is shown, and as what drawing."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -18,6 +16,7 @@ from innervate.plot.words import count_words
 WIDTH = 440.0
 LEFT, RIGHT, BOTTOM = 46.0, 14.0, 40.0
 LETTER = 7.2  # width of a letter at 12 px, on the safe side
+SMALL_LETTER = 6.4  # at 11 px
 LABEL_ROW = 15.0
 BARS_MAX = 24
 STEPS_MAX = 2000  # of the curve of a distribution
@@ -51,7 +50,10 @@ class Panel:
 
 @dataclass(frozen=True, slots=True)
 class Steps:
-    """A step function (`values[i]` from `times[i]` on) with marked moments, and its caption."""
+    """A step function (`values[i]` from `times[i]` on) with marked moments, and its caption.
+
+    `even` is marked as a level, dashed.
+    """
 
     times: Any
     values: Any
@@ -62,12 +64,12 @@ class Steps:
     marks: Sequence[Mark] = ()
     height: float = 190.0
     label: str = ""  # for a screen reader; else the head
+    even: float | None = None
 
     @property
     def drawing(self) -> svg.Drawing:
         """It as it stands on a page."""
-        label = self.label or self.head
-        return step_chart(self.times, self.values, self.x, self.y, self.marks, label, self.height)
+        return step_chart(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,29 +122,52 @@ def ticks(low: float, high: float, count: int = 5) -> list[float]:
     return [round(i * step, 10) + 0.0 for i in range(first, last + 1)]
 
 
-def step_chart(
-    times: Any, values: Any, x: Axis, y: Axis, marks: Sequence[Mark], label: str,
-    height: float = 190.0,
-) -> svg.Drawing:  # fmt: skip
-    """A step function (`values[i]` from `times[i]` on) with marked moments above it."""
-    inner = WIDTH - LEFT - RIGHT
-    rows = _rows(marks, lambda at: LEFT + inner * (at - x.low) / (x.high - x.low))
+def step_chart(shown: Steps) -> svg.Drawing:
+    """A step function, the names of its marked moments in rows above it.
+
+    Names for which there is no room are numbers there, and told below.
+    """
+    marks, below = _fitting(shown.marks, shown.x)
+    rows = _rows(marks, shown.x)
     top = 10 + LABEL_ROW * (1 + max((row for row, _ in rows), default=-1))
-    drawing = svg.Drawing(WIDTH, top + height, label)
-    plot = _Plot(drawing, x, y, top, top + height - BOTTOM)
+    high = top + shown.height
+    drawing = svg.Drawing(WIDTH, high + LABEL_ROW * len(below), shown.label or shown.head)
+    plot = _Plot(drawing, shown.x, shown.y, top, high - BOTTOM)
     plot.frame()
-    points = _steps(times, values, x, plot)
-    base = plot.down(y.low)
+    points = _steps(shown.times, shown.values, shown.x, plot)
+    base = plot.down(shown.y.low)
     ends = [(points[0][0], base), *points, (points[-1][0], base)]
     drawing.path(svg.polyline(ends) + "z", "area")
     drawing.path(svg.polyline(points), "series")
+    if shown.even is not None:
+        level = plot.down(shown.even)
+        drawing.line((LEFT, level), (WIDTH - RIGHT, level), "even")
     for mark, (row, anchor) in zip(marks, rows, strict=True):
         across = plot.across(mark.at)
         level = 12 + LABEL_ROW * row
         drawing.line((across, level - 9), (across, base), "mark")
         gap = 4 if anchor == "start" else -4
         drawing.text((across + gap, level), mark.label, "", anchor)
+    for i, line in enumerate(below):
+        drawing.text((0.0, high + LABEL_ROW * (i + 0.75)), line, "small")
     return drawing
+
+
+def _fitting(marks: Sequence[Mark], x: Axis) -> tuple[Sequence[Mark], list[str]]:
+    """Marks as they can be named above a chart, and lines that tell what numbers stand for."""
+    placed = _rows(marks, x)
+    rows = [row for row, _ in placed]
+    spans = [_span(mark, anchor, x) for mark, (_, anchor) in zip(marks, placed, strict=True)]
+    crossed = any(
+        low < _across(other.at, x) < high and other_row < row
+        for (low, high), row in zip(spans, rows, strict=True)
+        for other, other_row in zip(marks, rows, strict=True)
+    )
+    if not crossed and all(low >= 0 for low, _ in spans):
+        return marks, []
+    numbered = [Mark(mark.at, str(i)) for i, mark in enumerate(marks, 1)]
+    told = "; ".join(f"{i}) {mark.label}" for i, mark in enumerate(marks, 1))
+    return numbered, wrap(told, int(WIDTH / SMALL_LETTER))
 
 
 class _Plot:
@@ -154,8 +179,7 @@ class _Plot:
 
     def across(self, value: float) -> float:
         """Place of a value along x."""
-        inner = WIDTH - LEFT - RIGHT
-        return LEFT + inner * (value - self.x.low) / (self.x.high - self.x.low)
+        return _across(value, self.x)
 
     def down(self, value: float) -> float:
         """Place of a value along y."""
@@ -207,15 +231,27 @@ def _thin(times: Any, values: Any, before: int, behind: int, plot: _Plot) -> Any
     return (before + np.unique(np.concatenate([order[first], order[last], final]))).tolist()
 
 
-def _rows(marks: Sequence[Mark], across: Any) -> list[tuple[int, str]]:
+def _across(at: float, x: Axis) -> float:
+    """Where a moment of the axis lies, px."""
+    return LEFT + (WIDTH - LEFT - RIGHT) * (at - x.low) / (x.high - x.low)
+
+
+def _span(mark: Mark, anchor: str, x: Axis) -> tuple[float, float]:
+    """From where to where the name of a mark reaches, px."""
+    at = _across(mark.at, x)
+    long = LETTER * len(mark.label) + 8 if mark.label else 0.0
+    return (at, at + long) if anchor == "start" else (at - long, at)
+
+
+def _rows(marks: Sequence[Mark], x: Axis) -> list[tuple[int, str]]:
     """A row and an anchor for every mark's label, so that no two labels overlap."""
     taken: list[list[tuple[float, float]]] = []
     found: dict[int, tuple[int, str]] = {}
     # From left to right: a line that starts below a label does not cross it.
     for index in sorted(range(len(marks)), key=lambda i: marks[i].at):
-        at, long = across(marks[index].at), LETTER * len(marks[index].label) + 8
-        anchor = "start" if at + long <= WIDTH else "end"
-        span = (at, at + long) if anchor == "start" else (at - long, at)
+        mark, at = marks[index], _across(marks[index].at, x)
+        anchor = "start" if _span(mark, "start", x)[1] <= WIDTH else "end"
+        span = _span(mark, anchor, x)
         covering = [r for r, spans in enumerate(taken) if any(a <= at < b for a, b in spans)]
         row = max(covering, default=-1) + 1
         while row < len(taken) and any(span[0] < b and a < span[1] for a, b in taken[row]):
@@ -257,8 +293,4 @@ def _profile(bars: Sequence[Bar], label: str, even: float | None) -> svg.Drawing
     values = np.array(sorted((bar.value for bar in bars), reverse=True))
     x = Axis(0.0, float(len(values)), f"{len(values)} of them, the largest first")
     y = Axis(0.0, float(max(values[0], even or 0.0)) * 1.05 or 1.0)
-    drawing = step_chart(np.arange(len(values)), values, x, y, (), label)
-    if even is not None:
-        plot = _Plot(drawing, x, y, 10, drawing.height - BOTTOM)
-        drawing.line((LEFT, plot.down(even)), (WIDTH - RIGHT, plot.down(even)), "even")
-    return drawing
+    return step_chart(Steps(np.arange(len(values)), values, x, y, label, even=even))

@@ -7,14 +7,11 @@ from textwrap import wrap
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate.analysis.summary import known_latencies_us
-from innervate.plot import charts, style
-
-MARKS_MAX = 12
-LETTERS = 62  # in a column
+from innervate.plot import charts, paint, style
+from innervate.plot.svg import Drawing
 
 
 def draw(run: Any, figure: str = "delivered", **options: Any) -> Figure:
@@ -41,49 +38,28 @@ def draw_one(
 
 
 def chart(one: charts.Steps | charts.Bars | None) -> Figure:
-    """What a report shows as a drawing; None if there is nothing to be shown."""
-    made, (ax,) = style.panels(style.COLUMN_IN, 2.2)
-    if isinstance(one, charts.Bars):
-        _bars(ax, one)
-    elif one is not None:
-        _steps(ax, one)
-    ax.set_title("nothing to show" if one is None else one.head)
+    """What a report shows, as a figure; None if there is nothing to be shown."""
+    if one is None:
+        return nothing("nothing to show")
+    return paint.figure(captioned(one.drawing, one.text), one.head, style.COLUMN_IN)
+
+
+def captioned(drawing: Drawing, text: str) -> Drawing:
+    """A drawing with words below it, in lines as wide as it is."""
+    lines = wrap(text, int(drawing.width / charts.LETTER))
+    made = Drawing(drawing.width, drawing.height + charts.LABEL_ROW * len(lines), drawing.label)
+    made.place(drawing, (0.0, 0.0))
+    for i, line in enumerate(lines):
+        made.text((0.0, drawing.height + charts.LABEL_ROW * (i + 0.75)), line)
     return made
 
 
-def _steps(ax: Axes, shown: charts.Steps) -> None:
-    at = np.append(shown.times, shown.x.high)
-    values = np.append(shown.values, shown.values[-1:] if len(shown.values) else [0])
-    ax.fill_between(at, 0, values, step="post", color=style.BLUE, alpha=0.18, lw=0)
-    ax.step(at, values, where="post", color=style.BLUE, lw=1)
-    for i, mark in enumerate(shown.marks):
-        ax.axvline(mark.at, color=style.INK, lw=0.8, ls="--")
-        if len(shown.marks) <= MARKS_MAX:
-            right = mark.at > (shown.x.low + shown.x.high) / 2
-            ax.text(
-                mark.at, 0.99 - 0.08 * (i % 3), f" {mark.label} ", ha="right" if right else "left",
-                va="top", transform=ax.get_xaxis_transform(), fontsize=6.5,
-            )  # fmt: skip
-    ax.set_xlim(shown.x.low, shown.x.high)
-    ax.set_ylim(shown.y.low, shown.y.high)
-    _caption(ax, shown.x.name, shown.text)
-
-
-def _bars(ax: Axes, shown: charts.Bars) -> None:
-    places = range(len(shown.bars))
-    ax.bar(places, [bar.value for bar in shown.bars], 0.7, color=style.BLUE, alpha=0.5)
-    if shown.even is not None:
-        ax.axhline(shown.even, color=style.INK, lw=0.9, ls="--")
-    even = "" if shown.even is None else f"dashed: even share, {shown.even:.4g}"
-    _caption(ax, even, shown.text)
-    if len(places) <= MARKS_MAX:
-        ax.set_xticks(places, [bar.name for bar in shown.bars], rotation=30, ha="right")
-    ax.grid(axis="x", visible=False)
-
-
-def _caption(ax: Axes, name: str, text: str) -> None:
-    """What the axis below is called, and the words of a chart."""
-    ax.set_xlabel("\n".join(line for line in (name, *wrap(text, LETTERS)) if line))
+def nothing(why: str) -> Figure:
+    """A figure of nothing, which says so."""
+    made, (ax,) = style.panels(style.COLUMN_IN, 1.0)
+    ax.axis("off")
+    ax.text(0.5, 0.5, why, ha="center", va="center", transform=ax.transAxes)
+    return made
 
 
 def delivered(run: Any) -> Figure:
@@ -105,9 +81,10 @@ def delivered(run: Any) -> Figure:
 
 def latency(run: Any) -> Figure:
     """Share of the messages that were delivered within a time."""
+    known = np.sort(known_latencies_us(run.result.rows.get("deliveries"))) / 1e3
+    if not len(known):
+        return nothing("no message whose latency is known")
     made, (ax,) = style.panels(style.COLUMN_IN, 2.2)
-    some = run.result.rows.get("deliveries")
-    known = np.sort(known_latencies_us(some)) / 1e3
     ax.step(known, np.arange(1, len(known) + 1) / max(1, len(known)), where="post", lw=1)
     ax.set_xlabel("latency (ms)")
     ax.set_ylabel("share delivered")

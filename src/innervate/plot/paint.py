@@ -22,7 +22,8 @@ from innervate.plot import style, theme
 from innervate.plot.svg import Drawing, Point
 
 TEXT_PX = 12.0
-KEY_PX, COLUMN_PX = 22.0, 235.0
+KEY_PX, COLUMN_PX, GAP_PX = 22.0, 235.0, 20.0  # of a key: a row, the least column, what parts two
+LETTER_PX = 6.6  # of small words
 _STEP = re.compile(r"([MLHlhvaz])([^MLHlhvaz]*)")
 _NUMBER = re.compile(r"-?\d*\.?\d+")
 _RULE = re.compile(r"([^{}]+)\{([^}]*)\}")
@@ -49,14 +50,16 @@ def paint(ax: Axes, drawing: Drawing, width_in: float) -> None:
 def keyed(drawing: Drawing, entries: Iterable[tuple[Drawing, str]]) -> Drawing:
     """A drawing with samples and their words below it."""
     shown = list(entries)
-    columns = max(1, int(drawing.width // COLUMN_PX))
+    needed = [icon.width + LETTER_PX * len(words) + GAP_PX for icon, words in shown]
+    column_px = max([COLUMN_PX, *needed])
+    columns = max(1, int(drawing.width // column_px))
     rows = -(-len(shown) // columns)
-    size = max(drawing.width, COLUMN_PX), drawing.height + KEY_PX * rows
+    size = max(drawing.width, column_px), drawing.height + KEY_PX * rows
     made = Drawing(*size, drawing.label)
     made.place(drawing, (0.0, 0.0))
     for i, (icon, words) in enumerate(shown):
         row, column = divmod(i, columns)
-        x, y = COLUMN_PX * column, drawing.height + KEY_PX * row
+        x, y = column_px * column, drawing.height + KEY_PX * row
         made.place(icon, (x, y))
         made.text((x + icon.width + 8, y + 13), words)
     return made

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from innervate.plot import style
 
 KINDS = ("band", "heat")
 LINES_MAX = 8
+LETTERS = 48  # of a line below a figure with a colour bar beside it
 WRITTEN_MAX = 60  # squares of a heat map that have their number written in them
 Columns = Mapping[str, Sequence[Any]]
 # What a measure's ending means, for axes.
@@ -47,7 +49,8 @@ def draw(
         ax.set_title(title)
         if over:
             several = ", ".join(f"{count} values of {key}" for key, count in over.items())
-            ax.set_xlabel(f"{ax.get_xlabel()}\nmeans over {several}, all varied alike")
+            said = wrap(f"means over {several}, all varied alike", LETTERS)
+            ax.set_xlabel("\n".join([ax.get_xlabel(), *said]))
         return made
 
 

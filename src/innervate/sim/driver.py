@@ -19,7 +19,7 @@ from innervate.kernel.stop import Stop
 from innervate.sim import taps
 from innervate.sim.counts import Counts
 from innervate.sim.status import BROKEN, DONE
-from innervate.sim.tables import WIDE, Names, get, hand_over, move_rows
+from innervate.sim.tables import WIDE, Names, get, hand_over, move_rows, put
 
 Advance = Callable[[Any, int, int], None]
 Progress = Callable[[int, int], None]
@@ -87,6 +87,8 @@ class Simulation(ABC):
             InvariantBroken: a checker found what must not happen.
         """
         self._advance(self.world, until_us, budget)
+        if get(self.world.run, 0, "checks") and not get(self.world.run, 0, "broken"):
+            self.mark_broken()
         status = int(get(self.world.run, 0, "status"))
         if status == BROKEN:
             raise InvariantBroken(self.broken_line())
@@ -135,6 +137,17 @@ class Simulation(ABC):
     def fingerprint(self) -> str:
         """Of everything that has happened."""
         return f"{int(get(self.world.run, 0, 'fingerprint')) & (1 << 64) - 1:016x}"
+
+    def mark_broken(self) -> None:
+        """Mark the run as broken by what is not looked at after every event."""
+        broken = self.broken_between()
+        if broken is not None:
+            code, node = broken
+            put(self.world.run, 0, broken=code, broken_node=node, status=BROKEN)
+
+    def broken_between(self) -> tuple[int, int] | None:
+        """What is broken of that, and where; None if nothing is."""
+        return None
 
     def is_complete(self) -> bool:
         """True if it ended before its time because there was no more to do."""

@@ -24,6 +24,8 @@ WIDE = frozenset(
 # station); who sent it (mesh, radio); 1 = it left, 0 = it came in; why it got no further.
 TAP = ("time", "start", "at", "sender", "out", "why")
 ACTION = ("kind", "a", "b", "c")
+ROWS = 1 << 16  # that a table holds before the loop stops for them to be moved out
+PLAIN_ROWS = 1 << 12  # objects: dear to make
 
 
 Name = str | tuple[str, int]  # of a field of rows; with a length, of an array
@@ -51,6 +53,7 @@ class Tables:
         """
         self.plain = plain_form
         self.word = word
+        self.rows = PLAIN_ROWS if plain_form else ROWS
 
     def numbers(self, count: int, value: int = 0, kind: type = np.int32) -> Any:
         """`count` whole numbers of a value: a list if plain, else an array."""

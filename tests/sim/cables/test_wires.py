@@ -10,8 +10,8 @@ from innervate.networks.skin.protocol.constants import BEACON, COMMAND, DATA
 from innervate.networks.skin.sim import stack
 from innervate.networks.skin.sim.build import build
 from innervate.scenario.actions.cables import CUT, KILL, LOOSE, LOSE, RESTART, RESTORE, REVIVE
-from innervate.sim import wheel
-from innervate.sim.cables import build as tables
+from innervate.sim import tables, wheel
+from innervate.sim.cables import build as cables
 from innervate.sim.cables import commands, wires
 from innervate.sim.cables.wires import (
     ARRIVED,
@@ -39,7 +39,7 @@ class Cable:
     def __init__(self, room=3, hop_latency_us=(LATENCY_US, LATENCY_US), **timing):
         timing = {"hop_latency_us": list(hop_latency_us), "loss": 0.0} | timing
         plan = plan_of(line(2, data={"rate_hz": 100, "queue": room}, timing=timing))
-        with mock.patch.multiple(tables, ROWS=8, BATCH=8):  # nothing is kept
+        with mock.patch.object(cables, "BATCH", 8), mock.patch.object(tables, "PLAIN_ROWS", 8):
             self.world = build(plan, plain=True)
         assert self.world.ends[END].peer == PEER
         assert self.world.run[0].wire_us == WIRE_US

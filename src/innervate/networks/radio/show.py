@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from innervate.networks.radio.analysis.state import hidden_pairs
 from innervate.networks.radio.plot.words import off_words, slots_words
 from innervate.networks.radio.scenario.rules import outside
 from innervate.networks.radio.scenario.words import warnings
@@ -75,7 +74,7 @@ def _delivered(run: Run) -> str:
 
 def _noticed(run: Run) -> list[str]:
     summary = _summary(run)
-    if "level" in summary or not summary["bounds_noticed"]["count"] or hidden_pairs(run.plan):
+    if "level" in summary or not summary["bounds_noticed"]["count"] or run.plan.pairs.hidden:
         return []
     if outside(run.plan.scenario.model):  # said already
         return []

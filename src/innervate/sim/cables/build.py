@@ -18,7 +18,6 @@ from innervate.sim.cables.wires import COUNTERS, LOSSY
 from innervate.sim.tables import ACTION, TAP, Names, Out, Tables, _longer, get, put, uniform
 from innervate.sim.wheel import BUCKETS, FREE, FRESH, LAST, LEVELS, NIL, PENDING, WORDS
 
-ROWS = 1 << 16
 CACHE_LINE = 64
 
 
@@ -101,7 +100,7 @@ def build(plan: Any, of: Records, tables: Tables, kept: Recorded, added: Added) 
         kept: what the run keeps.
         added: what is its network's own.
     """
-    size = _sizes(plan, of, kept, added)
+    size = _sizes(plan, of, kept, added, tables.rows)
     cells = plan.graph.cells
     states = tables.states(of.node, cells, _lines(of.node))
     low, high = records.bounds(of.node)
@@ -128,15 +127,15 @@ def build(plan: Any, of: Records, tables: Tables, kept: Recorded, added: Added) 
         watch=added.watch,
         carrier=added.carrier,
         commands=tables.records(w.COMMAND, len(plan.faults) + len(added.inputs) + 1),
-        rows=tables.records(w.ROW, ROWS + 8 * size.limit, fresh=True),
-        deliveries=tables.records(of.delivery, ROWS if kept.deliveries else 1, fresh=True),
-        trail=tables.records(w.TRAIL, ROWS if kept.trail else 1, fresh=True),
+        rows=tables.records(w.ROW, tables.rows + 8 * size.limit, fresh=True),
+        deliveries=tables.records(of.delivery, tables.rows if kept.deliveries else 1, fresh=True),
+        trail=tables.records(w.TRAIL, tables.rows if kept.trail else 1, fresh=True),
         taps=tables.records(TAP, size.tapped, fresh=True),
         tapped=tables.states(of.frame, size.tapped),
         delays=tables.records(w.DELAY, added.ways, wide=w.WIDE),
         delay_counts=tables.numbers(added.ways * delays.CLASSES),
     )
-    _set_run(world, plan, size, kept)
+    _set_run(world, plan, size, kept, tables.rows)
     put(world.params, 0, **{field[0]: plan.params[field[0]] for field in of.params})
     _set_wires(world, plan)
     _set_nodes(world, plan, of)
@@ -144,7 +143,7 @@ def build(plan: Any, of: Records, tables: Tables, kept: Recorded, added: Added) 
     return world
 
 
-def _sizes(plan: Any, of: Records, kept: Recorded, added: Added) -> _Sizes:
+def _sizes(plan: Any, of: Records, kept: Recorded, added: Added, rows: int) -> _Sizes:
     graph, ends = plan.graph, len(plan.graph.peer)
     nodes = graph.cells + bool(of.sink)
     tx_slots = nodes * w.TIMER_SLOTS
@@ -159,7 +158,7 @@ def _sizes(plan: Any, of: Records, kept: Recorded, added: Added) -> _Sizes:
         limit=limit,
         pool=2 * ends + BATCH * 16 + 4 * limit,
         queue=ends * plan.queue_frames if added.queues else 1,
-        tapped=ROWS + burst if kept.tap else 1,
+        tapped=rows + burst if kept.tap else 1,
     )
 
 
@@ -230,7 +229,7 @@ def _fill(table: Any, name: str, values: Any, count: int) -> None:
         table[name][:count] = values
 
 
-def _set_run(world: w.World, plan: Any, size: _Sizes, kept: Recorded) -> None:
+def _set_run(world: w.World, plan: Any, size: _Sizes, kept: Recorded, rows: int) -> None:
     low, high = plan.latency_us
     put(
         world.run,
@@ -251,9 +250,9 @@ def _set_run(world: w.World, plan: Any, size: _Sizes, kept: Recorded) -> None:
         observe=int(kept.observe or kept.checks),
         broken_at=-1,
         row_limit=len(world.rows),
-        delivery_limit=ROWS if kept.deliveries else 0,
-        trail_limit=ROWS if kept.trail else 0,
-        tap_limit=ROWS if kept.tap else 0,
+        delivery_limit=rows if kept.deliveries else 0,
+        trail_limit=rows if kept.trail else 0,
+        tap_limit=rows if kept.tap else 0,
     )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from innervate.kernel.records import Declaration
 from innervate.sim import wheel
 from innervate.sim.cables import build, wires
 from innervate.sim.cables import world as w
@@ -14,8 +15,9 @@ from innervate.sim.cables.world import ALIVE
 from innervate.sim.counts import Counts
 from innervate.sim.driver import Ended, Simulation
 from innervate.sim.queue import with_command
+from innervate.sim.ranges import is_in_range
 from innervate.sim.status import POOL_FULL
-from innervate.sim.tables import Names, get
+from innervate.sim.tables import Names, get, put
 
 
 @dataclass(slots=True)
@@ -47,6 +49,7 @@ class Cables(Simulation):
 
     Attributes:
         broken_words: what is broken, with {node} and {other} for who it concerns.
+        sink: what the node with a port per interface has, and what it has for each port.
     """
 
     tables: ClassVar[Mapping[str, Names]] = {
@@ -56,6 +59,7 @@ class Cables(Simulation):
         w.BROKEN_RANGE: "a value of {node} is out of its declared range",
         w.BROKEN_OUTBOX: "outbox of {node} overflowed",
     }
+    sink: ClassVar[tuple[Declaration, Declaration]] = ((), ())
 
     def result(self, ended: Ended, kept: bool) -> Result:
         """What it leaves; `kept`: deliveries were."""
@@ -82,6 +86,14 @@ class Cables(Simulation):
         what = words.format(node=label(node), other=label(other))
         at = max(int(get(run, 0, "broken_at")), 0) / 1e6
         return f"invariant broken at {at:.6f} s (seed {self.plan.seed}): {what}"
+
+    def broken_between(self) -> tuple[int, int] | None:
+        """The ranges of the node with a port per interface."""
+        (own, of_port), pc = self.sink, self.world.pc
+        if not pc or (is_in_range(pc.own[0], own) and is_in_range(pc, of_port)):
+            return None
+        put(self.world.run, 0, broken_at=self.clock_us())
+        return w.BROKEN_RANGE, self.plan.graph.cells
 
     def clock_us(self) -> int:
         """Time of the newest event, us."""

@@ -15,7 +15,6 @@ from innervate.sim.channel.medium import NEVER
 from innervate.sim.heap import AIRS, COMMAND, OFFER, key_of, push
 from innervate.sim.tables import ACTION, TAP, Out, Tables, put, uniform
 
-ROWS = 1 << 16
 OUTBOX = 16
 
 
@@ -41,14 +40,15 @@ def build(
     keep: bool,
     trail: bool,
     tap: bool = False,
-    room: int = ROWS,
+    room: int | None = None,
 ) -> r.World:
     """The world of a plan, before its first event.
 
     `of` declares the records of its protocol.
 
     `keep` keeps a row per report, transmission and delivered packet, `trail` one per handler call,
-    `tap` copies of frames on the air; there is `room` for so many rows before the loop stops.
+    `tap` copies of frames on the air; there is `room` for so many rows before the loop stops, if
+    that is said.
     """
     tables = Tables(plain)
     n = plan.stations
@@ -56,8 +56,8 @@ def build(
     stations = tables.states(fields, n)
     low, high = records.bounds(fields)
     order, delay, degree = _neighbours(plan)
-    rows = room if keep else 1
-    tapped = ROWS + OUTBOX * n * BATCH if tap else 1
+    rows = (room or tables.rows) if keep else 1
+    tapped = tables.rows + OUTBOX * n * BATCH if tap else 1
     world = r.World(
         run=tables.records(r.RUN, 1, wide=r.WIDE),
         heap=r.Heap(tables.numbers(64 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64)),
@@ -93,7 +93,7 @@ def build(
         rows=tables.records(r.ROW, rows, fresh=True, wide=r.WIDE),
         sent=tables.records(r.SENT, rows, fresh=True, wide=r.WIDE),
         packets=tables.records(r.PACKET, rows, fresh=True, wide=r.WIDE),
-        trail=tables.records(r.TRAIL, ROWS if trail else 1, fresh=True, wide=r.WIDE),
+        trail=tables.records(r.TRAIL, tables.rows if trail else 1, fresh=True, wide=r.WIDE),
         taps=tables.records(TAP, tapped, fresh=True, wide=r.WIDE),
         tapped=tables.states(of.frame, tapped),
     )
@@ -157,7 +157,8 @@ def _set_run(world: r.World, plan: Any, of: Records, checks: bool, keep: bool, t
         broken_at=-1,
         hurt=plan.stations,
     )
-    put(world.run, 0, tap_limit=ROWS if len(world.taps) > ROWS else 0)
+    beyond = OUTBOX * plan.stations * BATCH  # what a batch of events can add
+    put(world.run, 0, tap_limit=max(0, len(world.taps) - beyond))
     put(world.params, 0, **{field[0]: plan.params[field[0]] for field in of.params})
 
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.dialect.arith import MASK16
-from innervate.live.receipts import DELIVERED
+from innervate.dialect.arith import MASK16, later
+from innervate.live.receipts import DELIVERED, EXPIRED
 from innervate.networks.mesh.live.order import Message, Order, Orderly
 from innervate.networks.mesh.protocol import queue as mesh_queue
 from innervate.networks.mesh.protocol.constants import DATA
@@ -15,6 +15,7 @@ from tests.live import time_by_hand
 from tests.live.net import Mesh, until
 
 LINE = [(0, 1), (1, 2)]
+PROFILE = {"ack_us": 5000, "e2e_us": 30_000}  # of live nodes
 WAIT = 1000
 
 
@@ -125,8 +126,25 @@ def test_of_those_that_wait_the_oldest_goes_first_when_one_more_comes_than_there
                                            (100 + 32_768, 1), (100 + 32_769, 1)])  # fmt: skip
 def test_a_number_that_is_not_later_than_the_newest_is_too_late(seq, late):
     order = Order(100, WAIT)
-    assert handed_up(order, (seq, 50)) == [[]]
-    assert (order.late, len(order.held)) == (late, 1 - late)
+    assert handed_up(order, (seq, (seq - 1) & MASK16)) == [[seq] if seq == 101 else []]
+    assert (order.late, len(order.held)) == (late, int(not late and seq != 101))
+    assert order.is_up(seq) == (seq == 101)
+
+
+def test_what_comes_after_one_that_its_sender_gave_up_is_not_held_up():
+    order = Order(10, WAIT)
+    assert handed_up(order, (13, 12), (15, 13)) == [[], []]
+    assert [int(one) for one in order.again(13, 10, now=0)] == [13, 15]
+    assert order.ended == [13, 15]
+    assert handed_up(order, (17, 9)) == [[17]]  # the one before it was passed long ago
+    assert order.again(17, 17, now=0) == []
+
+
+def test_one_without_another_before_it_is_late_all_the_same_unless_it_is_of_another_life():
+    order = Order(1000, WAIT)
+    assert handed_up(order, (990, 990), (1000, 1000)) == [[], []]
+    assert (order.late, order.is_up(990)) == (2, False)
+    assert handed_up(order, (500, 500)) == [[500]]
 
 
 def listening(orderly):
@@ -248,3 +266,51 @@ def test_two_bytes_less_fit_and_a_node_that_does_not_care_gets_the_payload_alone
             return heard
 
     assert asyncio.run(main()) == [bytes(range(88))]
+
+
+def test_a_message_that_waits_for_its_turn_is_not_delivered_until_it_was_handed_up():
+    async def main():
+        async with Mesh(2, [(0, 1)], **PROFILE) as mesh:
+            a, b = mesh.nodes
+            told = []
+            b.receive_messages(lambda _, payload: told.append(payload), in_order=True)
+            assert await a.send_message(1, b"here", in_order=True).wait() == DELIVERED
+            read = b.engine.read
+            b.engine.read = lambda data, *who: "lost" if b"lost" in data else read(data, *who)
+            first = a.send_message(1, b"lost", in_order=True)
+            second = a.send_message(1, b"behind", in_order=True)
+            while not b.orderly.held():
+                await asyncio.sleep(0.005)
+            between = second.state, list(told)
+            return between, await first.wait(), await second.wait(), told
+
+    between, first, second, told = time_by_hand.run(main())
+    assert between[0] != DELIVERED
+    assert between[1] == [b"here"]
+    assert (first, second) == (EXPIRED, DELIVERED)
+    assert told == [b"here", b"behind"]
+
+
+def test_a_sender_that_starts_again_goes_on_with_its_numbers():
+    async def main():
+        async with Mesh(2, [(0, 1)], **PROFILE) as mesh:
+            heard, numbers = [], []
+            mesh.nodes[0].receive_messages(lambda _, payload: heard.append(payload))
+            sender = mesh.nodes[1]
+            for k in range(12):
+                receipt = sender.send_message(0, b"%d" % k)
+                assert await receipt.wait() == DELIVERED
+                numbers.append(receipt.seq)
+                await sender.stop()
+                await sender.start()
+                await until_simulated(lambda: sender.stack.node.version != 0)
+            return heard, numbers
+
+    heard, numbers = time_by_hand.run(main())
+    assert heard == [b"%d" % k for k in range(12)]
+    assert all(later(b, a) for a, b in pairwise(numbers))
+
+
+async def until_simulated(what):
+    while not what():
+        await asyncio.sleep(0.01)

@@ -49,7 +49,7 @@ def test_without_rows_the_run_is_the_same():
 
 def test_rows_are_kept_when_their_tables_are_full(monkeypatch):
     whole = run(busy_plan())
-    monkeypatch.setattr("innervate.networks.mesh.sim.build.PLAIN_ROWS", 40)
+    monkeypatch.setattr("innervate.sim.tables.PLAIN_ROWS", 40)
     seen = []
     assert same(whole, run(busy_plan(), progress=lambda now, end: seen.append((now, end))))
     assert len(seen) > 3

@@ -15,14 +15,17 @@ from innervate.live.receipts import DELIVERED, EXPIRED, HOP_ACKED, REFUSED, Rece
 from innervate.live.state import State
 from innervate.live.streams import Arrivals, Stream, message_line
 from innervate.networks.mesh.live.alarms import Alarm, Alarms, place_of, read_alarm
+from innervate.networks.mesh.live.chains import Chains
 from innervate.networks.mesh.live.order import BEFORE_BYTES, Callback, Message, Orderly
 from innervate.networks.mesh.live.stack import Item, MeshStack
 from innervate.networks.mesh.live.turns import Turns
 from innervate.networks.mesh.protocol.constants import (
+    AGAIN,
     ALARM,
     ALL,
     DATA,
     END_TO_END,
+    HANDED_UP,
     IDS,
     MESSAGE,
     MONITOR,
@@ -42,6 +45,7 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.messages import payload_limit, resolve
 
 HANDLES = 65_536
+NUMBERS = 4111  # of packets that are kept for a while; 16 restarts unheard lead round to no old one
 
 
 class MeshNode(LiveNode):
@@ -73,15 +77,15 @@ class MeshNode(LiveNode):
         stack.epoch = self.state.epoch
         self.in_order = in_order
         self.orderly = orderly or Orderly()
-        self._newest: dict[
-            int, int
-        ] = {}  # by recipient: our newest message that is to come in order
+        self.orderly.on_up = self._acknowledge
+        self._chains = Chains()
         self.arrived_by: dict[int, list[int]] = {}  # the way of each sender's newest message
         self._turns = Turns(stack)
         self._receipts: dict[int, Receipt] = {}
         self._handle = 0
         self.arrivals = Arrivals(is_spread=True)
-        self._arrived: list[Message] = []
+        self._arrived: list[tuple[Message, bool]] = []  # True = it came before
+        self._ending = Item()
         self.alarms = Alarms()
         self._place = Item()
         self._feeding = False
@@ -175,6 +179,11 @@ class MeshNode(LiveNode):
         ordered = self.in_order if in_order is None else in_order
         return (self.orderly.arrivals if ordered else self.arrivals).receive(callback)
 
+    async def start(self) -> None:
+        """Switch on; packets' numbers go on where they were."""
+        self.stack.first = self.state.numbers
+        await super().start()
+
     async def stop(self) -> None:
         """Stop at once; what waits for its turn is handed up."""
         self.orderly.stop()
@@ -242,16 +251,17 @@ class MeshNode(LiveNode):
             if alarm is not None:
                 self.outcomes[f"alarms received: {alarm.kind}"] += 1
                 self.alarms.note(alarm)
-        if kind == DATA:
+        if kind in (DATA, AGAIN):
             self._turns.heard(frame.origin)
             self.arrived_by[frame.origin] = [*frame.path[: frame.path_len], frame.dest]
-            self.outcomes["messages received"] += 1
+            self.outcomes["messages received"] += kind == DATA
             body = bytes(frame.body[: frame.length])
             before = None
             if frame.flags & ORDERED and frame.dest != ALL and len(body) >= BEFORE_BYTES:
                 before = int.from_bytes(body[:BEFORE_BYTES], "big")
                 body = body[BEFORE_BYTES:]
-            self._arrived.append(Message(frame.origin, frame.seq, before, body))
+            message = Message(frame.origin, frame.seq, before, body)
+            self._arrived.append((message, kind == AGAIN))
 
     def _reported(self, code: int, a: int, b: int) -> None:
         if code == REPORT_GATEWAY and b != self.state.epoch:
@@ -279,6 +289,7 @@ class MeshNode(LiveNode):
         """Nothing changes any more for a message; `is_there`: what that says of its recipient."""
         receipt = self._receipts.pop(handle, None)
         self._turns.ended(handle, is_there)
+        self._chains.ended(handle, state == DELIVERED)
         if receipt is not None:
             receipt.move(state, reason)
             self.outcomes[f"messages {state}"] += 1
@@ -286,12 +297,32 @@ class MeshNode(LiveNode):
     def _settled(self) -> None:
         self.alarms.arrivals.hand_up()
         arrived, self._arrived = self._arrived, []
-        for message in arrived:
+        for message, again in arrived:
+            if again:
+                self.orderly.again(message)
+                continue
             self.arrivals.put((message.sender, message.payload))
             self.arrivals.hand_up()
             self.orderly.take(message)
         if self._turns:
             self._feed()
+        self._reserve()
+
+    def _reserve(self) -> None:
+        """Numbers go on after a restart: where those kept run out, more are, before they are used.
+
+        Who has heard us takes a number that comes again for a message that came before.
+        """
+        state, seq = self.state, self.stack.node.seq
+        if state.numbers < 0 or (state.numbers - seq) & MASK16 < NUMBERS // 2:
+            state.numbers = (seq + NUMBERS) & MASK16
+            state.write()
+
+    def _acknowledge(self, sender: int, seq: int) -> None:
+        """A message was handed up in its turn: its sender may know."""
+        if self.engine is not None:
+            self._ending.dest, self._ending.handle = sender, seq
+            self.engine.input(HANDED_UP, self._ending)
 
     def _feed(self) -> None:
         """Hand messages to the router while it has room; it calls us again when it has more."""
@@ -304,7 +335,7 @@ class MeshNode(LiveNode):
             chained = self._chain(item) if item.flags & ORDERED else None
             self.engine.input(MESSAGE, item)
             if chained is not None and chained[1] == self.stack.node.seq:
-                self._newest[chained[0]] = chained[1]
+                self._chains.sent(handle, *chained, bool(item.flags & END_TO_END))
             if resolve(self.stack.node, self.stack.params, item.dest) == self.stack.node.number:
                 self._end(handle, DELIVERED)  # to ourselves: it was handed up
             elif not item.flags & END_TO_END or item.dest == ALL:
@@ -317,7 +348,7 @@ class MeshNode(LiveNode):
         stack = self.stack
         seq = (stack.node.seq + 1) & MASK16  # the number that the router is about to give it
         dest = resolve(stack.node, stack.params, item.dest)
-        before = self._newest.get(dest, seq)
+        before = self._chains.before(dest, seq)
         item.body[:BEFORE_BYTES] = before.to_bytes(BEFORE_BYTES, "big")
         return dest, seq
 

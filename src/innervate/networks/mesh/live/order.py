@@ -1,13 +1,14 @@
 """Messages in the order in which they were sent: held back until those before them are here.
 
-A message of a sender that wants order names the one before it to the same recipient. Numbers are
-the router's, of 16 bits; those between them went to others.
+A message of a sender that wants order names the one before it to the same recipient that has no end
+yet. Numbers are the router's, of 16 bits; those between them went to others. It is acknowledged
+when it was handed up: what waits here dies with its recipient, and its sender tries again.
 """
 
 from __future__ import annotations
 
 import asyncio
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -17,6 +18,8 @@ from innervate.live.streams import Arrivals
 
 WAIT_US = 10_000_000  # a message is rarely tried longer; at most 26 s
 BUFFER = 256
+REMEMBERED = 256  # numbers of messages that came too late: a router keeps no more apart
+ANEW = 320  # numbers behind the newest, as in the router's windows (duplicates.py)
 BEFORE_BYTES = 2  # in front of the payload: the number of the message before
 
 # Takes the sender's number and the payload.
@@ -65,6 +68,8 @@ class Order:
 
     Attributes:
         late: messages that came when those behind them had been handed up: they are dropped.
+        ended: numbers of those that were handed up, until somebody takes note.
+        dropped: numbers of the newest ones that were not, and never will be.
     """
 
     def __init__(self, last: int | None, wait_us: int = WAIT_US, buffer: int = BUFFER) -> None:
@@ -73,23 +78,37 @@ class Order:
         self.buffer = buffer
         self.late = 0
         self.held: list[Held] = []
+        self.ended: list[int] = []
+        self.dropped: deque[int] = deque(maxlen=REMEMBERED)
 
     def take(self, seq: int, before: int, payload: bytes, now: int) -> list[bytes]:
-        """A message came; what may be handed up now. `before == seq`: its sender begins anew."""
+        """A message came; what may be handed up now. `before == seq`: there is none to wait for."""
+        if self._is_late(seq, before):
+            self.late += 1
+            self.dropped.append(seq)
+            return []
         ready: list[bytes] = []
         if before == seq:
             old = [one for one in self.held if self._is_before(one.seq, seq)]
             self.held = [one for one in self.held if one not in old]
-            ready += [one.payload for one in _in_turn(old, old[0].seq)] if old else []
-        elif before != self.last:
-            if self.last is not None and not later(seq, self.last):
-                self.late += 1
-                return ready
+            for one in _in_turn(old, old[0].seq) if old else ():
+                ready += self._up(one.seq, one.payload)
+        elif not self._had(before):
             self.held.append(Held(seq, before, now + self.wait_us, payload))
             return self._skip() if len(self.held) > self.buffer else ready
-        self.last = seq
-        ready.append(payload)
-        return ready + self._follow()
+        return ready + self._up(seq, payload) + self._follow()
+
+    def again(self, seq: int, before: int, now: int) -> list[bytes]:
+        """A message that waits came again, and may be after another one now; what may go up."""
+        found = [one for one in self.held if one.seq == seq]
+        if not found:
+            return []
+        self.held.remove(found[0])
+        return self.take(seq, before, found[0].payload, now)
+
+    def is_up(self, seq: int) -> bool:
+        """True if a message that came was handed up: it neither waits nor came too late."""
+        return seq not in self.dropped and all(one.seq != seq for one in self.held)
 
     def release(self, now: int) -> list[bytes]:
         """What has waited long enough, with all that can follow it."""
@@ -102,6 +121,24 @@ class Order:
         """When somebody has waited long enough, us; only while messages are held."""
         return min(one.due for one in self.held)
 
+    def _is_late(self, seq: int, before: int) -> bool:
+        """True if a message is too late; far behind, one without another before it is not.
+
+        Then its sender has begun anew with a number drawn at random.
+        """
+        if self.last is None or later(seq, self.last):
+            return False
+        return before != seq or (self.last - seq) & MASK16 < ANEW
+
+    def _had(self, before: int) -> bool:
+        """True if there is nothing more to wait for before a message that comes after that one."""
+        return self.last is not None and not later(before, self.last)
+
+    def _up(self, seq: int, payload: bytes) -> list[bytes]:
+        self.last = seq
+        self.ended.append(seq)
+        return [payload]
+
     def _is_before(self, seq: int, anew: int) -> bool:
         """True if a message is of the time before its sender began anew with number `anew`."""
         if self.last is None:
@@ -113,16 +150,15 @@ class Order:
         """Whatever is missing is not waited for any longer: the oldest one that waits goes up."""
         first = _in_turn(self.held, self.held[0].seq)[0]
         self.held.remove(first)
-        self.last = first.seq
-        return [first.payload, *self._follow()]
+        return [*self._up(first.seq, first.payload), *self._follow()]
 
     def _follow(self) -> list[bytes]:
         """What has waited for the one that was handed up last."""
-        ready = []
-        while found := [one for one in self.held if one.before == self.last]:
-            self.held.remove(found[0])
-            self.last = found[0].seq
-            ready.append(found[0].payload)
+        ready: list[bytes] = []
+        while found := [one for one in self.held if self._had(one.before)]:
+            first = _in_turn(found, found[0].seq)[0]
+            self.held.remove(first)
+            ready += self._up(first.seq, first.payload)
         return ready
 
 
@@ -135,9 +171,11 @@ class Orderly:
 
     Attributes:
         arrivals: hands them up.
+        on_up: is told sender and number of each that was handed up.
     """
 
     def __init__(self, wait_us: int = WAIT_US, buffer: int = BUFFER) -> None:
+        self.on_up: Callable[[int, int], None] = _nobody
         self.wait_us = wait_us
         self.buffer = buffer
         self.arrivals: Arrivals[tuple[int, bytes]] = Arrivals(is_spread=True)
@@ -154,13 +192,23 @@ class Orderly:
         if not self.arrivals.callbacks:  # nobody wants order yet
             self._orders.pop(sender, None)
             self._newest[sender] = seq
+            self.on_up(sender, seq)
             return
         order = self._orders.get(sender)
         if order is None:
             last = self._newest.get(sender)
             order = self._orders[sender] = Order(last, self.wait_us, self.buffer)
-        self._hand_up(sender, order.take(seq, before, payload, clock_us()))
+        self._hand_up(sender, order.take(seq, before, payload, clock_us()), order)
         self._arm()
+
+    def again(self, message: Message) -> None:
+        """A message that came before came again: its sender was not told that it was handed up."""
+        sender, seq, before, _ = message
+        order = self._orders.get(sender)
+        if order is not None and before is not None:
+            self._hand_up(sender, order.again(seq, before, clock_us()), order)
+        if order is None or order.is_up(seq):
+            self.on_up(sender, seq)
 
     def stop(self) -> None:
         """Nothing is waited for any more."""
@@ -168,7 +216,7 @@ class Orderly:
             self._again.cancel()
             self._again = None
         for sender, order in self._orders.items():
-            self._hand_up(sender, order.release(clock_us() + self.wait_us))
+            self._hand_up(sender, order.release(clock_us() + self.wait_us), order)
 
     def held(self) -> int:
         """Messages that wait for one before them."""
@@ -190,13 +238,21 @@ class Orderly:
     def _release(self) -> None:
         self._again = None
         for sender, order in list(self._orders.items()):
-            self._hand_up(sender, order.release(clock_us()))
+            self._hand_up(sender, order.release(clock_us()), order)
         self._arm()
 
-    def _hand_up(self, sender: int, payloads: list[bytes]) -> None:
+    def _hand_up(self, sender: int, payloads: list[bytes], order: Order | None = None) -> None:
         for payload in payloads:
             self.arrivals.put((sender, payload))
         self.arrivals.hand_up()
+        if order is not None:
+            ended, order.ended = order.ended, []
+            for seq in ended:
+                self.on_up(sender, seq)
+
+
+def _nobody(sender: int, seq: int) -> None:
+    """Nobody wants to know which were handed up."""
 
 
 def _in_turn(held: list[Held], near: int) -> list[Held]:

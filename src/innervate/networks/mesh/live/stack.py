@@ -75,6 +75,7 @@ class MeshStack:
         self.out = plain.Outbox(Frame, OUTBOX)
         self.inbox = Frame()
         self.epoch = 0  # newest one that was followed before a restart
+        self.first = -1  # our packets' numbers go on from here after a restart; -1 = anywhere
         self.places: dict[int, list[int]] = {}  # neighbour: ports, the newest first
         self.asked: Counter[int] = Counter()  # neighbour: frames that it should acknowledge
         self.acked: Counter[int] = Counter()
@@ -87,6 +88,8 @@ class MeshStack:
         A gateway's requests are heeded only if their epoch, or their round, is newer than before.
         """
         mesh.on_start(self.node, self.gate, self.params, now, cause, self.out)
+        if self.first >= 0:
+            self.node.seq = self.first
         if cause != 0 and self.epoch:
             self.node.known, self.node.epoch = 1, self.epoch
 

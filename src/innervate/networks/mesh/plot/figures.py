@@ -13,7 +13,7 @@ from innervate.networks.mesh.plot import charts
 from innervate.networks.mesh.plot import map as mesh_map
 from innervate.networks.mesh.plot.sheet import Sheet
 from innervate.plot import paint, style
-from innervate.plot.figures import chart, draw_one
+from innervate.plot.figures import chart, draw_one, nothing
 
 
 def draw(run: Any, figure: str = "field", **options: Any) -> Figure:
@@ -45,6 +45,8 @@ def delivery(run: Any, bins: int = charts.BINS) -> Figure:
 def alarms(run: Any) -> Figure:
     """Each crossing: when the monitor knew, and how far the robot was out by then."""
     found = [crossing for crossing in all_crossings(run.result) if crossing.accepted_us != NEVER]
+    if not found:
+        return nothing("no alarm reached the monitor")
     made, (ax,) = style.panels(style.COLUMN_IN, 2.2)
     for flooded, marker, colour in ((False, "o", style.BLUE), (True, "^", style.ORANGE)):
         part = [crossing for crossing in found if crossing.flooded == flooded]
@@ -52,8 +54,7 @@ def alarms(run: Any) -> Figure:
             waits = [(crossing.accepted_us - crossing.raised_us) / 1e3 for crossing in part]
             ax.plot(waits, [crossing.overrun_m for crossing in part], ls="none", marker=marker,
                     color=colour, label="flooded" if flooded else "routed")  # fmt: skip
-    if found:
-        ax.legend(loc="best")
+    ax.legend(loc="best")
     ax.set_xlim(left=0)
     ax.set_ylim(bottom=0)
     ax.set_xlabel("from the alarm to the monitor (ms)")

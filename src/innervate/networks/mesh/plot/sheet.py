@@ -13,6 +13,7 @@ from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
 from innervate.plot.svg import Point
 
 WIDTH, HEIGHT_MAX, MARGIN = 760.0, 660.0, 34.0
+SCALE_PX = 16.0  # below the map, for the bar that says how long metres are
 DOT_PX = 5.0
 NAME_PX, STRONG_PX, LINE_PX = 6.6, 7.6, 12.0  # letters at 11 px, on the safe side
 
@@ -46,7 +47,7 @@ class Sheet:
         self.scale = min((width - 2 * MARGIN) / wide, (height_max - 2 * MARGIN) / high)
         self.width = width
         self._left = (width - wide * self.scale) / 2
-        self.height = high * self.scale + 2 * MARGIN
+        self.height = high * self.scale + 2 * MARGIN + (SCALE_PX if self.metres else 0)
         self.points: Floats = np.array([self.of_cm((x, y)) for x, y in places.tolist()])
         self.dot = DOT_PX if plan.nodes <= 100 else 3.5
 

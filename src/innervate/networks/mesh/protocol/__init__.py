@@ -148,7 +148,8 @@ A hop for which there is no room gets no ack, so that another is tried.
 | no entry   | `MESSAGE`                       | `on_message`: `buffer_sent`,     | waits          |
 |            |                                 | `send_buffered`                  |                |
 | waits      | `E2E_ACK`                       | `take`, `on_end_ack`:            | FREE           |
-|            |                                 | REPORT_ARRIVED                   |                |
+|            |                                 | REPORT_ARRIVED, `pass_over`      |                |
+| at its end | `HANDED_UP`, in order           | `on_handed_up`                   | acknowledged   |
 | waits      | `RETRY`                         | `on_retry`, `retransmit`;        | waits          |
 |            |                                 | alarms: `flood_again`            |                |
 | waits      | ... `e2e_tries` more were sent  | REPORT_EXPIRED,                  | FREE           |
@@ -212,7 +213,9 @@ bit: docs/wire.md.
 
 Inputs and reports
 ==================
-Inputs: `MESSAGE = 1`, `SENT = 2` from the layer below, `SAMPLE = 3`; of access `PACKET = 1`.
+Inputs: `MESSAGE = 1`, `SENT = 2` from the layer below, `SAMPLE = 3`, `HANDED_UP = 4` (a message
+that was `ORDERED` is acknowledged then, and given to the user as `AGAIN = 13` when it comes again
+before); of access `PACKET = 1`.
 
 | report                                    | meaning                                              |
 |-------------------------------------------|------------------------------------------------------|

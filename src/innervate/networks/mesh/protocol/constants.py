@@ -11,6 +11,7 @@ E2E_ACK = 9
 ALARM = 10  # FENCE_ALARM
 POSITION = 11  # POS_BEACON: one hop, or routed to the monitor
 GRAPH = 12  # part of the graph, flooded
+AGAIN = 13  # in DELIVER alone: an ORDERED message that came before, and is not acknowledged
 ACK = 16  # of a hop: a frame without the common header
 
 # Flags.
@@ -43,6 +44,7 @@ BODY = 114  # room for a payload in a record: MTU 127 less header, path of one, 
 MESSAGE = 1  # item: send_message (see mesh_fields.ITEM)
 SENT = 2  # the layer below: the frame with item.handle has left; item.ok 0 = it could not
 SAMPLE = 3  # robots: position and speed, item.x .. item.vy
+HANDED_UP = 4  # the user has ORDERED message item.handle of item.dest: its origin may know
 
 # Timers.
 TX = 0  # a queued frame is due

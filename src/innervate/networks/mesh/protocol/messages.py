@@ -2,6 +2,7 @@
 
 from innervate.dialect.outbox import deliver, report
 from innervate.networks.mesh.protocol.constants import (
+    AGAIN,
     ALARM,
     ALARMS,
     ALL,
@@ -155,20 +156,37 @@ def acknowledge_end(node, params, now, frame, out):
     if frame.flags & END_TO_END == 0 or frame.origin == node.number:
         return
     rank = ALARMS if frame.kind == ALARM else CONTROL
-    flags = first_flag(node, frame.origin)
-    i = waiting_ack(node, params, frame.origin, rank, flags)
+    tell_origin(node, params, now, rank, frame.origin, frame.seq, out)
+
+
+def tell_origin(node, params, now, rank, origin, seq, out):
+    """Acknowledge packet `seq` of a node, end to end."""
+    flags = first_flag(node, origin)
+    i = waiting_ack(node, params, origin, rank, flags)
     if i >= 0:
-        add16(node, i, frame.seq)
+        add16(node, i, seq)
         return
-    i = compose(node, now, rank, E2E_ACK, frame.origin, flags, out)
+    i = compose(node, now, rank, E2E_ACK, origin, flags, out)
     if i >= 0:
-        add16(node, i, frame.seq)
+        add16(node, i, seq)
         send_on(node, params, now, i, out)
 
 
-def hand_up(params, frame, out):
+def on_handed_up(node, params, now, item, out):
+    """The user has a message that waited for those before it."""
+    if item.dest < params.nodes and item.dest != node.number:
+        tell_origin(node, params, now, CONTROL, item.dest, item.handle, out)
+        kick(node, params, now, out)
+
+
+def is_ordered(frame):
+    """1 if the user says when a message is to be acknowledged: when it was its turn."""
+    return frame.kind == DATA and frame.flags & ORDERED and frame.dest != ALL
+
+
+def hand_up(params, frame, kind, out):
     """Deliver a packet: its payload without what forwarding has put into it."""
-    up = out.frame[deliver(out, frame.kind)]
+    up = out.frame[deliver(out, kind)]
     copy_frame(up, frame)
     if params.mode == TABLES:
         return
@@ -181,7 +199,7 @@ def hand_up(params, frame, out):
 
 
 def take(node, params, now, frame, out):
-    """A packet for us: deliver it once, acknowledge it always.
+    """A packet for us: deliver it once, acknowledge it always; in order: when its turn was.
 
     An end-to-end ack may come twice, but does not move the window: else acks would shut out
     messages that are still tried.
@@ -192,10 +210,14 @@ def take(node, params, now, frame, out):
         on_end_ack(node, params, frame, now, out)
         return
     if accept(node, params, frame.origin, frame.seq, first):
-        hand_up(params, frame, out)
-        acknowledge_end(node, params, now, frame, out)
+        hand_up(params, frame, frame.kind, out)
+        if not is_ordered(frame):
+            acknowledge_end(node, params, now, frame, out)
     elif is_within(node, frame.origin, frame.seq):
-        acknowledge_end(node, params, now, frame, out)
+        if is_ordered(frame):
+            hand_up(params, frame, AGAIN, out)
+        else:
+            acknowledge_end(node, params, now, frame, out)
 
 
 def is_within(node, origin, seq):

@@ -31,6 +31,7 @@ from innervate.networks.mesh.protocol.constants import (
     E2E_ACK,
     FLOOD,
     GRAPH,
+    HANDED_UP,
     JOBS,
     MESSAGE,
     POSITION,
@@ -56,7 +57,7 @@ from innervate.networks.mesh.protocol.frames import clear_queue, get16, is_sound
 from innervate.networks.mesh.protocol.gateway import collect, lead, on_response, reset, tick
 from innervate.networks.mesh.protocol.hop import learn_late, learn_trip, widen
 from innervate.networks.mesh.protocol.jobs import on_ack, retry_jobs
-from innervate.networks.mesh.protocol.messages import on_message, take
+from innervate.networks.mesh.protocol.messages import on_handed_up, on_message, take
 from innervate.networks.mesh.protocol.neighbours import clear_neighbours, hear, hear_again, sweep
 from innervate.networks.mesh.protocol.overheard import drop_overheard
 from innervate.networks.mesh.protocol.queue import (
@@ -259,13 +260,18 @@ def on_upward(node, gate, params, now, frame, out):
 
 
 def on_input(node, gate, params, now, kind, item, out):
-    """MESSAGE: send it. SENT: the frame below has left. SAMPLE: where a robot is."""
+    """MESSAGE: send it. SENT: the frame below has left. SAMPLE: where a robot is.
+
+    HANDED_UP: the user has a message that waited for its turn.
+    """
     if kind == SENT:
         on_sent(node, params, now, item.ok, out)
     elif kind == MESSAGE:
         on_message(node, params, now, item, out)
     elif kind == SAMPLE:
         on_sample(node, params, now, item, out)
+    elif kind == HANDED_UP:
+        on_handed_up(node, params, now, item, out)
 
 
 def on_timer(node, gate, params, now, timer, out):

@@ -55,7 +55,7 @@ def flood_data(node, params, now, frame, out):
         return
     if not accept(node, params, frame.origin, frame.seq, 1):
         return  # passed on so long ago that it is forgotten
-    hand_up(params, frame, out)
+    hand_up(params, frame, frame.kind, out)
     i = take_over(node, now, MESSAGES, frame, out)
     if i >= 0:
         node.q_link_dst[i] = ALL

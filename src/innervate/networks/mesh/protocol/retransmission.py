@@ -14,6 +14,7 @@ from innervate.networks.mesh.protocol.constants import (
     MESSAGES,
     NO_ACK,
     NO_ROUTE,
+    ORDERED,
     OWN,
     PARITY,
     PRIORITY,
@@ -190,6 +191,7 @@ def retransmit(node, params, now, w, out):
     """Send a kept message once more, or give it up: 1 if it was sent."""
     if node.wait_tries[w] > params.e2e_tries or is_expired(node, params, now, w):
         report(out, REPORT_EXPIRED, node.wait_handle[w], NO_ACK)
+        pass_over(node, w, get_before(node, w), now)
         if node.wait_kind[w] == DATA and node.wait_tries[w] > SURE_AFTER:
             mark_bad(node, UNREACHABLE, node.wait_dest[w])
             node.search_backoff = min(node.search_backoff + 1, SEARCH_BACKOFF_MAX)
@@ -219,6 +221,31 @@ def retransmit(node, params, now, w, out):
     return 1
 
 
+def get_before(node, w):
+    """The number of the message before the ORDERED one in place w; its own = there is none."""
+    return node.wait_body[w * DATA_MAX] << 8 | node.wait_body[w * DATA_MAX + 1]
+
+
+def pass_over(node, w, before, due):
+    """The message in place w has its end: who was to come after it comes after `before` now.
+
+    `before` = its own number: none is left. Who may have waited for it at their recipient was
+    tried in vain: it has its tries again, from `due` on; -1 = it came, and nobody had to wait.
+    """
+    seq = node.wait_seq[w]
+    if node.wait_kind[w] != DATA or node.wait_flags[w] & ORDERED == 0:
+        return
+    for v in range(node.kept):
+        if v != w and node.wait_kind[v] == DATA and node.wait_dest[v] == node.wait_dest[w]:
+            if node.wait_flags[v] & ORDERED and get_before(node, v) == seq:
+                found = node.wait_seq[v] if before == seq else before
+                node.wait_body[v * DATA_MAX] = found >> 8
+                node.wait_body[v * DATA_MAX + 1] = found & 255
+                if due >= 0:
+                    node.wait_tries[v] = min(node.wait_tries[v], 1)
+                    node.wait_due[v] = due
+
+
 def on_end_ack(node, params, frame, now, out):
     """The recipient has our message."""
     at = inner(frame)
@@ -243,6 +270,7 @@ def note_arrived(node, params, now, who, seq, out):
                 if is_own_crossing(node, w):
                     node.heard_out = 1
                 report(out, REPORT_ARRIVED, node.wait_handle[w], node.wait_seq[w])
+                pass_over(node, w, node.wait_seq[w], -1)
                 node.wait_kind[w] = FREE
 
 

@@ -19,8 +19,6 @@ from innervate.sim.field import powers, queue
 from innervate.sim.field.medium import NONE
 from innervate.sim.tables import ACTION, TAP, Out, Tables, get, put, uniform
 
-ROWS = 1 << 16
-PLAIN_ROWS = 1 << 12  # objects: dear to make
 TAPS = 1 << 12
 OUTBOX = 32
 MAC_OUTBOX = 4
@@ -45,7 +43,7 @@ def build(
     fields, gate_fields = mesh_fields.node(plan.capacity), mesh_fields.gate(plan.capacity)
     nodes, gate = tables.states(fields, n + 1), tables.states(gate_fields, gates)
     low, high = records.bounds(fields)
-    rows = PLAIN_ROWS if plain else ROWS
+    rows = tables.rows
     kept = rows + _margin(n) if keep else 1
     tapped = TAPS + _margin(n) if tap else 1
     heap = Heap(tables.numbers(128 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64))

@@ -21,6 +21,7 @@ from innervate.sim import heap, rows, taps
 from innervate.sim.driver import Progress
 from innervate.sim.field import medium, motion, powers
 from innervate.sim.field.simulation import Field
+from innervate.sim.ranges import is_in_range
 from innervate.sim.status import POOL_FULL
 from innervate.sim.tables import get
 
@@ -161,6 +162,14 @@ class MeshSimulation(Field):
             self.world = channel.grown(self.world)
         if status == loop.DUPLICATES_FULL:
             self.world = builder.grow_duplicates(self.world)
+
+    def broken_between(self) -> tuple[int, int] | None:
+        """The ranges of gateways' records: of hundreds of words, which few events change."""
+        fields = mesh_fields.gate(self.plan.capacity)
+        for rank in range(len(self.world.gates) - 1):
+            if not is_in_range(self.world.gates[rank], fields):
+                return recorder.BROKEN_RANGE, self.plan.ranks.index(rank)
+        return None
 
     def broken_line(self) -> str:
         """The broken invariant, in one line."""

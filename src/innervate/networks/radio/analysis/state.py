@@ -39,6 +39,7 @@ def facts(
     overdue = {
         i: len(waits[i]) if goal else sum(now_us - at > timeout for at in waits[i]) for i in on
     }
+    believed_us = [plan.params["dmin_us"], plan.params["dmax_us"]]
     run = {name: int(get(world.run, 0, name)) for name in _COUNTS}
     oldest = min((waits[i][0] for i in on if waits[i]), default=now_us)
     return RadioFacts(
@@ -56,8 +57,8 @@ def facts(
         waiting=tuple(i for i in on if overdue[i]),
         still_ms=max(0, now_us - max(oldest, delivered_us)) / 1e3,
         timeout_ms=timeout / 1e3,
-        hidden=hidden_pairs(plan),
-        bounds=wrong_bounds(plan),
+        hidden=plan.pairs.hidden,
+        bounds=None if plan.pairs.within(*believed_us) else {"believed_us": believed_us},
         ended=ended,
     )
 
@@ -107,23 +108,3 @@ def waiting(world: Any, station: int, since_us: int = 0) -> list[int]:
     first = radio["fresh"] - radio["backlog"]
     places = [station * RING + ((first + i) & (RING - 1)) for i in range(radio["backlog"])]
     return [max(int(world.offered[at]), since_us) for at in places]
-
-
-def hidden_pairs(plan: Any) -> tuple[tuple[int, int], ...]:
-    """Pairs that do not hear each other, the smaller number first."""
-    delays = plan.delays_us
-    return tuple(
-        (i, j)
-        for i in range(plan.stations)
-        for j in range(i + 1, plan.stations)
-        if delays[i][j] < 0 or delays[j][i] < 0
-    )
-
-
-def wrong_bounds(plan: Any) -> dict[str, list[int]] | None:
-    """What stations believe, [least, greatest], if the delay of a pair is outside; else None."""
-    believed = [plan.params["dmin_us"], plan.params["dmax_us"]]
-    count = plan.stations
-    apart = (plan.delays_us[i][j] for i in range(count) for j in range(count) if i != j)
-    outside = any(at >= 0 and not believed[0] <= at <= believed[1] for at in apart)
-    return {"believed_us": believed} if outside else None

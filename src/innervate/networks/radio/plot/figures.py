@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -10,7 +11,7 @@ from matplotlib.figure import Figure
 from innervate.networks.radio.analysis import summary as radio
 from innervate.networks.radio.plot import charts
 from innervate.networks.radio.plot import timeline as radio_timeline
-from innervate.plot import paint, style
+from innervate.plot import paint
 from innervate.plot.figures import chart, draw_one
 
 
@@ -40,12 +41,11 @@ def fairness(run: Any) -> Figure:
 
 def throughput(run: Any, bins: int = charts.BINS) -> Figure:
     """Share of the time that delivered packets fill, over the run, and the scenario's events."""
-    made, mean = chart(charts.filled(run.result, bins)), radio.throughput(run.result)
-    if mean is not None:
-        (ax,) = made.axes
-        ax.axhline(100 * mean, color=style.INK, lw=0.9, ls="--")
-        ax.set_title(f"share of the time, %; dashed: throughput {mean:.3f}")
-    return made
+    filled, mean = charts.filled(run.result, bins), radio.throughput(run.result)
+    if mean is None:
+        return chart(filled)
+    head = f"share of the time, %; dashed: throughput {mean:.3f}"
+    return chart(replace(filled, head=head, even=100 * mean))
 
 
 FIGURES: dict[str, Callable[..., Figure]] = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Self
 
 from innervate.networks.radio.scenario.baselines import NONE
 
@@ -25,6 +25,40 @@ class RadioFault:
     node: int
     value: int
     index: int
+
+
+@dataclass(frozen=True, slots=True)
+class Pairs:
+    """Who hears whom, and from how far.
+
+    Attributes:
+        hidden: pairs that do not hear each other, the smaller number first.
+        delay_us: least and greatest delay between stations that hear each other; None = nobody.
+    """
+
+    hidden: tuple[tuple[int, int], ...]
+    delay_us: tuple[int, int] | None
+
+    @classmethod
+    def of(cls, delays_us: list[list[int]]) -> Self:
+        """Of the delays per sender and receiver, us; -1 = hidden."""
+        stations = range(len(delays_us))
+        apart = {delays_us[i][j] for i in stations for j in stations if i != j} - {-1}
+        return cls(
+            tuple(
+                (i, j)
+                for j in stations
+                for i in range(j)
+                if delays_us[i][j] < 0 or delays_us[j][i] < 0
+            ),
+            (min(apart), max(apart)) if apart else None,
+        )
+
+    def within(self, least_us: int, greatest_us: int) -> bool:
+        """True if no delay lies outside these bounds."""
+        return self.delay_us is None or (
+            least_us <= self.delay_us[0] and self.delay_us[1] <= greatest_us
+        )
 
 
 @dataclass(slots=True)
@@ -62,6 +96,14 @@ class RadioPlan:
     absent: list[int] = field(default_factory=list)
     faults: list[RadioFault] = field(default_factory=list)
     forced: bool = False
+    _pairs: Pairs | None = field(default=None, init=False, repr=False, compare=False)
+
+    @property
+    def pairs(self) -> Pairs:
+        """What the delays say of who hears whom; worked out once, as pages ask at each moment."""
+        if self._pairs is None:
+            self._pairs = Pairs.of(self.delays_us)
+        return self._pairs
 
 
 def parameters(

@@ -55,12 +55,7 @@ def warnings(made: RadioPlan) -> list[str]:
             f"{_range(*model.protocol.tau_bounds_us, 'us')} that stations believe; set "
             "protocol.tau_bounds_us to what is true."
         )
-    hidden = [
-        f"{i} and {j}"
-        for j in range(made.stations)
-        for i in range(j)
-        if made.delays_us[i][j] < 0 or made.delays_us[j][i] < 0
-    ]
+    hidden = [f"{i} and {j}" for i, j in made.pairs.hidden]
     if hidden:
         named = ", ".join(hidden[:PAIRS_SHOWN]) + (", ..." if len(hidden) > PAIRS_SHOWN else "")
         found.append(

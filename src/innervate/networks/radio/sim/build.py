@@ -18,7 +18,7 @@ def build(
     keep: bool,
     trail: bool,
     tap: bool = False,
-    room: int = channel.ROWS,
+    room: int | None = None,
 ) -> World:
     """The world of a plan, before its first event; arguments as of `channel.build`."""
     station = fields.STATION + PROTOCOLS[plan.protocol].fields
@@ -30,12 +30,10 @@ def build(
 
 def _is_orderly(plan: Any) -> bool:
     """Practical CSMA/CD-R on a channel as it assumes it: then no two turns ever overlap."""
-    low, high = plan.params["dmin_us"], plan.params["dmax_us"]
-    n = plan.stations
-    pairs = (plan.delays_us[i][j] for i in range(n) for j in range(n) if i != j)
     return (
         plan.protocol == "csma-cd-r/practical"
         and plan.loss_q15 == 0
         and not plan.faults
-        and all(low <= delay <= high for delay in pairs)
+        and not plan.pairs.hidden
+        and plan.pairs.within(plan.params["dmin_us"], plan.params["dmax_us"])
     )

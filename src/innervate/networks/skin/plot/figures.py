@@ -16,6 +16,8 @@ from innervate.plot import paint, style
 from innervate.plot.charts import Axis, Mark, Steps
 from innervate.plot.figures import chart, draw_one
 
+NAMED_MAX = 12  # of the marked events; each takes a row above the curve
+
 
 def draw(run: Any, figure: str = "recovery", **options: Any) -> Figure:
     """One of FIGURES of a run, with its options; save it with `.savefig`.
@@ -36,10 +38,11 @@ def recovery(run: Any, from_s: float | None = None, to_s: float | None = None) -
     first, last = _span(run, from_s, to_s)
     inside = cells[(times >= 1e6 * first) & (times <= 1e6 * last)]
     top = 1.25 * max(1, int(inside.max(initial=0)))
+    faults = [fault for fault in run.plan.faults if first <= fault.at_us / 1e6 <= last]
+    named = len(faults) <= NAMED_MAX
     marks = [
-        Mark(fault.at_us / 1e6, fault_words(run.plan.graph, fault))
-        for fault in run.plan.faults
-        if first <= fault.at_us / 1e6 <= last
+        Mark(fault.at_us / 1e6, fault_words(run.plan.graph, fault) if named else "")
+        for fault in faults
     ]
     x, y = Axis(first, last, "time (s)"), Axis(0.0, top)
     return chart(Steps(times / 1e6, cells, x, y, "cells without a way to the PC", "", marks))

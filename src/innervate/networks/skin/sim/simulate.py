@@ -8,6 +8,7 @@ from types import ModuleType
 from typing import Any, ClassVar
 
 from innervate.kernel.clock import wall_s
+from innervate.networks.skin.protocol import fields
 from innervate.networks.skin.protocol.constants import RULE_STATIC
 from innervate.networks.skin.sim import build as builder
 from innervate.networks.skin.sim import observer, script, static_stack
@@ -72,6 +73,7 @@ class SkinSimulation(Cables):
         "parent {other}",
         **Cables.broken_words,
     }
+    sink = (fields.SINK, fields.SINK_PORT)
 
 
 def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> SkinSimulation:

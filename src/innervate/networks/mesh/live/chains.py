@@ -1,0 +1,42 @@
+"""Which message a new one is to come after: the newest to the same recipient that has no end yet.
+
+What was delivered was handed up, and needs not be waited for; what has expired will not come.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+from innervate.dialect.arith import later
+
+
+class Chains:
+    """Our messages that are to come in order and have no end yet, by recipient."""
+
+    def __init__(self) -> None:
+        self._open: defaultdict[int, list[int]] = defaultdict(list)  # numbers, the newest last
+        self._by_handle: dict[int, tuple[int, int]] = {}
+
+    def before(self, dest: int, seq: int) -> int:
+        """The number of the message before a new one; its own = there is none to wait for."""
+        return self._open[dest][-1] if self._open.get(dest) else seq
+
+    def sent(self, handle: int, dest: int, seq: int, is_reliable: bool) -> None:
+        """A message went to the router; nobody tells the end of one that is not reliable."""
+        if not is_reliable:
+            self._open[dest] = [seq]  # the newest stands for all before it
+            return
+        self._open[dest].append(seq)
+        self._by_handle[handle] = dest, seq
+
+    def ended(self, handle: int, is_delivered: bool) -> None:
+        """A message has its end; one that was delivered came after all before it."""
+        dest, seq = self._by_handle.pop(handle, (-1, -1))
+        if dest < 0:
+            return
+        left = [one for one in self._open[dest] if one != seq]
+        if is_delivered:
+            left = [one for one in left if later(one, seq)]
+        self._open[dest] = left
+        if not left:
+            del self._open[dest]

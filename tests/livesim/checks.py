@@ -1,0 +1,166 @@
+"""What must hold whatever happens; looked at all the time."""
+
+from collections import Counter, defaultdict
+
+from innervate.live.receipts import DELIVERED, EXPIRED, FINAL, REFUSED
+from innervate.wire import seal
+
+ITEMS_MOST = 60_000  # objects that a node may hold, however long it runs
+
+
+class Nonces:
+    """No nonce is used twice for two different frames, by whatever life of whatever process.
+
+    Told of every datagram that leaves; what a life seals it seals in rising order.
+    """
+
+    def __init__(self, world):
+        self.world = world
+        self.keys = {}  # address: () -> the keys of the node there
+        self._lives = defaultdict(list)  # key, sender: [first, last, life] of each life
+
+    def __call__(self, source, _target, data):
+        told = self.keys.get(source[0])
+        parts = seal.fields(data) if seal.is_sealed(data) else None
+        if told is None or parts is None:
+            return
+        life, key = told(parts[0])
+        number, sender, counter = parts
+        lives = self._lives[key, sender]
+        if lives and lives[-1][2] is life:
+            last = lives[-1]
+            if counter == last[1] and data != last[3]:
+                self.world.fail(f"{life.name}: nonce {counter} of key {number} twice")
+            last[1], last[3] = max(last[1], counter), data
+            return
+        for first, newest, old, _ in lives:
+            if first <= counter <= newest:
+                self.world.fail(f"{life.name}: nonce {counter} was used by {old.name}")
+        lives.append([counter, counter, life, data])
+
+
+class Sent:
+    """A message and what became of it."""
+
+    __slots__ = ("at", "dest", "handed", "ident", "in_order", "life", "payload", "place",
+                 "priority", "receipt", "sender")  # fmt: skip
+
+    def __init__(self, ident, sender, life, dest, payload):
+        self.ident, self.sender, self.life, self.dest = ident, sender, life, dest
+        self.payload = payload
+        self.handed = []  # (who, which life of it)
+        self.receipt = None
+        self.at = life.world.now
+        self.place = 0  # in its stream
+        self.in_order = self.priority = False
+
+
+class Messages:
+    """Messages: at most once, delivered means handed up, told what became of them, in order.
+
+    Args:
+        world: where it all happens.
+        ends_s: within that time every message has its end, once all is whole.
+
+    Attributes:
+        quiet_since: since when all is whole, ns; None = it is not.
+    """
+
+    def __init__(self, world, ends_s):
+        self.world = world
+        self.ends_s = ends_s
+        self.sent = {}
+        self.open = {}
+        self.states = Counter()
+        self.quiet_since = None
+        self.again = 0  # handed up once more by another life of the recipient
+        self._count = 0
+        self._newest = {}
+
+    def new(self, sender, life, dest, length):
+        """A message that nobody has sent yet; its payload says which one it is."""
+        self._count += 1
+        payload = self._count.to_bytes(5, "big") + bytes([self._count % 251]) * (length - 5)
+        return Sent(self._count, sender, life, dest, payload)
+
+    def accepted(self, sent):
+        """It was handed to a node, and has a receipt now."""
+        self.sent[sent.ident] = sent
+        if sent.receipt is not None and sent.receipt.state != REFUSED:
+            self.open[sent.ident] = sent
+        elif sent.receipt is not None:
+            self.states[REFUSED] += 1
+
+    def handed_up(self, who, life, sender, payload, in_order):
+        """A node gives a message to its user."""
+        if not life.alive:
+            return
+        sent = self.sent.get(int.from_bytes(payload[:5], "big"))
+        if sent is None or sent.payload != payload or sent.sender != sender:
+            self.world.fail(f"{life.name}: from {sender} came {payload.hex()}, which nobody sent")
+            return
+        if sent.dest not in (who, 255):
+            self.world.fail(f"{life.name}: has message {sent.ident}, which is for {sent.dest}")
+        if (who, life.number) in sent.handed:
+            self.world.fail(f"{life.name}: has message {sent.ident} twice")
+        self.again += any(one == who for one, _ in sent.handed)
+        sent.handed.append((who, life.number))
+        if in_order and sent.in_order:
+            self._in_turn(who, life, sent)
+
+    def _in_turn(self, who, life, sent):
+        key = (who, life.number, sent.sender, sent.priority)
+        place = (sent.life.number, sent.place)
+        if place <= self._newest.get(key, (0, 0)):
+            self.world.fail(f"{life.name}: message {sent.ident} of {sent.life.name} after its turn")
+        self._newest[key] = place
+
+    def look(self):
+        """What became of those that are under way."""
+        now = self.world.now
+        for ident, sent in list(self.open.items()):
+            state = sent.receipt.state
+            if state == DELIVERED and not sent.handed:
+                self.world.fail(
+                    f"message {ident} from {sent.life.name} to {sent.dest} is delivered, "
+                    "but was never handed up"
+                )
+            if state in FINAL:
+                self.states[state] += 1
+                self.states["expired but handed up"] += state == EXPIRED and bool(sent.handed)
+                del self.open[ident]
+            elif not sent.life.alive:
+                self.states["sender gone"] += 1
+                del self.open[ident]
+            elif self.quiet_since is not None and now > self.ends_s * 1e9 + max(
+                sent.at, self.quiet_since
+            ):
+                self.world.fail(f"message {ident} from {sent.life.name} to {sent.dest} has no end")
+
+    def forget(self):
+        """Those that had their end long ago."""
+        old = self.world.now - 600 * 1_000_000_000
+        for ident in [ident for ident, one in self.sent.items() if one.at < old]:
+            if ident not in self.open:
+                del self.sent[ident]
+
+
+def items_of(thing):
+    """How many objects hang from this one: containers and plain objects."""
+    seen, count, waiting = set(), 0, [thing]
+    while waiting:
+        one = waiting.pop()
+        if id(one) in seen:
+            continue
+        seen.add(id(one))
+        count += 1
+        if isinstance(one, dict):
+            waiting += [*one.keys(), *one.values()]
+        elif isinstance(one, (list, tuple, set, frozenset)) or type(one).__name__ == "deque":
+            if one and isinstance(next(iter(one)), (int, float)):
+                count += len(one)
+            else:
+                waiting += one
+        elif type(one).__module__.startswith("innervate"):
+            waiting += vars(one).values() if hasattr(one, "__dict__") else ()
+    return count

@@ -1,0 +1,23 @@
+"""What the simulation shows and is not mended yet, by the line of issue 18 that names it."""
+
+import pytest
+
+from tests.livesim import runs
+
+SMALL = {"nodes": 6, "storms": 1, "storm_s": 60, "calm_s": 0, "rate": 20}
+
+
+def broken_in(seeds, **given):
+    """What is broken in these seeds."""
+    return [line for seed in seeds for line in runs.run(seed, "mesh", **SMALL | given).broken]
+
+
+@pytest.mark.xfail(strict=True, reason="issue 18, 3: no nonce used twice, whatever the state file")
+def test_no_nonce_comes_twice_where_the_disk_is_full_and_processes_are_killed():
+    assert broken_in(range(1, 6), sealed=True, in_order=False, hurts=("full", "restarts")) == []
+
+
+@pytest.mark.xfail(strict=True, reason="issue 18, 3: no replay after a stale state file")
+def test_nothing_is_taken_from_a_recording_by_a_node_that_was_killed():
+    hurts = ("replays", "restarts")
+    assert broken_in(range(1, 6), sealed=True, in_order=False, hurts=hurts, old_lives=True) == []

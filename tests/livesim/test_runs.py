@@ -1,0 +1,41 @@
+"""Seeds of whole networks; what a seed shows it shows again."""
+
+import time
+
+import pytest
+
+from tests.livesim import runs
+
+SMALL = {"nodes": 6, "storms": 1, "storm_s": 20, "calm_s": 0, "rate": 5}
+FULL_CPU_S = 600.0
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+def test_a_mesh_that_is_hurt_keeps_what_it_promises(seed):
+    found = runs.run(seed, "mesh", **SMALL)
+    assert found.broken == []
+    assert found.told["delivered"] > 20
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_in_order_with_restarting_recipients_delivered_means_handed_up(seed):
+    often = {"storm_s": 60, "rate": 20, "in_order": True, "hurts": ("crash", "restarts")}
+    found = runs.run(seed, "mesh", **SMALL | often)
+    assert found.broken == []
+    assert found.told["delivered"] > 500
+
+
+def test_a_seed_shows_the_same_again():
+    first, again = (runs.run(5, "mesh", **SMALL) for _ in range(2))
+    assert first == again
+    assert first.fingerprint != runs.run(6, "mesh", **SMALL).fingerprint
+
+
+@pytest.mark.slow
+def test_seed_after_seed_for_minutes():
+    began, seed, broken = time.process_time(), 1000, []
+    while time.process_time() - began < FULL_CPU_S and not broken:
+        found = runs.run(seed)
+        broken = [f"seed {seed}, {found.what}: {line}" for line in found.broken]
+        seed += 1
+    assert broken == []
