@@ -2,7 +2,7 @@
 
 The router keeps 32 messages until they are acknowledged. Whoever does not answer would soon have
 all places, and hold up who does; so places are given out with the others in mind. A recipient has
-a few at first, and one more with each message that arrives, while none has to be sent again.
+a few at first, and one more with each message that arrives, up to three quarters.
 """
 
 from __future__ import annotations
@@ -17,7 +17,13 @@ from innervate.networks.mesh.protocol.constants import ALL, CONTROL, END_TO_END,
 from innervate.networks.mesh.protocol.messages import resolve
 from innervate.networks.mesh.protocol.neighbours import place_of
 from innervate.networks.mesh.protocol.queue import free_places
-from innervate.networks.mesh.protocol.retransmission import FREE, crowds, is_ahead, is_in_vain
+from innervate.networks.mesh.protocol.retransmission import (
+    FREE,
+    SURE_AFTER,
+    crowds,
+    is_ahead,
+    is_in_vain,
+)
 
 MOST = 4096  # messages that wait ...
 FEW = 16  # ... but to each recipient so many may, whatever others have
@@ -85,7 +91,7 @@ class Turns:
         elif is_there:
             self.heard(recipient)
             most = self._most.get(recipient, FIRST) + 1
-            self._most[recipient] = min(most, self._stack.params.kept)
+            self._most[recipient] = min(most, self._stack.params.kept * 3 // 4)
 
     def heard(self, sender: int) -> None:
         """A message of this node came: it is there."""
@@ -169,13 +175,14 @@ class Places:
         return self._silent < SILENT + urgent and not self._all_held_up
 
     def _share(self, dest: int) -> int:
-        """How many places a recipient may have now; one that is sent to again grows no further."""
-        node = self._node
-        for w in range(node.kept):
-            if node.wait_kind[w] and node.wait_dest[w] == dest and node.wait_tries[w] > 1:
-                self._most.pop(dest, None)
-                return FIRST
-        return self._most.get(dest, FIRST)
+        """How many places a recipient may have now: half while a message is sent to it again."""
+        node, most = self._node, self._most.get(dest, FIRST)
+        tries = max((node.wait_tries[w] for w in range(node.kept)
+                     if node.wait_kind[w] and node.wait_dest[w] == dest), default=0)  # fmt: skip
+        if tries > SURE_AFTER:
+            self._most.pop(dest, None)
+            return FIRST
+        return max(FIRST, most // 2) if tries > 1 else most
 
     def _is_silent(self, dest: int) -> bool:
         """True if messages to `dest` were tried in vain, or are being for a while.
