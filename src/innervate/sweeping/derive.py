@@ -95,8 +95,9 @@ class Formula:
                 self._of(node.left, look_up), self._of(node.right, look_up)
             )
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
-            arguments = [self._of(argument, look_up) for argument in node.args]
-            return _FUNCTIONS[node.func.id](*arguments)
+            function = _FUNCTIONS.get(node.func.id)  # else a key stands where a function should
+            if function is not None:
+                return function(*(self._of(argument, look_up) for argument in node.args))
         allowed = f"+ - * / // %, numbers, keys, {', '.join(_FUNCTIONS)}"
         raise SweepError(f"{self.where}: {self.text} has more in it than {allowed}")
 

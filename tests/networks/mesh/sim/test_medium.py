@@ -1,11 +1,16 @@
 """The mesh's medium, frame by frame: who receives what, and why not."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.mesh.scenario.plan import MeshFault as Fault
+from innervate.networks.mesh.sim import build
+from innervate.networks.mesh.sim.loop import wipe
 from innervate.networks.mesh.sim.recorder import MAC
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
+from innervate.sim.field import medium as field
 from tests.networks.mesh.pinger import REPORT_HEARD, REPORT_SENT, REPORT_TICK
 from tests.networks.mesh.runs import LOUD, TURN_US, both_ways, mesh_plan, radio, run
 
@@ -243,3 +248,34 @@ def test_the_medium_access_is_told_of_carriers_before_its_timer_only():
     handlers = result.trail["handler"]
     assert (handlers >= MAC).any()
     assert (handlers[handlers >= MAC] - MAC <= 3).all()
+
+
+@pytest.mark.parametrize(
+    ("power", "deaf", "busy"), [(99, 0, 0), (100, 0, 1), (101, 0, 1), (0, 1, 1)]
+)
+def test_a_channel_is_busy_from_the_threshold_on(power, deaf, busy):
+    world = SimpleNamespace(
+        radios=[SimpleNamespace(deaf=deaf)], sums=[power], run=[SimpleNamespace(sense=100)]
+    )
+    assert field.senses(world, 0) == busy
+
+
+def test_a_lost_memory_is_all_of_it_and_nobody_elses():
+    plan = mesh_plan(3, capacity=4, ranks=[0, 1, -1])
+    world = build.build(plan, True, True, False, False)
+    gates = range(3)  # of the gateway, of its standby, and one that stays blank
+    words, own = world.run[0].gate_words, len(world.low)
+    for gate in gates[:2]:
+        for i in range(words):
+            world.gate_words[gate][i] = 1
+    for node in range(3):
+        for i in range(own):
+            world.words[node][i] = 3
+        world.nodes[node].number, world.nodes[node].rng = node, 77
+    wipe(world, 1)
+    assert [sum(world.gate_words[gate][i] for i in range(words)) for gate in gates] == [words, 0, 0]
+    mine = [int(world.words[1][i]) for i in range(own)]
+    blank = [int(world.words[3][i]) for i in range(own)]
+    assert (world.nodes[1].number, world.nodes[1].rng, world.nodes[1].rank) == (1, 77, 3)
+    assert sum(a != b for a, b in zip(mine, blank, strict=True)) <= 4
+    assert all(int(world.words[node][own - 1]) == 3 for node in (0, 2))

@@ -122,3 +122,11 @@ def test_almost_linear_is_an_r2_of_four_fifths(fit, holds):
         low, high = (scatter, high) if is_better else (low, scatter)
     results = of("fig8b", scatter=scatter, slope=slope)
     assert (verdicts("fig8b", "almost linearly", results) != {FAILS}) == holds
+
+
+@pytest.mark.parametrize(("off", "share"), [(2.9, 100), (-2.9, 100), (3.1, 0), (-3.1, 0)])
+def test_how_many_recoveries_are_within_a_period_more_is_said(off, share):
+    judged = experiment("fig8b").judge(of("fig8b", off=off), QUICK)
+    said = [claim.measurement for claim in judged if "(Eq. 6)" in claim.claim]
+    assert len(said) == len(RULES)
+    assert all(text.endswith(f"; within +-3 T at least {share} %") for text in said), said

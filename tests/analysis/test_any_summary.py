@@ -1,0 +1,105 @@
+"""The summary and headline of any network, number by number and on both sides of each condition."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, silent
+from innervate.analysis.summary import headline, known_latencies_us, latency_ms, summarize
+from innervate.sim.counts import Counts
+
+
+def counts(lost=0, dropped=0, **more):
+    """Of three nodes that are well, unless something is said."""
+    given = {"nodes": 3, "sent": 10, "arrived": 9, "offered": 4, "delivered": 3} | more
+    return Counts(**given, lost_by={"noise": lost, "cut": 0}, dropped_by={"no_way": dropped})
+
+
+CASES = [
+    (counts(), 0, NO_DATA, "Nothing has happened yet."),
+    (counts(), 1, OK, "3 of 4 messages are delivered, none is lost."),
+    (counts(offered=0, delivered=0), 1, OK, "None of 10 frames is lost."),
+    (counts(off=(0, 1, 2)), 1, DOWN, "All 3 nodes are off."),
+    (counts(off=(0, 2)), 1, DEGRADED, "2 of 3 nodes are off."),
+    (counts(off=(1,)), 1, DEGRADED, "1 of 3 nodes is off."),
+    (counts(lost=1), 1, DEGRADED, "1 of 10 frames is lost."),
+    (counts(lost=2, arrived=1), 1, DEGRADED, "2 of 10 frames are lost."),
+    (counts(lost=2, arrived=0), 1, DOWN, "None of 10 frames arrived."),
+    (counts(arrived=0), 1, OK, "3 of 4 messages are delivered, none is lost."),
+    (counts(dropped=1), 1, DEGRADED, "1 of 4 messages is given up."),
+    (counts(dropped=1, delivered=0), 1, DOWN, "None of 4 messages was delivered."),
+    (counts(delivered=0), 1, OK, "0 of 4 messages are delivered, none is lost."),
+    (counts(dropped=2, lost=3, off=(1,)), 1, DEGRADED,
+     "2 of 4 messages are given up, 1 of 3 nodes is off, 3 of 10 frames are lost."),
+    (counts(nodes=0), 1, OK, "3 of 4 messages are delivered, none is lost."),
+    (counts(sent=12_345, lost=1_000), 1, DEGRADED, "1,000 of 12,345 frames are lost."),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("counted", "handled", "level", "text"), CASES)
+def test_a_headline_names_the_worst_that_there_is(counted, handled, level, text):
+    found = headline(counted, handled)
+    assert found[:2] == (level, text)
+    assert found.nodes == (counted.off if level in (DEGRADED, DOWN) else ())
+
+
+def test_who_is_silent_is_counted():
+    assert silent(1, "gateway") == Headline(NO_DATA, "The only gateway is silent.", (0,))
+    assert silent(2, "node") == Headline(NO_DATA, "None of the 2 nodes answers.", (0, 1))
+    assert silent(1_500, "node").text == "None of the 1,500 nodes answers."
+    assert silent(2, "node").shown() == {
+        "level": "no data", "text": "None of the 2 nodes answers.", "nodes": [0, 1],
+    }  # fmt: skip
+
+
+def deliveries(*latencies_us):
+    made = np.zeros(len(latencies_us), [("latency", np.int64)])
+    made["latency"] = latencies_us
+    return made
+
+
+def test_latencies_are_those_that_somebody_knows():
+    assert known_latencies_us(deliveries(5, -1, 0, 7)).tolist() == [5, 0, 7]
+    assert latency_ms(deliveries(*range(1_000, 102_000, 1_000))) == {
+        "p50": 51.0, "p99": 100.0, "max": 101.0,
+    }  # fmt: skip
+    assert latency_ms(deliveries(0)) == {"p50": 0.0, "p99": 0.0, "max": 0.0}
+    nothing = {"p50": None, "p99": None, "max": None}
+    assert latency_ms(deliveries(-1)) == latency_ms(None) == nothing
+    assert latency_ms(np.zeros(2, [("time", np.int64)])) == nothing
+
+
+def result(**more):
+    codes = np.zeros(3, [("code", np.int32)])
+    codes["code"] = (4, 2, 4)
+    given = {
+        "plan": SimpleNamespace(kind="ring", seed=7, duration_us=2_500_000,
+                                scenario=SimpleNamespace(name="x")),
+        "counts": counts(lost=1, off=(2,), sent=12), "handled": 20, "wall_s": 0.25,
+        "fingerprint": "f" * 16, "interrupted": False, "ended_us": 1_500_000,
+        "rows": {"rows": codes, "deliveries": deliveries(2_000)},
+    }  # fmt: skip
+    return SimpleNamespace(**given | more)
+
+
+def test_a_summary_says_what_was_counted():
+    made = summarize(result())
+    assert made["duration_s"] == 2.5
+    assert (made["events"], made["events_per_s"]) == (29, 116)
+    assert (made["nodes"], made["off"]) == (3, 1)
+    assert made["frames"] == {"sent": 12, "arrived": 9, "lost": 1, "in_flight": 2,
+                              "lost_by": {"noise": 1, "cut": 0}}  # fmt: skip
+    assert made["messages"] == {"sent": 4, "delivered": 3, "dropped_by": {"no_way": 0},
+                                "latency_ms": {"p50": 2.0, "p99": 2.0, "max": 2.0}}  # fmt: skip
+    assert made["reports"] == {"2": 1, "4": 2}
+    assert made["headline"]["level"] == DEGRADED
+    assert "interrupted_at_s" not in made
+
+
+def test_what_a_run_did_not_keep_is_not_in_its_summary():
+    made = summarize(result(rows={}, wall_s=0.0, interrupted=True))
+    assert "reports" not in made
+    assert made["events_per_s"] is None
+    assert made["interrupted_at_s"] == 1.5
+    assert made["messages"]["latency_ms"]["max"] is None

@@ -1,0 +1,151 @@
+"""What is handed out, in which batches, and when a point is done, by an engine that notes it."""
+
+import json
+from concurrent.futures import Future
+
+import pytest
+
+from innervate.kernel import compilation
+from innervate.sweeping import SweepError, make_plan, scheduler
+from innervate.sweeping.engines import Engine
+from innervate.sweeping.jobs import Jobs
+from innervate.sweeping.scheduler import Scheduler
+from innervate.sweeping.work import Done, Outcome
+from innervate.trace.sources import stamp
+from tests.sweeping.test_plan import SKIN
+
+PLACE = json.dumps({"host": "here"})
+
+
+class Noting(Engine):
+    """Every run takes as long and comes to what a function of its repeat says."""
+
+    ahead = 4
+
+    def __init__(self, value=lambda repeat: 1.0, wall_s=0.01, sources=None):
+        self.batches = []
+        self.value, self.wall_s = value, wall_s
+        self.sources = sources or stamp("running")
+
+    def submit(self, work, base, jobs):
+        self.batches.append([(job.point, job.repeat) for job in jobs])
+        future = Future()
+        future.set_result(Done([self.outcome(job) for job in jobs], PLACE, self.sources))
+        return future
+
+    def outcome(self, job):
+        value = self.value(job.repeat)
+        row = None if value is None else json.dumps({"x": value, "word": "a"})
+        return Outcome(job.point, job.repeat, job.seed, row, "" if row else "broke", self.wall_s, 1)
+
+    def sizes(self):
+        return [len(batch) for batch in self.batches]
+
+
+@pytest.fixture
+def conducted(tmp_path, monkeypatch):
+    """A sweep of so many points under way, on a machine that has compiled something."""
+    monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path / "cache"))
+    folder = compilation.cache_root() / compilation.source_hash()
+    folder.mkdir(parents=True)
+    (folder / "skin.compiled").touch()
+
+    def begun(engine, points=1, there=(), **options):
+        plan = make_plan(SKIN, vary={"protocol.k": list(range(2, 2 + points))}, **options)
+        jobs = Jobs(None)
+        digest = plan.points[0].digest
+        jobs.add([Outcome(digest, r, r, json.dumps({"x": v}), "", 1.0, 1) for r, v in there], PLACE)
+        return Scheduler(plan, jobs, engine)
+
+    return begun
+
+
+def test_what_is_there_is_not_run_again(conducted):
+    engine = Noting()
+    made = conducted(engine, repeat=5, there=[(0, 1.0), (3, 1.0)])
+    made.run()
+    assert [repeat for batch in engine.batches for _, repeat in batch] == [1, 2, 4]
+    assert (made.ran, made.done, made.total, made.failed) == (3, 5, 5, 0)
+    assert made.states[0].finished
+    again = Noting()
+    done = conducted(again, repeat=2, there=[(0, 1.0), (1, 1.0)])
+    done.run()
+    assert again.batches == []
+    assert done.states[0].finished
+
+
+@pytest.mark.parametrize(("values", "goal"), [
+    ([1.0] * 6, 6), ([0.0, 2.0] * 3, 12), ([0.0, 9.0] * 6, 24), ([1.0] * 12, 6),
+])  # fmt: skip
+def test_a_point_that_is_known_well_enough_is_done(conducted, values, goal):
+    engine = Noting()  # all the rest comes to 1.0
+    made = conducted(engine, repeat=24, batch=6, until="x.ci=50%", there=list(enumerate(values)))
+    made.run()
+    assert made.states[0].goal == goal
+    assert made.states[0].finished
+    ran = [repeat for batch in engine.batches for _, repeat in batch]
+    assert ran == list(range(len(values), goal))
+
+
+def test_a_point_is_never_repeated_more_often_than_said(conducted):
+    engine = Noting(lambda repeat: float(repeat % 2))
+    made = conducted(engine, repeat=20, batch=6, until="x.ci=0.01")
+    made.run()
+    assert (made.states[0].goal, made.done, made.total) == (20, 20, 20)
+
+
+def test_batches_take_a_while_and_leave_something_for_everybody(conducted):
+    engine = Noting(wall_s=0.01)
+    engine.workers = 2
+    conducted(engine, repeat=81).run()
+    # First alone until somebody knows how long a run takes; then 0.25 s, and a quarter at most.
+    assert engine.sizes()[:4] == [1] * 4
+    assert engine.sizes()[4] == 20
+    assert max(engine.sizes()) == 20
+    assert sum(engine.sizes()) == 81
+    slow = Noting(wall_s=0.1)
+    conducted(slow, repeat=30).run()
+    assert max(slow.sizes()) == 2
+    quick = Noting(wall_s=1e-6)
+    conducted(quick, repeat=2000).run()
+    assert max(quick.sizes()) == scheduler.BATCH_MAX == 500
+
+
+@pytest.mark.parametrize("points", [1, 3])
+def test_one_run_goes_first_where_nothing_is_compiled(conducted, tmp_path, points):
+    (compiled,) = (tmp_path / "cache").rglob("*.compiled")
+    compiled.unlink()
+    engine, seen = Noting(), []
+    made = conducted(engine, points, repeat=3)
+    made._progress = lambda scheduler: seen.append(scheduler.ran)
+    made.run()
+    assert seen[:2] == [0, 1]  # nothing else was handed out until it came back
+    assert sum(engine.sizes()) == 3 * points
+
+
+def test_the_time_left_is_by_what_came_after_the_first_results(conducted, monkeypatch):
+    clock = iter(range(0, 10_000, 10))
+    monkeypatch.setattr(scheduler.time, "perf_counter", lambda: next(clock))
+    made = conducted(Noting(wall_s=1.0), repeat=9)
+    left = []
+    made._progress = lambda scheduler: left.append(scheduler.left_s)
+    made.run()
+    assert left[:2] == [None, None]
+    assert all(one is not None for one in left[2:])
+    assert left[-1] == 0
+
+
+def test_failures_are_counted_and_no_figures(conducted):
+    made = conducted(Noting(lambda repeat: None if repeat % 3 == 0 else 2.0), repeat=7)
+    made._measures = ("x", "word")
+    made.run()
+    assert (made.done, made.failed) == (7, 3)
+    assert made.states[0].series("x") == [2.0] * 4
+    assert made.states[0].series("word") == []
+
+
+def test_a_rule_about_no_figure_and_a_worker_of_another_version_are_told(conducted):
+    with pytest.raises(SweepError, match='runs have no figure "y"'):
+        conducted(Noting(), repeat=4, until="y.ci=5%").run()
+    with pytest.raises(SweepError, match="the worker on here has other sources"):
+        conducted(Noting(sources="others"), repeat=4).run()
