@@ -59,20 +59,16 @@ class Messages:
     """Messages: at most once, delivered means handed up, told what became of them, in order.
 
     Args:
-        world: where it all happens.
+        stage: with the `world`, and `quiet_since`: since when all is whole, ns; None = it is not.
         ends_s: within that time every message has its end, once all is whole.
-
-    Attributes:
-        quiet_since: since when all is whole, ns; None = it is not.
     """
 
-    def __init__(self, world, ends_s):
-        self.world = world
+    def __init__(self, stage, ends_s):
+        self.stage, self.world = stage, stage.world
         self.ends_s = ends_s
         self.sent = {}
         self.open = {}
         self.states = Counter()
-        self.quiet_since = None
         self.again = 0  # handed up once more by another life of the recipient
         self._count = 0
         self._newest = {}
@@ -132,8 +128,8 @@ class Messages:
             elif not sent.life.alive:
                 self.states["sender gone"] += 1
                 del self.open[ident]
-            elif self.quiet_since is not None and now > self.ends_s * 1e9 + max(
-                sent.at, self.quiet_since
+            elif self.stage.quiet_since is not None and now > self.ends_s * 1e9 + max(
+                sent.at, self.stage.quiet_since
             ):
                 self.world.fail(f"message {ident} from {sent.life.name} to {sent.dest} has no end")
 

@@ -41,6 +41,8 @@ class Host:
         self.lives = 0
         self.said = []
         self.how = ""
+        self.boot_ns = self.chance.randrange(SECOND, 10**15)  # its clock that never jumps, at 0
+        self.main = None  # what runs on it in place of a node
         self.serial = {}  # device: the end of a line
         self.on_begin = lambda life: None
         self.on_end = lambda life, how: None
@@ -94,7 +96,6 @@ class Life(Machine):
         self.alive = True
         self.chance = host.chance
         self.began = host.world.now
-        self.boot_ns = host.chance.randrange(1, 10**15)  # where the clock that never jumps stands
         self.files = {}
         self.process = None
         self.node = None
@@ -102,6 +103,7 @@ class Life(Machine):
         self._fds = count(3)
         self.loop = Loop(host.world, self)
         self.context = contextvars.copy_context()
+        self.world.lives = [one for one in self.world.lives if one.alive] + [self]
 
     def begin(self):
         """Load the node's file, and run it."""
@@ -114,16 +116,22 @@ class Life(Machine):
 
     def _run(self):
         try:
-            self.process = Process(load(self.host.path))
-            self.node = self.process.node
+            task = self._main()
         except LiveError as error:
             self._ended(error)
             return
         except PowerCut:
             return
-        self.host.on_begin(self)
-        task = self.loop.create_task(self.process.run(), context=self.context)
+        task = self.loop.create_task(task, context=self.context)
         task.add_done_callback(self._done, context=self.context)
+
+    def _main(self):
+        if self.host.main is not None:
+            return self.host.main()
+        self.process = Process(load(self.host.path))
+        self.node = self.process.node
+        self.host.on_begin(self)
+        return self.process.run()
 
     def _done(self, task):
         if self.alive:
@@ -151,13 +159,13 @@ class Life(Machine):
 
     def clock(self):
         """The clock that never jumps, ns; it runs a little fast or slow."""
-        passed = self.world.now - self.began
-        return self.boot_ns + int(passed * (1 + self.host.ppm / 1e6))
+        passed = self.world.now
+        return self.host.boot_ns + int(passed * (1 + self.host.ppm / 1e6))
 
     def world_time(self, when_s):
         """When that clock shows so many seconds, ns of the world, rounded up."""
-        passed = int(when_s * 1e9) - self.boot_ns
-        return self.began + int(passed / (1 + self.host.ppm / 1e6)) + 400
+        passed = int(when_s * 1e9) - self.host.boot_ns
+        return int(passed / (1 + self.host.ppm / 1e6)) + 400
 
     def look(self, fd):
         """A loop begins to wait for a file: something may be there already."""

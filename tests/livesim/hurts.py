@@ -30,6 +30,11 @@ def late(stage):
     _for_a_while(stage, cable(stage), "delay_us", (100, 6000))
 
 
+def sluggish(stage):
+    """A cable holds frames up for seconds, as a full buffer does."""
+    _for_a_while(stage, cable(stage), "delay_us", (200_000, 5_000_000))
+
+
 def cut(stage):
     """A cable carries nothing."""
     _for_a_while(stage, cable(stage), "cut", True)
@@ -67,7 +72,6 @@ def power(stage):
         host.cut_power()
     elif host.life is not None:
         host.disk.cut_after = stage.chance.randint(1, 6)
-        host.life.node.save(False) if stage.chance.random() < 0 else None
     _back(stage, host)
 
 
@@ -119,9 +123,9 @@ def replays(stage):
 
 
 # What anybody must stand, how often it happens; and who has no seal stands no forger.
-USUAL = {lossy: 4, doubled: 2, changing: 2, late: 2, cut: 4, flapping: 2, partition: 1, crash: 3,
-         power: 2, ended: 1, restarts: 1, stall: 3, clock: 2, full: 1, rotation: 1,
-         replays: 2}  # fmt: skip
+USUAL = {lossy: 4, doubled: 2, changing: 2, late: 2, sluggish: 1, cut: 4, flapping: 2,
+         partition: 1, crash: 3, power: 2, ended: 1, restarts: 1, stall: 3, clock: 2, full: 1,
+         rotation: 1, replays: 2}  # fmt: skip
 SEALED = (rotation, replays)
 OPEN_ONLY = (full,)  # see test_known.py
 BY_NAME = {hurt.__name__: hurt for hurt in USUAL}
@@ -129,9 +133,8 @@ BY_NAME = {hurt.__name__: hurt for hurt in USUAL}
 
 def storm(stage, seconds):
     """Hurt a network for so long."""
-    stage.storm = getattr(stage, "storm", 0) + 1
-    stage.rotated_at = getattr(stage, "rotated_at", None)
-    stage.messages.quiet_since = None
+    stage.storm += 1
+    stage.quiet_since = None
     named = stage.plan.hurts
     usual = {one: weight for one, weight in USUAL.items()
              if (one.__name__ in named if named is not None

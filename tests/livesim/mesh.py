@@ -1,16 +1,16 @@
 """A mesh of live nodes, its users, and what is done to it."""
 
 from innervate.live import files
-from tests.livesim.checks import ITEMS_MOST, Messages, Nonces, items_of
-from tests.livesim.host import HUP, TERM, Host
-from tests.livesim.net import Net, changed
+from innervate.live.receipts import FINAL
+from tests.livesim.checks import Messages
+from tests.livesim.host import TERM
+from tests.livesim.stage import GRACE_S, Stage
 from tests.livesim.world import SECOND, inside
 
-PORT = 4700
 AGAIN_S = 45.0  # so long after all is whole again everybody reaches everybody
 ENDS_S = 60.0  # a message has its end, if its sender lives
+GONE_S = 30.0  # a message to a node that is not there has its end
 ALL = 255
-GRACE_S = 2.0
 
 
 class Plan:
@@ -57,44 +57,14 @@ def links(chance, count):
     return sorted(found)
 
 
-class Stage:
-    """Machines with nodes on them, joined as a plan says; users who send and receive."""
+class Mesh(Stage):
+    """A mesh, and users who send and receive."""
 
     def __init__(self, world, plan):
-        self.world, self.plan = world, plan
-        self.chance = world.chance("stage")
-        self.net = Net(world)
-        self.nonces = Nonces(world)
-        self.net.sniffers.append(self.nonces)
-        self.messages = Messages(world, ENDS_S)
-        self.cables = {}
-        self.ends = [[] for _ in range(plan.nodes)]
-        for k, pair in enumerate(plan.links):
-            here, there = f"10.{k // 200}.{k % 200}.1", f"10.{k // 200}.{k % 200}.2"
-            self.cables[pair] = self.net.way(here, there, delay_us=plan.delay_us)
-            self.ends[pair[0]].append((here, there))
-            self.ends[pair[1]].append((there, here))
-        self.key_number = 1
-        self.keys = {1: self._secret()}
-        self.hosts = [self._host(i) for i in range(plan.nodes)]
+        super().__init__(world, plan)
+        self.messages = Messages(self, ENDS_S)
         self.places = {}
         self.is_sending = False
-        self.lowest = {}
-
-    def _secret(self):
-        return self.chance.randbytes(32).hex()
-
-    def _host(self, number):
-        addresses = [here for here, _ in self.ends[number]]
-        host = Host(self.world, self.net, f"n{number}", addresses, self.file(number))
-        host.number = number
-        host.on_begin = lambda life: self._listen(number, life)
-        for address in addresses:
-            self.nonces.keys[address] = lambda key, host=host: self._key_of(host, key)
-        return host
-
-    def _key_of(self, host, number):
-        return host.life, host.life.node.sealer.keys[number]
 
     def file(self, number):
         """The text of a node's file, with the keys as they are now."""
@@ -105,16 +75,10 @@ class Stage:
         if number in standbys:
             head["rank"] = number
         tables = {"protocol": {}, "deliver": {"in_order": plan.in_order}}
-        if plan.sealed:
-            tables["keys"] = {"use": self.key_number, "grace_s": GRACE_S}
-            tables["keys.secret"] = {str(k): text for k, text in self.keys.items()}
-        cables = [
-            {"kind": "udp", "bind": f"{here}:{PORT}", "peers": [f"{there}:{PORT}"]}
-            for here, there in self.ends[number]
-        ]
-        return files.text(head, tables, cables)
+        return files.text(head, tables | self.key_tables(), self.links(number))
 
-    def _listen(self, number, life):
+    def listen(self, number, life):
+        """What comes in is looked at."""
         in_order = self.plan.in_order
 
         def take(sender, payload):
@@ -123,9 +87,8 @@ class Stage:
         life.node.receive_messages(take, in_order=in_order)
 
     def begin(self):
-        """Start all nodes, in any order, within a second."""
-        for host in self.hosts:
-            self.world.after(self.chance.random(), host.begin)
+        """Start all nodes, and users who send."""
+        super().begin()
         self.world.after(0.2, self._look)
         self.world.after(1.0, self._send_some)
 
@@ -162,57 +125,9 @@ class Stage:
         self.messages.accepted(sent)
         return sent
 
-    def rotate(self):
-        """Another key in every file, under another number, and a signal to everybody."""
-        if not self.plan.sealed:
-            return
-        self.key_number = self.key_number % 15 + 1
-        self.keys = {self.key_number: self._secret()}
-        for host in self.hosts:
-            wait_s = self.chance.uniform(0, GRACE_S / 3)
-            self.world.after(wait_s, self._reload, host, self.file(host.number))
-
-    def _reload(self, host, text):
-        host.disk.put(host.path, text)
-        host.signal(HUP)
-
-    def replay(self):
-        """Somebody sends again what was recorded, as it was, changed, or with nonsense in it."""
-        if not self.net.recorded:
-            return
-        source, target, data, life = self.chance.choice(self.net.recorded)
-        if self.plan.old_lives or life.alive:
-            self._play_back(source, target, data)
-
-    def _play_back(self, source, target, data):
-        what = self.chance.random()
-        if what < 0.3:
-            data = changed(self.chance, data)
-        elif what < 0.4:
-            data = self.chance.randbytes(self.chance.randint(0, 200))
-        self.net.inject(source, target, data)
-
-    def heal(self):
-        """All is whole again, and everybody runs."""
-        for ways in self.cables.values():
-            for way in ways:
-                way.heal()
-        for host in self.hosts:
-            host.disk.full = False
-            host.disk.cut_after = None
-            if host.life is not None:
-                host.life.loop.stalled_until = 0
-                host.life.loop.crash_after = None
-            host.begin()
-            self.world.after(4.0, host.begin)  # who was told to end may still be at it
-        self.messages.quiet_since = self.world.now
-
     def everybody_reaches_everybody(self):
         """Messages between all, or many, pairs: what was sent."""
-        for host in self.hosts:
-            if host.life is None:
-                self.world.fail(f"{host.name} does not run: {host.said[-3:]} {host.how}")
-        self.world.check()
+        self.check_running()
         pairs = [(a, b) for a in self.hosts for b in range(self.plan.nodes) if a.number != b]
         if len(pairs) > 90:
             pairs = self.chance.sample(pairs, 90)
@@ -227,19 +142,62 @@ class Stage:
                     f"after {(self.world.now - one.at) / SECOND:.1f} s"
                 )
 
-    def check_memory(self):
-        """No node holds more than it may, or more than when it was first left alone."""
+    def check_rest(self):
+        """Left alone, no node has anything under way, and all accept the key in use alone."""
         for host in self.hosts:
-            if host.life is not None:
-                count = items_of(host.life.node)
-                if count > ITEMS_MOST:
-                    self.world.fail(f"{host.life.name} holds {count} objects")
+            if host.life is None:
+                continue
+            told = host.life.node.status()
+            left = {name: told[name] for name in ("backlog", "under_way", "out_of_turn")}
+            if any(left.values()):
+                self.world.fail(f"{host.life.name} still has {left}")
+            if self.plan.sealed and told["keys"]["accepted"] != [self.key_number]:
+                self.world.fail(f"{host.life.name} accepts {told['keys']}")
+
+    def rotate_in_peace(self):
+        """Keys change while messages go, and nobody is shut out."""
+        before = self._shut_out()
+        self.rotate()
+        for k in range(8):
+            self.world.after(k * GRACE_S / 3, self._some)
+        self.world.run(3 * GRACE_S)
+        if self._shut_out() != before:
+            self.world.fail(f"frames under an unknown key: {self._shut_out() - before}")
+        self.world.check()
+
+    def _some(self):
+        sender, dest = self.chance.sample(self.hosts, 2)
+        self.send(sender, dest.number)
+
+    def _shut_out(self):
+        return sum(host.life.node.counters()["dropped: sealed: unknown key"]
+                   for host in self.hosts if host.life is not None)  # fmt: skip
+
+    def leave(self):
+        """A node goes, and who sends to it is told."""
+        gone, *others = self.chance.sample(self.hosts, 4)
+        gone.kill()
+        sent = [self.send(host, gone.number) for host in others]
+        self.world.run(GONE_S)
+        for one in sent:
+            if one.receipt.state not in FINAL:
+                self.world.fail(f"message {one.ident} to a node that is gone has no end")
+        self.world.check()
+
+    def drain(self):
+        """Who is told to end first gets rid of what is under way."""
+        running = [host for host in self.hosts if host.life is not None]
+        host, other = self.chance.sample(running, 2)
+        sent = [self.send(host, other.number) for _ in range(5)]
+        host.signal(TERM)
+        self.world.run(3.0)
+        for one in sent:
+            if one.receipt.state not in FINAL:
+                self.world.fail(f"{host.name} ended before message {one.ident} had its end")
+        self.world.check()
 
     def end(self):
-        """Everybody is told to stop, and does."""
-        for host in self.hosts:
-            host.signal(TERM)
-        self.world.run(4.0)
-        for host in self.hosts:
-            if host.life is not None:
-                self.world.fail(f"{host.life.name} does not end")
+        """One goes, one is told to stop, then all are."""
+        self.leave()
+        self.drain()
+        super().end()

@@ -2,9 +2,10 @@
 
 import gc
 import zlib
+from contextlib import suppress
 from typing import NamedTuple
 
-from tests.livesim import hurts, mesh
+from tests.livesim import hurts, mesh, radio, skin
 from tests.livesim.world import SECOND, Broken, World
 
 
@@ -26,7 +27,45 @@ class Found(NamedTuple):
     fingerprint: int
 
 
-def _storm(world, stage):
+def run(seed, kind=None, **given):
+    """The run of a seed, of the kind that it stands for or of this one."""
+    world = World(seed)
+    kinds = sorted(KINDS)
+    prints, nets, told = [0], [], {}
+
+    def note(source, _target, data):
+        prints[0] = zlib.crc32(data, zlib.crc32(repr((world.now, source)).encode(), prints[0]))
+
+    def watch(net):
+        net.sniffers.append(note)
+        nets.append(net)
+
+    with suppress(Broken):  # it is told by `world.broken`
+        KINDS[kind or kinds[seed % len(kinds)]](world, watch, told, given)
+    world.end()
+    gc.collect()
+    what = told.pop("what")
+    told["datagrams"] = nets[0].sent
+    return Found(what, world.now / SECOND, world.broken, told, prints[0])
+
+
+def _mesh(world, watch, told, given):
+    plan = mesh.Plan(world, **given)
+    stage = mesh.Mesh(world, plan)
+    watch(stage.net)
+    told["what"] = f"mesh of {plan.nodes}, {len(plan.links)} links" + _words(plan)
+    try:
+        stage.begin()
+        world.run(15.0)
+        for _ in range(plan.storms):
+            _mesh_storm(world, stage)
+        stage.end()
+    finally:
+        told |= {**stage.messages.states, "again in another life": stage.messages.again,
+                 "sent": len(stage.messages.sent), **_lives(stage.hosts)}  # fmt: skip
+
+
+def _mesh_storm(world, stage):
     """Hurt it, heal it, and look whether all is as it was."""
     plan = stage.plan
     stage.is_sending = True
@@ -41,42 +80,61 @@ def _storm(world, stage):
     world.run(mesh.ENDS_S - 10.0 + plan.calm_s)
     stage.messages.look()
     stage.check_memory()
+    stage.check_rest()
     world.check()
+    if plan.sealed:
+        stage.rotate_in_peace()
 
 
-def run_mesh(seed, **given):
-    """A mesh, as a seed has it."""
-    world = World(seed)
-    plan = mesh.Plan(world, **given)
-    stage = mesh.Stage(world, plan)
-    prints = [0]
-
-    def note(source, _target, data):
-        prints[0] = zlib.crc32(data, zlib.crc32(repr((world.now, source)).encode(), prints[0]))
-
-    stage.net.sniffers.append(note)
+def _skin(world, watch, told, given):
+    plan = skin.Plan(world, **given)
+    stage = skin.Skin(world, plan)
+    watch(stage.net)
+    told["what"] = f"skin of {plan.columns} x {plan.rows}" + _words(plan)
     try:
         stage.begin()
-        world.run(15.0)
+        world.run(skin.AGAIN_S)
+        stage.check_reach()
+        stage.sends()
         for _ in range(plan.storms):
-            _storm(world, stage)
+            hurts.storm(stage, plan.storm_s)
+            world.run(plan.storm_s)
+            hurts.over(stage)
+            world.run(skin.AGAIN_S + plan.calm_s)
+            stage.check_reach()
+            stage.check_memory()
+            world.check()
         stage.end()
-    except Broken:
-        pass  # it is told by `world.broken`
-    gc.collect()
-    what = f"mesh of {plan.nodes}, {len(plan.links)} links"
-    what += ", sealed" if plan.sealed else ""
-    what += ", in order" if plan.in_order else ""
-    told = {**stage.messages.states, "again in another life": stage.messages.again,
-            "sent": len(stage.messages.sent), "datagrams": stage.net.sent,
-            "lives": sum(host.lives for host in stage.hosts)}  # fmt: skip
-    return Found(what, world.now / SECOND, world.broken, told, prints[0])
+    finally:
+        told |= {"touches": stage.touches, "commands": len(stage.had), **_lives(stage.hosts)}
 
 
-KINDS = {"mesh": run_mesh}
+def _radio(world, watch, told, given):
+    plan = radio.Plan(world, **given)
+    team = radio.Team(world, plan)
+    watch(team.net)
+    told["what"] = f"radio team of {plan.nodes}"
+    try:
+        team.begin()
+        world.run(radio.AGAIN_S)
+        for _ in range(plan.storms):
+            team.storm(plan.storm_s)
+            world.run(plan.storm_s)
+            team.heal()
+            world.run(radio.AGAIN_S)
+            team.check_reach()
+            world.run(radio.ENDS_S + plan.calm_s)
+    finally:
+        told |= {**team.told, **_lives(team.hosts)}
 
 
-def run(seed, kind=None, **given):
-    """The run of a seed."""
-    kinds = sorted(KINDS)
-    return KINDS[kind or kinds[seed % len(kinds)]](seed, **given)
+def _lives(hosts):
+    return {"lives": sum(host.lives for host in hosts)}
+
+
+def _words(plan):
+    how = ("sealed", "in_order", "serial")
+    return "".join(f", {name.replace('_', ' ')}" for name in how if getattr(plan, name, False))
+
+
+KINDS = {"mesh": _mesh, "radio": _radio, "skin": _skin}

@@ -7,7 +7,7 @@ import pytest
 from tests.livesim import runs
 
 SMALL = {"nodes": 6, "storms": 1, "storm_s": 20, "calm_s": 0, "rate": 5}
-FULL_CPU_S = 600.0
+FULL_CPU_S = 480.0
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3, 4])
@@ -15,6 +15,23 @@ def test_a_mesh_that_is_hurt_keeps_what_it_promises(seed):
     found = runs.run(seed, "mesh", **SMALL)
     assert found.broken == []
     assert found.told["delivered"] > 20
+
+
+@pytest.mark.parametrize("serial", [False, True])
+def test_a_skin_that_is_hurt_is_heard_and_hears(serial):
+    small = {"columns": 2, "rows": 2, "storms": 1, "storm_s": 20, "calm_s": 0, "serial": serial}
+    found = runs.run(7, "skin", **small)
+    assert found.broken == []
+    assert found.told["touches"] > 200
+    assert found.told["lives"] > 5
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_team_that_is_hurt_delivers_what_it_says(seed):
+    found = runs.run(seed, "radio", nodes=6, storms=1, storm_s=120, calm_s=0)
+    assert found.broken == []
+    assert found.told["delivered"] > 5
+    assert found.told["lives"] > 6
 
 
 @pytest.mark.parametrize("seed", [1, 2])

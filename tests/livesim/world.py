@@ -30,6 +30,7 @@ class World:
         self.now = 0
         self.broken = []
         self.events = 0
+        self.lives = []
         self._heap = []
         self._order = count()
 
@@ -60,6 +61,13 @@ class World:
         """Go no further where something is broken."""
         if self.broken:
             raise Broken(self.broken[0])
+
+    def end(self):
+        """Whoever still runs is gone, and leaves nothing behind."""
+        for life in self.lives:
+            life.alive = False
+            life.loop.bury()
+        self.lives, self._heap = [], []
 
     def fail(self, text):
         """Something is broken: the run ends here."""

@@ -74,9 +74,22 @@ CASES = [
      line(20) + "[protocol]\nmtu = 64"),
     ("mesh", "n20: too far for tables at an MTU of 64", line(21) + "[protocol]\nmtu = 64",
      line(21) + "[protocol]\nmtu = 127"),
-    ("mesh", "tables for more than 70 nodes", grid(71) + "[radio]\nprofile = '38k4'",
-     grid(70) + "[radio]\nprofile = '38k4'"),
-    ("mesh", "tables for more than 150 nodes", grid(151), grid(150)),
+    *(
+        ("mesh", f"{what} for {most + 1} nodes will not be everywhere in time: more than {most} ",
+         grid(most + 1) + rest, grid(most) + rest)
+        for what, profile, rule, most in (
+            ("tables", "38k4", "search", 50), ("tables", "250k", "search", 120),
+            ("graph", "38k4", "graph", 70), ("graph", "250k", "graph", 100),
+        )
+        for rest in (f"[radio]\nprofile = '{profile}'\n[protocol]\nfailover = '{rule}'\nmtu = 127",)
+    ),
+    *(
+        ("mesh", f"nobody gets any {what}; raise protocol.period_s above protocol.collect_s",
+         f"{rounds}period_s = 1.0", f"{rounds}period_s = 2.0")
+        for what, rule in (("tables", "search"), ("graph", "graph"))
+        for rounds in (f"{grid(20)}[protocol]\nfailover = '{rule}'\ncollect_s = 1.5\n",)
+    ),
+    ("mesh", "more than 32 neighbours: n0; n0 has 33", star(33, 16), star(32, 16)),
     ("mesh", "nobody can cross it", FENCE, FENCE + ROBOT),
     ("mesh", "flow.0 sends nothing", "duration_s = 6\n" + FLOW, "duration_s = 60\n" + FLOW),
 ]  # fmt: skip
@@ -109,8 +122,9 @@ def texts_of(*functions):
 
 def test_every_warning_has_a_case():
     left = texts_of(
-        skin._touch, skin._start_up, skin._load, radio.warnings, mesh.warnings, mesh._thin
-    )
+        skin._touch, skin._start_up, skin._load, radio.warnings, mesh.warnings, mesh._thin,
+        mesh._distribution,
+    )  # fmt: skip
     for kind, words, weak, _ in CASES:
         (found,) = (text for text in said(kind, weak) if words in text)
         known = set(found.split())

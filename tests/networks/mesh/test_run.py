@@ -1,4 +1,5 @@
 import json
+import math
 
 import polars
 import pytest
@@ -6,6 +7,7 @@ import pytest
 from innervate import run
 from innervate.network import networks
 from innervate.networks.mesh import tables as declared
+from innervate.networks.mesh.analysis.alarms import all_crossings
 from innervate.networks.mesh.show import summary_lines
 from innervate.running import compare
 from tests.networks.mesh.tables_runs import mesh_tables, without_fence
@@ -92,3 +94,23 @@ def test_two_runs_are_compared_event_by_event(tmp_path):
 def test_calls_in_words(field):
     row = {"node": 3, "port": 10, "handler": 1}
     assert networks()["mesh"].run.call_words(field.plan, row) == "node n3: received an alarm"
+
+
+SLANTED = {
+    "kind": "mesh", "duration_s": 45, "nodes": 10,
+    "placement": {"side_m": 40}, "radio": {"mean_degree": 5},
+    "fence": {"polygon": [[3, 2], [37, 6], [34, 38], [5, 33]]},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", [1, 3, 8])
+def test_a_slow_robot_that_sees_itself_outside_too_soon_is_told_of(seed):
+    """At 0.2 m/s, over a slanted fence: the rounded place is outside before the robot is."""
+    angle = 2 * math.pi * seed / 37
+    way = [[20 + far * math.cos(angle), 20 + far * math.sin(angle)] for far in (12, 22)]
+    robot = {"node": 9, "waypoints": way, "speed_mps": 0.2, "start_s": 5}
+    done = run(SLANTED | {"seed": seed, "robot": [robot]})
+    (crossing,) = all_crossings(done.result)
+    assert crossing.raised_us < crossing.crossed_us
+    assert (done.summary["alarms"]["sent"], done.summary["alarms"]["delivered"]) == (1, 1)
+    assert "learned of the only crossing" in done.summary["headline"]["text"]

@@ -165,6 +165,30 @@ def test_a_crossing_is_measured_from_the_sample_that_raised_it():
     assert summary["latency_ms"]["p99"] == pytest.approx(50.0)
 
 
+@pytest.mark.parametrize("accepted_us", [S - 2_000, S + 40_000])
+def test_an_alarm_just_before_the_crossing_is_of_that_crossing(accepted_us):
+    """Places are whole units: the robot may see itself outside half a unit too soon."""
+    rows, delivered = crossing_rows(S - 14_000, accepted_us)
+    result = made(rows, delivered=delivered, walks=[WALK], ended_us=4 * S)
+    (crossing,) = mesh_alarms.all_crossings(result)
+    assert (crossing.raised_us, crossing.accepted_us) == (S - 14_000, accepted_us)
+    assert crossing.overrun_m == pytest.approx(max(0, accepted_us - S) / 1e6)
+    assert mesh_alarms.alarms([crossing])["delivered"] == 1
+
+
+def test_an_alarm_well_inside_is_of_no_crossing():
+    rows, delivered = crossing_rows(S - 60_000, S - 30_000)
+    result = made(rows, delivered=delivered, walks=[WALK], ended_us=4 * S)
+    summary = mesh_alarms.alarms(mesh_alarms.all_crossings(result))
+    assert (summary["sent"], summary["delivered"], summary["noticed"]) == (1, 0, 0)
+
+
+def test_an_alarm_of_the_stay_before_is_not_of_the_next():
+    rows, delivered = crossing_rows(3 * S - 100_000, 3 * S + 30_000)
+    found = mesh_alarms.all_crossings(made(rows, delivered=delivered, walks=[WALK]))
+    assert [crossing.accepted_us != mesh_messages.NEVER for crossing in found] == [True, False]
+
+
 def test_a_crossing_that_nobody_noticed_counts():
     found = mesh_alarms.all_crossings(made(walks=[WALK]))
     assert [crossing.crossed_us for crossing in found] == [S, 5 * S]

@@ -40,7 +40,7 @@ CLOSE = [
      [{"down": 1499.9}, {"down": 2500.1}, {"apart": 20.1}]),
     ("modes", "of the floor", [{"wave": -1.99}, {"wave": 1.99}], [{"wave": -2.01}, {"wave": 2.01}]),
     ("modes", "faster than periodic", [{"triggered": 0.51}, {"triggered": 19.9}],
-     [{"triggered": 0.49}, {"triggered": 20.1}]),
+     [{"triggered": 0.49}, {"triggered": 0.5}, {"triggered": 20.0}, {"triggered": 20.1}]),
     ("modes", "sooner than", [{"often": -0.101}], [{"often": -0.099}]),
     # Of 18 and 20 ms: three periods of 4 ms, and the floor of 2 x 6 and 2 x 9 hops of 0.12 ms.
     ("modes", "on the mean (asked for)", [{"wave": 4.55}], [{"wave": 5.85}]),

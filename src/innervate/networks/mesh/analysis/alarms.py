@@ -18,6 +18,9 @@ from innervate.networks.mesh.analysis.messages import NEVER, percentiles, timeou
 from innervate.networks.mesh.analysis.summary_keys import Alarms
 from innervate.networks.mesh.protocol.constants import ALARM, CROSS, FLOOD, PREDICT, REPORT_ALARM
 
+# A place is rounded along each axis, by half a cm and by half a unit: at most so far away.
+ROUNDED_UNITS = 2**0.5
+
 
 class Crossing(NamedTuple):
     """A robot leaves the fence.
@@ -26,7 +29,8 @@ class Crossing(NamedTuple):
         robot: its node.
         crossed_us: when it truly did.
         back_us: when it came back inside; the run's end if it did not.
-        raised_us: the sample at which somebody raised the alarm, NEVER if nobody did.
+        raised_us: the sample at which somebody raised the alarm, NEVER if nobody did; with its
+            place rounded a robot can be outside just before it truly is.
         raised_by: who that was: the robot, or a witness of its beacon.
         accepted_us: when the monitor's user had the first alarm of it, NEVER if it did not.
         row: that delivery, in `result.delivered`; NEVER.
@@ -108,10 +112,11 @@ def _crossing(
 ) -> Crossing:  # fmt: skip
     """One crossing; `spans`: end of the stay before, out, back, begin of the next stay."""
     before, out_us, back_us, until = spans
-    first = raised[(raised["time"] >= out_us) & (raised["time"] < until)][:1]
+    from_us = _seen_from(result.plan, edges, walk, before, out_us)
+    first = raised[(raised["time"] >= from_us) & (raised["time"] < until)][:1]
     rows = result.delivered
     times, kinds = rows["time"][told], rows["body3"][told]
-    came = told[(kinds == CROSS) & (times >= out_us) & (times < until)][:1]
+    came = told[(kinds == CROSS) & (times >= from_us) & (times < until)][:1]
     warned = told[(kinds == PREDICT) & (times >= before) & (times < out_us)][-1:]
     accepted = int(rows["time"][came[0]]) if len(came) else NEVER
     known = accepted if len(came) else min(back_us, result.ended_us)
@@ -129,6 +134,19 @@ def _crossing(
         overrun_m=overrun_cm(edges, walk, out_us, known) / 100,
         open=not len(came) and out_us + timeout_us(result.plan) > result.ended_us,
     )
+
+
+def _seen_from(plan: Any, edges: list[Edge], walk: Any, before_us: int, out_us: int) -> int:
+    """From when on a robot can have seen itself outside, since it knows its place rounded.
+
+    That is at most one sample before the first of those, without a gap before the crossing, at
+    which it was as near to the fence as its place may be wrong.
+    """
+    wrong_cm = ROUNDED_UNITS * plan.params["unit_cm"]
+    at = out_us
+    while at > before_us and margin_cm(edges, position_cm(walk, at)) <= wrong_cm:
+        at -= plan.sample_us
+    return max(at, before_us)
 
 
 def alarms(found: list[Crossing]) -> Alarms:

@@ -13,7 +13,7 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop
 from innervate.networks.mesh.protocol.paths import is_known
 from innervate.networks.mesh.protocol.queue import compose
-from innervate.networks.mesh.protocol.table import graph_bytes, part_bytes
+from innervate.networks.mesh.protocol.table import CROWD, graph_bytes, part_bytes, spread_of_answers
 
 
 def pump_graph(node, gate, params, now, out):
@@ -31,37 +31,60 @@ def pump_graph(node, gate, params, now, out):
         gate.part = 0
     again = 0
     for s in range(params.nodes):
-        if gate.job[s] == UNDER_WAY and gate.job_next[s] == 0:
+        if is_unasked(gate, s):
             again = 1
     if again:
         flood_graph(node, gate, params, now, count, out)
 
 
+def is_unasked(gate, s):
+    """1 if a flood for node s is not complete yet."""
+    return gate.job[s] == UNDER_WAY and gate.job_next[s] == 0
+
+
+def is_missed(gate, params, index):
+    """1 if a node waits for this part of the graph."""
+    for s in range(params.nodes):
+        if gate.job[s] == UNDER_WAY and gate.job_parts[s] >> index & 1 == 0:
+            return 1
+    return 0
+
+
 def graph_due(params, now, count, tries):
     """When a flood of the graph is over at the latest, and its acks are in."""
-    wait = params.job_us * (1 + tries) + params.jitter_us * (count + 4) + params.spread_us
+    answers = (params.job_us >> 1) * (params.nodes // CROWD) + spread_of_answers(params)
+    wait = params.job_us * (1 + tries) + params.jitter_us * (count + 4) + answers
     return (now + wait) & MASK30
 
 
 def flood_graph(node, gate, params, now, count, out):
-    """Queue all parts that somebody misses; those who wait for them are asked no sooner."""
+    """Queue all parts that somebody misses; those who wait for them are asked no sooner.
+
+    Where the queue has no room for all, it goes on with the others when these have left.
+    """
     due = now
-    for index in range(min(count, PARTS_MAX)):
-        missing = 0
-        for s in range(params.nodes):
-            if gate.job[s] == UNDER_WAY and gate.job_parts[s] >> index & 1 == 0:
-                missing = 1
-        if missing:
+    for index in range(gate.part, min(count, PARTS_MAX)):
+        if is_missed(gate, params, index):
             i = compose(node, now, CONTROL, GRAPH, ALL, 0, out)
             if i < 0:
+                gate.part = index
+                go_on_at(gate, params, (due + (params.jitter_us >> 1)) & MASK30)
                 return
             fill_graph(node, gate, params, i, index, count)
             node.q_due[i] = due & MASK30
             due = due + (params.jitter_us >> 1)
+    gate.part = 0
     for s in range(params.nodes):
-        if gate.job[s] == UNDER_WAY and gate.job_next[s] == 0:
+        if is_unasked(gate, s):
             gate.job_next[s] = 1
             gate.job_due[s] = graph_due(params, now, count, gate.job_tries[s])
+
+
+def go_on_at(gate, params, time):
+    """The flood under way goes on at that time."""
+    for s in range(params.nodes):
+        if is_unasked(gate, s):
+            gate.job_due[s] = time
 
 
 def fill_graph(node, gate, params, i, index, count):

@@ -19,7 +19,7 @@ from innervate.networks.mesh.protocol.constants import (
     WHOLE_GRAPH,
 )
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16
-from innervate.networks.mesh.protocol.graph_jobs import pump_graph
+from innervate.networks.mesh.protocol.graph_jobs import is_unasked, pump_graph
 from innervate.networks.mesh.protocol.neighbours import is_suspect
 from innervate.networks.mesh.protocol.pack import depth_of, pack, room_at
 from innervate.networks.mesh.protocol.paths import (
@@ -224,9 +224,13 @@ def on_ack(node, gate, params, now, frame, out):
 
 
 def retry_jobs(node, gate, params, now, out):
-    """The JOBS timer: what was not acknowledged in time is sent again, or given up."""
+    """The JOBS timer: what was not acknowledged in time is sent again, or given up.
+
+    A flood of the graph that only waited for room goes on.
+    """
     for s in range(params.nodes):
-        if gate.job[s] == UNDER_WAY and after(now, gate.job_due[s]):
+        waits = params.mode == WHOLE_GRAPH and is_unasked(gate, s)
+        if gate.job[s] == UNDER_WAY and after(now, gate.job_due[s]) and not waits:
             gate.job_tries[s] = gate.job_tries[s] + 1
             gate.job_next[s] = 0
             gate.job_due[s] = job_due(node, gate, params, now, s)

@@ -22,6 +22,7 @@ from innervate.networks.mesh.protocol.send import enter, pass_on, send_up
 NONE = 255
 GROUP_BYTES = 3
 PART_HEAD = 4  # epoch, version, fragment
+CROWD = 32  # nodes whose answers find their way in a spread_us
 
 
 def all_parts(count):
@@ -182,7 +183,7 @@ def on_graph(node, params, now, frame, out):
         return
     fresh = not record_flood(node, frame.origin, frame.seq, GRAPH, 0)
     if is_current(node, epoch, version):
-        if fresh:
+        if fresh and index == count - 1:  # once for a flood
             answer_graph(node, params, now, epoch, version, count, out)
     else:
         expect(node, epoch, version, count)
@@ -195,9 +196,14 @@ def on_graph(node, params, now, frame, out):
         spread(node, params, now, frame, out)
 
 
+def spread_of_answers(params):
+    """Within what time all say that they have the graph: their acks meet near the gateway."""
+    return params.spread_us * (1 + params.nodes // CROWD)
+
+
 def answer_graph(node, params, now, epoch, version, count, out):
     """The graph is whole here: say so, but not when all others do."""
-    wait = draw(node, params.spread_us + 1)
+    wait = draw(node, spread_of_answers(params) + 1)
     tell_parts(node, params, now, epoch, version, all_parts(count), wait, out)
 
 

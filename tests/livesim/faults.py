@@ -1,0 +1,203 @@
+"""Faults planted in the live stack, each to be found: python -m tests.livesim.faults [NUMBER ...].
+
+Each is a text of one module that stands there once, and what it is replaced with. A process of its
+own imports the module so, and runs seeds until one is broken.
+"""
+
+import importlib.machinery
+import importlib.util
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+PROTOCOL = "innervate.networks.mesh.protocol."
+LIVE = "innervate.live."
+MESH = "innervate.networks.mesh.live."
+SEEDS = 12
+SMALL = {"nodes": 6, "storms": 1, "storm_s": 20, "calm_s": 0, "rate": 20}
+OF_KIND = {
+    "mesh": SMALL,
+    "skin": {"columns": 2, "rows": 2, "storms": 1, "storm_s": 20, "calm_s": 0},
+    "radio": {"nodes": 5, "storms": 1, "storm_s": 60, "calm_s": 0, "every_s": 1.0},
+}
+KILLS = {"hurts": ("crash", "restarts"), "storm_s": 60}
+LOSSES = {"hurts": ("lossy", "doubled", "cut")}
+
+
+class Fault(NamedTuple):
+    """A mistake, and in which runs it shows."""
+
+    what: str
+    module: str
+    old: str
+    new: str
+    given: dict
+    kind: str = "mesh"
+
+
+FAULTS = (
+    Fault("a message in order is acknowledged when it comes", PROTOCOL + "messages",
+          "        if not is_ordered(frame):\n", "        if 1:\n",
+          {**KILLS, "in_order": True}),
+    Fault("a copy of one that waits for its turn is acknowledged", PROTOCOL + "messages",
+          "        if is_ordered(frame):\n            hand_up",
+          "        if 0:\n            hand_up",
+          {"hurts": ("crash", "restarts", "lossy", "cut"), "storm_s": 60, "in_order": True}),
+    Fault("one that was given up is told as delivered", PROTOCOL + "retransmission",
+          "report(out, REPORT_EXPIRED, node.wait_handle[w], NO_ACK)",
+          "report(out, REPORT_ARRIVED, node.wait_handle[w], node.wait_seq[w])", KILLS),
+    Fault("a hop's ack is taken for the recipient's", MESH + "node",
+          "receipt.move(HOP_ACKED)", "self._end(a, DELIVERED, is_there=True)", LOSSES),
+    Fault("a retry has another number", PROTOCOL + "retransmission",
+          "        node.q_seq[i] = node.wait_seq[w]\n", "        node.q_seq[i] = node.seq + 1\n",
+          LOSSES),
+    Fault("a message is tried for ever", PROTOCOL + "retransmission",
+          "    if node.wait_tries[w] > params.e2e_tries or is_expired(node, params, now, w):\n",
+          "    if 0:\n", KILLS),
+    Fault("nobody is told of a message that has expired", MESH + "node",
+          'self._end(a, EXPIRED, REASONS.get(b, ""), False if b in IN_VAIN else None)', "pass",
+          KILLS),
+    Fault("retries are never due", PROTOCOL + "retransmission",
+          "        set_timer(out, RETRY, (now + soonest) & MASK30)\n", "        return\n", LOSSES),
+    Fault("a delivered message's receipt is kept", MESH + "node",
+          "receipt = self._receipts.pop(handle, None)", "receipt = self._receipts.get(handle)",
+          LOSSES),
+    Fault("what is behind the newest is new", PROTOCOL + "duplicates",
+          "    if node.window[word] & bit:\n        return 0\n", "", LOSSES),
+    Fault("the newest is new again", PROTOCOL + "duplicates",
+          "    if ahead == 0:\n        return 0\n", "    if ahead == 0:\n        return 1\n",
+          LOSSES),
+    Fault("the window begins anew with every packet", PROTOCOL + "duplicates",
+          "    if node.idle[origin] == 0:\n", "    if node.idle[origin] >= 0:\n", LOSSES),
+    Fault("nothing waits for its turn", MESH + "order",
+          "        elif not self._had(before):\n", "        elif False:\n",
+          {**LOSSES, "in_order": True}),
+    Fault("what comes after its turn is handed up", MESH + "order",
+          "        if self._is_late(seq, before):\n", "        if False:\n",
+          {"hurts": ("lossy", "sluggish"), "in_order": True, "storm_s": 60}),
+    Fault("no message names the one before it", MESH + "chains",
+          "return self._open[dest][-1] if self._open.get(dest) else seq", "return seq",
+          {**LOSSES, "in_order": True}),
+    Fault("what was handed up is handed up again", LIVE + "streams",
+          "waiting, self._waiting = self._waiting, []", "waiting = list(self._waiting)",
+          {"in_order": False}),
+    Fault("what waits is lost when another comes", LIVE + "streams",
+          "        self._waiting.append(item)\n", "        self._waiting = [item]\n",
+          {**LOSSES, "in_order": True}),
+    Fault("SIGTERM does not wait for messages", LIVE + "main",
+          "if not await self.node.drain(DRAIN_S):", "if False:", {}),
+    Fault("SIGTERM is not heard", LIVE + "main",
+          "loop.add_signal_handler(number, self.ending.set)", "pass", {}),
+    Fault("a state file is not synced", LIVE + "state",
+          "                machine().sync(file)\n", "                pass\n",
+          {"hurts": ("power",), "storm_s": 60}),
+    Fault("a state file is written over", LIVE + "state",
+          'new = self.path.with_name(self.path.name + ".new")', "new = self.path",
+          {"hurts": ("power",), "storm_s": 60}),
+    Fault("a full disk ends a node", LIVE + "state",
+          "        except OSError as error:\n            with suppress",
+          "        except FileExistsError as error:\n            with suppress",
+          {"hurts": ("full", "clock", "crash"), "storm_s": 60}),
+    Fault("a new key seals at once", LIVE + "rotation",
+          "self.sealer.load_keys(both, self.sealer.use)", "self.sealer.load_keys(both, use)",
+          {"sealed": True}),
+    Fault("the old key is forgotten at once", LIVE + "rotation",
+          "self.sealer.load_keys(both, self.sealer.use)", "self.sealer.load_keys(keys, use)",
+          {"sealed": True}),
+    Fault("the old key is never forgotten", LIVE + "rotation",
+          "loop.call_later(2 * grace_s, self.sealer.load_keys, keys, use)",
+          "loop.call_later(2 * grace_s, self.sealer.load_keys, both, use)", {"sealed": True}),
+    Fault("a frame that was taken is not noted", LIVE + "keys",
+          "        windows[opened.sender].take(opened.counter)\n", "",
+          {"sealed": True, "hurts": ("replays",), "calm_s": 60, "storms": 2}),
+    Fault("a node's timers are late by a second", LIVE + "engine",
+          "wait = max(0, soonest - now) / 1e6", "wait = 1.0 + max(0, soonest - now) / 1e6", {}),
+    Fault("a station's frame is taken twice", "innervate.networks.radio.live.node",
+          "            self.engine.receive(0, at)\n",
+          "            self.engine.receive(0, at)\n            self.engine.receive(0, at)\n", {},
+          "radio"),
+    Fault("a packet is delivered when it is sent", "innervate.networks.radio.live.node",
+          '        self.outcomes["frames sent"] += 1\n',
+          "        for k in range(frame.count):\n"
+          "            self._packets[frame.handle + k][1].move(DELIVERED)\n",
+          {"hurts": ("channel", "unplugged"), "every_s": 0.5}, "radio"),
+    Fault("a radio stays deaf once it has sent", LIVE + "channel_radio",
+          '        if what == b"R":\n            self.mode = "listening"\n', "", {}, "radio"),
+    Fault("a serial line that was plugged in again is not heard", LIVE + "serial",
+          "asyncio.get_running_loop().add_reader(self._port.fileno(), self._readable)", "pass",
+          {"serial": True}, "skin"),
+    Fault("a damaged frame is taken", "innervate.networks.skin.frames",
+          "        return BAD_CRC\n", "        pass\n",
+          {"serial": True, "hurts": ("changing",), "storm_s": 60}, "skin"),
+    Fault("packets' numbers begin anywhere after a restart", MESH + "node",
+          "        self.stack.first = self.state.numbers\n", "",
+          {**KILLS, "sealed": False, "in_order": False}),
+)  # fmt: skip
+
+
+def source_of(module):
+    """The text of a module, as it lies."""
+    return Path(importlib.util.find_spec(module).origin).read_text(encoding="utf-8")
+
+
+class Planted(importlib.machinery.SourceFileLoader):
+    """Loads a module with a text in it replaced."""
+
+    fault = None
+
+    def get_code(self, fullname):
+        text = Path(self.path).read_text(encoding="utf-8")
+        return compile(text.replace(self.fault.old, self.fault.new), self.path, "exec")
+
+
+class Finder:
+    """Finds the module that a fault is planted in."""
+
+    def __init__(self, fault):
+        self.fault = fault
+
+    def find_spec(self, name, path, target=None):
+        if name != self.fault.module:
+            return None
+        spec = importlib.machinery.PathFinder.find_spec(name, path, target)
+        spec.loader = Planted(name, spec.origin)
+        spec.loader.fault = self.fault
+        return spec
+
+
+def seek(number):
+    """Run seeds with a fault until one is broken: where, or "" if none is."""
+    fault = FAULTS[number]
+    sys.meta_path.insert(0, Finder(fault))
+    from tests.livesim import runs
+
+    for seed in range(1, SEEDS + 1):
+        found = runs.run(seed, fault.kind, **OF_KIND[fault.kind] | fault.given)
+        if found.broken:
+            return f"seed {seed}: {found.broken[0]}"
+    return ""
+
+
+def main(numbers):
+    """Try these faults, or all; 1 if one was not found."""
+    if numbers[:1] == ["--one"]:
+        found = seek(int(numbers[1]))
+        print(found)
+        return 0 if found else 1
+    missed = 0
+    for number in map(int, numbers or range(len(FAULTS))):
+        began = time.monotonic()
+        command = [sys.executable, "-m", "tests.livesim.faults", "--one", str(number)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        missed += done.returncode != 0
+        told = (done.stdout.strip() or done.stderr.strip() or "NOT FOUND").splitlines()[-1]
+        took_s = time.monotonic() - began
+        print(f"{number:2} {FAULTS[number].what}: {told[:150]} ({took_s:.0f} s)", flush=True)
+    print(f"{len(numbers or FAULTS) - missed} found, {missed} not")
+    return min(1, missed)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
