@@ -107,7 +107,8 @@ def mesh_frames() -> str:
         "payload": "see below",
         "crc": "CRC-16 of all before it",
     }
-    ack = says | {"rssi": "of the frame that this acknowledges, dBm", "seq": "of that frame"}
+    ack = says | {"rssi": "of the frame that this acknowledges, dBm", "seq": "of that frame",
+                  "more": "other packets that came from the same hop"}  # fmt: skip
     return (
         f"**packet**\n\n{layout_table(mesh.PACKET, says)}\n\n"
         f"**ack of a hop**, type {mesh.ACK}\n\n{layout_table(mesh.WHOLE_ACK, ack)}"

@@ -1,9 +1,11 @@
 """Compilation: what the cache of compiled code is known by, so that none of it is stale."""
 
+import gc
 import os
 import shutil
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +14,7 @@ import pytest
 from innervate.analysis import intervals
 from innervate.dialect import arith
 from innervate.kernel import compilation
+from innervate.kernel.linking import as_one
 from innervate.networks.mesh.protocol import node
 
 
@@ -162,3 +165,16 @@ def test_the_first_loop_of_a_process_may_make_arrays(tmp_path):
     env = os.environ | {"INNERVATE_CACHE": str(tmp_path), "NUMBA_NRT_STATS": "1"}
     done = subprocess.run([sys.executable, str(script)], env=env, capture_output=True, text=True)
     assert (done.returncode, done.stdout.split()) == (0, ["4950.0", "0"]), done.stderr
+
+
+@pytest.mark.parametrize("collects", [True, False])
+def test_while_a_loop_is_compiled_nothing_is_collected_and_then_as_before(collects):
+    before = gc.isenabled()
+    try:
+        (gc.enable if collects else gc.disable)()
+        with suppress(KeyError), as_one("a loop"):
+            assert not gc.isenabled()
+            raise KeyError
+        assert gc.isenabled() == collects
+    finally:
+        (gc.enable if before else gc.disable)()

@@ -11,6 +11,7 @@ from innervate.analysis.intervals import mean_interval, quantile
 from innervate.cli import main
 from innervate.scenario import ScenarioError
 from innervate.sweeping import SweepError, load_sweep, make_plan
+from innervate.sweeping.result import Sweep
 
 PLAN = """\
 scenario = "four.toml"
@@ -197,3 +198,19 @@ def test_folders_that_are_no_sweeps(four):
     Path("out/results.parquet").write_bytes(b"PAR1 not")
     with pytest.raises(SweepError, match="damaged"):
         load_sweep("out")
+
+
+def test_a_column_that_is_not_there_is_told_with_those_of_its_name_or_some():
+    plan = make_plan({"kind": "radio"}, vary={"stations": [2, 3]}, repeat=1)
+    row = {"status": "done", "a.ms": 1.0, "b.ms": 2.0, "share": 0.5}
+    rows = [{"point": i, "repeat": 0, "stations": 2 + i, **row} for i in range(2)]
+    made = Sweep(plan, polars.DataFrame(rows), polars.DataFrame())
+    with pytest.raises(SweepError, match=r'no column "c.ms"; there are a.ms, b.ms, ...'):
+        made.points("c.ms")
+    with pytest.raises(SweepError, match=r'no column "rate"; there are .*share, ...'):
+        made.points("rate")
+    assert made.points("share")["mean"].to_list() == [0.5, 0.5]
+    for shares in ([-0.1], [1.1], [0.5, 2]):
+        with pytest.raises(SweepError, match="shares of quantiles lie between 0 and 1"):
+            made.quantiles("share", shares)
+    assert made.quantiles("a.ms", [0, 1])["q1"].to_list() == [1.0, 1.0]

@@ -1,5 +1,6 @@
 import json
 import subprocess
+from pathlib import Path
 
 import innervate
 from innervate.trace.provenance import checkout, provenance
@@ -44,3 +45,9 @@ def test_in_a_checkout(tmp_path):
     assert modified is False
     (tmp_path / "a").write_text("2")
     assert checkout(tmp_path) == (commit, True)
+
+
+def test_the_checkout_that_it_runs_from_is_its_own():
+    root = Path(__file__).resolve().parents[2]
+    assert checkout() == checkout(root)
+    assert (checkout()[0] is not None) == (root / ".git").exists()

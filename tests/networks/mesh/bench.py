@@ -18,7 +18,7 @@ ACK_US = 500
 DEFAULTS = dict(
     nodes=0, row=3, places=32, width=WIDTH, mtu=127, mode=0, discovery=3, failover=3,
     avoid_origin=0, retry=1, reliable=1, activation=0, told=0, transmissions=3, ack_us=4000,
-    hop_acks=1,
+    hop_acks=1, ack_adapt=0, hop_frames=0, gather=0, queue=8, kept=8,
     suspect_us=10_000_000, min_rssi=-93, jitter_us=100_000, copies=2, flood_us=12_500,
     listen_us=300_000, spread_us=400_000, collect_us=1_500_000, tick_us=1_000_000, period=10,
     period_max=60, dead=25, dead_step=5, standby=0, jobs=4, job_us=500_000, job_tries=3,
@@ -27,7 +27,7 @@ DEFAULTS = dict(
     predict_ms=500, unit_cm=1, points=0, fence=0,
 )  # fmt: skip
 
-Node = plain.make("Node", fields.node(WIDTH))
+Node = plain.make("Node", fields.node(WIDTH, fields.PLACES_MAX, fields.PLACES_MAX))
 Gate = plain.make("Gate", fields.gate(WIDTH))
 Frame = plain.make("Frame", fields.FRAME)
 Item = plain.make("Item", fields.ITEM)
@@ -53,7 +53,7 @@ class Bench:
         self.queue = []
         self.order = 0
         self.due = {}
-        self.out = plain.Outbox(Frame, 32)
+        self.out = plain.Outbox(Frame, 32 + 4 * self.params.queue)
         self.reports, self.delivered, self.sent = [], [], []
         for i, node in enumerate(self.nodes):
             node.number, node.rng, node.choice = i, seeded(7919 * (i + 1)), -1

@@ -8,6 +8,7 @@ from innervate.dialect.arith import MASK30
 from innervate.dialect.rng import seeded
 from innervate.networks.mesh.protocol import node as mesh
 from innervate.networks.mesh.protocol.constants import SAMPLE
+from innervate.networks.mesh.protocol.neighbours import place_of
 from tests.networks.mesh.bench import Bench, Item
 
 LOUD = -60
@@ -69,7 +70,16 @@ class Net(Bench):
         """What must hold of the queue between handlers."""
         node = self.nodes[i]
         under_way = [k for k, state in enumerate(node.q_state) if state in (2, 3)]
-        assert under_way == ([node.busy] if node.busy >= 0 else []), (i, node.q_state, node.busy)
+        if self.params.hop_frames:
+            counted = sum(node.hop_under[k] for k in range(self.params.places))
+            unknown = sum(self.is_unknown(node, k) for k in under_way)
+            assert counted + unknown == len(under_way), (i, node.q_state, node.hop_under)
+        else:
+            assert under_way == ([node.busy] if node.busy >= 0 else []), (i, node.q_state)
+
+    def is_unknown(self, node, k):
+        """True if a frame goes to nobody in the neighbour table."""
+        return place_of(node, self.params, node.q_link_dst[k]) < 0
 
     def check(self, i):
         if self.thorough:

@@ -185,12 +185,12 @@ def test_route_and_failed_nodes_lie_around_the_payload():
 
 
 def test_detoured_may_be_a_mark_and_nothing_else():
-    for body, shown in ((b"abc", [("acked", 0x6162)]), (b"\1\2", [("acked", 0x0102)])):
+    for body, shown in ((b"abc", [("acked", [0x6162])]), (b"\1\2", [("acked", [0x0102])])):
         frame = new(const.E2E_ACK, body=body[:2], flags=const.DETOURED)
         assert wire.decode(wire.encode(frame), Frame()) == wire.OK
         assert wire.fields(frame)[-1:] == shown
     both = new(const.E2E_ACK, body=b"\1\2\x09\1", flags=const.DETOURED)
-    assert wire.fields(both)[-2:] == [("acked", 0x0102), ("failed", [9])]
+    assert wire.fields(both)[-2:] == [("acked", [0x0102]), ("failed", [9])]
 
 
 def test_whole_graph_by_hand():
@@ -202,7 +202,7 @@ def test_whole_graph_by_hand():
 # The sizes of the packets' table [mesh 2].
 @pytest.mark.parametrize(
     ("kind", "size"),
-    [(const.REQUEST, 7), (const.TABLE_ACK, 5), (const.ACTIVATE, 3), (const.E2E_ACK, 2),
+    [(const.REQUEST, 7), (const.TABLE_ACK, 5), (const.ACTIVATE, 3),
      (const.ALARM, 16), (const.POSITION, 8)],
 )  # fmt: skip
 def test_sizes_of_the_contract(kind, size):
@@ -211,6 +211,20 @@ def test_sizes_of_the_contract(kind, size):
         data = sealed(bytes([0x40 | kind, *[0] * 10, *[0] * length]))
         expected = wire.OK if length == size else wire.BAD_PAYLOAD
         assert wire.decode(data, Frame()) == expected
+
+
+def test_acks_name_as_many_packets_as_they_say():
+    ack = new(const.ACK, body=b"\x05\x01\x02\x06\x03\x04", link_src=3, link_dst=4, origin=9,
+              seq=258, rssi=-95, path=[])  # fmt: skip
+    data = wire.encode(ack)
+    assert data[:-2] == bytes.fromhex("50 03 04 09 0102 a1 05 0102 06 0304")
+    back = Frame()
+    assert wire.decode(data, back) == wire.OK
+    assert wire.acked(back) == [(9, 258), (5, 258), (6, 772)]
+    more = [[("origin", 5), ("seq", 258)], [("origin", 6), ("seq", 772)]]
+    assert wire.fields(back)[-1] == ("more", more)
+    ends = new(const.E2E_ACK, body=b"\1\2\3\4")
+    assert wire.fields(ends)[-1] == ("acked", [0x0102, 0x0304])
 
 
 def test_layouts_hold_exactly_the_declared_ranges():
@@ -338,7 +352,8 @@ def test_any_bytes_in_a_good_crc(body):
         ("48 00 00 00 00 00 0000 00 00 01", wire.BAD_LENGTH),
         ("48 00 00 00 00 00 0000 00 00", wire.BAD_LENGTH),
         ("48 08 00 00 00 00 0000 00 00 00 01", wire.BAD_PAYLOAD),
-        ("49 10 00 00 00 00 0000 00 00 00 aa bb cc 02", wire.BAD_PAYLOAD),
+        ("49 00 00 00 00 00 0000 00 00 00 aa bb cc", wire.BAD_PAYLOAD),
+        ("50 03 04 09 0102 a1 05 0607 08", wire.BAD_LENGTH),
         ("42 00 00 00 00 00 0000 00 00 00 01 0002 12 08 b0 09", wire.BAD_PAYLOAD),
         ("50 03 04 09 0102 a1 00", wire.BAD_LENGTH),
     ],

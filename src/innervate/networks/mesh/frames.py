@@ -5,18 +5,21 @@ speaks of the bytes read them. A payload has no length of its own: it ends where
 that a medium must say where a frame ends (a CRC alone does not see a zero behind it).
 """
 
+import struct
+from typing import Any
+
 from innervate.networks.mesh.payloads import FIELDS, NAMES, describe, fits
 from innervate.networks.mesh.protocol.constants import (
     ACK,
     ACK_BYTES,
+    ACK_MORE_BYTES,
     BODY,
     CRC_BYTES,
     HEADER_BYTES,
     PATH_MAX,
 )
-from innervate.wire.bits import put
-from innervate.wire.crc import is_sealed, seal
-from innervate.wire.layout import REST, pack, put_number, unpack
+from innervate.wire.crc import crc16, is_sealed
+from innervate.wire.layout import REST, pack, put_number
 
 VERSION = 1
 MTU_MAX = 127
@@ -40,10 +43,15 @@ HOP_ACK = (
     ("seq", 0, 16, 0),
     ("rssi", 0, 8, 1),
 )
+# Hops that acknowledge several packets at once name the others behind the first.
+MORE = (("more", REST, (("origin", 0, 8, 0), ("seq", 0, 16, 0)), 0),)
 CRC = (("crc", 0, 16, 0),)
 # The two forms of a whole frame.
 PACKET = HEAD + COMMON + (("path", "path_len", 8, 0), ("payload", REST, 8, 0)) + CRC
-WHOLE_ACK = HEAD + HOP_ACK + CRC
+WHOLE_ACK = HEAD + HOP_ACK + MORE + CRC
+# The same for struct, which is quicker: HEAD and COMMON, HEAD and HOP_ACK.
+PACKET_STRUCT = ">BBBBBBHBBB"
+ACK_STRUCT = ">BBBBHb"
 AT = 8  # bits of HEAD
 PATH_LEN_AT = HEADER_BYTES - 1
 
@@ -58,22 +66,22 @@ BAD_PAYLOAD = 6  # not what its kind has
 REASONS = ("ok", "length", "crc", "version", "kind", "path", "payload")
 
 
-def size_of(frame: object) -> int:
+def size_of(frame: Any) -> int:
     """Bytes of a frame record on the wire."""
-    if frame.kind == ACK:  # type: ignore[attr-defined]
-        return ACK_BYTES  # type: ignore[no-any-return]
-    size = HEADER_BYTES + frame.path_len + frame.length + CRC_BYTES  # type: ignore[attr-defined]
+    if frame.kind == ACK:
+        return int(ACK_BYTES + frame.length)
+    size = HEADER_BYTES + frame.path_len + frame.length + CRC_BYTES
     return size  # type: ignore[no-any-return]
 
 
-def encode(frame: object, mtu: int = MTU_MAX) -> bytes:
+def encode(frame: Any, mtu: int = MTU_MAX) -> bytes:
     """The bytes of a frame record.
 
     Raises:
         ValueError: the kind is none of ours, a value does not fit, the frame is longer than the
             MTU; the caller's mistake.
     """
-    kind = frame.kind  # type: ignore[attr-defined]
+    kind = frame.kind
     if kind != ACK and kind not in FIELDS:
         raise ValueError("no packet of the mesh has this kind")
     for name, most in (("path_len", PATH_MAX), ("length", BODY)):
@@ -82,18 +90,54 @@ def encode(frame: object, mtu: int = MTU_MAX) -> bytes:
     size = size_of(frame)
     if size > mtu:
         raise ValueError("the frame is longer than the MTU")
-    buffer = bytearray(size)
-    put(buffer, 0, AT, VERSION << 6 | kind)
-    if kind == ACK:
-        pack(HOP_ACK, buffer, AT, frame)
-    else:
-        at = pack(COMMON, buffer, AT, frame)
-        for name, count in (("path", "path_len"), ("body", "length")):
-            items = getattr(frame, name)
-            for i in range(getattr(frame, count)):
-                put_number(buffer, at, 8, 0, items[i], name)
-                at += 8
-    return seal(buffer)
+    first = VERSION << 6 | kind
+    try:
+        if kind == ACK:
+            head = struct.pack(
+                ACK_STRUCT,
+                first,
+                frame.link_src,
+                frame.link_dst,
+                frame.origin,
+                frame.seq,
+                frame.rssi,
+            )
+            data = head + bytes(frame.body[: frame.length])
+        else:
+            head = struct.pack(
+                PACKET_STRUCT,
+                first,
+                frame.flags,
+                frame.link_src,
+                frame.link_dst,
+                frame.origin,
+                frame.dest,
+                frame.seq,
+                frame.table_ver,
+                frame.ttl,
+                frame.path_len,
+            )
+            path, body = frame.path[: frame.path_len], frame.body[: frame.length]
+            data = head + bytes(path) + bytes(body)
+    except (struct.error, ValueError):
+        check(frame)
+        raise
+    crc = crc16(data, len(data))
+    return data + bytes((crc >> 8, crc & 255))
+
+
+def check(frame: Any) -> None:
+    """Refuse a record of which a value does not fit, by its name.
+
+    Raises:
+        ValueError: that one.
+    """
+    is_ack = frame.kind == ACK
+    pack(HOP_ACK if is_ack else COMMON, bytearray(MTU_MAX), AT, frame)
+    parts = (("body", frame.length), ("path", 0 if is_ack else frame.path_len))
+    for name, count in parts:
+        for item in getattr(frame, name)[:count]:
+            put_number(bytearray(1), 0, 8, 0, item, name)
 
 
 def reason_of(data: bytes | bytearray | memoryview, mtu: int = MTU_MAX) -> int:
@@ -107,7 +151,7 @@ def reason_of(data: bytes | bytearray | memoryview, mtu: int = MTU_MAX) -> int:
         return BAD_VERSION
     kind = data[0] & 63
     if kind == ACK:
-        return OK if size == ACK_BYTES else BAD_LENGTH
+        return OK if (size - ACK_BYTES) % ACK_MORE_BYTES == 0 else BAD_LENGTH
     if kind not in FIELDS:
         return BAD_KIND
     end = size - CRC_BYTES
@@ -121,7 +165,7 @@ def reason_of(data: bytes | bytearray | memoryview, mtu: int = MTU_MAX) -> int:
     return OK if fits(kind, data[1], data, at, end) else BAD_PAYLOAD
 
 
-def decode(data: bytes | bytearray | memoryview, frame: object, mtu: int = MTU_MAX) -> int:
+def decode(data: bytes | bytearray | memoryview, frame: Any, mtu: int = MTU_MAX) -> int:
     """Read received bytes into a frame record; any bytes at all will do.
 
     Sets everything but `rssi`, which is the receiver's, and of `path` and `body` what is used. An
@@ -131,39 +175,66 @@ def decode(data: bytes | bytearray | memoryview, frame: object, mtu: int = MTU_M
     reason = reason_of(data, mtu)
     if reason != OK:
         return reason
-    frame.kind = data[0] & 63  # type: ignore[attr-defined]
-    if frame.kind == ACK:  # type: ignore[attr-defined]
-        for name in ("flags", "table_ver", "ttl", "path_len", "length"):
-            setattr(frame, name, 0)
-        unpack(HOP_ACK, data, AT, frame)
-        frame.dest = frame.link_dst  # type: ignore[attr-defined]
+    if data[0] & 63 == ACK:
+        decode_ack(data, frame)
         return OK
-    unpack(COMMON, data, AT, frame)
-    at = HEADER_BYTES
-    for i in range(frame.path_len):  # type: ignore[attr-defined]
-        frame.path[i] = data[at]  # type: ignore[attr-defined]
-        at += 1
-    frame.length = len(data) - CRC_BYTES - at  # type: ignore[attr-defined]
-    for i in range(frame.length):  # type: ignore[attr-defined]
-        frame.body[i] = data[at]  # type: ignore[attr-defined]
-        at += 1
+    (
+        first,
+        frame.flags,
+        frame.link_src,
+        frame.link_dst,
+        frame.origin,
+        frame.dest,
+        frame.seq,
+        frame.table_ver,
+        frame.ttl,
+        hops,
+    ) = struct.unpack_from(PACKET_STRUCT, data)
+    frame.kind = first & 63
+    frame.path_len = hops
+    at = HEADER_BYTES + hops
+    frame.path[:hops] = list(data[HEADER_BYTES:at])
+    frame.length = length = len(data) - CRC_BYTES - at
+    frame.body[:length] = list(data[at : at + length])
     return OK
 
 
-def fields(frame: object) -> list:  # type: ignore[type-arg]
+def decode_ack(data: bytes | bytearray | memoryview, frame: Any) -> None:
+    """Read an ack that is one, as `decode` says."""
+    (first, frame.link_src, frame.link_dst, frame.origin, frame.seq, frame.rssi) = (
+        struct.unpack_from(ACK_STRUCT, data)
+    )
+    frame.kind = first & 63
+    frame.dest = frame.link_dst
+    frame.flags = frame.table_ver = frame.ttl = frame.path_len = 0
+    frame.length = length = len(data) - ACK_BYTES
+    frame.body[:length] = list(data[ACK_BYTES - CRC_BYTES : len(data) - CRC_BYTES])
+
+
+def acked(frame: Any) -> list:  # type: ignore[type-arg]
+    """The packets, as (origin, seq), that an ack's record names."""
+    pairs = [(frame.origin, frame.seq)]
+    for at in range(0, frame.length, ACK_MORE_BYTES):
+        pairs.append((frame.body[at], frame.body[at + 1] << 8 | frame.body[at + 2]))
+    return pairs
+
+
+def fields(frame: Any) -> list:  # type: ignore[type-arg]
     """A frame record as (name, value) pairs in the order of the bytes, for display.
 
     Numbers, lists of numbers, and for groups lists of such pairs. A source route and failed nodes
     around the payload are pairs of their own; a payload that is too short is given as it is.
     """
-    kind = frame.kind  # type: ignore[attr-defined]
+    kind = frame.kind
     pairs = [("version", VERSION), ("kind", kind)]
     for name, _many, _bits, _signed in HOP_ACK if kind == ACK else COMMON:
         pairs.append((name, getattr(frame, name)))
+    if kind == ACK and frame.length:
+        pairs.append(("more", [[("origin", who), ("seq", seq)] for who, seq in acked(frame)[1:]]))
     if kind != ACK:
-        pairs.append(("path", list(frame.path[: frame.path_len])))  # type: ignore[attr-defined]
-        body = bytes(list(frame.body[: frame.length]))  # type: ignore[attr-defined]
-        pairs.extend(describe(kind, frame.flags, body))  # type: ignore[attr-defined]
+        pairs.append(("path", list(frame.path[: frame.path_len])))
+        body = bytes(list(frame.body[: frame.length]))
+        pairs.extend(describe(kind, frame.flags, body))
     return pairs
 
 

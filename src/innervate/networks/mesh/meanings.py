@@ -23,7 +23,7 @@ MEANINGS = {
     "dests": "destinations of the group",
     "parts": "bit f: fragment f is here",
     "data": "what the application sends",
-    "acked": "seq of the packet that has arrived",
+    "acked": "seq of each packet that has arrived",
     "robot": "which robot",
     "fence": "which fence",
     "number": "of the alarm, per node that raised it",

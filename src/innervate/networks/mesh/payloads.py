@@ -64,7 +64,7 @@ LAYOUTS = (
     ),
     (ACTIVATE, "activate", (("epoch", 0, 8, 0), ("table_version", 0, 16, 0))),
     (DATA, "data", (("data", REST, 8, 0),)),
-    (E2E_ACK, "end-to-end ack", (("acked", 0, 16, 0),)),
+    (E2E_ACK, "end-to-end ack", (("acked", REST, 16, 0),)),
     (
         ALARM,
         "alarm",
@@ -106,12 +106,16 @@ def is_whole(kind: int, data: bytes | bytearray | memoryview, at: int, end: int)
     """True if bytes `at` to `end` are exactly a payload of this kind."""
     if kind in SIZES:
         return end - at == SIZES[kind]
+    if kind == E2E_ACK:  # the most frequent of them
+        return at <= end and (end - at) % 2 == 0
     return at <= end and read(FIELDS[kind], data, 8 * at, 8 * end, []) == 8 * end
 
 
 def fits(kind: int, flags: int, data: bytes | bytearray | memoryview, at: int, end: int) -> bool:
     """True if bytes `at` to `end` are a payload of this kind and what forwarding puts around."""
     begin = begin_of(flags, data, at, end)
+    if kind == DATA:
+        return begin <= end
     return is_whole(kind, data, begin, end_of(kind, flags, data, begin, end))
 
 

@@ -223,7 +223,7 @@ def lose_some(node, share):
         for i, found in enumerate(own.q_seq):
             waits = own.q_state[i] == mesh_queue.WAITS and own.busy != i
             if kind == DATA and found == seq and waits and chance.random() < share:
-                mesh_queue.drop(own, i)
+                mesh_queue.drop(own, stack.params, i)
 
     stack.on_frame = forgetful
 

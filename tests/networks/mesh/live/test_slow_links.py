@@ -7,6 +7,7 @@ from collections import Counter
 import pytest
 
 from innervate.live.receipts import DELIVERED
+from innervate.networks.mesh.protocol.constants import REPORT_SUSPECT
 from tests.live.net import Mesh
 from tests.live.time_by_hand import run
 
@@ -77,3 +78,40 @@ def test_an_uneven_link_that_loses_a_fifth_delivers_all():
     assert states == {DELIVERED: 300}
     assert set(heard.values()) == {1}
     assert len(heard) == 300
+
+
+@pytest.mark.parametrize("one_way_ms", [3, 20])
+def test_a_hop_carries_hundreds_a_second_however_long_it_takes(one_way_ms):
+    async def main():
+        async with SlowMesh(3, LINE, one_way_ms) as mesh:
+            await asyncio.sleep(4)
+            loop, ends = asyncio.get_running_loop(), Counter()
+            end = loop.time() + 2
+
+            async def one_after_the_other():
+                while loop.time() < end:
+                    ends[await mesh.nodes[0].send_message(2, b"next").wait()] += 1
+
+            await asyncio.gather(*(one_after_the_other() for _ in range(32)))
+            return ends
+
+    ends = run(main())
+    assert set(ends) == {DELIVERED}
+    assert ends[DELIVERED] >= 2 * 200
+
+
+@pytest.mark.parametrize("one_way_ms", [0.1, 1])
+def test_a_quick_link_that_breaks_is_found_out_within_20_ms(one_way_ms):
+    async def main():
+        async with SlowMesh(2, PAIR, one_way_ms) as mesh:
+            await asyncio.sleep(4)
+            await said(mesh, 1, 20, 0.01)
+            mesh.cut(0, 1)
+            loop = asyncio.get_running_loop()
+            began, before = loop.time(), mesh.nodes[0].reports[REPORT_SUSPECT]
+            mesh.nodes[0].send_message(1, b"into the gap")
+            while mesh.nodes[0].reports[REPORT_SUSPECT] == before:
+                await asyncio.sleep(0.0005)
+            return loop.time() - began
+
+    assert run(main()) <= 0.020

@@ -105,9 +105,9 @@ def test_alarms_go_first_then_control_then_messages_each_in_order():
     for rank in ranks:
         mesh_queue.enqueue(node, 0, rank, 255, out)
     went = []
-    while (i := mesh_queue.pick_due(node, 0)) >= 0:
+    while (i := mesh_queue.pick_due(node, net.params, 0)) >= 0:
         went.append(i)
-        mesh_queue.drop(node, i)
+        mesh_queue.drop(node, net.params, i)
     assert went == [2, 5, 1, 4, 0, 3]
 
 
@@ -117,7 +117,7 @@ def test_a_flooded_alarm_does_not_wait_behind_one_to_a_dead_hop():
     for dest in (0, 255):
         i = mesh_queue.enqueue(node, 0, mesh_queue.ALARMS, 255, net.out)
         node.q_link_dst[i] = dest
-    assert node.q_link_dst[mesh_queue.pick_due(node, 0)] == 255
+    assert node.q_link_dst[mesh_queue.pick_due(node, net.params, 0)] == 255
 
 
 @pytest.mark.parametrize("rank", [0, 1, 2])

@@ -96,7 +96,7 @@ def forget(net, who, seq):
     node = net.nodes[who]
     for i, found in enumerate(node.q_seq):
         if found == seq and node.q_state[i]:
-            mesh_queue.drop(node, i)
+            mesh_queue.drop(node, net.params, i)
 
 
 def test_acks_of_others_do_not_use_up_the_tries_of_one_that_is_lost_on_its_way():

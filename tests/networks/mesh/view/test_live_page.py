@@ -1,5 +1,7 @@
 """Robots, alarms and names of running nodes on the page, by what the nodes say."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from innervate import scenario
@@ -99,3 +101,9 @@ def test_a_robot_is_drawn_where_it_says_it_is_and_nodes_bear_the_scenarios_names
     told[1] = robot(None, "inside")  # started anew, it has not been told yet where it is
     source._poll()
     assert "position" not in source.fields()
+
+
+def test_robots_are_where_they_say_from_the_corner_of_the_fence_with_y_down():
+    known = SimpleNamespace(origin_m=(10.0, 40.0))
+    told = {0: node(0), 1: robot([250, 104], "inside"), 2: robot(None, "inside")}
+    assert MeshLiveView().moved(told, known) == {1: (12.5, 38.96)}

@@ -22,12 +22,12 @@ FLAGS = (
 
 def dissector() -> Frames:
     """Layouts by type, and how a frame is read."""
-    says = meanings(FRAME)
+    says = meanings(FRAME) | {"more": "other packets that came from the same hop"}
     layouts = (
         f"{{ kinds = {kinds(payloads.LAYOUTS, MEANINGS)},\n"
         f'  others = {{[{const.ACK}] = "ack"}},\n'
         f"  common = {fields_of(frames.COMMON, says)},\n"
-        f"  ack = {fields_of(frames.HOP_ACK, says)} }}"
+        f"  ack = {fields_of(frames.HOP_ACK + frames.MORE, says)} }}"
     )
     constants = {
         "VERSION": frames.VERSION,

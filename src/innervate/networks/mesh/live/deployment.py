@@ -12,7 +12,7 @@ from innervate.scenario.actions import ON_LINKS
 
 # They follow from the file itself, stand in its [fence], or are of live links and no simulation.
 NOT_IN_FILES = ("nodes", "width", "row", "told", "places", "points", "px", "py", "after",
-                "ack_adapt")  # fmt: skip
+                "ack_adapt", "hop_frames", "gather", "queue", "kept")  # fmt: skip
 
 
 class MeshDeployment(Deployment):

@@ -14,6 +14,7 @@ IP: dict[str, int] = {
     "mtu": 127, "mode": TABLES, "discovery": LIST, "failover": SEARCH, "avoid_origin": 0,
     "retry": 1, "reliable": 1, "activation": 0, "told": 0, "hop_acks": 1, "flood_us": 625,
     "transmissions": 3, "ack_us": 5000, "ack_adapt": 1,
+    "hop_frames": 16, "gather": 1, "queue": 48, "kept": 32,
     "suspect_us": 2_000_000, "min_rssi": -93, "jitter_us": 5000, "copies": 2,
     "listen_us": 50_000, "spread_us": 50_000, "collect_us": 200_000, "tick_us": 250_000,
     "period": 8, "period_max": 8, "dead": 20, "dead_step": 4, "standby": 0, "jobs": 4,

@@ -33,7 +33,7 @@ from innervate.networks.mesh.protocol.route import alternate, planned
 from innervate.networks.mesh.protocol.upward import is_better, is_uplink
 
 CLASSES = (32, 64, 254)
-OUTBOX = 32
+OUTBOX = 160  # more than twice the frames that a queue can hold
 ASKED = 256  # frames that may still be acknowledged: a slow link's acks come late
 RSSI = -50  # of every frame that comes over a cable, dBm
 
@@ -67,7 +67,8 @@ class MeshStack:
         width = self.params.width
         # Every node sends in every round: three without a word are no accident.
         self.silent_us = 3 * self.params.period_max * self.params.tick_us + self.params.tick_us
-        self.node = plain.make("Node", fields.node(width))()
+        sizes = self.params.queue, self.params.kept
+        self.node = plain.make("Node", fields.node(width, *sizes))()
         self.gate = plain.make("Gate", fields.gate(width))() if rank >= 0 else None
         self.node.number, self.node.rank, self.node.robot = number, rank, int(robot)
         self.node.rng, self.node.choice = seeded(seed), -1
@@ -113,11 +114,12 @@ class MeshStack:
         if self.inbox.kind != ACK:  # acks tell how loud the frame was that they are for
             self.inbox.rssi = RSSI
         elif self.inbox.link_dst == self.node.number:
-            self._note_answer((self.inbox.link_src, self.inbox.origin, self.inbox.seq))
+            for origin, seq in wire.acked(self.inbox):
+                self._note_answer((self.inbox.link_src, origin, seq))
         mesh.on_frame(self.node, self.gate, self.params, now, 0, self.inbox, self.out)
 
     def _note_answer(self, what: tuple[int, int, int]) -> None:
-        if self._unanswered[what]:
+        if self._unanswered.get(what):
             self._unanswered[what] -= 1
             self.acked[what[0]] += 1
 

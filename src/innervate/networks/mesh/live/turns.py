@@ -1,7 +1,8 @@
 """Whose message goes next: a queue for each recipient, urgent ones first, recipients in turn.
 
-The router keeps eight messages until they are acknowledged. Whoever does not answer would soon have
-all eight places, and hold up who does; so places are given out with the others in mind.
+The router keeps 32 messages until they are acknowledged. Whoever does not answer would soon have
+all places, and hold up who does; so places are given out with the others in mind. A recipient has
+a few at first, and one more with each message that arrives, up to three quarters.
 """
 
 from __future__ import annotations
@@ -16,12 +17,19 @@ from innervate.networks.mesh.protocol.constants import ALL, CONTROL, END_TO_END,
 from innervate.networks.mesh.protocol.messages import resolve
 from innervate.networks.mesh.protocol.neighbours import place_of
 from innervate.networks.mesh.protocol.queue import free_places
-from innervate.networks.mesh.protocol.retransmission import FREE, crowds, is_ahead, is_in_vain
+from innervate.networks.mesh.protocol.retransmission import (
+    FREE,
+    SURE_AFTER,
+    crowds,
+    is_ahead,
+    is_in_vain,
+)
 
 MOST = 4096  # messages that wait ...
 FEW = 16  # ... but to each recipient so many may, whatever others have
 SILENT = 4  # the router's places for all recipients together that do not answer
 SPARE = 2  # its last places, for recipients that have none
+FIRST = 4  # places of a recipient of which nothing is known, or that does not answer at once
 
 # A message as the router takes it, and its owner's name for it.
 Waiting = tuple[int, Any]
@@ -43,6 +51,7 @@ class Turns:
         self._in_vain: Any = None  # what nobody could go by: the same again will not do either
         self._under_way: dict[int, int] = {}  # by handle: the recipient
         self._gone: set[int] = set()  # recipients to whom everything was in vain since
+        self._most: dict[int, int] = {}  # by recipient: how many places it may have
 
     def __len__(self) -> int:
         return self._total
@@ -65,7 +74,7 @@ class Turns:
         if not self._total or (self._in_vain and self._in_vain == self._facts()):
             return None
         all_wait = ALL in self._urgent or ALL in self._others
-        places = Places(self._stack, self._gone, all_wait)
+        places = Places(self._stack, self._gone, all_wait, self._most)
         for queues in (self._urgent, self._others):
             for name, queue in queues.items():
                 if places.takes(queue[0][1]):
@@ -78,8 +87,11 @@ class Turns:
         recipient = self._under_way.pop(handle, ALL)
         if is_there is False:
             self._gone.add(recipient)
+            self._most.pop(recipient, None)
         elif is_there:
             self.heard(recipient)
+            most = self._most.get(recipient, FIRST) + 1
+            self._most[recipient] = min(most, self._stack.params.kept * 3 // 4)
 
     def heard(self, sender: int) -> None:
         """A message of this node came: it is there."""
@@ -125,14 +137,18 @@ class Places:
         stack: the router.
         gone: recipients to whom the newest messages were in vain.
         all_wait: True = a message to all waits, which cannot go while one is long under way.
+        most: how many places a recipient may have.
     """
 
-    def __init__(self, stack: MeshStack, gone: set[int], all_wait: bool) -> None:
+    def __init__(
+        self, stack: MeshStack, gone: set[int], all_wait: bool, most: dict[int, int]
+    ) -> None:
         node = stack.node
         self._node = node
         self._gone = gone
         self._params = stack.params
         self._queue = free_places(node)
+        self._most = most
         self._free = node.wait_kind.count(FREE)
         self._held = Counter(compress(node.wait_dest, node.wait_kind))
         silent = [self._held[dest] for dest in self._held if self._is_silent(dest)]
@@ -150,11 +166,23 @@ class Places:
         if dest == ALL or not item.flags & END_TO_END:
             return True
         held = self._held[dest]
+        if held >= FIRST and held >= self._share(dest) + SPARE * urgent:
+            return False
         if self._free < (1 if urgent else 2) + (SPARE if held else 0) or crowds(node, dest):
             return False
         if not self._is_silent(dest):
             return True
         return self._silent < SILENT + urgent and not self._all_held_up
+
+    def _share(self, dest: int) -> int:
+        """How many places a recipient may have now: half while a message is sent to it again."""
+        node, most = self._node, self._most.get(dest, FIRST)
+        tries = max((node.wait_tries[w] for w in range(node.kept)
+                     if node.wait_kind[w] and node.wait_dest[w] == dest), default=0)  # fmt: skip
+        if tries > SURE_AFTER:
+            self._most.pop(dest, None)
+            return FIRST
+        return max(FIRST, most // 2) if tries > 1 else most
 
     def _is_silent(self, dest: int) -> bool:
         """True if messages to `dest` were tried in vain, or are being for a while.

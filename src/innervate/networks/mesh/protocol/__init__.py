@@ -27,10 +27,12 @@ drops what comes again (A12).
 *End to end.* An origin keeps a message until its recipient acknowledges it; both keep to a window
 of sequence numbers, so that a retransmission is delivered once. Timeouts adapt to round trips.
 
-*Hops.* Where `ack_adapt` is on, a hop's ack may take the smoothed round trip to that neighbour
-longer than `ack_us`, or four mean deviations if that is more [RFC 6298]. Retried frames tell no
-round trip (Karn): they double the wait, until one that was sent once is acknowledged; an ack of
-what was given up tells how late it is.
+*Hops.* Where `ack_adapt` is on, a hop's ack may take the smoothed round trip to that neighbour and
+four mean deviations [RFC 6298], never less than `ack_us`. Retried frames tell no round trip (Karn):
+they double the wait, until one that was sent once is acknowledged; an ack of what was given up
+tells how late it is. With `hop_frames` every neighbour has frames under way of its own, more of
+them with each ack and half as many after a missing one; with `gather` all that came is handled
+before something goes, and acks to one node go in one frame.
 
 *Backoff.* Acks that are missing make for growing pauses of searches, then of all messages, never of
 alarms: a full channel heals (decision 0016).
@@ -132,8 +134,8 @@ A hop for which there is no room gets no ack, so that another is tried.
 | GIVEN_UP   | the next round                  | `give_jobs`                      | TO_SEND        |
 | FREE       | something to send               | `compose`, `take_over`:          | WAITS          |
 |            |                                 | `enqueue`                        |                |
-| WAITS      | `TX`, or the one before has     | `kick`, by rank, then age        | DOWN           |
-|            | gone                            |                                  |                |
+| WAITS      | `TX`, or the one before has     | `kick`, `send_all`: by rank,     | DOWN           |
+|            | gone                            | then age                         |                |
 | DOWN       | `SENT`                          | `on_sent`, `settle`; broadcasts: | UNACKED        |
 |            |                                 | next copy or done                |                |
 | UNACKED    | `ACK`                           | `on_hop_ack`, `take_ack`         | FREE           |
@@ -248,6 +250,10 @@ Constants and settings
 | `HEADER_BYTES = 11`, `CRC_BYTES = 2`,          | [mesh 2]; `mtu` 64 or 127                       |
 | `BODY = 114`                                   |                                                 |
 | `NEIGHBOURS = 32`, `QUEUE = 8`, `WAITING = 8`  | memory: 4 KB a node (decision 0015)             |
+| `queue`, `kept`, `PLACES_MAX = 64`             | places of both where memory is no matter        |
+| `HOP_FIRST = 4`, `TIMEOUTS = 4`                | frames under way at first; handled in one call  |
+| `GATHERED = 16`, `ACK_MORE_BYTES = 3`,         | acks that go together: of hops, end to end      |
+| `END_ACKS_BYTES = 24`                          |                                                 |
 | `FORWARDED = 64`, `SKIPS = 16`                 | duplicate cache; failed and bad neighbours      |
 | `WINDOW_WORDS = 5`, `BITS = 15`,               | words of 15 bits: 75 numbers, 254 nodes         |
 | `ADJACENCY_WORDS = 17`                         |                                                 |

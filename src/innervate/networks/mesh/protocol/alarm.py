@@ -21,7 +21,6 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.networks.mesh.protocol.duplicates import FLOODED, record_flood
 from innervate.networks.mesh.protocol.fence import OUTSIDE, judge, margin
-from innervate.networks.mesh.protocol.fields import WAITING
 from innervate.networks.mesh.protocol.frames import add8, add_hop, put16
 from innervate.networks.mesh.protocol.messages import first_flag, resolve, take
 from innervate.networks.mesh.protocol.queue import compose, kick, take_over
@@ -122,7 +121,7 @@ def alarm_buffer(node, out):
     if w >= 0:
         return w
     w = 0
-    for k in range(WAITING):
+    for k in range(node.kept):
         if node.wait_kind[k] != ALARM:
             w = k
     report(out, REPORT_EXPIRED, node.wait_handle[w], PUT_OUT)
@@ -202,7 +201,7 @@ def tell_monitor(node, params, now, kind, robot, x, y, vx, vy, gap, out):
 
 def is_telling(node):
     """1 if an alarm of ours, about ourselves, still waits for the monitor."""
-    for w in range(WAITING):
+    for w in range(node.kept):
         if node.wait_kind[w] == ALARM and node.wait_body[w * DATA_MAX] == node.number:
             return 1
     return 0

@@ -20,8 +20,12 @@ NO_BACKOFF = -1
 
 
 def note_missed(node, params, now):
-    """A transmission was not acknowledged: pause, the longer the more of them there were."""
-    node.strain = min(node.strain + 1, STRAIN_MAX)
+    """A transmission was not acknowledged: pause, the longer the more of them there were.
+
+    Where each neighbour has frames under way of its own (`hop_frames`), those to who does not
+    answer become fewer, and only searches pause.
+    """
+    node.strain = min(node.strain + 1, STRAIN_HEAVY if params.hop_frames else STRAIN_MAX)
     if node.strain > STRAIN_FREE:
         span = min(params.ack_us, LONGEST_US) << ((node.strain - STRAIN_FREE) // PER_DOUBLING)
         node.pause = (now + draw(node, span) + 1) & MASK30

@@ -36,6 +36,7 @@ PATH_MAX = 24
 HEADER_BYTES = 11
 CRC_BYTES = 2
 ACK_BYTES = 9
+ACK_MORE_BYTES = 3  # for every packet after the first: whose, and its number
 DATA_MAX = 90  # most payload of a message; 27 at MTU 64
 BODY = 114  # room for a payload in a record: MTU 127 less header, path of one, CRC
 

@@ -10,6 +10,8 @@ TIME = 1073741823
 NEIGHBOURS = 32
 QUEUE = 8
 WAITING = 8
+PLACES_MAX = 64  # of either, where memory is no matter
+GATHERED = 16
 FORWARDED = 64
 SKIPS = 16
 WINDOW_WORDS = 5
@@ -47,10 +49,10 @@ ITEM = (
 )
 
 
-def node(n):
-    """Fields of a node in a network of up to n nodes."""
+def node(n, queue=QUEUE, kept=WAITING):
+    """Fields of a node in a network of up to n nodes, that queues and keeps so many packets."""
     k = min(n, NEIGHBOURS)
-    return OWN + neighbours(k) + tables(n) + packets(n) + WATCH + watched(n) + QUEUED
+    return OWN + neighbours(k) + tables(n) + packets(n, kept) + WATCH + watched(n) + queued(queue)
 
 
 OWN = (
@@ -74,6 +76,15 @@ OWN = (
     ("parent", 0, 0, 255, "node", "who brought the round's first request; 255 nobody"),
     ("quiet", 0, 0, 65535, "ticks", "since the newest request"),
     ("leading", 0, 0, 1, "flag", "we are the gateway now"),
+    ("places", 0, QUEUE, PLACES_MAX, "frames", "our queue holds"),
+    ("kept", 0, WAITING, PLACES_MAX, "messages", "are kept until acknowledged end to end"),
+    ("woken", 0, 0, 1, "flag", "`gather`: what is due goes as soon as all was heard"),
+    ("ack_at", 0, -1, TIME, "us", "`hop_frames`: the first ack is overdue then; -1 none"),
+    ("acks", 0, 0, GATHERED, "acks", "`gather`: of hops, that we owe"),
+    ("ack_to", GATHERED, 0, 255, "node", "... to whom"),
+    ("ack_origin", GATHERED, 0, 255, "node", "... whose packet"),
+    ("ack_seq", GATHERED, 0, 65535, "number", "... its number"),
+    ("ack_rssi", GATHERED, -128, 127, "dBm", "... how it came"),
     ("round_trip", 0, 0, 16777215, "us", "smoothed, of end-to-end acks; 0 unknown"),
     ("strain", 0, 0, 44, "acks", "more that were missing than that came, of neighbours that live"),
     ("search_backoff", 0, 0, 3, "doublings", "of the wait till unreachable ones are tried again"),
@@ -94,6 +105,9 @@ def neighbours(k):
         ("hop_trip", k, 0, 1048576, "us", "smoothed round trip to it; 0 unknown"),
         ("hop_spread", k, 0, 1048576, "us", "... its mean deviation"),
         ("hop_doubled", k, 0, 2, "doublings", "of the wait for its acks: retried frames came"),
+        ("hop_under", k, 0, PLACES_MAX, "frames", "under way to it"),
+        ("hop_most", k, 1, PLACES_MAX, "frames", "may be under way to it"),
+        ("hop_cut", k, -1, TIME, "us", "when it was halved, if no ack came since; -1"),
         ("hop_failed", k, -1, TIME, "us", "when a frame began that it did not answer; -1 none"),
     )
 
@@ -123,7 +137,7 @@ def words(n):
     return (n + 14) // 15
 
 
-def packets(n):
+def packets(n, kept=WAITING):
     """What is remembered of packets."""
     return (
         ("newest", n, 0, 65535, "number", "per origin: newest seq delivered"),
@@ -144,18 +158,18 @@ def packets(n):
         ("bad_neighbour", SKIPS, 0, 255, "node", "bad neighbours per destination; 255 free"),
         ("bad_dest", SKIPS, 0, 255, "node", "... the destination"),
         ("bad_at", 0, 0, 15, "place", "... the next to be overwritten"),
-        ("wait_seq", WAITING, 0, 65535, "number", "waits for an end-to-end ack: seq"),
-        ("wait_dest", WAITING, 0, 255, "node", "... recipient"),
-        ("wait_kind", WAITING, 0, 63, "type", "... 0 = free place"),
-        ("wait_flags", WAITING, 0, 255, "flags", "... flags"),
-        ("wait_tries", WAITING, 0, 255, "tries", "... sent so often"),
-        ("wait_due", WAITING, 0, TIME, "us", "... when it is sent again"),
-        ("wait_at", WAITING, 0, TIME, "us", "... when it was sent first"),
-        ("wait_sent", WAITING, 0, TIME, "us", "... when it was sent last"),
-        ("wait_handle", WAITING, 0, 65535, "number", "... its owner's name"),
-        ("wait_hop", WAITING, 0, 1, "flag", "... its owner was told that it has left"),
-        ("wait_length", WAITING, 0, DATA_MAX, "bytes", "... payload"),
-        ("wait_body", WAITING * DATA_MAX, 0, 255, "byte", "... payload"),
+        ("wait_seq", kept, 0, 65535, "number", "waits for an end-to-end ack: seq"),
+        ("wait_dest", kept, 0, 255, "node", "... recipient"),
+        ("wait_kind", kept, 0, 63, "type", "... 0 = free place"),
+        ("wait_flags", kept, 0, 255, "flags", "... flags"),
+        ("wait_tries", kept, 0, 255, "tries", "... sent so often"),
+        ("wait_due", kept, 0, TIME, "us", "... when it is sent again"),
+        ("wait_at", kept, 0, TIME, "us", "... when it was sent first"),
+        ("wait_sent", kept, 0, TIME, "us", "... when it was sent last"),
+        ("wait_handle", kept, 0, 65535, "number", "... its owner's name"),
+        ("wait_hop", kept, 0, 1, "flag", "... its owner was told that it has left"),
+        ("wait_length", kept, 0, DATA_MAX, "bytes", "... payload"),
+        ("wait_body", kept * DATA_MAX, 0, 255, "byte", "... payload"),
     )
 
 
@@ -179,35 +193,39 @@ def watched(n):
     )
 
 
-# Frames that wait to be sent, or for their hop's ack; not counted as state of a node.
-QUEUED = (
-    ("q_state", QUEUE, 0, 3, "state", "0 free, 1 waits, 2 handed down, 3 waits for its ack"),
-    ("q_rank", QUEUE, 0, 3, "priority", "0 alarm, 1 control, 2 data"),
-    ("q_order", QUEUE, 0, TIME, "number", "first in, first out"),
-    ("q_due", QUEUE, 0, TIME, "us", "not to be sent before"),
-    ("q_born", QUEUE, 0, TIME, "us", "since when it waits here"),
-    ("q_sent", QUEUE, 0, TIME, "us", "handed down last"),
-    ("q_begun", QUEUE, 0, TIME, "us", "handed down first, for this hop"),
-    ("q_tries", QUEUE, 0, 255, "tries", "transmissions of this hop so far"),
-    ("q_fails", QUEUE, 0, 255, "failures", "hops that failed here"),
-    ("q_copies", QUEUE, 0, 15, "copies", "broadcasts: still to be sent"),
-    ("q_from", QUEUE, 0, 255, "node", "who gave it to us; 255 = we made it"),
-    ("q_owner", QUEUE, -1, 7, "place", "of the message among those that wait; -1 none"),
-    ("q_kind", QUEUE, 0, 63, "type", "the frame"),
-    ("q_flags", QUEUE, 0, 255, "flags", "the frame"),
-    ("q_link_dst", QUEUE, 0, 255, "node", "the frame"),
-    ("q_origin", QUEUE, 0, 255, "node", "the frame"),
-    ("q_dest", QUEUE, 0, 255, "node", "the frame"),
-    ("q_seq", QUEUE, 0, 65535, "number", "the frame"),
-    ("q_ver", QUEUE, 0, 255, "version", "the frame"),
-    ("q_ttl", QUEUE, 0, 255, "hops", "the frame"),
-    ("q_path_len", QUEUE, 0, PATH_MAX, "nodes", "the frame"),
-    ("q_path", QUEUE * PATH_MAX, 0, 255, "node", "the frame"),
-    ("q_length", QUEUE, 0, BODY, "bytes", "the frame"),
-    ("q_body", QUEUE * BODY, 0, 255, "byte", "the frame"),
-    ("q_next", 0, 0, TIME, "number", "order of the next one"),
-    ("busy", 0, -1, 7, "place", "handed down, or waiting for its ack; -1 nothing"),
-)
+def queued(places):
+    """Frames that wait to be sent, or for their hop's ack; not counted as state of a node."""
+    return (
+        ("q_state", places, 0, 3, "state", "0 free, 1 waits, 2 handed down, 3 waits for its ack"),
+        ("q_rank", places, 0, 3, "priority", "0 alarm, 1 control, 2 data"),
+        ("q_order", places, 0, TIME, "number", "first in, first out"),
+        ("q_due", places, 0, TIME, "us", "not to be sent before"),
+        ("q_born", places, 0, TIME, "us", "since when it waits here"),
+        ("q_sent", places, 0, TIME, "us", "handed down last"),
+        ("q_begun", places, 0, TIME, "us", "handed down first, for this hop"),
+        ("q_tries", places, 0, 255, "tries", "transmissions of this hop so far"),
+        ("q_fails", places, 0, 255, "failures", "hops that failed here"),
+        ("q_copies", places, 0, 15, "copies", "broadcasts: still to be sent"),
+        ("q_from", places, 0, 255, "node", "who gave it to us; 255 = we made it"),
+        ("q_owner", places, -1, PLACES_MAX - 1, "place", "of the message kept; -1 none"),
+        ("q_kind", places, 0, 63, "type", "the frame"),
+        ("q_flags", places, 0, 255, "flags", "the frame"),
+        ("q_link_dst", places, 0, 255, "node", "the frame"),
+        ("q_origin", places, 0, 255, "node", "the frame"),
+        ("q_dest", places, 0, 255, "node", "the frame"),
+        ("q_seq", places, 0, 65535, "number", "the frame"),
+        ("q_ver", places, 0, 255, "version", "the frame"),
+        ("q_ttl", places, 0, 255, "hops", "the frame"),
+        ("q_path_len", places, 0, PATH_MAX, "nodes", "the frame"),
+        ("q_path", places * PATH_MAX, 0, 255, "node", "the frame"),
+        ("q_length", places, 0, BODY, "bytes", "the frame"),
+        ("q_body", places * BODY, 0, 255, "byte", "the frame"),
+        ("q_next", 0, 0, TIME, "number", "order of the next one"),
+        ("busy", 0, -1, PLACES_MAX - 1, "place", "handed down, or waits for its ack; -1 none"),
+    )
+
+
+QUEUED = queued(QUEUE)
 
 
 def gate(n):
@@ -261,6 +279,10 @@ PARAMS = (
     ("hop_acks", 0, 0, 1, "flag", "hops acknowledge; 0 = SENT says that the frame was received"),
     ("ack_us", 0, 1, 16777215, "us", "wait for a hop's ack, from SENT"),
     ("ack_adapt", 0, 0, 1, "flag", "a hop's ack may take its neighbour's round trip longer"),
+    ("hop_frames", 0, 0, PLACES_MAX, "frames", "to a neighbour under way at most; 0: one to all"),
+    ("gather", 0, 0, 1, "flag", "all that came is handled before something goes; acks go together"),
+    ("queue", 0, QUEUE, PLACES_MAX, "frames", "that wait or are under way"),
+    ("kept", 0, WAITING, PLACES_MAX, "messages", "kept until acknowledged end to end"),
     ("suspect_us", 0, 1, 268435455, "us", "a neighbour that does not answer is avoided"),
     ("min_rssi", 0, -128, 127, "dBm", "weaker links are not reported"),
     ("jitter_us", 0, 0, 16777215, "us", "requests are passed on within"),

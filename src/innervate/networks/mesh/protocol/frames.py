@@ -10,7 +10,6 @@ from innervate.networks.mesh.protocol.constants import (
     PATH_MAX,
     SOURCE_ROUTE,
 )
-from innervate.networks.mesh.protocol.fields import QUEUE
 
 
 def copy_frame(to, frm):
@@ -36,7 +35,7 @@ def copy_frame(to, frm):
 def frame_bytes(frame):
     """Bytes of a frame on the wire, without what the radio puts in front [mesh 2]."""
     if frame.kind == ACK:
-        return ACK_BYTES
+        return ACK_BYTES + frame.length
     return HEADER_BYTES + frame.path_len + frame.length + CRC_BYTES
 
 
@@ -175,7 +174,10 @@ def was_at(node, i, who):
 
 def clear_queue(node):
     """Empty the queue: nothing waits, nothing is under way."""
-    for i in range(QUEUE):
+    for i in range(node.places):
         node.q_state[i] = 0
     node.busy = -1
+    node.ack_at = -1
+    node.acks = 0
+    node.woken = 0
     node.q_next = 0

@@ -187,7 +187,7 @@ def queue_part(node, gate, params, now, s, index, out):
     make_table(gate, params, s)
     pack(node, gate, params, s, room_at(node, gate, params, s), index, i)
     if first == NONE:
-        drop(node, i)
+        drop(node, params, i)
         return
     add_hop(node, i)
     pass_on(node, params, i, first)

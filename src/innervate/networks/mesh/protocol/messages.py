@@ -30,7 +30,7 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.networks.mesh.protocol.duplicates import accept, mark_reachable
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, copy_frame, inner
-from innervate.networks.mesh.protocol.queue import compose, kick, make_room
+from innervate.networks.mesh.protocol.queue import WAITS, compose, kick, make_room
 from innervate.networks.mesh.protocol.retransmission import (
     buffer_sent,
     buffer_unsent,
@@ -42,6 +42,8 @@ from innervate.networks.mesh.protocol.retransmission import (
 )
 from innervate.networks.mesh.protocol.search import BITS
 from innervate.networks.mesh.protocol.send import send_on
+
+END_ACKS_BYTES = 24  # of one frame: as many as fit at the smallest MTU
 
 
 def resolve(node, params, dest):
@@ -137,6 +139,18 @@ def flood_own(node, params, now, i, out):
     kick(node, params, now, out)
 
 
+def waiting_ack(node, params, to, rank, flags):
+    """Where an end-to-end ack to the same origin waits that has room for a number more, or -1."""
+    if not params.gather or params.mode != TABLES:
+        return -1
+    for i in range(node.places):
+        if node.q_state[i] == WAITS and node.q_kind[i] == E2E_ACK and node.q_dest[i] == to:
+            if node.q_origin[i] == node.number and node.q_rank[i] == rank and node.q_tries[i] == 0:
+                if (node.q_flags[i] ^ flags) & FIRST == 0 and node.q_length[i] < END_ACKS_BYTES:
+                    return i
+    return -1
+
+
 def acknowledge_end(node, params, now, frame, out):
     """Tell the origin that its message is here."""
     if frame.flags & END_TO_END == 0 or frame.origin == node.number:
@@ -147,7 +161,12 @@ def acknowledge_end(node, params, now, frame, out):
 
 def tell_origin(node, params, now, rank, origin, seq, out):
     """Acknowledge packet `seq` of a node, end to end."""
-    i = compose(node, now, rank, E2E_ACK, origin, first_flag(node, origin), out)
+    flags = first_flag(node, origin)
+    i = waiting_ack(node, params, origin, rank, flags)
+    if i >= 0:
+        add16(node, i, seq)
+        return
+    i = compose(node, now, rank, E2E_ACK, origin, flags, out)
     if i >= 0:
         add16(node, i, seq)
         send_on(node, params, now, i, out)
@@ -157,6 +176,7 @@ def on_handed_up(node, params, now, item, out):
     """The user has a message that waited for those before it."""
     if item.dest < params.nodes and item.dest != node.number:
         tell_origin(node, params, now, CONTROL, item.dest, item.handle, out)
+        kick(node, params, now, out)
 
 
 def is_ordered(frame):

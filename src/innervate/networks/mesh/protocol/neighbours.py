@@ -7,6 +7,7 @@ from innervate.networks.mesh.protocol.constants import NOBODY, REPORT_SUSPECT
 FREE = 255
 UNHEARD = 255
 LIVELY_TICKS = 2
+HOP_FIRST = 4  # frames under way to a neighbour of which nothing is known
 
 # In `suspect`.
 SUSPECT = 1  # avoided for a while
@@ -27,6 +28,9 @@ def forget_trips(node, k):
     node.hop_trip[k] = 0
     node.hop_spread[k] = 0
     node.hop_doubled[k] = 0
+    node.hop_under[k] = 0
+    node.hop_most[k] = HOP_FIRST
+    node.hop_cut[k] = -1
     node.hop_failed[k] = -1
 
 

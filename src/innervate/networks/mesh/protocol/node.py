@@ -19,6 +19,7 @@ from innervate.networks.mesh.protocol.alarm import (
 from innervate.networks.mesh.protocol.backoff import NO_BACKOFF, end_backoff
 from innervate.networks.mesh.protocol.constants import (
     ACK,
+    ACK_MORE_BYTES,
     ACK_WAIT,
     ACK_WANTED,
     ACTIVATE,
@@ -52,10 +53,9 @@ from innervate.networks.mesh.protocol.duplicates import (
     record_packet,
     retry_unreachable,
 )
-from innervate.networks.mesh.protocol.fields import WAITING
-from innervate.networks.mesh.protocol.frames import clear_queue, is_sound
+from innervate.networks.mesh.protocol.frames import clear_queue, get16, is_sound
 from innervate.networks.mesh.protocol.gateway import collect, lead, on_response, reset, tick
-from innervate.networks.mesh.protocol.hop import learn_late, learn_trip
+from innervate.networks.mesh.protocol.hop import learn_late, learn_trip, widen
 from innervate.networks.mesh.protocol.jobs import on_ack, retry_jobs
 from innervate.networks.mesh.protocol.messages import on_handed_up, on_message, take
 from innervate.networks.mesh.protocol.neighbours import clear_neighbours, hear, hear_again, sweep
@@ -66,6 +66,7 @@ from innervate.networks.mesh.protocol.queue import (
     kick,
     make_room,
     on_sent,
+    send_all,
     take_ack,
     take_over,
     tell_hop,
@@ -88,6 +89,8 @@ RETRIES = 4  # of kept messages in one go: the outbox has to hold them
 
 def on_start(node, gate, params, now, cause, out):
     """Switch on: nothing known. A gateway begins at once, one that had been on waits first."""
+    node.places = params.queue
+    node.kept = params.kept
     node.seq = draw(node, 65_536)
     node.ticks = 0
     node.tick_at = now
@@ -134,7 +137,7 @@ def clear_arrays(node, params):
         node.edges[k] = 0
     for k in range(params.row):
         node.met[k] = 0
-    for w in range(WAITING):
+    for w in range(node.kept):
         node.wait_kind[w] = 0
     for k in range(params.width):
         node.missed[k] = NEVER
@@ -156,7 +159,7 @@ def on_frame(node, gate, params, now, port, frame, out):
     elif frame.link_dst == ALL:
         on_broadcast(node, params, now, frame, k, out)
     else:
-        drop_overheard(node, frame, out)
+        drop_overheard(node, params, frame, out)
         if frame.link_dst == node.number:
             on_unicast(node, gate, params, now, frame, out)
         else:
@@ -165,14 +168,27 @@ def on_frame(node, gate, params, now, port, frame, out):
 
 def on_hop_ack(node, params, now, frame, k, out):
     """A hop, the neighbour in place k, has taken over what we sent."""
-    i = take_ack(node, frame)
-    if i >= 0:
-        if params.ack_adapt:
-            learn_trip(node, now, i, k)
-        tell_hop(node, i, out)
+    took = note_ack(node, params, now, frame.origin, frame.seq, frame.link_src, k, out)
+    for n in range(frame.length // ACK_MORE_BYTES):
+        at = n * ACK_MORE_BYTES
+        seq = get16(frame, at + 1)
+        took = took + note_ack(node, params, now, frame.body[at], seq, frame.link_src, k, out)
+    if took:
         kick(node, params, now, out)
-    elif params.ack_adapt:
-        learn_late(node, now, k)
+
+
+def note_ack(node, params, now, origin, seq, who, k, out):
+    """`who`, in place k, has taken over a packet: 1 if we waited for that."""
+    i = take_ack(node, params, origin, seq, who)
+    if i < 0:
+        if params.ack_adapt:
+            learn_late(node, now, k)
+        return 0
+    if params.ack_adapt:
+        learn_trip(node, now, i, k)
+    widen(node, params, k)
+    tell_hop(node, i, out)
+    return 1
 
 
 def on_broadcast(node, params, now, frame, k, out):
@@ -208,7 +224,7 @@ def on_unicast(node, gate, params, now, frame, out):
         if frame.flags & DETOURED or not make_room(node, rank, out):
             return
     if frame.flags & ACK_WANTED:
-        acknowledge(node, frame, out)
+        acknowledge(node, params, frame, out)
     kind = frame.kind
     if is_upward(kind):
         on_upward(node, gate, params, now, frame, out)
@@ -261,7 +277,7 @@ def on_input(node, gate, params, now, kind, item, out):
 def on_timer(node, gate, params, now, timer, out):
     """One of six waits is over."""
     if timer == TX:
-        kick(node, params, now, out)
+        send_all(node, params, now, out)
     elif timer == ACK_WAIT:
         on_ack_timeout(node, params, now, out)
     elif timer == ROUND:

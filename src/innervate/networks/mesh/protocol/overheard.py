@@ -5,20 +5,19 @@ Who does not notice that its neighbour has a packet makes two of it by sending i
 
 from innervate.networks.mesh.protocol.backoff import note_answer
 from innervate.networks.mesh.protocol.constants import ALARM, DATA, E2E_ACK, PARITY
-from innervate.networks.mesh.protocol.fields import QUEUE
 from innervate.networks.mesh.protocol.frames import get16, inner
 from innervate.networks.mesh.protocol.queue import UNACKED, WAITS, drop, tell_hop
 
 
-def drop_overheard(node, frame, out):
+def drop_overheard(node, params, frame, out):
     """Forget what need not be sent as this frame tells: its next hop, or its recipient, has it."""
-    for i in range(QUEUE):
+    for i in range(node.places):
         state = node.q_state[i]
         if state == UNACKED or (state == WAITS and node.q_tries[i] > 0):
             if is_passed_on(node, i, frame) or is_confirmed(node, i, frame):
                 note_answer(node)
                 tell_hop(node, i, out)
-                drop(node, i)
+                drop(node, params, i)
 
 
 def is_passed_on(node, i, frame):

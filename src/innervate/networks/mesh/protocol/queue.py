@@ -1,4 +1,4 @@
-"""Frames that wait: one is under way at a time; alarms go before control, control before data."""
+"""Frames that wait, and those under way; alarms go before control, control before data."""
 
 from innervate.dialect.arith import MASK16, MASK30, after
 from innervate.dialect.outbox import URGENT, report, send, set_timer
@@ -6,6 +6,7 @@ from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.backoff import NO_BACKOFF, end_backoff, is_held, note_answer
 from innervate.networks.mesh.protocol.constants import (
     ACK,
+    ACK_MORE_BYTES,
     ACK_WAIT,
     ACK_WANTED,
     ALARM,
@@ -19,9 +20,9 @@ from innervate.networks.mesh.protocol.constants import (
     TTL,
     TX,
 )
-from innervate.networks.mesh.protocol.fields import QUEUE
-from innervate.networks.mesh.protocol.frames import load, store
-from innervate.networks.mesh.protocol.hop import hop_wait
+from innervate.networks.mesh.protocol.fields import GATHERED
+from innervate.networks.mesh.protocol.frames import load, put16, store
+from innervate.networks.mesh.protocol.hop import begin_wait, end_wait, hop_wait, is_full
 
 FREE = 0
 WAITS = 1
@@ -35,7 +36,7 @@ NO_OWNER = -1
 def free_places(node):
     """How many more frames fit."""
     count = 0
-    for i in range(QUEUE):
+    for i in range(node.places):
         if node.q_state[i] == FREE:
             count = count + 1
     return count
@@ -49,7 +50,7 @@ def has_room(node, rank):
     if free_places(node) > rank:
         return 1
     if rank == ALARMS:
-        for i in range(QUEUE):
+        for i in range(node.places):
             if node.q_state[i] == WAITS and node.q_rank[i] > ALARMS:
                 return 1
     return 0
@@ -60,7 +61,7 @@ def make_room(node, rank, out):
     if has_room(node, rank):
         return 1
     newest = -1
-    for i in range(QUEUE):
+    for i in range(node.places):
         if node.q_state[i] == WAITS and node.q_rank[i] == MESSAGES and is_searching(node, i):
             if newest < 0 or (node.q_order[i] - node.q_order[newest]) & MASK30 < MASK30 >> 1:
                 newest = i
@@ -79,7 +80,7 @@ def is_searching(node, i):
 def take_place(node, rank, out):
     """A place for a frame, or -1. An alarm puts out the newest of what is less urgent."""
     worst = -1
-    for i in range(QUEUE):
+    for i in range(node.places):
         if node.q_state[i] == FREE:
             return i
         if node.q_state[i] == WAITS and node.q_rank[i] > rank:
@@ -139,8 +140,10 @@ def take_over(node, now, rank, frame, out):
     return i
 
 
-def drop(node, i):
+def drop(node, params, i):
     """Forget the frame in place i."""
+    if node.q_state[i] == UNACKED:
+        end_wait(node, params, i)
     node.q_state[i] = FREE
     if node.busy == i:
         node.busy = -1
@@ -159,24 +162,25 @@ def is_before(node, i, j):
     return (node.q_order[j] - node.q_order[i]) & MASK30 < (MASK30 >> 1)
 
 
-def pick_due(node, now):
+def pick_due(node, params, now):
     """Which frame goes next, or -1."""
     best = -1
     end_backoff(node, now)
-    for i in range(QUEUE):
+    for i in range(node.places):
         if node.pause != NO_BACKOFF and is_held(node, i):
             continue
         if node.q_state[i] == WAITS and after(now, node.q_due[i]):
             if best < 0 or is_before(node, i, best):
-                best = i
+                if not is_full(node, params, i):
+                    best = i
     return best
 
 
-def wake(node, now, out):
-    """Nothing is due: come back when something is."""
+def wake(node, params, now, out):
+    """Nothing is due, or may go: come back when something is; an ack calls what waits for it."""
     soonest = -1
-    for i in range(QUEUE):
-        if node.q_state[i] == WAITS:
+    for i in range(node.places):
+        if node.q_state[i] == WAITS and not is_full(node, params, i):
             wait = (node.q_due[i] - now) & MASK30
             if after(now, node.q_due[i]):
                 wait = 0
@@ -215,8 +219,12 @@ def settle(node, params, now, sent, out):
         wait = 0
         if sent:
             wait = hop_wait(node, params, i)
-            if params.ack_adapt:
+            if params.ack_adapt or params.hop_frames:
                 note_sent(node, now, i)
+        if params.hop_frames:
+            node.busy = -1
+            begin_wait(node, params, now, wait, i, out)
+            return
         set_timer(out, ACK_WAIT, (now + wait) & MASK30)
     else:
         node.q_state[i] = FREE
@@ -225,13 +233,29 @@ def settle(node, params, now, sent, out):
 
 
 def kick(node, params, now, out):
-    """Send what is due, if nothing is under way."""
-    for _ in range(QUEUE + 1):
+    """Send what is due; with `gather` as soon as all that has come was handled."""
+    if not params.gather:
+        send_due(node, params, now, out)
+    elif not node.woken:
+        node.woken = 1
+        set_timer(out, TX, now)
+
+
+def send_all(node, params, now, out):
+    """The acks that we owe, then what is due."""
+    node.woken = 0
+    send_acks(node, out)
+    send_due(node, params, now, out)
+
+
+def send_due(node, params, now, out):
+    """Send what is due, if nothing is under way that it would wait for."""
+    for _ in range(node.places + 1):
         if node.busy != -1:
             return
-        i = pick_due(node, now)
+        i = pick_due(node, params, now)
         if i < 0:
-            wake(node, now, out)
+            wake(node, params, now, out)
             return
         node.busy = i
         node.q_state[i] = DOWN
@@ -257,35 +281,65 @@ def on_sent(node, params, now, sent, out):
         kick(node, params, now, out)
 
 
-def acknowledge(node, frame, out):
-    """Send the hop's ack for a received frame at once [mesh 1]."""
-    ack = out.frame[send(out, 0, 0, URGENT)]
+def acknowledge(node, params, frame, out):
+    """Send the hop's ack for a received frame at once [mesh 1]; with `gather` they go together."""
+    if not params.gather:
+        send_ack(node, frame.link_src, frame.origin, frame.seq, frame.rssi, out)
+        return
+    if node.acks == GATHERED:
+        send_acks(node, out)
+    a = node.acks
+    node.acks = a + 1
+    node.ack_to[a] = frame.link_src
+    node.ack_origin[a] = frame.origin
+    node.ack_seq[a] = frame.seq
+    node.ack_rssi[a] = frame.rssi
+
+
+def send_ack(node, to, origin, seq, rssi, out):
+    """An ack of one packet to the hop that it came from; where it stands in the outbox."""
+    at = send(out, 0, 0, URGENT)
+    ack = out.frame[at]
     ack.kind = ACK
     ack.flags = 0
     ack.link_src = node.number
-    ack.link_dst = frame.link_src
-    ack.origin = frame.origin
-    ack.dest = frame.link_src
-    ack.seq = frame.seq
+    ack.link_dst = to
+    ack.origin = origin
+    ack.dest = to
+    ack.seq = seq
     ack.table_ver = 0
     ack.ttl = 0
     ack.path_len = 0
     ack.length = 0
-    ack.rssi = frame.rssi
+    ack.rssi = rssi
+    return at
 
 
-def take_ack(node, frame):
-    """The place of the frame that this ack is for, which is free then; -1 if for none."""
-    i = node.busy
-    if i < 0 or node.q_state[i] != UNACKED:
-        return -1
-    if node.q_origin[i] != frame.origin or node.q_seq[i] != frame.seq:
-        return -1
-    if node.q_link_dst[i] != frame.link_src:
-        return -1
-    note_answer(node)
-    drop(node, i)
-    return i
+def send_acks(node, out):
+    """All acks that we owe: a frame to each neighbour, its first packet as in a single ack."""
+    for a in range(node.acks):
+        to = node.ack_to[a]
+        if to != ALL:
+            at = send_ack(node, to, node.ack_origin[a], node.ack_seq[a], node.ack_rssi[a], out)
+            ack = out.frame[at]
+            for b in range(a + 1, node.acks):
+                if node.ack_to[b] == to:
+                    ack.body[ack.length] = node.ack_origin[b]
+                    put16(ack.body, ack.length + 1, node.ack_seq[b])
+                    ack.length = ack.length + ACK_MORE_BYTES
+                    node.ack_to[b] = ALL
+    node.acks = 0
+
+
+def take_ack(node, params, origin, seq, who):
+    """The place of the frame that `who` acknowledges so, which is free then; -1 if for none."""
+    for i in range(node.places):
+        if node.q_state[i] == UNACKED and node.q_seq[i] == seq and node.q_origin[i] == origin:
+            if node.q_link_dst[i] == who:
+                note_answer(node)
+                drop(node, params, i)
+                return i
+    return -1
 
 
 def tell_hop(node, i, out):

@@ -22,6 +22,7 @@ from innervate.networks.mesh.protocol.constants import (
     REPORT_ARRIVED,
     REPORT_EXPIRED,
     RETRY,
+    TABLES,
 )
 from innervate.networks.mesh.protocol.duplicates import (
     UNREACHABLE,
@@ -29,7 +30,6 @@ from innervate.networks.mesh.protocol.duplicates import (
     is_unreachable,
     mark_bad,
 )
-from innervate.networks.mesh.protocol.fields import QUEUE, WAITING
 from innervate.networks.mesh.protocol.frames import add8, get16, inner
 from innervate.networks.mesh.protocol.queue import compose, drop, has_room, kick
 from innervate.networks.mesh.protocol.search import BITS
@@ -51,7 +51,7 @@ AHEAD_MAX = 64  # numbers: a packet older than that its recipient could not tell
 
 def free_buffer(node):
     """A place for a message that is kept, or -1."""
-    for w in range(WAITING):
+    for w in range(node.kept):
         if node.wait_kind[w] == FREE:
             return w
     return -1
@@ -100,7 +100,7 @@ def is_ahead(node, dest):
 
     Its recipient's window would move past the older one, which could then not come any more.
     """
-    for w in range(WAITING):
+    for w in range(node.kept):
         if node.wait_kind[w] != FREE and (node.wait_dest[w] == dest or dest == ALL):
             if (node.seq + 1 - node.wait_seq[w]) & MASK16 > AHEAD_MAX:
                 return 1
@@ -110,7 +110,7 @@ def is_ahead(node, dest):
 def arm_retry(node, now, out):
     """Set the RETRY timer to the first end-to-end timeout."""
     soonest = -1
-    for w in range(WAITING):
+    for w in range(node.kept):
         if node.wait_kind[w] != FREE:
             wait = (node.wait_due[w] - now) & MASK30
             if wait > MASK30 >> 1:
@@ -123,7 +123,7 @@ def arm_retry(node, now, out):
 
 def due_retransmission(node, now):
     """A kept message whose time is over, or -1."""
-    for w in range(WAITING):
+    for w in range(node.kept):
         if node.wait_kind[w] != FREE and after(now, node.wait_due[w]):
             return w
     return -1
@@ -131,7 +131,7 @@ def due_retransmission(node, now):
 
 def is_behind(node, dest, seq):
     """1 if an older message to the same recipient is looking for a way: one at a time does."""
-    for w in range(WAITING):
+    for w in range(node.kept):
         if node.wait_kind[w] == DATA and node.wait_dest[w] == dest:
             if node.wait_tries[w] > SURE_AFTER and later(seq, node.wait_seq[w]):
                 return 1
@@ -148,7 +148,7 @@ def send_buffered(node, params, now, i, owner, handle, out):
     node.q_owner[i] = owner
     sent = 0
     if node.q_kind[i] != ALARM and is_in_vain(node, node.q_dest[i], node.q_seq[i]):
-        drop(node, i)
+        drop(node, params, i)
     else:
         sent = send_on(node, params, now, i, out)
     if not sent and owner < 0:
@@ -169,10 +169,10 @@ def crowds(node, dest):
     if not is_in_vain(node, dest, (node.seq + 1) & MASK16):
         return 0
     count = 0
-    for w in range(WAITING):
+    for w in range(node.kept):
         if node.wait_kind[w] == DATA and node.wait_dest[w] == dest:
             count = count + 1
-    return count >= WAITING // 2
+    return count >= node.kept >> 1
 
 
 def is_queued(node, seq):
@@ -180,7 +180,7 @@ def is_queued(node, seq):
 
     Where several are under way, one that is late can make a node take a new one for it.
     """
-    for i in range(QUEUE):
+    for i in range(node.places):
         if node.q_state[i] != FREE and node.q_seq[i] == seq and node.q_kind[i] == DATA:
             if node.q_origin[i] == node.number:
                 return 1
@@ -235,7 +235,7 @@ def pass_over(node, w, before, due):
     seq = node.wait_seq[w]
     if node.wait_kind[w] != DATA or node.wait_flags[w] & ORDERED == 0:
         return
-    for v in range(WAITING):
+    for v in range(node.kept):
         if v != w and node.wait_kind[v] == DATA and node.wait_dest[v] == node.wait_dest[w]:
             if node.wait_flags[v] & ORDERED and get_before(node, v) == seq:
                 found = node.wait_seq[v] if before == seq else before
@@ -253,16 +253,25 @@ def on_end_ack(node, params, frame, now, out):
         return
     word = frame.origin // BITS
     node.met[word] = node.met[word] | 1 << (frame.origin % BITS)
-    for w in range(WAITING):
-        if node.wait_kind[w] != FREE and node.wait_seq[w] == get16(frame, at):
-            if node.wait_dest[w] == frame.origin or node.wait_kind[w] == ALARM:
+    count = 1
+    if params.mode == TABLES:
+        count = (frame.length - at) >> 1
+    for n in range(count):
+        note_arrived(node, params, now, frame.origin, get16(frame, at + 2 * n), out)
+    advance_retries(node, params, now, frame.origin, out)
+
+
+def note_arrived(node, params, now, who, seq, out):
+    """`who` has our packet of that number."""
+    for w in range(node.kept):
+        if node.wait_kind[w] != FREE and node.wait_seq[w] == seq:
+            if node.wait_dest[w] == who or node.wait_kind[w] == ALARM:
                 learn_round_trip(node, params, w, now)
                 if is_own_crossing(node, w):
                     node.heard_out = 1
                 report(out, REPORT_ARRIVED, node.wait_handle[w], node.wait_seq[w])
                 pass_over(node, w, node.wait_seq[w], -1)
                 node.wait_kind[w] = FREE
-    advance_retries(node, params, now, frame.origin, out)
 
 
 def advance_retries(node, params, now, dest, out):
@@ -271,7 +280,7 @@ def advance_retries(node, params, now, dest, out):
     Who acknowledges much would else use up all tries before the first of them can arrive.
     """
     pause = timeout_min(node, params)
-    for w in range(WAITING):
+    for w in range(node.kept):
         if node.wait_kind[w] == DATA and node.wait_dest[w] == dest and node.wait_tries[w] > 1:
             due = (node.wait_sent[w] + pause) & MASK30
             if after(now, due):

@@ -18,7 +18,6 @@ from innervate.networks.mesh.protocol.constants import (
     TABLE_FREE,
     TREE,
 )
-from innervate.networks.mesh.protocol.fields import QUEUE
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16, store
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD, place_of
 from innervate.networks.mesh.protocol.queue import NOBODY_GAVE, WAITS, compose, drop, enqueue, kick
@@ -112,7 +111,7 @@ def note_request(node, frame, k):
 
 def queued_request(node):
     """Where the request that we are to pass on waits in the queue, or -1."""
-    for i in range(QUEUE):
+    for i in range(node.places):
         if node.q_state[i] == WAITS and node.q_kind[i] == REQUEST:
             return i
     return -1
@@ -129,7 +128,7 @@ def queue_request(node, params, now, frame, wait, out):
         node.q_copies[i] = params.copies
         node.q_due[i] = (now + wait + draw(node, params.jitter_us + 1)) & MASK30
         if not add_hop(node, i):
-            drop(node, i)
+            drop(node, params, i)
 
 
 def await_better(node, params, now, frame, out):

@@ -19,9 +19,14 @@ from innervate.networks.mesh.protocol.constants import (
     TABLE_FREE,
 )
 from innervate.networks.mesh.protocol.duplicates import clear_skipped, skip
-from innervate.networks.mesh.protocol.fields import QUEUE
 from innervate.networks.mesh.protocol.frames import add_hop, was_at
-from innervate.networks.mesh.protocol.hop import note_failed
+from innervate.networks.mesh.protocol.hop import (
+    await_next,
+    end_wait,
+    narrow,
+    note_failed,
+    overdue,
+)
 from innervate.networks.mesh.protocol.neighbours import DOUBT, is_lively, place_of, suspect, trust
 from innervate.networks.mesh.protocol.queue import UNACKED, WAITS, drop, kick
 from innervate.networks.mesh.protocol.route import (
@@ -34,13 +39,14 @@ from innervate.networks.mesh.protocol.route import (
 from innervate.networks.mesh.protocol.upward import uplink
 
 FAILURES_MAX = 6
+TIMEOUTS = 4  # in one call: the outbox has to hold what comes of them
 HOPS_MAX = 40  # failures of a routed packet at a node: every neighbour once, and some to spare
 
 
-def give_up(node, i, out):
+def give_up(node, params, i, out):
     """Nobody can take the packet in place i."""
     report(out, REPORT_DROPPED, node.q_origin[i], node.q_seq[i])
-    drop(node, i)
+    drop(node, params, i)
 
 
 def pass_on(node, params, i, who):
@@ -56,7 +62,7 @@ def enter(node, params, i, out):
     if node.q_ttl[i] > 0 and room_of(node, params, i) > node.q_length[i] and add_hop(node, i):
         node.q_ttl[i] = node.q_ttl[i] - 1
         return 1
-    give_up(node, i, out)
+    give_up(node, params, i, out)
     return 0
 
 
@@ -88,7 +94,7 @@ def send_on(node, params, now, i, out):
     if not resume_search(node, params, i) and not enter(node, params, i, out):
         return 0
     if not aim(node, params, i, out):
-        give_up(node, i, out)
+        give_up(node, params, i, out)
         return 0
     return 1
 
@@ -105,7 +111,7 @@ def climb(node, params, now, i, out):
     if who == NOBODY:
         node.q_fails[i] = node.q_fails[i] + 1
         if node.q_fails[i] > FAILURES_MAX:
-            give_up(node, i, out)
+            give_up(node, params, i, out)
             return
         trust(node, params)
         clear_skipped(node, node.q_origin[i], node.q_seq[i])
@@ -113,7 +119,7 @@ def climb(node, params, now, i, out):
         wait = (params.jitter_us >> 1) + draw(node, params.jitter_us + 1)
         node.q_due[i] = (now + wait) & MASK30
         if who == NOBODY:
-            give_up(node, i, out)
+            give_up(node, params, i, out)
             return
     pass_on(node, params, i, who)
 
@@ -132,21 +138,21 @@ def hop_failed(node, params, now, i, out):
     node.q_fails[i] = node.q_fails[i] + 1
     if kind == TABLE:
         suspect(node, params, now, failed, 0, out)
-        give_up(node, i, out)
+        give_up(node, params, i, out)
     elif is_upward(kind):
         suspect(node, params, now, failed, 0, out)
         skip(node, node.q_origin[i], node.q_seq[i], failed)
         if node.q_fails[i] > FAILURES_MAX:
-            give_up(node, i, out)
+            give_up(node, params, i, out)
         else:
             climb(node, params, now, i, out)
     else:
         suspect(node, params, now, failed, planned(node, params, node.q_dest[i]) == failed, out)
         learn_failure(node, params, i, failed)
         if not params.retry or node.q_fails[i] > HOPS_MAX or is_stale(node, params, now, i):
-            give_up(node, i, out)
+            give_up(node, params, i, out)
         elif not aim(node, params, i, out):
-            give_up(node, i, out)
+            give_up(node, params, i, out)
 
 
 def is_stale(node, params, now, i):
@@ -170,7 +176,7 @@ def turn_away(node, params, failed, out):
     """
     if not params.retry or params.failover < ALTERNATE or params.mode == TABLE_FREE:
         return
-    for i in range(QUEUE):
+    for i in range(node.places):
         waits = node.q_state[i] == WAITS and node.q_flags[i] & ACK_WANTED
         if waits and node.q_link_dst[i] == failed and node.q_kind[i] != TABLE:
             if is_upward(node.q_kind[i]):
@@ -195,12 +201,27 @@ def most_tries(node, params, i, who):
 
 def on_ack_timeout(node, params, now, out):
     """The hop's ack did not come in time."""
+    if params.hop_frames:
+        for _ in range(TIMEOUTS):
+            i = overdue(node, now)
+            if i >= 0:
+                end_wait(node, params, i)
+                unanswered(node, params, now, i, out)
+        await_next(node, now, out)
+        kick(node, params, now, out)
+        return
     i = node.busy
     if i < 0 or node.q_state[i] != UNACKED:
         return
     node.busy = -1
+    unanswered(node, params, now, i, out)
+    kick(node, params, now, out)
+
+
+def unanswered(node, params, now, i, out):
+    """The frame in place i was not acknowledged: once more, or another way."""
     who = place_of(node, params, node.q_link_dst[i])
-    if who < 0 or is_lively(node, who):
+    if narrow(node, params, now, who, i) and (who < 0 or is_lively(node, who)):
         note_missed(node, params, now)
     if node.q_tries[i] < most_tries(node, params, i, who):
         node.q_state[i] = WAITS
@@ -211,4 +232,3 @@ def on_ack_timeout(node, params, now, out):
             note_failed(node, who, i)
         hop_failed(node, params, now, i, out)
         turn_away(node, params, failed, out)
-    kick(node, params, now, out)

@@ -6,7 +6,14 @@ from math import ceil
 from typing import Any
 
 from innervate.networks.mesh.protocol import constants as w
-from innervate.networks.mesh.protocol.fields import NEIGHBOURS, PARAMS, POINTS, words
+from innervate.networks.mesh.protocol.fields import (
+    NEIGHBOURS,
+    PARAMS,
+    POINTS,
+    QUEUE,
+    WAITING,
+    words,
+)
 from innervate.networks.mesh.scenario.plan import CLASSES
 from innervate.networks.mesh.scenario.profiles import REPORT_CDB, Profile
 
@@ -80,6 +87,10 @@ def parameters(
         "places": min(width, NEIGHBOURS),
         "width": width,
         "told": int(profile.collisions),
+        "hop_frames": 0,
+        "gather": 0,
+        "queue": QUEUE,
+        "kept": WAITING,
         "suspect_us": chosen.micros("suspect_s", profile.suspect),
         "min_rssi": chosen.value("min_rssi_dbm", min_rssi_dbm),
         "e2e_us": chosen.micros("e2e_s", profile.e2e),

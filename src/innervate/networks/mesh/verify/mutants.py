@@ -20,7 +20,9 @@ MUTANTS = tuple(
     for texts in (
         ("nobody acknowledges a hop",
          "    if frame.flags & ACK_WANTED:\n        acknowledge(node, frame, out)\n", ""),
-        ("a hop's ack is ignored", "    drop(node, i)\n    return i\n", "    return -1\n"),
+        ("a hop's ack is ignored",
+         "                drop(node, params, i)\n                return i\n",
+         "                return -1\n"),
         ("a packet for us is taken for somebody else's",
          "    here = frame.dest == node.number\n", "    here = frame.dest == node.number + 1\n"),
         ("a message is kept under another number",
@@ -47,7 +49,7 @@ MUTANTS = tuple(
         ("a frame whose hop failed stays where it is",
          "UNACKED:\n        return\n    node.busy = -1\n", "UNACKED:\n        return\n"),
         ("frames behind the first are forgotten",
-         "            wake(node, now, out)\n            return\n", "            return\n"),
+         "            wake(node, params, now, out)\n            return\n", "            return\n"),
     )
 )  # fmt: skip
 

@@ -1,0 +1,114 @@
+"""python -m benchmarks.live.hops: messages a second and their delay over a line of nodes.
+
+Three processes on loopback, node 0 to node 2 over node 1, at a window of messages without an end
+and at 50 a second; plain and sealed in turn.
+"""
+
+import argparse
+import json
+import os
+import socket
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ENDS = str(Path(__file__).with_name("hop_ends.py"))
+KEY = "ab" * 32
+
+
+def free_ports(count):
+    """UDP ports that nobody has at this moment."""
+    socks = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(count)]
+    for sock in socks:
+        sock.bind(("127.0.0.1", 0))
+    ports = [sock.getsockname()[1] for sock in socks]
+    for sock in socks:
+        sock.close()
+    return ports
+
+
+class Line:
+    """Nodes 0 .. count - 1 as processes, each joined with the next; node 1 is the gateway."""
+
+    def __init__(self, folder, count, sealed=False, settings=None):
+        ports = free_ports(count)
+        self.nodes = []
+        for i in range(count):
+            peers = [f"127.0.0.1:{ports[k]}" for k in (i - 1, i + 1) if 0 <= k < count]
+            lines = ['kind = "mesh"', f"number = {i}", f"nodes = {count}",
+                     f'role = "{"gateway" if i == 1 else "node"}"',
+                     f'socket = "{folder / f"n{i}.sock"}"',
+                     *(["[keys]", "use = 1", f'secret.1 = "{KEY}"'] if sealed else []),
+                     "[protocol]", *(f"{k} = {v}" for k, v in (settings or {}).items()),
+                     "[[link]]", 'kind = "udp"', f'bind = "127.0.0.1:{ports[i]}"',
+                     f"peers = {json.dumps(peers)}"]  # fmt: skip
+            file = folder / f"n{i}.toml"
+            file.write_text("\n".join(lines) + "\n")
+            self.nodes.append(
+                subprocess.Popen(
+                    [sys.executable, ENDS, str(file)],
+                    stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+                )
+            )  # fmt: skip
+        for i in range(count):
+            self.hear(i)
+
+    def hear(self, i):
+        """The next line that node i says."""
+        return json.loads(self.nodes[i].stdout.readline())
+
+    def ask(self, i, words):
+        """What node i answers."""
+        self.nodes[i].stdin.write(words + "\n")
+        self.nodes[i].stdin.flush()
+        return self.hear(i)
+
+    def measure(self, size, seconds, plan):
+        """Messages from the first to the last: a second, CPU of each node, delay p50 and p99."""
+        last = len(self.nodes) - 1
+        for i in range(1, last + 1):
+            self.ask(i, "take")
+        told = self.ask(0, f"send {last} {size} {seconds} {plan}")
+        others = [self.ask(i, "take") for i in range(1, last + 1)]
+        late_us = sorted(others[-1]["late_us"])
+        count = max(told["delivered"], 1)
+        return {
+            "per_s": told["delivered"] / told["seconds"],
+            "states": told["states"],
+            "p50_us": statistics.median(late_us) if late_us else 0.0,
+            "p99_us": late_us[int(0.99 * len(late_us))] if late_us else 0.0,
+            "cpu_us": [1e6 * one["cpu_s"] / count for one in (told, *others)],
+        }
+
+    def stop(self):
+        for node in self.nodes:
+            node.stdin.close()
+        for node in self.nodes:
+            node.wait()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seconds", type=float, default=4.0)
+    parser.add_argument("--size", type=int, default=64, help="bytes of a message")
+    parser.add_argument("--hops", type=int, default=2)
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
+    args = parser.parse_args()
+    settings = dict(one.split("=") for one in args.set)
+    for sealed in (False, True):
+        with tempfile.TemporaryDirectory() as folder:
+            line = Line(Path(folder), args.hops + 1, sealed, settings)
+            for plan in ("w1", "w64", "r50"):
+                found = line.measure(args.size, args.seconds, plan)
+                cpu = " / ".join(f"{us:.0f}" for us in found["cpu_us"])
+                print(f"{'sealed' if sealed else 'plain ':6} {plan:4} {found['per_s']:7.0f} /s  "
+                      f"p50 {found['p50_us']:7.0f} us  p99 {found['p99_us']:7.0f} us  "
+                      f"CPU us a message {cpu}  {found['states']}  "
+                      f"load {os.getloadavg()[0]:.1f}", flush=True)  # fmt: skip
+            line.stop()
+
+
+if __name__ == "__main__":
+    main()
