@@ -14,11 +14,13 @@ from pathlib import Path
 
 from benchmarks.live.sides import cpu_s, memory_mib
 from innervate.dialect import plain
-from innervate.live.keys import Sealer
-from innervate.live.state import State
+from innervate.live.identity import enrol
+from innervate.live.keyring import MAC_BYTES, About, Keyring, Proven
+from innervate.live.session import Session
 from innervate.networks.mesh import frames as mesh
 from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.wire import seal
 
 REPEATS = 5
 PAYLOAD = 90
@@ -85,16 +87,62 @@ def main():
     frame = plain.make("Frame", mesh_fields.FRAME)()
     frame.kind, frame.length, frame.origin, frame.dest = mesh_const.DATA, PAYLOAD, 1, 2
     data = mesh.encode(frame)
-    here, there = (Sealer("mesh", i, {1: bytes(32)}, 1, State(None)) for i in (0, 1))
+    here, there = sessions()
     sealed_frames = [here.close(data) for _ in range(args.frames)]
     costs = {
         "frame to bytes": microseconds(mesh.encode, [frame] * args.frames),
         "bytes to frame": microseconds(lambda _: mesh.decode(data, frame), sealed_frames),
         "seal": microseconds(here.close, [data] * args.frames),
-        "open": microseconds(lambda data: there.take(there.open(data)), sealed_frames),
+        "open": microseconds(lambda data: opened(there, data), sealed_frames),
     }
     print(f"a frame of {len(data)} bytes, sealed {len(sealed_frames[0])}: "
           + ", ".join(f"{what} {us:.1f} us" for what, us in costs.items()))  # fmt: skip
+    tell_handshakes(200)
+
+
+def sessions():
+    """Both ends of a session."""
+    keys, who = (bytes(32), bytes([1]) * 32), Proven(1, bytes(8), 1)
+    return Session(1, 2, keys, who, 0, True), Session(2, 1, keys[::-1], who, 0, False)
+
+
+def opened(session, data):
+    """A sealed frame as a node takes it."""
+    _kind, _index, counter = seal.fields(data)
+    assert session.window.is_new(counter)
+    session.open(counter, data)
+    session.window.take(counter)
+
+
+def handshake(rings):
+    """A handshake between two keyrings, of nodes 0 and 1; the bytes of its messages."""
+    about = About(0, 0xFFFF, bytes(8), 1, "10.0.0.1:4700", "10.0.0.2:4700")
+    sides, sizes = [rings[k].handshake(rings[k].use, k == 0) for k in (0, 1)], []
+    while not sides[0].is_done:
+        k = len(sizes) % 2
+        certificate = rings[k].certificate if sizes else b""
+        said = about._replace(number=k, certificate=certificate)
+        head = bytes(5 if sizes else 1)
+        message = rings[k].close(rings[k].use, head + sides[k].write(said.encode()))
+        assert rings[1 - k].is_marked(rings[k].use, message)
+        sides[1 - k].read(message[len(head) : -MAC_BYTES])
+        if certificate:
+            rings[1 - k].prove(said, rings[k].use, sides[1 - k].far_static)
+        sizes.append(len(message))
+    return sizes
+
+
+def tell_handshakes(count):
+    """What a first contact costs, both sides together."""
+    for what, rings in (
+        ("network key", [Keyring(1, {1: bytes(32)}, 1) for _ in range(2)]),
+        ("identities", [Keyring(1, {}, 0, enrol(bytes(32), k, k, bytes(32))) for k in (0, 1)]),
+    ):
+        us = microseconds(handshake, [rings] * count)
+        print(f"handshake, {what}: messages of {handshake(rings)} bytes, {us:.0f} us")
+    ring = Keyring(1, {1: bytes(32)}, 1)
+    us = microseconds(lambda data: ring.is_marked(1, data), [bytes(100)] * count)
+    print(f"a stranger's first message: {us:.1f} us")
 
 
 if __name__ == "__main__":

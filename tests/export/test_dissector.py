@@ -253,8 +253,8 @@ def test_damage_is_flagged_as_the_decoders_find_it(kind, tmp_path, tshark):
 
 
 def test_a_sealed_frame_is_no_damage(tmp_path, tshark):
-    data = seal.header(3, 513, 77) + bytes(40)
+    data = seal.header(seal.FRAME, 513, 77) + bytes(40)
     capture = capture_of(tmp_path / "sealed.pcapng", "mesh", [data])
-    names = ["innervate.mesh.sealed." + name for name in ("key", "sender", "counter")]
+    names = ["innervate.mesh.sealed." + name for name in ("kind", "index", "counter")]
     found = fields_of(tshark, capture, [*names, "innervate.mesh.malformed"])
-    assert found == [dict(zip(names, (["3"], ["513"], ["77"]), strict=True))]
+    assert found == [dict(zip(names, (["0xc3"], ["0x00000201"], ["77"]), strict=True))]

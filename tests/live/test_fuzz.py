@@ -13,6 +13,8 @@ from hypothesis import strategies as st
 from innervate.live import status
 from innervate.live.channel import Medium
 from innervate.live.channel_radio import read_heard
+from innervate.live.contact import Contact
+from innervate.live.group import GroupContact
 from innervate.networks.mesh import frames as mesh
 from innervate.networks.mesh.live.alarms import KINDS, read_alarm
 from innervate.networks.mesh.live.order import Order
@@ -22,7 +24,8 @@ from innervate.networks.radio.live.stack import Frame as RadioFrame
 from innervate.networks.skin import frames as skin
 from innervate.networks.skin.live.items import Frame as SkinFrame
 from innervate.wire import cobs, seal
-from tests.live.test_keys import FRAMES, sealer
+from tests.live.pair import Wire, network_sealer
+from tests.live.test_keys import FRAMES
 
 FEW, MANY = 200, 100_000
 
@@ -61,8 +64,9 @@ def reads_line(data):
 
 
 def reads_sealed(data):
-    one = sealer(2)
-    assert one.open(data) is None
+    one, path = network_sealer(2), Wire()
+    one._contacts[0] = (GroupContact if len(data) % 2 else Contact)(one, path)
+    assert one.open(path, data) is None
     assert sum(one.dropped.values()) == 1
     if seal.is_sealed(data):
         seal.fields(data)

@@ -7,124 +7,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from innervate.live.errors import LiveError
-from innervate.live.keys import Sealer, read_key
+from innervate.live.keyring import read_key
+from innervate.live.keys import Sealer
 from innervate.live.receipts import DELIVERED
 from innervate.live.state import State
 from innervate.live.udp import UdpLink
 from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
-from innervate.wire import seal
-
-KEY, OTHER = bytes(range(32)), bytes(32)
-FRAME = b"\x48frame"
-
-
-def sealer(number, key=KEY, state=None):
-    return Sealer("mesh", number, {1: key}, 1, state or State(None))
-
-
-def taken(sealer_, data):
-    """The frame in sealed bytes, which it counts as taken; None if it is not taken."""
-    opened = sealer_.open(data)
-    if opened is None:
-        return None
-    sealer_.take(opened)
-    return opened.frame
-
-
-def test_what_one_seals_the_other_opens():
-    sealed = sealer(1).close(FRAME)
-    assert len(sealed) == len(FRAME) + 25
-    assert FRAME not in sealed
-    assert taken(sealer(2), sealed) == FRAME
-
-
-def test_a_frame_is_taken_once():
-    a, b = sealer(1), sealer(2)
-    frames = [a.close(bytes([k])) for k in range(40)]
-    assert [taken(b, data) for data in reversed(frames)] == [
-        bytes([k]) for k in reversed(range(40))
-    ]
-    assert [taken(b, data) for data in frames] == [None] * 40
-    assert b.dropped == {"sealed: replayed": 40}
-
-
-def test_a_frame_far_behind_the_newest_is_not_taken():
-    a, b = sealer(1), sealer(2)
-    old = a.close(FRAME)
-    a.counter += seal.WINDOW
-    assert taken(b, a.close(FRAME)) == FRAME
-    assert taken(b, old) is None
-
-
-def test_a_wrong_key_opens_nothing():
-    b = sealer(2, OTHER)
-    assert taken(b, sealer(1).close(FRAME)) is None
-    assert b.dropped == {"sealed: wrong key or damaged": 1}
-
-
-def test_a_frame_for_another_kind_of_network_is_not_taken():
-    other = Sealer("skin", 1, {1: KEY}, 1, State(None))
-    assert taken(sealer(2), other.close(FRAME)) is None
-
-
-@pytest.mark.parametrize("at", range(0, 31))
-def test_no_byte_can_be_changed(at):
-    sealed = bytearray(sealer(1).close(FRAME))
-    sealed[at] ^= 1
-    b = sealer(2)
-    assert taken(b, bytes(sealed)) is None
-    assert sum(b.dropped.values()) == 1
-
-
-def test_a_frame_in_the_clear_is_not_taken_by_a_node_with_a_key():
-    b = sealer(2)
-    assert taken(b, FRAME) is None
-    assert b.dropped == {"not sealed": 1}
-
-
-def test_counters_survive_a_restart_and_a_crash(tmp_path):
-    path = tmp_path / "n1.state"
-    first = sealer(1, state=State(path))
-    last = seal.fields(first.close(FRAME))[2]
-    second = sealer(1, state=State(path))  # the first was killed: it wrote nothing at its end
-    assert seal.fields(second.close(FRAME))[2] > last
-    second.note(True)
-    second.state.write()
-    third = sealer(1, state=State(path))
-    assert seal.fields(third.close(FRAME))[2] > seal.fields(second.close(FRAME))[2] - 2
-
-
-def test_a_restarted_node_takes_nothing_that_it_had_seen(tmp_path):
-    path = tmp_path / "n2.state"
-    a, b = sealer(1), sealer(2, state=State(path))
-    data = a.close(FRAME)
-    assert taken(b, data) == FRAME
-    b.note(False)
-    b.state.write()
-    b = sealer(2, state=State(path))
-    assert taken(b, data) is None
-    assert taken(b, a.close(FRAME)) == FRAME
-
-
-def test_keys_can_be_changed_while_frames_come():
-    a, b = sealer(1), sealer(2)
-    b.load_keys({1: KEY, 2: OTHER}, 1)
-    assert taken(b, a.close(FRAME)) == FRAME
-    a.load_keys({1: KEY, 2: OTHER}, 2)
-    assert taken(b, a.close(FRAME)) == FRAME
-    b.load_keys({2: OTHER}, 2)
-    a.load_keys({1: KEY}, 1)
-    assert taken(b, a.close(FRAME)) is None
-    assert b.dropped == {"sealed: unknown key": 1}
-
-
-def test_a_state_that_is_none_is_refused(tmp_path):
-    path = tmp_path / "n.state"
-    path.write_text("{}")
-    with pytest.raises(LiveError, match="not a node's state"):
-        State(path)
+from tests.live.pair import KEY, OTHER
 
 
 def test_keys_are_read_from_files(tmp_path):
@@ -150,7 +41,9 @@ FRAMES = st.one_of(
         lambda body: bytes([0x40 | body[0] & 31]) + body[1:]
     )
     .map(lambda body: body + binascii.crc_hqx(body, 0xFFFF).to_bytes(2, "big")),
-    st.binary(min_size=26, max_size=160).map(lambda rest: bytes([0xC1]) + rest),
+    st.tuples(st.integers(0xC0, 0xFF), st.binary(max_size=160)).map(
+        lambda parts: bytes([parts[0]]) + parts[1]
+    ),
 )
 
 

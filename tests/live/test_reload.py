@@ -2,10 +2,13 @@
 
 import asyncio
 import signal
+import subprocess
+import sys
 import threading
+import time
 
 from innervate import scenario as scenarios
-from innervate.live import status
+from innervate.live import hangup, status
 from innervate.live.up import Processes
 from tests.live.net import until
 
@@ -21,6 +24,20 @@ LINE = {
 
 def told(network, name):
     return status.ask_one(network.socket(name), {"do": "status"})
+
+
+ALONE = f"""kind = "mesh"
+number = 0
+nodes = 2
+socket = "{{folder}}/n0.sock"
+[keys]
+use = 1
+secret.1 = "{OLD}"
+[[link]]
+kind = "udp"
+bind = "127.0.0.1:0"
+peers = ["127.0.0.1:9"]
+"""
 
 
 class Sender(threading.Thread):
@@ -99,3 +116,22 @@ def test_what_cannot_be_reloaded_is_said_and_nothing_changes(tmp_path):
             await network.down()
 
     asyncio.run(main())
+
+
+def test_nobody_can_hang_up_on_a_node_that_is_starting(tmp_path):
+    path = tmp_path / "n0.toml"
+    path.write_text(ALONE.format(folder=tmp_path))
+    command = [sys.executable, "-m", "innervate.cli", "live", "node", str(path)]
+    with hangup.held():
+        node = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    try:
+        while not status.answers(tmp_path / "n0.sock"):
+            assert node.poll() is None
+            node.send_signal(signal.SIGHUP)
+            time.sleep(0.005)
+        node.send_signal(signal.SIGTERM)
+        _, said = node.communicate(timeout=FIRST_S)
+    finally:
+        node.kill()
+    assert node.returncode == 0
+    assert "keys reloaded" in said

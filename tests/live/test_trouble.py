@@ -16,11 +16,10 @@ import pytest
 
 from innervate.cli import live_status
 from innervate.live import status
-from innervate.live.keys import AHEAD, Sealer
 from innervate.live.notices import PERIOD_S, Notices
 from innervate.live.state import State
 from tests.live.net import until
-from tests.live.test_keys import FRAME, KEY, taken
+from tests.live.pair import KEY
 from tests.live.test_process import free_port
 
 FIRST_S = 30.0
@@ -96,13 +95,12 @@ def wait_until(what):
 def test_a_disk_that_is_full_for_a_while_does_not_end_a_node(tmp_path):
     port = free_port()
     page = f"http://127.0.0.1:{port}/metrics"
-    with running(tmp_path, metrics=f"127.0.0.1:{port}") as node:
-        told = node.told()["state"]
-        assert (told["file"], told["trouble"]) == (str(tmp_path / "n0.state"), "")
-        kept = (tmp_path / "n0.state").read_bytes()
-        resource.prlimit(node.process.pid, *FULL)
+    kept = b'{"epoch": 3}'
+    (tmp_path / "n0.state").write_bytes(kept)
+    with running(tmp_path, limits=[FULL], metrics=f"127.0.0.1:{port}") as node:
         wait_until(lambda: node.told()["counters"].get("state not written", 0) > 5)
         told = node.told()
+        assert told["state"]["file"] == str(tmp_path / "n0.state")
         assert told["state"]["trouble"] == "File too large"
         assert any("STATE NOT WRITTEN: File too large" in line for line in live_status.lines(told))
         text = urllib.request.urlopen(page, timeout=10).read().decode()
@@ -141,22 +139,6 @@ def test_a_state_file_in_a_folder_that_is_not_there_is_the_users_mistake(tmp_pat
         wait_until(lambda: node.said)
     assert "".join(node.said).count("\n") == 1
     assert f"{where}: cannot be written: No such file or directory" in node.said[0]
-
-
-def test_seals_go_on_where_the_file_cannot_be_written(tmp_path):
-    folder = tmp_path / "gone"
-    folder.mkdir()
-    state = State(folder / "n.state")
-    a, b = Sealer("mesh", 1, {1: KEY}, 1, state), Sealer("mesh", 2, {1: KEY}, 1, State(None))
-    assert taken(b, a.close(FRAME)) == FRAME
-    (folder / "n.state").unlink()
-    folder.rmdir()
-    a.counter += AHEAD
-    assert taken(b, a.close(FRAME)) == FRAME
-    assert (state.failed, state.trouble) == (1, "No such file or directory")
-    folder.mkdir()
-    assert state.write()
-    assert (state.failed, state.trouble) == (1, "")
 
 
 def flood(port, seconds):
@@ -259,7 +241,7 @@ def test_a_real_disk_that_is_full_and_has_room_again(tmp_path):
     with ExitStack() as stack:
         stack.callback(subprocess.run, ["umount", str(disk)], check=True)
         state = State(disk / "n.state")
-        state.seen = {"aa": {number: 1 << 40 for number in range(100)}}
+        state.revoked = bytes(3000)
         assert state.write()
         with suppress(OSError), (disk / "junk").open("wb") as junk:
             while True:
@@ -267,6 +249,6 @@ def test_a_real_disk_that_is_full_and_has_room_again(tmp_path):
                 junk.flush()
         assert not state.write()
         assert state.trouble == "No space left on device"
-        assert State(disk / "n.state").seen == state.seen
+        assert State(disk / "n.state").revoked == state.revoked
         (disk / "junk").unlink()
         assert state.write()

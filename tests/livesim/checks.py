@@ -1,42 +1,58 @@
 """What must hold whatever happens; looked at all the time."""
 
-from collections import Counter, defaultdict
+from collections import Counter
+from unittest import mock
 
+from cryptography.hazmat.primitives.ciphers.aead import ChaCha20Poly1305
+
+from innervate.live import group, noise, session
 from innervate.live.receipts import DELIVERED, EXPIRED, FINAL, REFUSED
-from innervate.wire import seal
 
 ITEMS_MOST = 60_000  # objects that a node may hold, however long it runs
 
 
 class Nonces:
-    """No nonce is used twice for two different frames, by whatever life of whatever process.
+    """No nonce is used twice under a key, by whatever life of whatever process, for whatever.
 
-    Told of every datagram that leaves; what a life seals it seals in rising order.
+    While this is entered all that is encrypted goes through here; under a key it rises.
     """
 
     def __init__(self, world):
         self.world = world
-        self.keys = {}  # address: () -> the keys of the node there
-        self._lives = defaultdict(list)  # key, sender: [first, last, life] of each life
+        self._last = {}  # key: the newest nonce
+        self._rooms = [mock.patch.object(room, "ChaCha20Poly1305", self._cipher)
+                       for room in (group, noise, session)]  # fmt: skip
 
-    def __call__(self, source, _target, data):
-        told = self.keys.get(source[0])
-        parts = seal.fields(data) if seal.is_sealed(data) else None
-        if told is None or parts is None:
-            return
-        life, key = told(parts[0])
-        number, sender, counter = parts
-        lives = self._lives[key, sender]
-        if lives and lives[-1][2] is life:
-            last = lives[-1]
-            if counter == last[1] and data != last[3]:
-                self.world.fail(f"{life.name}: nonce {counter} of key {number} twice")
-            last[1], last[3] = max(last[1], counter), data
-            return
-        for first, newest, old, _ in lives:
-            if first <= counter <= newest:
-                self.world.fail(f"{life.name}: nonce {counter} was used by {old.name}")
-        lives.append([counter, counter, life, data])
+    def __enter__(self):
+        for room in self._rooms:
+            room.start()
+        return self
+
+    def __exit__(self, *_):
+        for room in self._rooms:
+            room.stop()
+
+    def _cipher(self, key):
+        return Cipher(self, key)
+
+    def used(self, key, nonce):
+        counter = int.from_bytes(nonce[4:], "little")
+        if counter <= self._last.get(key, -1):
+            self.world.fail(f"nonce {counter} was used before")
+        self._last[key] = counter
+
+
+class Cipher:
+    """The cipher, watched."""
+
+    def __init__(self, nonces, key):
+        self._nonces, self._key = nonces, key
+        self._own = ChaCha20Poly1305(key)
+        self.decrypt = self._own.decrypt
+
+    def encrypt(self, nonce, data, more):
+        self._nonces.used(self._key, nonce)
+        return self._own.encrypt(nonce, data, more)
 
 
 class Sent:

@@ -6,6 +6,7 @@ from contextlib import suppress
 from typing import NamedTuple
 
 from tests.livesim import hurts, mesh, radio, skin
+from tests.livesim.checks import Nonces
 from tests.livesim.world import SECOND, Broken, World
 
 
@@ -40,7 +41,7 @@ def run(seed, kind=None, **given):
         net.sniffers.append(note)
         nets.append(net)
 
-    with suppress(Broken):  # it is told by `world.broken`
+    with suppress(Broken), Nonces(world):  # what is broken is told by `world.broken`
         KINDS[kind or kinds[seed % len(kinds)]](world, watch, told, given)
     world.end()
     gc.collect()

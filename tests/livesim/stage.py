@@ -1,6 +1,6 @@
 """Machines with live nodes on them, joined by cables; what all kinds of networks share."""
 
-from tests.livesim.checks import ITEMS_MOST, Nonces, items_of
+from tests.livesim.checks import ITEMS_MOST, items_of
 from tests.livesim.host import HUP, TERM, Host
 from tests.livesim.net import Net, changed
 
@@ -24,8 +24,6 @@ class Stage:
         self.world, self.plan = world, plan
         self.chance = world.chance("stage")
         self.net = Net(world)
-        self.nonces = Nonces(world)
-        self.net.sniffers.append(self.nonces)
         self.storm, self.quiet_since, self.rotated_at = 0, None, None
         self.cables = {}
         self.ends = [[] for _ in range(plan.nodes)]
@@ -76,12 +74,7 @@ class Stage:
         host = Host(self.world, self.net, self.name(number), addresses, self.file(number))
         host.number = number
         host.on_begin = lambda life: self.listen(number, life)
-        for address in addresses:
-            self.nonces.keys[address] = lambda key, host=host: self._key_of(host, key)
         return host
-
-    def _key_of(self, host, number):
-        return host.life, host.life.node.sealer.keys[number]
 
     def rotate(self):
         """Another key in every file, under another number, and a signal to everybody."""

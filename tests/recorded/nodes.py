@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import random
 import re
 import sys
 import tempfile
@@ -43,7 +44,11 @@ KEY = bytes(range(32))
 
 
 class Clocked(time_by_hand.Clocked):
-    """Both clocks are the loop's."""
+    """Both clocks are the loop's, and chance is the same each time."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        super().__init__(loop)
+        self.chance = random.Random(11)
 
     def time_ns(self) -> int:
         return round(self.loop.time() * 1e9)

@@ -7,9 +7,9 @@ from functools import partial
 from itertools import cycle, islice
 from typing import Any
 
-from cryptography.hazmat.primitives.ciphers.aead import ChaCha20Poly1305
-
 from innervate.dialect import plain as records
+from innervate.live.keyring import Proven
+from innervate.live.session import Session
 from innervate.networks.mesh import frames as mesh
 from innervate.networks.mesh import payloads
 from innervate.networks.mesh.protocol import constants as mesh_const
@@ -163,22 +163,21 @@ def _stuffed() -> Any:
 
 
 def _sealed() -> Any:
-    """A frame as it is sealed for each network, under one key."""
-    made = {}
-    for kind in (1, 2, 3, 255):
-        for counter in COUNTERS:
-            head = seal.header(5, 0x1234, counter)
-            nonce = seal.nonce(kind, 0x1234, counter)
-            data = head + ChaCha20Poly1305(KEY).encrypt(nonce, b"a frame", head)
-            made[f"kind {kind}, counter {counter}"] = [nonce.hex(), data.hex()]
+    """A frame as it is sealed in a session, of each kind."""
+    made, who = {}, Proven(0x1234, bytes(8), 5)
+    for kind in (seal.FRAME, seal.CONTROL):
+        one = Session(1, 0x01020304, (KEY, KEY), who, 0, True)
+        for counter in COUNTERS[:-1]:
+            one.counter = counter
+            made[f"kind {kind:x}, counter {counter}"] = one.close(b"a frame", kind).hex()
     return made
 
 
 def _seals() -> Any:
     """What is read in front of sealed frames; of which bytes nothing is."""
     long = bytes(range(30))
-    some = [bytes((first,)) + long[1:size]
-            for first in (0xBF, 0xC0, 0xC7, 0xCF, 0xD0, 0xFF) for size in (25, 26, 30)]  # fmt: skip
+    marks = (0xBF, 0xC0, 0xC3, 0xC4, 0xC5, 0xC6, 0xD0, 0xFF)
+    some = [bytes((first,)) + long[1:size] for first in marks for size in (24, 25, 30)]
     return [[data[:1].hex(), len(data), seal.is_sealed(data), seal.fields(data)] for data in some]
 
 

@@ -75,6 +75,43 @@ def test_topohub() -> None:
         measured.from_topohub("sndlib/none")
 
 
+def test_an_id_that_is_there_twice_is_one_node() -> None:
+    """Published so: of a node with several devices, say. Links tell nodes by their ids."""
+    found = measured.from_json(json.dumps({
+        "nodes": [{"id": "a"}, {"id": "b", "x": 51.0, "y": 12.0}, {"id": "a", "x": 51.1, "y": 12.0},
+                  {"id": "c"}, {"id": "b", "x": 9.0, "y": 9.0}],
+        "links": [{"source": "a", "target": "c"}, {"source": "c", "target": "b"}],
+    }))  # fmt: skip
+    assert found.names == ["a", "b", "c"]
+    assert set(found.links) == {(0, 2), (1, 2)}
+    (_, north_a), (_, north_b), _ = found.points
+    assert 1.0e6 < north_a - north_b < 1.2e6, "the place that is known, and the first of two"
+
+
+def chain(count: int, weak: int) -> measured.Measured:
+    """A row of nodes, good links and from place `weak` on ever worse ones."""
+    links = {(i, i + 1): (1.0, 0.9 if i < weak else 0.8 - 0.01 * (i - weak))
+             for i in range(count - 1)}  # fmt: skip
+    return measured.Measured([str(i) for i in range(count)], links, [])
+
+
+@pytest.mark.parametrize("most", [2, 5, 6, 9, 19, 20, 40])
+def test_the_least_quality_that_leaves_few_enough(most: int) -> None:
+    network = chain(20, 5)
+    least = network.least_for(most, in_one=True)
+    if most < 6:
+        assert least is None, "five good links hold six nodes together"
+        return
+    assert least is not None
+    assert len(network.kept(least).largest().names) <= most
+    if least > 0:
+        assert len(network.kept(least - 0.01).largest().names) > most
+
+
+def test_no_links_leave_nothing_to_choose() -> None:
+    assert measured.Measured(["a"], {}, []).least_for(5, in_one=False) is None
+
+
 WRONG = (
     ("", "holds no links"),
     ("A B C", "line 1 is no link; write"),
@@ -83,7 +120,6 @@ WRONG = (
     ("{", "not valid JSON"),
     ("{}", 'lacks the lists "nodes" and "links"'),
     ('{"nodes": [{}], "links": []}', 'node 0 has no "id"'),
-    ('{"nodes": [{"id": 1}, {"id": 1}], "links": []}', "the id 1 is there twice"),
     ('{"nodes": [{"id": 1, "x": "a", "y": 2}], "links": []}', "x or y of node 0 is no number of"),
     ('{"nodes": [], "links": [1]}', "link 0 is no table"),
     ('{"nodes": [{"id": 1}], "links": [{"source": 1, "target": 2}]}', "link 0 leads to 2, which"),

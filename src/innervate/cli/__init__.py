@@ -30,6 +30,9 @@ def _node(file: str) -> int:
     from pathlib import Path
 
     try:
+        from innervate.live.hangup import hold
+
+        hold()  # until the node listens for it
         from innervate.live.main import run
 
         return run(Path(file))

@@ -17,7 +17,7 @@ def up(
     file: str,
     sets: list[str],
     cables: str,
-    sealed: bool,
+    sealed: str,
     folder: Path | None,
     for_s: float,
     as_json: bool,

@@ -42,6 +42,7 @@ def live_up(
     netns: Json = False,
     pty: Json = False,
     sealed: Json = False,
+    identities: Json = False,
     folder: Path | None = None,
     for_: Annotated[float, Parameter(name=["--for"])] = 0.0,
     json: Json = False,
@@ -60,6 +61,8 @@ def live_up(
         Skin: serial cables (ptys) instead of UDP.
     sealed
         With a key made for this run.
+    identities
+        With an identity for each node, made for this run.
     folder
         Where node files, logs and sockets go; a temporary one if left out.
     for_
@@ -72,8 +75,11 @@ def live_up(
     if netns and pty:
         raise errors.UserError("--netns and --pty exclude each other; name one")
     errors.check_seconds("--for", for_)
+    if sealed and identities:
+        raise errors.UserError("--sealed and --identities exclude each other; name one")
     cables = "netns" if netns else "pty" if pty else "udp"
-    return command.up(file, set_ or [], cables, sealed, folder, for_, json)
+    how = "key" if sealed else "identities" if identities else ""
+    return command.up(file, set_ or [], cables, how, folder, for_, json)
 
 
 @live_app.command(name="status")
@@ -240,6 +246,42 @@ def live_medium(
     from innervate.cli import live as command
 
     return command.medium(address, slot_us, turnaround_us)
+
+
+@live_app.command(name="enrol")
+def live_enrol(folder: Path, /, *numbers: int, nodes: int = 0) -> int:
+    """Make an identity for each node of a network: one file for each, which is all that it needs.
+
+    Parameters
+    ----------
+    folder
+        Of the network's authority; made if it is not there. Its authority.key stays with you.
+    numbers
+        Of the nodes.
+    nodes
+        Those with numbers 0 to nodes - 1, besides.
+    """
+    from innervate.cli import live_enrol as command
+
+    return command.enrol(folder, list(numbers), nodes)
+
+
+@live_app.command(name="revoke")
+def live_revoke(where: Path, /, *numbers: int, json: Json = False) -> int:
+    """Put nodes out whose identity has leaked; running nodes are told and tell each other.
+
+    Parameters
+    ----------
+    where
+        The authority's folder; or a revoked.list from it, to tell nodes on this machine.
+    numbers
+        Of the nodes; none tells of the list as it is.
+    json
+        Print JSON.
+    """
+    from innervate.cli import live_enrol as command
+
+    return command.revoke(where, list(numbers), json)
 
 
 @live_app.command(name="cut")

@@ -147,12 +147,14 @@ local function usual(self, tvb, tree)
   return name, ends()
 end
 
--- A sealed frame: only who holds the key can say more.
+-- A sealed frame: only who shook hands can say more.
 local function sealed(self, tvb, tree)
-  tree:add(self.key, tvb(0, 1), number(tvb, 4, 4))
-  tree:add(self.sender, tvb(1, 2), tvb(1, 2):uint())
-  tree:add(self.counter, tvb(3, 6), tvb(3, 6):uint64())
-  return string.format("sealed by %d", tvb(1, 2):uint()), ends()
+  local kind = tvb(0, 1):uint()
+  tree:add(self.sealed, tvb(0, 1))
+  if kind < SEALED_FRAME or kind > SEALED_LAST then return "handshake", ends() end
+  tree:add(self.index, tvb(1, 4))
+  tree:add(self.counter, tvb(5, 4))
+  return string.format("sealed for %08x", tvb(1, 4):uint()), ends()
 end
 
 -- A kind of network: what it is called, the link type of its frames, how they are read (nil: as is
@@ -198,9 +200,9 @@ local function define(name, encap, run, layouts)
   self.failed = field(ProtoField.uint8, "failed", "failed nodes", base.DEC)
   self.payload = field(ProtoField.bytes, "payload", "payload")
   self.body = field(ProtoField.string, "body", "payload")
-  self.key = field(ProtoField.uint8, "sealed.key", "key", base.DEC)
-  self.sender = field(ProtoField.uint16, "sealed.sender", "sender", base.DEC)
-  self.counter = field(ProtoField.uint64, "sealed.counter", "counter", base.DEC)
+  self.sealed = field(ProtoField.uint8, "sealed.kind", "kind", base.HEX)
+  self.index = field(ProtoField.uint32, "sealed.index", "index", base.HEX)
+  self.counter = field(ProtoField.uint32, "sealed.counter", "counter", base.DEC)
   self.experts[BAD_CRC] = ProtoExpert.new(prefix .. BAD_CRC, "Bad CRC", expert.group.CHECKSUM,
     expert.severity.ERROR)
   self.experts[MALFORMED] = ProtoExpert.new(prefix .. MALFORMED, "Malformed", expert.group.MALFORMED,
@@ -210,8 +212,8 @@ local function define(name, encap, run, layouts)
   function proto.dissector(tvb, pinfo, root)
     local tree = root:add(proto, tvb())
     pinfo.cols.protocol = string.upper(name)
-    local is_sealed = tvb:len() > SEALED_MIN and tvb(0, 1):uint() >= SEALED_MARK
-      and tvb(0, 1):uint() < SEALED_MARK + 16
+    local is_sealed = tvb:len() >= SEALED_MIN and tvb(0, 1):uint() >= SEALED_MARK
+      and tvb(0, 1):uint() < SEALED_END
     local info, from, to = (is_sealed and sealed or run or usual)(self, tvb, tree)
     tree:append_text(", " .. info)
     pinfo.cols.info = info

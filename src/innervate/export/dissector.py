@@ -65,7 +65,9 @@ def source() -> str:
     head = f"-- Frames of innervate {innervate.__version__}: {', '.join(n.name for n in known)}. "
     head += "Generated: `innervate export --dissector` writes it anew."
     numbers = {
-        "REST": layout.REST, "SEALED_MARK": seal.MARK, "SEALED_MIN": seal.OVERHEAD_BYTES
+        "REST": layout.REST, "SEALED_MARK": seal.MARK, "SEALED_MIN": seal.OVERHEAD_BYTES,
+        "SEALED_FRAME": seal.FRAME, "SEALED_LAST": seal.CONTROL,
+        "SEALED_END": seal.FIRST + seal.KEYS
     }  # fmt: skip
     return "\n".join([head, *_locals(numbers), "", lua("innervate.export"), *map(_network, known)])
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from innervate.live.errors import LiveError
-from innervate.live.keys import Sealer, read_key
 from innervate.live.links import Link
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import (
@@ -18,6 +17,9 @@ from innervate.live.nodefile import (
 )
 from innervate.live.state import State
 from innervate.network import networks
+
+if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
+    from innervate.live.keys import Sealer
 
 
 def build(loaded: Loaded) -> LiveNode:
@@ -68,8 +70,17 @@ def sealer_of(loaded: Loaded, state: State) -> Sealer | None:
     table = loaded.table
     if table.keys is None:
         return None
+    from innervate.live.keys import Sealer
+
+    identity = None
+    if table.keys.identity is not None:
+        from innervate.live.identity import load
+
+        identity = load(loaded.path.parent / table.keys.identity, table.number)
     keys = keys_of(table.keys, loaded)
-    return Sealer(table.kind, table.number, keys, table.keys.use, state)
+    sealer = Sealer(table.kind, table.number, keys, table.keys.use, state, identity, table.nodes)
+    sealer.has_bound_ends = table.keys.ends
+    return sealer
 
 
 def keys_of(table: KeysTable, loaded: Loaded) -> dict[int, bytes]:
@@ -78,6 +89,8 @@ def keys_of(table: KeysTable, loaded: Loaded) -> dict[int, bytes]:
     Raises:
         LiveError: a number is not 0 to 15, or a key is none.
     """
+    from innervate.live.keyring import read_key
+
     keys = {}
     for number, text in table.secret.items():
         if not (number.isascii() and number.isdigit() and int(number) <= 15):

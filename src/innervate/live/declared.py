@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import AsyncGenerator, Callable
 from functools import partial
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from msgspec import Meta
 
@@ -17,7 +17,6 @@ from innervate.dialect import plain
 from innervate.dialect.rng import seeded
 from innervate.live.build import links_of, sealer_of, state_of
 from innervate.live.errors import LiveError
-from innervate.live.keys import Sealer
 from innervate.live.links import Link
 from innervate.live.machine import machine
 from innervate.live.node import LiveNode
@@ -27,6 +26,9 @@ from innervate.live.state import State
 from innervate.live.streams import Stream
 from innervate.network import Network, networks
 from innervate.wire.frames import REASONS, Codec
+
+if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
+    from innervate.live.keys import Sealer
 
 FOR_EVER_US = 1 << 62  # protocols that do not say when a path is broken never call one so
 OUTBOX = 16

@@ -1,49 +1,25 @@
-"""Keys of a network: frames are sealed with ChaCha20-Poly1305, and no frame is taken twice."""
+"""Seals what leaves a node and opens what comes in; see docs/decisions/0028-nobody-pretends.md."""
 
 from __future__ import annotations
 
 from collections import Counter
-from hashlib import blake2s
-from pathlib import Path
-from typing import NamedTuple
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
 
-from innervate.live.errors import LiveError
+from innervate.live.contact import REVOKED, TWIN, Contact, is_same_end
+from innervate.live.engine import clock_us
+from innervate.live.group import GroupContact
+from innervate.live.identity import Identity, Revoked, read_revoked
+from innervate.live.keyring import LIFE_BYTES, About, Keyring, Proven
+from innervate.live.links import Path
 from innervate.live.machine import machine
 from innervate.live.state import State
 from innervate.network import networks
 from innervate.wire import seal
 
-KEY_BYTES = 32
-AHEAD = 1 << 18  # counters that the file reserves: 16 s of the clock, 26,000 frames/s between saves
-PER_MS = 16
-KEYS_KEPT = 16  # keys whose windows are kept, those that are no longer accepted included
-
-
-def read_key(text: str, folder: Path) -> bytes:
-    """A key from 64 hexadecimal digits, or from a file that holds them ("file:NAME").
-
-    Raises:
-        LiveError: it is no key, or the file cannot be read.
-    """
-    if text.startswith("file:"):
-        path = folder / text[5:]
-        try:
-            text = machine().read_text(path).strip()
-        except (OSError, UnicodeDecodeError) as error:
-            why = getattr(error, "strerror", None) or "no text"
-            raise LiveError(f"{path}: the key cannot be read: {why}") from None
-    try:
-        key = bytes.fromhex(text)
-    except ValueError:
-        key = b""
-    if len(key) != KEY_BYTES:
-        raise LiveError("a key is 64 hexadecimal digits; make one with: openssl rand -hex 32")
-    return key
-
-
-def mark_of(key: bytes) -> str:
-    """What the state's file calls a key: tells keys apart and nothing about them."""
-    return blake2s(b"innervate windows", key=key, digest_size=8).hexdigest()
+LIVES = 8  # starts of a node that are remembered
+TWIN_US = 1_000_000  # frames of a life that is over may still come for so long
+TELL_US = 10_000_000  # twins are told of each other so often
 
 
 class Opened(NamedTuple):
@@ -52,148 +28,247 @@ class Opened(NamedTuple):
     Attributes:
         frame: its bytes.
         sender: who sealed it.
-        mark: the key's.
-        counter: its number under that key.
+        counter: its number.
+        window: notes it once it is taken.
     """
 
     frame: bytes
     sender: int
-    mark: str
     counter: int
+    window: seal.Window
 
 
 class Sealer:
-    """Seals what leaves and opens what comes in.
+    """What a node has to do with keys.
 
     Args:
         kind: of network; frames of one are never taken for another's.
         sender: own number, 0 .. 65535.
-        keys: keys by number, 0 .. 15; what comes in may be sealed with any of them.
-        use: which one seals what leaves.
-        state: keeps the counters over a restart.
+        keys: keys by number, 0 .. 15; handshakes may begin with any of them.
+        use: which one our own begin with.
+        state: keeps the list of revoked nodes over a restart.
+        identity: of this node; then the keys are its own.
+        nodes: how many numbers there are; None = any.
 
     Attributes:
         dropped: frames that were not taken, by reason.
-        keys: those that are accepted now.
-        use: which one seals what leaves.
-        windows: which counters were taken, by the key's mark and the sender: whoever takes up
-            one key's numbers takes up no other's.
+        counts: handshakes, and frames that waited for one.
+        life: what this start is told apart by from others.
+        refused: how many frames were not taken.
+        twins: numbers that more than one node has, with who says so.
+        has_bound_ends: both ends of a path have to agree on their addresses.
     """
 
     def __init__(
-        self, kind: str, sender: int, keys: dict[int, bytes], use: int, state: State
+        self,
+        kind: str,
+        sender: int,
+        keys: dict[int, bytes],
+        use: int,
+        state: State | None = None,
+        identity: Identity | None = None,
+        nodes: int | None = None,
     ) -> None:
-        self.kind = networks()[kind].key_kind
-        self.sender = sender
-        self.state = state
+        self.ring = Keyring(networks()[kind].key_kind, keys, use, identity)
+        self.sender, self.nodes = sender, nodes
+        self.state = state or State(None)
+        self.life = machine().chance.randbytes(LIFE_BYTES)
         self.dropped: Counter[str] = Counter()
-        self.windows: dict[str, dict[int, seal.Window]] = {
-            mark: _windows(seen) for mark, seen in state.seen.items()
-        }
-        # Without a file no counter comes twice while the clock is right: they never fall behind it.
-        self.counter = max(state.counter, machine().time_ns() // 1_000_000 * PER_MS)
-        if self.counter + AHEAD > seal.COUNTER_MAX:
-            raise LiveError(
-                f"{state.path or 'clock'}: no counters are left for seals; set the clock, remove "
-                "the file, and give the network another key"
-            )
-        self.load_keys(keys, use)
-        for mark in self._marks.values():  # an old file does not say which key it was
-            for number, window in _windows(state.seen_before).items():
-                self.windows[mark].setdefault(number, window)
+        self.counts: Counter[str] = Counter()
+        self.twins: dict[int, str] = {}
+        self.refused = 0
+        self.has_bound_ends = True
+        self.said: Callable[[str, str], None] = lambda _matter, _text: None
+        self._contacts: dict[int, Contact] = {}
+        self._lives: dict[int, list[bytes]] = {}  # of each neighbour, the newest first
+        self._since: dict[int, int] = {}  # when its newest was first heard, us
+        self._told_at: dict[int, int] = {}
+        if identity is not None and self.state.revoked:
+            try:
+                self.ring.revoked = read_revoked(identity.authority, self.state.revoked)
+            except ValueError:
+                self.state.revoked = b""  # another authority's, of before
+
+    @property
+    def keys(self) -> dict[int, bytes]:
+        """Keys that are accepted now."""
+        return self.ring.keys
+
+    @property
+    def use(self) -> int:
+        """The key that handshakes of ours begin with."""
+        return self.ring.use
+
+    def start(self, paths: Iterable[Path]) -> None:
+        """Ask on every path who is there."""
+        for path in paths:
+            made = (GroupContact if path.is_group else Contact)(self, path)
+            self._contacts[path.port] = made
+            made.start()
+
+    def stop(self) -> None:
+        """Ask no more who is there."""
+        for contact in self._contacts.values():
+            contact.stop()
 
     def load_keys(self, keys: dict[int, bytes], use: int) -> None:
-        """Other keys from now on: our counter goes on, and each key has windows of its own.
+        """Other keys from now on; sessions that were made by those that are gone end."""
+        gone = self.ring.keys.keys() - keys.keys()
+        changed = use != self.ring.use
+        self.ring.load(keys, use)
+        for contact in self._contacts.values():
+            if gone:
+                contact.put_out(lambda who: who.key in gone)
+            elif changed:
+                contact.renew_all()
 
-        Those of keys that are no longer accepted are kept for a while: they may come back.
-        """
-        from cryptography.hazmat.primitives.ciphers.aead import ChaCha20Poly1305
+    def close(self, path: Path, data: bytes) -> bytes | None:
+        """Seal a frame for a path; None = it waits until somebody has proved to be there."""
+        return self._contacts[path.port].close(data)
 
-        self._ciphers = {number: ChaCha20Poly1305(key) for number, key in keys.items()}
-        self._marks = {number: mark_of(key) for number, key in keys.items()}
-        self.keys = dict(keys)
-        self.use = use
-        for mark in self._marks.values():
-            self.windows[mark] = self.windows.pop(mark, {})  # the newest last
-        while len(self.windows) > max(KEYS_KEPT, len(keys)):
-            del self.windows[next(iter(self.windows))]
-
-    def close(self, data: bytes) -> bytes:
-        """Seal a frame: 25 bytes longer."""
-        if self.counter >= self.state.counter:
-            self._reserve()
-        counter = self.counter
-        self.counter = counter + 1
-        head = seal.header(self.use, self.sender, counter)
-        nonce = seal.nonce(self.kind, self.sender, counter)
-        return head + self._ciphers[self.use].encrypt(nonce, data, head)
-
-    def open(self, data: bytes) -> Opened | None:
-        """The frame in sealed bytes; None if it is not genuine or was taken before (counted).
+    def open(self, path: Path, data: bytes) -> Opened | None:
+        """The frame in sealed bytes; None if there is none to be taken, for whatever reason.
 
         It counts as taken only when `take` is told so.
         """
         if not seal.is_sealed(data):
             return self._drop("not sealed")
+        contact = self._contacts.get(path.port)
+        if contact is None:
+            return self._drop("sealed: not started")
+        if data[0] in (seal.SECOND, seal.THIRD) or data[0] >= seal.FIRST:
+            why = contact.take(data)
+            self.counts["handshake messages"] += not why
+            return self._drop(f"sealed: {why}") if why else None
         parts = seal.fields(data)
         if parts is None:
             return self._drop("sealed: length")
-        number, sender, counter = parts
-        cipher = self._ciphers.get(number)
-        if cipher is None:
-            return self._drop("sealed: unknown key")
-        if sender == self.sender:
-            return self._drop("sealed: our own")
-        mark = self._marks[number]
-        window = self.windows[mark].get(sender)
-        if window is not None and not window.is_new(counter):
+        kind, index, counter = parts
+        if kind == seal.GROUP:
+            return self._open_group(contact, index, counter, data)
+        session = contact.session_of(index)
+        if session is None:
+            return self._drop("sealed: no such session")
+        if not session.window.is_new(counter):
             return self._drop("sealed: replayed")
-        from cryptography.exceptions import InvalidTag
-
-        head = data[: seal.HEADER_BYTES]
-        try:
-            frame = cipher.decrypt(
-                seal.nonce(self.kind, sender, counter), data[seal.HEADER_BYTES :], head
-            )
-        except InvalidTag:
+        frame = session.open(counter, data)
+        if frame is None:
             return self._drop("sealed: wrong key or damaged")
-        return Opened(frame, sender, mark, counter)
+        contact.heard(session)
+        self._look_for_twin(session.who)
+        if kind == seal.CONTROL:
+            session.window.take(counter)
+            self.counts["control frames"] += 1
+            contact.control(session, frame)
+            return None
+        return Opened(frame, session.who.number, counter, session.window)
+
+    def _open_group(self, contact: Contact, place: int, counter: int, data: bytes) -> Opened | None:
+        if not isinstance(contact, GroupContact):
+            return self._drop("sealed: for a group")
+        found = contact.open_group(place, counter, data)
+        if isinstance(found, str):
+            return self._drop(f"sealed: {found}")
+        frame, heard = found
+        self._look_for_twin(heard.who)
+        return Opened(frame, heard.who.number, counter, heard.window)
 
     def take(self, opened: Opened) -> None:
         """A frame is taken, and no copy of it will be."""
-        windows = self.windows[opened.mark]
-        if opened.sender not in windows:
-            windows[opened.sender] = seal.Window()
-        windows[opened.sender].take(opened.counter)
+        opened.window.take(opened.counter)
 
-    def note(self, clean: bool) -> None:
-        """Put into the state what is to be kept: counters that come next, at a clean end none.
+    def objection(self, about: About, path: Path) -> str:
+        """Why somebody cannot be who he says in a handshake; "" if he can."""
+        if about.number == self.sender:
+            if about.life == self.life:
+                return "our own"
+            self.note_twin(self.sender, f"it is on {path.name}")
+            return "another with our number"
+        if self.nodes is not None and about.number >= self.nodes:
+            return "from no node of ours"
+        own, far = path.bound_ends()
+        if self.has_bound_ends and not (
+            is_same_end(about.own, far) and is_same_end(about.far, own)
+        ):
+            return "from another place"
+        return ""
 
-        What was seen since can be replayed once if the node is then killed: write now and then.
+    def note_life(self, who: Proven) -> None:
+        """A node has proved to be there, in this life."""
+        lives = self._lives.setdefault(who.number, [])
+        if lives and lives[0] == who.life:
+            return
+        if who.life in lives:  # it was over: two of them take turns
+            lives.remove(who.life)
+            self.note_twin(who.number, "both are heard here")
+        lives.insert(0, who.life)
+        del lives[LIVES:]
+        self._since[who.number] = clock_us()
+
+    def _look_for_twin(self, who: Proven) -> None:
+        """What comes from an older life of a node, long after a newer one began, is another's."""
+        lives = self._lives.get(who.number)
+        if not lives or lives[0] == who.life:
+            return
+        now = clock_us()
+        if now - self._since[who.number] < TWIN_US:
+            return
+        self.note_twin(who.number, "both are heard here")
+        if now - self._told_at.get(who.number, -TELL_US) >= TELL_US:
+            self._told_at[who.number] = now
+            for contact in self._contacts.values():
+                for session in contact.sessions.get(who.number, []):
+                    other = lives[0] if session.who.life != lives[0] else who.life
+                    contact.tell(session, TWIN, other)
+
+    def note_twin(self, number: int, where: str) -> None:
+        """Two nodes have one number: count it, and say so."""
+        self.counts["two nodes with one number"] += 1
+        self.twins[number] = where
+        whose = "our number" if number == self.sender else "one number"
+        self.said("twin", f"two nodes have {whose}, {number}: {where}; give one of them another")
+
+    def revoke(self, data: bytes) -> bool:
+        """Take over a newer list of revoked nodes, and hand it on; False = it is none or not newer.
+
+        Raises:
+            ValueError: never; what is not signed is dropped and counted.
         """
-        if clean:
-            self.state.counter = self.counter
-        elif self.state.counter - self.counter < AHEAD // 2:
-            self.state.counter = self.counter + AHEAD
-        self.state.seen = {
-            mark: {sender: window.highest for sender, window in windows.items()}
-            for mark, windows in self.windows.items()
-        }
+        identity, old = self.ring.identity, self.ring.revoked
+        if identity is None or data == old.data:
+            return False
+        try:
+            new = read_revoked(identity.authority, data)
+        except ValueError:
+            self._drop("sealed: a list that our authority has not signed")
+            return False
+        if new.version <= old.version:
+            return False
+        self._put_out(new)
+        return True
+
+    def _put_out(self, new: Revoked) -> None:
+        self.ring.revoked = new
+        self.state.revoked = new.data
+        self.state.write()
+        self.said("revoked", f"{len(new.serials)} certificates are put out, list {new.version}")
+        for contact in self._contacts.values():
+            contact.put_out(lambda who: who.serial in new.serials)
+            for session in contact.all_sessions():
+                contact.tell(session, REVOKED, new.data)
+
+    def status(self) -> dict[str, Any]:
+        """Which key handshakes begin with, which are accepted; with an identity, its own."""
+        told: dict[str, Any] = {"use": self.use, "accepted": sorted(self.keys)}
+        if self.ring.identity is not None:
+            revoked = self.ring.revoked
+            told["identity"] = {"serial": self.ring.identity.serial, "list": revoked.version,
+                                "revoked": sorted(revoked.serials)}  # fmt: skip
+        if self.twins:
+            told["twins"] = {str(number): where for number, where in self.twins.items()}
+        return told
 
     def _drop(self, reason: str) -> Opened | None:
+        self.refused += 1
         self.dropped[reason] += 1
         return None
-
-    def _reserve(self) -> None:
-        """The file reserves the counters that come next; where it cannot be written, we go on.
-
-        A node that is silent helps nobody, and no counter comes twice unless it is then killed and
-        the clock set back.
-        """
-        self.note(False)
-        self.state.write()
-
-
-def _windows(seen: dict[int, int]) -> dict[int, seal.Window]:
-    """Windows in which nothing up to the newest counter of each sender is new."""
-    return {sender: seal.Window(highest) for sender, highest in seen.items()}

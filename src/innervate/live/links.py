@@ -18,12 +18,15 @@ class Path:
         own: the near end's name, where it has one of its own; the far end's path is called so.
         ends: what captures call the near and the far end, as the other node does; "" not known.
         port: its place in the node's file, from 0; protocols with ports know it by that.
+        is_group: whoever hears it, hears all that is sent on it, and there may be many.
         up: False while its device is away.
         cut: True = it carries nothing, as if its plug had come out; for tests and experiments.
         loss: share of the frames that are lost as they come in, 0 to 1; as of a loose plug.
         heard_at: when a good frame came in last, us of the driver's clock; 0 never.
         counters: frames and bytes out and in, and why frames were not sent.
     """
+
+    is_group = False
 
     def __init__(self, name: str, port: int) -> None:
         self.name = name
@@ -35,6 +38,10 @@ class Path:
         self.loss = 0.0
         self.heard_at = 0
         self.counters: Counter[str] = Counter()
+
+    def bound_ends(self) -> tuple[str, str]:
+        """Names of both ends that a node at the far end knows, too; "" = there is none."""
+        return self.ends
 
     def send(self, data: bytes) -> None:
         """Send bytes; never waits and never raises: what cannot go is counted."""

@@ -10,7 +10,7 @@ from collections.abc import AsyncGenerator
 from pathlib import Path
 from typing import Any
 
-from innervate.live import status, tap
+from innervate.live import hangup, status, tap
 from innervate.live.build import build, keys_of
 from innervate.live.errors import LiveError
 from innervate.live.machine import machine
@@ -26,7 +26,7 @@ from innervate.live.streams import Form
 DRAIN_S = 2.0
 SAVE_S = 10.0
 HEARD_MAX = 4096  # what waits for a listener that reads slowly, or not at all
-REQUESTS = ("status", "send", "listen", "cut", "restore", "loose", "capture", "stop")
+REQUESTS = ("status", "send", "listen", "cut", "restore", "loose", "capture", "revoke", "stop")
 
 
 def run(path: Path) -> int:
@@ -56,6 +56,8 @@ class Process:
             self.page = MetricsPage(address(loaded.table.metrics, str(loaded.path)), self.node)
         self.ending = asyncio.Event()
         self.notices = Notices(self._say)
+        if sealer is not None:
+            sealer.said = self.notices.tell
         self._callers: Counter[str] = Counter()  # as they were told last
 
     async def run(self) -> None:
@@ -64,6 +66,7 @@ class Process:
         for number in (signal.SIGTERM, signal.SIGINT):
             loop.add_signal_handler(number, self.ending.set)
         loop.add_signal_handler(signal.SIGHUP, self.reload)
+        hangup.let_in()
         await self.server.start()
         try:
             if self.page is not None:
@@ -73,8 +76,8 @@ class Process:
             self._look()
             while not self.ending.is_set():
                 await self._sleep(SAVE_S)
-                if self.node.sealer is not None or self.node.state.trouble:
-                    self.node.save(False)
+                if self.node.state.trouble:
+                    self.node.save()
                 self._look()
             if not await self.node.drain(DRAIN_S):
                 self._say("stopped; messages were still under way")
@@ -89,9 +92,9 @@ class Process:
         """SIGHUP: read the file again; keys may be others, all else needs a restart."""
         try:
             fresh = load(self.loaded.path)
-            if self.rotation is None or fresh.table.keys is None:
-                raise LiveError(f"{fresh.path}: only other keys can be taken over without restart")
             keys = fresh.table.keys
+            if self.rotation is None or keys is None or keys.identity is not None:
+                raise LiveError(f"{fresh.path}: only other keys can be taken over without restart")
             self.rotation.begin(keys_of(keys, fresh), keys.use, keys.grace_s)
         except LiveError as error:
             self._say(f"not reloaded: {error}")
@@ -150,12 +153,23 @@ class Process:
             await writer.line({"path": path.name, "cut": path.cut, "loss": path.loss})
         elif what in self.node.requests:
             await writer.line(self.node.requests[what](request))
+        elif what == "revoke":
+            await writer.line(self._revoke(bytes.fromhex(request["list"])))
         elif what == "stop":
             self.ending.set()
             await writer.line({"ok": True})
         else:
             known = ", ".join((*REQUESTS, *self.node.requests))
             raise ValueError(f'a request has "do": {known}')
+
+    def _revoke(self, data: bytes) -> dict[str, Any]:
+        sealer = self.node.sealer
+        if sealer is None or sealer.ring.identity is None:
+            raise ValueError("this node has no identity, and knows nobody's")
+        is_new = sealer.revoke(data)
+        if not is_new and data != sealer.ring.revoked.data:
+            raise ValueError("not signed by this network's authority, or older than what is known")
+        return {"version": sealer.ring.revoked.version, "new": is_new}
 
     async def _send(self, request: dict[str, Any], writer: status.Writer) -> None:
         receipt = self.node.send_request(request)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from innervate.live.engine import Engine, Stack, clock_us
-from innervate.live.keys import Sealer
 from innervate.live.links import Link, Path
 from innervate.live.machine import machine
 from innervate.live.receipts import Receipt
 from innervate.live.state import State
 from innervate.live.streams import Arrivals, Stream
+
+if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
+    from innervate.live.keys import Sealer
 
 CUT = "cable cut"  # as captures of simulations call it
 # When (ns since 1970), which port, True = it left, its bytes, why it was dropped ("" = it was not).
@@ -76,22 +78,24 @@ class LiveNode:
         )
         for link in self.links:
             await link.open(self._receive)
-        self.save(False)
+        self.save()
         self.state.check_place()
+        if self.sealer is not None:
+            self.sealer.start(self.paths)
         self.engine.start(0 if self.state.fresh else 1)
 
     async def stop(self) -> None:
         """Stop at once, as if switched off; `drain` first to get rid of what is under way."""
         if self.engine is not None:
             self.engine.stop()
+        if self.sealer is not None:
+            self.sealer.stop()
         for link in self.links:
             link.close()
-        self.save(True)
+        self.save()
 
-    def save(self, clean: bool) -> None:
-        """Write what is kept over a restart; `clean` = nothing is sent any more."""
-        if self.sealer is not None:
-            self.sealer.note(clean)
+    def save(self) -> None:
+        """Write what is kept over a restart."""
         self.state.write()
 
     async def __aenter__(self) -> LiveNode:
@@ -135,9 +139,11 @@ class LiveNode:
         at_ns = machine().time_ns() if self.taps else 0
         opened = None
         if self.sealer is not None:
-            opened = self.sealer.open(data)
-            if opened is None:
-                self._tell(at_ns, path.port, False, data, "seal")
+            refused = self.sealer.refused
+            opened = self.sealer.open(path, data)
+            if opened is None:  # or it was said below the protocol
+                if self.sealer.refused > refused:
+                    self._tell(at_ns, path.port, False, data, "seal")
                 return
             data = opened.frame
         assert self.engine is not None
@@ -150,13 +156,12 @@ class LiveNode:
         self._tell(at_ns, path.port, False, data, why)
 
     def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
-        data = bare = self.stack.encode(frame)
-        if self.sealer is not None:
-            data = self.sealer.close(data)
+        bare = self.stack.encode(frame)
         ports = self.stack.ports_of(port, frame, attempt)
         for path in self.paths if ports is None else [self.paths[i] for i in ports]:
             at_ns = machine().time_ns() if self.taps else 0  # before anybody can have received it
-            if not path.cut:
+            data = bare if self.sealer is None else self.sealer.close(path, bare)
+            if data is not None and not path.cut:
                 path.send(data)
             self._tell(at_ns, path.port, True, bare, CUT if path.cut else "")
 
@@ -190,6 +195,7 @@ class LiveNode:
         total: Counter[str] = Counter() if self.engine is None else Counter(self.engine.counters)
         if self.sealer is not None:
             total.update({f"dropped: {why}": n for why, n in self.sealer.dropped.items()})
+            total.update(self.sealer.counts)
         strangers = sum(getattr(link, "strangers", 0) for link in self.links)
         if strangers:
             total["dropped: from a stranger"] = strangers
@@ -217,7 +223,7 @@ class LiveNode:
         """Which key seals, and which are accepted; None = frames go in the clear."""
         if self.sealer is None:
             return None
-        return {"use": self.sealer.use, "accepted": sorted(self.sealer.keys)}
+        return self.sealer.status()
 
     def _note_report(self, code: int, a: int, b: int) -> None:
         self.reports[code] += 1

@@ -52,10 +52,16 @@ LinkTable = UdpTable | MulticastTable | SerialTable | MediumTable
 
 
 class KeysTable(Struct, frozen=True, forbid_unknown_fields=True):
-    """[keys]: `secret.N` are keys by number, `use` seals what leaves; `grace_s` at reload."""
+    """[keys]: an `identity` of the node's own, or `secret.N`, keys of the whole network.
 
-    use: Annotated[int, Meta(ge=0, le=15)]
-    secret: dict[str, str]
+    With `use` handshakes begin; `grace_s` is for a reload. `ends` = False where addresses are
+    changed on the way.
+    """
+
+    identity: str | None = None
+    use: Annotated[int, Meta(ge=0, le=15)] = 0
+    secret: dict[str, str] = {}
+    ends: bool = True
     grace_s: Annotated[float, Meta(ge=0, le=86_400)] = 10.0
 
 
@@ -97,7 +103,12 @@ class NodeFile(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
             )
         if self.role is not None and self.role not in self.roles:
             raise LiveError(f"{where}: role of a {self.kind} node can be {', '.join(self.roles)}")
-        if self.keys is not None and str(self.keys.use) not in self.keys.secret:
+        if self.keys is not None and self.keys.identity is not None:
+            if self.keys.secret:
+                raise LiveError(
+                    f"{where}: keys.identity takes the place of keys.secret; remove one"
+                )
+        elif self.keys is not None and str(self.keys.use) not in self.keys.secret:
             raise LiveError(f"{where}: keys.use = {self.keys.use}, but there is no such secret")
 
 

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import asyncio
+from typing import TYPE_CHECKING
 
 from innervate.live.errors import LiveError
-from innervate.live.keys import Sealer
+
+if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
+    from innervate.live.keys import Sealer
 
 
 class Rotation:
     """Changes the keys of a running node.
 
-    New keys are accepted at once. For a grace time frames are still sealed with the old one, so
+    New keys are accepted at once. For a grace time handshakes still begin with the old one, so
     that the other nodes may be told; for a second one it is still accepted, until they have done
-    the same.
+    the same. Each key has its own times: another change in between does not make them longer.
 
     Args:
         sealer: the node's.
@@ -21,7 +24,9 @@ class Rotation:
 
     def __init__(self, sealer: Sealer) -> None:
         self.sealer = sealer
-        self._steps: list[asyncio.TimerHandle] = []
+        self._target = sealer.use
+        self._switches: list[asyncio.TimerHandle] = []
+        self._leaving: dict[int, asyncio.TimerHandle] = {}
 
     def begin(self, keys: dict[int, bytes], use: int, grace_s: float) -> None:
         """Take over other keys, from now on.
@@ -33,17 +38,39 @@ class Rotation:
         for number in keys.keys() & old.keys():
             if keys[number] != old[number]:
                 raise LiveError(f"keys.secret.{number} is another key now; give it a new number")
-        self.stop()
-        both = {**old, **keys}
-        self.sealer.load_keys(both, self.sealer.use)
         loop = asyncio.get_running_loop()
-        self._steps = [
-            loop.call_later(grace_s, self.sealer.load_keys, both, use),
-            loop.call_later(2 * grace_s, self.sealer.load_keys, keys, use),
-        ]
+        self.sealer.load_keys({**old, **keys}, self.sealer.use)
+        if use != self._target:
+            self._target = use
+            self._switches.append(loop.call_later(grace_s, self._switch, use))
+        for number in self._leaving.keys() & keys.keys():
+            self._leaving.pop(number).cancel()
+        for number in old.keys() - keys.keys() - self._leaving.keys():
+            self._leaving[number] = loop.call_later(2 * grace_s, self._leave, number)
+
+    def _switch(self, use: int) -> None:
+        """Begin with another key; those that were to be used before it are so no more."""
+        if use == self._target:
+            self.stop_switches()
+        if use in self.sealer.keys:
+            self.sealer.load_keys(self.sealer.keys, use)
+
+    def _leave(self, number: int) -> None:
+        del self._leaving[number]
+        if number == self.sealer.use:
+            self._switch(self._target)
+        left = {key: value for key, value in self.sealer.keys.items() if key != number}
+        self.sealer.load_keys(left, self.sealer.use)
+
+    def stop_switches(self) -> None:
+        """No other key is used than now."""
+        for switch in self._switches:
+            switch.cancel()
+        self._switches = []
 
     def stop(self) -> None:
         """Keys stay as they are now."""
-        for step in self._steps:
-            step.cancel()
-        self._steps = []
+        self.stop_switches()
+        for leave in self._leaving.values():
+            leave.cancel()
+        self._leaving = {}

@@ -19,14 +19,19 @@ from innervate.live.up import Processes
 
 
 async def run(
-    plan: Any, folder: Path | None, cables: str, sealed: bool, for_s: float, as_json: bool,
+    plan: Any, folder: Path | None, cables: str, sealed: str, for_s: float, as_json: bool,
     scenario: str = "",
 ) -> int:  # fmt: skip
-    """Bring a scenario up and keep it until Ctrl-C, SIGTERM or the time is over; 0."""
+    """Bring a scenario up and keep it until Ctrl-C, SIGTERM or the time is over; 0.
+
+    Frames are sealed with a "key" of all nodes, with "identities", or go in the clear ("").
+    """
     own = folder is None
     folder = Path(tempfile.mkdtemp(prefix="innervate-")) if folder is None else folder.absolute()
-    keys = {"use": 1, "secret.1": secrets.token_hex(32)} if sealed else None
+    keys = {"use": 1, "secret.1": secrets.token_hex(32)} if sealed == "key" else None
     network = Processes(plan, folder, cables, keys)
+    if sealed == "identities":
+        network.keys = _identities(network)
     player = _player(network, as_json)
     ending = asyncio.Event()
     loop = asyncio.get_running_loop()
@@ -44,6 +49,19 @@ async def run(
         if own and os.path.isdir(folder):
             shutil.rmtree(folder, ignore_errors=True)
     return 0
+
+
+def _identities(network: Processes) -> dict[str, Any]:
+    """Have every node enrolled; the [keys] table."""
+    from innervate.live.enrolment import Authority
+
+    folder = network.folder / "keys"
+    if folder.exists():
+        shutil.rmtree(folder)  # of a run before
+    authority = Authority(folder)
+    for number in range(len(network.names)):
+        authority.enrol(number)
+    return {"identity": "keys/n{number}.identity"}
 
 
 async def _until(ending: asyncio.Event, playing: asyncio.Task[None], limit_s: float) -> None:

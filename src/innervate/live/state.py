@@ -1,4 +1,4 @@
-"""What a node keeps on disk over a restart: counters of its seals, the epoch that it has seen."""
+"""What a node keeps on disk over a restart: the epoch that it has seen, who was put out."""
 
 from __future__ import annotations
 
@@ -10,9 +10,7 @@ from typing import Any
 
 from innervate.live.errors import LiveError
 from innervate.live.machine import machine
-from innervate.wire.seal import COUNTER_MAX
 
-SENDER_MAX = 65_535
 # A file that can never be written there, whatever the disk does.
 MISPLACED = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.EACCES, errno.EPERM, errno.ELOOP)
 
@@ -27,10 +25,8 @@ class State:
 
     Attributes:
         fresh: True if there was no such file: the node runs for the first time.
-        counter: frames may be sealed with counters from here on.
-        seen: newest counter per sender, for each key (by its mark, see keys.py).
-        seen_before: the same from a file of an older version, which did not say under which key.
         epoch: newest epoch of a gateway that was followed; 0 = none.
+        revoked: the newest list of identities that are put out, signed; b"" = none.
         numbers: our packets may bear numbers from here on; -1 = nothing is known of any.
         trouble: why it could not be written, "" = it was when tried last.
         failed: how often it could not be written.
@@ -39,10 +35,8 @@ class State:
     def __init__(self, path: Path | None) -> None:
         self.path = path
         self.fresh = True
-        self.counter = 0
-        self.seen: dict[str, dict[int, int]] = {}
-        self.seen_before: dict[int, int] = {}
         self.epoch = 0
+        self.revoked = b""
         self.numbers = -1
         self.trouble = ""
         self.failed = 0
@@ -52,27 +46,18 @@ class State:
             return
         try:
             kept = json.loads(machine().read_text(path))
-            self.counter = _whole(kept["counter"], COUNTER_MAX)
             self.epoch = _whole(kept["epoch"], 255)
+            self.revoked = bytes.fromhex(kept.get("revoked", ""))
             self.numbers = _whole(kept.get("numbers", -1), 65_535, -1)
-            for name, value in kept["seen"].items():
-                if isinstance(value, dict):
-                    self.seen[name] = dict(map(_newest, value, value.values()))
-                else:
-                    self.seen_before.update([_newest(name, value)])
         except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-            raise LiveError(
-                f"{path}: not a node's state; remove it, and give the network another key if it "
-                "has one, for frames that were sent under this one could be played back"
-            ) from None
+            raise LiveError(f"{path}: not a node's state; remove it") from None
         self.fresh = False
 
     def write(self) -> bool:
         """Write the file; False if it could not be, with the reason in `trouble`."""
         if self.path is None:
             return True
-        kept = {"counter": self.counter, "seen": self.seen, "epoch": self.epoch,
-                "numbers": self.numbers}  # fmt: skip
+        kept = {"epoch": self.epoch, "numbers": self.numbers, "revoked": self.revoked.hex()}
         new = self.path.with_name(self.path.name + ".new")
         try:
             with machine().create(new) as file:
@@ -105,10 +90,6 @@ class State:
         if self._written_at is not None:
             ago = round((machine().monotonic_ns() - self._written_at) / 1e9, 1)
         return {"file": str(self.path), "written_s": ago, "trouble": self.trouble}
-
-
-def _newest(sender: str, counter: Any) -> tuple[int, int]:
-    return _whole(int(sender), SENDER_MAX), _whole(counter, COUNTER_MAX)
 
 
 def _whole(value: Any, most: int, least: int = 0) -> int:

@@ -6,7 +6,7 @@ import asyncio
 import errno
 import socket
 import struct
-from contextlib import suppress
+from contextlib import closing, suppress
 
 from innervate.live.errors import LiveError
 from innervate.live.links import Link, Path, Receiver
@@ -18,6 +18,7 @@ DATAGRAM_MAX = 2048
 BATCH = 64  # datagrams read at once, before timers have their turn
 REOPEN_S = 0.5
 RENEW_S = 1.0
+ANY = "0.0.0.0:"
 
 
 class UdpPath(Path):
@@ -31,6 +32,16 @@ class UdpPath(Path):
             self.ends = (here, f"{address[0]}:{address[1]}")
         self.link = link
         self.address = address
+
+    def bound_ends(self) -> tuple[str, str]:
+        """Both addresses; ours on any interface is the one from which the neighbour is reached."""
+        own, far = self.ends
+        if own.startswith(ANY):
+            sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
+            with suppress(OSError), closing(sock):
+                sock.connect(self.address)
+                own = f"{sock.getsockname()[0]}:{self.link.bind[1]}"
+        return own, far
 
     def send(self, data: bytes) -> None:
         """Send a datagram to the path's address; what has no room is counted and lost."""
@@ -162,6 +173,7 @@ class MulticastLink(UdpLink):
         self.group = group
         self.interface = interface
         self._group: UdpPath = self.paths[0]
+        self._group.is_group = True
 
     def _make(self) -> socket.socket:
         sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)

@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from innervate.live import files, private, status
+from innervate.live import files, hangup, private, status
 from innervate.live.asking import ask
 from innervate.live.deployment import Deployment, Table
 from innervate.live.errors import LiveError
@@ -31,7 +31,8 @@ class Processes:
         plan: a scenario's plan.
         folder: where files, logs and sockets go.
         cables: "udp" (loopback), "pty" or "netns" (as root).
-        keys: a [keys] table for all nodes; None = frames go in the clear.
+        keys: a [keys] table for all nodes, "{number}" in its identity is each one's; None = frames
+            go in the clear.
 
     Attributes:
         deployment: what it knows of the plan's nodes.
@@ -108,7 +109,7 @@ class Processes:
         command = [sys.executable, "-m", "innervate.cli", "live", "node", f"{name}.toml"]
         if self.lab is not None:
             command = self.lab.inside(self.names.index(name), command)
-        with (self.folder / f"{name}.log").open("a") as log:
+        with (self.folder / f"{name}.log").open("a") as log, hangup.held():
             self.processes[name] = subprocess.Popen(
                 command, cwd=self.folder, stdin=subprocess.DEVNULL, stdout=log, stderr=log
             )
@@ -202,7 +203,10 @@ class Processes:
         """Write a node's file, with the keys as they are now."""
         head, tables, links = self._tables[name]
         if self.keys is not None:
-            tables = {**tables, "keys": self.keys}
+            keys = {**self.keys}
+            if "identity" in keys:
+                keys["identity"] = keys["identity"].format(number=head["number"])
+            tables = {**tables, "keys": keys}
         path = self.folder / f"{name}.toml"
         private.write(path, files.text(head, tables, links))  # keys may stand in it
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import json
 import math
+from bisect import bisect_left
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -55,6 +56,26 @@ class Measured:
         links = [pair for pair, both in self.links.items() if min(both) > 0]
         part = components(neighbours(len(self.names), links))[0]
         return self._only(set(part), self.links)
+
+    def least_for(self, most: int, *, in_one: bool) -> float | None:
+        """The least quality, in hundredths, with which `kept` leaves at most so many nodes.
+
+        Args:
+            most: nodes.
+            in_one: only those of the largest part are to count.
+
+        Returns:
+            None where no quality leaves any.
+        """
+
+        def left(least: float) -> int:
+            some = self.kept(least)
+            return len((some.largest() if in_one else some).names)
+
+        best = max((min(both) for both in self.links.values()), default=0.0)
+        steps = range(math.floor(100 * best) + 1) if self.links else range(0)
+        fitting = bisect_left(steps, -most, key=lambda step: -left(step / 100))
+        return steps[fitting] / 100 if fitting < len(steps) else None
 
     def _only(self, kept: set[int], links: dict[tuple[int, int], Quality]) -> Measured:
         order = sorted(kept)
@@ -116,10 +137,12 @@ def from_json(text: str, types: Iterable[str] = ()) -> Measured:
         name = node.get("id") if isinstance(node, dict) else None
         if not isinstance(name, int | str):
             raise TopologyError(f'node {i} has no "id" that is a number or a string', "file")
-        if name in number:
-            raise TopologyError(f"the id {str(name)[:40]} is there twice", "file")
-        number[name] = i
-        degrees.append(_degrees(node, i))
+        place = _degrees(node, i)
+        if name not in number:
+            number[name] = len(degrees)
+            degrees.append(place)
+        elif degrees[number[name]] is None:  # links tell nodes by their ids: it is the same one
+            degrees[number[name]] = place
     found: dict[tuple[int, int], Quality] = {}
     others: dict[str, None] = {}
     for i, link in enumerate(links):

@@ -1,39 +1,43 @@
-"""Sealed frames: who sent it and a number that never comes twice, then the frame encrypted.
+"""Sealed frames: what their first bytes say, and which of them were taken already.
 
-Byte 0 is 0xC0 + key, bytes 1-2 the sender, 3-8 its counter, big-endian; then as many bytes as the
-frame has, encrypted, and a tag of 16. No frame in the clear begins with 0xC0. The cipher is the
-caller's: ChaCha20-Poly1305 (RFC 8439) with these 9 bytes as associated data.
+A frame in a session begins with its kind (0xC3, or 0xC5 for what nodes say to each other below
+the protocol), the receiver's index (4 bytes) and a counter (4); then as many bytes as the frame
+has, encrypted, and a tag of 16. To a group it begins with 0xC4, the sender (2), the epoch of its
+key (2) and the counter. The messages of a handshake are 0xD0 + key, 0xC1 and 0xC2. Integers are
+big-endian; no frame in the clear begins with 0xC0 or above.
 """
 
 MARK = 0xC0
+SECOND = 0xC1
+THIRD = 0xC2
+FRAME = 0xC3
+GROUP = 0xC4
+CONTROL = 0xC5
+FIRST = 0xD0
 KEYS = 16
 HEADER_BYTES = 9
 TAG_BYTES = 16
 OVERHEAD_BYTES = HEADER_BYTES + TAG_BYTES
-COUNTER_MAX = (1 << 48) - 1
+INDEX_MAX = (1 << 32) - 1
+COUNTER_MAX = (1 << 32) - 1
 WINDOW = 1024  # frames of a sender may overtake each other by so many
 
 
-def header(key: int, sender: int, counter: int) -> bytes:
-    """The 9 bytes in front of a sealed frame."""
-    return bytes((MARK | key, sender >> 8, sender & 255)) + counter.to_bytes(6, "big")
+def header(kind: int, index: int, counter: int) -> bytes:
+    """The 9 bytes in front of a sealed frame; `index` of a group is sender and epoch."""
+    return bytes((kind,)) + (index << 32 | counter).to_bytes(8, "big")
 
 
 def is_sealed(data: bytes) -> bool:
-    """True if these bytes claim to be a sealed frame."""
+    """True if these bytes claim to be sealed, or to belong to a handshake."""
     return len(data) > 0 and data[0] >= MARK
 
 
 def fields(data: bytes) -> tuple[int, int, int] | None:
-    """(key, sender, counter) of a sealed frame; None if it is too short or no such frame."""
-    if len(data) <= OVERHEAD_BYTES or not MARK <= data[0] < MARK + KEYS:
+    """(kind, index, counter) of a sealed frame; None if it is too short or no such frame."""
+    if len(data) < OVERHEAD_BYTES or not FRAME <= data[0] <= CONTROL:
         return None
-    return data[0] - MARK, data[1] << 8 | data[2], int.from_bytes(data[3:9], "big")
-
-
-def nonce(kind: int, sender: int, counter: int) -> bytes:
-    """The cipher's 12 bytes: never the same twice under a key that one network uses."""
-    return bytes((kind, 0, 0, 0, sender >> 8, sender & 255)) + counter.to_bytes(6, "big")
+    return data[0], int.from_bytes(data[1:5], "big"), int.from_bytes(data[5:9], "big")
 
 
 class Window:

@@ -378,6 +378,19 @@ def test_warnings() -> None:
     assert [bool(found) and "star" in found[0] for found in cities.values()] == [True, True, False]
 
 
+@pytest.mark.parametrize(("better", "remedy"), [
+    (100, "import.min_tq = 0.61 leaves few enough"), (270, "no import.min_tq leaves so few"),
+])  # fmt: skip
+def test_an_import_that_is_too_large_says_which_links_to_leave_out(
+    better: int, remedy: str, tmp_path: Path
+) -> None:
+    lines = [f"n{i} n{i + 1} {0.9 if i < better else 0.6}\n" for i in range(270)]
+    (tmp_path / "net.txt").write_text("".join(lines))
+    (tmp_path / "x.toml").write_text('kind = "mesh"\n[import]\nfile = "net.txt"\n')
+    with pytest.raises(ScenarioError, match=f"271 nodes are too many: .*; {remedy}"):
+        plan(load(tmp_path / "x.toml"))
+
+
 def test_template_and_imports_from_a_folder(tmp_path: Path) -> None:
     assert plan(loads(template("mesh"))).nodes == 30
     (tmp_path / "net.txt").write_text("A B 0.9 0.7\nB C\n")

@@ -5,10 +5,9 @@ from __future__ import annotations
 import asyncio
 from collections import Counter
 from collections.abc import AsyncGenerator, Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from innervate.dialect.arith import MASK16
-from innervate.live.keys import Sealer
 from innervate.live.links import Link
 from innervate.live.node import LiveNode
 from innervate.live.receipts import DELIVERED, EXPIRED, HOP_ACKED, REFUSED, Receipt
@@ -43,6 +42,9 @@ from innervate.networks.mesh.protocol.constants import (
     SAMPLE,
 )
 from innervate.networks.mesh.protocol.messages import payload_limit, resolve
+
+if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
+    from innervate.live.keys import Sealer
 
 HANDLES = 65_536
 NUMBERS = 4111  # of packets that are kept for a while; 16 restarts unheard lead round to no old one
@@ -266,7 +268,7 @@ class MeshNode(LiveNode):
     def _reported(self, code: int, a: int, b: int) -> None:
         if code == REPORT_GATEWAY and b != self.state.epoch:
             self.state.epoch = b
-            self.save(False)
+            self.save()
         if code == REPORT_ALARM:
             self.outcomes["alarms raised"] += 1
         if not REPORT_ACCEPTED <= code <= REPORT_FULL:

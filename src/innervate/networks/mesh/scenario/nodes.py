@@ -127,13 +127,17 @@ def _imported(model: MeshScenario, source: Source) -> Nodes:
             found = measured.read(import_path(table.file, source), table.types)
         else:
             found = measured.from_topohub(table.topohub or "")
-        found = found.kept(table.min_tq)
+        whole, found = found, found.kept(table.min_tq)
         if table.largest_component:
             found = found.largest()
     except TopologyError as error:
         raise source.error(("import", error.subject or key), str(error)) from None
     if len(found.names) > NODES_MAX:
-        raise source.error(("import",), too_many(len(found.names)) + "; raise import.min_tq")
+        least = whole.least_for(NODES_MAX, in_one=table.largest_component)
+        remedy = "no import.min_tq leaves so few"
+        if least is not None:
+            remedy = f"import.min_tq = {least:g} leaves few enough"
+        raise source.error(("import",), f"{too_many(len(found.names))}; {remedy}")
     return Nodes(source, found.names, found.points, dict(found.links))
 
 

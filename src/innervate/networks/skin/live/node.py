@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncGenerator, Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from innervate.live.keys import Sealer
 from innervate.live.links import Link
 from innervate.live.machine import machine
 from innervate.live.node import LiveNode
@@ -15,6 +14,9 @@ from innervate.live.streams import Stream
 from innervate.networks.skin.live.items import Command, Frame, Sent, Touch, put
 from innervate.networks.skin.live.stack import CellStack, SinkStack
 from innervate.networks.skin.protocol.constants import EVERYBODY, GIVE, REPORT_PARENT, SAMPLE
+
+if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
+    from innervate.live.keys import Sealer
 
 
 class CellNode(LiveNode):

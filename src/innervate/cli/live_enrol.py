@@ -1,0 +1,52 @@
+"""`innervate live enrol` and `revoke`: who is a node of a network, and who is one no more."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from innervate.cli import errors
+from innervate.live import status
+from innervate.live.enrolment import LIST, Authority, read_list
+from innervate.live.errors import LiveError
+
+
+def enrol(folder: Path, numbers: list[int], nodes: int) -> int:
+    """Make identities: a file for each number, besides those below `nodes`."""
+    wanted = list(dict.fromkeys([*range(nodes), *numbers]))
+    if not wanted:
+        raise errors.UserError("which nodes? name their numbers, or how many with --nodes")
+    authority = Authority(folder)
+    for number in wanted:
+        print(authority.enrol(number))
+    return 0
+
+
+def revoke(where: Path, numbers: list[int], as_json: bool) -> int:
+    """Put nodes out, and tell running nodes; 0 if one of them was told."""
+    if where.is_dir():
+        authority = Authority(where)
+        if not numbers and not authority.version:
+            raise errors.UserError(f"{where}: nobody is put out; name the numbers of nodes")
+        data = authority.revoke(numbers).data if numbers else read_list(where / LIST)
+    elif numbers:
+        raise errors.UserError(f"{where}: no folder of an authority; only it can put nodes out")
+    else:
+        data = read_list(where)
+    told, silent = [], []
+    for socket in status.sockets():
+        try:
+            answer = status.ask_one(socket, {"do": "revoke", "list": data.hex()})
+            told.append({"node": socket.stem, **answer})
+        except LiveError as error:
+            silent.append(str(error))
+    if as_json:
+        print(json.dumps({"told": told, "not": silent}))
+    else:
+        for line in silent:
+            print(line)
+        names = ", ".join(str(one["node"]) for one in told) or "nobody"
+        print(f"told {names}; nodes hand it on to each other")
+        if not told:
+            print(f"where a node runs: innervate live revoke {LIST}")
+    return 0 if told else 1

@@ -1,0 +1,368 @@
+"""First contact with whoever is at the far end of a path, and the sessions that come of it.
+
+A node asks who is there until somebody proves to be; it answers whoever asks with proof of its
+own. On a path to one neighbour all that leaves is sealed in the newest session.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+from innervate.live.engine import clock_us
+from innervate.live.keyring import ANYBODY, MAC_BYTES, About, Proven, read_about
+from innervate.live.links import Path
+from innervate.live.machine import machine
+from innervate.live.noise import KEY_BYTES, Broken, Handshake
+from innervate.live.session import COUNTERS, Session
+from innervate.wire import seal
+
+if TYPE_CHECKING:
+    from innervate.live.keys import Sealer
+
+WAIT_S = 0.05  # until one asks again, doubling
+WAIT_MAX_S = 1.0
+IDLE_S = 0.5  # between looks at a session that is well
+PROOF_US = 2_000_000  # a session in which nothing was heard for so long never came about
+SILENT_US = 3_000_000  # nothing was heard while we send: the neighbour may have lost the session
+REKEY_US = 600_000_000
+OLD_US = 3 * REKEY_US  # an older session is not taken any more
+ASKED = 4  # of our questions may be answered late
+ANSWERED = 8  # of others' are remembered
+SESSIONS = 3  # of a neighbour: frames of an older one may come late
+HELD = 8  # frames wait for the first session
+HELD_US = 100_000
+ALIVE, ANSWER = 0, 1  # control frames: "are you there", "I am"
+REVOKED = 2
+TWIN = 3
+
+
+class Answer(NamedTuple):
+    """What was answered to a first message: the same again if it is repeated."""
+
+    reply: bytes
+    handle: int
+    handshake: Handshake | None
+    about: About
+    key: int
+
+
+class Contact:
+    """What a node knows of the far end of one path.
+
+    Args:
+        sealer: the node's.
+        path: to one neighbour.
+
+    Attributes:
+        sessions: those that were proved, by the number of who is there; the newest first.
+    """
+
+    def __init__(self, sealer: Sealer, path: Path) -> None:
+        self.sealer, self.path = sealer, path
+        self.sessions: dict[int, list[Session]] = {}
+        self._current: Session | None = None
+        self._by_index: dict[int, Session] = {}
+        self._asked: dict[int, tuple[Handshake, int]] = {}
+        self._answered: dict[bytes, Answer] = {}
+        self._held: deque[tuple[int, bytes]] = deque(maxlen=HELD)
+        self._timer: asyncio.TimerHandle | None = None
+        self._wait_s = WAIT_S
+        self._sent_at = 0  # first frame since something was heard, us
+        self._due: set[int] = set()  # neighbours who are to prove themselves with another key
+
+    def start(self) -> None:
+        """Ask who is there, from the loop's next turn on."""
+        self._timer = asyncio.get_running_loop().call_later(0, self.beat)
+
+    def stop(self) -> None:
+        """Ask no more who is there."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+
+    def renew_all(self) -> None:
+        """Have all sessions made anew; they are taken until that is done."""
+        self._due.update(self.sessions)
+        self.hurry()
+
+    def hurry(self) -> None:
+        """Ask now, and often at first."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._wait_s = WAIT_S
+            self.start()
+
+    def beat(self) -> None:
+        """Look after the newest session; ask if there is none, or it is old or silent."""
+        now, wait_s = clock_us(), IDLE_S
+        for session in list(self._by_index.values()):
+            if now - session.made_at > OLD_US:
+                self.forget(session)
+            elif session.proof and not session.heard_at:
+                if now - session.made_at > PROOF_US:
+                    self.forget(session)
+                else:
+                    self._prove(session)
+                    wait_s = WAIT_S
+        if self._wants_session(now):
+            self.ask(ANYBODY)
+            wait_s = self._wait_s * (0.75 + machine().chance.random() / 2)
+            self._wait_s = min(2 * self._wait_s, WAIT_MAX_S)
+        self._timer = asyncio.get_running_loop().call_later(wait_s, self.beat)
+
+    def _wants_session(self, now: int) -> bool:
+        session = self._current
+        if session is None or self._due:
+            return True
+        if self._sent_at and now - self._sent_at > SILENT_US:
+            return True
+        return is_worn(session, now)
+
+    def ask(self, whom: int) -> None:
+        """Begin a handshake with somebody, or with anybody."""
+        index = self._draw_index()
+        ring = self.sealer.ring
+        handshake = ring.handshake(ring.use, True)
+        message = handshake.write(self._about(whom, index).encode())
+        self._asked[index] = (handshake, ring.use)
+        if len(self._asked) > ASKED:
+            del self._asked[next(iter(self._asked))]
+        self.sealer.counts["handshakes begun"] += 1
+        self.send(ring.close(ring.use, bytes((seal.FIRST + ring.use,)) + message))
+
+    def close(self, data: bytes) -> bytes | None:
+        """Seal a frame; None = nobody is there yet, and it waits a little."""
+        session = self._current
+        if session is None or session.counter >= COUNTERS:
+            self._held.append((clock_us() + HELD_US, data))
+            self.sealer.counts["held: no session yet"] += 1
+            return None
+        if not self._sent_at:
+            self._sent_at = clock_us()
+        return session.close(data)
+
+    def send(self, data: bytes) -> None:
+        """Put bytes on the path."""
+        if not self.path.cut:
+            self.path.send(data)
+
+    def take(self, data: bytes) -> str:
+        """A message of a handshake came: why it is not taken; "" = it is."""
+        kind = data[0]
+        try:
+            if kind == seal.SECOND:
+                return self._second(data)
+            if kind == seal.THIRD:
+                return self._third(data)
+            return self._first(data, kind - seal.FIRST)
+        except Broken:
+            return "wrong key or damaged"
+
+    def session_of(self, index: int) -> Session | None:
+        """The session that frames with this index are of."""
+        return self._by_index.get(index)
+
+    def heard(self, session: Session) -> None:
+        """Something genuine came in a session."""
+        self._sent_at = 0
+        if not session.heard_at:
+            session.heard_at = clock_us()
+            if not session.is_initiator:
+                self._up(session)
+        session.heard_at = clock_us()
+
+    def control(self, session: Session, data: bytes) -> None:
+        """The neighbour says something below the protocol."""
+        kind, body = data[0] if data else -1, data[1:]
+        if kind == ALIVE:
+            self.tell(session, ANSWER)
+        elif kind == REVOKED:
+            self.sealer.revoke(body)
+        elif kind == TWIN and body != self.sealer.life:
+            self.sealer.note_twin(self.sealer.sender, f"node {session.who.number} hears both")
+
+    def tell(self, session: Session, kind: int, body: bytes = b"") -> None:
+        """Say something below the protocol."""
+        if session.counter < COUNTERS:
+            self.send(session.close(bytes((kind,)) + self.greeting(kind) + body, seal.CONTROL))
+
+    def greeting(self, kind: int) -> bytes:
+        """What goes with "are you there" and "I am"."""
+        return b""
+
+    def forget(self, session: Session) -> None:
+        """Nothing is taken in this session any more."""
+        self._by_index.pop(session.own, None)
+        known = self.sessions.get(session.who.number, [])
+        if session in known:
+            known.remove(session)
+            if not known:
+                del self.sessions[session.who.number]
+        if session is self._current:
+            left = [one for several in self.sessions.values() for one in several]
+            self._current = max(left, key=lambda one: one.made_at, default=None)
+
+    def put_out(self, is_out: Callable[[Proven], bool]) -> bool:
+        """Forget every session with those of whom that is true, and ask anew; True = there were."""
+        gone = [session for session in self._by_index.values() if is_out(session.who)]
+        for session in gone:
+            self.forget(session)
+        if gone:
+            self._answered.clear()
+            self._asked.clear()
+            self.hurry()
+        return bool(gone)
+
+    def all_sessions(self) -> list[Session]:
+        """The newest session with each neighbour."""
+        return [several[0] for several in self.sessions.values()]
+
+    def _first(self, data: bytes, key: int) -> str:
+        ring = self.sealer.ring
+        if key not in ring.keys:
+            return "unknown key"
+        if len(data) < 1 + KEY_BYTES + MAC_BYTES or not ring.is_marked(key, data):
+            return "wrong key or damaged"
+        known = self._answered.get(data[1 : 1 + KEY_BYTES])
+        if known is not None:
+            self.send(known.reply)
+            return ""
+        handshake = ring.handshake(key, False)
+        about = read_about(handshake.read(data[1:-MAC_BYTES]))
+        why = self.sealer.objection(about, self.path)
+        if why or not self.is_for_us(about):
+            return why
+        index = self._draw_index()
+        own = self._about(about.number, index, ring.certificate)
+        message = bytes((seal.SECOND,)) + about.handle.to_bytes(4, "big")
+        reply = ring.close(key, message + handshake.write(own.encode()))
+        if handshake.is_done:
+            who = ring.prove(about, key, b"")
+            self._by_index[index] = Session(
+                index, about.handle, handshake.split(), who, clock_us(), False
+            )
+        waiting = None if handshake.is_done else handshake
+        self._remember(data[1 : 1 + KEY_BYTES], Answer(reply, index, waiting, about, key))
+        self.send(reply)
+        return ""
+
+    def is_for_us(self, about: About) -> bool:
+        """True if a first message is to be answered."""
+        return True
+
+    def _remember(self, ephemeral: bytes, answer: Answer) -> None:
+        self._answered[ephemeral] = answer
+        if len(self._answered) > ANSWERED:
+            oldest = self._answered.pop(next(iter(self._answered)))
+            session = self._by_index.get(oldest.handle)
+            if session is not None and not session.heard_at:
+                del self._by_index[oldest.handle]
+
+    def _second(self, data: bytes) -> str:
+        index, ring = int.from_bytes(data[1:5], "big"), self.sealer.ring
+        if index not in self._asked:
+            return "" if index in self._by_index else "no such handshake"
+        handshake, key = self._asked[index]
+        if key not in ring.keys or not ring.is_marked(key, data):
+            return "wrong key or damaged"
+        del self._asked[index]
+        about = read_about(handshake.read(data[5:-MAC_BYTES]))
+        why = self.sealer.objection(about, self.path)
+        if why:
+            return why
+        try:
+            who = ring.prove(about, key, handshake.far_static)
+        except ValueError as error:
+            return str(error)
+        proof = b""
+        if not handshake.is_done:
+            own = self._about(about.number, index, ring.certificate)
+            message = bytes((seal.THIRD,)) + about.handle.to_bytes(4, "big")
+            proof = ring.close(key, message + handshake.write(own.encode()))
+        session = Session(index, about.handle, handshake.split(), who, clock_us(), True)
+        session.proof = proof or b"\0"
+        self._by_index[index] = session
+        self._prove(session)
+        self._up(session)
+        return ""
+
+    def _prove(self, session: Session) -> None:
+        """The last message, and a question in the session that shows that it came about."""
+        if len(session.proof) > 1:
+            self.send(session.proof)
+        self.tell(session, ALIVE)
+
+    def _third(self, data: bytes) -> str:
+        index, ring = int.from_bytes(data[1:5], "big"), self.sealer.ring
+        if index in self._by_index:
+            return ""  # said again
+        found = [(ephemeral, answer) for ephemeral, answer in self._answered.items()
+                 if answer.handle == index]  # fmt: skip
+        if not found or found[0][1].handshake is None:
+            return "no such handshake"
+        ephemeral, answer = found[0]
+        if answer.key not in ring.keys or not ring.is_marked(answer.key, data):
+            return "wrong key or damaged"
+        self._answered[ephemeral] = answer._replace(handshake=None)
+        handshake = answer.handshake
+        assert handshake is not None
+        about = read_about(handshake.read(data[5:-MAC_BYTES]))
+        if about[:4] != (answer.about.number, self.sealer.sender, *answer.about[2:4]):
+            return "another than who asked"
+        try:
+            who = ring.prove(about, answer.key, handshake.far_static)
+        except ValueError as error:
+            return str(error)
+        session = Session(index, about.handle, handshake.split(), who, clock_us(), False)
+        self._by_index[index] = session
+        self.heard(session)
+        return ""
+
+    def _up(self, session: Session) -> None:
+        """A session was proved: from now on it is used."""
+        now, who = clock_us(), session.who
+        known = self.sessions.setdefault(who.number, [])
+        known.insert(0, session)
+        for old in known[SESSIONS:]:
+            self.forget(old)
+        self._current = session
+        self._due.discard(who.number)
+        self._wait_s, self._sent_at = WAIT_S, 0
+        self.sealer.note_life(who)
+        self.sealer.counts["handshakes"] += 1
+        revoked = self.sealer.ring.revoked
+        if revoked.data:
+            self.tell(session, REVOKED, revoked.data)
+        held, self._held = self._held, deque(maxlen=HELD)
+        for due, data in held:
+            if due >= now:
+                sealed = self.close(data)
+                if sealed is not None:
+                    self.send(sealed)
+
+    def _about(self, to: int, index: int, certificate: bytes = b"") -> About:
+        own, far = self.path.bound_ends()
+        return About(self.sealer.sender, to, self.sealer.life, index, own, far, certificate)
+
+    def _draw_index(self) -> int:
+        while True:
+            index: int = machine().chance.getrandbits(32)
+            if index not in self._by_index and index not in self._asked:
+                return index
+
+
+def is_worn(session: Session, now: int) -> bool:
+    """True if a new session should take this one's place; who began it asks for it first."""
+    late = REKEY_US if session.is_initiator else REKEY_US * 6 // 5
+    return now - session.made_at > late or session.counter > COUNTERS // 2
+
+
+def is_same_end(claimed: str, known: str) -> bool:
+    """True if two names of one end of a path can both be right; "" and any address: not known."""
+    if not claimed or not known or claimed == known:
+        return True
+    (host, _, port), (other, _, another) = claimed.rpartition(":"), known.rpartition(":")
+    return port == another and "0.0.0.0" in (host, other)

@@ -1,0 +1,133 @@
+"""The authority of a network: a folder in which nodes are enrolled, and put out again."""
+
+from __future__ import annotations
+
+import json
+import os
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from innervate.live import identity as identities
+from innervate.live import private
+from innervate.live.errors import LiveError
+from innervate.live.identity import REVOKED_MAX, Revoked
+from innervate.live.machine import machine
+
+AUTHORITY = "authority.key"
+LIST = "revoked.list"
+NUMBER_MAX = 65_534
+
+
+class Authority:
+    """Who says which node is which: keeps its key, and what was given to whom.
+
+    Args:
+        folder: of its files; made with a new authority if it is not there.
+
+    Attributes:
+        issued: (number, serial) of every identity.
+        revoked: serials that are put out.
+        version: of their list; 0 = there is none.
+
+    Raises:
+        LiveError: the folder holds something else, or cannot be written.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._path = folder / AUTHORITY
+        self._key, self._shared = (machine().chance.randbytes(32) for _ in range(2))
+        self.issued: list[tuple[int, int]] = []
+        self.revoked: set[int] = set()
+        self.version = 0
+        if self._path.exists():
+            self._read()
+
+    def _read(self) -> None:
+        try:
+            raw = tomllib.loads(self._path.read_text(encoding="utf-8"))
+            self._key, self._shared = bytes.fromhex(raw["key"]), bytes.fromhex(raw["shared"])
+            self.issued = [(int(number), int(serial)) for number, serial in raw["issued"]]
+            self.revoked, self.version = set(raw["revoked"]), int(raw["version"])
+            if len(self._key) != 32 or len(self._shared) != 32:
+                raise ValueError("a key is too short")
+        except OSError as error:
+            raise LiveError(f"{self._path}: cannot be read: {error.strerror}") from None
+        except (ValueError, KeyError, TypeError, RecursionError):
+            raise LiveError(f"{self._path}: not an authority's file; name another folder") from None
+
+    def enrol(self, number: int) -> Path:
+        """Make the identity of a node; its file.
+
+        Raises:
+            LiveError: the number is none, or a node that was not put out has it.
+        """
+        if not 0 <= number <= NUMBER_MAX:
+            raise LiveError(f"numbers of nodes are 0 to {NUMBER_MAX}, not {number}")
+        if any(one == number and serial not in self.revoked for one, serial in self.issued):
+            raise LiveError(
+                f"node {number} is enrolled already; put it out first: "
+                f"innervate live revoke {self.folder} {number}"
+            )
+        serial = 1 + max((one for _number, one in self.issued), default=0)
+        self.issued.append((number, serial))
+        path = self.folder / f"n{number}.identity"
+        made = identities.enrol(self._key, number, serial, self._shared)
+        self._write(self._path, self._text())
+        self._write(path, made.text())
+        return path
+
+    def revoke(self, numbers: list[int]) -> Revoked:
+        """Put nodes out; the list that all are to be told of.
+
+        Raises:
+            LiveError: one was never enrolled, or they are too many.
+        """
+        for number in numbers:
+            found = [serial for one, serial in self.issued if one == number]
+            if not found:
+                raise LiveError(f"node {number} was never enrolled in {self.folder}")
+            self.revoked.update(found)
+        if len(self.revoked) > REVOKED_MAX:
+            raise LiveError(
+                f"{len(self.revoked)} are put out, and a list holds {REVOKED_MAX}; enrol all "
+                "others in another folder"
+            )
+        self.version += 1
+        made = identities.revoke(self._key, self.version, frozenset(self.revoked))
+        self._write(self._path, self._text())
+        self._write(self.folder / LIST, made.data.hex() + "\n")
+        return made
+
+    def _text(self) -> str:
+        kept: dict[str, Any] = {
+            "key": self._key.hex(), "shared": self._shared.hex(),
+            "issued": [list(one) for one in self.issued],
+            "revoked": sorted(self.revoked), "version": self.version,
+        }  # fmt: skip
+        head = "# Whoever has this file can enrol nodes: keep it off all of them.\n"
+        return head + "".join(f"{key} = {json.dumps(value)}\n" for key, value in kept.items())
+
+    def _write(self, path: Path, text: str) -> None:
+        new = path.with_name(path.name + ".new")
+        try:
+            self.folder.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
+            private.write(new, text)
+            os.replace(new, path)
+        except OSError as error:
+            raise LiveError(f"{path}: cannot be written: {error.strerror}") from None
+
+
+def read_list(path: Path) -> bytes:
+    """A list of nodes that are put out, from its file.
+
+    Raises:
+        LiveError: it cannot be read, or is none.
+    """
+    try:
+        return bytes.fromhex(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise LiveError(f"{path}: cannot be read: {error.strerror}") from None
+    except ValueError:
+        raise LiveError(f"{path}: not a list of nodes that are put out") from None

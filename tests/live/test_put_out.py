@@ -1,0 +1,51 @@
+"""Identities on real processes: messages go, one node is put out by a command, the others go on."""
+
+import asyncio
+import os
+import subprocess
+import sys
+
+from innervate import scenario as scenarios
+from innervate.live import status
+from innervate.live.enrolment import Authority
+from innervate.live.up import Processes
+from tests.live.net import until
+from tests.live.test_reload import FIRST_S, LINE, told
+
+
+def last_state(network, name, to):
+    request = {"do": "send", "to": to, "payload": "00"}
+    for answer in status.ask(network.socket(name), request):
+        if answer["state"] in ("delivered", "expired", "refused"):
+            return answer["state"]
+    return "gone"
+
+
+def test_a_node_is_put_out_by_a_command_and_the_others_go_on(tmp_path):
+    plan = scenarios.plan(scenarios.from_dict(LINE))
+    authority = Authority(tmp_path / "keys")
+    for number in range(3):
+        authority.enrol(number)
+
+    async def main():
+        keys = {"identity": "keys/n{number}.identity"}
+        network = Processes(plan, tmp_path, "udp", keys)
+        await network.up()
+        try:
+            await until(lambda: all(told(network, n)["table"] for n in network.names), FIRST_S)
+            assert await asyncio.to_thread(last_state, network, "n0", 2) == "delivered"
+            words = [sys.executable, "-m", "innervate.cli", "live", "revoke", "keys", "2"]
+            env = {**os.environ, "INNERVATE_RUN": str(tmp_path)}
+            done = await asyncio.to_thread(
+                subprocess.run, words, cwd=tmp_path, env=env, capture_output=True, text=True
+            )
+            assert (done.returncode, done.stderr) == (0, "")
+            assert done.stdout.startswith("told n0, n1")
+            assert told(network, "n1")["keys"]["identity"]["revoked"] == [3]
+            assert await asyncio.to_thread(last_state, network, "n0", 1) == "delivered"
+            assert await asyncio.to_thread(last_state, network, "n0", 2) == "expired"
+            assert told(network, "n1")["counters"]["dropped: sealed: revoked"] > 0
+        finally:
+            await network.down()
+
+    asyncio.run(main())
