@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.mesh.scenario.plan import MeshFault as Fault
 from innervate.networks.mesh.sim import build
@@ -264,7 +265,7 @@ def test_a_lost_memory_is_all_of_it_and_nobody_elses():
     plan = mesh_plan(3, capacity=4, ranks=[0, 1, -1])
     world = build.build(plan, True, True, False, False)
     gates = range(3)  # of the gateway, of its standby, and one that stays blank
-    words, own = world.run[0].gate_words, len(world.low)
+    words, own = sum(max(field[1], 1) for field in mesh_fields.gate(4)), len(world.low)
     for gate in gates[:2]:
         for i in range(words):
             world.gate_words[gate][i] = 1

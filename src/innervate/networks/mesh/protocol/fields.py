@@ -52,7 +52,8 @@ ITEM = (
 def node(n, queue=QUEUE, kept=WAITING):
     """Fields of a node in a network of up to n nodes, that queues and keeps so many packets."""
     k = min(n, NEIGHBOURS)
-    return OWN + neighbours(k) + tables(n) + packets(n, kept) + WATCH + watched(n) + queued(queue)
+    near, far = neighbours(k) + links(k), tables(n) + packets(n, kept)
+    return OWN + near + far + WATCH + watched(n) + queued(queue)
 
 
 OWN = (
@@ -78,13 +79,6 @@ OWN = (
     ("leading", 0, 0, 1, "flag", "we are the gateway now"),
     ("places", 0, QUEUE, PLACES_MAX, "frames", "our queue holds"),
     ("kept", 0, WAITING, PLACES_MAX, "messages", "are kept until acknowledged end to end"),
-    ("woken", 0, 0, 1, "flag", "`gather`: what is due goes as soon as all was heard"),
-    ("ack_at", 0, -1, TIME, "us", "`hop_frames`: the first ack is overdue then; -1 none"),
-    ("acks", 0, 0, GATHERED, "acks", "`gather`: of hops, that we owe"),
-    ("ack_to", GATHERED, 0, 255, "node", "... to whom"),
-    ("ack_origin", GATHERED, 0, 255, "node", "... whose packet"),
-    ("ack_seq", GATHERED, 0, 65535, "number", "... its number"),
-    ("ack_rssi", GATHERED, -128, 127, "dBm", "... how it came"),
     ("round_trip", 0, 0, 16777215, "us", "smoothed, of end-to-end acks; 0 unknown"),
     ("strain", 0, 0, 44, "acks", "more that were missing than that came, of neighbours that live"),
     ("search_backoff", 0, 0, 3, "doublings", "of the wait till unreachable ones are tried again"),
@@ -102,6 +96,22 @@ def neighbours(k):
         ("until", k, 0, TIME, "us", "... then it is trusted again"),
         ("round_rssi", k, -128, 127, "dBm", "of its request in this round"),
         ("round_depth", k, 0, 255, "hops", "it advertised in this round; 255 not heard"),
+    )
+
+
+def links(k):
+    """What is known of links to the neighbours, with `ack_adapt`, `hop_frames` or `gather` alone.
+
+    Without them nothing of it is used, and it is not counted in a node's 4 KiB (decision 0015).
+    """
+    return (
+        ("woken", 0, 0, 1, "flag", "`gather`: what is due goes as soon as all was heard"),
+        ("ack_at", 0, -1, TIME, "us", "`hop_frames`: the first ack is overdue then; -1 none"),
+        ("acks", 0, 0, GATHERED, "acks", "`gather`: of hops, that we owe"),
+        ("ack_to", GATHERED, 0, 255, "node", "... to whom"),
+        ("ack_origin", GATHERED, 0, 255, "node", "... whose packet"),
+        ("ack_seq", GATHERED, 0, 65535, "number", "... its number"),
+        ("ack_rssi", GATHERED, -128, 127, "dBm", "... how it came"),
         ("hop_trip", k, 0, 1048576, "us", "smoothed round trip to it; 0 unknown"),
         ("hop_spread", k, 0, 1048576, "us", "... its mean deviation"),
         ("hop_doubled", k, 0, 2, "doublings", "of the wait for its acks: retried frames came"),
