@@ -1,7 +1,8 @@
 """python -m benchmarks.live.hops: messages a second and their delay over a line of nodes.
 
 Three processes on loopback, node 0 to node 2 over node 1, at a window of messages without an end
-and at 50 a second; plain and sealed in turn.
+and at 50 a second; plain, sealed, and through Reticulum and Zenoh where `rns` and `eclipse-zenoh`
+are installed, in turn. Those two are sent to as fast as they take it.
 """
 
 import argparse
@@ -12,10 +13,13 @@ import statistics
 import subprocess
 import sys
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 
 ENDS = str(Path(__file__).with_name("hop_ends.py"))
+OTHERS = "benchmarks.live.hop_others"
 KEY = "ab" * 32
+PACKAGES = {"rns": "RNS", "zenoh": "zenoh"}
 
 
 def free_ports(count):
@@ -29,30 +33,44 @@ def free_ports(count):
     return ports
 
 
-class Line:
-    """Nodes 0 .. count - 1 as processes, each joined with the next; node 1 is the gateway."""
+def ours(folder, count, sealed=False, settings=None):
+    """Commands that start nodes of ours; node 1 is the gateway."""
+    ports, commands = free_ports(count), []
+    for i in range(count):
+        peers = [f"127.0.0.1:{ports[k]}" for k in (i - 1, i + 1) if 0 <= k < count]
+        lines = ['kind = "mesh"', f"number = {i}", f"nodes = {count}",
+                 f'role = "{"gateway" if i == 1 else "node"}"',
+                 f'socket = "{folder / f"n{i}.sock"}"',
+                 *(["[keys]", "use = 1", f'secret.1 = "{KEY}"'] if sealed else []),
+                 "[protocol]", *(f"{k} = {v}" for k, v in (settings or {}).items()),
+                 "[[link]]", 'kind = "udp"', f'bind = "127.0.0.1:{ports[i]}"',
+                 f"peers = {json.dumps(peers)}"]  # fmt: skip
+        file = folder / f"n{i}.toml"
+        file.write_text("\n".join(lines) + "\n")
+        commands.append([ENDS, str(file)])
+    return commands
 
-    def __init__(self, folder, count, sealed=False, settings=None):
-        ports = free_ports(count)
-        self.nodes = []
-        for i in range(count):
-            peers = [f"127.0.0.1:{ports[k]}" for k in (i - 1, i + 1) if 0 <= k < count]
-            lines = ['kind = "mesh"', f"number = {i}", f"nodes = {count}",
-                     f'role = "{"gateway" if i == 1 else "node"}"',
-                     f'socket = "{folder / f"n{i}.sock"}"',
-                     *(["[keys]", "use = 1", f'secret.1 = "{KEY}"'] if sealed else []),
-                     "[protocol]", *(f"{k} = {v}" for k, v in (settings or {}).items()),
-                     "[[link]]", 'kind = "udp"', f'bind = "127.0.0.1:{ports[i]}"',
-                     f"peers = {json.dumps(peers)}"]  # fmt: skip
-            file = folder / f"n{i}.toml"
-            file.write_text("\n".join(lines) + "\n")
-            self.nodes.append(
-                subprocess.Popen(
-                    [sys.executable, ENDS, str(file)],
-                    stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
-                )
+
+def others(which, folder):
+    """Commands that start three nodes of another system, the one in the middle first."""
+    (port,) = free_ports(1)
+    return [["-m", OTHERS, which, str(i), str(port), str(folder)] for i in range(3)]
+
+
+class Line:
+    """Nodes 0 .. count - 1 as processes, each joined with the next.
+
+    Args:
+        commands: what starts each.
+    """
+
+    def __init__(self, commands):
+        self.nodes = [None] * len(commands)
+        for i in sorted(range(len(commands)), key=lambda i: i != 1):  # others call the middle
+            self.nodes[i] = subprocess.Popen(
+                [sys.executable, *commands[i]],
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
             )  # fmt: skip
-        for i in range(count):
             self.hear(i)
 
     def hear(self, i):
@@ -73,9 +91,9 @@ class Line:
         told = self.ask(0, f"send {last} {size} {seconds} {plan}")
         others = [self.ask(i, "take") for i in range(1, last + 1)]
         late_us = sorted(others[-1]["late_us"])
-        count = max(told["delivered"], 1)
+        count = max(min(told["delivered"], len(late_us)), 1)
         return {
-            "per_s": told["delivered"] / told["seconds"],
+            "per_s": min(told["delivered"], len(late_us)) / told["seconds"],
             "states": told["states"],
             "p50_us": statistics.median(late_us) if late_us else 0.0,
             "p99_us": late_us[int(0.99 * len(late_us))] if late_us else 0.0,
@@ -97,17 +115,24 @@ def main():
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
     args = parser.parse_args()
     settings = dict(one.split("=") for one in args.set)
-    for sealed in (False, True):
+    found = [name for name, package in PACKAGES.items() if find_spec(package)]
+    for side in ("plain", "sealed", *(found if args.hops == 2 else ())):
         with tempfile.TemporaryDirectory() as folder:
-            line = Line(Path(folder), args.hops + 1, sealed, settings)
-            for plan in ("w1", "w64", "r50"):
-                found = line.measure(args.size, args.seconds, plan)
-                cpu = " / ".join(f"{us:.0f}" for us in found["cpu_us"])
-                print(f"{'sealed' if sealed else 'plain ':6} {plan:4} {found['per_s']:7.0f} /s  "
-                      f"p50 {found['p50_us']:7.0f} us  p99 {found['p99_us']:7.0f} us  "
-                      f"CPU us a message {cpu}  {found['states']}  "
-                      f"load {os.getloadavg()[0]:.1f}", flush=True)  # fmt: skip
+            if side in PACKAGES:
+                line = Line(others(side, Path(folder)))
+            else:
+                line = Line(ours(Path(folder), args.hops + 1, side == "sealed", settings))
+            for plan in ("r50", "w64") if side in PACKAGES else ("r50", "w1", "w64"):
+                tell(side, plan, line.measure(args.size, args.seconds, plan))
             line.stop()
+
+
+def tell(side, plan, found):
+    """A row of the table."""
+    cpu = " / ".join(f"{us:.0f}" for us in found["cpu_us"])
+    print(f"{side:6} {plan:4} {found['per_s']:7.0f} /s  p50 {found['p50_us']:7.0f} us  "
+          f"p99 {found['p99_us']:7.0f} us  CPU us a message {cpu}  {found['states']}  "
+          f"load {os.getloadavg()[0]:.1f}", flush=True)  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from unittest import mock
 
 from cryptography.hazmat.primitives.ciphers.aead import ChaCha20Poly1305
 
+from innervate.dialect.arith import later
 from innervate.live import group, noise, session
 from innervate.live.receipts import DELIVERED, EXPIRED, FINAL, REFUSED
 
@@ -88,6 +89,7 @@ class Messages:
         self.again = 0  # handed up once more by another life of the recipient
         self._count = 0
         self._newest = {}
+        self._numbers = {}  # by sender: the life and number of its newest packet
 
     def new(self, sender, life, dest, length):
         """A message that nobody has sent yet; its payload says which one it is."""
@@ -127,11 +129,22 @@ class Messages:
             self.world.fail(f"{life.name}: message {sent.ident} of {sent.life.name} after its turn")
         self._newest[key] = place
 
+    def _look_at_number(self, sent):
+        """Numbers go on over a restart, where the disk could keep them."""
+        seq, (old, newest) = sent.receipt.seq, self._numbers.get(sent.sender, (sent.life, -1))
+        lives = sent.life.number - old.number  # seven restarts lead half way round the numbers
+        if 0 < lives < 7 and newest >= 0 and not old.node.state.failed and not later(seq, newest):
+            self.world.fail(f"{sent.life.name}: packet {seq} after {newest} of {old.name}")
+        if old is not sent.life or newest < 0 or later(seq, newest):
+            self._numbers[sent.sender] = (sent.life, seq)
+
     def look(self):
         """What became of those that are under way."""
         now = self.world.now
         for ident, sent in list(self.open.items()):
             state = sent.receipt.state
+            if sent.receipt.seq >= 0:
+                self._look_at_number(sent)
             if state == DELIVERED and not sent.handed:
                 self.world.fail(
                     f"message {ident} from {sent.life.name} to {sent.dest} is delivered, "

@@ -1,5 +1,7 @@
 """A mesh of live nodes, its users, and what is done to it."""
 
+from itertools import combinations
+
 from innervate.live import files
 from innervate.live.receipts import FINAL
 from tests.livesim.checks import Messages
@@ -39,11 +41,14 @@ class Plan:
         self.rate = chance.choice((1, 5, 20)) if self.nodes < 16 else 2
         self.delay_us = chance.choice(((50, 150), (100, 400), (300, 900)))
         self.standbys = chance.randint(0, 2)
+        self.multicast = self.nodes <= 8 and chance.random() < 0.2  # all hear all
         self.old_lives = False  # what a process received is played back to those after it, too
         for name, value in given.items():
             assert hasattr(self, name), name
             setattr(self, name, value)
-        self.links = given.get("links") or links(chance, self.nodes)
+        self.links = links(chance, self.nodes)
+        if self.multicast:
+            self.links = list(combinations(range(self.nodes), 2))
 
 
 def links(chance, count):
@@ -175,7 +180,8 @@ class Mesh(Stage):
 
     def leave(self):
         """A node goes, and who sends to it is told."""
-        gone, *others = self.chance.sample(self.hosts, 4)
+        running = [host for host in self.hosts if host.life is not None]
+        gone, *others = self.chance.sample(running, 4)
         gone.kill()
         sent = [self.send(host, gone.number) for host in others]
         self.world.run(GONE_S)
@@ -186,8 +192,7 @@ class Mesh(Stage):
 
     def drain(self):
         """Who is told to end first gets rid of what is under way."""
-        running = [host for host in self.hosts if host.life is not None]
-        host, other = self.chance.sample(running, 2)
+        host, other = self.chance.sample(self.hosts, 2)
         sent = [self.send(host, other.number) for _ in range(5)]
         host.signal(TERM)
         self.world.run(3.0)
@@ -197,7 +202,7 @@ class Mesh(Stage):
         self.world.check()
 
     def end(self):
-        """One goes, one is told to stop, then all are."""
-        self.leave()
+        """One is told to stop, one goes, then all are told."""
         self.drain()
+        self.leave()
         super().end()

@@ -134,7 +134,7 @@ def _lives(hosts):
 
 
 def _words(plan):
-    how = ("sealed", "in_order", "serial")
+    how = ("sealed", "in_order", "serial", "multicast")
     return "".join(f", {name.replace('_', ' ')}" for name in how if getattr(plan, name, False))
 
 

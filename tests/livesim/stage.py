@@ -2,10 +2,11 @@
 
 from tests.livesim.checks import ITEMS_MOST, items_of
 from tests.livesim.host import HUP, TERM, Host
-from tests.livesim.net import Net, changed
+from tests.livesim.net import Net, Way, changed
 
 PORT = 4700
 GRACE_S = 2.0
+GROUP = "239.1.1.1"
 
 
 class Stage:
@@ -27,14 +28,30 @@ class Stage:
         self.storm, self.quiet_since, self.rotated_at = 0, None, None
         self.cables = {}
         self.ends = [[] for _ in range(plan.nodes)]
-        for k, pair in enumerate(plan.links):
-            here, there = f"10.{k // 200}.{k % 200}.1", f"10.{k // 200}.{k % 200}.2"
-            self.cables[pair] = self.net.way(here, there, delay_us=plan.delay_us)
-            self.ends[pair[0]].append((here, there))
-            self.ends[pair[1]].append((there, here))
+        if getattr(plan, "multicast", False):
+            self._join_all()
+        else:
+            self._join_pairs()
         self.key_number = 1
         self.keys = {1: self._secret()}
         self.hosts = [self._host(i) for i in range(plan.nodes)]
+
+    def _join_pairs(self):
+        """A cable for each link, with two addresses of its own."""
+        for k, pair in enumerate(self.plan.links):
+            here, there = f"10.{k // 200}.{k % 200}.1", f"10.{k // 200}.{k % 200}.2"
+            self.cables[pair] = self.net.way(here, there, delay_us=self.plan.delay_us)
+            self.ends[pair[0]].append((here, there))
+            self.ends[pair[1]].append((there, here))
+
+    def _join_all(self):
+        """One network for all, as a radio channel: who sends to the group hears itself, too."""
+        own = [f"10.0.0.{k + 1}" for k in range(self.plan.nodes)]
+        for a, b in self.plan.links:
+            self.cables[a, b] = self.net.way(own[a], own[b], delay_us=self.plan.delay_us)
+        for ends, here in zip(self.ends, own, strict=True):
+            self.net.ways[here, here] = Way()
+            ends.append((here, GROUP))
 
     def file(self, number):
         """The text of a node's file, with the keys as they are now."""
@@ -52,6 +69,9 @@ class Stage:
 
     def links(self, number):
         """The [[link]]s of a file."""
+        if getattr(self.plan, "multicast", False):
+            here, group = self.ends[number][0]
+            return [{"kind": "multicast", "group": f"{group}:{PORT}", "interface": here}]
         return [
             {"kind": "udp", "bind": f"{here}:{PORT}", "peers": [f"{there}:{PORT}"]}
             for here, there in self.ends[number]

@@ -17,6 +17,12 @@ def test_a_mesh_that_is_hurt_keeps_what_it_promises(seed):
     assert found.told["delivered"] > 20
 
 
+def test_a_mesh_in_one_group_keeps_it_too():
+    found = runs.run(2, "mesh", **SMALL, multicast=True)
+    assert found.broken == []
+    assert found.told["delivered"] > 20
+
+
 @pytest.mark.parametrize("serial", [False, True])
 def test_a_skin_that_is_hurt_is_heard_and_hears(serial):
     small = {"columns": 2, "rows": 2, "storms": 1, "storm_s": 20, "calm_s": 0, "serial": serial}

@@ -290,6 +290,8 @@ Constants and settings
 | `UNREACHABLE_TICKS = 4`                        | ticks                                           |
 | `RETRIES = 4`, `LOST_A_TICK = 4`               | in one call, for the outbox has to hold them    |
 | `FLOODED = 20`                                 | in the duplicate cache: a flooded alarm         |
+| `CROWD = 32`                                   | nodes whose answers find their way in a         |
+|                                                | `spread_us`                                     |
 | `JITTER_UNIT_US = 10000`                       | of a request's jitter                           |
 | `POINTS = 48`, `FAR = 16384`, `REACH = 23170`, | the fence in whole numbers below 2^30           |
 | `FULL = 268435456`, `ROOT_BITS = 15`           |                                                 |
