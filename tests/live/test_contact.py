@@ -2,9 +2,11 @@
 
 import pytest
 
+from innervate.cli import live_status
 from innervate.live.contact import REKEY_US
 from innervate.wire import seal
 from tests.live import time_by_hand
+from tests.live.net import Mesh
 from tests.live.pair import (
     KEY,
     OTHER,
@@ -356,6 +358,9 @@ def test_a_flood_of_first_messages_leaves_nothing_behind(make):
         for _ in range(20):
             for data in recorded:
                 b.hear(data)
+        for _ in range(3):  # the same is answered as before, and costs no curve
+            b.hear(recorded[-1])
+        assert b.said[-1] == b.said[-2] == b.said[-3]
         assert len(contact._answered) <= 8
         assert len(contact._by_index) < 16
         a.frame(VALVE)
@@ -373,3 +378,17 @@ def test_an_event_loop_is_not_kept_busy_by_nobody():
         return len(a.said)
 
     assert 40 < time_by_hand.run(main()) < 90
+
+
+def test_status_says_so_in_capitals():
+    async def main():
+        node = Mesh(1, []).nodes[0]
+        node.sealer = network_sealer(0)
+        await node.start()
+        quiet = live_status.lines(node.status())
+        node.sealer.note_twin(5, "both are heard here")
+        told = live_status.lines(node.status())
+        await node.stop()
+        return set(told) - set(quiet)
+
+    assert "  TWO NODES HAVE NUMBER 5: both are heard here" in time_by_hand.run(main())

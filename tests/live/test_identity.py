@@ -224,6 +224,21 @@ def test_who_comes_later_or_again_to_a_group_is_heard_and_hears(make):
     time_by_hand.run(main())
 
 
+@MAKERS
+def test_a_member_that_missed_anothers_new_key_asks_for_it(make):
+    async def main():
+        one, two, three = await group(make, 1, 2, 3)
+        one.sealer._contacts[0].renew()  # and nobody was told
+        one.frame(b"not understood")
+        await settle(1.0)
+        one.frame(VALVE)
+        await settle()
+        assert two.got == three.got == [(1, VALVE)]
+        assert {**two.sealer.dropped} == {"sealed: unknown sender": 1}
+
+    time_by_hand.run(main())
+
+
 def test_no_member_of_a_group_can_seal_as_another():
     """It knows the other's key, as all do; it cannot sign."""
 

@@ -44,6 +44,8 @@ def lines(told: dict[str, Any]) -> list[str]:
     if state is not None and state["trouble"]:
         since = "never" if state["written_s"] is None else f"{state['written_s']:g} s ago"
         found.append(f"  STATE NOT WRITTEN: {state['trouble']}; last {since}, to {state['file']}")
+    for number, where in ((told.get("keys") or {}).get("twins") or {}).items():
+        found.append(f"  TWO NODES HAVE NUMBER {number}: {where}")
     found += words.lines(told)
     for name, path in zip(words.ports(told), told["paths"], strict=False):
         heard = "never" if path["heard_s"] is None else f"{path['heard_s']:.1f} s ago"

@@ -264,7 +264,7 @@ class Contact:
     def _second(self, data: bytes) -> str:
         index, ring = int.from_bytes(data[1:5], "big"), self.sealer.ring
         if index not in self._asked:
-            return "" if index in self._by_index else "no such handshake"
+            return "" if index in self._by_index or self.path.is_group else "no such handshake"
         handshake, key = self._asked[index]
         if key not in ring.keys or not ring.is_marked(key, data):
             return "wrong key or damaged"
@@ -302,7 +302,7 @@ class Contact:
         found = [(ephemeral, answer) for ephemeral, answer in self._answered.items()
                  if answer.handle == index]  # fmt: skip
         if not found or found[0][1].handshake is None:
-            return "no such handshake"
+            return "" if self.path.is_group else "no such handshake"
         ephemeral, answer = found[0]
         if answer.key not in ring.keys or not ring.is_marked(answer.key, data):
             return "wrong key or damaged"
