@@ -132,8 +132,8 @@ class Messages:
     def _look_at_number(self, sent):
         """Numbers go on over a restart, where the disk could keep them."""
         seq, (old, newest) = sent.receipt.seq, self._numbers.get(sent.sender, (sent.life, -1))
-        lives = sent.life.number - old.number  # seven restarts lead half way round the numbers
-        if 0 < lives < 7 and newest >= 0 and not old.node.state.failed and not later(seq, newest):
+        lives = sent.life.number - old.number  # four restarts may lead half way round the numbers
+        if 0 < lives < 4 and newest >= 0 and not old.node.state.failed and not later(seq, newest):
             self.world.fail(f"{sent.life.name}: packet {seq} after {newest} of {old.name}")
         if old is not sent.life or newest < 0 or later(seq, newest):
             self._numbers[sent.sender] = (sent.life, seq)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from innervate.dialect.arith import MASK16
 from innervate.live.links import Link
+from innervate.live.machine import machine
 from innervate.live.node import LiveNode
 from innervate.live.receipts import DELIVERED, EXPIRED, HOP_ACKED, REFUSED, Receipt
 from innervate.live.state import State
@@ -182,8 +183,12 @@ class MeshNode(LiveNode):
         return (self.orderly.arrivals if ordered else self.arrivals).receive(callback)
 
     async def start(self) -> None:
-        """Switch on; packets' numbers go on where they were."""
-        self.stack.first = self.state.numbers
+        """Switch on; packets' numbers go on behind where they were.
+
+        By how much is drawn: where a disk was full, nobody noted those that were used last.
+        """
+        if self.state.numbers >= 0:
+            self.stack.first = (self.state.numbers + machine().chance.getrandbits(12)) & MASK16
         await super().start()
 
     async def stop(self) -> None:
@@ -316,7 +321,8 @@ class MeshNode(LiveNode):
         Who has heard us takes a number that comes again for a message that came before.
         """
         state, seq = self.state, self.stack.node.seq
-        if state.numbers < 0 or (state.numbers - seq) & MASK16 < NUMBERS // 2:
+        left = (state.numbers - seq) & MASK16
+        if state.numbers < 0 or not NUMBERS // 2 <= left <= NUMBERS:
             state.numbers = (seq + NUMBERS) & MASK16
             state.write()
 
