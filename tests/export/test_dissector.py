@@ -238,7 +238,7 @@ def test_damage_is_flagged_as_the_decoders_find_it(kind, tmp_path, tshark):
         # A right CRC behind what is no frame, or one of an unknown type.
         made.append(crc.seal(bytearray(body + b"\0\0")))
         made.append(crc.seal(bytearray([DRAW.randrange(256), *data[1:], 0, 0])[: len(data)]))
-    made = [data for data in made if not (data and data[0] >> 4 == 12)]  # looks sealed
+    made = [data for data in made if not seal.is_sealed(data)]
     capture = capture_of(tmp_path / "damaged.pcapng", kind, made)
     bad_crc, malformed = f"innervate.{kind}.bad_crc", f"innervate.{kind}.malformed"
     found = fields_of(tshark, capture, ["frame.number", bad_crc, malformed])
