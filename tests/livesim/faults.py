@@ -135,7 +135,7 @@ FAULTS = (
           "        return BAD_CRC\n", "        pass\n",
           {"serial": True, "hurts": ("changing",), "storm_s": 60}, "skin"),
     Fault("packets' numbers begin anywhere after a restart", MESH + "node",
-          "        self.stack.first = self.state.numbers\n", "",
+          "        if self.state.numbers >= 0:\n", "        if 0:\n",
           {**KILLS, "sealed": False, "in_order": False}),
 )  # fmt: skip
 
