@@ -102,7 +102,7 @@ def bars(got: Measured) -> list[Bar]:
         *(_taken(got, setting) for setting in TAKEN),
         _twice(got),
         Bar(f"state of a node at N = {STATE_NODES}", f"<= {STATE_MAX} B", f"{size} B",
-            size / STATE_MAX, "class of 64, whole bytes, fixed waits for acks"),
+            size / STATE_MAX, "class of 64, fixed waits"),
     ]  # fmt: skip
 
 
