@@ -74,7 +74,7 @@ def warnings(made: MeshPlan) -> list[str]:
     elif max(hops) > SOURCE_ROUTE_MAX and made.params["mtu"] == 64:
         far = [made.names[node] for node, count in enumerate(hops) if count > SOURCE_ROUTE_MAX]
         found.append(f"{listed(far)}: too far for tables at an MTU of 64; set protocol.mtu = 127")
-    found += _distribution(made)
+    found += [*_distribution(made), *_crowded(made, near)]
     if model.fence is not None and not made.walks:
         found.append("a fence but no [[robot]]: nobody can cross it")
     offered = {offer.flow for offer in made.offers}
@@ -104,19 +104,20 @@ def _distribution(made: MeshPlan) -> list[str]:
             f"{what} for {made.nodes} nodes will not be everywhere in time: more than "
             f"{limits[profile]} fill a {profile} channel; protocol.tables = false does without"
         )
-    places = min(made.nodes, NEIGHBOURS)
-    crowded = {
-        made.names[node]: len(around)
-        for node, around in enumerate(neighbours(made.nodes, made.good))
-        if len(around) > places
-    }
-    if crowded:
-        most = max(crowded, key=lambda name: crowded[name])
-        found.append(
-            f"more than {places} neighbours: {listed([*crowded])}; {most} has {crowded[most]}. A "
-            f"node remembers {places}, the loudest, and links to the others are not used"
-        )
     return found
+
+
+def _crowded(made: MeshPlan, near: list[list[int]]) -> list[str]:
+    """Who hears more neighbours than a node remembers."""
+    places = min(made.nodes, NEIGHBOURS)
+    heard = {made.names[node]: len(some) for node, some in enumerate(near) if len(some) > places}
+    if not heard:
+        return []
+    most = max(heard, key=lambda name: heard[name])
+    return [
+        f"more than {places} neighbours: {listed([*heard])}; {most} has {heard[most]}. A "
+        f"node remembers {places}, the loudest, and links to the others are not used"
+    ]
 
 
 def _thin(made: MeshPlan, near: list[list[int]], gateway: int) -> list[str]:
