@@ -93,11 +93,11 @@ def _distribution(made: MeshPlan) -> list[str]:
         return []
     what, limits = ("tables", TABLES_MAX) if params["mode"] == TABLES else ("graph", GRAPH_MAX)
     period_us = params["period"] * params["tick_us"]
-    if period_us <= params["collect_us"]:
+    if period_us < params["collect_us"]:
         found.append(
             f"a round every {period_us / 1e6:g} s, but answers are collected for "
             f"{params['collect_us'] / 1e6:g} s: no round is ever complete, and nobody gets any "
-            f"{what}; raise protocol.period_s above protocol.collect_s"
+            f"{what}; raise protocol.period_s to protocol.collect_s"
         )
     if made.nodes > limits.get(profile, made.nodes):
         found.append(
