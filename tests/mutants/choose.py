@@ -83,13 +83,12 @@ class Choice:
         is_beside = folder == inside.parts[:-1]
         if test.stem.removeprefix("test_") == inside.stem and set(folder) & set(inside.parts):
             return 0
-        if is_beside and steps <= 2:
-            return 1
+        if is_beside:
+            return 1 if steps <= 2 else 2
         if folder == ("recorded",):
             first = {RECORDED.get(part, "kept") for part in inside.parts[:-1]}
-            return 2 if test.stem.removeprefix("test_") in first else 4
-        if steps == 1 or is_beside:
-            return 3
+            is_first = test.stem.removeprefix("test_") in first
+            return 5 if not is_first else 1 if "pictures" in first else 3
         if steps <= STEPS_MAX:
             return 3 + steps
         rooms = set(inside.parts[:-1]) - {"networks"}

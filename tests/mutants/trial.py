@@ -35,7 +35,7 @@ LARGE = (
     "cyclopts", "asyncio", "cryptography.hazmat.primitives.asymmetric.x25519", "websockets",
     "starlette.applications", "uvicorn",
 )  # fmt: skip
-CROWDED = 6  # the clock may run so much faster than the processor is had
+CROWDED = 5  # so much longer it may take by the clock
 LATE = "did not end in time"
 FORGIVEN_MAX = 12  # tests that fail without the fault, too, before one gives up
 PORTIONS = (3, 12, 1000)  # files are collected so many at a time
@@ -47,20 +47,20 @@ class Way(NamedTuple):
     Attributes:
         plain: whatever is compiled runs as Python.
         anew: nothing is compiled yet.
-        each_s: a test that takes longer by the clock fails.
+        each_s: of processor time; a test that takes longer fails.
         all_s: no further test begins when so much processor time is spent.
     """
 
     name: str
     plain: bool = False
     anew: bool = False
-    each_s: float = 30.0
+    each_s: float = 12.0
     all_s: float = 0.0
 
 
 AS_IS = Way("as it is")
 PLAIN = Way("plain", plain=True)
-ANEW = Way("compiled anew", anew=True, each_s=150.0)
+ANEW = Way("compiled anew", anew=True, each_s=100.0)
 
 
 class Outcome(NamedTuple):
@@ -100,6 +100,7 @@ class Watch:
 
     def __init__(self, log: Path, way: Way, path: str, without: frozenset[str]) -> None:
         self.log, self.way, self.path, self.without = log, way, path, without
+        self.began_s = 0.0, 0.0  # a test, by the clock and by the processor
 
     def tell(self, what: str, name: str, why: str = "") -> None:
         with self.log.open("a", encoding="utf-8") as file:
@@ -116,7 +117,8 @@ class Watch:
     def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
         self.tell("begins", item.nodeid)
         signal.signal(signal.SIGALRM, self._late)
-        signal.setitimer(signal.ITIMER_REAL, self.way.each_s, 1.0)
+        self.began_s = time.monotonic(), sum(os.times()[:4])
+        signal.setitimer(signal.ITIMER_REAL, 1.0, 1.0)
         try:
             return (yield)
         finally:
@@ -125,7 +127,11 @@ class Watch:
                 item.session.shouldstop = "no more time"
 
     def _late(self, *_: Any) -> None:
-        pytest.fail(LATE)
+        clock_s, processor_s = self.began_s
+        if time.monotonic() - clock_s > CROWDED * self.way.each_s or (
+            sum(os.times()[:4]) - processor_s > self.way.each_s
+        ):
+            pytest.fail(LATE)
 
     def tell_compiled(self, root: Path) -> None:
         """Say if functions of the faulty file were compiled, or taken from what was."""
@@ -251,7 +257,7 @@ class Bench:
             if not child:
                 run_here(self.root, env, tests, watch)
             ended = os.pidfd_open(child)
-            select.select([ended], [], [], CROWDED * way.all_s + 2 * way.each_s)
+            select.select([ended], [], [], CROWDED * (way.all_s + way.each_s))
             os.close(ended)
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(child, signal.SIGKILL)  # it, or what it has started and left
