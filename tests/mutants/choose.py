@@ -19,7 +19,7 @@ STEPS_MAX = 3
 NAMED = re.compile(r"innervate(?:\.\w+)+")
 ALSO = {"web": {"browser"}, "view": {"web", "browser"}, "live": {"livesim"}}  # by room
 RECORDED = {
-    "analysis": "recorded", "cli": "commands", "live": "nodes", "papers": "pictures",
+    "cli": "commands", "live": "nodes", "papers": "pictures",
     "plot": "pictures", "running": "commands", "view": "watched", "web": "watched",
 }  # fmt: skip
 
@@ -86,9 +86,9 @@ class Choice:
         if is_beside:
             return 1 if steps <= 2 else 2
         if folder == ("recorded",):
-            first = {RECORDED.get(part, "kept") for part in inside.parts[:-1]}
-            is_first = test.stem.removeprefix("test_") in first
-            return 5 if not is_first else 1 if "pictures" in first else 3
+            name = test.stem.removeprefix("test_")
+            is_first = name in {RECORDED.get(part) for part in inside.parts[:-1]}
+            return 1 if is_first else 3 if name == "kept" else 5
         if steps <= STEPS_MAX:
             return 3 + steps
         rooms = set(inside.parts[:-1]) - {"networks"}

@@ -259,14 +259,14 @@ class Bench:
             ended = os.pidfd_open(child)
             select.select([ended], [], [], CROWDED * (way.all_s + way.each_s))
             os.close(ended)
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(child, signal.SIGKILL)  # it, or what it has started and left
+            os.kill(child, signal.SIGKILL)
             os.waitpid(child, 0)
+            end_those_left(place)
             return seen_in(folder / "log")
 
     def _env(self, way: Way, fault: Fault | None, folder: Path) -> dict[str, str]:
         """With a fault, what is compiled is not kept: it may not be what its sources say."""
-        env = {"PYTHONPATH": str(self.root / "src")}
+        env = {"PYTHONPATH": str(self.root / "src"), "INNERVATE_TRIAL": str(folder)}
         if fault or way.plain:
             text = self._edit(fault) | {"plain": way.plain}
             env |= {sitecustomize.FAULT: json.dumps(text)}
@@ -308,6 +308,14 @@ def run_here(root: Path, env: dict[str, str], tests: list[str], watch: Watch) ->
             watch.tell_compiled(root)
     finally:
         os._exit(0)
+
+
+def end_those_left(place: str) -> None:
+    """End what was started in a place and has outlived the test that started it."""
+    for process in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            if place.encode() in (process / "environ").read_bytes():
+                os.kill(int(process.name), signal.SIGKILL)
 
 
 def seen_in(log: Path) -> Seen:
