@@ -12,7 +12,7 @@ import re
 from collections import defaultdict
 from pathlib import Path
 
-from tests.mutants.draw import SOURCES
+from tests.mutants.draw import SOURCES, Fault
 
 FILES_MAX = 30
 STEPS_MAX = 3
@@ -64,8 +64,8 @@ class Choice:
             found |= dict.fromkeys(edge, steps)
         return found
 
-    def tests_for(self, path: str) -> list[str]:
-        """Test files for a source, nearest first."""
+    def tests_for(self, path: str, words: set[str]) -> list[str]:
+        """Test files for a source, nearest first; of equally near ones those that say the words."""
         steps = self.steps_to(self.root / path)
         inside = Path(path).relative_to(SOURCES)
         ranked = []
@@ -73,7 +73,7 @@ class Choice:
             name = test.relative_to(self.root)
             rank = self._rank(name, inside, steps.get(test, STEPS_MAX + 1))
             if rank is not None:
-                ranked.append((rank, -len(near(name.as_posix(), path)), name.as_posix()))
+                ranked.append((rank, -shared(name.as_posix(), words), name.as_posix()))
         return [name for *_, name in sorted(ranked)[:FILES_MAX]]
 
     @staticmethod
@@ -96,7 +96,19 @@ class Choice:
         return STEPS_MAX + 4 if wanted & set(folder) else None
 
 
-def near(test: str, path: str) -> set[str]:
-    """Words that the name of a test has in common with the place of a source."""
-    parts = set(Path(path).relative_to(SOURCES).with_suffix("").parts)
-    return parts & set(re.split(r"[^a-z0-9]+|_", test.lower()))
+def words_of(root: Path, fault: Fault) -> set[str]:
+    """What a test of a faulty line would be called by: its place, its function, its names."""
+    before = (root / fault.path).read_bytes()[: fault.start].decode()
+    inner = re.findall(r"\b(?:def|class) (\w+)", before)[-1:]
+    place = Path(fault.path).relative_to(SOURCES).with_suffix("").as_posix()
+    return {word for word in split(" ".join([place, *inner, fault.text])) if len(word) > 2}
+
+
+def shared(test: str, words: set[str]) -> int:
+    """How many of the words the name of a test has."""
+    return len(words & split(test))
+
+
+def split(text: str) -> set[str]:
+    """The words in paths and names."""
+    return set(re.split(r"[^a-z0-9]+", text.lower()))

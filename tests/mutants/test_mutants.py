@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.mutants.choose import Choice
+from tests.mutants.choose import Choice, shared, words_of
 from tests.mutants.draw import SOURCES, drawn, faults
 from tests.mutants.planting import sitecustomize
 
@@ -99,10 +99,19 @@ def test_tests_that_lie_near_come_first(tmp_path):
     ):
         (project / name).parent.mkdir(exist_ok=True)
         (project / name).write_text(text)
-    assert Choice(project).tests_for("src/innervate/wire/edge.py") == [
+    assert Choice(project).tests_for("src/innervate/wire/edge.py", {"edge"}) == [
         "tests/wire/test_edge.py", "tests/wire/test_far.py", "tests/wire/test_apart.py",
         "tests/recorded/test_kept.py", "tests/test_edge.py",
     ]  # fmt: skip
+
+
+def test_a_line_is_known_by_its_place_its_function_and_its_names(tmp_path):
+    project = made(tmp_path)
+    name = "src/innervate/wire/edge.py"
+    (fault,) = (one for one in faults(project / name, name) if one.old == ">=")
+    words = words_of(project, fault)
+    assert words == {"wire", "edge", "full", "return", "queued", "room"}
+    assert shared("tests/wire/test_room.py::test_full[queued_0]", words) == 4
 
 
 @pytest.mark.slow

@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from tests.mutants.choose import Choice, near
+from tests.mutants.choose import Choice, shared, words_of
 from tests.mutants.draw import Fault
 from tests.mutants.planting import sitecustomize
 
@@ -98,8 +98,8 @@ class Seen(NamedTuple):
 class Watch:
     """A plugin for pytest: order and limits of tests, and a line for each beginning and end."""
 
-    def __init__(self, log: Path, way: Way, path: str, without: frozenset[str]) -> None:
-        self.log, self.way, self.path, self.without = log, way, path, without
+    def __init__(self, log: Path, way: Way, words: set[str], without: frozenset[str]) -> None:
+        self.log, self.way, self.words, self.without = log, way, words, without
         self.began_s = 0.0, 0.0  # a test, by the clock and by the processor
 
     def tell(self, what: str, name: str, why: str = "") -> None:
@@ -109,9 +109,8 @@ class Watch:
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         files = list(dict.fromkeys(item.path for item in items))
         items[:] = [item for item in items if item.nodeid not in self.without]
-        if self.path:
-            words = {item: len(near(item.nodeid, self.path)) for item in items}
-            items.sort(key=lambda item: (files.index(item.path), -words[item]))
+        said = {item: shared(item.nodeid, self.words) for item in items}
+        items.sort(key=lambda item: (files.index(item.path), -said[item]))
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
@@ -133,7 +132,7 @@ class Watch:
         ):
             pytest.fail(LATE)
 
-    def tell_compiled(self, root: Path) -> None:
+    def tell_compiled(self, path: str) -> None:
         """Say if functions of the faulty file were compiled, or taken from what was."""
         from numba.core.dispatcher import Dispatcher
 
@@ -142,8 +141,8 @@ class Watch:
         found = compilation._registered | {
             one.py_func for one in gc.get_objects() if isinstance(one, Dispatcher)
         }
-        if str(root / self.path) in {one.__code__.co_filename for one in found}:
-            self.tell("compiled", self.path)
+        if path in {one.__code__.co_filename for one in found}:
+            self.tell("compiled", path)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         if report.failed:
@@ -182,7 +181,7 @@ class Bench:
         Compiled code is taken as it was compiled of sound sources: a fault in it shows plain.
         """
         started, count = time.monotonic(), 0
-        files = self.choice.tests_for(fault.path)
+        files = self.choice.tests_for(fault.path, words_of(self.root, fault))
         for way in [ANEW] if fault.room == "kernel" else [AS_IS, PLAIN]:
             seen = self._found(fault, way._replace(all_s=self.budget_s), files)
             count += len(seen.passed)
@@ -252,7 +251,8 @@ class Bench:
         with tempfile.TemporaryDirectory(prefix="fault-", ignore_cleanup_errors=True) as place:
             folder = Path(place)
             env = self._env(way, fault, folder)
-            watch = Watch(folder / "log", way, fault.path if fault else "", without)
+            words = words_of(self.root, fault) if fault else set()
+            watch = Watch(folder / "log", way, words, without)
             child = os.fork()
             if not child:
                 run_here(self.root, env, tests, watch)
@@ -305,7 +305,7 @@ def run_here(root: Path, env: dict[str, str], tests: list[str], watch: Watch) ->
             if some and pytest.main([*asked, *some], [watch]) not in (0, 5):
                 break
         if sitecustomize.FAULT in env:
-            watch.tell_compiled(root)
+            watch.tell_compiled(sitecustomize.planted[0])
     finally:
         os._exit(0)
 

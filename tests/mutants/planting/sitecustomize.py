@@ -10,6 +10,7 @@ import os
 from importlib.machinery import SourceFileLoader
 
 FAULT = "INNERVATE_FAULT"
+planted = []  # where
 
 
 def plant(path, start, end, new, plain):
@@ -17,6 +18,7 @@ def plant(path, start, end, new, plain):
 
     With `plain` every function of the toolkit that can be asked to run plain is, always.
     """
+    planted.append(path)
     read = SourceFileLoader.get_code
 
     def get_code(loader, name):
