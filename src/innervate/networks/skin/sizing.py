@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import polars
 
@@ -67,6 +67,16 @@ class Question:
     recovery_ms_max: float = RECOVERY_MS_MAX
 
 
+class Tries(NamedTuple):
+    """How often every combination runs, and the root seed."""
+
+    repeat: int = 20
+    seed: int = 1
+
+
+TRIES = Tries()
+
+
 @dataclass(eq=False, repr=False)
 class Answer:
     """What came out.
@@ -115,9 +125,8 @@ class Answer:
 
 def size(
     question: Question,
+    tries: Tries = TRIES,
     *,
-    repeat: int = 20,
-    seed: int = 1,
     out: str | os.PathLike[str] | None = None,
     workers: int | None = None,
     dask: str = "",
@@ -130,7 +139,7 @@ def size(
         ScenarioError: the skin cannot be built.
     """
     asked, frames, names = _placed(question)
-    plan = plan_of(asked, frames, repeat, seed)
+    plan = plan_of(asked, frames, tries)
     done = sweep(plan, out=out, workers=workers, dask=dask, follow=(RECOVERY,), progress=progress)
     made = {ports: _graph(plan, ports) for ports in asked.ports}
     graphs = {ports: graph for ports, graph in made.items() if graph is not None}
@@ -167,7 +176,7 @@ def _placed(question: Question) -> tuple[Question, bool, list[str]]:
     return made, frames, names
 
 
-def plan_of(question: Question, frames: bool, repeat: int, seed: int) -> SweepPlan:
+def plan_of(question: Question, frames: bool, tries: Tries = TRIES) -> SweepPlan:
     """The sweep that answers a question: ports x rates x what is cut."""
     body: dict[str, Any] = {"urdf": question.urdf, "links": question.links,
                             "reach_mm": question.reach_mm}  # fmt: skip
@@ -185,7 +194,7 @@ def plan_of(question: Question, frames: bool, repeat: int, seed: int) -> SweepPl
         "body.interfaces": list(question.ports),
         "event": list(CUTS),
     }
-    return make_plan(tables, vary=vary, repeat=repeat, seed=seed, paired=("body.interfaces",))
+    return make_plan(tables, vary=vary, paired=("body.interfaces",), **tries._asdict())
 
 
 def judged(question: Question, done: Sweep, weak: Mapping[int, Sequence[Weak]]) -> polars.DataFrame:
