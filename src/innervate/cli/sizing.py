@@ -24,12 +24,12 @@ def size(robot: str, options: SizeOptions) -> int:
     _check(question)
     asked = sizing.Question(ports=sizing.parse_ports(options.ports), **question)
     folder = options.out or Path("sweeps") / f"size-{Path(asked.urdf).stem}"
-    tries = sizing.Tries(options.repeat, 1 if options.seed is None else options.seed)
+    seed = 1 if options.seed is None else options.seed
     with LiveTable(folder.name, (sizing.RECOVERY, "data.loss_ratio")) as table:
         try:
             answer = sizing.size(
-                asked, tries, out=folder, workers=options.workers, dask=options.dask,
-                progress=table,
+                asked, out=folder, workers=options.workers, dask=options.dask, progress=table,
+                repeat=options.repeat, seed=seed,
             )  # fmt: skip
         except KeyboardInterrupt:
             table.close()

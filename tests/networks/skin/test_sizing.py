@@ -7,7 +7,7 @@ import pytest
 from innervate import scenario
 from innervate.cli import main
 from innervate.networks.skin.plot.answer import answer_lines
-from innervate.networks.skin.sizing import Question, Tries, parse_ports, size
+from innervate.networks.skin.sizing import Question, parse_ports, size
 from innervate.sweeping import SweepError
 
 pytest.importorskip("icub_models")
@@ -17,7 +17,7 @@ UR5 = "package:example-robot-data/ur5_robot"
 
 def test_the_icubs_forearm_needs_more_ports_at_higher_rates():
     asked = Question(ICUB, "r_forearm_skin_*", (100.0, 1000.0), (1, 2, 3))
-    answer = size(asked, Tries(4))
+    answer = size(asked, repeat=4)
     assert (answer.cells, answer.frames) == (24, True)
     assert answer.carries[100.0] == 1
     assert answer.carries[1000.0] in (2, 3)
@@ -34,7 +34,7 @@ def test_the_icubs_forearm_needs_more_ports_at_higher_rates():
 
 def test_a_number_of_ports_is_enough_only_if_every_single_failure_heals():
     asked = Question("package:example-robot-data/go2", "*calf*", ports=(2, 3), pitch_mm=25.0)
-    answer = size(asked, Tries(6))
+    answer = size(asked, repeat=6)
     two, three = answer.table.iter_rows(named=True)
     assert (two["within"], two["enough"], two["isolated_max"]) == (True, False, answer.cells // 2)
     assert (three["within"], three["enough"], three["isolated_max"]) == (True, True, 0)
@@ -47,7 +47,7 @@ def test_a_number_of_ports_is_enough_only_if_every_single_failure_heals():
 
 
 def test_if_no_number_of_ports_heals_the_answer_says_who_isolates_whom():
-    answer = size(Question(ICUB, "r_forearm_skin_*", (100.0,), (2,)), Tries(6))
+    answer = size(Question(ICUB, "r_forearm_skin_*", (100.0,), (2,)), repeat=6)
     assert answer.needed == {100.0: None}
     lines = answer_lines(answer)
     assert "100 Hz: none of up to 2 ports is enough: 2 ports are enough for 1 % lost" in lines[-3]
@@ -55,7 +55,7 @@ def test_if_no_number_of_ports_heals_the_answer_says_who_isolates_whom():
 
 
 def test_ports_of_the_variants_are_compared_on_the_same_seeds():
-    answer = size(Question(ICUB, "r_forearm_skin_*", (100.0,), (1, 2)), Tries(2))
+    answer = size(Question(ICUB, "r_forearm_skin_*", (100.0,), (1, 2)), repeat=2)
     pairs = answer.sweep.compare("body.interfaces", 1, 2, "data.sent")
     assert pairs["difference"].to_list() == [0, 0]
 
@@ -87,5 +87,5 @@ def test_what_cannot_be_sized():
 
 def test_nothing_is_enough():
     asked = Question(ICUB, "r_forearm_skin_*", (1000.0,), (1,))
-    lines = answer_lines(size(asked, Tries(2)))
+    lines = answer_lines(size(asked, repeat=2))
     assert "1000 Hz: none of up to 1 ports is enough for 1 % lost, ways back in 50 ms." in lines

@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, TypedDict, Unpack
 
 import polars
 
@@ -67,14 +67,11 @@ class Question:
     recovery_ms_max: float = RECOVERY_MS_MAX
 
 
-class Tries(NamedTuple):
-    """How often every combination runs, and the root seed."""
+class Tries(TypedDict, total=False):
+    """How often every combination runs, 20 times if nothing is said, and the root seed, 1."""
 
-    repeat: int = 20
-    seed: int = 1
-
-
-TRIES = Tries()
+    repeat: int
+    seed: int
 
 
 @dataclass(eq=False, repr=False)
@@ -123,14 +120,17 @@ class Answer:
         return figure.write(self, folder)
 
 
+TRIES: Tries = {"repeat": 20, "seed": 1}
+
+
 def size(
     question: Question,
-    tries: Tries = TRIES,
     *,
     out: str | os.PathLike[str] | None = None,
     workers: int | None = None,
     dask: str = "",
     progress: Progress | None = None,
+    **tries: Unpack[Tries],
 ) -> Answer:
     """Answer a question by simulation; the other arguments are those of sweep().
 
@@ -176,7 +176,7 @@ def _placed(question: Question) -> tuple[Question, bool, list[str]]:
     return made, frames, names
 
 
-def plan_of(question: Question, frames: bool, tries: Tries = TRIES) -> SweepPlan:
+def plan_of(question: Question, frames: bool, tries: Tries) -> SweepPlan:
     """The sweep that answers a question: ports x rates x what is cut."""
     body: dict[str, Any] = {"urdf": question.urdf, "links": question.links,
                             "reach_mm": question.reach_mm}  # fmt: skip
@@ -194,7 +194,7 @@ def plan_of(question: Question, frames: bool, tries: Tries = TRIES) -> SweepPlan
         "body.interfaces": list(question.ports),
         "event": list(CUTS),
     }
-    return make_plan(tables, vary=vary, paired=("body.interfaces",), **tries._asdict())
+    return make_plan(tables, vary=vary, paired=("body.interfaces",), **TRIES | tries)
 
 
 def judged(question: Question, done: Sweep, weak: Mapping[int, Sequence[Weak]]) -> polars.DataFrame:

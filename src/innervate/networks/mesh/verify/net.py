@@ -84,6 +84,20 @@ class Part(NamedTuple):
 Successor = tuple[Move, Net, int]
 
 
+class _Fate(NamedTuple):
+    """What becomes of a frame on the air.
+
+    Attributes:
+        left: what may still happen afterwards.
+        missed: who does not hear it.
+        deaf: 1 = its sender does not hear the ack.
+    """
+
+    left: tuple[int, int, int, int]
+    missed: tuple[int, ...] = ()
+    deaf: int = 0
+
+
 class Nets:
     """The states of a model, and what follows them."""
 
@@ -252,21 +266,22 @@ class Nets:
             for count in range(min(frames, len(heard_by)) + 1):
                 for missed in combinations(heard_by, count):
                     left = (deaths, revivals, frames - count, acks)
-                    found += self._exchange(net, node, number, heard_by, missed, left)
+                    found += self._exchange(net, node, number, heard_by, _Fate(left, missed))
             return found
-        found += self._exchange(net, node, number, heard_by, (), net.left)
+        found += self._exchange(net, node, number, heard_by, _Fate(net.left))
         if to in heard_by and frames:
             left = (deaths, revivals, frames - 1, acks)
-            found += self._exchange(net, node, number, heard_by, (to,), left)
+            found += self._exchange(net, node, number, heard_by, _Fate(left, (to,)))
         if to in heard_by and acks and self.locals.packets[number].flags & const.ACK_WANTED:
             left = (deaths, revivals, frames, acks - 1)
-            found += self._exchange(net, node, number, heard_by, (), left, deaf=1)
+            found += self._exchange(net, node, number, heard_by, _Fate(left, deaf=1))
         return found
 
     def _exchange(
-        self, net: Net, node: int, number: int, heard_by: Any, missed: Any, left: Any, deaf: int = 0
+        self, net: Net, node: int, number: int, heard_by: Any, fate: _Fate
     ) -> list[Successor]:
         """Receivers in order, then the sender is told that it has left, then the ack is heard."""
+        left, missed, deaf = fate
         packet = self.locals.packets[number]
         event = (local.FRAME, number)
         parts = [self._part(net)]
