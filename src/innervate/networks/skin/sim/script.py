@@ -65,7 +65,7 @@ class _Stage(NamedTuple):
 
 
 def _take(stage: _Stage, number: int, step: Any, time: int) -> None:
-    """One step."""
+    """Take one step of the script."""
     plan, world, stack, missed = stage
     label = plan.graph.label
     if step.action == steps.DRAW:
