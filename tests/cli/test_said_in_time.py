@@ -7,6 +7,7 @@ import pytest
 
 from innervate import scenario
 from innervate.cli import errors, exporting, files, live_app, sizing
+from innervate.cli.options import ExportOptions, SizeOptions, UpOptions
 from innervate.export import recording
 from innervate.running import folder as folders
 from innervate.sweeping import SweepError, sweep
@@ -17,7 +18,7 @@ TABLES = line(3, duration_s=0.05)
 
 @pytest.mark.parametrize("seconds", [-3.0, float("nan"), float("inf")])
 def test_live_commands_end_after_a_time_that_can_be(seconds):
-    for command in (lambda: live_app.live_up("line", for_=seconds),
+    for command in (lambda: live_app.live_up("line", options=UpOptions(for_s=seconds)),
                     lambda: live_app.live_capture(for_=seconds)):  # fmt: skip
         with pytest.raises(errors.UserError, match="--for must be a number of seconds from 0"):
             command()
@@ -34,7 +35,7 @@ def test_a_missing_package_is_said_before_the_simulation(monkeypatch, tmp_path):
     monkeypatch.setattr(builtins, "__import__", without_mcap)
     monkeypatch.setattr(exporting._Source, "_frames", lambda _self: pytest.fail("simulated"))
     with pytest.raises(ModuleNotFoundError, match="mcap"):
-        exporting.export("line", [], None, exporting.Wanted(mcap=tmp_path / "run.mcap"), False)
+        exporting.export("line", ExportOptions(mcap=tmp_path / "run.mcap"))
 
 
 def test_every_bundled_scenario_has_a_whole_sentence(capsys):
@@ -65,16 +66,16 @@ def test_a_sweep_that_cannot_start_leaves_no_folder(tmp_path):
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"rates_hz": (250.0, -1.0)}, "--rate must be 0.01 to 10000, not -1"),
-        ({"reach_mm": 0.0}, "--reach must be 0.001 to 100000, not 0"),
-        ({"pitch_mm": 0.0}, "--pitch must be 0.5 to 100000, not 0"),
-        ({"loss_max": 2.0}, "--loss must be 0 to 100, not 200"),
-        ({"recovery_ms_max": -1.0}, "--recovery must be 0.001 to 1e+09, not -1"),
+        ({"rate": [250.0, -1.0]}, "--rate must be 0.01 to 10000, not -1"),
+        ({"reach": 0.0}, "--reach must be 0.001 to 100000, not 0"),
+        ({"pitch": 0.0}, "--pitch must be 0.5 to 100000, not 0"),
+        ({"loss": 200.0}, "--loss must be 0 to 100, not 200"),
+        ({"recovery": -1.0}, "--recovery must be 0.001 to 1e+09, not -1"),
     ],
 )
 def test_size_names_the_option(given, message):
     with pytest.raises(errors.UserError, match=re.escape(message)):
-        sizing.size({"urdf": "none.urdf", "links": "*", "ports": "1", **given}, {})
+        sizing.size("none.urdf", SizeOptions(links="*", ports="1", **given))
 
 
 def test_a_run_of_other_settings_is_kept(tmp_path, monkeypatch):

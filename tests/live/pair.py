@@ -3,7 +3,7 @@
 import asyncio
 
 from innervate.live.identity import enrol, signing_public
-from innervate.live.keys import Sealer
+from innervate.live.keys import Sealer, ring_of
 from innervate.live.links import Path
 from innervate.live.state import State
 
@@ -51,12 +51,12 @@ def join(*wires):
 
 def network_sealer(number, keys=None, use=None, **more):
     keys = keys or {1: KEY}
-    return Sealer("mesh", number, keys, use or min(keys), State(None), **more)
+    return Sealer(ring_of("mesh", keys, use or min(keys)), number, State(None), **more)
 
 
 def own_sealer(number, serial=None, authority=AUTHORITY, state=None, kind="mesh"):
     identity = enrol(authority, number, number + 100 if serial is None else serial, SHARED)
-    return Sealer(kind, number, {}, 0, state or State(None), identity)
+    return Sealer(ring_of(kind, {}, 0, identity), number, state or State(None))
 
 
 def public_authority():

@@ -8,7 +8,7 @@ from innervate.cli.errors import UserError
 from innervate.export import links
 from innervate.export.reading import Capture
 from innervate.live import status, tap
-from innervate.live.keys import Sealer
+from innervate.live.keys import Sealer, ring_of
 from innervate.live.state import State
 from innervate.networks.mesh import frames as mesh
 from innervate.networks.mesh.protocol.constants import DATA
@@ -39,7 +39,7 @@ def test_every_frame_of_sealed_nodes_is_captured_opened_while_they_run(tmp_path)
     async def main():
         net = Mesh(3, [(0, 1), (1, 2)])
         for i, node in enumerate(net.nodes):
-            node.sealer = Sealer("mesh", i, {1: bytes(32)}, 1, State(None))
+            node.sealer = Sealer(ring_of("mesh", {1: bytes(32)}, 1), i, State(None))
         async with net:
             servers = await serving(net.nodes, tmp_path)
             with (tmp_path / "live.pcapng").open("wb") as file:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from innervate.live.errors import LiveError
 from innervate.live.keyring import read_key
-from innervate.live.keys import Sealer
+from innervate.live.keys import Sealer, ring_of
 from innervate.live.receipts import DELIVERED
 from innervate.live.state import State
 from innervate.live.udp import UdpLink
@@ -29,7 +29,7 @@ def test_keys_are_read_from_files(tmp_path):
 
 def fuzz_node(sealed):
     params = mesh_parameters(4, {})
-    sealer_ = Sealer("mesh", 0, {1: KEY}, 1, State(None)) if sealed else None
+    sealer_ = Sealer(ring_of("mesh", {1: KEY}, 1), 0, State(None)) if sealed else None
     link = UdpLink(("127.0.0.1", 0), [("127.0.0.1", 9)])
     return MeshNode("n0", MeshStack(0, 0, params, 5), [link], sealer_)
 
@@ -102,7 +102,7 @@ def test_sealed_nodes_talk_and_a_stranger_with_another_key_is_not_heard():
         for i, key in enumerate((KEY, KEY, OTHER)):
             peers = [("127.0.0.1", port) for k, port in enumerate(ports) if k != i]
             stack = MeshStack(i, 0 if i == 0 else -1, params, int.from_bytes(os.urandom(4), "big"))
-            own = Sealer("mesh", i, {1: key}, 1, State(None))
+            own = Sealer(ring_of("mesh", {1: key}, 1), i, State(None))
             nodes.append(MeshNode(f"n{i}", stack, [UdpLink(("127.0.0.1", ports[i]), peers)], own))
         for node in nodes:
             await node.start()

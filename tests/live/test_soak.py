@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from innervate.live.keys import Sealer
+from innervate.live.keys import Sealer, ring_of
 from innervate.live.receipts import DELIVERED, EXPIRED
 from innervate.live.state import State
 from tests.live.net import Mesh
@@ -44,7 +44,7 @@ async def soak(seconds, seed):
     heard, receipts, outcomes = Counter(), [], Counter()
     mesh = Mesh(9, GRID)
     for i, node in enumerate(mesh.nodes):
-        node.sealer = Sealer("mesh", i, KEYS, 1, State(None))
+        node.sealer = Sealer(ring_of("mesh", KEYS, 1), i, State(None))
         node.receive_messages(lambda _, payload: heard.update([payload]))
     async with mesh:
         began, sent, cut = time.monotonic(), 0, None

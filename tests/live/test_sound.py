@@ -11,7 +11,7 @@ import pytest
 from innervate.live.channel import Medium
 from innervate.live.channel_radio import JOIN, PLUG, SEND, read_heard
 from innervate.live.engine import clock_us
-from innervate.live.keys import Sealer
+from innervate.live.keys import Sealer, ring_of
 from innervate.live.receipts import DELIVERED
 from innervate.live.state import State
 from innervate.live.udp import MulticastLink, UdpLink
@@ -97,7 +97,7 @@ async def network_and_frames(sealed=False):
     mesh = Mesh(COUNT, LINE)
     if sealed:
         for i, node in enumerate(mesh.nodes):
-            node.sealer = Sealer("mesh", i, {1: KEY}, 1, State(None))
+            node.sealer = Sealer(ring_of("mesh", {1: KEY}, 1), i, State(None))
     samples, asked = [], set()
 
     def tap(_at, _port, out, data, why):

@@ -18,7 +18,7 @@ from typing import Any
 from unittest import mock
 
 from innervate.live import local, main, metrics, state
-from innervate.live.keys import Sealer
+from innervate.live.keys import Sealer, ring_of
 from innervate.live.machine import on
 from innervate.live.nodefile import load
 from innervate.networks.mesh.live.node import MeshNode
@@ -135,7 +135,7 @@ async def mesh(folder: Path) -> list[Any]:
     nodes = {}
     for i, rank in enumerate(ranks):
         stack = MeshStack(i, rank, params, 7919 * (i + 1) ** 3, i == 3)
-        sealer = Sealer("mesh", i, {1: KEY}, 1, state.State(None))
+        sealer = Sealer(ring_of("mesh", {1: KEY}, 1), i, state.State(None))
         nodes[f"n{i}"] = MeshNode(f"n{i}", stack, links[i], sealer)
     more = {"kind": "mesh", "": "nodes = 4\n", "n3": "nodes = 4\nrobot = true\n"}
     async with House(folder, nodes, more) as house:

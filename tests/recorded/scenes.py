@@ -261,7 +261,12 @@ def of_spine() -> Iterator[tuple[str, Drawn]]:
 
 def sweeps() -> Iterator[tuple[str, Drawn]]:
     """Figures of made-up sweeps."""
-    draw = import_module("innervate.plot.sweeps").draw
+    room = import_module("innervate.plot.sweeps")
+
+    def draw(columns: Any, *case: Any) -> Any:
+        *shown, over = case
+        return room.draw(columns, room.Shown(*shown), over)
+
     ks, seeds = (1, 2, 5, 10, 20), 3
     rows = [(k, rule, s) for k in ks for rule in ("a", "b") for s in range(seeds)]
     columns = {

@@ -200,3 +200,8 @@ def test_equal_values_have_one_text(value):
     if isinstance(value, int) and not isinstance(value, bool):
         assert canonical(float(value)) == canonical(value)
     assert canonical([value]) != canonical([value, math.pi])
+
+
+def test_what_a_sweep_does_not_take_is_said():
+    with pytest.raises(TypeError, match="a sweep takes no vry"):
+        make_plan(SKIN, vry={"protocol.k": [2, 3]})

@@ -15,8 +15,16 @@ from innervate.cli import errors
 from innervate.cli.export_app import export, fit
 from innervate.cli.files_app import check, compare, new, scenarios
 from innervate.cli.live_app import live_app
+from innervate.cli.options import (
+    PAGE_DEFAULTS,
+    SWEEP_DEFAULTS,
+    VERIFY_DEFAULTS,
+    PageOptions,
+    SizeOptions,
+    SweepOptions,
+    VerifyOptions,
+)
 from innervate.cli.seeds import Seed, Sets
-from innervate.cli.verify_options import VERIFY_DEFAULTS, VerifyOptions
 from innervate.network import first
 
 HELP = """Describe and simulate the networks inside and between robots.
@@ -96,19 +104,7 @@ def sweep(
     file: str,
     /,
     *,
-    vary: Annotated[list[str] | None, Parameter(negative="")] = None,
-    set_: Sets = None,
-    repeat: int | None = None,
-    seed: Seed = None,
-    until: Annotated[list[str] | None, Parameter(negative="")] = None,
-    batch: int | None = None,
-    paired: Annotated[list[str] | None, Parameter(negative="")] = None,
-    out: Path | None = None,
-    workers: int | None = None,
-    engine: str = "processes",
-    dask: str = "",
-    show: Annotated[list[str] | None, Parameter(negative="")] = None,
-    retry: Annotated[bool, Parameter(negative="")] = False,
+    options: Annotated[SweepOptions, Parameter(name="*")] = SWEEP_DEFAULTS,
 ) -> int:
     """Run a scenario for every combination of some settings, many times each.
 
@@ -119,107 +115,24 @@ def sweep(
     ----------
     file
         A scenario file, the name of a bundled one, or a plan file (see docs/sweeps.md).
-    vary
-        A key and its values, like protocol.k=2..8, name=a,b or k,m=3:3,5:4; may be given again.
-    set_
-        Change a key for all runs, as for run.
-    repeat
-        Runs of every point, each with its own seed; with --until at most.
-    seed
-        Root seed in place of the scenario's.
-    until
-        A point ends when the 95 % interval of a mean is that narrow, like
-        recoveries.routed_ms.ci=5%; may be given again.
-    batch
-        Repeats between two decisions of --until; 10 if left out.
-    paired
-        A key whose variants run on the same seeds, for comparisons; or all.
-    out
-        Folder to write or to go on in; sweeps/NAME if left out.
-    workers
-        How many runs at the same time; one for every core if left out.
-    engine
-        On this machine: processes, threads or here.
-    dask
-        Address of a Dask scheduler to run on, like tcp://scheduler:8786.
-    show
-        A figure to show while it runs and at the end; may be given again.
-    retry
-        Run again what failed.
     """
     from innervate.cli import sweeping as command
 
-    return command.sweep(
-        file,
-        {
-            "vary": vary or [], "overrides": set_ or [], "repeat": repeat, "seed": seed,
-            "until": until or [], "batch": batch, "paired": paired or [],
-        },
-        {"out": out, "workers": workers, "kind": engine, "dask": dask, "retry": retry},
-        show or [],
-    )  # fmt: skip
+    return command.sweep(file, options)
 
 
 @app.command
-def size(
-    robot: str,
-    /,
-    *,
-    links: str,
-    rate: Annotated[list[float] | None, Parameter(negative="")] = None,
-    ports: str = "1..8",
-    pitch: float | None = None,
-    reach: float | None = None,
-    loss: float = 1.0,
-    recovery: float = 50.0,
-    repeat: int = 20,
-    seed: Seed = None,
-    out: Path | None = None,
-    workers: int | None = None,
-    dask: str = "",
-) -> int:
+def size(robot: str, /, *, options: Annotated[SizeOptions, Parameter(name="*")]) -> int:
     """Say how many interface ports a robot's skin needs, and where, by simulation.
 
     Parameters
     ----------
     robot
         A URDF file, or package:NAME/ROBOT like package:icub-models/iCubGenova02.
-    links
-        Pattern for the links that carry skin: frames of cells, or links with a shape.
-    rate
-        Samples per second and cell, 250 if left out; may be given again.
-    ports
-        Numbers of ports to try, like 1..8 or 1,2,4.
-    pitch
-        Distance of cells on links that have a shape, mm; 25 if left out.
-    reach
-        Longest cable between two cells, mm; as long as it takes if left out.
-    loss
-        Samples that may be lost on the way, %.
-    recovery
-        Time in which all cells must have a way again after a cut, ms.
-    repeat
-        Runs of every combination.
-    seed
-        Root seed.
-    out
-        Folder to write or to go on in; sweeps/size-ROBOT if left out.
-    workers
-        How many runs at the same time; one for every core if left out.
-    dask
-        Address of a Dask scheduler to run on.
     """
     from innervate.cli import sizing as command
 
-    return command.size(
-        {
-            "urdf": robot, "links": links, "rates_hz": tuple(rate or [250.0]), "ports": ports,
-            "pitch_mm": pitch, "reach_mm": reach, "loss_max": loss / 100,
-            "recovery_ms_max": recovery,
-        },
-        {"repeat": repeat, "seed": 1 if seed is None else seed, "out": out, "workers": workers,
-         "dask": dask},
-    )  # fmt: skip
+    return command.size(robot, options)
 
 
 @app.command
@@ -285,9 +198,7 @@ def watch(
     set_: Sets = None,
     seed: Seed = None,
     speed: float | None = None,
-    host: str = "127.0.0.1",
-    port: int = 0,
-    open_: Annotated[bool, Parameter(negative="")] = False,
+    page: Annotated[PageOptions, Parameter(name="*")] = PAGE_DEFAULTS,
 ) -> int:
     """Serve a page to watch a network on and to break it, until Ctrl-C.
 
@@ -303,17 +214,10 @@ def watch(
         Root seed in place of the scenario's.
     speed
         Seconds of the network per second; 0 is as fast as possible.
-    host
-        Address to listen at; others than this machine reach 0.0.0.0.
-    port
-        Port to listen at; 0 is any that is free.
-    open_
-        Open the page in a browser.
     """
     from innervate.cli import watching as command
 
-    settings = command.Settings(set_ or [], seed, speed)
-    return command.watch(what, list(nodes), settings, command.Place(host, port, open_))
+    return command.watch(what, list(nodes), command.Settings(set_ or [], seed, speed), page)
 
 
 app.command(scenarios)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,46 +13,26 @@ from innervate.network import networks
 from innervate.scenario import ScenarioError
 
 if TYPE_CHECKING:
+    from innervate.cli.options import ExportOptions
     from innervate.scenario import Scenario
 
 
-@dataclass(frozen=True)
-class Wanted:
-    """Which files to write; None = not."""
-
-    pcapng: Path | None = None
-    mcap: Path | None = None
-    rerun: Path | None = None
-    graph: Path | None = None
-    tables: Path | None = None
-    csv: bool = False
-    from_s: float = 0.0
-    to_s: float | None = None
-
-    @property
-    def anything(self) -> bool:
-        """True if there is something to write."""
-        return any((self.pcapng, self.mcap, self.rerun, self.graph, self.tables))
-
-
-def export(
-    source: str | None, sets: list[str], seed: int | None, wanted: Wanted, with_dissector: bool
-) -> int:
+def export(source: str | None, wanted: ExportOptions) -> int:
     """Write what is wanted of a run folder or a scenario; with nothing else, only the dissector."""
-    if with_dissector:
-        folder = None if wanted.anything or source is None else Path(source)
+    if wanted.dissector:
+        folder = None if wanted.has_files or source is None else Path(source)
         file = dissector.install(folder)
         print(f"Written: {file}. Wireshark and tshark load it from there.")
-        if not wanted.anything:
+        if not wanted.has_files:
             return 0
-    if not wanted.anything:
+    if not wanted.has_files:
         names = "--pcapng, --mcap, --rerun, --graph, --tables or --dissector"
         raise UserError(f"nothing to export; name one of {names}")
     if source is None:
         raise UserError("of what? name a run folder or a scenario; see: innervate export --help")
     if wanted.csv and wanted.tables is None:
         raise UserError("--csv is for tables; name their folder with --tables")
-    _Source(source, sets, seed).write(wanted)
+    _Source(source, wanted.set_ or [], wanted.seed).write(wanted)
     return 0
 
 
@@ -86,7 +65,7 @@ class _Source:
         except ScenarioError as error:
             raise RunError(f"its scenario cannot be run any more: {error}") from None
 
-    def write(self, wanted: Wanted) -> None:
+    def write(self, wanted: ExportOptions) -> None:
         """Write all that is wanted."""
         plan = self.plan
         self._check(wanted)
@@ -113,7 +92,7 @@ class _Source:
             count = rrd.write(plan, self._frames(), wanted.rerun)
             print(f"Written: {wanted.rerun}, {count} rows; look at it with: rerun {wanted.rerun}")
 
-    def _check(self, wanted: Wanted) -> None:
+    def _check(self, wanted: ExportOptions) -> None:
         """What cannot be written is said before anything is simulated for it."""
         if wanted.mcap is not None:
             import mcap.writer  # noqa: F401 - a missing package is said by errors.main
@@ -124,7 +103,7 @@ class _Source:
         if wanted.pcapng is not None:
             self._window(wanted)
 
-    def _capture(self, wanted: Wanted) -> None:
+    def _capture(self, wanted: ExportOptions) -> None:
         from innervate.export import capture
 
         assert wanted.pcapng is not None
@@ -141,7 +120,7 @@ class _Source:
         for why, count in written.dropped.items():
             print(f"  dropped: {why} {count}")
 
-    def _window(self, wanted: Wanted) -> tuple[int, int] | None:
+    def _window(self, wanted: ExportOptions) -> tuple[int, int] | None:
         last = self.plan.duration_us
         begin = round(1e6 * wanted.from_s)
         end = last if wanted.to_s is None else round(1e6 * wanted.to_s)

@@ -5,30 +5,26 @@ from __future__ import annotations
 import asyncio
 import json
 import sys
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 from innervate.cli import errors, live_status
 from innervate.live import status
 from innervate.live.errors import LiveError
 from innervate.network import networks
 
+if TYPE_CHECKING:
+    from innervate.cli.options import UpOptions
 
-def up(
-    file: str,
-    sets: list[str],
-    cables: str,
-    sealed: str,
-    folder: Path | None,
-    for_s: float,
-    as_json: bool,
-) -> int:
+
+def up(file: str, options: UpOptions) -> int:
     """Bring a scenario up as processes."""
     from innervate import scenario as scenarios
     from innervate.live import run_up as room
 
-    loaded = scenarios.load(file, sets)
+    loaded = scenarios.load(file, options.set_ or [])
     plan, text = scenarios.plan(loaded), scenarios.dump(loaded)
-    return asyncio.run(room.run(plan, folder, cables, sealed, for_s, as_json, text))
+    way = room.Way(options.folder, options.cables, options.keys)
+    return asyncio.run(room.run(plan, way, text, options.for_s, options.json))
 
 
 def show(names: list[str], as_json: bool) -> int:

@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from innervate.cli import errors
-from innervate.cli.seeds import Sets
+from innervate.cli.options import SEND_DEFAULTS, UP_DEFAULTS, SendOptions, UpOptions
 
 Json = Annotated[bool, Parameter(negative="")]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
@@ -38,14 +38,7 @@ def live_up(
     file: str,
     /,
     *,
-    set_: Sets = None,
-    netns: Json = False,
-    pty: Json = False,
-    sealed: Json = False,
-    identities: Json = False,
-    folder: Path | None = None,
-    for_: Annotated[float, Parameter(name=["--for"])] = 0.0,
-    json: Json = False,
+    options: Annotated[UpOptions, Parameter(name="*")] = UP_DEFAULTS,
 ) -> int:
     """Bring a scenario up, a process for every node, and play its events, until Ctrl-C.
 
@@ -53,33 +46,15 @@ def live_up(
     ----------
     file
         A scenario, or the name of a bundled one.
-    set_
-        Change a key, as for run.
-    netns
-        Every node in its own network namespace; needs root.
-    pty
-        Skin: serial cables (ptys) instead of UDP.
-    sealed
-        With a key made for this run.
-    identities
-        With an identity for each node, made for this run.
-    folder
-        Where node files, logs and sockets go; a temporary one if left out.
-    for_
-        End after so many seconds; 0 = never.
-    json
-        Say where the nodes are as JSON.
     """
     from innervate.cli import live as command
 
-    if netns and pty:
+    if options.netns and options.pty:
         raise errors.UserError("--netns and --pty exclude each other; name one")
-    errors.check_seconds("--for", for_)
-    if sealed and identities:
+    errors.check_seconds("--for", options.for_s)
+    if options.sealed and options.identities:
         raise errors.UserError("--sealed and --identities exclude each other; name one")
-    cables = "netns" if netns else "pty" if pty else "udp"
-    how = "key" if sealed else "identities" if identities else ""
-    return command.up(file, set_ or [], cables, how, folder, for_, json)
+    return command.up(file, options)
 
 
 @live_app.command(name="status")
@@ -105,9 +80,7 @@ def live_send(
     text: Text,
     /,
     *,
-    priority: Json = False,
-    reliable: bool = True,
-    in_order: Json = False,
+    how: Annotated[SendOptions, Parameter(name="*")] = SEND_DEFAULTS,
     json: Json = False,
 ) -> int:
     """Send a message from a running node; prints what becomes of it.
@@ -120,19 +93,12 @@ def live_send(
         Number of the recipient; 255 all, 254 the monitor.
     text
         The message; - reads standard input.
-    priority
-        Before other messages.
-    reliable
-        Kept until acknowledged.
-    in_order
-        Its recipient may put it in order behind those that were sent so before it.
     json
         Print JSON lines.
     """
     from innervate.cli import live as command
 
-    how = {"priority": priority, "reliable": reliable, **({"in_order": True} if in_order else {})}
-    return command.send(node, to, text, how, json)
+    return command.send(node, to, text, how.asked, json)
 
 
 @live_app.command(name="command")

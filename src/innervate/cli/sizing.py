@@ -3,23 +3,34 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from innervate.cli import errors
 from innervate.cli.live_table import LiveTable
 from innervate.network import networks
 
+if TYPE_CHECKING:
+    from innervate.cli.options import SizeOptions
 
-def size(question: dict[str, Any], how: dict[str, Any]) -> int:
+
+def size(robot: str, options: SizeOptions) -> int:
     """Answer how many ports a robot needs, with a table and a picture."""
     sizing = next(one.sizing for one in networks().values() if one.has("sizing"))
+    question = {
+        "urdf": robot, "links": options.links, "rates_hz": tuple(options.rate or [250.0]),
+        "pitch_mm": options.pitch, "reach_mm": options.reach, "loss_max": options.loss / 100,
+        "recovery_ms_max": options.recovery,
+    }  # fmt: skip
     _check(question)
-    ports = sizing.parse_ports(question.pop("ports"))
-    asked = sizing.Question(ports=ports, **question)
-    folder = how.pop("out") or Path("sweeps") / f"size-{Path(asked.urdf).stem}"
+    asked = sizing.Question(ports=sizing.parse_ports(options.ports), **question)
+    folder = options.out or Path("sweeps") / f"size-{Path(asked.urdf).stem}"
+    seed = 1 if options.seed is None else options.seed
     with LiveTable(folder.name, (sizing.RECOVERY, "data.loss_ratio")) as table:
         try:
-            answer = sizing.size(asked, out=folder, progress=table, **how)
+            answer = sizing.size(
+                asked, out=folder, workers=options.workers, dask=options.dask, progress=table,
+                repeat=options.repeat, seed=seed,
+            )  # fmt: skip
         except KeyboardInterrupt:
             table.close()
             errors.say(f"interrupted; {table.words}; they are kept in {folder}, and the same "

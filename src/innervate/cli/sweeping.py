@@ -10,6 +10,7 @@ from innervate.cli import errors
 from innervate.cli.live_table import LiveTable
 
 if TYPE_CHECKING:
+    from innervate.cli.options import SweepOptions
     from innervate.sweeping import Sweep, SweepPlan
 
 # What is shown if nobody says: of these, those that the runs have.
@@ -23,17 +24,17 @@ POINTS_MAX = 40
 REASONS_MAX = 5
 
 
-def sweep(file: str, what: dict[str, Any], how: dict[str, Any], show: list[str]) -> int:
+def sweep(file: str, options: SweepOptions) -> int:
     """Run a sweep behind a live table; say what came of it."""
     from innervate import sweeping as room
 
-    plan: SweepPlan = room.make_plan(file, **what)
-    folder = how["out"] or Path("sweeps") / (plan.name or "sweep")
-    wanted = tuple(dict.fromkeys([*show, *(rule.measure for rule in plan.until)]))
+    plan: SweepPlan = room.make_plan(file, **options.planned)
+    folder = options.out or Path("sweeps") / (plan.name or "sweep")
+    wanted = tuple(dict.fromkeys([*(options.show or ()), *(rule.measure for rule in plan.until)]))
     with LiveTable(plan.name, wanted or SHOWN) as table:
         try:
             done = room.sweep(
-                plan, **{**how, "out": folder}, follow=wanted or SHOWN, progress=table
+                plan, out=folder, **options.how, follow=wanted or SHOWN, progress=table
             )
         except KeyboardInterrupt:
             table.close()

@@ -11,7 +11,7 @@ from innervate.cli.progress import Display
 from innervate.network import Network, networks
 
 if TYPE_CHECKING:
-    from innervate.cli.verify_options import VerifyOptions
+    from innervate.cli.options import VerifyOptions
     from innervate.verify.cases import Case
 
 UNKNOWN = 1 << 40  # of how much

@@ -13,6 +13,7 @@ from innervate.cli import errors
 from innervate.cli.progress import Progress, is_compiled
 
 if TYPE_CHECKING:
+    from innervate.cli.options import PageOptions
     from innervate.web.recorded import Recorded
     from innervate.web.source import Source
 
@@ -28,22 +29,13 @@ class Settings:
     speed: float | None
 
 
-@dataclass(frozen=True, slots=True)
-class Place:
-    """Where the page is served."""
-
-    host: str
-    port: int
-    opened: bool
-
-
-def watch(what: str, nodes: list[str], settings: Settings, place: Place) -> int:
+def watch(what: str, nodes: list[str], settings: Settings, page: PageOptions) -> int:
     """Serve a page until Ctrl-C."""
     from innervate.scenario import bundled
     from innervate.web.serve import serve
 
-    if not 0 <= place.port <= 65_535:
-        raise errors.UserError(f"--port is 0 to 65535, not {place.port}")
+    if not 0 <= page.port <= 65_535:
+        raise errors.UserError(f"--port is 0 to 65535, not {page.port}")
     is_live = what == LIVE  # a folder of that name is ./live
     source: Source
     if settings.speed is not None:
@@ -61,11 +53,11 @@ def watch(what: str, nodes: list[str], settings: Settings, place: Place) -> int:
 
     def announce(address: str) -> None:
         print(f"Open {address}\nCtrl-C ends it.", flush=True)
-        if place.opened:
+        if page.open_:
             # A browser that runs in the terminal would keep the page waiting.
             threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
 
-    asyncio.run(serve(source, place.host, place.port, announce, report))
+    asyncio.run(serve(source, page.host, page.port, announce, report))
     return 0
 
 

@@ -70,7 +70,7 @@ def sealer_of(loaded: Loaded, state: State) -> Sealer | None:
     table = loaded.table
     if table.keys is None:
         return None
-    from innervate.live.keys import Sealer
+    from innervate.live.keys import Sealer, ring_of
 
     identity = None
     if table.keys.identity is not None:
@@ -78,7 +78,8 @@ def sealer_of(loaded: Loaded, state: State) -> Sealer | None:
 
         identity = load(loaded.path.parent / table.keys.identity, table.number)
     keys = keys_of(table.keys, loaded)
-    sealer = Sealer(table.kind, table.number, keys, table.keys.use, state, identity, table.nodes)
+    ring = ring_of(table.kind, keys, table.keys.use, identity)
+    sealer = Sealer(ring, table.number, state, table.nodes)
     sealer.has_bound_ends = table.keys.ends
     return sealer
 

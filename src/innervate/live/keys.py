@@ -38,16 +38,25 @@ class Opened(NamedTuple):
     window: seal.Window
 
 
+def ring_of(kind: str, keys: dict[int, bytes], use: int, own: Identity | None = None) -> Keyring:
+    """What a node of a kind of network proves itself with; no other kind takes its frames.
+
+    Args:
+        kind: of network.
+        keys: keys by number, 0 .. 15; handshakes may begin with any of them.
+        use: which one our own begin with.
+        own: the node's identity; then the keys are its own.
+    """
+    return Keyring(networks()[kind].key_kind, keys, use, own)
+
+
 class Sealer:
     """What a node has to do with keys.
 
     Args:
-        kind: of network; frames of one are never taken for another's.
+        ring: what it proves itself with, see `ring_of`.
         sender: own number, 0 .. 65535.
-        keys: keys by number, 0 .. 15; handshakes may begin with any of them.
-        use: which one our own begin with.
         state: keeps the list of revoked nodes over a restart.
-        identity: of this node; then the keys are its own.
         nodes: how many numbers there are; None = any.
 
     Attributes:
@@ -61,15 +70,12 @@ class Sealer:
 
     def __init__(
         self,
-        kind: str,
+        ring: Keyring,
         sender: int,
-        keys: dict[int, bytes],
-        use: int,
         state: State | None = None,
-        identity: Identity | None = None,
         nodes: int | None = None,
     ) -> None:
-        self.ring = Keyring(networks()[kind].key_kind, keys, use, identity)
+        self.ring, identity = ring, ring.identity
         self.sender, self.nodes = sender, nodes
         self.state = state or State(None)
         self.life = machine().chance.randbytes(LIFE_BYTES)

@@ -12,25 +12,34 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from innervate.live import play
 from innervate.live.up import Processes
 
 
-async def run(
-    plan: Any, folder: Path | None, cables: str, sealed: str, for_s: float, as_json: bool,
-    scenario: str = "",
-) -> int:  # fmt: skip
-    """Bring a scenario up and keep it until Ctrl-C, SIGTERM or the time is over; 0.
+class Way(NamedTuple):
+    """How nodes are brought up.
 
-    Frames are sealed with a "key" of all nodes, with "identities", or go in the clear ("").
+    Attributes:
+        folder: for node files, logs and sockets; a temporary one if None.
+        cables: "udp", "pty" or "netns".
+        sealed: with a "key" of all nodes, with "identities", or in the clear ("").
     """
-    own = folder is None
-    folder = Path(tempfile.mkdtemp(prefix="innervate-")) if folder is None else folder.absolute()
-    keys = {"use": 1, "secret.1": secrets.token_hex(32)} if sealed == "key" else None
-    network = Processes(plan, folder, cables, keys)
-    if sealed == "identities":
+
+    folder: Path | None
+    cables: str
+    sealed: str
+
+
+async def run(plan: Any, way: Way, scenario: str, for_s: float, as_json: bool) -> int:
+    """Bring a scenario up and keep it until Ctrl-C, SIGTERM or the time is over; 0."""
+    own = way.folder is None
+    folder = Path(tempfile.mkdtemp(prefix="innervate-")) if way.folder is None else way.folder
+    folder = folder.absolute()
+    keys = {"use": 1, "secret.1": secrets.token_hex(32)} if way.sealed == "key" else None
+    network = Processes(plan, folder, way.cables, keys)
+    if way.sealed == "identities":
         network.keys = _identities(network)
     player = _player(network, as_json)
     ending = asyncio.Event()
@@ -40,8 +49,8 @@ async def run(
     began = time.monotonic()
     try:
         await network.up()
-        if scenario:  # for whoever draws a map of the nodes
-            (folder / "scenario.toml").write_text(scenario, encoding="utf-8")
+        # For whoever draws a map of the nodes.
+        (folder / "scenario.toml").write_text(scenario, encoding="utf-8")
         _announce(network, time.monotonic() - began, as_json)
         await _until(ending, asyncio.create_task(player.play()), for_s)
     finally:

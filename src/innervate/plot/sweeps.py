@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from textwrap import wrap
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -23,21 +23,34 @@ Columns = Mapping[str, Sequence[Any]]
 UNITS = {"_ms": "ms", "_s": "s", "_us": "us", "_hz": "Hz", "_m": "m", "_slots": "slots"}
 
 
-def draw(
-    columns: Columns, x: str, y: str, by: str, kind: str, title: str, over: Mapping[str, int] | None
-) -> Figure:
-    """A figure of runs.
+class Shown(NamedTuple):
+    """What a figure shows.
 
-    Args:
-        columns: of the results, one value a run.
-        x: what goes to the right: a setting, or (over is None) a measure.
+    Attributes:
+        x: what goes to the right: a setting, or a measure.
         y: what goes up, or the shade of a heat map.
         by: what tells lines apart, or what goes up in a heat map; "" = one line.
         kind: "band" or "heat".
         title: above it.
-        over: `x` is a setting, so that means and intervals are drawn; what else was varied, and
-            is averaged over: how many values of each.
     """
+
+    x: str
+    y: str
+    by: str = ""
+    kind: str = "band"
+    title: str = ""
+
+
+def draw(columns: Columns, shown: Shown, over: Mapping[str, int] | None) -> Figure:
+    """A figure of runs.
+
+    Args:
+        columns: of the results, one value a run.
+        shown: which of them, and how.
+        over: `x` is a setting, so that means and intervals are drawn; what else was varied, and
+            is averaged over: how many values of each. None = it is a measure.
+    """
+    x, y, by, kind, title = shown
     with style.house():
         made, (ax,) = style.panels(style.COLUMN_IN, 2.5)
         if kind == "heat":

@@ -164,7 +164,8 @@ class Sweep:
                 f"a figure takes a measure as y, kind {' or '.join(room.KINDS)}, heat also by"
             )
         over = self.averaged(x, by) if x in self.plan.keys else None
-        return room.draw(self.results.to_dict(as_series=False), x, y, by, kind, title, over)
+        columns = self.results.to_dict(as_series=False)
+        return room.draw(columns, room.Shown(x, y, by, kind, title), over)
 
     def averaged(self, x: str, by: str = "") -> dict[str, int]:
         """Over what else a figure of x and by takes its means: varied keys, how many values."""

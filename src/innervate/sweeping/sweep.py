@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, TypedDict, Unpack
 
 from innervate import scenario as scenarios
 from innervate.scenario import Scenario, ScenarioError
@@ -32,29 +32,10 @@ Vary = Iterable[str] | Mapping[str | tuple[str, ...], Any]
 Progress = Callable[[Scheduler], None]
 
 
-def sweep(
-    scenario: Source | SweepPlan,
-    *,
-    vary: Vary = (),
-    overrides: Iterable[str] | Mapping[str, Any] = (),
-    derive: Mapping[str, str] | None = None,
-    repeat: int | None = None,
-    seed: int | None = None,
-    until: str | Iterable[str] = (),
-    batch: int | None = None,
-    paired: str | Iterable[str] = (),
-    out: str | os.PathLike[str] | None = None,
-    workers: int | None = None,
-    kind: str = "processes",
-    dask: str = "",
-    retry: bool = False,
-    follow: Iterable[str] = (),
-    progress: Progress | None = None,
-) -> Sweep:
-    """Run a scenario for every combination of some settings, each many times.
+class Planned(TypedDict, total=False):
+    """What is varied, and how often it runs.
 
-    Args:
-        scenario: a plan file, or what `innervate.run` takes, or a SweepPlan.
+    Attributes:
         vary: what is varied: {"protocol.k": [2, 3], ("a", "b"): [(1, 10), (2, 20)]}, values also
             as "2..8"; or texts like those of --vary. The last one changes fastest.
         overrides: scenario keys that are other than in the file, for every run.
@@ -65,6 +46,34 @@ def sweep(
             that narrow to either side; several must all be met.
         batch: repeats between two decisions of `until`; 10.
         paired: keys whose variants are compared on the same seeds; "all" = every point has them.
+    """
+
+    vary: Vary
+    overrides: Iterable[str] | Mapping[str, Any]
+    derive: Mapping[str, str] | None
+    repeat: int | None
+    seed: int | None
+    until: str | Iterable[str]
+    batch: int | None
+    paired: str | Iterable[str]
+
+
+def sweep(
+    scenario: Source | SweepPlan,
+    *,
+    out: str | os.PathLike[str] | None = None,
+    workers: int | None = None,
+    kind: str = "processes",
+    dask: str = "",
+    retry: bool = False,
+    follow: Iterable[str] = (),
+    progress: Progress | None = None,
+    **planned: Unpack[Planned],
+) -> Sweep:
+    """Run a scenario for every combination of some settings, each many times.
+
+    Args:
+        scenario: a plan file, or what `innervate.run` takes, or a SweepPlan.
         out: folder to write, or to go on in; without one everything stays in memory.
         workers: how many at the same time; None = one for every core; 1 = here, without processes.
         kind: "processes", "threads" or "here".
@@ -72,19 +81,14 @@ def sweep(
         retry: run again what failed.
         follow: measures that `progress` wants to see the values of.
         progress: called now and then with the Scheduler.
+        planned: what is varied and how often, see `Planned`; nothing with a SweepPlan.
 
     Raises:
         SweepError: the plan cannot be kept, or the folder not used; one line.
         ScenarioError: no point of it is a valid scenario.
         KeyboardInterrupt: Ctrl-C; with `out` what was done is kept, and the same call goes on.
     """
-    if isinstance(scenario, SweepPlan):
-        plan = scenario
-    else:
-        plan = make_plan(
-            scenario, vary=vary, overrides=overrides, derive=derive, repeat=repeat, seed=seed,
-            until=until, batch=batch, paired=paired,
-        )  # fmt: skip
+    plan = scenario if isinstance(scenario, SweepPlan) else make_plan(scenario, **planned)
     plan = _checked(plan)
     folder = None if out is None else Path(out)
     with engine(kind, workers, dask) as made:  # one that cannot be leaves no folder behind
@@ -110,27 +114,19 @@ def _run_plan(scheduler: Scheduler, jobs: Jobs, folder: Path | None) -> Sweep:
     return done
 
 
-def make_plan(
-    scenario: Source,
-    *,
-    vary: Vary = (),
-    overrides: Iterable[str] | Mapping[str, Any] = (),
-    derive: Mapping[str, str] | None = None,
-    repeat: int | None = None,
-    seed: int | None = None,
-    until: str | Iterable[str] = (),
-    batch: int | None = None,
-    paired: str | Iterable[str] = (),
-) -> SweepPlan:
-    """The plan that these describe (see sweep()); what they say goes before a plan file's.
+def make_plan(scenario: Source, **planned: Unpack[Planned]) -> SweepPlan:
+    """The plan that these describe (see Planned); what they say goes before a plan file's.
 
     Raises:
         SweepError, ScenarioError: see sweep().
     """
     file, source = _plan_file(scenario)
-    base = base_of(source, overrides)
-    axes, derived = _axes(vary), dict(derive or {})
-    rules, pairs = _texts(until), _texts(paired)
+    base = base_of(source, planned.get("overrides", ()))
+    axes, derived = _axes(planned.get("vary", ())), dict(planned.get("derive") or {})
+    rules, pairs = _texts(planned.get("until", ())), _texts(planned.get("paired", ()))
+    unknown = planned.keys() - Planned.__annotations__.keys()
+    if unknown:
+        raise TypeError(f"a sweep takes no {', '.join(sorted(unknown))}")
     if file is not None:
         given = {key for one in axes for key in one.keys} | {key for key, _ in base.settings}
         label = str(scenario)
@@ -142,26 +138,37 @@ def make_plan(
         derived = {k: str(v) for k, v in planfile.leaves(file.derive) if k not in given} | derived
         rules = rules or _texts(file.until)
         pairs = pairs or _texts(file.paired)
-        repeat = repeat if repeat is not None else file.repeat
-        batch = batch if batch is not None else file.batch
-        seed = seed if seed is not None else file.seed
-    repeat = repeat if repeat is not None else REPEAT_UNTIL if rules else 1
-    counts = {"repeat": repeat, "batch": BATCH if batch is None else batch}
-    for name, count in counts.items():
-        if not 1 <= count <= REPEAT_MAX:
-            raise SweepError(f"{name} must be a whole number from 1 to {REPEAT_MAX}, not {count}")
-    plan = SweepPlan(
+    return SweepPlan(
         base=base,
         axes=axes,
         derived=tuple((k, Formula(text, f"derive {k}")) for k, text in derived.items()),
         until=tuple(parse_until(rule) for rule in rules),
-        root=-1 if seed is None else seed,
+        root=_first(planned.get("seed"), file.seed if file else None, -1),
         paired=pairs,
         name=(file.name if file is not None else "") or Path(base.file).stem,
         plots=tuple(file.plot) if file is not None else (),
-        **counts,
+        repeat=_count("repeat", planned, file, REPEAT_UNTIL if rules else 1),
+        batch=_count("batch", planned, file, BATCH),
     )
-    return plan
+
+
+def _count(
+    name: Literal["repeat", "batch"], planned: Planned, file: planfile.PlanFile | None, usual: int
+) -> int:
+    """How often, as was asked for, or as the plan file says.
+
+    Raises:
+        SweepError: never, or too often.
+    """
+    count = _first(planned.get(name), getattr(file, name, None), usual)
+    if not 1 <= count <= REPEAT_MAX:
+        raise SweepError(f"{name} must be a whole number from 1 to {REPEAT_MAX}, not {count}")
+    return count
+
+
+def _first(*numbers: int | None) -> int:
+    """The first number that was given."""
+    return next(number for number in numbers if number is not None)
 
 
 def _plan_file(scenario: Source) -> tuple[planfile.PlanFile | None, Source]:

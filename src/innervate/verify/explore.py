@@ -23,6 +23,7 @@ MEMORY = 2 << 30
 CHUNK = 20_000
 PLAIN_CHUNK = 500
 SLOTS = 1 << 18
+EVERY_S = 0.5
 
 ENDS = {s.DONE: "complete", s.FULL: "memory", s.FOUND: "broken", s.GOING: "interrupted"}
 
@@ -81,7 +82,6 @@ def explore(
     memory: int = MEMORY,
     states: int = 0,
     progress: Progress | None = None,
-    every_s: float = 0.5,
 ) -> Result:
     """All states that `model` can reach, breadth first, until something is broken.
 
@@ -91,8 +91,7 @@ def explore(
         system: a copy of the protocol to run plain; None the real one.
         memory: bytes the states may take; reaching it ends the search.
         states: end after so many states; 0 = no such limit.
-        progress: called now and then; the search ends if it returns True.
-        every_s: least seconds between two such calls.
+        progress: called every EVERY_S at most; the search ends if it returns True.
 
     Raises:
         VerifyError: the model does not fit its rows, or the memory.
@@ -113,7 +112,7 @@ def explore(
         if states and tally.states >= states:
             tally.ended = "limit"
             break
-        if progress is not None and now - told >= every_s:
+        if progress is not None and now - told >= EVERY_S:
             told = now
             if progress(tally):
                 break
@@ -127,11 +126,10 @@ def wander(
     seed: int = 1,
     length: int = 400,
     plain: bool = False,
-    system: Any = None,
     progress: Progress | None = None,
 ) -> Result:
     """So many random walks of at most `length` events, for budgets too large to exhaust."""
-    system = system or model.system()
+    system = model.system()
     driver = _Driver(model, system, plain, 64 << 20, length + 2)
     walk = s.build(system).wander if plain else compiled_engine(model.compiled_parts).wander
     run = driver.search.run

@@ -1,20 +1,19 @@
 """Runs of the baselines on the event-level channel, for tests."""
 
-from innervate.networks.radio.scenario.baselines import baseline
+from innervate.networks.radio.scenario.baselines import Draws, baseline
 from innervate.networks.radio.sim.simulate import simulate
 from tests.networks.radio.runs import radio_plan
 
 SLOT_US = 208
 TAU_US = 104
-SET = ("p", "cw_min", "cw_max", "backoff_slots")
 
 
 def baseline_plan(mac, n, *args, **more):
     """A plan as radio_plan makes it, for a baseline; equal delays of half a slot if not said."""
-    chosen = {name: more.pop(name) for name in SET if name in more}
+    chosen = {name: more.pop(name) for name in Draws._fields if name in more}
     more.setdefault("real", (TAU_US, TAU_US))
     plan = radio_plan(n, *args, protocol=mac, **more)
-    plan.params = baseline(mac, n, plan.params, **chosen)
+    plan.params = baseline(mac, n, plan.params, Draws(**chosen))
     return plan
 
 

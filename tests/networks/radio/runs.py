@@ -1,6 +1,6 @@
 """Radio plans for tests, without a scenario file."""
 
-from innervate.networks.radio.scenario.plan import RadioPlan, parameters
+from innervate.networks.radio.scenario.plan import RadioPlan, Rules, parameters
 from innervate.networks.radio.sim.simulate import simulate
 from innervate.sim.tables import uniform
 
@@ -27,10 +27,7 @@ def radio_plan(
     **more,
 ):
     """A plan; `spread` us between the starts of a disaster, `packets` per station in saturation."""
-    names = (
-        *("turns", "per_turn", "wait_us", "delay_us"),
-        *("tail_rule", "overlap_rule", "window_slots", "dilate"),
-    )
+    names = ("delay_us", *Rules._fields)
     params = parameters(packet_slots, ta, **{k: more.pop(k) for k in names if k in more})
     starts = (START_US + uniform(seed, "spread", n, spread + 1)).tolist()
     plan = RadioPlan(

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from innervate.cli.verify_options import VerifyOptions
+from innervate.cli.options import VerifyOptions
 from innervate.verify import declared
 from innervate.verify.errors import VerifyError
 from tests.networks.tokenring import fields, protocol

@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 import polars
 
@@ -67,6 +67,13 @@ class Question:
     recovery_ms_max: float = RECOVERY_MS_MAX
 
 
+class Tries(TypedDict, total=False):
+    """How often every combination runs, 20 times if nothing is said, and the root seed, 1."""
+
+    repeat: int
+    seed: int
+
+
 @dataclass(eq=False, repr=False)
 class Answer:
     """What came out.
@@ -113,15 +120,17 @@ class Answer:
         return figure.write(self, folder)
 
 
+TRIES: Tries = {"repeat": 20, "seed": 1}
+
+
 def size(
     question: Question,
     *,
-    repeat: int = 20,
-    seed: int = 1,
     out: str | os.PathLike[str] | None = None,
     workers: int | None = None,
     dask: str = "",
     progress: Progress | None = None,
+    **tries: Unpack[Tries],
 ) -> Answer:
     """Answer a question by simulation; the other arguments are those of sweep().
 
@@ -130,7 +139,7 @@ def size(
         ScenarioError: the skin cannot be built.
     """
     asked, frames, names = _placed(question)
-    plan = plan_of(asked, frames, repeat, seed)
+    plan = plan_of(asked, frames, tries)
     done = sweep(plan, out=out, workers=workers, dask=dask, follow=(RECOVERY,), progress=progress)
     made = {ports: _graph(plan, ports) for ports in asked.ports}
     graphs = {ports: graph for ports, graph in made.items() if graph is not None}
@@ -167,7 +176,7 @@ def _placed(question: Question) -> tuple[Question, bool, list[str]]:
     return made, frames, names
 
 
-def plan_of(question: Question, frames: bool, repeat: int, seed: int) -> SweepPlan:
+def plan_of(question: Question, frames: bool, tries: Tries) -> SweepPlan:
     """The sweep that answers a question: ports x rates x what is cut."""
     body: dict[str, Any] = {"urdf": question.urdf, "links": question.links,
                             "reach_mm": question.reach_mm}  # fmt: skip
@@ -185,7 +194,7 @@ def plan_of(question: Question, frames: bool, repeat: int, seed: int) -> SweepPl
         "body.interfaces": list(question.ports),
         "event": list(CUTS),
     }
-    return make_plan(tables, vary=vary, repeat=repeat, seed=seed, paired=("body.interfaces",))
+    return make_plan(tables, vary=vary, paired=("body.interfaces",), **TRIES | tries)
 
 
 def judged(question: Question, done: Sweep, weak: Mapping[int, Sequence[Weak]]) -> polars.DataFrame:

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.networks.radio.scenario.baselines import NUMBERS, baseline
+from innervate.networks.radio.scenario.baselines import NUMBERS, Draws, baseline
 from tests.networks.radio.sim.test_parity import PRACTICAL, QUIET, check, plans
 
 
@@ -18,10 +18,12 @@ def baseline_plans(draw):
         plan.protocol,
         plan.stations,
         plan.params,
-        p=draw(st.sampled_from([0.01, 0.3, 1.0])),
-        cw_min=least,
-        cw_max=draw(st.sampled_from([32, 1024, 32_768])),
-        backoff_slots=draw(st.sampled_from([1, 1, 11])),
+        Draws(
+            p=draw(st.sampled_from([0.01, 0.3, 1.0])),
+            cw_min=least,
+            cw_max=draw(st.sampled_from([32, 1024, 32_768])),
+            backoff_slots=draw(st.sampled_from([1, 1, 11])),
+        ),
     )
     return plan
 

@@ -65,10 +65,11 @@ def test_symmetries_leave_out_mirror_images_only():
     assert parents_of(one, halved.rows) | mirrored == parents_of(other, whole.rows)
 
 
-def test_a_search_ends_where_it_is_told_to_and_says_so():
+def test_a_search_ends_where_it_is_told_to_and_says_so(monkeypatch):
     made = model("triangle", budget=Budget(faults=1))
     assert explore.explore(made, states=1000).tally.ended == "limit"
-    assert explore.explore(made, progress=lambda _: True, every_s=0.0).tally.ended == "interrupted"
+    monkeypatch.setattr(explore, "EVERY_S", 0.0)
+    assert explore.explore(made, progress=lambda _: True).tally.ended == "interrupted"
     with pytest.raises(VerifyError, match="at least 64 MB"):
         explore.explore(made, memory=1 << 20)
     full = explore.explore(made, memory=8 << 20).tally

@@ -31,5 +31,6 @@ def build(loaded: Loaded) -> MeshNode:
     state = state_of(loaded)
     sealer, deliver = sealer_of(loaded, state), table.deliver or DeliverTable()
     orderly = Orderly(1000 * deliver.wait_ms, deliver.buffer)
-    links, in_order = links_of(loaded), deliver.in_order
-    return MeshNode(loaded.name, stack, links, sealer, state, orderly, in_order)
+    made = MeshNode(loaded.name, stack, links_of(loaded), sealer, state, orderly)
+    made.in_order = deliver.in_order
+    return made

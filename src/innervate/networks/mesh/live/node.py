@@ -74,11 +74,10 @@ class MeshNode(LiveNode):
         sealer: Sealer | None = None,
         state: State | None = None,
         orderly: Orderly | None = None,
-        in_order: bool = False,
     ) -> None:
         super().__init__(name, stack, links, sealer, state)
         stack.epoch = self.state.epoch
-        self.in_order = in_order
+        self.in_order = False
         self.orderly = orderly or Orderly()
         self.orderly.on_up = self._acknowledge
         self._chains = Chains()

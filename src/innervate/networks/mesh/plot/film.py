@@ -65,15 +65,16 @@ class _Crossing:
 
     def _field(self, places: dict[int, Point]) -> None:
         """Draw what stays as it is: the ground, links, nodes and their names."""
-        field = svg.Drawing(self.sheet.width, self.sheet.height, "")
+        drawing = svg.Drawing(self.sheet.width, self.sheet.height, "")
         names = Labels(self.sheet.width, self.sheet.height)
         on = Ground(self.plan).on_at(self.crossing.crossed_us)
         for hop in self.sent:
             if hop.to < self.plan.nodes:
                 names.block_line([places[hop.node], places[hop.to]])
-        mesh_map.ground(field, self.plan, self.sheet, names, on)
-        mesh_map.nodes(field, self.plan, self.sheet, names, on, places)
-        self.drawing.place(field, (0.0, HEAD))
+        field = mesh_map.Field(drawing, self.plan, self.sheet, names, on)
+        mesh_map.ground(field)
+        mesh_map.nodes(field, places)
+        self.drawing.place(drawing, (0.0, HEAD))
 
     def _others(self) -> None:
         """Everything else on the air: a line to its receiver, or a ring."""

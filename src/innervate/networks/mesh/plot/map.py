@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from innervate.networks.mesh.analysis.alarms import Crossing
 from innervate.networks.mesh.analysis.fence import edges_of, position_cm
@@ -45,9 +45,42 @@ def monitor_of(plan: Any) -> int:
     return int(plan.ranks.index(0)) if monitor == MONITOR else monitor
 
 
+class Alarmed(NamedTuple):
+    """The way of one alarm.
+
+    Attributes:
+        sent: all its transmissions; who flooded it gets a ring.
+        way: the hops that brought it to the monitor.
+        at_us: who was off then is crossed out; None = at the end.
+    """
+
+    sent: Sequence[Hop] = ()
+    way: Sequence[Hop] = ()
+    at_us: int | None = None
+
+
+NO_ALARM = Alarmed()
+
+
+class Field(NamedTuple):
+    """A field that is being drawn.
+
+    Attributes:
+        sheet: where nodes lie.
+        names: where there is room for names.
+        on: which nodes are.
+    """
+
+    drawing: Drawing
+    plan: Any
+    sheet: Sheet
+    names: Labels
+    on: Sequence[bool]
+
+
 def field_map(
     result: Any, sheet: Sheet, title: str, crossings: Sequence[Crossing] = (),
-    sent: Sequence[Hop] = (), way: Sequence[Hop] = (), at_us: int | None = None,
+    alarm: Alarmed = NO_ALARM,
 ) -> Drawing:  # fmt: skip
     """The field, with the crossings of a run and the way of one alarm.
 
@@ -56,26 +89,25 @@ def field_map(
         sheet: where nodes lie.
         title: what a screen reader says of it.
         crossings: marked and numbered.
-        sent: all transmissions of an alarm; who flooded it gets a ring.
-        way: the hops that brought it to the monitor.
-        at_us: who was off then is crossed out; by default at the end.
+        alarm: whose way is drawn.
     """
-    plan = result.plan
+    plan, way, at_us = result.plan, alarm.way, alarm.at_us
     drawing = Drawing(sheet.width, sheet.height, title)
     places = robot_places(plan, sheet, way[0].start_us if way else None)
     names = Labels(sheet.width, sheet.height)
     on = Ground(plan).on_at(result.ended_us if at_us is None else at_us)
-    ground(drawing, plan, sheet, names, on)
-    walks(drawing, plan, sheet, names)
-    ringed = {hop.node for hop in sent if hop.flooded}
+    field = Field(drawing, plan, sheet, names, on)
+    ground(field)
+    walks(field)
+    ringed = {hop.node for hop in alarm.sent if hop.flooded}
     for node in sorted(ringed):
         drawing.circle(places[node], sheet.dot + RING_PX + 2, "flooder")
     for hop in way:
         to = hop.to if hop.to < plan.nodes else _next_of(way, hop, monitor_of(plan))
         names.block_line([places[hop.node], places[to]])
         arrow(drawing, places[hop.node], places[to], sheet.dot + 3, "way")
-    nodes(drawing, plan, sheet, names, on, places, ringed)
-    marks(drawing, plan, sheet, names, crossings)
+    nodes(field, places, ringed)
+    marks(field, crossings)
     return drawing
 
 
@@ -94,8 +126,9 @@ def robot_places(plan: Any, sheet: Sheet, at_us: int | None) -> dict[int, Point]
     return found
 
 
-def ground(drawing: Drawing, plan: Any, sheet: Sheet, names: Labels, on: Sequence[bool]) -> None:
+def ground(field: Field) -> None:
     """Fence, links between nodes that stay where they are, and a scale."""
+    drawing, plan, sheet, names, on = field
     edges = edges_of(plan) if sheet.metres else []
     if edges:
         rings = _rings(plan, sheet)
@@ -136,8 +169,9 @@ def _measure(drawing: Drawing, sheet: Sheet) -> None:
     drawing.text((x + long / 2, y - 6), f"{metres:g} m", "small", "middle")
 
 
-def walks(drawing: Drawing, plan: Any, sheet: Sheet, names: Labels) -> None:
+def walks(field: Field) -> None:
     """The ways that robots walk; nothing if the sheet has no metres."""
+    drawing, plan, sheet, names, _ = field
     for walk in plan.walks if sheet.metres else ():
         points = [sheet.of_cm((x, y)) for _, x, y in walk.points]
         if len(points) > 1:
@@ -145,10 +179,9 @@ def walks(drawing: Drawing, plan: Any, sheet: Sheet, names: Labels) -> None:
             names.block_line(points[:CORNERS_MAX])
 
 
-def marks(
-    drawing: Drawing, plan: Any, sheet: Sheet, names: Labels, crossings: Sequence[Crossing]
-) -> None:
+def marks(field: Field, crossings: Sequence[Crossing]) -> None:
     """Where robots left the fence, numbered in order of time."""
+    drawing, plan, sheet, names, _ = field
     walk_of = {walk.node: walk for walk in plan.walks}
     for i, crossing in enumerate(crossings[:CROSSINGS_MAX] if sheet.metres else ()):
         at = sheet.of_cm(position_cm(walk_of[crossing.robot], crossing.crossed_us))
@@ -164,11 +197,9 @@ def pin(at: Point) -> str:
     return svg.polygon(at[0], at[1], [(0, 0), (-5, -13), (5, -13)])
 
 
-def nodes(
-    drawing: Drawing, plan: Any, sheet: Sheet, names: Labels, on: Sequence[bool],
-    places: dict[int, Point], ringed: Collection[int] = (),
-) -> None:  # fmt: skip
+def nodes(field: Field, places: dict[int, Point], ringed: Collection[int] = ()) -> None:
     """Nodes by their shapes, and as many names as there is room for; `ringed`: with a ring."""
+    drawing, plan, sheet, names, on = field
     role = roles(plan)
     for node in range(plan.nodes):
         symbol(drawing, places[node], sheet.dot, role[node], on[node], _tip(plan, node, role))

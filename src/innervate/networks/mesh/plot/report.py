@@ -88,7 +88,9 @@ def field(result: Any, sheet: Sheet, crossings: list[Crossing]) -> str:
     sent = copies(result, shown) if shown is not None else []
     hops = way(result, shown, sent) if shown is not None else []
     at_us = shown.crossed_us if shown is not None else None
-    drawing = mesh_map.field_map(result, sheet, "The field", crossings, sent, hops, at_us)
+    drawing = mesh_map.field_map(
+        result, sheet, "The field", crossings, mesh_map.Alarmed(sent, hops, at_us)
+    )
     text = "Nodes where they are; lines are links that were good in both directions at the start."
     if not sheet.metres:
         text = "Nodes that hear each other lie near each other; it is no map of where they are."

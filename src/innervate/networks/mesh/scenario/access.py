@@ -159,4 +159,4 @@ def _shared(
     )
     if mac == "csma-cd-r":
         return f"{mac}/practical", params
-    return mac, baseline(mac, count, params, p=0.1, cw_min=32, cw_max=1024, backoff_slots=1)
+    return mac, baseline(mac, count, params)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import struct
 from itertools import combinations
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol.queue import UNACKED
@@ -250,22 +250,23 @@ class Nets:
         found: list[Successor] = []
         if to == const.ALL:
             for count in range(min(frames, len(heard_by)) + 1):
+                later = net._replace(left=(deaths, revivals, frames - count, acks))
                 for missed in combinations(heard_by, count):
-                    left = (deaths, revivals, frames - count, acks)
-                    found += self._exchange(net, node, number, heard_by, missed, left)
+                    found += self._exchange(later, node, number, heard_by, missed)
             return found
-        found += self._exchange(net, node, number, heard_by, (), net.left)
+        found += self._exchange(net, node, number, heard_by)
         if to in heard_by and frames:
-            left = (deaths, revivals, frames - 1, acks)
-            found += self._exchange(net, node, number, heard_by, (to,), left)
+            later = net._replace(left=(deaths, revivals, frames - 1, acks))
+            found += self._exchange(later, node, number, heard_by, (to,))
         if to in heard_by and acks and self.locals.packets[number].flags & const.ACK_WANTED:
-            left = (deaths, revivals, frames, acks - 1)
-            found += self._exchange(net, node, number, heard_by, (), left, deaf=1)
+            later = net._replace(left=(deaths, revivals, frames, acks - 1))
+            found += self._exchange(later, node, number, heard_by, deaf=1)
         return found
 
     def _exchange(
-        self, net: Net, node: int, number: int, heard_by: Any, missed: Any, left: Any, deaf: int = 0
-    ) -> list[Successor]:
+        self, net: Net, node: int, number: int, heard_by: list[int],
+        missed: tuple[int, ...] = (), deaf: int = 0,
+    ) -> list[Successor]:  # fmt: skip
         """Receivers in order, then the sender is told that it has left, then the ack is heard."""
         packet = self.locals.packets[number]
         event = (local.FRAME, number)
@@ -285,8 +286,8 @@ class Nets:
             told = self._apply([part._replace(acks=())], node, (local.SENT,))
             for ack in () if deaf else acks:
                 told = self._hear_ack(net, told, packet.link_dst, ack)
-            move = Move(AIR, node, number, tuple(missed), deaf)
-            done += [self._done(net._replace(left=left), move, one) for one in told]
+            move = Move(AIR, node, number, missed, deaf)
+            done += [self._done(net, move, one) for one in told]
         return done
 
     def _hear_ack(self, net: Net, parts: list[Part], sender: int, ack: int) -> list[Part]:

@@ -16,7 +16,7 @@ from innervate.networks.mesh.verify import fair as mesh_fair
 from innervate.networks.mesh.verify import local as mesh_local
 from innervate.networks.mesh.verify.model import MeshModel
 from innervate.networks.mesh.verify.net import Net, Nets, Successor
-from innervate.verify.explore import MEMORY, Tally
+from innervate.verify.explore import EVERY_S, MEMORY, Tally
 
 ROW_BYTES = 330  # a kept state, with its place among those known and its links backward
 LOCAL_BYTES = 6_000  # a node's state, with the calls that were made on it
@@ -59,7 +59,6 @@ def explore(
     states: int = 0,
     live: bool = True,
     progress: Progress | None = None,
-    every_s: float = 0.5,
 ) -> Found:
     """All states that `model` can reach, breadth first, until something is broken.
 
@@ -69,8 +68,7 @@ def explore(
         memory: bytes they may take, roughly; reaching it ends the search.
         states: end after so many; 0 = no such limit.
         live: look at the calm future of every state, too.
-        progress: called now and then; the search ends if it returns True.
-        every_s: least seconds between two such calls.
+        progress: called every EVERY_S at most; the search ends if it returns True.
     """
     nets = nets or Nets(model)
     search = _Search(nets)
@@ -80,7 +78,7 @@ def explore(
         search.advance(states, memory)
         now = wall_s()
         search.tally.wall_s = now - started
-        if progress is not None and now - told >= every_s and search.tally.ended == "interrupted":
+        if progress is not None and now - told >= EVERY_S and search.tally.ended == "interrupted":
             told = now
             if progress(search.tally):
                 break
@@ -195,12 +193,11 @@ def wander(
     *,
     seed: int = 1,
     length: int = 400,
-    nets: Nets | None = None,
     live: bool = True,
     progress: Progress | None = None,
 ) -> Found:
     """So many random walks of at most `length` events, for budgets too large to exhaust."""
-    nets = nets or Nets(model)
+    nets = Nets(model)
     chance, first, fair = random.Random(seed), nets.first(), mesh_fair.Fair(nets)
     found = Found(model, nets, Tally(depth=length), start=first)
     started = wall_s()

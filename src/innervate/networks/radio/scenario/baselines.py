@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 # How stations know their protocol (params.mac); 0 is CSMA/CD-R.
 D1, D2, D2P, DCF, ALOHA, NONPERSISTENT, P_PERSISTENT, TDMA, TREE, TOKEN_RING, POLLING = range(1, 12)
 NUMBERS = {
@@ -26,15 +28,30 @@ TOKEN_SLOTS = 2  # token ring: the token; polling: a poll
 ANSWER_SLOTS = 2  # DCF: a one-byte answer and the idle slot before it
 
 
+class Draws(NamedTuple):
+    """What a baseline draws from.
+
+    Attributes:
+        p: probability to send in a slot (ALOHA after a collision; CSMA).
+        cw_min: DCF draws its backoff from so many values.
+        cw_max: ... doubled at each collision up to this.
+        backoff_slots: length of a slot of the backoff.
+    """
+
+    p: float = 0.1
+    cw_min: int = 32
+    cw_max: int = 1024
+    backoff_slots: int = 1
+
+
+DRAWS = Draws()
+
+
 def baseline(
     mac: str,
     stations: int,
     params: dict[str, int],
-    *,
-    p: float = 0.1,
-    cw_min: int = 32,
-    cw_max: int = 1024,
-    backoff_slots: int = 1,
+    draws: Draws = DRAWS,
 ) -> dict[str, int]:
     """The parameters of a run with what a baseline needs besides.
 
@@ -45,11 +62,8 @@ def baseline(
     Args:
         mac: its name in a scenario, a key of NUMBERS.
         stations: how many.
-        params: of `radio_plan.parameters`.
-        p: probability to send in a slot (ALOHA after a collision; CSMA).
-        cw_min: DCF draws its backoff from so many values.
-        cw_max: ... doubled at each collision up to this.
-        backoff_slots: length of a slot of the backoff.
+        params: of `plan.parameters`.
+        draws: how it draws.
     """
     number = NUMBERS[mac]
     slot, turn = params["slot_us"], 0 if number == D1 else params["ta_us"]
@@ -72,8 +86,8 @@ def baseline(
         "period_us": period.get(number, 0),
         "gap_us": max(slot - params["dmax_us"], params["bit_us"]),
         "answer_us": ANSWER_SLOTS * slot if number == DCF else 0,
-        "backoff_us": backoff_slots * slot,
-        "cw_min": cw_min,
-        "cw_max": cw_max,
-        "p_q15": max(1, round(p * ONE_Q15)),
+        "backoff_us": draws.backoff_slots * slot,
+        "cw_min": draws.cw_min,
+        "cw_max": draws.cw_max,
+        "p_q15": max(1, round(draws.p * ONE_Q15)),
     }

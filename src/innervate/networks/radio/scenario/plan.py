@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 from innervate.networks.radio.scenario.baselines import NONE
 
@@ -106,29 +106,10 @@ class RadioPlan:
         return self._pairs
 
 
-def parameters(
-    packet_slots: int,
-    turnaround_us: int = 0,
-    delay_us: tuple[int, int] = (52, 104),
-    *,
-    bit_us: int = 26,
-    turns: int = 20,
-    per_turn: int = 1,
-    wait_us: int = 0,
-    tail_rule: bool = True,
-    overlap_rule: bool = True,
-    window_slots: int = 0,
-    dilate: int = 1,
-) -> dict[str, int]:
-    """Derived times of CSMA/CD-R; names and reasons in docs/radio.md [radio 4, radio-practical 2].
+class Rules(NamedTuple):
+    """What the stations of CSMA/CD-R have agreed on.
 
-    What baselines need besides comes from `radio_baselines.baseline`.
-
-    Args:
-        packet_slots: T, length of the longest packet, 3 .. 4095.
-        turnaround_us: ta, from deciding to send to being on the air, and back.
-        delay_us: least and greatest delay between two stations, as the stations believe.
-        bit_us: time of a bit; a slot is 8.
+    Attributes:
         turns: turns of a round between two open windows.
         per_turn: most packets in one turn, 1 .. 7.
         wait_us: W, bound of the random wait (paper); 0 = two packets.
@@ -137,6 +118,36 @@ def parameters(
         window_slots: window for CR-Rs in slots; 0 = T - Tc0 (paper).
         dilate: factor on Tc, so that CR-Rs spread over the window; 2 T - 6 fills it (paper).
     """
+
+    turns: int = 20
+    per_turn: int = 1
+    wait_us: int = 0
+    tail_rule: int = 1
+    overlap_rule: int = 1
+    window_slots: int = 0
+    dilate: int = 1
+
+
+def parameters(
+    packet_slots: int,
+    turnaround_us: int = 0,
+    delay_us: tuple[int, int] = (52, 104),
+    *,
+    bit_us: int = 26,
+    **rules: int,
+) -> dict[str, int]:
+    """Derived times of CSMA/CD-R; names and reasons in docs/radio.md [radio 4, radio-practical 2].
+
+    What baselines need besides comes from `baselines.baseline`.
+
+    Args:
+        packet_slots: T, length of the longest packet, 3 .. 4095.
+        turnaround_us: ta, from deciding to send to being on the air, and back.
+        delay_us: least and greatest delay between two stations, as the stations believe.
+        bit_us: time of a bit; a slot is 8.
+        rules: what stations have agreed on, as in `Rules`.
+    """
+    agreed = Rules(**rules)
     slot_us = 8 * bit_us
     least, most = delay_us
     minislot = slot_us + 2 * (most - least) + bit_us
@@ -154,12 +165,7 @@ def parameters(
         "retry_us": retry,
         "join_us": 2 * turnaround_us + max(retry + 2 * minislot, 33 * minislot) + 3 * slot_us,
         "dead_us": 2 * turnaround_us + 3 * most + minislot,
-        "turns": turns,
-        "per_turn": per_turn,
-        "wait_us": wait_us or 2 * packet_slots * slot_us,
-        "tail_rule": int(tail_rule),
-        "overlap_rule": int(overlap_rule),
-        "window_slots": window_slots,
-        "dilate": dilate,
+        **{name: int(value) for name, value in agreed._asdict().items()},
+        "wait_us": agreed.wait_us or 2 * packet_slots * slot_us,
         **NONE,
     }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from innervate.networks.radio.scenario.baselines import baseline
+from innervate.networks.radio.scenario.baselines import Draws, baseline
 from innervate.networks.radio.scenario.model import MACS, RadioScenario
 from innervate.networks.radio.scenario.plan import RadioFault, RadioPlan, parameters
 from innervate.networks.radio.scenario.rules import pair
@@ -71,10 +71,7 @@ def _parameters(model: RadioScenario, bit_us: int) -> dict[str, int]:
         protocol.mac,
         model.stations,
         params,
-        p=protocol.p,
-        cw_min=protocol.cw_min,
-        cw_max=protocol.cw_max,
-        backoff_slots=protocol.backoff_slots,
+        Draws(protocol.p, protocol.cw_min, protocol.cw_max, protocol.backoff_slots),
     )
 
 

@@ -1,5 +1,7 @@
 """CSMA/CD after IEEE 802.3 and 802.11 DCF: backoff counters. Times in ticks."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from innervate.networks.radio.slotted.draws import draw
@@ -8,15 +10,56 @@ from innervate.networks.radio.slotted.recorder import COLLISIONS, NEVER, deliver
 DOUBLINGS_MAX = 10
 
 
-def contend(recorder, slot, packet, cost, turn, back, backoff, linear, redraw):
+class Contention(NamedTuple):
+    """Times and rules of CSMA/CD.
+
+    Attributes:
+        slot, packet: how long they last.
+        cost: after the last station of a collision went on air the channel is sensed idle.
+        turn: from a decision to the first bit on air.
+        back: from the end of a frame until its sender senses the channel.
+        backoff: a step of the backoff.
+        linear: k + 1 values after k collisions, else 2^k.
+        redraw: who got through draws 0 or 1 as well.
+    """
+
+    slot: int
+    packet: int
+    cost: int
+    turn: int
+    back: int
+    backoff: int
+    linear: int
+    redraw: int
+
+
+class Counters(NamedTuple):
+    """Times and rules of 802.11 DCF.
+
+    Attributes:
+        slot: an idle step of every counter.
+        success, cost: the whole times that a packet and a collision take.
+        window, stages: counters start drawn from `window` values, doubled at most so many times.
+        at_once: they start at 0.
+    """
+
+    slot: int
+    success: int
+    cost: int
+    window: int
+    stages: int
+    at_once: int
+
+
+def contend(recorder, rules):
     """1-persistent CSMA/CD with binary (or linear) backoff, which runs on while others send.
 
     A station that decides at t is on air from t + turn; who decides before it can be heard, turn
     and half a slot later, sends too. The channel is sensed idle a slot after a packet, or `cost`
     after the last station of a collision went on air; by its senders `back` after its end, if that
-    is later, and there their backoff begins. `redraw`: who got through draws 0 or 1 as well.
+    is later, and there their backoff begins.
     """
-    half = slot // 2
+    slot, turn, back, backoff = rules.slot, rules.turn, rules.back, rules.backoff
     count = len(recorder.offer)
     due = np.zeros(count, np.int64)
     tries = np.zeros(count, np.int64)
@@ -26,31 +69,31 @@ def contend(recorder, slot, packet, cost, turn, back, backoff, linear, redraw):
     idle = 0
     while going(recorder):
         first = max(idle, _least(due))
-        limit = first + turn + half
+        limit = first + turn + slot // 2
         senders = 0
         for i in range(count):  # no branches: this is where the time goes
             found[senders] = i
             senders += due[i] < limit
         if senders == 1:
             winner = found[0]
-            end = first + turn + packet
+            end = first + turn + rules.packet
             idle = end + slot
             tries[winner] = 0
             deliver(recorder, winner, end)
             due[winner] = max(idle, end + back, _slot_of(recorder.offer[winner], slot))
-            if redraw:
+            if rules.redraw:
                 due[winner] += draw(recorder.rng, 2) * backoff
             continue
         recorder.counts[COLLISIONS] += 1
         last = first
         for j in range(senders):
             last = max(last, due[found[j]])
-        idle = last + turn + cost
+        idle = last + turn + rules.cost
         known = max(idle, idle - slot + back)
         for j in range(senders):
             i = found[j]
             tries[i] += 1
-            window = tries[i] + 1 if linear else 1 << min(tries[i], DOUBLINGS_MAX)
+            window = tries[i] + 1 if rules.linear else 1 << min(tries[i], DOUBLINGS_MAX)
             due[i] = known + draw(recorder.rng, window) * backoff
 
 
@@ -67,17 +110,13 @@ def _least(due):
     return first
 
 
-def distribute(recorder, slot, success, cost, window, stages, at_once):
-    """802.11 DCF as Bianchi's model has it: a busy period is one step of every counter.
-
-    Counters start drawn from `window` values, doubled at most `stages` times; `at_once`: at 0.
-    `success` and `cost` are the whole times that a packet and a collision take.
-    """
-    count = len(recorder.offer)
+def distribute(recorder, rules):
+    """802.11 DCF as Bianchi's model has it: a busy period is one step of every counter."""
+    slot, window, count = rules.slot, rules.window, len(recorder.offer)
     left = np.zeros(count, np.int64)
     stage = np.zeros(count, np.int64)
     time = 0
-    if not at_once:
+    if not rules.at_once:
         for i in range(count):
             left[i] = draw(recorder.rng, window)
     while going(recorder):
@@ -90,13 +129,13 @@ def distribute(recorder, slot, success, cost, window, stages, at_once):
             if here + left[i] == wait:
                 senders += 1
                 winner = i
-        time = start + (success if senders == 1 else cost)
+        time = start + (rules.success if senders == 1 else rules.cost)
         if senders > 1:
             recorder.counts[COLLISIONS] += 1
         for i in range(count):
             here = _waiting_since(recorder.offer[i], start - wait * slot, slot)
             if here + left[i] == wait:
-                stage[i] = 0 if senders == 1 else min(stage[i] + 1, stages)
+                stage[i] = 0 if senders == 1 else min(stage[i] + 1, rules.stages)
                 left[i] = draw(recorder.rng, window << stage[i])
             elif here <= wait:
                 left[i] -= wait - here + 1

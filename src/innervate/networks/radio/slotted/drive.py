@@ -75,7 +75,25 @@ def dcf_here(packet_slots: int) -> Dcf:
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What only some of the protocols have; see `slotted.slotted`."""
+    """What only some of the protocols have.
+
+    Attributes:
+        p: slotted-aloha, nonpersistent, p-persistent: probability of sending in a slot, 0 < p <= 1;
+            default 1 / stations, and 0.1 for p-persistent with stations = 0.
+        reading: csma-cd-r: "A" (default) or "B".
+        window: csma-cd-r: slots of the reservation window; default T (T - Tc0 at Tc0 = 0).
+        backoff: csma-cd-d*: "binary" (default), or "linear": k + 1 values after k collisions
+            [radio Q15].
+        backoff_slots: csma-cd-d*: length of a backoff slot in slots, default 1.
+        turnaround_slots: csma-cd-r, -d2, -d2p: a packet is on air that long after its decision,
+            default 0; carriers that come up meanwhile go unnoticed. csma-cd-r pays it at every
+            hand-over: opening, reservation, each turn.
+        return_slots: csma-cd-d2, -d2p: how long after its end a sender knows the channel again;
+            default turnaround_slots, as on the medium [radio M4]. 0 is a gift to CSMA/CD: its
+            packets cost one turnaround instead of two. With either, everybody knows of every
+            collision, the last to finish too.
+        dcf: a `Dcf`; default `dcf_here(packet_slots)`. Its slots are the result's.
+    """
 
     p: float | None = None
     reading: str = "A"
@@ -124,8 +142,8 @@ class Job:
         """From a decision to the first bit on air."""
         return round(self.options.turnaround_slots * SLOT)
 
-    def run(self, function: Callable[..., None], *values: int) -> None:
-        """Call a loop with the recorder and these values, all integers."""
+    def run(self, function: Callable[..., None], *values: Any) -> None:
+        """Call a loop with the recorder and these values: integers, or records of them."""
         loop(function, self.plain)(self.recorder, *values)
 
 
@@ -147,10 +165,11 @@ def _reserve(job: Job) -> int:
     window = job.packet_slots if job.options.window is None else job.options.window
     if job.options.reading == "A":
         lead = turn + packet + SLOT + turn + SLOT + window * SLOT
-        job.run(turns.reserve, SLOT, turn, packet, lead, 0, turn + packet + SLOT)
+        times = turns.Reservation(SLOT, turn, packet, lead, 0, turn + packet + SLOT)
+        job.run(turns.reserve, times)
         return SLOT
     lead = turn + packet + turn + window * SLOT
-    job.run(turns.reserve, SLOT, turn, packet, lead, SLOT, turn + packet)
+    job.run(turns.reserve, turns.Reservation(SLOT, turn, packet, lead, SLOT, turn + packet))
     return SLOT if len(job.recorder.offer) == 1 else 0
 
 
@@ -160,7 +179,7 @@ def _contend(job: Job) -> int:
     given = job.options.return_slots
     back = job.turn if given is None else round(given * SLOT)
     times = SLOT, job.packet, cost, job.turn, back, job.options.backoff_slots * SLOT
-    job.run(contend.contend, *times, int(linear), int(redraw))
+    job.run(contend.contend, contend.Contention(*times, int(linear), int(redraw)))
     return SLOT
 
 
@@ -168,7 +187,8 @@ def _dcf(job: Job) -> int:
     times = job.options.dcf or dcf_here(job.packet_slots)
     at_once = int(job.recorder.counts[rec.TRAFFIC] == rec.DISASTER)
     costs = times.slot_us, times.success_us, times.collision_us
-    job.run(contend.distribute, *costs, times.window, times.stages, at_once)
+    rules = contend.Counters(*costs, times.window, times.stages, at_once)
+    job.run(contend.distribute, rules)
     return 0
 
 

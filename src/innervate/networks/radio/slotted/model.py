@@ -19,8 +19,8 @@ be lost, and capture, its main effect here, would look milder than it is.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -60,23 +60,11 @@ class SlottedResult:
     jain_round: float
 
 
-def slotted(
-    mac: str,
-    stations: int,
-    packet_slots: int,
-    traffic: str,
-    *,
-    packets: int = 1000,
-    seed: int = 1,
-    warmup: float = 0.1,
-    load: float | None = None,
-    until_slots: float | None = None,
-    plain: bool = False,
-    **options: Any,
-) -> SlottedResult:
-    """Run one protocol on the slotted channel.
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """What runs on the slotted channel.
 
-    Args:
+    Attributes:
         mac: one of MACS.
         stations: 1..10,000; 0 = an infinite population (slotted-aloha, nonpersistent, p-persistent
             under Poisson traffic), which ends after `packets` successes or 1,000 times as many
@@ -91,76 +79,88 @@ def slotted(
         load: Poisson: packets offered per packet time (T slots) by all stations together, up to
             50; with an infinite population that is fresh packets and retransmissions.
         until_slots: packets that end later do not count, and the time measured ends there.
+    """
+
+    mac: str
+    stations: int
+    packet_slots: int
+    traffic: str
+    packets: int = 1000
+    seed: int = 1
+    warmup: float = 0.1
+    load: float | None = None
+    until_slots: float | None = None
+
+    def check(self) -> None:
+        """Raise ValueError for what is outside its range."""
+        mac, stations, traffic = self.mac, self.stations, self.traffic
+        if mac not in MACS:
+            raise ValueError(f"mac is one of {', '.join(sorted(MACS))}; not {mac!r}")
+        if traffic not in TRAFFIC:
+            raise ValueError(f"traffic is one of {', '.join(TRAFFIC)}; not {traffic!r}")
+        if not 0 <= stations <= STATIONS_MAX:
+            raise ValueError(f"stations are 0..{STATIONS_MAX}; not {stations}")
+        if stations == 0 and not (mac in BY_CHANCE and traffic == "poisson"):
+            raise ValueError(f"{mac} with {traffic} traffic needs stations >= 1")
+        if not 1 <= self.packet_slots <= PACKET_SLOTS_MAX:
+            raise ValueError(f"packet_slots are 1..{PACKET_SLOTS_MAX}; not {self.packet_slots}")
+        if self.packets < 1 or max(1, stations) * self.packets > SUCCESSES_MAX:
+            raise ValueError(
+                f"packets are >= 1 and at most {SUCCESSES_MAX} in all; not {self.packets}"
+            )
+        if self.seed < 0 or not 0 <= self.warmup < 1:
+            raise ValueError("seed is >= 0 and warmup in 0 <= warmup < 1")
+        if (self.load is not None) != (traffic == "poisson"):
+            raise ValueError("load belongs to poisson traffic, and only to it")
+        if self.load is not None and not 0 < self.load <= LOAD_MAX:
+            raise ValueError(f"load is in 0 < load <= {LOAD_MAX:g}; not {self.load}")
+
+
+NAMES = frozenset(Setting.__dataclass_fields__)
+
+
+def slotted(
+    mac: str, stations: int, packet_slots: int, traffic: str, *, plain: bool = False, **given: Any
+) -> SlottedResult:
+    """Run one protocol on the slotted channel.
+
+    Args:
+        mac: one of MACS.
+        stations: how many; 0 = an infinite population.
+        packet_slots: packet length T.
+        traffic: "saturated", "disaster" or "poisson".
         plain: run the same loops uncompiled, with the same result.
-        options: what only some protocols have:
-            p: slotted-aloha, nonpersistent, p-persistent: probability of sending in a slot,
-                0 < p <= 1; default 1 / stations, and 0.1 for p-persistent with stations = 0.
-            reading: csma-cd-r: "A" (default) or "B".
-            window: csma-cd-r: slots of the reservation window; default T (T - Tc0 at Tc0 = 0).
-            backoff: csma-cd-d*: "binary" (default), or "linear": k + 1 values after k collisions
-                [radio Q15].
-            backoff_slots: csma-cd-d*: length of a backoff slot in slots, default 1.
-            turnaround_slots: csma-cd-r, -d2, -d2p: a packet is on air that long after its
-                decision, default 0; carriers that come up meanwhile go unnoticed. csma-cd-r pays
-                it at every hand-over: opening, reservation, each turn.
-            return_slots: csma-cd-d2, -d2p: how long after its end a sender knows the channel
-                again; default turnaround_slots, as on the medium [radio M4]. 0 is a gift to
-                CSMA/CD: its packets cost one turnaround instead of two. With either, everybody
-                knows of every collision, the last to finish too.
-            dcf: a `Dcf`; default `dcf_here(packet_slots)`. Its slots are the result's.
+        given: what else there is in `Setting`, and in `Options` what only some protocols have.
 
     Raises:
         ValueError: an argument outside its range, or one that this protocol has no use for.
     """
-    _check(mac, stations, packet_slots, traffic, packets, seed, warmup, load)
-    given = _options(mac, stations, options)
+    others = {name: given.pop(name) for name in NAMES & given.keys()}
+    setting = Setting(mac, stations, packet_slots, traffic, **others)
+    setting.check()
+    options = _options(mac, stations, given)
     if traffic == "disaster":
-        packets, warmup = 1, 0.0
-    slot, airtime = SLOT, packet_slots * SLOT
-    if given.dcf is not None:
-        slot, airtime = given.dcf.slot_us, given.dcf.payload_us
-    name = f"slotted/{mac}/{stations}"
-    kind = TRAFFIC[traffic] if stations else rec.SATURATED
-    recorder = new_recorder(kind, max(1, stations), packets, generator(seed, name))
+        setting = replace(setting, packets=1, warmup=0.0)
+    return _run(setting, options, plain)
+
+
+def _run(setting: Setting, options: Options, plain: bool) -> SlottedResult:
+    """The same, of what may run."""
+    slot, airtime = SLOT, setting.packet_slots * SLOT
+    if options.dcf is not None:
+        slot, airtime = options.dcf.slot_us, options.dcf.payload_us
+    stations, packets, load = setting.stations, setting.packets, setting.load
+    name = f"slotted/{setting.mac}/{stations}"
+    kind = TRAFFIC[setting.traffic] if stations else rec.SATURATED
+    recorder = new_recorder(kind, max(1, stations), packets, generator(setting.seed, name))
     if load is not None and stations:
         interval = max(1, round(stations * airtime / load))
         if interval > MEAN_MAX or interval * packets > rec.NEVER // 64:
             raise ValueError(f"{packets} packets take too long at a load of {load}")
-        loop(schedule, plain)(recorder, generator(seed, f"{name}/arrivals"), interval)
-    gap = drive(Job(mac, recorder, packet_slots, None if stations else load, given, plain))
-    until = rec.NEVER if until_slots is None else round(until_slots * slot)
-    return _measure(recorder, slot, airtime, gap, warmup, until, endless=not stations)
-
-
-def _check(
-    mac: str,
-    stations: int,
-    packet_slots: int,
-    traffic: str,
-    packets: int,
-    seed: int,
-    warmup: float,
-    load: float | None,
-) -> None:
-    """Raise ValueError for what is outside its range."""
-    if mac not in MACS:
-        raise ValueError(f"mac is one of {', '.join(sorted(MACS))}; not {mac!r}")
-    if traffic not in TRAFFIC:
-        raise ValueError(f"traffic is one of {', '.join(TRAFFIC)}; not {traffic!r}")
-    if not 0 <= stations <= STATIONS_MAX:
-        raise ValueError(f"stations are 0..{STATIONS_MAX}; not {stations}")
-    if stations == 0 and not (mac in BY_CHANCE and traffic == "poisson"):
-        raise ValueError(f"{mac} with {traffic} traffic needs stations >= 1")
-    if not 1 <= packet_slots <= PACKET_SLOTS_MAX:
-        raise ValueError(f"packet_slots are 1..{PACKET_SLOTS_MAX}; not {packet_slots}")
-    if packets < 1 or max(1, stations) * packets > SUCCESSES_MAX:
-        raise ValueError(f"packets are >= 1 and at most {SUCCESSES_MAX} in all; not {packets}")
-    if seed < 0 or not 0 <= warmup < 1:
-        raise ValueError("seed is >= 0 and warmup in 0 <= warmup < 1")
-    if (load is not None) != (traffic == "poisson"):
-        raise ValueError("load belongs to poisson traffic, and only to it")
-    if load is not None and not 0 < load <= LOAD_MAX:
-        raise ValueError(f"load is in 0 < load <= {LOAD_MAX:g}; not {load}")
+        loop(schedule, plain)(recorder, generator(setting.seed, f"{name}/arrivals"), interval)
+    offered = None if stations else load
+    job = Job(setting.mac, recorder, setting.packet_slots, offered, options, plain)
+    return _measure(recorder, setting, _Times(slot, airtime, drive(job)))
 
 
 def _options(mac: str, stations: int, options: dict[str, Any]) -> Options:
@@ -176,13 +176,21 @@ def _options(mac: str, stations: int, options: dict[str, Any]) -> Options:
     return given
 
 
-def _measure(
-    recorder: Recorder, slot: int, airtime: int, gap: int, warmup: float, until: int, endless: bool
-) -> SlottedResult:
+class _Times(NamedTuple):
+    """Of a slot, a packet on the air, and the idle time that belongs to it."""
+
+    slot: int
+    airtime: int
+    gap: int
+
+
+def _measure(recorder: Recorder, setting: Setting, times: _Times) -> SlottedResult:
     """Times and shares from what the loop wrote down, up to a moment."""
+    slot, airtime, gap = times
+    until = rec.NEVER if setting.until_slots is None else round(setting.until_slots * slot)
     all_done = int(recorder.counts[rec.DONE])
     done = int(np.searchsorted(recorder.end[:all_done], until, "right"))
-    skipped = int(done * warmup)
+    skipped = int(done * setting.warmup)
     ends, order = recorder.end[skipped:done], recorder.station[skipped:done]
     since = int(recorder.end[skipped - 1]) + gap if skipped else 0
     before = int(recorder.before[skipped - 1]) if skipped else 0
@@ -199,7 +207,7 @@ def _measure(
         successes=successes.tolist(),
         order=order.tolist(),
         collisions=_collisions(recorder, done, all_done) - before,
-        delay_slots=delays[:0] if endless else delays,
+        delay_slots=delays if setting.stations else delays[:0],
         jain=jain(successes),
         jain_round=_jain_round(order, stations),
     )

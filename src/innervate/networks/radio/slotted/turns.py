@@ -1,34 +1,54 @@
 """Stations in turn: reservation after a collision, splitting, fixed turns. Times in ticks."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from innervate.networks.radio.slotted.draws import draw, shuffle
 from innervate.networks.radio.slotted.recorder import COLLISIONS, deliver, going, opening, ready
 
 
-def reserve(recorder, slot, turn, packet, lead, report, each):
+class Reservation(NamedTuple):
+    """Times of CSMA/CD-R.
+
+    Attributes:
+        slot, packet: how long they last.
+        turn: from a decision to the first bit on air.
+        lead, report: turns begin `lead` + (m - 1) * `report` after a collision of m stations began.
+        each: turns follow one another every so often.
+    """
+
+    slot: int
+    turn: int
+    packet: int
+    lead: int
+    report: int
+    each: int
+
+
+def reserve(recorder, times):
     """CSMA/CD-R with the finishing order given: a free random permutation [radio Q3].
 
-    After a collision of m stations the turns begin `lead` + (m - 1) * `report` after its start and
-    follow one another every `each`; what is offered meanwhile waits until the last is over. A
-    packet is on air `turn` after its decision. One that met no other is followed by an idle slot.
+    What is offered while turns are taken waits until the last is over. A packet that met no other
+    is followed by an idle slot.
     """
+    slot, on_air = times.slot, times.turn + times.packet
     found = np.zeros(len(recorder.offer), np.int64)
     time = 0
     while going(recorder):
         time = opening(recorder, time, slot)
         count = ready(recorder, time, found)
         if count == 1:
-            time += turn + packet
+            time += on_air
             deliver(recorder, found[0], time)
             time += slot
             continue
         recorder.counts[COLLISIONS] += 1
         shuffle(recorder.rng, found, count)
-        time += lead + (count - 1) * report
+        time += times.lead + (count - 1) * times.report
         for i in range(count):
-            deliver(recorder, found[i], time + turn + packet)
-            time += each
+            deliver(recorder, found[i], time + on_air)
+            time += times.each
 
 
 def split(recorder, packet):

@@ -6,7 +6,7 @@ one it names and has it handled. A step takes a millisecond, so that rows have a
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from innervate.dialect import plain
 from innervate.networks.skin.protocol import constants as skin_const
@@ -43,10 +43,10 @@ def play(plan: Any, stack: Any, checks: bool, trail: bool) -> tuple[World, int]:
         wheel.remove(world.wheel, node)
         calls.switch_on(world, stack, node, 0, COLD)
     time = 0
-    missed: set[int] = set()
+    stage = _Stage(plan, world, stack, set())
     for number, step in enumerate(plan.script):
         time += STEP_US
-        _take(plan, world, stack, step, time, number, missed)
+        _take(stage, number, step, time)
         if get(world.run, 0, "broken"):
             world.run[0].status = BROKEN
             world.run[0].broken_at = time
@@ -55,10 +55,18 @@ def play(plan: Any, stack: Any, checks: bool, trail: bool) -> tuple[World, int]:
     return world, time
 
 
-def _take(
-    plan: Any, world: World, stack: Any, step: Any, time: int, number: int, missed: set[int]
-) -> None:  # fmt: skip
-    """One step; `missed` holds the ends that the next ticks find broken."""
+class _Stage(NamedTuple):
+    """What a script is played on; `missed` holds the ends that the next ticks find broken."""
+
+    plan: Any
+    world: World
+    stack: Any
+    missed: set[int]
+
+
+def _take(stage: _Stage, number: int, step: Any, time: int) -> None:
+    """Take one step of the script."""
+    plan, world, stack, missed = stage
     label = plan.graph.label
     if step.action == steps.DRAW:
         for cell in world.cells:

@@ -80,14 +80,14 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
             if world.found[1] == 0:
                 break
 
-    def round_of(world, source, target, index, orders, order, nodes):
+    def round_of(world, source, target, index, order, nodes):
         """One round in one order, with every choice; what is not settled afterwards is kept."""
         run = target.run
         for choice in range(CHOICES):
             s.fetch_row(world, source, index)
             world.found[0], world.found[1] = 0, 0
             for k in range(nodes):
-                if not turn(world, orders[order + k], choice):
+                if not turn(world, world.orders[order + k], choice):
                     run[s.BROKEN] = 1
             run[s.GENERATED] += 1
             if world.found[0] == s.TOO_MANY:
@@ -97,7 +97,7 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
             if world.found[1] == 0:  # nothing was drawn: the other choice is the same
                 break
 
-    def play(world, source, target, orders, nodes, begin, end):
+    def play(world, source, target, nodes, begin, end):
         """A round from each state, or CALM, LOST, or EXPIRY."""
         run = target.run
         for index in range(begin, end):
@@ -112,8 +112,8 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
             elif nodes == EXPIRY:
                 skin_calm.insert_expiring(world, source, target, index)
             else:
-                for order in range(0, len(orders), nodes):
-                    round_of(world, source, target, index, orders, order, nodes)
+                for order in range(0, len(world.orders), nodes):
+                    round_of(world, source, target, index, order, nodes)
         run[s.NEXT] = -end
 
     return calm, round_of, play
@@ -144,79 +144,93 @@ def check(
     progress: Callable[[Fair], bool] | None = None,
 ) -> Fair:
     """Play the fair schedule from all states of a search, or from `starts` evenly spaced ones."""
-    model = result.model
-    begun = wall_s()
     rows, words = _starts(result, starts)
-    fair = Fair(bound_of(model), starts=len(rows) // words, of=result.tally.states)
+    fair = Fair(bound_of(result.model), starts=len(rows) // words, of=result.tally.states)
     play = build(system or skin_system.system_of())[-1] if plain else _compiled()
-    world = skin_system.world_of(model.changed(keep=True), plain)
-    _put(world.at, w.FAIR, 1)
-    nodes = model.graph.nodes
-    flat = [node for order in permutations(range(nodes)) for node in order]
-    orders = flat if plain else np.array(flat, np.int32)
-    given = [world, orders] if plain else [tables.borrowed(world), tables.borrowed(orders)]
-    source = _Rows(model, plain, rows, words, memory)
-    chain = []
-    for _ in range(model.budget.loss if model.merges else 0):
-        target = _Rows(model, plain, rows[:0], words, memory)
-        if not _round(play, given, source, target, LOST, fair, progress, begun):
-            return fair
-        chain.append(source)
-        source = target
-    for turn in range(fair.bound + 1):
-        target = _Rows(model, plain, rows[:0], words, memory)
-        if not _round(play, given, source, target, nodes if turn else CALM, fair, progress, begun):
-            return fair
-        chain.append(source)
-        if turn:
-            fair.rounds += 1
-            fair.left.append(target.count)
-        else:
-            fair.calm = target.count
-        source = target
-        if int(target.search.run[s.BROKEN]):
-            break
-        if target.count == 0:
-            fair.ended = "complete"
-            return fair
-        if turn + int(world.at[w.HELD]) >= skin_system.hold_periods(model):
-            source = _Rows(model, plain, rows[:0], words, memory)
-            chain.append(target)
-            if not _round(play, given, target, source, EXPIRY, fair, progress, begun):
-                return fair
-    fair.ended = "broken"
-    index = 0
-    for place in [source, *reversed(chain)]:
-        fair.path.append(place.row(index))
-        index = int(place.search.before[index])
-    fair.path.reverse()
+    player = _Player(result.model, plain, play, fair, progress)
+    _settle(player, _Rows(result.model, plain, rows, words, memory))
     return fair
 
 
-def _round(
-    play: Any, given: list[Any], source: _Rows, target: _Rows, nodes: int, fair: Fair,
-    progress: Any, begun: float,
-) -> bool:  # fmt: skip
-    """One round from all rows of `source`; False if it was ended early."""
-    world, orders = given
-    at, chunk = 0, PLAIN_CHUNK if target.plain else CHUNK
-    while at < source.count:
-        end = min(at + chunk, source.count)
-        target.search.run[s.NEXT] = -1 << 40
-        play(world, source.seen, target.seen, orders, nodes, at, end)
-        at = -int(target.search.run[s.NEXT])
-        status = int(target.search.run[s.STATUS])
-        if status == s.GROW:
-            target.grow()
-        fair.wall_s = wall_s() - begun
-        if status == s.FULL:
-            fair.ended = "memory"
-            return False
-        if progress is not None and progress(fair):
-            return False
-    fair.played += int(target.search.run[s.GENERATED])
-    fair.left_out += int(target.search.run[s.LEFT_OUT])
-    return True
+class _Player:
+    """What plays rounds, and notes what came of them.
+
+    Attributes:
+        fair: what came of it.
+        chain: the states before each round that was played.
+    """
+
+    def __init__(self, model: Any, plain: bool, play: Any, fair: Fair, progress: Any) -> None:
+        self.model, self.fair, self.chain = model, fair, list[_Rows]()
+        self.nodes = int(model.graph.nodes)
+        self._play, self._progress, self._begun = play, progress, wall_s()
+        flat = [node for order in permutations(range(self.nodes)) for node in order]
+        world = skin_system.world_of(model.changed(keep=True), plain)
+        world = world._replace(orders=w.Forms(plain).numbers(flat))
+        _put(world.at, w.FAIR, 1)
+        self.held = int(world.at[w.HELD])
+        self._world = world if plain else tables.borrowed(world)
+        self._made = world  # what is borrowed lives as long
+
+    def round(self, source: _Rows, nodes: int) -> _Rows | None:
+        """What one round from all rows of `source` leaves; None if it was ended early."""
+        target, fair = source.none(), self.fair
+        at, chunk = 0, PLAIN_CHUNK if target.plain else CHUNK
+        while at < source.count:
+            end = min(at + chunk, source.count)
+            target.search.run[s.NEXT] = -1 << 40
+            self._play(self._world, source.seen, target.seen, nodes, at, end)
+            at = -int(target.search.run[s.NEXT])
+            status = int(target.search.run[s.STATUS])
+            if status == s.GROW:
+                target.grow()
+            fair.wall_s = wall_s() - self._begun
+            if status == s.FULL:
+                fair.ended = "memory"
+                return None
+            if self._progress is not None and self._progress(fair):
+                return None
+        fair.played += int(target.search.run[s.GENERATED])
+        fair.left_out += int(target.search.run[s.LEFT_OUT])
+        self.chain.append(source)
+        return target
+
+
+def _settle(player: _Player, source: _Rows) -> None:
+    """Round after round, until nothing is left that is not settled, or too many were played."""
+    model, fair = player.model, player.fair
+    here: _Rows | None = source
+    for _ in range(model.budget.loss if model.merges else 0):
+        here = here and player.round(here, LOST)
+    for turn in range(fair.bound + 1):
+        here = here and player.round(here, player.nodes if turn else CALM)
+        if here is None:
+            return
+        if turn:
+            fair.rounds += 1
+            fair.left.append(here.count)
+        else:
+            fair.calm = here.count
+        if int(here.search.run[s.BROKEN]):
+            break
+        if here.count == 0:
+            fair.ended = "complete"
+            return
+        if turn + player.held >= skin_system.hold_periods(model):
+            here = player.round(here, EXPIRY)
+    if here is not None:
+        fair.ended = "broken"
+        fair.path = _way_to(here, player.chain)
+
+
+def _way_to(last: _Rows, chain: list[_Rows]) -> list[bytes]:
+    """The rows that lead to the first of the last ones."""
+    path, index = [], 0
+    for place in [last, *reversed(chain)]:
+        path.append(place.row(index))
+        index = int(place.search.before[index])
+    path.reverse()
+    return path
 
 
 def _starts(result: ex.Result, starts: int) -> tuple[Any, int]:
@@ -243,6 +257,7 @@ class _Rows:
 
     def __init__(self, model: Any, plain: bool, rows: Any, words: int, memory: int) -> None:
         self.plain, self.words = plain, words
+        self._model, self._memory = model, memory
         lay = skin_system.layout(model)
         given = len(rows) // words
         limit = given or memory // (8 * words + 32)
@@ -265,6 +280,10 @@ class _Rows:
         if self.plain:
             return memoryview(bytearray(8 * max(count, 1))).cast("q")
         return np.empty(count, np.int64)
+
+    def none(self) -> _Rows:
+        """A table for the states of the next round, with none in it yet."""
+        return _Rows(self._model, self.plain, self.search.rows[:0], self.words, self._memory)
 
     @property
     def count(self) -> int:

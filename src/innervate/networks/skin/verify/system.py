@@ -202,6 +202,7 @@ def world_of(model: SkinModel, plain: bool) -> w.SkinWorld:
         queue_at=forms.numbers(lay.queue_at),
         link_way=forms.numbers(range(0, lay.ways, 2)),
         depth=forms.numbers([0] * model.graph.nodes),
+        orders=forms.numbers([]),
         move_kind=forms.numbers(kind for kind, _ in lay.moves()),
         move_arg=forms.numbers(arg for _, arg in lay.moves()),
         image=forms.numbers(lay.images()),

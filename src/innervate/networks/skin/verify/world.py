@@ -78,6 +78,7 @@ class SkinWorld(NamedTuple):
     queue_at: Any
     link_way: Any  # [link] its first direction; the other is the next
     depth: Any  # scratch of a search for shortest routes
+    orders: Any  # in which nodes tick in a fair round, one after the other; none in a search
     move_kind: Any
     move_arg: Any
     image: Any  # [g * width + i] where byte i of image g comes from
