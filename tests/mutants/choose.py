@@ -81,7 +81,8 @@ class Choice:
         """0 = written for the source; None = has nothing to do with it."""
         folder = test.parts[1:-1]
         is_beside = folder == inside.parts[:-1]
-        if test.stem.removeprefix("test_") == inside.stem and set(folder) & set(inside.parts):
+        is_named = test.stem.removeprefix("test_") == inside.stem
+        if is_named and (steps <= STEPS_MAX or set(folder) & set(inside.parts)):
             return 0
         if steps == 1 or (is_beside and steps == 2):
             return 1

@@ -6,7 +6,43 @@ from collections import Counter
 import pytest
 
 from innervate import scenario
+from innervate.networks.mesh.verify import fuzz as mesh_fuzz
+from innervate.networks.radio.verify import fuzz as radio_fuzz
+from innervate.networks.skin.verify import fuzz as skin_fuzz
 from innervate.running import fuzz
+
+
+EVERYTHING = [
+    (skin_fuzz, lambda tables: tables["protocol"]["k"], range(1, 9)),
+    (skin_fuzz, lambda tables: tables["patch"][0]["columns"], range(1, 9)),
+    (skin_fuzz, lambda tables: tables["patch"][0]["rows"], range(1, 9)),
+    (radio_fuzz, lambda tables: tables["packet_slots"], (3, 5, 25)),
+    (radio_fuzz, lambda tables: tables["stations"], range(2, 21)),
+    (mesh_fuzz, lambda tables: tables["nodes"], range(3, 25)),
+    (mesh_fuzz, lambda tables: tables["protocol"]["tables"], (False, True)),
+    (mesh_fuzz, lambda tables: tables["protocol"]["mtu"], (64, 127)),
+    (mesh_fuzz, lambda tables: "fence" in tables, (False, True)),
+]
+
+
+@pytest.mark.parametrize(("of", "value", "values"), EVERYTHING)
+def test_whatever_can_be_drawn_is_drawn_and_nothing_else(of, value, values):
+    draw = random.Random(1)
+    assert {value(of.drawn(draw, seed)) for seed in range(300)} == set(values)
+
+
+def test_what_is_drawn_happens_where_it_can():
+    draw = random.Random(1)
+    events = [event for seed in range(50) for event in mesh_fuzz.drawn(draw, seed)["event"]]
+    for event in events:
+        assert ("link" in event) == (event["action"] in ("cut", "restore"))
+        assert ("node" in event) != ("link" in event)
+    events = [event for seed in range(50) for event in skin_fuzz.drawn(draw, seed)["event"]]
+    assert any(event["action"] == "lose" for event in events)
+    for event in events:
+        for one, other in [event["link"]] if "link" in event else []:
+            apart = abs(one["row"] - other["row"]) + abs(one["column"] - other["column"])
+            assert (apart, min(other.values()) >= 0) == (1, True)
 
 
 def test_what_is_drawn_can_nearly_always_be_run():
