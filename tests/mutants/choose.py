@@ -19,7 +19,7 @@ STEPS_MAX = 3
 NAMED = re.compile(r"innervate(?:\.\w+)+")
 ALSO = {"web": {"browser"}, "view": {"web", "browser"}, "live": {"livesim"}}  # by room
 RECORDED = {
-    "cli": "commands", "live": "nodes", "papers": "pictures",
+    "cli": "commands", "live": "nodes", "papers": "pictures", "sim": "recorded",
     "plot": "pictures", "running": "commands", "view": "watched", "web": "watched",
 }  # fmt: skip
 
