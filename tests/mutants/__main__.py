@@ -1,32 +1,27 @@
-"""`make mutants`: plants faults in copies of this tree, and says how many the tests found, by room.
+"""`make mutants`: plants faults, one at a time, and says how many the tests found, by room.
 
-First the tests run once with their lines noted; then every fault is tried with those that run its
-line. What was done is kept in the folder, so that a second call goes on where the first ended.
+What was done is kept in the folder, so that a second call goes on where the first ended.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import multiprocessing
 import subprocess
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor, as_completed
-from functools import partial
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
-from queue import SimpleQueue
 from typing import Any
 
-from tests.mutants import cover
 from tests.mutants.draw import Fault, drawn
-from tests.mutants.trial import FOUND, Copy, Outcome, tests_for
+from tests.mutants.trial import FOUND, Bench, Outcome
 
 ROOT = Path(__file__).resolve().parents[2]
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 Tried = tuple[Fault, Outcome]
-Choose = Callable[[Fault], tuple[list[str], float]]  # which tests, and how long they took
 Before = dict[tuple[str, str, str, str, int], Outcome]  # by the key of the fault
 
 
@@ -34,17 +29,19 @@ def main() -> int:
     """Draw, try, report; 1 if fewer were found than asked for."""
     asked = arguments()
     work = asked.work.resolve()
+    work.mkdir(parents=True, exist_ok=True)
     chosen = drawn(ROOT, asked.seed, asked.count)
     if asked.room:
         chosen = [fault for fault in chosen if fault.room == asked.room]
-    copies = [Copy(ROOT, work / f"copy-{number}") for number in range(asked.workers)]
-    covered = cover.Covered(lines_noted(work, copies[0], asked.workers), copies[0].folder)
     kept = work / f"tried-{asked.seed}.jsonl"
     before = read(kept)
     if asked.again:
         before = {key: outcome for key, outcome in before.items() if outcome.verdict == FOUND}
-    choose = partial(tests_for, covered=covered, budget_s=asked.budget_s)
-    tried = try_all(chosen, before, choose, kept, copies)
+    left = [fault for fault in chosen if fault.key not in before]
+    tried = [(fault, before[fault.key]) for fault in chosen if fault.key in before]
+    if left:
+        bench = Bench(ROOT, work, asked.budget_s, compiled(asked.workers))
+        tried += try_all(left, bench, kept, asked.workers)
     return report(tried, asked.least)
 
 
@@ -56,61 +53,32 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--room", help="only those of one room: analysis, live, plot ...")
     parser.add_argument("--again", action="store_true", help="try those anew that were not found")
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--budget-s", type=float, default=60.0, help="of tests for one fault")
+    parser.add_argument("--budget-s", type=float, default=40.0, help="of tests for one fault")
     parser.add_argument("--least", type=float, default=0.0, help="share that has to be found")
     parser.add_argument("--work", type=Path, default=ROOT / ".mutants", help="where it is kept")
     return parser.parse_args()
 
 
-def lines_noted(work: Path, copy: Copy, workers: int) -> Path:
-    """Note which test runs which line: all tests at first, then those whose file is another."""
-    where = work / "lines"
-    noted = where / cover.NOTED
-    before = json.loads(noted.read_text()) if noted.exists() else {}
-    now = {name: cover.digest(copy.folder / name) for name in copy.names if name.endswith(".py")}
-    tests = [name for name in now if is_test(name) and now[name] != before.get(name)]
-    if tests:
-        print(f"Noting which lines run in {len(tests)} test files (all: as long as two runs) ...")
-        command = [sys.executable, "-m", "pytest", "-q", "-m", "not slow", "-n", str(workers),
-                   "--dist", "worksteal", "-p", "tests.mutants.cover", *tests]  # fmt: skip
-        env = copy.env | {cover.WHERE: str(where)}
-        loops = [sys.executable, "-m", "tests.loops", str(workers)]
-        if "tests/loops.py" in copy.names:
-            subprocess.run(loops, cwd=copy.folder, env=copy.env, check=False)
-        subprocess.run(command, cwd=copy.folder, env=env, check=False)
-        sources = {name: value for name, value in before.items() if not is_test(name)}
-        kept = sources or {name: value for name, value in now.items() if not is_test(name)}
-        noted.write_text(json.dumps(kept | {name: now[name] for name in now if is_test(name)}))
-    return where
+def compiled(workers: int) -> Path | None:
+    """Where compiled code is kept, once what many tests run is compiled."""
+    if not (ROOT / "tests/loops.py").exists():
+        return None
+    subprocess.run([sys.executable, "-m", "tests.loops", str(workers)], cwd=ROOT, check=True)
+    asking = "from innervate.kernel import compilation; print(compilation.open_cache())"
+    return Path(subprocess.check_output([sys.executable, "-c", asking], text=True).strip())
 
 
-def is_test(name: str) -> bool:
-    """True for a file of tests."""
-    return name.startswith("tests/") and Path(name).name.startswith("test_")
-
-
-def try_all(
-    chosen: list[Fault], before: Before, choose: Choose, kept: Path, copies: list[Copy]
-) -> list[Tried]:
-    """Try what was not tried before, in copies side by side."""
-    free: SimpleQueue[Copy] = SimpleQueue()
-    for copy in copies:
-        free.put(copy)
-
-    def one(fault: Fault) -> Tried:
-        copy = free.get()
-        try:
-            return fault, copy.try_out(fault, *choose(fault))
-        finally:
-            free.put(copy)
-
-    tried = [(fault, before[fault.key]) for fault in chosen if fault.key in before]
-    left = [fault for fault in chosen if fault.key not in before]
-    with ThreadPoolExecutor(len(copies)) as pool, kept.open("a", encoding="utf-8") as file:
-        for job in as_completed([pool.submit(one, fault) for fault in left]):
-            fault, outcome = job.result()
+def try_all(chosen: list[Fault], bench: Bench, kept: Path, workers: int) -> list[Tried]:
+    """Try faults side by side, in processes that are forked from this one."""
+    tried = []
+    context = multiprocessing.get_context("fork")
+    with ProcessPoolExecutor(workers, context) as pool, kept.open("a", encoding="utf-8") as file:
+        jobs = {pool.submit(bench.try_out, fault): fault for fault in chosen}
+        for job in as_completed(jobs):
+            fault, outcome = jobs[job], job.result()
             tried.append((fault, outcome))
-            print(f"{len(tried)}/{len(chosen)} {outcome.verdict}: {fault} {outcome.by}", flush=True)
+            about = f"{len(tried)}/{len(chosen)} {outcome.verdict} ({outcome.took_s:.0f} s)"
+            print(f"{about}: {fault} {outcome.by}", flush=True)
             file.write(json.dumps([fault, outcome]) + "\n")
             file.flush()
     return tried

@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.mutants.choose import Choice, shared, words_of
 from tests.mutants.draw import SOURCES, drawn, faults
+from tests.mutants.planting import sitecustomize
 
 ROOT = Path(__file__).resolve().parents[2]
 CODE = """\
@@ -19,16 +21,32 @@ def is_full(queued, room=4):
 
 def unseen(number):
     return number + number
+
+
+def said(number):
+    return number * 7
 """
 TESTS = """\
+import subprocess
+import sys
+
 import pytest
 
-from innervate.wire.edge import is_full
+from innervate.wire.edge import is_full, unseen
+
+
+def test_that_fails_anyhow():
+    assert unseen(2) == 5
 
 
 @pytest.mark.parametrize(("queued", "full"), [(3, False), (4, True), (9, True)])
 def test_full_at_its_edge(queued, full):
     assert is_full(queued) == full
+
+
+def test_what_another_process_says():
+    code = "from innervate.wire import edge; print(edge.said(2))"
+    assert subprocess.check_output([sys.executable, "-c", code], text=True) == "14\\n"
 """
 
 
@@ -61,42 +79,73 @@ def test_strings_annotations_and_looks_are_left_alone(tmp_path):
     assert [fault.new for fault in faults(path, "src/innervate/plot/x.py")] == ["pass"]
 
 
+def test_asked_to_run_plain_or_not_it_does():
+    source = 'def run(plan, *, plain: bool = False):\n    """Runs."""\n    return plan, plain\n'
+    found = {}
+    exec(compile(sitecustomize.always_plain(ast.parse(source)), "run", "exec"), found)
+    assert found["run"](1) == found["run"](1, plain=False) == (1, True)
+    assert found["run"].__doc__ == "Runs."
+
+
+def test_tests_that_lie_near_come_first(tmp_path):
+    project = made(tmp_path)
+    for name, text in (
+        ("src/innervate/wire/far.py", "from innervate.wire import edge\n"),
+        ("tests/wire/test_far.py", "from innervate.wire.far import edge\n"),
+        ("tests/wire/test_edge.py", "import innervate.wire.edge\n"),
+        ("tests/wire/test_apart.py", "import pytest\n"),
+        ("tests/cli/test_apart.py", "import pytest\n"),
+        ("tests/recorded/test_kept.py", "import pytest\n"),
+    ):
+        (project / name).parent.mkdir(exist_ok=True)
+        (project / name).write_text(text)
+    assert Choice(project).tests_for("src/innervate/wire/edge.py", {"edge"}) == [
+        "tests/wire/test_edge.py", "tests/wire/test_far.py", "tests/wire/test_apart.py",
+        "tests/recorded/test_kept.py", "tests/test_edge.py",
+    ]  # fmt: skip
+
+
+def test_a_line_is_known_by_its_place_its_function_and_its_names(tmp_path):
+    project = made(tmp_path)
+    name = "src/innervate/wire/edge.py"
+    (fault,) = (one for one in faults(project / name, name) if one.old == ">=")
+    words = words_of(project, fault)
+    assert words == {"wire", "edge", "full", "return", "queued", "room"}
+    assert shared("tests/wire/test_room.py::test_full[queued_0]", words) == 4
+
+
 @pytest.mark.slow
 def test_what_a_test_notices_is_found_and_nothing_else(tmp_path):
     project = made(tmp_path)
     ran = subprocess.run(
         [sys.executable, "-m", "tests.mutants", "--room", "wire", "--workers", "1", "--least", "1"],
         cwd=project, capture_output=True, text=True, check=False,
-        env={"PYTHONPATH": str(project / "src"), "PATH": "/usr/bin:/bin"},
     )  # fmt: skip
     said = ran.stdout + ran.stderr
     assert ran.returncode == 1, said
-    assert "found: src/innervate/wire/edge.py:2: '>=' -> '>' tests/test_edge.py" in said
-    assert "found: src/innervate/wire/edge.py:1: '4' -> '5' tests/test_edge.py" in said
-    assert "not run by any test: src/innervate/wire/edge.py:6: '+' -> '-' (0 tests)" in said
-    assert "| wire | 4 | 3 | 75% |" in said
+    for edit, by in (
+        ("edge.py:2: '>=' -> '>'", "test_full_at_its_edge[4-True]"),
+        ("edge.py:1: '4' -> '5'", "test_full_at_its_edge[4-True]"),
+        ("edge.py:10: '*' -> '+'", "test_what_another_process_says"),
+    ):
+        assert f"src/innervate/wire/{edit} tests/test_edge.py::{by}\n" in said
+    assert "\nsurvived: src/innervate/wire/edge.py:6: '+' -> '-' (4 tests)" in said
+    assert "| wire | 7 | 6 | 86% |" in said
+    assert (project / "src/innervate/wire/edge.py").read_text() == CODE
 
 
 def made(tmp_path):
-    """A project of one file and one test, with the tool in it."""
+    """A project of one file and one test file, with the tool in it."""
     project = tmp_path / "project"
-    for name, text in (("src/innervate/wire/edge.py", CODE), ("tests/test_edge.py", TESTS)):
-        (project / name).parent.mkdir(parents=True)
+    for name, text in (
+        ("src/innervate/wire/edge.py", CODE),
+        ("tests/test_edge.py", TESTS),
+        ("src/innervate/__init__.py", ""),
+        ("src/innervate/wire/__init__.py", ""),
+        ("pyproject.toml", "[tool.pytest.ini_options]\npythonpath = ['.']\n"),
+    ):
+        (project / name).parent.mkdir(parents=True, exist_ok=True)
         (project / name).write_text(text)
-    for name in ("src/innervate/__init__.py", "src/innervate/wire/__init__.py"):
-        (project / name).touch()
-    tool = project / "tests" / "mutants"
-    tool.mkdir()
-    for name in ("__main__.py", "cover.py", "draw.py", "trial.py", "equivalent.toml"):
-        shutil.copyfile(ROOT / "tests" / "mutants" / name, tool / name)
-    kernel = project / "src/innervate/kernel"
-    kernel.mkdir()
-    (kernel / "__init__.py").touch()
-    (kernel / "compilation.py").write_text(
-        "from pathlib import Path\n"
-        "ROOT = Path(__file__).parents[1]\n"
-        "def source_files():\n    return []\n"
-    )
-    (project / "pyproject.toml").write_text("[tool.pytest.ini_options]\npythonpath = ['.']\n")
-    subprocess.run(["git", "init", "-q"], cwd=project, check=True)
+    tool = Path("tests/mutants")
+    shutil.copytree(ROOT / tool, project / tool, ignore=shutil.ignore_patterns("test_*", "__py*"))
     return project

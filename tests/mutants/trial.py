@@ -1,35 +1,76 @@
-"""One planted fault after the other: which tests run its line, and whether one of them fails."""
+"""One planted fault after the other: whether one of the tests that are near it fails.
+
+A process that has imported what is large and foreign forks for each fault: what it forks imports
+the toolkit with the fault in it (`planting/`) and runs tests, nearest first, until one fails. What
+fails without the fault, too, finds nothing: it is tried alone, and its answer is kept.
+"""
 
 from __future__ import annotations
 
-import ast
+import contextlib
+import gc
+import hashlib
+import importlib
+import json
 import os
-import re
+import select
 import shutil
 import signal
-import subprocess
 import sys
+import tempfile
 import time
-from functools import cache
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from innervate.kernel import compilation
-from tests.mutants.cover import Covered
-from tests.mutants.draw import SOURCES, Fault
+import pytest
 
-COMPILING_S = 240.0  # more, in which loops are compiled anew
-FOUND, SURVIVED, UNRUN = "found", "survived", "not run by any test"
+from tests.mutants.choose import Choice, shared, words_of
+from tests.mutants.draw import Fault
+from tests.mutants.planting import sitecustomize
+
+FOUND, SURVIVED = "found", "survived"
+LARGE = (
+    "numpy", "numba", "polars", "matplotlib.pyplot", "msgspec", "hypothesis", "networkx", "rich",
+    "cyclopts", "asyncio", "cryptography.hazmat.primitives.asymmetric.x25519", "websockets",
+    "starlette.applications", "uvicorn",
+)  # fmt: skip
+CROWDED = 5  # so much longer it may take by the clock
+LATE = "did not end in time"
+FORGIVEN_MAX = 12  # tests that fail without the fault, too, before one gives up
+PORTIONS = (3, 12, 1000)  # files are collected so many at a time
+
+
+class Way(NamedTuple):
+    """How tests run.
+
+    Attributes:
+        plain: whatever is compiled runs as Python.
+        anew: nothing is compiled yet.
+        each_s: of processor time; a test that takes longer fails.
+        all_s: no further test begins when so much processor time is spent.
+    """
+
+    name: str
+    plain: bool = False
+    anew: bool = False
+    each_s: float = 12.0
+    all_s: float = 0.0
+
+
+AS_IS = Way("as it is")
+PLAIN = Way("plain", plain=True)
+ANEW = Way("compiled anew", anew=True, each_s=100.0)
 
 
 class Outcome(NamedTuple):
     """What became of a fault.
 
     Attributes:
-        verdict: FOUND, SURVIVED or UNRUN.
-        by: the test that failed first, or what else went wrong.
-        tests: how many tests there were to find it.
-        took_s: how long they ran.
+        verdict: FOUND or SURVIVED.
+        by: the test that failed first.
+        tests: how many ended before.
+        took_s: how long all of it took.
     """
 
     verdict: str
@@ -38,172 +79,252 @@ class Outcome(NamedTuple):
     took_s: float
 
 
-class Copy:
-    """A copy of the project, in which faults are planted.
-
-    Args:
-        root: the project.
-        folder: where the copy goes.
+class Seen(NamedTuple):
+    """What one process saw.
 
     Attributes:
-        names: its files.
-        env: with what processes run in it.
+        failed: the test that failed; "" if none did.
+        why: what it said.
+        passed: those that passed before.
+        compiled: the faulty file is one that compiled code came from.
     """
 
-    def __init__(self, root: Path, folder: Path) -> None:
-        self.folder = folder
-        listed = ["git", "ls-files", "-co", "--exclude-standard"]
-        found = subprocess.check_output(listed, cwd=root, text=True).splitlines()
-        self.names = [name for name in found if (root / name).is_file()]
-        for name in self.names:
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(root / name, folder / name)
-        self.env = os.environ | {
-            "PYTHONPATH": str(folder / "src"),
-            "INNERVATE_CACHE": str(folder / ".compiled"),
-            "PYTHONDONTWRITEBYTECODE": "",  # bytecode is kept: hundreds of processes start here
+    failed: str
+    why: str
+    passed: list[str]
+    compiled: bool = False
+
+
+class Watch:
+    """A plugin for pytest: order and limits of tests, and a line for each beginning and end."""
+
+    def __init__(self, log: Path, way: Way, words: set[str], without: frozenset[str]) -> None:
+        self.log, self.way, self.words, self.without = log, way, words, without
+        self.began_s = 0.0, 0.0  # a test, by the clock and by the processor
+
+    def tell(self, what: str, name: str, why: str = "") -> None:
+        with self.log.open("a", encoding="utf-8") as file:
+            file.write(json.dumps([what, name, why]) + "\n")
+
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        files = list(dict.fromkeys(item.path for item in items))
+        items[:] = [item for item in items if item.nodeid not in self.without]
+        said = {item: shared(item.nodeid, self.words) for item in items}
+        items.sort(key=lambda item: (files.index(item.path), -said[item]))
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
+        self.tell("begins", item.nodeid)
+        signal.signal(signal.SIGALRM, self._late)
+        self.began_s = time.monotonic(), sum(os.times()[:4])
+        signal.setitimer(signal.ITIMER_REAL, 1.0, 1.0)
+        try:
+            return (yield)
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            if sum(os.times()[:4]) > self.way.all_s:
+                item.session.shouldstop = "no more time"
+
+    def _late(self, *_: Any) -> None:
+        clock_s, processor_s = self.began_s
+        if time.monotonic() - clock_s > CROWDED * self.way.each_s or (
+            sum(os.times()[:4]) - processor_s > self.way.each_s
+        ):
+            pytest.fail(LATE)
+
+    def tell_compiled(self, path: str) -> None:
+        """Say if functions of the faulty file were compiled, or taken from what was."""
+        from numba.core.dispatcher import Dispatcher
+
+        from innervate.kernel import compilation
+
+        found = compilation._registered | {
+            one.py_func for one in gc.get_objects() if isinstance(one, Dispatcher)
         }
-        self._stamp = time.time_ns() // 10**9
+        if path in {one.__code__.co_filename for one in found}:
+            self.tell("compiled", path)
 
-    def run(self, tests: list[str], most_s: float) -> tuple[bool, str]:
-        """Run tests; True and the first that failed, or False and nothing."""
-        wanted = self.folder / ".tests"
-        wanted.write_text("\n".join(tests))
-        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider"]
-        process = subprocess.Popen(
-            [*command, f"@{wanted}"], cwd=self.folder, env=self.env, start_new_session=True,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-        )  # fmt: skip
-        try:
-            said, _ = process.communicate(timeout=most_s)
-        except subprocess.TimeoutExpired:
-            return True, f"no end within {most_s:.0f} s"
-        finally:
-            stop(process)
-        if process.returncode == 0:
-            return False, ""
-        failed = re.search(r"^(?:FAILED|ERROR) (\S+(?: \[[^\]]*\])?)", said, re.MULTILINE)
-        return True, failed[1] if failed else said.strip().splitlines()[-1][:200]
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        if report.failed:
+            self.tell("failed", report.nodeid, str(report.longrepr)[-300:])
+        elif report.when == "teardown":
+            self.tell("passed", report.nodeid)
 
-    def try_out(self, fault: Fault, tests: list[str], took_s: float) -> Outcome:
-        """Plant a fault, run the tests, take it out again."""
-        if not tests:
-            return Outcome(UNRUN, "", 0, 0.0)
-        path = self.folder / fault.path
-        sound = path.read_bytes()
-        started = time.monotonic()
-        try:
-            self._write(path, sound[: fault.start] + fault.new.encode() + sound[fault.end :])
-            found, by = self.run(tests, COMPILING_S + 5 * took_s)
-        finally:
-            self._write(path, sound)
-        verdict = FOUND if found else SURVIVED
-        return Outcome(verdict, by, len(tests), round(time.monotonic() - started, 1))
-
-    def _write(self, path: Path, source: bytes) -> None:
-        """Write a source as of another second: bytecode is known by the second and the size."""
-        path.write_bytes(source)
-        self._stamp += 1
-        os.utime(path, (self._stamp, self._stamp))
+    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+        if report.failed:
+            self.tell("failed", report.nodeid, str(report.longrepr)[-300:])
 
 
-def stop(process: subprocess.Popen[Any]) -> None:
-    """End a process and all that it started."""
-    try:
-        os.killpg(process.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        return
-    process.communicate()
-
-
-def tests_for(fault: Fault, covered: Covered, budget_s: float) -> tuple[list[str], float]:
-    """The tests to run, those of the file's own folder first; and how long they took.
+class Bench:
+    """Where faults are tried.
 
     Args:
-        fault: what is planted.
-        covered: which tests run which lines.
-        budget_s: of tests for one fault, as long as they took when nothing was planted.
+        root: of the project.
+        work: a folder for what is kept.
+        budget_s: of processor time for the tests of a fault.
+        compiled: the folder of what is compiled of these sources, if there is one.
     """
-    tests = running(fault, covered)
-    if is_compiled(fault.path):  # lines that run compiled are not noted
-        folder = Path(fault.path).parent
-        for path in sorted((covered.root / folder).glob("*.py")):
-            tests = tests | covered.tests_of_file((folder / path.name).as_posix())
-    chosen: list[str] = []
-    total_s = 0.0
-    for test in sorted(tests, key=lambda test: (-nearness(test, fault.path), covered.took_s[test])):
-        if not chosen or total_s + covered.took_s[test] <= budget_s:
-            chosen.append(test)
-            total_s += covered.took_s[test]
-    return chosen, total_s
+
+    def __init__(
+        self, root: Path, work: Path, budget_s: float, compiled: Path | None = None
+    ) -> None:
+        self.root, self.work, self.budget_s, self.compiled = root, work, budget_s, compiled
+        self.choice = Choice(root)
+        self._passed: set[tuple[str, str]] = set()  # by the way; also with faults elsewhere
+        for name in LARGE:
+            with contextlib.suppress(ImportError):
+                importlib.import_module(name)
+
+    def try_out(self, fault: Fault) -> Outcome:
+        """Plant a fault, run tests until one fails that does not fail without it.
+
+        Compiled code is taken as it was compiled of sound sources: a fault in it shows plain.
+        """
+        started, count = time.monotonic(), 0
+        files = self.choice.tests_for(fault.path, words_of(self.root, fault))
+        is_compiler = fault.room == "kernel"
+        for way in (AS_IS, ANEW if is_compiler else PLAIN):
+            seen = self._found(fault, way._replace(all_s=self.budget_s), files)
+            count += len(seen.passed)
+            if seen.failed or not (seen.compiled or is_compiler):
+                break
+        took_s = round(time.monotonic() - started, 1)
+        return Outcome(FOUND if seen.failed else SURVIVED, seen.failed, count, took_s)
+
+    def _found(self, fault: Fault, way: Way, files: list[str]) -> Seen:
+        passed: list[str] = []
+        is_compiled = False
+        without = self._unsound(way)
+        for _ in range(FORGIVEN_MAX):
+            seen = self.run(files, way, fault, frozenset(without))
+            passed += seen.passed
+            is_compiled |= seen.compiled
+            if not seen.failed or self._counts(seen, way, fault):
+                break
+            without.add(seen.failed)
+            file = seen.failed.partition("::")[0]
+            left = files[files.index(file) :] if file in files else files
+            files = left if "::" in seen.failed else left[1:]
+            seen = seen._replace(failed="")
+        self._passed.update((way.name, test) for test in passed)
+        return seen._replace(passed=passed, compiled=is_compiled)
+
+    def _counts(self, seen: Seen, way: Way, fault: Fault) -> bool:
+        """True if a test passes without the fault; one that was late is asked again: by now all
+        that it runs is compiled."""
+        test = seen.failed
+        is_late = LATE in seen.why
+        if (way.name, test) in self._passed and not is_late:
+            return True
+        key = f"{way.name} {test} {self._digest(test)}"
+        if self._kept().get(key) and not is_late:
+            return True
+        sound = self.run([test], way._replace(all_s=10 * self.budget_s))
+        is_sound = bool(sound.passed) and not sound.failed
+        with (self.work / "sound.jsonl").open("a", encoding="utf-8") as file:
+            file.write(json.dumps([key, is_sound]) + "\n")
+        return is_sound and not (is_late and not self.run([test], way, fault).failed)
+
+    def _digest(self, test: str) -> str:
+        path = self.root / test.partition("::")[0]
+        return hashlib.blake2b(path.read_bytes() if path.is_file() else b"").hexdigest()[:12]
+
+    def _kept(self) -> dict[str, bool]:
+        path = self.work / "sound.jsonl"
+        lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+        return dict(map(json.loads, lines))
+
+    def _unsound(self, way: Way) -> set[str]:
+        """Tests that failed without any fault, in files that are still the same."""
+        found = set()
+        for key, is_sound in self._kept().items():
+            head, _, known = key.rpartition(" ")
+            test = head.removeprefix(f"{way.name} ")
+            if not is_sound and test != head and self._digest(test) == known:
+                found.add(test)
+        return found
+
+    def run(
+        self, tests: list[str], way: Way, fault: Fault | None = None,
+        without: frozenset[str] = frozenset(),
+    ) -> Seen:  # fmt: skip
+        """Run tests in a process of their own, until one fails."""
+        with tempfile.TemporaryDirectory(prefix="fault-", ignore_cleanup_errors=True) as place:
+            folder = Path(place)
+            env = self._env(way, fault, folder)
+            words = words_of(self.root, fault) if fault else set()
+            watch = Watch(folder / "log", way, words, without)
+            child = os.fork()
+            if not child:
+                run_here(self.root, env, tests, watch)
+            ended = os.pidfd_open(child)
+            select.select([ended], [], [], CROWDED * (way.all_s + way.each_s))
+            os.close(ended)
+            os.kill(child, signal.SIGKILL)
+            os.waitpid(child, 0)
+            end_those_left(place)
+            return seen_in(folder / "log")
+
+    def _env(self, way: Way, fault: Fault | None, folder: Path) -> dict[str, str]:
+        """With a fault, what is compiled is not kept: it may not be what its sources say."""
+        env = {"PYTHONPATH": str(self.root / "src"), "INNERVATE_TRIAL": str(folder)}
+        if fault or way.plain:
+            text = self._edit(fault) | {"plain": way.plain}
+            env |= {sitecustomize.FAULT: json.dumps(text)}
+            env["PYTHONPATH"] += f":{Path(sitecustomize.__file__).parent}"
+        if fault or way.anew:
+            own = folder / "compiled"
+            env["INNERVATE_CACHE"] = str(own)
+            if self.compiled and not way.anew:
+                shutil.copytree(self.compiled, own / self.compiled.name, copy_function=os.link)
+        return env
+
+    def _edit(self, fault: Fault | None) -> dict[str, Any]:
+        if fault is None:
+            return {"path": "", "start": 0, "end": 0, "new": ""}
+        path = str(self.root / fault.path)
+        return {"path": path, "start": fault.start, "end": fault.end, "new": fault.new}
 
 
-def running(fault: Fault, covered: Covered) -> frozenset[str]:
-    """Tests that run the statement; of what is run at import, those that use what it makes."""
-    way = statements(covered.root / fault.path, fault.line)
-    first = way[-1].lineno if way else fault.line
-    lines = range(first, fault.line + 1)
-    tests = frozenset[str]().union(*(covered.tests_of(fault.path, line) for line in lines))
-    if tests:
-        return tests
-    names = {
-        target.id
-        for one in way if isinstance(one, ast.Assign | ast.AnnAssign)
-        for target in (one.targets if isinstance(one, ast.Assign) else [one.target])
-        if isinstance(target, ast.Name)
-    }  # fmt: skip
-    inside = [one for one in way if isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef)]
-    if inside and inside[-1].body[0].lineno > fault.line:  # a default of an argument
-        body = range(inside[-1].body[0].lineno, (inside[-1].end_lineno or 0) + 1)
-        return frozenset[str]().union(*(covered.tests_of(fault.path, line) for line in body))
-    if inside:
-        return frozenset()
-    users = (users_of(covered.root, name) for name in names)
-    return covered.tests_of_file(fault.path).union(
-        *(covered.tests_of(path, line) for found in users for path, line in found)
-    )
+def run_here(root: Path, env: dict[str, str], tests: list[str], watch: Watch) -> None:
+    """Run tests in this process, which is there for nothing else; does not return."""
+    os.setsid()
+    said = os.open(watch.log.with_name("said"), os.O_WRONLY | os.O_CREAT)
+    for descriptor in (1, 2):
+        os.dup2(said, descriptor)
+    os.chdir(root)
+    os.environ |= env
+    if sitecustomize.FAULT in env:
+        sitecustomize.plant(**json.loads(env[sitecustomize.FAULT]))
+    sys.path.insert(0, str(root / "src"))
+    asked = ["-x", "-q", "-m", "not slow", "-p", "no:cacheprovider", "-p", "no:xdist",
+             f"--basetemp={watch.log.parent / 'tests'}"]  # fmt: skip
+    left = list(tests)
+    try:
+        for portion in PORTIONS:
+            some, left = left[:portion], left[portion:]
+            if some and pytest.main([*asked, *some], [watch]) not in (0, 5):
+                break
+        if sitecustomize.FAULT in env:
+            watch.tell_compiled(sitecustomize.planted[0])
+    finally:
+        os._exit(0)
 
 
-@cache
-def users_of(root: Path, name: str) -> list[tuple[str, int]]:
-    """Lines of the sources that name something."""
-    word = re.compile(rf"\b{re.escape(name)}\b")
-    return [
-        (path.relative_to(root).as_posix(), number)
-        for path in sorted((root / SOURCES).rglob("*.py"))
-        for number, line in enumerate(path.read_text().splitlines(), 1)
-        if word.search(line)
-    ]
+def end_those_left(place: str) -> None:
+    """End what was started in a place and has outlived the test that started it."""
+    for process in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            if place.encode() in (process / "environ").read_bytes():
+                os.kill(int(process.name), signal.SIGKILL)
 
 
-def statements(path: Path, line: int) -> list[ast.stmt]:
-    """The statements around a line, outermost first."""
-    found: list[ast.stmt] = []
-    inner: Any = ast.parse(path.read_bytes())
-    while inner is not None:
-        below = [one for one in ast.walk(inner) if isinstance(one, ast.stmt) and one is not inner]
-        around = [one for one in below if one.lineno <= line <= (one.end_lineno or one.lineno)]
-        inner = min(around, key=lambda one: (one.lineno, -(one.end_lineno or 0)), default=None)
-        if inner is not None:
-            found.append(inner)
-    return found
-
-
-def is_compiled(path: str) -> bool:
-    """True for a file that compiled code comes from."""
-    return Path(path).relative_to(SOURCES) in compiled_files()
-
-
-@cache
-def compiled_files() -> frozenset[Path]:
-    """Files that compiled code comes from."""
-    return frozenset(p.relative_to(compilation.ROOT) for p in compilation.source_files())
-
-
-def nearness(test: str, path: str) -> int:
-    """How much the place of a test has in common with that of a source."""
-    words = set(re.split(r"[/_.]|::", test.split("[")[0]))
-    if "recorded" in words:  # they look at all that comes out
-        return 9
-    parts = Path(path).relative_to(SOURCES).with_suffix("").parts
-    return sum(part in words for part in parts)
+def seen_in(log: Path) -> Seen:
+    """What a process wrote of its tests; one that began and did not end has failed."""
+    lines = [json.loads(line) for line in log.read_text().splitlines()] if log.exists() else []
+    failed = [(name, why) for what, name, why in lines if what == "failed"]
+    if not failed and lines and lines[-1][0] == "begins":
+        failed = [(lines[-1][1], LATE)]
+    passed = [name for what, name, _ in lines if what == "passed"]
+    compiled = any(what == "compiled" for what, *_ in lines)
+    return Seen(*(failed[0] if failed else ("", "")), passed, compiled)

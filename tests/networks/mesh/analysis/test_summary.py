@@ -183,6 +183,26 @@ def test_an_alarm_well_inside_is_of_no_crossing():
     assert (summary["sent"], summary["delivered"], summary["noticed"]) == (1, 0, 0)
 
 
+@pytest.mark.parametrize(("early_us", "noticed"), [(360_000, 1), (360_001, 0)])
+def test_how_much_too_soon_depends_on_the_unit_of_places(early_us, noticed):
+    """35 cm at 1 m/s, and up to one sample, with places in units of 25 cm along each axis."""
+    corners = {"px": [0, 40, 40, 0], "py": [0, 0, 40, 40], "unit_cm": 25}
+    params = made().plan.params | corners
+    rows, _ = crossing_rows(S - early_us)
+    result = made(rows, walks=[WALK], ended_us=4 * S, params=params)
+    assert mesh_alarms.alarms(mesh_alarms.all_crossings(result))["noticed"] == noticed
+
+
+@pytest.mark.parametrize(("ended_us", "is_open"), [(2_499_999, True), (2_500_000, False)])
+def test_a_crossing_shortly_before_the_end_is_open_unless_its_alarm_came(ended_us, is_open):
+    (crossing,) = mesh_alarms.all_crossings(made(walks=[WALK], ended_us=ended_us))
+    assert crossing.open == is_open
+    assert mesh_alarms.alarms([crossing])["sent"] == 1 - is_open
+    rows, delivered = crossing_rows()
+    result = made(rows, delivered=delivered, walks=[WALK], ended_us=ended_us)
+    assert not mesh_alarms.all_crossings(result)[0].open
+
+
 def test_an_alarm_of_the_stay_before_is_not_of_the_next():
     rows, delivered = crossing_rows(3 * S - 100_000, 3 * S + 30_000)
     found = mesh_alarms.all_crossings(made(rows, delivered=delivered, walks=[WALK]))

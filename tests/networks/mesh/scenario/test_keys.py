@@ -62,6 +62,7 @@ MISTAKES = (
     (SQUARE, "[[0, 0], [90, 0], [90, 90], [90, 5]]", "8: fence.polygon touches itself: edges"),
     (SQUARE, "[[20, 20], [20, 20], [80, 80], [20, 80]]", "8: fence.polygon has corner 0 twice in"),
     (SQUARE, "[[20, 20], [80, 20]]", "8: fence.polygon must have 3 corners or more, not 2"),
+    (SQUARE, "[[20, 20]]", "8: fence.polygon must have 3 corners or more, not 1"),
     (SQUARE, "[[20, 20, 3]]", "8: fence.polygon.0 must be a point [x, y] in metres"),
     (SQUARE, "[[0, 0], [30000, 0], [30000, 90], [0, 90]]", "8: the fence and its robots spread"),
     (SQUARE, f"[{', '.join(f'[{i}, {i * i}]' for i in range(49))}]", "52 corners, more than 48"),
@@ -172,6 +173,29 @@ def test_imports_that_leave_nothing_together(tmp_path: Path) -> None:
     wrong = 'kind = "mesh"\n[import]\nfile = "freifunk/leipzig"\ntypes = ["wofi"]\n'
     with pytest.raises(ScenarioError, match=r"no link is of type wofi; there is .*wifi"):
         plan(loads(wrong))
+
+
+@pytest.mark.parametrize(
+    ("more", "remedy"),
+    [
+        ("placement.layout = 'line'\nplacement.spacing_m = 20\nradio.reach_m = 10", "reach_m"),
+        ("placement.side_m = 900\nradio.mean_degree = 0.1", "mean_degree"),
+        ("placement.side_m = 900\nradio.tx_dbm = -60", "tx_dbm"),
+    ],
+)
+def test_places_that_no_draw_connects(more: str, remedy: str) -> None:
+    said = rf"falls into \d parts: no good links lead to .*n2; raise radio\.{remedy}$"
+    with pytest.raises(ScenarioError, match=said):
+        plan(loads(f"kind = 'mesh'\nnodes = 3\n{more}\n"))
+
+
+def test_the_whole_extent_can_be_used() -> None:
+    corners = "[[0, 0], [{0}, 0], [{0}, 90], [0, 90]]"
+    robot = "[[robot]]\nnode = 0\nwaypoints = [[1, 1], [2, 2]]\n"
+    text = f"kind = 'mesh'\nnodes = 1\n{robot}[fence]\nunit_cm = 100\npolygon = {corners}\n"
+    assert max(plan(loads(text.format(23_000))).params["px"]) == 23_000
+    with pytest.raises(ScenarioError, match="the fence and its robots spread"):
+        plan(loads(text.format(23_001)))
 
 
 def test_a_node_without_a_place() -> None:

@@ -6,6 +6,7 @@ import pytest
 
 from innervate.networks.skin.protocol import constants as skin_const
 from innervate.networks.skin.protocol import fields as skin_fields
+from innervate.networks.skin.scenario import plan as skin_plan
 from innervate.networks.skin.scenario.plan import Plan
 from innervate.networks.skin.scenario.script import DELIVER, DETECT, DRAW, STEP_LOSE, TICK
 from innervate.scenario import ScenarioError, load, loads, plan
@@ -57,6 +58,15 @@ def test_parameters(small: str) -> None:
 def test_fractions_are_exact(small: str, r_f: str, r_r: str, whole: tuple[int, ...]) -> None:
     made = params(small.replace("k = 3", f"r_f = {r_f}\nr_r = {r_r}"))
     assert (made["r_f"], made["r_r"], made["k"]) == whole
+
+
+def test_as_many_cells_as_data_frames_can_number_send_data(small: str, monkeypatch) -> None:
+    cells = plan(loads(small)).graph.cells
+    monkeypatch.setattr(skin_plan, "DATA_CELLS_MAX", cells)
+    assert plan(loads(small, ["data.rate_hz=10"])).data_period_us == 100_000
+    monkeypatch.setattr(skin_plan, "DATA_CELLS_MAX", cells - 1)
+    with pytest.raises(ScenarioError, match=f"{cells} cells cannot send data"):
+        plan(loads(small, ["data.rate_hz=10"]))
 
 
 KEPT = [*range(1, 31), 32, 33, 34, 35, 37, 39, 40, 42, 45, 47, 50, 53, 56, 60, 65, 70, 77, 84, 94]
