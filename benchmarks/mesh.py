@@ -33,7 +33,7 @@ def tables(nodes):
 def measure(nodes, checks=False):
     """Seconds and events per second of the loop; without checks also without rows."""
     plan = scenario.plan(scenario.from_dict(tables(nodes)))
-    results = [simulate(plan, checks=checks, keep=checks) for _ in range(RUNS)]
+    results = [simulate(plan, checks=checks, observe=checks) for _ in range(RUNS)]
     best = min(results, key=lambda result: result.wall_s)
     events = best.counts["handled"] + best.counts["arrived"]
     return {

@@ -27,7 +27,7 @@ def measure(stations, checks=False):
     )
     best = {"events_per_s": 0.0}
     for _ in range(RUNS):
-        result = simulate(plan, checks=checks, keep=checks)
+        result = simulate(plan, checks=checks, observe=checks)
         events = result.counts["handled"] + result.counts["decoded"]
         rate = events / result.wall_s
         if rate > best["events_per_s"]:

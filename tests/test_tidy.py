@@ -10,6 +10,8 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 FUNCTION_LINES_MAX = 70
 FILE_LINES_MAX = 400
+LINES_WANTED, LONG_MAX = 40, 25
+PARAMETERS_WANTED, WIDE_MAX = 6, 20
 COLUMNS_MAX = 100
 DOCSTRING_WORDS_MIN = 5
 SUFFIXES = {".py", ".c", ".toml", ".sh"}
@@ -51,6 +53,24 @@ def own_lines(function):
     ]
     lines = set(range(function.lineno, function.end_lineno + 1))
     return len(lines.difference(*(range(f.lineno, f.end_lineno + 1) for f in inner)))
+
+
+def parameters(function):
+    """How many things a function is told, besides whose method it is."""
+    names = [a.arg for a in (*function.args.posonlyargs, *function.args.args)]
+    return len(names[names[:1] in (["self"], ["cls"]) :]) + len(function.args.kwonlyargs)
+
+
+def test_functions_beyond_a_screen_become_no_more():
+    """A ratchet: lower these numbers when fewer are left, never raise them."""
+    functions = [
+        node
+        for path in sources("src/innervate", suffixes={".py"})
+        for node in ast.walk(tree(path))
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+    ]
+    assert sum(own_lines(function) > LINES_WANTED for function in functions) <= LONG_MAX
+    assert sum(parameters(function) > PARAMETERS_WANTED for function in functions) <= WIDE_MAX
 
 
 def test_functions_are_short():

@@ -10,6 +10,7 @@ import innervate
 from innervate.dialect import plain
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.sim import build as mesh_build
+from innervate.networks.mesh.sim import over_medium
 from innervate.networks.mesh.sim import simulate as mesh_simulate
 from innervate.networks.mesh.sim import stacks as mesh_stacks
 from innervate.networks.mesh.sim.recorder import BROKEN_RANGE as BROKEN_MESH
@@ -79,7 +80,7 @@ def cells(check, is_plain):
 
 
 def stations(protocol, is_plain):
-    world = radio_build.build(radio_plan(3, protocol=protocol), is_plain, True, False, False)
+    world = radio_build.build(radio_plan(3, protocol=protocol), is_plain, observe=False)
 
     def check(world, node):
         radio_recorder.watch(world, node, 0, 0, 0)
@@ -90,11 +91,12 @@ def stations(protocol, is_plain):
 
 def routers(is_plain):
     plan = mesh_plan(3, capacity=4)
-    world = mesh_build.build(plan, is_plain, True, False, False)
+    world = mesh_build.build(plan, is_plain, observe=False)
     fields = mesh_fields.node(plan.capacity)
     sound = mesh_stacks.is_sound
     if is_plain:
-        sound = mesh_stacks.plain_stack(mesh_stacks.mesh(), fields, None).is_sound
+        layer = mesh_stacks.Layer(over_medium)
+        sound = mesh_stacks.plain(mesh_stacks.mesh(), layer, fields, None).is_sound
     return Watched(fields, world.nodes[NODE], lambda: not sound(world, NODE))
 
 

@@ -6,12 +6,12 @@ A network that knows more of its runs has a summary of its own.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NotRequired, TypedDict
+from typing import Any, TypedDict
 
 import numpy as np
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline
-from innervate.analysis.summary_common import Common, Percentiles
+from innervate.analysis.summary_common import Common, Percentiles, measured
 from innervate.sim.counts import Counts
 
 
@@ -49,7 +49,17 @@ class Messages(TypedDict):
     latency_ms: Percentiles
 
 
-class Summary(Common):
+class Reports(TypedDict, total=False):
+    """What was reported; nothing where that was not kept.
+
+    Attributes:
+        reports: how often nodes reported something, by its number.
+    """
+
+    reports: dict[str, int]
+
+
+class Summary(Common, Reports):
     """Of a run of any network.
 
     Attributes:
@@ -58,7 +68,6 @@ class Summary(Common):
         off: how many of them were off at the end.
         frames: on the links.
         messages: of users.
-        reports: how often nodes reported something, by its number.
     """
 
     kind: str
@@ -66,22 +75,15 @@ class Summary(Common):
     off: int
     frames: Frames
     messages: Messages
-    reports: NotRequired[dict[str, int]]
 
 
 def summarize(result: Any) -> Summary:
     """The summary of a run; what never happened is None."""
     plan, counts = result.plan, result.counts
-    events = result.handled + counts.arrived
-    made: Summary = {
+    return {
         "kind": plan.kind,
         "name": plan.scenario.name,
-        "seed": plan.seed,
-        "duration_s": plan.duration_us / 1e6,
-        "events": events,
-        "events_per_s": round(events / result.wall_s) if result.wall_s > 0 else None,
-        "wall_s": round(result.wall_s, 6),
-        "fingerprint": result.fingerprint,
+        **measured(result, result.handled + counts.arrived),
         "headline": headline(counts, result.handled).as_summary(),
         "nodes": counts.nodes,
         "off": len(counts.off),
@@ -98,15 +100,17 @@ def summarize(result: Any) -> Summary:
             "dropped_by": counts.dropped_by,
             "latency_ms": latency_ms(result.rows.get("deliveries")),
         },
+        **_reports(result.rows),
     }
-    if "rows" in result.rows:
-        codes, times = np.unique(result.rows["rows"]["code"], return_counts=True)
-        made["reports"] = {
-            str(code): count for code, count in zip(codes.tolist(), times.tolist(), strict=True)
-        }
-    if result.interrupted:
-        made["interrupted_at_s"] = result.ended_us / 1e6
-    return made
+
+
+def _reports(rows: Mapping[str, Any]) -> Reports:
+    """How often nodes reported something, if that was kept."""
+    if "rows" not in rows:
+        return {}
+    codes, times = np.unique(rows["rows"]["code"], return_counts=True)
+    found = zip(codes.tolist(), times.tolist(), strict=True)
+    return {"reports": {str(code): count for code, count in found}}
 
 
 def known_latencies_us(deliveries: Any) -> Any:

@@ -86,6 +86,21 @@ class Tables:
             return [make() for _ in range(count)]
         return records.zeros(declaration, count, itemsize, self.word)
 
+    def given(self, values: Any, kind: type = np.int64) -> Any:
+        """These whole numbers, row after row, as a list if plain, else as an array."""
+        made: Any = np.ascontiguousarray(values, kind).ravel()
+        return made.tolist() if self.plain else made
+
+    def outbox(self, limit: int, frame: Any, wide: Collection[str] = WIDE) -> Out:
+        """An empty outbox with room for `limit` actions."""
+        return Out(
+            count=self.numbers(1, 0, np.int64),
+            limit=self.numbers(1, limit, np.int64),
+            overflow=self.numbers(1, 0, np.int64),
+            action=self.records(ACTION, limit, wide=wide),
+            frame=self.states(frame, limit),
+        )
+
     def words(self, states: Any, declaration: Any) -> Any:
         """The states as rows of words."""
         if self.plain:

@@ -24,18 +24,18 @@ SPOILT = 8
 Tap = Callable[[Any, Any, int], None]
 
 
-def record_frame(world, time, start, at, sender, out, why, frame, copy_frame):
-    """Keep a frame; the caller has looked at `tap_limit`."""
+def record_frame(world, time, at, out, why):
+    """The row of a frame; its copy is in `world.tapped[run.taps]`, the caller fills in the rest."""
     run = world.run[0]
     row = world.taps[run.taps]
-    copy_frame(world.tapped[run.taps], frame)
     run.taps += 1
     row.time = time
-    row.start = start
+    row.start = time
     row.at = at
-    row.sender = sender
+    row.sender = 0
     row.out = out
     row.why = why
+    return row
 
 
 def record_queue(world, end, time, why, copy_frame):
@@ -44,4 +44,5 @@ def record_queue(world, end, time, why, copy_frame):
     if run.tap_limit > 0:
         for i in range(buffer.queued):
             place = end * run.queue_frames + (buffer.first + i) % run.queue_frames
-            record_frame(world, time, time, end, 0, 1, why, world.queue[place], copy_frame)
+            copy_frame(world.tapped[run.taps], world.queue[place])
+            record_frame(world, time, end, 1, why)

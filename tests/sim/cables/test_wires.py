@@ -15,13 +15,13 @@ from innervate.sim.cables import build as cables
 from innervate.sim.cables import commands, wires
 from innervate.sim.cables.wires import (
     ARRIVED,
-    COMMAND_BLOCK,
     DELAYED,
     LOST_BROKEN,
     LOST_CUT,
     LOST_NOISE,
     LOST_OFF,
     LOST_QUEUE,
+    OTHER_BLOCK,
     SENT,
     URGENT_BLOCK,
 )  # fmt: skip
@@ -148,11 +148,11 @@ def test_behind_one_that_waits_all_wait_though_the_wire_is_free():
 def test_commands_and_urgent_frames_are_counted_by_themselves():
     cable = Cable(1).send(1, kind=COMMAND).send(2, kind=COMMAND).send(3, kind=COMMAND)
     cable.send(4, flags=URGENT, kind=BEACON)
-    assert cable.counts(COMMAND_BLOCK) == {"sent": 3, "queue": 1}
+    assert cable.counts(OTHER_BLOCK) == {"sent": 3, "queue": 1}
     assert cable.counts(URGENT_BLOCK) == {"sent": 1}
     assert cable.counts() == {}
     cable.free(2 * WIRE_US)
-    assert cable.counts(COMMAND_BLOCK) == {"sent": 3, "queue": 1}  # it left, and was one already
+    assert cable.counts(OTHER_BLOCK) == {"sent": 3, "queue": 1}  # it left, and was one already
 
 
 def test_what_waits_at_a_port_that_is_found_broken_is_given_up():

@@ -52,6 +52,8 @@ WHOLE_ACK = HEAD + HOP_ACK + MORE + CRC
 # The same for struct, which is quicker: HEAD and COMMON, HEAD and HOP_ACK.
 PACKET_STRUCT = ">BBBBBBHBBB"
 ACK_STRUCT = ">BBBBHb"
+_PACKET = tuple(field[0] for field in COMMON)
+_ACK = tuple(field[0] for field in HOP_ACK)
 AT = 8  # bits of HEAD
 PATH_LEN_AT = HEADER_BYTES - 1
 
@@ -90,35 +92,11 @@ def encode(frame: Any, mtu: int = MTU_MAX) -> bytes:
     size = size_of(frame)
     if size > mtu:
         raise ValueError("the frame is longer than the MTU")
-    first = VERSION << 6 | kind
+    names, form = (_ACK, ACK_STRUCT) if kind == ACK else (_PACKET, PACKET_STRUCT)
+    path = () if kind == ACK else frame.path[: frame.path_len]
     try:
-        if kind == ACK:
-            head = struct.pack(
-                ACK_STRUCT,
-                first,
-                frame.link_src,
-                frame.link_dst,
-                frame.origin,
-                frame.seq,
-                frame.rssi,
-            )
-            data = head + bytes(frame.body[: frame.length])
-        else:
-            head = struct.pack(
-                PACKET_STRUCT,
-                first,
-                frame.flags,
-                frame.link_src,
-                frame.link_dst,
-                frame.origin,
-                frame.dest,
-                frame.seq,
-                frame.table_ver,
-                frame.ttl,
-                frame.path_len,
-            )
-            path, body = frame.path[: frame.path_len], frame.body[: frame.length]
-            data = head + bytes(path) + bytes(body)
+        head = struct.pack(form, VERSION << 6 | kind, *[getattr(frame, name) for name in names])
+        data = head + bytes(path) + bytes(frame.body[: frame.length])
     except (struct.error, ValueError):
         check(frame)
         raise
@@ -178,20 +156,11 @@ def decode(data: bytes | bytearray | memoryview, frame: Any, mtu: int = MTU_MAX)
     if data[0] & 63 == ACK:
         decode_ack(data, frame)
         return OK
-    (
-        first,
-        frame.flags,
-        frame.link_src,
-        frame.link_dst,
-        frame.origin,
-        frame.dest,
-        frame.seq,
-        frame.table_ver,
-        frame.ttl,
-        hops,
-    ) = struct.unpack_from(PACKET_STRUCT, data)
+    first, *values = struct.unpack_from(PACKET_STRUCT, data)
+    for name, value in zip(_PACKET, values):  # noqa: B905 - MicroPython knows no `strict`
+        setattr(frame, name, value)
     frame.kind = first & 63
-    frame.path_len = hops
+    hops = frame.path_len
     at = HEADER_BYTES + hops
     frame.path[:hops] = list(data[HEADER_BYTES:at])
     frame.length = length = len(data) - CRC_BYTES - at
@@ -201,9 +170,9 @@ def decode(data: bytes | bytearray | memoryview, frame: Any, mtu: int = MTU_MAX)
 
 def decode_ack(data: bytes | bytearray | memoryview, frame: Any) -> None:
     """Read an ack that is one, as `decode` says."""
-    (first, frame.link_src, frame.link_dst, frame.origin, frame.seq, frame.rssi) = (
-        struct.unpack_from(ACK_STRUCT, data)
-    )
+    first, *values = struct.unpack_from(ACK_STRUCT, data)
+    for name, value in zip(_ACK, values):  # noqa: B905
+        setattr(frame, name, value)
     frame.kind = first & 63
     frame.dest = frame.link_dst
     frame.flags = frame.table_ver = frame.ttl = frame.path_len = 0

@@ -123,7 +123,7 @@ _MAKERS = {
 def trail(plan: Any, until_us: int) -> Iterator[Any]:
     """The trail of a plan: structured arrays with the fields of trail.FIELDS."""
     shorter = replace(plan, duration_us=until_us)
-    yield simulator.simulate(shorter, checks=False, keep=False, trail=True).trail
+    yield simulator.simulate(shorter, checks=False, observe=False, trail=True).trail
 
 
 def call_words(plan: Any, row: Any) -> str:

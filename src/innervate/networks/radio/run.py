@@ -106,7 +106,7 @@ def trail(plan: Any, until_us: int) -> Iterator[Any]:
     if _is_slotted(plan):
         return  # it has no handler calls
     shorter = replace(plan, duration_us=until_us)
-    yield simulator.simulate(shorter, checks=False, keep=False, trail=True).trail
+    yield simulator.simulate(shorter, checks=False, observe=False, trail=True).trail
 
 
 def summary_name(summary: Mapping[str, Any]) -> str:

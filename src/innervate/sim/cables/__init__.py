@@ -13,7 +13,7 @@ What a network brings (`declared.py` makes all of it from declarations):
   `on_timer(world, node, now, timer)`, `on_input(world, node, now, kind)` with the item in
   `world.sample[0]`; they fill `world.out`, which the medium carries out: SEND (port, delay, flags),
   SET_TIMER, DELIVER, REPORT. Of frames: `copy_frame(to, frame)`, `digest(frame)`,
-  `block_of(frame)` (0, or COMMAND_BLOCK: how it is counted).
+  `block_of(frame)` (0, or OTHER_BLOCK: how it is counted).
 - The recorder's (`recorder.py` has the default): `on_report(world, time, node, code, a, b)`,
   `on_deliver(world, time, node, port, frame)`, `on_stop(world, time, node)` when a node loses its
   memory, `before_change(world)` and `on_change(world, time, node, index)` around faults,

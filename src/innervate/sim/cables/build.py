@@ -15,7 +15,8 @@ from innervate.sim.cables import commands
 from innervate.sim.cables import world as w
 from innervate.sim.cables.loop import BATCH
 from innervate.sim.cables.wires import COUNTERS, LOSSY
-from innervate.sim.tables import ACTION, TAP, Names, Out, Tables, _longer, get, put, uniform
+from innervate.sim.recorded import Recorded
+from innervate.sim.tables import TAP, Names, Tables, _longer, get, put, uniform
 from innervate.sim.wheel import BUCKETS, FREE, FRESH, LAST, LEVELS, NIL, PENDING, WORDS
 
 CACHE_LINE = 64
@@ -42,22 +43,6 @@ class Records(NamedTuple):
     delivery: Names = w.DELIVERY
     numbers: tuple[str, ...] = ()
     outbox: int = 16
-
-
-class Recorded(NamedTuple):
-    """What a run keeps.
-
-    Attributes:
-        checks, observe: check what must hold; note what nodes report.
-        deliveries, trail: a row per delivered frame, and per handler call.
-        tap: copies of frames as they leave and come in.
-    """
-
-    checks: bool = True
-    observe: bool = True
-    deliveries: bool = False
-    trail: bool = False
-    tap: bool = False
 
 
 class Added(NamedTuple):
@@ -121,7 +106,7 @@ def build(plan: Any, of: Records, tables: Tables, kept: Recorded, added: Added) 
         ends=tables.records(w.END, size.ends),
         buffers=tables.records(w.BUFFER, size.ends),
         epoch=tables.numbers(size.ends),
-        out=_outbox(tables, of, size.limit),
+        out=tables.outbox(size.limit, of.frame),
         sample=tables.states(of.item, 1),
         counters=tables.numbers(COUNTERS, 0, np.int64),
         watch=added.watch,
@@ -196,17 +181,6 @@ def _wheel(tables: Tables, pool_slots: int, pool: int) -> w.Wheel:
     return wheel
 
 
-def _outbox(tables: Tables, of: Records, limit: int) -> Out:
-    """An empty outbox with room for `limit` actions."""
-    return Out(
-        count=tables.numbers(1, 0, np.int64),
-        limit=tables.numbers(1, limit, np.int64),
-        overflow=tables.numbers(1, 0, np.int64),
-        action=tables.records(ACTION, limit),
-        frame=tables.states(of.frame, limit),
-    )
-
-
 def grow_pool(world: w.World) -> w.World:
     """The same world with twice the room for frames on their way."""
     pool = world.wheel.pool
@@ -246,7 +220,7 @@ def _set_run(world: w.World, plan: Any, size: _Sizes, kept: Recorded, rows: int)
         source_us=plan.data_period_us,
         rng=rng.seeded(int(uniform(plan.seed, "medium", 1, 1 << 30)[0])),
         checks=int(kept.checks),
-        watchful=int(kept.checks or kept.trail),
+        watchful=int(kept.is_watchful),
         observe=int(kept.observe or kept.checks),
         broken_at=-1,
         row_limit=len(world.rows),

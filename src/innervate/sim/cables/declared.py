@@ -20,9 +20,10 @@ from innervate.network import networks
 from innervate.scenario.actions.cables import GIVE
 from innervate.sim import clocks
 from innervate.sim.cables import loop, recorder
-from innervate.sim.cables.build import Added, Recorded, Records, build
+from innervate.sim.cables.build import Added, Records, build
 from innervate.sim.cables.simulation import Cables
 from innervate.sim.cables.world import ALIVE, SOURCE, World
+from innervate.sim.recorded import Recorded
 from innervate.sim.tables import Tables, put
 
 OUTBOX = 16
@@ -157,7 +158,7 @@ def world_of(plan: Any, plain: bool, kept: Recorded) -> World:
 
 
 def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> Cables:
-    """A plan's network before its first event; `kept` as in `cables.build.Kept`."""
+    """A plan's network before its first event; `kept` as in `sim.recorded`."""
     advance = (plain_loop if plain else compiled_loop)(plan.kind)
     name = "" if plain else plan.kind
     return Cables(plan, world_of(plan, plain, Recorded(**kept)), advance, name)

@@ -60,6 +60,7 @@ class Cables(Simulation):
         w.BROKEN_OUTBOX: "outbox of {node} overflowed",
     }
     sink: ClassVar[tuple[Declaration, Declaration]] = ((), ())
+    dropped: ClassVar[Mapping[str, int]] = {}  # why nodes give up messages, and how that counts
 
     def result(self, ended: Ended, kept: bool) -> Result:
         """What it leaves; `kept`: deliveries were."""
@@ -110,9 +111,8 @@ class Cables(Simulation):
             lost_by={name: _in_all_blocks(numbers, word) for name, word in wires.REASONS.items()},
             offered=int(numbers[wires.OFFERED]),
             delivered=int(numbers[wires.DELIVERED]),
-            dropped_by={"no_route": int(numbers[wires.NO_ROUTE]),
-                        "loop": int(numbers[wires.LOOPED])},
-        )  # fmt: skip
+            dropped_by={name: int(numbers[word]) for name, word in self.dropped.items()},
+        )
 
     def next_us(self) -> int | None:
         """When something happens next; None = never."""

@@ -16,8 +16,8 @@ from innervate.sim.cables.world import ALIVE
 # Kinds of pool slots; an arrival is marked by the block of counters its frame belongs to.
 DELAYED = 1
 
-# Words of `world.counters`; in blocks: data, urgent frames, commands. Which frames are commands,
-# the network's `block_of` says.
+# Words of `world.counters`; in blocks: data, urgent frames, and others: those that the network's
+# `block_of` says. From OWN on, and behind the last block, words are the network's.
 SENT = 0
 ARRIVED = 1
 LOST_CUT = 2
@@ -26,23 +26,14 @@ LOST_OFF = 4
 LOST_QUEUE = 5
 LOST_BROKEN = 6
 URGENT_BLOCK = 8
-# What the protocol says of its data, and the user's side of it.
+# The user's side.
 OFFERED = 16
 DELIVERED = 17
-NO_ROUTE = 18
-LOOPED = 19
-AGAIN = 20  # a command: dropped because it was here before, given up after too many hops
-TOO_FAR = 21
-EARLY = 22  # of NO_ROUTE: dropped by cells that have not had a route yet, as far as is watched
-GIVEN = 23  # commands given to the PC; who got them: see orders.py
-COMMAND_BLOCK = 24
-BLOCKS = (0, URGENT_BLOCK, COMMAND_BLOCK)
-ADDRESSED = 32
-REACHED = 33
-REPEATED = 34
-STRAY = 35
-MISSED = 36
+OWN = 18
+OTHER_BLOCK = 24
+OWN_TOO = 32
 COUNTERS = 40
+BLOCKS = (0, URGENT_BLOCK, OTHER_BLOCK)
 
 # Why frames are lost.
 REASONS = {
@@ -61,13 +52,15 @@ LOSSY = 2
 def tap_out(world, do, end, frame, time, why):
     """Keep a copy of a frame that leaves at this end of a cable, if a capture is wanted."""
     if world.run[0].tap_limit > 0:
-        taps.record_frame(world, time, time, end, 0, 1, why, frame, do.copy_frame)
+        do.copy_frame(world.tapped[world.run[0].taps], frame)
+        taps.record_frame(world, time, end, 1, why)
 
 
 def tap_in(world, do, end, frame, time, why):
     """Keep a copy of a frame that comes in at this end of a cable, if a capture is wanted."""
     if world.run[0].tap_limit > 0:
-        taps.record_frame(world, time, time, end, 0, 0, why, frame, do.copy_frame)
+        do.copy_frame(world.tapped[world.run[0].taps], frame)
+        taps.record_frame(world, time, end, 0, why)
 
 
 def transmit(world, do, end, frame, time, flags):

@@ -13,7 +13,8 @@ from innervate.sim.channel import world as r
 from innervate.sim.channel.loop import BATCH
 from innervate.sim.channel.medium import NEVER
 from innervate.sim.heap import AIRS, COMMAND, OFFER, key_of, push
-from innervate.sim.tables import ACTION, TAP, Out, Tables, put, uniform
+from innervate.sim.recorded import Recorded
+from innervate.sim.tables import TAP, Tables, put, uniform
 
 OUTBOX = 16
 
@@ -36,28 +37,25 @@ def build(
     plan: Any,
     of: Records,
     plain: bool,
-    checks: bool,
-    keep: bool,
-    trail: bool,
-    tap: bool = False,
+    kept: Recorded,
     room: int | None = None,
 ) -> r.World:
     """The world of a plan, before its first event.
 
-    `of` declares the records of its protocol.
-
-    `keep` keeps a row per report, transmission and delivered packet, `trail` one per handler call,
-    `tap` copies of frames on the air; there is `room` for so many rows before the loop stops, if
-    that is said.
+    Args:
+        plan: of stations on a channel.
+        of: the records of its protocol.
+        plain: uncompiled.
+        kept: what the run keeps; observed are reports, transmissions and delivered packets.
+        room: for so many rows before the loop stops; None = as many as is usual.
     """
     tables = Tables(plain)
     n = plan.stations
     fields = of.station
     stations = tables.states(fields, n)
     low, high = records.bounds(fields)
-    order, delay, degree = _neighbours(plan)
-    rows = (room or tables.rows) if keep else 1
-    tapped = tables.rows + OUTBOX * n * BATCH if tap else 1
+    rows = (room or tables.rows) if kept.observe else 1
+    tapped = tables.rows + OUTBOX * n * BATCH if kept.tap else 1
     world = r.World(
         run=tables.records(r.RUN, 1, wide=r.WIDE),
         heap=r.Heap(tables.numbers(64 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64)),
@@ -72,32 +70,19 @@ def build(
         told=tables.numbers(n + 2, 0, np.int64),
         air=tables.records(r.AIR, n * AIRS, wide=r.WIDE),
         frames=tables.states(of.frame, n * AIRS),
-        degree=_given(tables, degree),
-        order=_given(tables, order),
-        delay=_given(tables, delay),
-        arrivals=_given(tables, [at for times in plan.arrivals for at in times] + [0]),
-        sizes=_given(tables, [np.resize(sizes, r.RING) for sizes in plan.sizes]),
-        offered=tables.numbers(n * r.RING, 0, np.int64),
-        got=tables.numbers(n * r.RING),
-        tries=tables.numbers(n * r.RING),
-        last=tables.numbers(n * n, NEVER),
+        **_neighbours(tables, plan),
+        **_packets(tables, plan),
         item=tables.states(of.packet, 1),
-        out=Out(
-            count=tables.numbers(1, 0, np.int64),
-            limit=tables.numbers(1, OUTBOX, np.int64),
-            overflow=tables.numbers(1, 0, np.int64),
-            action=tables.records(ACTION, OUTBOX),
-            frame=tables.states(of.frame, OUTBOX),
-        ),
+        out=tables.outbox(OUTBOX, of.frame),
         commands=tables.records(r.COMMAND, len(plan.faults) + 1, wide=r.WIDE),
         rows=tables.records(r.ROW, rows, fresh=True, wide=r.WIDE),
         sent=tables.records(r.SENT, rows, fresh=True, wide=r.WIDE),
         packets=tables.records(r.PACKET, rows, fresh=True, wide=r.WIDE),
-        trail=tables.records(r.TRAIL, tables.rows if trail else 1, fresh=True, wide=r.WIDE),
+        trail=tables.records(r.TRAIL, tables.rows if kept.trail else 1, fresh=True, wide=r.WIDE),
         taps=tables.records(TAP, tapped, fresh=True, wide=r.WIDE),
         tapped=tables.states(of.frame, tapped),
     )
-    _set_run(world, plan, of, checks, keep, trail)
+    _set_run(world, plan, of, kept)
     _set_stations(world, plan)
     _set_events(world, plan)
     return world
@@ -114,12 +99,20 @@ def grow_heap(world: Any) -> Any:
     return world._replace(heap=r.Heap(longer, world.heap.size))
 
 
-def _given(tables: Tables, values: Any) -> Any:
-    made = np.ascontiguousarray(values, np.int64).ravel()
-    return made.tolist() if tables.plain else made
+def _packets(tables: Tables, plan: Any) -> dict[str, Any]:
+    """What stations are handed to send, and what became of it."""
+    n = plan.stations
+    return {
+        "arrivals": tables.given([at for times in plan.arrivals for at in times] + [0]),
+        "sizes": tables.given([np.resize(sizes, r.RING) for sizes in plan.sizes]),
+        "offered": tables.numbers(n * r.RING, 0, np.int64),
+        "got": tables.numbers(n * r.RING),
+        "tries": tables.numbers(n * r.RING),
+        "last": tables.numbers(n * n, NEVER),
+    }
 
 
-def _neighbours(plan: Any) -> tuple[Any, Any, Any]:
+def _neighbours(tables: Tables, plan: Any) -> dict[str, Any]:
     """Per station: who hears it and after how long, the nearest first; and how many."""
     n = plan.stations
     delays = np.array(plan.delays_us, np.int64)
@@ -128,11 +121,15 @@ def _neighbours(plan: Any) -> tuple[Any, Any, Any]:
     order = np.lexsort((np.broadcast_to(np.arange(n), (n, n)), far), axis=1)
     sorted_delays = np.take_along_axis(far, order, axis=1)
     degree = (sorted_delays < 1 << 40).sum(axis=1)
-    return order, sorted_delays, degree
+    return {
+        "degree": tables.given(degree),
+        "order": tables.given(order),
+        "delay": tables.given(sorted_delays),
+    }
 
 
-def _set_run(world: r.World, plan: Any, of: Records, checks: bool, keep: bool, trail: bool) -> None:
-    limit = len(world.rows) if keep else 0
+def _set_run(world: r.World, plan: Any, of: Records, kept: Recorded) -> None:
+    limit = len(world.rows) if kept.observe else 0
     put(
         world.run,
         0,
@@ -148,12 +145,12 @@ def _set_run(world: r.World, plan: Any, of: Records, checks: bool, keep: bool, t
         forced=int(plan.forced),
         per_turn=plan.params["per_turn"],
         wanted=plan.wanted,
-        checks=int(checks),
-        watchful=int(checks or trail),
+        checks=int(kept.checks),
+        watchful=int(kept.is_watchful),
         row_limit=limit,
         sent_limit=limit,
         packet_limit=limit,
-        trail_limit=len(world.trail) if trail else 0,
+        trail_limit=len(world.trail) if kept.trail else 0,
         broken_at=-1,
         hurt=plan.stations,
     )

@@ -263,7 +263,7 @@ def test_a_channel_is_busy_from_the_threshold_on(power, deaf, busy):
 
 def test_a_lost_memory_is_all_of_it_and_nobody_elses():
     plan = mesh_plan(3, capacity=4, ranks=[0, 1, -1])
-    world = build.build(plan, True, True, False, False)
+    world = build.build(plan, True, observe=False)
     gates = range(3)  # of the gateway, of its standby, and one that stays blank
     words, own = sum(max(field[1], 1) for field in mesh_fields.gate(4)), len(world.low)
     for gate in gates[:2]:

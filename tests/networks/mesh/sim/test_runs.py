@@ -41,7 +41,7 @@ def test_checks_and_trails_change_nothing():
 
 
 def test_without_rows_the_run_is_the_same():
-    result = run(busy_plan(), keep=False)
+    result = run(busy_plan(), observe=False)
     assert result.fingerprint == run(busy_plan()).fingerprint
     assert len(result.rows) == len(result.sent) == 0
     assert result.counts["transmissions"] > 40
@@ -160,7 +160,7 @@ def test_a_receiver_that_changes_a_frame_stops_the_run():
 
 
 def test_the_table_of_deliveries_grows():
-    world = build(busy_plan(), True, True, True, False)
+    world = build(busy_plan(), True)
     keys = [1 + 2 * k for k in range(1_000)]
     for key in keys:
         at = place_of(world.duplicate_key, key)

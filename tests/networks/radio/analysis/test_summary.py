@@ -41,7 +41,7 @@ def made(packets=(), sent=(), rows=(), ended_us=100_000, **plan):
     plan = radio_plan(n, packet_slots=5, real=(52, 52), **plan)
     return SimpleNamespace(
         plan=plan,
-        world=build(plan, plain=True, checks=False, keep=False, trail=False),
+        world=build(plan, plain=True, checks=False, observe=False),
         packets=table(w.PACKET, *packets),
         sent=table(w.SENT, *sent),
         rows=table(w.ROW, *rows),

@@ -103,7 +103,7 @@ def test_capture_and_its_absence(mac, packet_slots, published):
 def test_two_stations_after_a_disaster(mac):
     cost = 1 if mac == CABLE else 6
     plans = [baseline_plan(mac, 2, 5, seed=seed) for seed in range(400)]
-    ended = [simulate(plan, checks=False, keep=False).ended_us for plan in plans]
+    ended = [simulate(plan, checks=False, observe=False).ended_us for plan in plans]
     found = (np.mean(ended) - START_US - TAU_US) / SLOT_US  # its sender knows a tau later
     assert close(found, forms.pair_duration_slots(5, cost))
 

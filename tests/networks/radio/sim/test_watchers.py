@@ -18,7 +18,7 @@ COUNTS = ("silent", "partial", "again", "completed")
 @pytest.fixture
 def world():
     """Four stations that all hear each other; station 0 has made a packet."""
-    made = build.build(radio_plan(4), True, True, True, False)
+    made = build.build(radio_plan(4), True)
     made.run[0].hurt = 0
     assert traffic.make(made, 0, 1_000) == 0
     return made

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from innervate.networks.skin.sim import counters as words
 from innervate.sim import wheel
 from innervate.sim.cables import wires
 from tests.networks.skin.runs import busy, patch, run, setup_1
@@ -41,7 +42,7 @@ def assert_conserved(result, what):
         )
     # What a cell's sensors said went out, or in at another cell, or to the PC, or was dropped.
     came = counts[wires.OFFERED] + counts[wires.ARRIVED] - counts[wires.DELIVERED]
-    went = counts[wires.SENT] + counts[wires.NO_ROUTE] + counts[wires.LOOPED]
+    went = counts[wires.SENT] + counts[words.NO_ROUTE] + counts[words.LOOPED]
     assert came == went, f"{what}: {came} samples came in, {went} went out or were dropped"
     assert min(counts) >= 0
 
@@ -74,7 +75,7 @@ def test_a_quiet_skin_loses_nothing():
     result = run(setup_1(duration_s=1.5, data={"rate_hz": 50}), deliveries=True)
     counts = result.counters
     late = result.deliveries[result.deliveries["time"] > 300_000]
-    assert counts[wires.LOOPED] == 0
+    assert counts[words.LOOPED] == 0
     assert sum(counts[reason] for reason in LOST) == 0
     # Every cell's samples arrive, counted without a gap.
     for cell in range(99):

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.summary_common import measured
 from innervate.networks.mesh.analysis import network as network
 from innervate.networks.mesh.analysis.alarms import alarms, all_crossings
 from innervate.networks.mesh.analysis.headline import headline, traffic
@@ -53,7 +54,6 @@ def summarize(result: Any) -> MeshSummary:
         result: of `sim.mesh.simulate`, with its rows kept.
     """
     plan, counts = result.plan, result.counts
-    events = counts["handled"] + counts["arrived"]
     found = messages(result)
     kinds = network.acked_kinds(result.sent)
     led = network.gateways(result)
@@ -61,15 +61,10 @@ def summarize(result: Any) -> MeshSummary:
     crossings = all_crossings(result)
     again, met = duplicates(result), looped(result)
     sent = traffic(found, crossings, again, met, plan.faults)
-    summary: MeshSummary = {
+    return {
         "kind": plan.kind,
         "name": plan.scenario.name,
-        "seed": plan.seed,
-        "duration_s": plan.duration_us / 1e6,
-        "events": events,
-        "events_per_s": round(events / result.wall_s) if result.wall_s > 0 else None,
-        "wall_s": round(result.wall_s, 6),
-        "fingerprint": result.fingerprint,
+        **measured(result, counts["handled"] + counts["arrived"]),
         "headline": headline(of_simulation(result.world, plan), sent).as_summary(),
         "nodes": plan.nodes,
         "links": len(plan.good),
@@ -92,9 +87,6 @@ def summarize(result: Any) -> MeshSummary:
         "give_ups": give_ups(result),
         "suspects": network.suspects(result),
     }
-    if result.interrupted:
-        summary["interrupted_at_s"] = result.ended_us / 1e6
-    return summary
 
 
 def _counts(found: Messages) -> Counts:

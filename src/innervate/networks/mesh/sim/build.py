@@ -17,7 +17,8 @@ from innervate.networks.mesh.sim.over_channel import KEPT
 from innervate.sim.channel.world import Heap
 from innervate.sim.field import powers, queue
 from innervate.sim.field.medium import NONE
-from innervate.sim.tables import ACTION, TAP, Out, Tables, get, put, uniform
+from innervate.sim.recorded import Recorded
+from innervate.sim.tables import ACTION, TAP, Tables, get, put, uniform
 
 TAPS = 1 << 12
 OUTBOX = 32
@@ -30,62 +31,82 @@ CSMA = {"backoff_us": 320, "exponent_min": 3, "exponent_max": 6, "busy_max": 8}
 MACS = {"none": 0, "csma": 1}
 
 
-def build(
-    plan: Any, plain: bool, checks: bool, keep: bool, trail: bool, tap: bool = False
-) -> m.World:
-    """The world of a plan, before its first event.
-
-    `keep` keeps all rows, `trail` one per handler call, `tap` copies of frames on the air.
-    """
-    tables = Tables(plain, np.int64)
+def build(plan: Any, plain: bool, **kept: bool) -> m.World:
+    """The world of a plan, before its first event; `kept` as in `sim.recorded`."""
+    tables, asked = Tables(plain, np.int64), Recorded(**kept)
     n = plan.nodes
-    gates = sum(rank >= 0 for rank in plan.ranks) + 1
-    fields, gate_fields = mesh_fields.node(plan.capacity), mesh_fields.gate(plan.capacity)
-    nodes, gate = tables.states(fields, n + 1), tables.states(gate_fields, gates)
+    fields = mesh_fields.node(plan.capacity)
+    nodes = tables.states(fields, n + 1)
     low, high = records.bounds(fields)
-    rows = tables.rows
-    kept = rows + _margin(n) if keep else 1
-    tapped = TAPS + _margin(n) if tap else 1
     heap = Heap(tables.numbers(128 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64))
+    below: Any = ()
+    if plan.mac not in MACS:
+        below = channel.world_of(plan, plain, asked.checks, heap)
     world = m.World(
         run=tables.records(m.RUN, 1, wide=m.WIDE),
         heap=heap,
-        below=() if plan.mac in MACS else channel.world_of(plan, plain, checks, heap),
+        below=below,
         nodes=nodes,
         words=tables.words(nodes, fields),
-        low=_given(tables, low, np.int32),
-        high=_given(tables, high, np.int32),
-        gates=gate,
-        gate_words=tables.words(gate, gate_fields),
+        low=tables.given(low, np.int32),
+        high=tables.given(high, np.int32),
         params=tables.states(mesh_fields.PARAMS, 1),
-        macs=tables.states(csma_fields.STATION, n),
-        mac_params=tables.states(csma_fields.PARAMS, 1),
-        mac_item=tables.states(csma_fields.ITEM, 1),
         radios=tables.records(m.RADIO, n, wide=m.RADIO),
         due=tables.numbers(n * m.TIMERS, NEVER, np.int64),
+        **_gates(tables, plan),
+        **_access(tables, n),
         **_medium(tables, plan),
         **_script(tables, plan),
         item=tables.states(mesh_fields.ITEM, 1),
-        out=_outbox(tables, OUTBOX, mesh_fields.FRAME),
-        mac_out=_outbox(tables, MAC_OUTBOX, csma_fields.ITEM),
+        out=tables.outbox(OUTBOX, mesh_fields.FRAME, ACTION),
         duplicate_key=tables.numbers(DUPLICATES, 0, np.int64),
         duplicate_at=tables.numbers(DUPLICATES, 0, np.int64),
-        rows=tables.records(m.ROW, kept, fresh=True, wide=m.WIDE),
-        sent=tables.records(m.SENT, kept, fresh=True, wide=m.WIDE),
-        delivered=tables.records(m.DELIVERED, kept, fresh=True, wide=m.WIDE),
-        rounds=tables.records(m.ROUND, kept, fresh=True, wide=m.WIDE),
-        trail=tables.records(m.TRAIL, rows + _margin(n) if trail else 1, fresh=True, wide=m.WIDE),
-        taps=tables.records(TAP, tapped, fresh=True, wide=m.WIDE),
-        tapped=tables.states(mesh_fields.FRAME, tapped),
+        **_rows(tables, n, asked),
     )
-    limit = rows if keep else 0
-    put(world.run, 0, row_limit=limit, sent_limit=limit, delivered_limit=limit, round_limit=limit)
-    put(world.run, 0, checks=int(checks), watchful=int(checks or trail))
-    put(world.run, 0, trail_limit=rows if trail else 0, tap_limit=TAPS if tap else 0)
-    _set_run(world, plan, sum(max(int(field[1]), 1) for field in gate_fields))
-    _set_nodes(world, plan, gates - 1)
+    _set_limits(world, tables.rows, asked)
+    _set_run(world, plan)
+    _set_nodes(world, plan, len(world.gates) - 1)
     _set_events(world, plan)
     return world
+
+
+def _gates(tables: Tables, plan: Any) -> dict[str, Any]:
+    """Records of gateways, and one that stands for what other nodes have."""
+    fields = mesh_fields.gate(plan.capacity)
+    gates = tables.states(fields, sum(rank >= 0 for rank in plan.ranks) + 1)
+    return {"gates": gates, "gate_words": tables.words(gates, fields)}
+
+
+def _access(tables: Tables, nodes: int) -> dict[str, Any]:
+    """What CSMA has, one for each node, and its outbox."""
+    return {
+        "macs": tables.states(csma_fields.STATION, nodes),
+        "mac_params": tables.states(csma_fields.PARAMS, 1),
+        "mac_item": tables.states(csma_fields.ITEM, 1),
+        "mac_out": tables.outbox(MAC_OUTBOX, csma_fields.ITEM, ACTION),
+    }
+
+
+def _rows(tables: Tables, nodes: int, asked: Recorded) -> dict[str, Any]:
+    """Tables of what is kept, with room for what one event can add."""
+    room, margin = tables.rows, _margin(nodes)
+    kept = room + margin if asked.observe else 1
+    tapped = TAPS + margin if asked.tap else 1
+    trail = room + margin if asked.trail else 1
+    names = {"rows": m.ROW, "sent": m.SENT, "delivered": m.DELIVERED, "rounds": m.ROUND}
+    return {
+        **{name: tables.records(names[name], kept, True, m.WIDE) for name in names},
+        "trail": tables.records(m.TRAIL, trail, True, m.WIDE),
+        "taps": tables.records(TAP, tapped, True, m.WIDE),
+        "tapped": tables.states(mesh_fields.FRAME, tapped),
+    }
+
+
+def _set_limits(world: m.World, rows: int, asked: Recorded) -> None:
+    limit = rows if asked.observe else 0
+    put(world.run, 0, row_limit=limit, sent_limit=limit, delivered_limit=limit, round_limit=limit)
+    put(world.run, 0, checks=int(asked.checks), watchful=int(asked.is_watchful))
+    put(world.run, 0, trail_limit=rows if asked.trail else 0, tap_limit=TAPS if asked.tap else 0)
 
 
 def grow_duplicates(world: m.World) -> m.World:
@@ -106,21 +127,6 @@ def _margin(nodes: int) -> int:
     return (nodes + 1) * (OUTBOX + 1)
 
 
-def _given(tables: Tables, values: Any, kind: type = np.int64) -> Any:
-    numbers: Any = np.ascontiguousarray(values, kind).ravel()
-    return numbers.tolist() if tables.plain else numbers
-
-
-def _outbox(tables: Tables, limit: int, frame: Any) -> Out:
-    return Out(
-        count=tables.numbers(1, 0, np.int64),
-        limit=tables.numbers(1, limit, np.int64),
-        overflow=tables.numbers(1, 0, np.int64),
-        action=tables.records(ACTION, limit, wide=ACTION),
-        frame=tables.states(frame, limit),
-    )
-
-
 def _medium(tables: Tables, plan: Any) -> dict[str, Any]:
     """Tables of the ideal or fading medium: frames in the air, powers between nodes."""
     n, radio = plan.nodes, plan.radio
@@ -134,22 +140,22 @@ def _medium(tables: Tables, plan: Any) -> dict[str, Any]:
     for a, b in plan.good:
         good[a, b] = good[b, a] = 1
     return {
-        "rssi": _given(tables, radio.rssi_cdb, np.int32),
-        "base": _given(tables, radio.base_cdb or [0], np.int32),
-        "prob": _given(tables, radio.prob_q15, np.int32),
+        "rssi": tables.given(radio.rssi_cdb, np.int32),
+        "base": tables.given(radio.base_cdb or [0], np.int32),
+        "prob": tables.given(radio.prob_q15, np.int32),
         "cut": tables.numbers(n * n),
-        "power": _given(tables, power),
+        "power": tables.given(power),
         "sums": tables.numbers(n, 0, np.int64),
-        "strengths": _given(tables, strengths),
-        "losses": _given(tables, powers.loss_table(radio.exponent_c)),
-        "chances": _given(tables, powers.chance_table()),
+        "strengths": tables.given(strengths),
+        "losses": tables.given(powers.loss_table(radio.exponent_c)),
+        "chances": tables.given(powers.chance_table()),
         "air": tables.records(m.AIR, places, wide=m.AIR),
         "frames": tables.states(mesh_fields.FRAME, places, FRAME_BYTES),
         "worst": tables.numbers(places * n, 0, np.int64),
         "on_air": tables.numbers(places),
-        "free": _given(tables, range(places - 1, -1, -1)),
+        "free": tables.given(range(places - 1, -1, -1)),
         "got": tables.numbers(n),
-        "good": _given(tables, good),
+        "good": tables.given(good),
     }
 
 
@@ -194,7 +200,8 @@ def _walks(plan: Any) -> tuple[list[Any], list[Any]]:
     return walks, points
 
 
-def _set_run(world: m.World, plan: Any, gate_words: int) -> None:
+def _set_run(world: m.World, plan: Any) -> None:
+    gate_words = sum(max(int(field[1]), 1) for field in mesh_fields.gate(plan.capacity))
     radio, n = plan.radio, plan.nodes
     strengths = powers.strength_table()
     put(

@@ -35,7 +35,7 @@ def world_of(plan: Any, plain: bool, checks: bool, above: Heap) -> World:
         sizes=[[1] for _ in range(n)],
         absent=[1] * n,
     )
-    world = build.build(stations, plain, checks, keep=False, trail=False)
+    world = build.build(stations, plain, checks=checks, observe=False)
     put(world.run, 0, exclusive=0)  # nodes come and go
     return world._replace(above=above)
 

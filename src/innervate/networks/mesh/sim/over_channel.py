@@ -5,14 +5,12 @@ a packet there, kept here under the packet's handle; what becomes of it comes ba
 the mesh's queue, which goes first at equal times.
 """
 
-from collections.abc import Callable
-from typing import NamedTuple
-
 from innervate.dialect.access import QUEUE
+from innervate.dialect.outbox import URGENT
 from innervate.kernel.bits import mix
 from innervate.networks.mesh.protocol.constants import ACK
 from innervate.networks.mesh.scenario.plan import HEADER_SLOTS
-from innervate.networks.mesh.sim import recorder
+from innervate.networks.mesh.sim import calls, recorder
 from innervate.sim import heap, taps
 from innervate.sim.channel import loop as radio_loop
 from innervate.sim.channel import medium as channel
@@ -23,34 +21,6 @@ from innervate.sim.field.medium import NONE
 from innervate.sim.field.states import ALIVE, HELD, VOID
 
 KEPT = 32  # frames of a node that are kept; more than its medium access can hold
-
-
-class Layer(NamedTuple):
-    """A layer below the router, as `over_medium` is one."""
-
-    down: Callable[..., "Down"]
-    up: Callable[..., "Up"]
-    short: Callable[..., int]
-    due: Callable[..., int]
-    step: Callable[..., None]
-
-
-class Down(NamedTuple):
-    """What a router asks of the layer below, bound to a stack."""
-
-    hand_down: Callable[..., None]
-    switch_on: Callable[..., None]
-    cut_short: Callable[..., None]
-    switch_off: Callable[..., None]
-    expire: Callable[..., None]
-
-
-class Up(NamedTuple):
-    """What the layer below tells the router."""
-
-    arrive: Callable[..., None]
-    note_end: Callable[..., None]
-    dispatch: Callable[..., None]
 
 
 # What the channel's loop calls: its world, whose `above` is the mesh's queue.
@@ -123,116 +93,108 @@ def due(world):
     return key >> heap.TIME_SHIFT
 
 
-def layer(do):
-    """The layer whose channel calls these functions, made with this module as their `packets`."""
+def step(world, do, time):
+    """Handle the next event of the channel below, at `time`, us."""
+    below = world.below
+    handled = below.run[0].handled
+    key = below.heap.keys[0] if below.heap.size[0] > 0 else heap.LAST
+    if below.told[0] > 0 and key >= heap.key_of(below.run[0].now, heap.READY, 0, 0):
+        radio_loop.tell_all(below, do.channel, time)
+    else:
+        below.run[0].now = time
+        radio_loop.dispatch(below, do.channel, key, time)
+    world.run[0].handled += below.run[0].handled - handled
 
-    def step(world, time):
-        """Handle the next event of the channel below, at `time`, us."""
-        below = world.below
-        handled = below.run[0].handled
-        key = below.heap.keys[0] if below.heap.size[0] > 0 else heap.LAST
-        if below.told[0] > 0 and key >= heap.key_of(below.run[0].now, heap.READY, 0, 0):
-            radio_loop.tell_all(below, do, time)
-        else:
-            below.run[0].now = time
-            radio_loop.dispatch(below, do, key, time)
-        world.run[0].handled += below.run[0].handled - handled
 
-    def down(stack):
-        """The functions by which a router hands frames to a channel below."""
-        digest, copy_frame, frame_bytes = stack.digest, stack.copy_frame, stack.frame_bytes
+def hand_down(world, do, node, frame, act, time):
+    """The router sends a frame: it becomes a packet; returns its digest."""
+    run, radio, below = world.run[0], world.radios[node], world.below
+    urgent = act.c & URGENT
+    if radio.held != NONE and not urgent:
+        recorder.breaks(world, recorder.BROKEN_HELD, node)
+        return 0
+    if urgent and below.radios[node].backlog >= QUEUE:
+        run.blocked += 1
+        return 0
+    handle = traffic.make(below, node, time)
+    place = place_of(node, handle)
+    kept, air = world.frames[place], world.air[place]
+    do.copy_frame(kept, frame)
+    air.node, air.state, air.receivers, air.digest = node, HELD, 0, do.digest(kept)
+    if not urgent:
+        radio.held = place
+    at = node * RING + (handle & (RING - 1))
+    below.sizes[at] = slots_of(world, do.frame_bytes(kept))
+    heap.push(below.heap, heap.key_of(time, heap.OFFER, node, 1))
+    return air.digest
 
-        def hand_down(world, node, frame, _attempt, urgent, time, _now):
-            """The router sends a frame: it becomes a packet; returns its digest."""
-            run, radio, below = world.run[0], world.radios[node], world.below
-            if radio.held != NONE and not urgent:
-                recorder.breaks(world, recorder.BROKEN_HELD, node)
-                return 0
-            if urgent and below.radios[node].backlog >= QUEUE:
-                run.blocked += 1
-                return 0
-            handle = traffic.make(below, node, time)
-            place = place_of(node, handle)
-            kept, air = world.frames[place], world.air[place]
-            copy_frame(kept, frame)
-            air.node, air.state, air.receivers, air.digest = node, HELD, 0, digest(kept)
-            if not urgent:
-                radio.held = place
-            at = node * RING + (handle & (RING - 1))
-            below.sizes[at] = slots_of(world, frame_bytes(kept))
-            heap.push(below.heap, heap.key_of(time, heap.OFFER, node, 1))
-            return air.digest
 
-        def switch_on(world, node, time, _now, _cause):
-            """A node starts; its station listens first, as others may be on the air."""
-            radio_loop.switch_on(world.below, do, node, time, radio_loop.LATE)
+def power_on(world, do, node, time, _cause):
+    """A node starts; its station listens first, as others may be on the air."""
+    radio_loop.switch_on(world.below, do.channel, node, time, radio_loop.LATE)
 
-        def cut_short(world, node, place, time):
-            """A node stops in mid-frame, if it has begun; nobody receives that."""
-            length = frame_bytes(world.frames[place])
-            if began(world, place, length, world.below.radios[node].data_end) < time:
-                recorder.record_transmission(world, place, time, length, 0)
 
-        def switch_off(world, node, time):
-            """A node stops, in mid-frame too."""
-            below = world.below
-            radio = below.radios[node]
-            if radio.backlog > 0 and radio.data_end > time:
-                cut_short(world, node, place_of(node, radio.fresh - radio.backlog), time)
-            radio.alive, radio.backlog = 0, 0
-            below.run[0].hurt += 1
-            channel.silence(below, node, time)
-            for i in range(KEPT):
-                world.air[node * KEPT + i].state = VOID
+def cut_short(world, do, node, place, time):
+    """A node stops in mid-frame, if it has begun; nobody receives that."""
+    length = do.frame_bytes(world.frames[place])
+    if began(world, place, length, world.below.radios[node].data_end) < time:
+        recorder.record_transmission(world, place, time, length, 0)
 
-        def expire(world, node, timer, time, now):
-            """Its timers are in the channel's own queue."""
 
-        return Down(hand_down, switch_on, cut_short, switch_off, expire)
+def power_off(world, do, node, time):
+    """A node stops, in mid-frame too."""
+    below = world.below
+    radio = below.radios[node]
+    if radio.backlog > 0 and radio.data_end > time:
+        cut_short(world, do, node, place_of(node, radio.fresh - radio.backlog), time)
+    radio.alive, radio.backlog = 0, 0
+    below.run[0].hurt += 1
+    channel.silence(below, node, time)
+    for i in range(KEPT):
+        world.air[node * KEPT + i].state = VOID
 
-    def up(stack, _below, take, tell_sent):
-        """What happens below: `take` hands a frame to a router, `tell_sent` its own one's fate."""
-        digest, frame_bytes = stack.digest, stack.frame_bytes
 
-        def arrive(world, node, place, time):
-            """A node has received the frame at `place`."""
-            run, frame, air = world.run[0], world.frames[place], world.air[place]
-            if world.radios[node].state == ALIVE and air.state != VOID:
-                air.receivers += 1
-                run.arrived += 1
-                recorder.tap(world, place, node, time, 0, taps.FINE)
-                if frame.kind != ACK:
-                    frame.rssi = medium.rssi_dbm(world, air.node, node)
-                take(world, node, frame, time)
+def expire_below(_world, _do, _node, _timer, _time):
+    """Its timers are in the channel's own queue."""
 
-        def note_end(world, node, place, time):
-            """The frame at `place` has left the air, everywhere."""
-            run, air = world.run[0], world.air[place]
-            if air.state == VOID:
-                return
-            length = frame_bytes(world.frames[place])
-            end = time - tail_us(world.below, node)
-            began(world, place, length, end)
-            run.transmissions += 1
-            run.received += air.receivers
-            recorder.record_transmission(world, place, end, length, air.receivers)
-            recorder.tap(world, place, node, air.start, 1, taps.FINE)
-            air.receivers = 0
-            if run.checks and digest(world.frames[place]) != air.digest:
-                recorder.breaks(world, recorder.BROKEN_FRAME, node)
 
-        def dispatch(world, rank, node, what, time):
-            """What the channel's loop has noted."""
-            run = world.run[0]
-            run.fingerprint = mix(run.fingerprint, world.below.run[0].fingerprint)
-            if rank == queue.STARTS:
-                arrive(world, node, what, time)
-            elif rank == queue.ENDS:
-                note_end(world, node, what, time)
-            elif world.radios[node].held == what:
-                world.radios[node].held = NONE
-                tell_sent(world, node, time, 1)
+def arrive(world, do, node, place, time):
+    """A node has received the frame at `place`."""
+    run, frame, air = world.run[0], world.frames[place], world.air[place]
+    if world.radios[node].state == ALIVE and air.state != VOID:
+        air.receivers += 1
+        run.arrived += 1
+        recorder.tap(world, place, node, time, 0, taps.FINE)
+        if frame.kind != ACK:
+            frame.rssi = medium.rssi_dbm(world, air.node, node)
+        calls.take(world, do, node, frame, time)
 
-        return Up(arrive, note_end, dispatch)
 
-    return Layer(down, up, short, due, step)
+def note_end(world, do, node, place, time):
+    """The frame at `place` has left the air, everywhere."""
+    run, air = world.run[0], world.air[place]
+    if air.state == VOID:
+        return
+    length = do.frame_bytes(world.frames[place])
+    end = time - tail_us(world.below, node)
+    began(world, place, length, end)
+    run.transmissions += 1
+    run.received += air.receivers
+    recorder.record_transmission(world, place, end, length, air.receivers)
+    recorder.tap(world, place, node, air.start, 1, taps.FINE)
+    air.receivers = 0
+    if run.checks and do.digest(world.frames[place]) != air.digest:
+        recorder.breaks(world, recorder.BROKEN_FRAME, node)
+
+
+def dispatch_below(world, do, rank, node, what, time):
+    """What the channel's loop has noted."""
+    run = world.run[0]
+    run.fingerprint = mix(run.fingerprint, world.below.run[0].fingerprint)
+    if rank == queue.STARTS:
+        arrive(world, do, node, what, time)
+    elif rank == queue.ENDS:
+        note_end(world, do, node, what, time)
+    elif world.radios[node].held == what:
+        world.radios[node].held = NONE
+        calls.tell_sent(world, do, node, time, 1)

@@ -1,15 +1,12 @@
 """Below the router: CSMA, or nothing, on a medium in which not everybody hears everybody."""
 
-from collections.abc import Callable
-from typing import NamedTuple
-
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.kernel.bits import mix
 from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import csma
 from innervate.networks.mesh.protocol.constants import ACK
-from innervate.networks.mesh.sim import recorder
+from innervate.networks.mesh.sim import calls, recorder
 from innervate.networks.mesh.sim.recorder import MAC
 from innervate.networks.mesh.sim.timers import set_timer
 from innervate.sim import rows, taps
@@ -19,24 +16,6 @@ from innervate.sim.field.states import COMMITTED, FREE, HELD, ON_AIR
 from innervate.sim.status import DONE, ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 
 NEVER = -1
-
-
-class Down(NamedTuple):
-    """What a router asks of the layer below, bound to a stack."""
-
-    drain_mac: Callable[..., int]
-    hand_down: Callable[..., int]
-    switch_on: Callable[..., None]
-    switch_off: Callable[..., None]
-    expire: Callable[..., None]
-
-
-class Up(NamedTuple):
-    """What the layer below does by itself and tells the router."""
-
-    arrive: Callable[..., None]
-    end: Callable[..., None]
-    dispatch: Callable[..., None]
 
 
 def give_up(world, node, time):
@@ -60,151 +39,144 @@ def due(_world):
     return queue.TIME_MAX
 
 
-def step(_world, _time):
+def step(_world, _do, _time):
     """Nothing: no channel with events of its own lies below."""
 
 
-def down(stack):
-    """The functions by which a router hands frames to CSMA and the medium."""
-    mac_on_start, mac_on_timer = stack.mac_on_start, stack.mac_on_timer
-    mac_on_input, mac_on_carrier = stack.mac_on_input, stack.mac_on_carrier
-    digest, copy_frame, frame_bytes = stack.digest, stack.copy_frame, stack.frame_bytes
+def drain_mac(world, do, node, time, handler):
+    """Carry out what the medium access wants: True if it hands up the frame it was given."""
+    run, out, radio = world.run[0], world.mac_out, world.radios[node]
+    mark = mix(run.fingerprint, (time << 26) ^ (node << 6) ^ handler)
+    now = time + radio.offset
+    handed_up = False
+    for i in range(out.count[0]):
+        act = out.action[i]
+        kind, a, b, c = act.kind, act.a, act.b, act.c
+        mark = mix(mark, kind ^ (a << 3) ^ (b << 20) ^ (c << 50))
+        if kind == SEND:
+            medium.commit(world, radio.hot if c & URGENT else radio.held, time)
+        elif kind == SET_TIMER:
+            set_timer(world, node, mesh_const.TIMERS + a, b, time, now)
+        elif kind == REPORT and a == csma.REPORT_GAVE_UP:
+            give_up(world, node, time)
+        elif kind == DELIVER:
+            handed_up = True
+    out.count[0] = 0
+    run.fingerprint = mark
+    if out.overflow[0]:
+        recorder.breaks(world, recorder.BROKEN_OUTBOX, node)
+    if run.watchful:
+        rows.record_step(world, node, time, handler, 0)
+    return handed_up
 
-    def drain_mac(world, node, time, now, handler):
-        """Carry out what the medium access wants: True if it hands up the frame it was given."""
-        run, out, radio = world.run[0], world.mac_out, world.radios[node]
-        mark = mix(run.fingerprint, (time << 26) ^ (node << 6) ^ handler)
-        handed_up = False
-        for i in range(out.count[0]):
-            act = out.action[i]
-            kind, a, b, c = act.kind, act.a, act.b, act.c
-            mark = mix(mark, kind ^ (a << 3) ^ (b << 20) ^ (c << 50))
-            if kind == SEND:
-                medium.commit(world, radio.hot if c & URGENT else radio.held, time)
-            elif kind == SET_TIMER:
-                set_timer(world, node, mesh_const.TIMERS + a, b, time, now)
-            elif kind == REPORT and a == csma.REPORT_GAVE_UP:
-                give_up(world, node, time)
-            elif kind == DELIVER:
-                handed_up = True
-        out.count[0] = 0
-        run.fingerprint = mark
-        if out.overflow[0]:
-            recorder.breaks(world, recorder.BROKEN_OUTBOX, node)
-        if run.watchful:
-            rows.record_step(world, node, time, handler, 0)
-        return handed_up
 
-    def hand_down(world, node, frame, attempt, urgent, time, now):
-        """The router sends a frame: put it where frames under way are; returns its digest."""
-        run, radio, item = world.run[0], world.radios[node], world.mac_item[0]
-        if radio.held != NONE and not urgent:
-            recorder.breaks(world, recorder.BROKEN_HELD, node)
-            return 0
-        if radio.deaf and (urgent or not run.mac):
-            run.blocked += 1
-            if not urgent:
-                give_up(world, node, time)
-            return 0
-        place = medium.reserve(world, node, HELD)
-        if place == NONE:
-            return 0
-        kept = world.frames[place]
-        copy_frame(kept, frame)
-        mark = digest(kept)
-        world.air[place].digest = mark
-        if not urgent and (run.mac or run.told):
-            radio.held = place
-        if not run.mac:
-            medium.commit(world, place, time)
-            return mark
-        radio.hot = place
-        item.us = medium.airtime(world, frame_bytes(kept))
-        item.urgent = 1 if urgent else 0
-        item.attempt = attempt
-        mac_on_input(world, node, now & MASK30, csma.PACKET)
-        drain_mac(world, node, time, now, MAC + ON_INPUT)
+def hand_down(world, do, node, frame, act, time):
+    """The router sends a frame: put it where frames under way are; returns its digest."""
+    run, radio, item = world.run[0], world.radios[node], world.mac_item[0]
+    urgent = act.c & URGENT
+    if radio.held != NONE and not urgent:
+        recorder.breaks(world, recorder.BROKEN_HELD, node)
+        return 0
+    if radio.deaf and (urgent or not run.mac):
+        run.blocked += 1
+        if not urgent:
+            give_up(world, node, time)
+        return 0
+    place = medium.reserve(world, node, HELD)
+    if place == NONE:
+        return 0
+    kept = world.frames[place]
+    do.copy_frame(kept, frame)
+    mark = do.digest(kept)
+    world.air[place].digest = mark
+    if not urgent and (run.mac or run.told):
+        radio.held = place
+    if not run.mac:
+        medium.commit(world, place, time)
         return mark
-
-    def switch_on(world, node, time, now, cause):
-        """A node starts; its router does right after this."""
-        medium.miss(world, node, time)
-        world.radios[node].told = 0
-        if world.run[0].mac:
-            mac_on_start(world, node, now & MASK30, cause)
-            drain_mac(world, node, time, now, MAC + ON_START)
-
-    def switch_off(world, node, time):
-        """A node stops, in mid-frame too."""
-        for place in range(len(world.air)):
-            air = world.air[place]
-            if air.node == node and air.state != FREE:
-                length = frame_bytes(world.frames[place])
-                recorder.record_sent(world, place, time, length, 0)
-                medium.abandon(world, place)
-
-    def expire(world, node, timer, time, now):
-        """A timer of the medium access is due; before that it learns what the radio hears."""
-        run, radio = world.run[0], world.radios[node]
-        run.handled += 1
-        carrier = 1 if medium.senses(world, node) else 0
-        if carrier != radio.told:
-            radio.told = carrier
-            mac_on_carrier(world, node, now & MASK30, carrier, 0)
-        mac_on_timer(world, node, now & MASK30, timer - mesh_const.TIMERS)
-        drain_mac(world, node, time, now, MAC + ON_TIMER)
-
-    return Down(drain_mac, hand_down, switch_on, switch_off, expire)
+    radio.hot = place
+    item.us = medium.airtime(world, do.frame_bytes(kept))
+    item.urgent = 1 if urgent else 0
+    item.attempt = act.b
+    do.mac_on_input(world, node, (time + radio.offset) & MASK30, csma.PACKET)
+    drain_mac(world, do, node, time, MAC + ON_INPUT)
+    return mark
 
 
-def up(stack, below, take, tell_sent):
-    """What happens below: `take` hands a frame to a router, `tell_sent` its own one's fate."""
-    mac_on_frame, digest, frame_bytes = stack.mac_on_frame, stack.digest, stack.frame_bytes
-    drain_mac = below.drain_mac
+def power_on(world, do, node, time, cause):
+    """A node starts; its router does right after this."""
+    medium.miss(world, node, time)
+    world.radios[node].told = 0
+    if world.run[0].mac:
+        do.mac_on_start(world, node, (time + world.radios[node].offset) & MASK30, cause)
+        drain_mac(world, do, node, time, MAC + ON_START)
 
-    def arrive(world, node, place, time):
-        """A node has received the frame at `place`."""
-        run, frame = world.run[0], world.frames[place]
-        now = time + world.radios[node].offset
-        if frame.kind != ACK:
-            frame.rssi = medium.rssi_dbm(world, world.air[place].node, node)
-        run.arrived += 1
-        recorder.tap(world, place, node, time, 0, taps.FINE)
-        if run.mac:
-            mac_on_frame(world, node, now & MASK30, frame)
-            if not drain_mac(world, node, time, now, MAC + ON_FRAME):
-                return
-        take(world, node, frame, time)
 
-    def end(world, place, time):
-        """A frame has left the air: receivers first, then its sender is told."""
-        run, air = world.run[0], world.air[place]
-        frame, node, is_whole = world.frames[place], air.node, air.state == ON_AIR
-        if is_whole:
-            medium.leave(world, place)
-            count = medium.receivers(world, place, recorder.tap)
-            recorder.record_sent(world, place, time, frame_bytes(frame), count)
-            for i in range(count):
-                arrive(world, world.got[i], place, time)
-            if run.checks and digest(frame) != air.digest:
-                recorder.breaks(world, recorder.BROKEN_FRAME, node)
-        medium.release(world, place)
-        if is_whole and world.radios[node].held == place:
-            world.radios[node].held = NONE
-            tell_sent(world, node, time, 1)
+def power_off(world, do, node, time):
+    """A node stops, in mid-frame too."""
+    for place in range(len(world.air)):
+        air = world.air[place]
+        if air.node == node and air.state != FREE:
+            length = do.frame_bytes(world.frames[place])
+            recorder.record_sent(world, place, time, length, 0)
+            medium.abandon(world, place)
 
-    def dispatch(world, rank, node, what, time):
-        """An event of the medium, or of the medium access."""
-        if rank == queue.ENDS:
-            end(world, what, time)
-        elif rank == queue.STARTS:
-            if world.air[what].state == COMMITTED:
-                medium.start(world, what, time, frame_bytes(world.frames[what]))
-                recorder.tap(world, what, world.air[what].node, time, 1, taps.FINE)
-            else:
-                medium.release(world, what)
-        elif world.radios[node].tell_at == time:
-            world.radios[node].tell_at = NEVER
-            tell_sent(world, node, time, 0)
 
-    return Up(arrive, end, dispatch)
+def expire_below(world, do, node, timer, time):
+    """A timer of the medium access is due; before that it learns what the radio hears."""
+    run, radio = world.run[0], world.radios[node]
+    now = time + radio.offset
+    run.handled += 1
+    carrier = 1 if medium.senses(world, node) else 0
+    if carrier != radio.told:
+        radio.told = carrier
+        do.mac_on_carrier(world, node, now & MASK30, carrier, 0)
+    do.mac_on_timer(world, node, now & MASK30, timer - mesh_const.TIMERS)
+    drain_mac(world, do, node, time, MAC + ON_TIMER)
+
+
+def arrive(world, do, node, place, time):
+    """A node has received the frame at `place`."""
+    run, frame = world.run[0], world.frames[place]
+    if frame.kind != ACK:
+        frame.rssi = medium.rssi_dbm(world, world.air[place].node, node)
+    run.arrived += 1
+    recorder.tap(world, place, node, time, 0, taps.FINE)
+    if run.mac:
+        do.mac_on_frame(world, node, (time + world.radios[node].offset) & MASK30, frame)
+        if not drain_mac(world, do, node, time, MAC + ON_FRAME):
+            return
+    calls.take(world, do, node, frame, time)
+
+
+def end(world, do, place, time):
+    """A frame has left the air: receivers first, then its sender is told."""
+    run, air = world.run[0], world.air[place]
+    frame, node, is_whole = world.frames[place], air.node, air.state == ON_AIR
+    if is_whole:
+        medium.leave(world, place)
+        count = medium.receivers(world, place, recorder.tap)
+        recorder.record_sent(world, place, time, do.frame_bytes(frame), count)
+        for i in range(count):
+            arrive(world, do, world.got[i], place, time)
+        if run.checks and do.digest(frame) != air.digest:
+            recorder.breaks(world, recorder.BROKEN_FRAME, node)
+    medium.release(world, place)
+    if is_whole and world.radios[node].held == place:
+        world.radios[node].held = NONE
+        calls.tell_sent(world, do, node, time, 1)
+
+
+def dispatch_below(world, do, rank, node, what, time):
+    """An event of the medium, or of the medium access."""
+    if rank == queue.ENDS:
+        end(world, do, what, time)
+    elif rank == queue.STARTS:
+        if world.air[what].state == COMMITTED:
+            medium.start(world, what, time, do.frame_bytes(world.frames[what]))
+            recorder.tap(world, what, world.air[what].node, time, 1, taps.FINE)
+        else:
+            medium.release(world, what)
+    elif world.radios[node].tell_at == time:
+        world.radios[node].tell_at = NEVER
+        calls.tell_sent(world, do, node, time, 0)

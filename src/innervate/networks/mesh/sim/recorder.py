@@ -53,10 +53,11 @@ def record_transmission(world, place, time, length, receivers):
 
 def tap(world, place, at, time, out, why):
     """Keep a copy of the frame at `place`, as at node `at`, if a capture is wanted."""
-    if world.run[0].tap_limit > 0:
-        air = world.air[place]
-        frame = world.frames[place]
-        taps.record_frame(world, time, air.start, at, air.node, out, why, frame, copy_frame)
+    run, air = world.run[0], world.air[place]
+    if run.tap_limit > 0:
+        copy_frame(world.tapped[run.taps], world.frames[place])
+        row = taps.record_frame(world, time, at, out, why)
+        row.start, row.sender = air.start, air.node
 
 
 def record_delivered(world, node, frame, time):

@@ -11,7 +11,15 @@ from typing import Any, ClassVar
 from innervate.kernel import compilation, tables
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.sim import build as builder
-from innervate.networks.mesh.sim import channel, loop, over_channel, over_medium, recorder, stacks
+from innervate.networks.mesh.sim import (
+    calls,
+    channel,
+    loop,
+    over_channel,
+    over_medium,
+    recorder,
+    stacks,
+)
 from innervate.networks.mesh.sim import world as w
 from innervate.networks.mesh.sim.timers import set_timer
 from innervate.networks.radio.sim import recorder as radio_recorder
@@ -88,19 +96,14 @@ def _compiled(entry: ModuleType, access: radio_stacks.Protocol | None) -> Callab
         *compilation.modules_of(entry), csma, medium, motion, recorder, rows, taps, hot=False
     )
     compilation.register_functions(powers.strength, powers.chance, powers.loss)
-    compilation.register_functions(loop.pressing, loop.wipe, set_timer, hot=False)
-    layer: Any = over_medium
-    if access is None:
-        below = (over_medium.give_up, over_medium.short, over_medium.due, over_medium.step)
-        compilation.register_functions(*below, hot=False)
-    else:
-        layer = over_channel.layer(radio_simulate.registered(access, over_channel))
-        compilation.register_functions(layer.step, hot=False)
-    stack = stacks.bind(entry)
-    compilation.register_functions(*stack, hot=False)
-    parts = loop.build(stack, layer)
-    compilation.register_functions(*parts.below, *parts.above, *parts.own, hot=False)
-    advance = compilation.compiled_as_one(parts.advance)
+    compilation.register_functions(set_timer, hot=False)
+    layer = stacks.Layer(over_medium)
+    if access is not None:
+        layer = stacks.Layer(over_channel, radio_simulate.registered(access, over_channel))
+    compilation.register(calls, loop, layer.part, hot=False)
+    do = stacks.bind(entry, layer)
+    compilation.register_functions(*filter(callable, vars(do).values()), hot=False)
+    advance = compilation.compiled_as_one(loop.bind(do))
     return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
 
 
@@ -108,32 +111,29 @@ def simulate(
     plan: Any,
     *,
     plain: bool = False,
-    checks: bool = True,
-    keep: bool = True,
-    trail: bool = False,
     progress: Progress | None = None,
     entry: ModuleType | None = None,
     through: Callable[[Any], Any] | None = None,
     tap: taps.Tap | None = None,
+    **kept: bool,
 ) -> MeshResult:
     """Run a mesh plan to its end; an interrupt (Ctrl-C) ends it early and keeps what was done.
 
     Args:
         plan: what `scenario` made of a file.
         plain: the same loop uncompiled, on lists and objects.
-        checks: stop when an invariant is broken.
-        keep: keep all rows; otherwise only the counts.
-        trail: a row per handler call.
         progress: called with the time reached and the whole duration, us, now and then.
         entry: the router's module; the mesh's own if none is given.
         through: plain runs only: every frame passes through it on its way to the air.
         tap: is handed copies of all frames as they leave and come in (see sim/taps.py).
+        kept: as in `sim.recorded`.
 
     Raises:
         InvariantBroken: a checker found something that must not happen.
     """
-    running = simulation(plan, plain=plain, checks=checks, keep=keep, trail=trail, entry=entry,
-                         through=through, tap=tap is not None)  # fmt: skip
+    running = simulation(
+        plan, plain=plain, entry=entry, through=through, tap=tap is not None, **kept
+    )
     ended = running.finish(progress, tap)
     return MeshResult(
         plan=plan,
@@ -180,12 +180,9 @@ def simulation(
     plan: Any,
     *,
     plain: bool = False,
-    checks: bool = True,
-    keep: bool = True,
-    trail: bool = False,
-    tap: bool = False,
     entry: ModuleType | None = None,
     through: Callable[[Any], Any] | None = None,
+    **kept: bool,
 ) -> MeshSimulation:
     """A plan's mesh before its first event; arguments as for `simulate`."""
     if through is not None and not plain:
@@ -194,11 +191,10 @@ def simulation(
     router = entry or stacks.mesh()
     if plain:
         fields = mesh_fields.node(plan.capacity)
-        stack = stacks.plain_stack(router, fields, through)
-        advance = loop.build(stack, _plain_layer(plan.mac)).advance
+        advance = loop.bind(stacks.plain(router, _plain_layer(plan.mac), fields, through))
     else:
         advance = compiled_loop(router, plan.mac)
-    world = builder.build(plan, plain, checks, keep, trail, tap)
+    world = builder.build(plan, plain, **kept)
     made = MeshSimulation(plan, world, advance, "" if plain else loop_name(plan))
     made.slice_events = PLAIN_SLICE_EVENTS if plain else SLICE_EVENTS
     return made
@@ -217,12 +213,12 @@ def loop_name(plan: Any) -> str:
     return f"mesh-{plan.capacity}{below}"
 
 
-def _plain_layer(mac: str) -> Any:
+def _plain_layer(mac: str) -> stacks.Layer:
     """What is below the router in a plain run."""
     if mac in builder.MACS:
-        return over_medium
+        return stacks.Layer(over_medium)
     entry = radio_stacks.PROTOCOLS[mac].entry
-    return over_channel.layer(radio_stacks.bind(entry, radio_recorder, over_channel))
+    return stacks.Layer(over_channel, radio_stacks.bind(entry, radio_recorder, over_channel))
 
 
 # What is broken, with {node} for who it concerns; what is below has its own words.

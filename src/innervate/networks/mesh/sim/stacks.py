@@ -7,37 +7,28 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any, NamedTuple
 
+from innervate.kernel import compilation
 from innervate.kernel.bits import mix
 from innervate.networks.mesh.protocol import csma
 from innervate.networks.mesh.protocol.constants import ACK
 from innervate.networks.mesh.protocol.frames import copy_frame, frame_bytes
 
+# What the loop asks of the layer below.
+BELOW = (
+    "hand_down", "power_on", "power_off", "expire_below", "dispatch_below", "short", "due", "step",
+)  # fmt: skip
 
-class Stack(NamedTuple):
-    """The functions of router and medium access with the simulator's world first.
+
+class Layer(NamedTuple):
+    """What lies below the router.
 
     Attributes:
-        on_start: the router's, and so on.
-        mac_on_start: the medium access's, and so on.
-        digest: a frame in one word.
-        copy_frame: to a place on the air; tests may send it through bytes on the way.
-        frame_bytes: its length on the wire.
-        is_sound: True if every word of a node's record is in its range.
+        part: `over_medium` or `over_channel`.
+        channel: what the channel of the latter calls; None = there is none.
     """
 
-    on_start: Callable[..., None]
-    on_frame: Callable[..., None]
-    on_timer: Callable[..., None]
-    on_input: Callable[..., None]
-    mac_on_start: Callable[..., None]
-    mac_on_frame: Callable[..., None]
-    mac_on_timer: Callable[..., None]
-    mac_on_input: Callable[..., None]
-    mac_on_carrier: Callable[..., None]
-    digest: Callable[..., int]
-    copy_frame: Callable[..., None]
-    frame_bytes: Callable[..., int]
-    is_sound: Callable[..., bool]
+    part: ModuleType
+    channel: ModuleType | None = None
 
 
 def mesh() -> ModuleType:
@@ -70,10 +61,20 @@ def is_sound(world, node):
     return wrong == 0
 
 
-def bind(entry: ModuleType, sound: Callable[..., bool] = is_sound) -> Stack:
-    """The stack of a router, over CSMA."""
-    parts: tuple[Any, ...] = (*_router(entry), *_csma(), digest, copy_frame, frame_bytes, sound)
-    return Stack._make(parts)
+def bind(entry: ModuleType, layer: Layer, *others: Callable[..., Any]) -> ModuleType:
+    """What a mesh's loop calls, of a router and what lies below it.
+
+    The handlers of both, `mac_` before those of the medium access, with the world first; of frames
+    `digest`, `copy_frame`, `frame_bytes`; `is_sound` of a node's record; and of the layer below
+    what the loop asks of it (BELOW). `others` take the place of those that have their names.
+    """
+    below = (getattr(layer.part, name) for name in BELOW)
+    made = compilation.bound(
+        f"{entry.on_start.__module__} {layer.part.__name__}",
+        others, _router(entry), _csma(), (digest, copy_frame, frame_bytes, is_sound), below,
+    )  # fmt: skip
+    vars(made)["channel"] = layer.channel
+    return made
 
 
 def _router(entry: ModuleType) -> tuple[Callable[..., Any], ...]:
@@ -124,19 +125,21 @@ def _csma() -> tuple[Callable[..., Any], ...]:
     return mac_on_start, mac_on_frame, mac_on_timer, mac_on_input, mac_on_carrier
 
 
-def plain_stack(entry: ModuleType, fields: Any, through: Callable[[Any], Any] | None) -> Stack:
+def plain(
+    entry: ModuleType, layer: Layer, fields: Any, through: Callable[[Any], Any] | None
+) -> ModuleType:
     """The same on plain objects; every frame sent is passed `through` a function if given."""
     scalars = [(name, low, high) for name, length, low, high, *_ in fields if not length]
     arrays = [(name, low, high) for name, length, low, high, *_ in fields if length]
 
-    def sound(world: Any, node: int) -> bool:
+    def is_sound(world: Any, node: int) -> bool:
         state = world.nodes[node]
         return all(low <= getattr(state, name) <= high for name, low, high in scalars) and all(
             low <= min(getattr(state, name)) and max(getattr(state, name)) <= high
             for name, low, high in arrays
         )
 
-    stack = bind(entry, sound)
-    if through is None:
-        return stack
-    return stack._replace(copy_frame=lambda to, frame: copy_frame(to, through(frame)))
+    made = bind(entry, layer, is_sound)
+    if through is not None:
+        vars(made)["copy_frame"] = lambda to, frame: copy_frame(to, through(frame))
+    return made

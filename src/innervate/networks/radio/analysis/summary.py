@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.summary_common import measured
 from innervate.networks.radio.analysis import headline as radio_headline
 from innervate.networks.radio.analysis import state as radio_state
 from innervate.networks.radio.analysis.air import Air, Groups, Heard, air, groups, signals
@@ -63,20 +64,14 @@ def summarize(result: Any, name: str | None = None) -> RadioSummary:
         name: what to call it, where its plan has no scenario.
     """
     plan, counts = result.plan, result.counts
-    events = counts["handled"] + counts["decoded"]
     found, steady = successes(result), settled(result)
     spent = np.bincount(steady["node"], minlength=plan.stations)
     length, known = duration_us(result), facts(result)
-    summary: RadioSummary = {
+    return {
         "kind": plan.kind,
         "name": name or getattr(plan.scenario, "name", None) or plan.protocol,
         "headline": radio_headline.headline(known).as_summary(),
-        "seed": plan.seed,
-        "duration_s": plan.duration_us / 1e6,
-        "events": events,
-        "events_per_s": round(events / result.wall_s) if result.wall_s > 0 else None,
-        "wall_s": round(result.wall_s, 6),
-        "fingerprint": result.fingerprint,
+        **measured(result, counts["handled"] + counts["decoded"]),
         "protocol": plan.protocol,
         "traffic": traffic_of(plan),
         "stations": plan.stations,
@@ -100,9 +95,6 @@ def summarize(result: Any, name: str | None = None) -> RadioSummary:
         "bounds_noticed": bounds_noticed(result),
         "order": order(result),
     }
-    if result.interrupted:
-        summary["interrupted_at_s"] = result.ended_us / 1e6
-    return summary
 
 
 def facts(result: Any) -> radio_headline.RadioFacts:

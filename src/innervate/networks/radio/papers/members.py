@@ -134,7 +134,7 @@ def same_air(mode: str, seed: int) -> bool:
 
 def _aired(plan: RadioPlan, numbers: Sequence[int]) -> np.ndarray[Any, Any]:
     """(time, station, kind) of every transmission, its stations called by these numbers."""
-    world = build.build(plan, plain=False, checks=False, keep=True, trail=False)
+    world = build.build(plan, plain=False, checks=False)
     for i, number in enumerate(numbers):
         put(world.stations, i, number=number)
     simulate.compiled_loop(plan.protocol)(world, plan.duration_us, 1 << 30)

@@ -8,23 +8,16 @@ from innervate.networks.radio.protocol import fields
 from innervate.networks.radio.sim.stacks import PROTOCOLS
 from innervate.sim.channel import build as channel
 from innervate.sim.channel.world import World
+from innervate.sim.recorded import Recorded
 from innervate.sim.tables import put
 
 
-def build(
-    plan: Any,
-    plain: bool,
-    checks: bool,
-    keep: bool,
-    trail: bool,
-    tap: bool = False,
-    room: int | None = None,
-) -> World:
-    """The world of a plan, before its first event; arguments as of `channel.build`."""
-    station = fields.STATION + PROTOCOLS[plan.protocol].fields
+def build(plan: Any, plain: bool, room: int | None = None, **kept: bool) -> World:
+    """The world of a plan, before its first event; `kept` as in `sim.recorded`."""
+    station, asked = fields.STATION + PROTOCOLS[plan.protocol].fields, Recorded(**kept)
     records = channel.Records(station, fields.PARAMS, fields.FRAME, fields.PACKET)
-    world = channel.build(plan, records, plain, checks, keep, trail, tap, room)
-    put(world.run, 0, exclusive=int(checks and _is_orderly(plan)))
+    world = channel.build(plan, records, plain, asked, room)
+    put(world.run, 0, exclusive=int(asked.checks and _is_orderly(plan)))
     return world
 
 

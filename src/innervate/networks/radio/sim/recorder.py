@@ -16,7 +16,8 @@ def record_sent(world, node, frame, time):
     start = time + run.ta_us
     end = start + frame.slots * run.slot_us
     if run.tap_limit > 0:
-        taps.record_frame(world, start, start, node, node, 1, taps.FINE, frame, copy_frame)
+        copy_frame(world.tapped[run.taps], frame)
+        taps.record_frame(world, start, node, 1, taps.FINE).sender = node
     if run.exclusive and frame.kind == DATA:
         if start < run.data_until and run.broken == 0:
             run.broken, run.broken_node = BROKEN_TURNS, node
@@ -48,10 +49,9 @@ def record_received(world, node, what, time, clear, received):
             why = taps.SENDING if radio.deaf else taps.COLLISION
             if clear:
                 why = taps.SPOILT if air.spoilt else taps.NOISE
-        sender = what >> AIR_BITS
-        taps.record_frame(
-            world, time, air.start, node, sender, 0, why, world.frames[what], copy_frame
-        )
+        copy_frame(world.tapped[run.taps], world.frames[what])
+        row = taps.record_frame(world, time, node, 0, why)
+        row.start, row.sender = air.start, what >> AIR_BITS
 
 
 def watch(world, node, time, handler, port):

@@ -78,20 +78,17 @@ def simulate(
     plan: Any,
     *,
     plain: bool = False,
-    checks: bool = True,
-    keep: bool = True,
-    trail: bool = False,
     progress: Progress | None = None,
     tap: taps.Tap | None = None,
+    **kept: bool,
 ) -> RadioResult:
     """Run a radio plan to its end; an interrupt (Ctrl-C) ends it early and keeps what was done.
 
-    `plain` runs the same loop uncompiled; without `keep` only the counts are kept.
+    `plain` runs the same loop uncompiled; `kept` as in `sim.recorded`.
     `tap` is handed copies of all frames as they leave and come in (see sim/taps.py).
     Raises InvariantBroken.
     """
-    running = simulation(plan, plain=plain, checks=checks, keep=keep, trail=trail,
-                         tap=tap is not None)  # fmt: skip
+    running = simulation(plan, plain=plain, tap=tap is not None, **kept)
     ended = running.finish(progress, tap)
     return RadioResult(
         plan=plan,
@@ -133,21 +130,13 @@ class RadioSimulation(Channel):
         return broken_line(self.plan, self.world)
 
 
-def simulation(
-    plan: Any,
-    *,
-    plain: bool = False,
-    checks: bool = True,
-    keep: bool = True,
-    trail: bool = False,
-    tap: bool = False,
-) -> RadioSimulation:
-    """A plan's team before its first event; what is kept as in `channel.build`."""
+def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> RadioSimulation:
+    """A plan's team before its first event; `kept` as in `sim.recorded`."""
     if plain:
         advance = loop.bind(stacks.bind(stacks.PROTOCOLS[plan.protocol].entry, recorder))
     else:
         advance = compiled_loop(plan.protocol)
-    world = builder.build(plan, plain, checks, keep, trail, tap)
+    world = builder.build(plan, plain, **kept)
     name = "" if plain else plan.protocol.replace("/", "-")
     return RadioSimulation(plan, world, advance, name)
 

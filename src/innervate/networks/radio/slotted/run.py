@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.summary_common import measured
 from innervate.kernel.clock import wall_s
 from innervate.networks.radio.analysis.headline import RadioFacts, headline
 from innervate.networks.radio.analysis.summary_keys import Delays, SlottedSummary
@@ -105,12 +106,7 @@ def summarize(result: SlottedRun) -> SlottedSummary:
         "kind": plan.kind,
         "name": plan.scenario.name,
         "headline": headline(facts).as_summary(),
-        "seed": plan.seed,
-        "duration_s": plan.duration_us / 1e6,
-        "events": done,
-        "events_per_s": round(done / result.wall_s) if result.wall_s > 0 else None,
-        "wall_s": round(result.wall_s, 6),
-        "fingerprint": result.fingerprint,
+        **measured(result, done),
         "level": "slotted",
         "protocol": plan.scenario.model.protocol.mac,
         "stations": plan.stations,

@@ -183,7 +183,7 @@ def plan_of(plan: Any, grid: Grid, point: Point) -> Any:
 
 def run_point(plan: Any, point: Point, seeds: dict[tuple[int, ...], list[int]]) -> tuple[int, Any]:
     """Run one point: what is broken, 0 nothing, and the frames that were sent."""
-    world = builder.build(plan, plain=False, checks=True, keep=True, trail=False)
+    world = builder.build(plan, plain=False)
     for i, parts in enumerate(point.parts):
         put(world.stations, i, rng=seeds[parts][i])
     advance = simulator.compiled_loop(plan.protocol)

@@ -169,7 +169,7 @@ def _branches(script: tuple[int, ...], ranges: list[int]) -> list[tuple[int, ...
 
 def _run(plan: Any, advance: Callable[..., None], asked: Asked, script: tuple[int, ...]) -> int:
     """One run; what is broken, 0 nothing."""
-    world = builder.build(plan, plain=True, checks=True, keep=True, trail=False, room=ROOM)
+    world = builder.build(plan, plain=True, room=ROOM)
     for station in world.stations:
         scripted(station, asked)
         put([station], 0, rng=1)

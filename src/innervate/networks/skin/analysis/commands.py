@@ -9,8 +9,8 @@ import numpy as np
 from innervate.networks.skin.analysis.frames import command_traffic, number_of, under_way
 from innervate.networks.skin.analysis.latency import command_latency_ms
 from innervate.networks.skin.analysis.summary_keys import Commands
+from innervate.networks.skin.sim import counters as words
 from innervate.networks.skin.sim import orders
-from innervate.sim.cables import wires
 
 # Why a cell that a command was for did not get it, by its state when the command was given.
 REASONS = {"off": orders.WAS_OFF, "no_route": orders.HAD_NO_WAY, "on_the_way": orders.HAD_A_WAY}
@@ -21,36 +21,36 @@ def commands_summary(result: Any) -> Commands:
     counters = result.counters
     missed, in_flight = _open(result.world, result.plan.graph.cells)
     lost_by = {
-        name: counters[wires.MISSED + state - orders.WAS_OFF] + missed[state]
+        name: counters[words.MISSED + state - orders.WAS_OFF] + missed[state]
         for name, state in REASONS.items()
     }
-    addressed, lost = counters[wires.ADDRESSED], sum(lost_by.values())
+    addressed, lost = counters[words.ADDRESSED], sum(lost_by.values())
     traffic = command_traffic(result)
     return {
-        "sent": counters[wires.GIVEN],
+        "sent": counters[words.GIVEN],
         "addressed": addressed,
-        "delivered": counters[wires.REACHED],
+        "delivered": counters[words.REACHED],
         "lost": lost,
         "loss_ratio": lost / addressed if addressed else None,
         "lost_by": lost_by,
         "in_flight": in_flight,
-        "repeated": counters[wires.REPEATED],
+        "repeated": counters[words.REPEATED],
         "latency_ms": command_latency_ms(result),
         "frames": {
             "sent": traffic.sent,
             "lost_by": traffic.lost,
-            "duplicates": counters[wires.AGAIN],
-            "too_far": counters[wires.TOO_FAR],
+            "duplicates": counters[words.AGAIN],
+            "too_far": counters[words.TOO_FAR],
         },
     }
 
 
 def missed_on_the_way(world: Any, cells: int) -> int:
     """How often, so far, a command did not reach a cell that had a way as it was given."""
-    if not world.counters[wires.GIVEN]:
+    if not world.counters[words.GIVEN]:
         return 0
     still, _ = _open(world, cells)
-    settled = world.counters[wires.MISSED + orders.HAD_A_WAY - orders.WAS_OFF]
+    settled = world.counters[words.MISSED + orders.HAD_A_WAY - orders.WAS_OFF]
     return int(settled) + still[orders.HAD_A_WAY]
 
 

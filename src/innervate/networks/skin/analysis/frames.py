@@ -11,6 +11,7 @@ import numpy as np
 from innervate.networks.skin.analysis.latency import latency_by_port, latency_ms
 from innervate.networks.skin.analysis.summary_keys import Data
 from innervate.networks.skin.protocol.constants import COMMAND
+from innervate.networks.skin.sim import counters as words
 from innervate.sim.cables import wires
 from innervate.sim.driver import InvariantBroken
 from innervate.sim.tables import get
@@ -58,7 +59,7 @@ def beacon_traffic(result: Any) -> Traffic:
 
 def command_traffic(result: Any) -> Traffic:
     """Commands of the PC on the cables."""
-    return _traffic(result, wires.COMMAND_BLOCK)
+    return _traffic(result, words.COMMAND_BLOCK)
 
 
 def data_summary(result: Any) -> Data:
@@ -69,8 +70,8 @@ def data_summary(result: Any) -> Data:
     counters = result.counters
     traffic = data_traffic(result)
     lost_by = dict(traffic.lost)
-    lost_by["no_route"] = counters[wires.NO_ROUTE]
-    lost_by["loop"] = counters[wires.LOOPED]
+    lost_by["no_route"] = counters[words.NO_ROUTE]
+    lost_by["loop"] = counters[words.LOOPED]
     lost, sent = sum(lost_by.values()), counters[wires.OFFERED]
     return {
         "sent": sent,
@@ -86,7 +87,7 @@ def data_summary(result: Any) -> Data:
 
 def lost_at_start(result: Any) -> int:
     """Samples lost, for want of a route, by cells that had not had one yet; if observed."""
-    early: int = result.counters[wires.EARLY]
+    early: int = result.counters[words.EARLY]
     return early
 
 
@@ -132,7 +133,7 @@ def _traffic(result: Any, block: int) -> Traffic:
 
 def under_way(world: Any) -> list[Any]:
     """Commands on a wire or in a queue at the end, as frames."""
-    flying = [world.frames[i] for i in _live(world, wires.COMMAND_BLOCK)]
+    flying = [world.frames[i] for i in _live(world, words.COMMAND_BLOCK)]
     return flying + [frame for frame in queued(world) if number_of(frame, "kind") == COMMAND]
 
 
@@ -157,7 +158,7 @@ def number_of(record: Any, name: str) -> int:
 
 def _queued(world: Any, block: int) -> int:
     """Frames that wait at ports, of this block."""
-    wanted = block == wires.COMMAND_BLOCK
+    wanted = block == words.COMMAND_BLOCK
     return sum((number_of(frame, "kind") == COMMAND) == wanted for frame in queued(world))
 
 

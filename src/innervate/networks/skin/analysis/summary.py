@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.summary_common import measured
 from innervate.networks.skin.analysis.commands import commands_summary
 from innervate.networks.skin.analysis.frames import beacon_share, data_summary
 from innervate.networks.skin.analysis.headline import skin_headline
@@ -50,20 +51,14 @@ __all__ = [
 def summarize(result: Any) -> SkinSummary:
     """The summary of a run; what never happened is None."""
     plan = result.plan
-    events = result.handled + result.arrived
     loads = port_loads(result)
     data = data_summary(result)
     facts = skin_facts(result, data)
     apart = reach(result, facts)
-    summary: SkinSummary = {
+    return {
         "kind": plan.kind,
         "name": plan.scenario.name,
-        "seed": plan.seed,
-        "duration_s": plan.duration_us / 1e6,
-        "events": events,
-        "events_per_s": round(events / result.wall_s) if result.wall_s > 0 else None,
-        "wall_s": round(result.wall_s, 6),
-        "fingerprint": result.fingerprint,
+        **measured(result, result.handled + result.arrived),
         "headline": skin_headline(facts, plan.graph.label).as_summary(),
         "warnings": warnings(plan),
         "cells": plan.graph.cells,
@@ -82,9 +77,6 @@ def summarize(result: Any) -> SkinSummary:
         "beacon_share": beacon_share(result),
         "broken": broken_ports(result),
     }
-    if result.interrupted:
-        summary["interrupted_at_s"] = result.ended_us / 1e6
-    return summary
 
 
 def loops(result: Any) -> Loops:

@@ -10,9 +10,10 @@ from innervate.networks.skin.protocol import fields
 from innervate.networks.skin.sim.observer import NUMBERS
 from innervate.networks.skin.sim.orders import SLOTS
 from innervate.scenario.actions.cables import GIVE
-from innervate.sim.cables.build import Added, Recorded, Records
+from innervate.sim.cables.build import Added, Records
 from innervate.sim.cables.build import build as cables
 from innervate.sim.cables.world import World
+from innervate.sim.recorded import Recorded
 from innervate.sim.tables import Tables
 from innervate.sim.wheel import NIL
 from innervate.topology.layout import cell_places
@@ -63,7 +64,7 @@ def build(plan: Any, plain: bool = False, orders: bool = False, **kept: bool) ->
         plan: of a skin.
         plain: uncompiled.
         orders: make room for commands of the PC even if the plan has none.
-        **kept: as in `cables.build.Kept`.
+        **kept: as in `sim.recorded`.
     """
     tables = Tables(plain)
     orders = orders or bool(plan.orders)
@@ -104,13 +105,8 @@ def _touch(tables: Tables, plan: Any) -> Touch:
     span = (touch.radius_um, touch.force_mn, touch.step_us) if touch else (0, 0, 1)
     places = [round(1000 * x) for place in cell_places(plan.graph) for x in place] if touch else ()
     return Touch(
-        x=_numbers(tables, touch.x_um if touch else ()),
-        y=_numbers(tables, touch.y_um if touch else ()),
-        span=_numbers(tables, span),
-        place=_numbers(tables, places),
+        x=tables.given(touch.x_um if touch else ()),
+        y=tables.given(touch.y_um if touch else ()),
+        span=tables.given(span),
+        place=tables.given(places),
     )
-
-
-def _numbers(tables: Tables, values: Any) -> Any:
-    made = np.array(values, np.int64)
-    return made.tolist() if tables.plain else made

@@ -16,7 +16,7 @@ from innervate.networks.skin.protocol.constants import (
     RULE_FEASIBLE,
     RULE_STRICT,
 )
-from innervate.sim.cables.wires import EARLY, NO_ROUTE
+from innervate.networks.skin.sim.counters import EARLY, NO_ROUTE
 from innervate.sim.cables.world import DEAD
 
 DROPS = NO_ROUTE - DROP_NO_ROUTE  # the counter of a reason to drop stands this far from it

@@ -13,11 +13,13 @@ from innervate.networks.skin.protocol.constants import RULE_STATIC
 from innervate.networks.skin.sim import build as builder
 from innervate.networks.skin.sim import observer, script, static_stack
 from innervate.networks.skin.sim import stack as skin_stack
+from innervate.networks.skin.sim.counters import LOOPED, NO_ROUTE
 from innervate.sim import taps
 from innervate.sim.cables import loop
 from innervate.sim.cables import world as w
 from innervate.sim.cables.simulation import Cables, Result
 from innervate.sim.driver import Ended, InvariantBroken, Progress
+from innervate.sim.recorded import Recorded
 from innervate.sim.status import BROKEN
 from innervate.sim.tables import Names, get, move_rows
 
@@ -74,10 +76,11 @@ class SkinSimulation(Cables):
         **Cables.broken_words,
     }
     sink = (fields.SINK, fields.SINK_PORT)
+    dropped: ClassVar[Mapping[str, int]] = {"no_route": NO_ROUTE, "loop": LOOPED}
 
 
 def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> SkinSimulation:
-    """A plan's skin before its first event; `kept` as in `build`."""
+    """A plan's skin before its first event; `kept` as in `sim.recorded`, and `orders`."""
     static = plan.params["rule"] == RULE_STATIC
     advance = (plain_loop if plain else compiled_loop)(static)
     name = "" if plain else loop_name(plan)
@@ -88,35 +91,31 @@ def simulate(
     plan: Any,
     *,
     plain: bool = False,
-    checks: bool = True,
-    observe: bool = True,
-    deliveries: bool = False,
-    trail: bool = False,
     progress: Progress | None = None,
     tap: taps.Tap | None = None,
+    **kept: bool,
 ) -> Result:
     """Run a plan to its end; an interrupt (Ctrl-C) ends it early and keeps what was done.
 
-    `plain` runs the same loop uncompiled. Without `checks` and `observe` no rows are kept.
+    `plain` runs the same loop uncompiled. `kept` as in `sim.recorded`; without `checks` and
+    `observe` no rows are.
     `progress(time_us, duration_us)` is called now and then.
     `tap` is handed copies of all frames as they leave and come in (see taps.py); none of a script.
     A plan with a script plays that instead, on plain state.
     Raises InvariantBroken, and ScenarioError for a step that cannot be taken.
     """
+    asked = Recorded(**kept, tap=tap is not None)
     if plan.script:
-        return _played(plan, checks, trail)
-    running = simulation(
-        plan, plain=plain, checks=checks, observe=observe, deliveries=deliveries, trail=trail,
-        tap=tap is not None,
-    )  # fmt: skip
-    return running.result(running.finish(progress, tap), deliveries)
+        return _played(plan, asked)
+    running = simulation(plan, plain=plain, **asked._asdict())
+    return running.result(running.finish(progress, tap), asked.deliveries)
 
 
-def _played(plan: Any, checks: bool, trail: bool) -> Result:
+def _played(plan: Any, asked: Recorded) -> Result:
     """A scenario's script, in place of the clock."""
     started = wall_s()
     stack = static_stack if plan.params["rule"] == RULE_STATIC else skin_stack
-    world, now = script.play(plan, stack, checks, trail)
+    world, now = script.play(plan, stack, asked.checks, asked.trail)
     played = SkinSimulation(plan, world, lambda *_: None)
     if int(get(world.run, 0, "status")) == BROKEN:
         raise InvariantBroken(played.broken_line())

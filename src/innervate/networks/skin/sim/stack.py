@@ -7,13 +7,14 @@ from innervate.networks.skin.protocol.cell import copy_frame
 from innervate.networks.skin.protocol.constants import BEACON, COMMAND, DATA, NONE, REPORT_BALANCE
 from innervate.networks.skin.sim import observer, orders
 from innervate.networks.skin.sim.checks import check_route
+from innervate.networks.skin.sim.counters import COMMAND_BLOCK
 from innervate.networks.skin.sim.observer import on_links_changed as on_change
 from innervate.networks.skin.sim.observer import remember as before_change
 from innervate.networks.skin.sim.orders import begin as take_input
 from innervate.networks.skin.sim.touch import read_sensors as sense
 from innervate.sim import delays
 from innervate.sim.cables.recorder import check_range
-from innervate.sim.cables.wires import COMMAND_BLOCK, DELIVERED
+from innervate.sim.cables.wires import DELIVERED
 from innervate.sim.clocks import reading
 
 __all__ = ["before_change", "copy_frame", "on_change", "sense", "take_input"]

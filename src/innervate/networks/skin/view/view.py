@@ -20,6 +20,7 @@ from innervate.networks.skin.protocol.constants import (
     REPORT_BROKEN,
     REPORT_PARENT,
 )
+from innervate.networks.skin.sim.counters import EARLY, LOOPED, NO_ROUTE
 from innervate.networks.skin.sim.observer import APART, CUT_OFF, LOOP_OPEN, UNROUTED
 from innervate.networks.skin.sim.orders import ORDER_CAME, ORDER_GIVEN
 from innervate.networks.skin.view import giving
@@ -29,7 +30,7 @@ from innervate.networks.skin.view.state import SkinCables
 from innervate.plot.words import number_of
 from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE
 from innervate.scenario.cables import Fault
-from innervate.sim.cables.wires import EARLY, LOOPED, LOST_BROKEN, LOST_CUT, NO_ROUTE, OFFERED
+from innervate.sim.cables.wires import LOST_BROKEN, LOST_CUT, OFFERED
 from innervate.sim.cables.world import DEAD
 from innervate.topology import PORTS
 from innervate.web.engine import Engine, Rows

@@ -1,0 +1,73 @@
+"""A router's handlers called, and what they ask for carried out.
+
+`do` are the functions of the router, and of what lies below it (see stacks.py).
+"""
+
+from innervate.dialect.arith import MASK30
+from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
+from innervate.kernel.bits import mix
+from innervate.networks.mesh.protocol.constants import REPORT_GRAPH, SENT
+from innervate.networks.mesh.sim import recorder
+from innervate.networks.mesh.sim.timers import set_timer
+from innervate.sim import rows
+from innervate.sim.status import ON_FRAME, ON_INPUT
+
+
+def drain(world, do, node, time):
+    """Carry out what a handler put into the outbox; fold it into the fingerprint."""
+    run, out = world.run[0], world.out
+    now = time + world.radios[node].offset
+    for i in range(out.count[0]):
+        act = out.action[i]
+        kind, a, b, c = act.kind, act.a, act.b, act.c
+        mark = mix(run.fingerprint, kind ^ (a << 3) ^ (b << 20) ^ (c << 50))
+        run.fingerprint = mark
+        if kind == SEND:
+            sent = do.hand_down(world, do, node, out.frame[i], act, time)
+            run.fingerprint = mix(run.fingerprint, sent)
+        elif kind == SET_TIMER:
+            set_timer(world, node, a, b, time, now)
+        elif kind == REPORT:
+            rows.record_row(world, time, node, a, b, c)
+            if a == REPORT_GRAPH:
+                recorder.record_round(world, node, time)
+        elif kind == DELIVER:
+            run.fingerprint = mix(mark, do.digest(out.frame[i]))
+            recorder.record_delivered(world, node, out.frame[i], time)
+    out.count[0] = 0
+    if out.overflow[0]:
+        recorder.breaks(world, recorder.BROKEN_OUTBOX, node)
+
+
+def finish(world, do, node, time, handler, port):
+    """After a handler: account for it, carry out what it asked for, check."""
+    run = world.run[0]
+    run.handled += 1
+    run.fingerprint = mix(run.fingerprint, (time << 26) ^ (node << 6) ^ (port << 40) ^ handler)
+    if world.out.count[0] > 0:
+        drain(world, do, node, time)
+    if run.watchful:
+        if run.checks and not do.is_sound(world, node):
+            recorder.breaks(world, recorder.BROKEN_RANGE, node)
+        rows.record_step(world, node, time, handler, port)
+
+
+def give(world, do, node, time, kind):
+    """Hand a node's router `world.item`, or what it is told."""
+    now = time + world.radios[node].offset
+    do.on_input(world, node, now & MASK30, kind)
+    finish(world, do, node, time, ON_INPUT, kind)
+
+
+def tell_sent(world, do, node, time, ok):
+    """The router's frame has left the air, or could not."""
+    if world.run[0].told:
+        world.item[0].ok = ok
+        give(world, do, node, time, SENT)
+
+
+def take(world, do, node, frame, time):
+    """A node's router is handed a frame that was received."""
+    now = time + world.radios[node].offset
+    do.on_frame(world, node, now & MASK30, frame)
+    finish(world, do, node, time, ON_FRAME, frame.kind)
