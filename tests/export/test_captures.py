@@ -8,7 +8,7 @@ from pcapng.blocks import EnhancedPacket
 
 from innervate import scenario
 from innervate.dialect import plain
-from innervate.export import capture, links
+from innervate.export import capture, links, pcapng
 from innervate.export.errors import ExportError
 from innervate.export.reading import Capture
 from innervate.network import networks
@@ -145,6 +145,19 @@ def test_every_frame_of_a_cable_comes_out_at_its_other_end(made):
             came[here.there, here.here, packet.data] += 1
     assert not came - left
     assert sum((left - came).values()) < 30  # on their way at the end
+
+
+def test_what_came_in_unreadable_is_marked_so_and_nothing_else(made):
+    words = ("noise", "collision, or not heard from its start", "broken off or garbled")
+    seen = Counter()
+    for path, _ in made.values():
+        for packet in Capture(path).packets():
+            is_marked = bool(packet.flags & pcapng.CRC_ERROR)
+            is_in = packet.flags & 3 == pcapng.INBOUND
+            assert is_in or packet.flags & 3 == pcapng.OUTBOUND
+            assert is_marked == (is_in and packet.comment.removeprefix("dropped: ") in words)
+            seen[is_marked] += 1
+    assert min(seen[True], seen[False]) > 0
 
 
 def test_a_window_holds_what_happened_in_it(made, tmp_path):

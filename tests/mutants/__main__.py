@@ -120,8 +120,8 @@ def equivalents() -> list[dict[str, Any]]:
 
 def why(fault: Fault, same: list[dict[str, Any]]) -> str | None:
     """Why a fault changes nothing; None if it does."""
-    wanted = (fault.path, fault.text, fault.old, fault.new)
-    found = [one for one in same if (one["path"], one["line"], one["old"], one["new"]) == wanted]
+    names = ("path", "line", "old", "new")
+    found = [one for one in same if (*(one[n] for n in names), one.get("nth", 0)) == fault.key]
     return str(found[0]["why"]) if found else None
 
 

@@ -19,7 +19,7 @@ STEPS_MAX = 3
 NAMED = re.compile(r"innervate(?:\.\w+)+")
 ALSO = {"web": {"browser"}, "view": {"web", "browser"}, "live": {"livesim"}}  # by room
 RECORDED = {
-    "cli": "commands", "live": "nodes", "papers": "pictures",
+    "cli": "commands", "live": "nodes", "papers": "pictures", "sim": "recorded",
     "plot": "pictures", "running": "commands", "view": "watched", "web": "watched",
 }  # fmt: skip
 
@@ -81,19 +81,20 @@ class Choice:
         """0 = written for the source; None = has nothing to do with it."""
         folder = test.parts[1:-1]
         is_beside = folder == inside.parts[:-1]
-        if test.stem.removeprefix("test_") == inside.stem and set(folder) & set(inside.parts):
+        is_named = test.stem.removeprefix("test_") == inside.stem
+        if is_named and (steps <= STEPS_MAX or set(folder) & set(inside.parts)):
             return 0
-        if is_beside:
-            return 1 if steps <= 2 else 2
+        if steps == 1 or (is_beside and steps == 2):
+            return 1
         if folder == ("recorded",):
             name = test.stem.removeprefix("test_")
             is_first = name in {RECORDED.get(part) for part in inside.parts[:-1]}
-            return 1 if is_first else 3 if name == "kept" else 5
-        if steps <= STEPS_MAX:
-            return 3 + steps
+            return 2 if is_first else 4 if name == "kept" else 6
+        if is_beside or steps <= STEPS_MAX:
+            return 3 if is_beside else 3 + steps
         rooms = set(inside.parts[:-1]) - {"networks"}
         wanted = rooms.union(*(ALSO.get(room, ()) for room in rooms))
-        return STEPS_MAX + 4 if wanted & set(folder) else None
+        return 7 if wanted & set(folder) else None
 
 
 def words_of(root: Path, fault: Fault) -> set[str]:

@@ -99,9 +99,9 @@ def test_tests_that_lie_near_come_first(tmp_path):
     ):
         (project / name).parent.mkdir(exist_ok=True)
         (project / name).write_text(text)
-    assert Choice(project).tests_for("src/innervate/wire/edge.py", {"edge"}) == [
-        "tests/wire/test_edge.py", "tests/wire/test_far.py", "tests/wire/test_apart.py",
-        "tests/recorded/test_kept.py", "tests/test_edge.py",
+    assert Choice(project).tests_for("src/innervate/wire/edge.py", {"wire", "edge"}) == [
+        "tests/wire/test_edge.py", "tests/test_edge.py", "tests/wire/test_far.py",
+        "tests/wire/test_apart.py", "tests/recorded/test_kept.py",
     ]  # fmt: skip
 
 

@@ -2,11 +2,51 @@
 
 import random
 from collections import Counter
+from itertools import product
 
 import pytest
 
 from innervate import scenario
+from innervate.networks.mesh.verify import fuzz as mesh_fuzz
+from innervate.networks.radio.verify import fuzz as radio_fuzz
+from innervate.networks.skin.verify import fuzz as skin_fuzz
 from innervate.running import fuzz
+
+EVERYTHING = [
+    (skin_fuzz, lambda tables: tables["protocol"]["k"], range(1, 9)),
+    (skin_fuzz, lambda tables: tables["patch"][0]["columns"], range(1, 9)),
+    (skin_fuzz, lambda tables: tables["patch"][0]["rows"], range(1, 9)),
+    (radio_fuzz, lambda tables: tables["packet_slots"], (3, 5, 25)),
+    (radio_fuzz, lambda tables: tables["stations"], range(2, 21)),
+    (mesh_fuzz, lambda tables: tables["nodes"], range(3, 25)),
+    (mesh_fuzz, lambda tables: tables["protocol"]["tables"], (False, True)),
+    (mesh_fuzz, lambda tables: tables["protocol"]["mtu"], (64, 127)),
+    (mesh_fuzz, lambda tables: "fence" in tables, (False, True)),
+]
+
+
+@pytest.mark.parametrize(("of", "value", "values"), EVERYTHING)
+def test_whatever_can_be_drawn_is_drawn_and_nothing_else(of, value, values):
+    draw = random.Random(1)
+    assert {value(of.drawn(draw, seed)) for seed in range(300)} == set(values)
+
+
+def test_what_is_drawn_happens_where_it_can():
+    draw = random.Random(1)
+    events = [event for seed in range(50) for event in mesh_fuzz.drawn(draw, seed)["event"]]
+    for event in events:
+        assert ("link" in event) == (event["action"] in ("cut", "restore"))
+        assert ("node" in event) != ("link" in event)
+
+
+@pytest.mark.parametrize(("columns", "rows"), [(1, 2), (1, 4), (2, 1), (3, 1), (3, 3)])
+def test_a_cell_beside_another_is_on_the_patch(columns, rows):
+    for row, column in product(range(rows), range(columns)):
+        cell = {"row": row, "column": column}
+        other = skin_fuzz._beside(random.Random(1), cell, columns, rows)
+        assert abs(other["row"] - row) + abs(other["column"] - column) == 1
+        assert 0 <= other["row"] < rows
+        assert 0 <= other["column"] < columns
 
 
 def test_what_is_drawn_can_nearly_always_be_run():

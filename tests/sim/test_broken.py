@@ -264,3 +264,21 @@ def test_everything_that_can_be_broken_has_a_case():
     assert tried[RADIO] == codes(channel_medium, channel_loop, radio_recorder)
     assert tried[MESH] == set(mesh.BROKEN_WORDS)
     assert tried[MESH] | tried[OVER] == codes(field_medium, mesh_recorder)
+
+
+@pytest.mark.parametrize(
+    ("words", "modules"),
+    [
+        (mesh.BROKEN_WORDS, [mesh_recorder, field_medium]),
+        (radio.BROKEN_WORDS, [radio_recorder, channel_loop, channel_medium]),
+    ],
+)
+def test_whatever_can_be_broken_has_a_number_and_words_of_its_own(words, modules):
+    codes = {
+        (name, value)
+        for module in modules
+        for name, value in vars(module).items()
+        if name.startswith("BROKEN_") and name != "BROKEN_BELOW"
+    }
+    assert len({value for _, value in codes}) == len(codes)
+    assert {value for _, value in codes} == set(words)

@@ -172,6 +172,19 @@ def test_a_skin_of_more_cells_than_memory_for_marks_keeps_few(monkeypatch):
     assert made.engine.now_us == 200_000
 
 
+def test_as_many_moments_are_kept_as_there_may_be_then_every_other(monkeypatch):
+    monkeypatch.setattr("innervate.web.simulated.MARKS", 4)
+    made = simulated(SKIN)
+    kept = []
+    for k in range(1, 50):
+        go_to(made, 0.02 * k)
+        kept.append(tuple(mark.engine.now_us for mark in made._marks))
+    first = next(k for k, marks in enumerate(kept) if len(marks) == 4)
+    assert {len(marks) for marks in kept[first:]} == {3, 4}
+    thinned = next(marks for marks in kept[first:] if len(marks) == 3)
+    assert thinned[:2] == kept[first][::2]
+
+
 def test_plans_are_not_altered():
     plan = plan_of(SKIN)
     before = (list(plan.faults), list(plan.graph.peer))

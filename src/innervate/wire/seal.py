@@ -18,7 +18,6 @@ KEYS = 16
 HEADER_BYTES = 9
 TAG_BYTES = 16
 OVERHEAD_BYTES = HEADER_BYTES + TAG_BYTES
-INDEX_MAX = (1 << 32) - 1
 COUNTER_MAX = (1 << 32) - 1
 WINDOW = 1024  # frames of a sender may overtake each other by so many
 

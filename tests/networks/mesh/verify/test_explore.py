@@ -1,6 +1,7 @@
 """The mesh explored: the random failover loops for good, search and graph keep their promises."""
 
 import random
+from dataclasses import replace
 
 import pytest
 
@@ -42,6 +43,14 @@ LOOPS = [
         8,
     ),
 ]
+
+
+def test_the_ring_of_a_story_is_that_of_its_last_scene():
+    found = mesh_search.explore(LOOPS[0][0])
+    rings = []
+    for events in range(1, 4):
+        rings.append(story.tell(replace(found, path=found.path[:events])).ring)
+    assert rings == [[], [], [1, 2]]
 
 
 @pytest.mark.parametrize(("made", "ring", "events"), LOOPS)

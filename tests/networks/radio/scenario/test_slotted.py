@@ -136,7 +136,9 @@ def test_check_prints_what_is_used():
 
 
 def test_the_time_of_a_scenario_ends_a_slotted_run():
-    whole = innervate.run(scenario("csma-cd-r"), plain=True).summary
+    done = innervate.run(scenario("csma-cd-r"), plain=True)
+    whole = done.summary
+    assert done.result.ended_us == round(208 * whole["duration_slots"])
     assert whole["headline"]["level"] == "ok"
     cut_s = whole["duration_slots"] / 2 * 208e-6
     half = innervate.run(scenario("csma-cd-r", duration_s=cut_s), plain=True).summary

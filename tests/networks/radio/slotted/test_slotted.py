@@ -4,9 +4,16 @@ import numpy as np
 import pytest
 
 from innervate.networks.radio.analysis import formulas as forms
+from innervate.networks.radio.slotted import chance
 from innervate.networks.radio.slotted import draws as draws
 from innervate.networks.radio.slotted.drive import BIANCHI_BASIC, BIANCHI_RTS, MACS, dcf_here
 from innervate.networks.radio.slotted.model import jain, slotted
+from innervate.networks.radio.slotted.recorder import (
+    COLLISIONS,
+    DONE,
+    POISSON,
+    new_recorder,
+)
 
 WITHIN = 0.02
 
@@ -202,6 +209,41 @@ def test_exponential_intervals():
     assert (sample > 2000).mean() == pytest.approx(np.exp(-2), rel=0.05)
 
 
+def test_the_generator_is_lecuyers():
+    state = np.array([1, 2], np.int64)
+    assert draws.step(state) == 2147483562 - (2 * 40692 - 40014)
+    assert state.tolist() == [40014, 2 * 40692]
+    assert draws.step(state) == (40014**2 % 2147483563 - 2 * 40692**2 % 2147483399) % 2147483562
+
+
+ALWAYS = [[draws.UNIT], [0, draws.UNIT], [0, 0, draws.UNIT]]  # so many come, whatever is drawn
+
+
+def of_a_pool(play, *arguments):
+    """A recorder of eight packets, after an infinite population was played plain."""
+    recorder = new_recorder(POISSON, 1, 8, draws.generator(1, "pool"))
+    play(recorder, *arguments)
+    return recorder
+
+
+def test_who_comes_alone_gets_through_and_all_others_collide():
+    alone = of_a_pool(chance.pool, ALWAYS[1], 10, 50, 10)
+    assert alone.end.tolist() == [60 * k + 50 for k in range(8)]
+    together = of_a_pool(chance.pool, ALWAYS[2], 10, 50, 10)
+    assert together.counts[[DONE, COLLISIONS]].tolist() == [0, 8 * chance.STEPS_PER_PACKET]
+
+
+def test_who_waits_sends_in_the_next_slot_that_the_draw_allows():
+    at_once = of_a_pool(chance.persist, ALWAYS[0], ALWAYS[1], draws.UNIT, 10, 50)
+    assert at_once.end.tolist() == [60 * k + 50 for k in range(8)]
+    after_a_slot = of_a_pool(chance.persist, ALWAYS[1], ALWAYS[0], draws.UNIT, 10, 50)
+    assert after_a_slot.end.tolist() == [70 * k + 60 for k in range(8)]
+    half = of_a_pool(chance.persist, ALWAYS[0], ALWAYS[1], draws.UNIT // 2, 10, 50)
+    waited = (np.diff(half.end) - 60) / 10
+    assert set(waited) <= set(range(10))
+    assert waited.sum() > 0
+
+
 @pytest.mark.parametrize(
     ("arguments", "named", "word"),
     [
@@ -210,7 +252,9 @@ def test_exponential_intervals():
         (("tdma", 0, 5, "saturated"), {}, "stations"),
         (("tdma", -1, 5, "saturated"), {}, "stations"),
         (("slotted-aloha", 0, 5, "saturated"), {}, "stations"),
+        (("tdma", 10_001, 5, "disaster"), {}, "stations"),
         (("tdma", 2, 0, "saturated"), {}, "packet_slots"),
+        (("tdma", 2, 10_001, "saturated"), {}, "packet_slots"),
         (("tdma", 2, 5, "saturated"), {"packets": 0}, "packets"),
         (("tdma", 2, 5, "saturated"), {"warmup": 1}, "warmup"),
         (("tdma", 2, 5, "saturated"), {"seed": -1}, "seed"),

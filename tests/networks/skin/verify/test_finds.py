@@ -9,10 +9,11 @@ from innervate import scenario
 from innervate.networks.skin.plot import counterexample
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.networks.skin.verify import graphs, retrace, story
-from innervate.networks.skin.verify.system import ANY, Budget, SkinModel
+from innervate.networks.skin.verify.system import ANY, Budget, SkinModel, system_of
 from innervate.networks.skin.verify.world import BROKEN_LOOP
 from innervate.sim.driver import InvariantBroken
 from innervate.verify import explore
+from innervate.verify.twin import Twin
 
 # Every frame arrives before anything else happens, or is lost where the budget says so: these are
 # the smallest histories that [skin E25] prints.
@@ -34,6 +35,7 @@ def model(name, rule, **keys):
 def test_the_paper_rule_closes_the_known_loops(name):
     result = explore.explore(model(name, "paper"))
     assert result.broken == BROKEN_LOOP
+    assert result.path[0] == Twin(result.model, system_of()).image()
     told = story.tell(result)
     assert len(told.ring) == KNOWN[name][2]
     assert len(told.sentences) == len(told.steps) == len(told.scenes) == len(result.path)

@@ -1,0 +1,31 @@
+"""What a node notes of who acknowledges its frames."""
+
+from innervate.networks.mesh.live.stack import ASKED, MeshStack
+from tests.live.net import Mesh
+
+
+def stack_of():
+    return Mesh(2, [(0, 1)]).nodes[0].stack
+
+
+def test_each_question_is_answered_once():
+    stack: MeshStack = stack_of()
+    what = (1, 0, 7)
+    stack._note_question(what)
+    stack._note_answer(what)
+    stack._note_answer(what)  # a copy of it
+    assert (stack.asked[1], stack.acked[1]) == (1, 1)
+    stack._note_question(what)
+    stack._note_question(what)  # tried again
+    for _ in range(3):
+        stack._note_answer(what)
+    assert (stack.asked[1], stack.acked[1]) == (3, 3)
+
+
+def test_answers_to_what_was_asked_long_ago_are_none():
+    stack = stack_of()
+    for number in range(ASKED + 1):
+        stack._note_question((1, 0, number))
+    stack._note_answer((1, 0, 0))
+    stack._note_answer((1, 0, 1))
+    assert stack.acked[1] == 1

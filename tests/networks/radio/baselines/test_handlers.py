@@ -1,0 +1,66 @@
+"""Single calls of baselines: clocks, packets that come to an empty queue, carriers."""
+
+import pytest
+
+from innervate.dialect import plain
+from innervate.dialect.access import CLOCK, PACKET
+from innervate.dialect.rng import seeded
+from innervate.networks.radio.baselines import station as entry
+from innervate.networks.radio.baselines.common import LISTEN, SEND
+from innervate.networks.radio.baselines.fields import BASELINE
+from innervate.networks.radio.protocol import fields
+from innervate.networks.radio.scenario.baselines import NUMBERS
+
+Station = plain.make("Station", fields.STATION, BASELINE)
+Params = plain.make("Params", fields.PARAMS)
+Item = plain.make("Item", fields.PACKET)
+TIMING = {"period_us": 100, "stations": 5, "slot_us": 208, "ta_us": 20, "dmax_us": 5}
+
+
+class Alone:
+    """A station of a protocol, which listens on an idle channel."""
+
+    def __init__(self, mac, number=2, **state):
+        self.params, self.station = Params(), Station()
+        for name, value in (TIMING | {"mac": NUMBERS[mac]}).items():
+            setattr(self.params, name, value)
+        self.station.number, self.station.rng = number, seeded(1)
+        self.out = plain.Outbox(plain.make("Frame", fields.FRAME), 8)
+        entry.on_start(self.station, self.params, 0, 0, self.out)
+        for name, value in state.items():
+            setattr(self.station, name, value)
+
+    def given(self, now, kind, **words):
+        item = Item()
+        for name, value in words.items():
+            setattr(item, name, value)
+        entry.on_input(self.station, self.params, now, kind, item, self.out)
+        return self.station
+
+    def carrier(self, now, cd):
+        entry.on_carrier(self.station, self.params, now, cd, 0, self.out)
+        return self.station
+
+
+@pytest.mark.parametrize("mac", ["tdma", "p-persistent", "slotted-aloha", "tree"])
+def test_a_slot_began_so_long_ago_as_the_clock_says(mac):
+    station = Alone(mac).given(1000, CLOCK, handle=3, ago=30)
+    assert (station.mark, station.step) == (970, 3)
+
+
+@pytest.mark.parametrize("mac", ["csma-cd-d1", "csma-cd-d2", "csma-cd-d2p", "dcf"])
+def test_a_packet_for_an_idle_channel_is_sent_at_once_whatever_was_waited_for_before(mac):
+    station = Alone(mac, open=1, due=9000).given(5000, PACKET, slots=5)
+    assert (station.mode, station.start) == (SEND, 5020)
+    waiting = Alone(mac, open=0, due=9000).given(5000, PACKET, slots=5)
+    assert (waiting.mode, waiting.queued) == (LISTEN, 1)
+
+
+@pytest.mark.parametrize(
+    ("mac", "armed"), [("p-persistent", 0), ("slotted-aloha", 1), ("tdma", 1), ("nonpersistent", 1)]
+)
+def test_only_who_throws_dice_stops_waiting_when_a_carrier_comes(mac, armed):
+    alone = Alone(mac)
+    alone.given(1000, CLOCK, handle=0, ago=0)
+    assert alone.given(1010, PACKET, slots=5).armed == 1
+    assert alone.carrier(1020, 1).armed == armed
