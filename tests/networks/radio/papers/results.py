@@ -28,6 +28,7 @@ from innervate.networks.radio.papers import (
     ties,
 )
 from innervate.networks.radio.papers.common import CONTENDING, RESERVED, SIZES
+from innervate.networks.radio.papers.where import PARTS
 from innervate.networks.radio.protocol import constants
 
 QUICK = True
@@ -87,7 +88,7 @@ def event(key):
     runs = int(key.rpartition("-")[2])
     one = {"throughput": 0.9, "duration": 10.0 * n, "jain_round": 1.0, "fifo": 1.0, "ordered": 1,
            "open": 0, "silent": 0, "completed": 10, "waits": [1, 2, 3, 4],
-           "mean": 10.0}  # fmt: skip
+           "mean": 10.0, **dict.fromkeys(PARTS, 1.0)}  # fmt: skip
     return {name: [value] * runs for name, value in one.items()}
 
 
@@ -250,7 +251,8 @@ def quick_few(setting, size, theirs):
 def waiting(ours, n, load, rivals, turns, size=None):
     """Mean delays of the practical mode, its rivals at 10 slots."""
     made = []
-    for mac, per_turn in (("practical", turns), *((mac, 1 if mac in ("dcf", "tdma") else turns)
+    rivals = (*rivals, delay.DCF_ANSWERS) if "dcf" in rivals else rivals
+    for mac, per_turn in (("practical", turns), *((mac, turns if mac == "token-ring" else 1)
                                                   for mac in rivals)):  # fmt: skip
         for one in SIZES:
             mean = (ours if size in (None, one) else 9.0) if mac == "practical" else 10.0

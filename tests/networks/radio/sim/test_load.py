@@ -1,17 +1,22 @@
 """Delay against load with 2 ms to switch: the practical mode beside the protocols it is held to."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from innervate.networks.radio.papers.delay import (
     DCF,
+    DCF_ANSWERS,
     POLLING,
     PRACTICAL,
     RING,
     TDMA,
     Offered,
+    at_once,
     perfect_queue,
 )
+from innervate.networks.radio.papers.where import FRAME, PARTS, TRIES, parts
 from innervate.networks.radio.sim.simulate import simulate
 from tests.networks.radio.baseline_runs import SLOT_US, TAU_US, saturate
 
@@ -47,6 +52,43 @@ def test_below_turns_that_nobody_asks_for(n, load):
     assert ours < mean_delay(RING, n, load)
     assert ours < mean_delay(POLLING, n, load)
     assert mean_delay(DCF, n, load) > perfect_queue(5, load)
+
+
+@pytest.mark.parametrize("load", [0.1, 0.6])
+@pytest.mark.parametrize("size", [5, 25])
+def test_the_parts_of_a_delay_add_up_to_it(size, load):
+    result = simulate(Offered(PRACTICAL, 1, size, 5, load, 300).plan(1))
+    found = parts(result)
+    assert list(found) == list(PARTS)
+    assert min(found.values()) >= 0
+    slots = (result.packets["end"] - result.packets["offered"]) / SLOT_US
+    assert size + 2000 / SLOT_US + sum(found.values()) == pytest.approx(slots.mean(), abs=1e-6)
+
+
+def test_lone_packets_pay_their_padding_and_nothing_else():
+    found = parts(simulate(Offered(PRACTICAL, 1, 5, 5, 0.001, 50).plan(1)))
+    assert found.pop(FRAME) == pytest.approx(2 + 2000 / SLOT_US - 5, abs=1)  # u is whole slots
+    assert max(found.values()) < 0.1
+
+
+def test_the_tries_of_a_packet_are_those_before_it_was_received():
+    # Two offered at once collide for certain; each goes again, alone, at least a packet later.
+    plan = replace(Offered(PRACTICAL, 1, 25, 2, 0.1, 2).plan(1), arrivals=[[100_000]] * 2, wanted=2)
+    assert parts(simulate(plan))[TRIES] > 25
+
+
+@pytest.mark.parametrize(("size", "n", "load"), [(5, 5, 0.1), (5, 20, 0.3), (25, 5, 0.1)])
+def test_floors_are_below_all_that_is_told_for_nothing(size, n, load):
+    assert perfect_queue(size, load, 4) < perfect_queue(size, load) < at_once(size, n, load)
+    assert at_once(size, n, load) < mean_delay(DCF, n, load, size=size)
+
+
+def test_a_queue_that_sends_at_once_and_is_alone_is_the_perfect_one():
+    assert at_once(5, 1, 0.3) == pytest.approx(perfect_queue(5, 0.3), rel=0.02)
+
+
+def test_dcf_that_leaves_time_for_its_answers_is_slower():
+    assert mean_delay(DCF_ANSWERS, 5, 0.1) > mean_delay(DCF, 5, 0.1) + 3
 
 
 @pytest.mark.parametrize(("per_turn", "size"), [(1, 5), (4, 5), (1, 25)])

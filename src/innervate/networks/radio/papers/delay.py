@@ -2,6 +2,10 @@
 
 All on the event level, with the same delays, turnaround and packets. Load is a share of the
 hand-over bound: what the channel can carry if every packet is heard by everybody, one a turn.
+A delay counts from the offer to the end of the frame that was received, for all alike. What a
+sender learns, and when, counts only by the time that the channel is kept for it: the practical
+mode's windows and pulses, DCF's two slots (its receivers would have to switch, and its sender, too:
+`DCF_ANSWERS` keeps that free), nothing with TDMA, a token ring and polling, whose senders are told.
 """
 
 from __future__ import annotations
@@ -17,6 +21,7 @@ from innervate.networks.radio.analysis import formulas as forms
 from innervate.networks.radio.papers.common import SIZES, TURNAROUND, TURNAROUND_US, Look
 from innervate.networks.radio.papers.medium import Channel
 from innervate.networks.radio.papers.practice import DELAY
+from innervate.networks.radio.papers.where import PARTS, parts
 from innervate.networks.radio.scenario.baselines import baseline
 from innervate.networks.radio.scenario.plan import RadioPlan
 from innervate.networks.radio.sim.simulate import simulate
@@ -24,24 +29,29 @@ from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
+from innervate.sim.tables import uniform
 
 TITLE = "Beyond the paper: delay against load"
 CAPTION = (
     "Event level, turnaround 2 ms, delays 52..104 us, Poisson packets. Bars: 95 % between runs. "
     "Above 2,000 slots, where DCF, polling and the ring cannot carry the load: off the chart. "
-    "Dotted: one queue that everybody sees, one packet a turn."
+    "Dotted: one queue that everybody sees, the least that anybody could have. Delays end with "
+    "the packet; what its sender learns costs time on the channel only."
 )
 STATIONS = (5, 20)
 BARS = (0.1, 0.3, 0.6, 0.9)  # loads that are judged
 LOADS = (0.1, 0.2, 0.3, 0.45, 0.6, 0.75, 0.9)
 PRACTICAL, DCF, TDMA, RING, POLLING = "practical", "dcf", "tdma", "token-ring", "polling"
+DCF_ANSWERS = "dcf, answering"  # the answer takes the turnaround, there and back
 NEAR_DCF = 1.3  # times DCF's delay at a tenth of the load
+FLOOR_PACKETS = 20_000
 TOP = 2000  # slots; what is above is off the chart
 _DOT = style.DASHES[2]
 LOOKS = {
     (PRACTICAL, 1): Look("CSMA/CD-R, practical", style.BLUE, "-", "o"),
     (PRACTICAL, 4): Look("... up to 4 packets a turn", style.SKY, "-", "o"),
     (DCF, 1): Look("802.11 DCF, told for nothing", style.PURPLE, "-", "v"),
+    (DCF_ANSWERS, 1): Look("... time for its answers", style.PURPLE, style.DASHES[1], "<"),
     (TDMA, 1): Look("TDMA", style.BLACK, "-", "s"),
     (RING, 1): Look("token ring, token of 2 slots", style.VERMILION, "-", "^"),
     (RING, 4): Look("... up to 4 packets a token", style.ORANGE, "-", "^"),
@@ -89,8 +99,12 @@ class Offered:
         arrivals = [[at for at in times if at <= last] for times in plan.arrivals]
         plan = replace(plan, arrivals=arrivals, wanted=sum(map(len, arrivals)))
         if self.mac != PRACTICAL:
-            params = baseline(self.mac, self.n, plan.params)
-            plan = replace(plan, protocol=self.mac, params=params)
+            mac = DCF if self.mac == DCF_ANSWERS else self.mac
+            params = baseline(mac, self.n, plan.params)
+            if self.mac == DCF_ANSWERS:
+                there = params["ta_us"] + params["dmax_us"]
+                params["answer_us"] = 2 * there + params["slot_us"]
+            plan = replace(plan, protocol=mac, params=params)
         return plan
 
     def measure(self, seed: int) -> dict[str, float]:
@@ -99,7 +113,8 @@ class Offered:
         packets, counts = result.packets, result.counts
         slots = (packets["end"] - packets["offered"]) / result.plan.params["slot_us"]
         left = result.plan.wanted - counts["completed"]
-        return {"mean": float(slots.mean()), "silent": counts["silent"], "open": left}
+        spent = parts(result) if (self.mac, self.per_turn) == (PRACTICAL, 1) else {}
+        return {"mean": float(slots.mean()), "silent": counts["silent"], "open": left, **spent}
 
 
 def point(who: tuple[str, int], size: int, n: int, load: float, quick: bool) -> Point:
@@ -133,10 +148,37 @@ def delay(
     return between.value, between.high - between.value
 
 
-def perfect_queue(size: int, load: float) -> float:
-    """Mean delay, slots, if all packets stood in one queue that everybody sees (M/D/1)."""
-    service = size + TURNAROUND + DELAY
-    return size + TURNAROUND + load * service / (2 * (1 - load))
+def perfect_queue(size: int, load: float, per_turn: int = 1) -> float:
+    """The least mean delay, slots: all packets in one queue that everybody sees (M/D/1).
+
+    With several packets a turn as if every turn was full: fewer hand-overs nobody can have.
+    """
+    service = size + (TURNAROUND + DELAY) / per_turn
+    busy = load * service / (size + TURNAROUND + DELAY)
+    return size + TURNAROUND + busy * service / (2 * (1 - busy))
+
+
+def at_once(size: int, n: int, load: float) -> float:
+    """The least mean delay, slots, if whoever finds the channel idle sends at once.
+
+    Others who decide before they can hear that collide with it; they are lost together, all learn
+    it for nothing when the last has ended, and from there on stand in the perfect queue.
+    """
+    deaf, turn = TURNAROUND + DELAY, size + TURNAROUND + DELAY
+    drawn = (1 + uniform(1, "at once", FLOOR_PACKETS, 1 << 30)) / (1 << 30)
+    offers = np.cumsum(-np.log(drawn) * turn / load).tolist()
+    of = uniform(1, "at once, of", FLOOR_PACKETS, n).tolist()
+    free, total = 0.0, 0.0
+    for i, at in enumerate(offers):
+        if at >= free:  # idle: who else begins before this is heard?
+            last, k = at, i + 1
+            while k < len(offers) and offers[k] < at + deaf:
+                last = offers[k] if of[k] != of[i] else last
+                k += 1
+            free = at if last == at else last + turn
+        total += free + TURNAROUND + size - at
+        free += turn
+    return total / len(offers)
 
 
 def draw(got: Measured) -> Figure:
@@ -164,8 +206,10 @@ def _panel(ax: Axes, got: Measured, size: int, n: int) -> None:
                     marker=look.marker, ms=3, lw=1.1, elinewidth=0.6, capsize=1.5,
                     label=look.name)  # fmt: skip
     fine = np.linspace(0.05, 0.95, 60)
-    ax.plot(100 * fine, [perfect_queue(size, load) for load in fine], color=style.INK, ls=_DOT,
-            lw=1.1, label="one perfect queue")  # fmt: skip
+    for per_turn, colour, name in ((1, style.INK, "floor: one perfect queue"),
+                                   (4, style.SOFT, "floor, 4 packets a turn")):  # fmt: skip
+        least = [perfect_queue(size, load, per_turn) for load in fine]
+        ax.plot(100 * fine, least, color=colour, ls=_DOT, lw=1.1, label=name)
     ax.set(yscale="log", ylim=(size + 5, TOP), xlim=(5, 95))
 
 
@@ -189,15 +233,26 @@ def judge(got: Measured) -> Claims:
             yield _below(got, n, load, (TDMA, RING), 4)
 
 
+def spent(got: Measured, size: int, n: int, load: float) -> str:
+    """Where the slots of our mean delay went, besides the turnaround and the packet itself."""
+    run = got[point((PRACTICAL, 1), size, n, load, got.quick)]
+    means = {"turnaround and packet": TURNAROUND + size}
+    means |= {name: sum(run[name]) / len(run[name]) for name in PARTS}
+    return "of which " + joined(f"{name} {mean:.1f}" for name, mean in means.items())
+
+
 def _light(got: Measured, n: int) -> Claim:
     words, fine = [], True
     for size in SIZES:
         ours, half = delay(got, (PRACTICAL, 1), size, n, 0.1)
         dcf, _ = delay(got, (DCF, 1), size, n, 0.1)
         fine = fine and ours <= NEAR_DCF * dcf
+        answers, _ = delay(got, (DCF_ANSWERS, 1), size, n, 0.1)
         words.append(
             f"T = {size}: {ours:.1f} +- {half:.1f} slots, {ours / dcf:.2f} times DCF's {dcf:.1f}, "
-            f"perfect queue {perfect_queue(size, 0.1):.1f}"
+            f"{ours / answers:.2f} times that of a DCF with time for answers, "
+            f"floor {perfect_queue(size, 0.1):.1f} for anybody, {at_once(size, n, 0.1):.1f} for "
+            f"who sends at once; {spent(got, size, n, 0.1)}"
         )
     return Claim(
         "beyond",
@@ -217,8 +272,10 @@ def _below(got: Measured, n: int, load: float, rivals: tuple[str, ...], per_turn
         theirs = [delay(got, pair, size, n, load)[0] for pair in pairs]
         fine = fine and ours < min(theirs)
         beside = joined(f"{name} {value:.0f}" for name, value in zip(names, theirs, strict=True))
+        floor = perfect_queue(size, load, per_turn)
+        where = "" if per_turn > 1 else f"; {spent(got, size, n, load)}"
         words.append(f"T = {size}: {ours:.0f} +- {half:.0f} slots, {beside}, "
-                     f"perfect queue {perfect_queue(size, load):.0f}")  # fmt: skip
+                     f"floor {floor:.0f}{where}")  # fmt: skip
     turn = "" if per_turn == 1 else f", up to {per_turn} packets a turn and a token,"
     return Claim(
         "beyond",
