@@ -64,6 +64,8 @@ def flatten(value: Any, key: str = "") -> Iterable[tuple[str, Any]]:
 def _value(value: Any) -> str:
     if value is None:
         return "never"
+    if value == {}:
+        return "none"
     if isinstance(value, list):
         shown = ", ".join(_value(item) for item in value[:64])
         return (shown + (f" ... ({len(value)} in all)" if len(value) > 64 else "")) or "none"
