@@ -52,8 +52,6 @@ WHOLE_ACK = HEAD + HOP_ACK + MORE + CRC
 # The same for struct, which is quicker: HEAD and COMMON, HEAD and HOP_ACK.
 PACKET_STRUCT = ">BBBBBBHBBB"
 ACK_STRUCT = ">BBBBHb"
-_PACKET = tuple(field[0] for field in COMMON)
-_ACK = tuple(field[0] for field in HOP_ACK)
 AT = 8  # bits of HEAD
 PATH_LEN_AT = HEADER_BYTES - 1
 
@@ -92,16 +90,27 @@ def encode(frame: Any, mtu: int = MTU_MAX) -> bytes:
     size = size_of(frame)
     if size > mtu:
         raise ValueError("the frame is longer than the MTU")
-    names, form = (_ACK, ACK_STRUCT) if kind == ACK else (_PACKET, PACKET_STRUCT)
-    path = () if kind == ACK else frame.path[: frame.path_len]
     try:
-        head = struct.pack(form, VERSION << 6 | kind, *[getattr(frame, name) for name in names])
-        data = head + bytes(path) + bytes(frame.body[: frame.length])
+        data = (_ack if kind == ACK else _packet)(frame, VERSION << 6 | kind)
     except (struct.error, ValueError):
         check(frame)
         raise
     crc = crc16(data, len(data))
     return data + bytes((crc >> 8, crc & 255))
+
+
+def _packet(frame: Any, first: int) -> bytes:
+    # Field by field: by their names it takes half as long again, and every frame comes through.
+    f = frame
+    head = struct.pack(PACKET_STRUCT, first, f.flags, f.link_src, f.link_dst, f.origin, f.dest,
+                       f.seq, f.table_ver, f.ttl, f.path_len)  # fmt: skip
+    return head + bytes(f.path[: f.path_len]) + bytes(f.body[: f.length])
+
+
+def _ack(frame: Any, first: int) -> bytes:
+    f = frame
+    head = struct.pack(ACK_STRUCT, first, f.link_src, f.link_dst, f.origin, f.seq, f.rssi)
+    return head + bytes(f.body[: f.length])
 
 
 def check(frame: Any) -> None:
@@ -156,11 +165,11 @@ def decode(data: bytes | bytearray | memoryview, frame: Any, mtu: int = MTU_MAX)
     if data[0] & 63 == ACK:
         decode_ack(data, frame)
         return OK
-    first, *values = struct.unpack_from(PACKET_STRUCT, data)
-    for name, value in zip(_PACKET, values):  # noqa: B905 - MicroPython knows no `strict`
-        setattr(frame, name, value)
+    f = frame
+    (first, f.flags, f.link_src, f.link_dst, f.origin, f.dest,
+     f.seq, f.table_ver, f.ttl, hops) = struct.unpack_from(PACKET_STRUCT, data)  # fmt: skip
     frame.kind = first & 63
-    hops = frame.path_len
+    frame.path_len = hops
     at = HEADER_BYTES + hops
     frame.path[:hops] = list(data[HEADER_BYTES:at])
     frame.length = length = len(data) - CRC_BYTES - at
@@ -170,9 +179,9 @@ def decode(data: bytes | bytearray | memoryview, frame: Any, mtu: int = MTU_MAX)
 
 def decode_ack(data: bytes | bytearray | memoryview, frame: Any) -> None:
     """Read an ack that is one, as `decode` says."""
-    first, *values = struct.unpack_from(ACK_STRUCT, data)
-    for name, value in zip(_ACK, values):  # noqa: B905
-        setattr(frame, name, value)
+    f = frame
+    (first, f.link_src, f.link_dst, f.origin,
+     f.seq, f.rssi) = struct.unpack_from(ACK_STRUCT, data)  # fmt: skip
     frame.kind = first & 63
     frame.dest = frame.link_dst
     frame.flags = frame.table_ver = frame.ttl = frame.path_len = 0
