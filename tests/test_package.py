@@ -87,6 +87,7 @@ def test_what_can_be_called_is_a_function_that_says_how(name):
     assert found.__name__ == name
     said = inspect.signature(found)
     assert said.parameters
+    assert not [one for one in said.parameters.values() if one.kind is one.VAR_KEYWORD]
     assert said.return_annotation is not inspect.Signature.empty
     page = pydoc.plain(pydoc.render_doc(innervate))
     assert f"{name}({next(iter(said.parameters))}" in page

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any
 
 from innervate import scenario as scenarios
 from innervate.network import networks
@@ -131,32 +131,16 @@ class Run(Summaries):
         return self.written
 
 
-class How(TypedDict, total=False):
-    """How a scenario is simulated.
-
-    Attributes:
-        progress: called now and then with (time_us, duration_us).
-        checks: invariant checkers on, as they are if nothing is said.
-        received: keep every sample the PC received; None = unless there are very many.
-        plain: run uncompiled, slow; for comparison.
-    """
-
-    progress: Progress | None
-    checks: bool
-    received: bool | None
-    plain: bool
-
-
-AS_USUAL: How = {"progress": None, "checks": True, "received": None, "plain": False}
-
-
 def run(
     scenario: Given,
     *,
     seed: int | None = None,
     overrides: Changes = (),
     out: str | os.PathLike[str] | None = None,
-    **how: Unpack[How],
+    progress: Progress | None = None,
+    checks: bool = True,
+    received: bool | None = None,
+    plain: bool = False,
 ) -> Run:
     """Run a scenario.
 
@@ -165,7 +149,10 @@ def run(
         seed: in place of the scenario's.
         overrides: "a.b=c" texts, or a mapping from dotted keys to values.
         out: folder to write; nothing is written without one (see Run.write).
-        how: see `How`.
+        progress: called now and then with (time_us, duration_us).
+        checks: invariant checkers on.
+        received: keep every sample the PC received; None = unless there are very many.
+        plain: run uncompiled, slow; for comparison.
 
     Raises:
         ScenarioError: the scenario is not valid.
@@ -177,9 +164,8 @@ def run(
     if out is not None:
         folders.check_target(out)
     room = networks()[plan.kind].run
-    asked = AS_USUAL | how
-    result = room.simulate(plan, **asked)
-    done = Run(made, plan, result, room.summarize(result), asked["checks"])
+    result = room.simulate(plan, plain=plain, checks=checks, received=received, progress=progress)
+    done = Run(made, plan, result, room.summarize(result), checks)
     if out is not None:
         done.write(out)
     return done

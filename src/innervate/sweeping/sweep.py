@@ -33,20 +33,7 @@ Progress = Callable[[Scheduler], None]
 
 
 class Planned(TypedDict, total=False):
-    """What is varied, and how often it runs.
-
-    Attributes:
-        vary: what is varied: {"protocol.k": [2, 3], ("a", "b"): [(1, 10), (2, 20)]}, values also
-            as "2..8"; or texts like those of --vary. The last one changes fastest.
-        overrides: scenario keys that are other than in the file, for every run.
-        derive: keys that follow from others, {"duration_s": "2 + 100 / protocol.beacon_hz"}.
-        repeat: runs of every point, each with a seed of its own; 1, or at most 1,000 with `until`.
-        seed: root seed in place of the scenario's.
-        until: "recoveries.routed_ms.ci=5%": a point ends when the 95 % interval of its mean is
-            that narrow to either side; several must all be met.
-        batch: repeats between two decisions of `until`; 10.
-        paired: keys whose variants are compared on the same seeds; "all" = every point has them.
-    """
+    """What is varied, and how often it runs: see `sweep`."""
 
     vary: Vary
     overrides: Iterable[str] | Mapping[str, Any]
@@ -61,6 +48,14 @@ class Planned(TypedDict, total=False):
 def sweep(
     scenario: Source | SweepPlan,
     *,
+    vary: Vary = (),
+    overrides: Iterable[str] | Mapping[str, Any] = (),
+    derive: Mapping[str, str] | None = None,
+    repeat: int | None = None,
+    seed: int | None = None,
+    until: str | Iterable[str] = (),
+    batch: int | None = None,
+    paired: str | Iterable[str] = (),
     out: str | os.PathLike[str] | None = None,
     workers: int | None = None,
     kind: str = "processes",
@@ -68,12 +63,22 @@ def sweep(
     retry: bool = False,
     follow: Iterable[str] = (),
     progress: Progress | None = None,
-    **planned: Unpack[Planned],
 ) -> Sweep:
     """Run a scenario for every combination of some settings, each many times.
 
     Args:
-        scenario: a plan file, or what `innervate.run` takes, or a SweepPlan.
+        scenario: a plan file, or what `innervate.run` takes, or a SweepPlan,
+            which says all that is said up to `paired`.
+        vary: what is varied: {"protocol.k": [2, 3], ("a", "b"): [(1, 10), (2, 20)]}, values also
+            as "2..8"; or texts like those of --vary. The last one changes fastest.
+        overrides: scenario keys that are other than in the file, for every run.
+        derive: keys that follow from others, {"duration_s": "2 + 100 / protocol.beacon_hz"}.
+        repeat: runs of every point, each with a seed of its own; 1, or at most 1,000 with `until`.
+        seed: root seed in place of the scenario's.
+        until: "recoveries.routed_ms.ci=5%": a point ends when the 95 % interval of its mean is
+            that narrow to either side; several must all be met.
+        batch: repeats between two decisions of `until`; 10.
+        paired: keys whose variants are compared on the same seeds; "all" = every point has them.
         out: folder to write, or to go on in; without one everything stays in memory.
         workers: how many at the same time; None = one for every core; 1 = here, without processes.
         kind: "processes", "threads" or "here".
@@ -81,14 +86,17 @@ def sweep(
         retry: run again what failed.
         follow: measures that `progress` wants to see the values of.
         progress: called now and then with the Scheduler.
-        planned: what is varied and how often, see `Planned`; nothing with a SweepPlan.
 
     Raises:
         SweepError: the plan cannot be kept, or the folder not used; one line.
         ScenarioError: no point of it is a valid scenario.
         KeyboardInterrupt: Ctrl-C; with `out` what was done is kept, and the same call goes on.
     """
-    plan = scenario if isinstance(scenario, SweepPlan) else make_plan(scenario, **planned)
+    if isinstance(scenario, SweepPlan):
+        plan = scenario
+    else:
+        plan = make_plan(scenario, vary=vary, overrides=overrides, derive=derive, repeat=repeat,
+                         seed=seed, until=until, batch=batch, paired=paired)  # fmt: skip
     plan = _checked(plan)
     folder = None if out is None else Path(out)
     with engine(kind, workers, dask) as made:  # one that cannot be leaves no folder behind
@@ -115,7 +123,7 @@ def _run_plan(scheduler: Scheduler, jobs: Jobs, folder: Path | None) -> Sweep:
 
 
 def make_plan(scenario: Source, **planned: Unpack[Planned]) -> SweepPlan:
-    """The plan that these describe (see Planned); what they say goes before a plan file's.
+    """The plan that these describe (see sweep); what they say goes before a plan file's.
 
     Raises:
         SweepError, ScenarioError: see sweep().

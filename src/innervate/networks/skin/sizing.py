@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypedDict, Unpack
+from typing import Any
 
 import polars
 
@@ -67,13 +67,6 @@ class Question:
     recovery_ms_max: float = RECOVERY_MS_MAX
 
 
-class Tries(TypedDict, total=False):
-    """How often every combination runs, 20 times if nothing is said, and the root seed, 1."""
-
-    repeat: int
-    seed: int
-
-
 @dataclass(eq=False, repr=False)
 class Answer:
     """What came out.
@@ -120,9 +113,6 @@ class Answer:
         return figure.write(self, folder)
 
 
-TRIES: Tries = {"repeat": 20, "seed": 1}
-
-
 def size(
     question: Question,
     *,
@@ -130,7 +120,8 @@ def size(
     workers: int | None = None,
     dask: str = "",
     progress: Progress | None = None,
-    **tries: Unpack[Tries],
+    repeat: int = 20,
+    seed: int = 1,
 ) -> Answer:
     """Answer a question by simulation; the other arguments are those of sweep().
 
@@ -139,7 +130,7 @@ def size(
         ScenarioError: the skin cannot be built.
     """
     asked, frames, names = _placed(question)
-    plan = plan_of(asked, frames, tries)
+    plan = plan_of(asked, frames, repeat, seed)
     done = sweep(plan, out=out, workers=workers, dask=dask, follow=(RECOVERY,), progress=progress)
     made = {ports: _graph(plan, ports) for ports in asked.ports}
     graphs = {ports: graph for ports, graph in made.items() if graph is not None}
@@ -176,7 +167,7 @@ def _placed(question: Question) -> tuple[Question, bool, list[str]]:
     return made, frames, names
 
 
-def plan_of(question: Question, frames: bool, tries: Tries) -> SweepPlan:
+def plan_of(question: Question, frames: bool, repeat: int, seed: int) -> SweepPlan:
     """The sweep that answers a question: ports x rates x what is cut."""
     body: dict[str, Any] = {"urdf": question.urdf, "links": question.links,
                             "reach_mm": question.reach_mm}  # fmt: skip
@@ -194,7 +185,7 @@ def plan_of(question: Question, frames: bool, tries: Tries) -> SweepPlan:
         "body.interfaces": list(question.ports),
         "event": list(CUTS),
     }
-    return make_plan(tables, vary=vary, paired=("body.interfaces",), **TRIES | tries)
+    return make_plan(tables, vary=vary, repeat=repeat, seed=seed, paired=("body.interfaces",))
 
 
 def judged(question: Question, done: Sweep, weak: Mapping[int, Sequence[Weak]]) -> polars.DataFrame:

@@ -120,7 +120,7 @@ def test_dcf_at_its_best_reaches_bianchis_maximum():
     k = (8713 / 50 / 2) ** 0.5
     best = 8184 / (8982 + 50 * k + 8713 * (k * (exp(1 / k) - 1) - 1))
     found = max(
-        forms.dcf_throughput(50, w, 0, payload=8184, success=8982, collision=8713, slot=50)
+        forms.dcf_throughput(50, w, 0, payload=8184 / 50, success=8982 / 50, collision=8713 / 50)
         for w in range(600, 1400, 10)
     )
     assert found == pytest.approx(best, rel=5e-3)

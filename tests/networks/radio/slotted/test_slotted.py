@@ -93,8 +93,8 @@ def test_csma_of_infinite_populations(packet_slots):
 def test_dcf_agrees_with_bianchi(dcf, stations):
     found = saturated("dcf", stations, dcf=dcf, packets=60_000 // stations).throughput
     exact = forms.dcf_throughput(
-        stations, dcf.window, dcf.stages, payload=dcf.payload_us, success=dcf.success_us,
-        collision=dcf.collision_us, slot=dcf.slot_us,
+        stations, dcf.window, dcf.stages, payload=dcf.payload_us / dcf.slot_us,
+        success=dcf.success_us / dcf.slot_us, collision=dcf.collision_us / dcf.slot_us,
     )  # fmt: skip
     assert found == pytest.approx(exact, rel=WITHIN)
 

@@ -75,7 +75,7 @@ def on_position(node, params, now, frame, out):
         return
     monitor = resolve(node, params, MONITOR) == node.number
     if monitor:
-        note_found(node, params, now, robot, frame, at, out)
+        note_found(node, params, now, frame, out)
     if params.points == 0:
         return
     x = signed16(get16(frame, at + 1))
@@ -96,8 +96,10 @@ def on_position(node, params, now, frame, out):
             node.raised[robot] = node.raised[robot] | RAISED_OUT
 
 
-def note_found(node, params, now, robot, frame, at, out):
+def note_found(node, params, now, frame, out):
     """The monitor hears of a robot: it is not lost, or not any more."""
+    at = inner(frame)
+    robot = frame.body[at]
     node.missed[robot] = 0
     if node.raised[robot] & RAISED_LOST:
         node.raised[robot] = node.raised[robot] & ~RAISED_LOST

@@ -184,16 +184,15 @@ def dcf_throughput(
     payload: float,
     success: float,
     collision: float,
-    slot: float = 1.0,
 ) -> float:
-    """Saturation throughput of 802.11 DCF (Bianchi 2000, eq. 13); all times in one unit.
+    """Saturation throughput of 802.11 DCF (Bianchi 2000, eq. 13); all times in slots.
 
     `success` and `collision` are his T_s and T_c. An approximation: stations are independent.
     """
     tau, _ = dcf_attempt(stations, window, stages)
     idle = (1 - tau) ** stations
     alone = finite_aloha_throughput(stations, tau)
-    return alone * payload / (idle * slot + alone * success + (1 - idle - alone) * collision)
+    return alone * payload / (idle + alone * success + (1 - idle - alone) * collision)
 
 
 def tree_slots(stations: int) -> float:
