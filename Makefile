@@ -4,7 +4,7 @@
 #   make test     the tests in small sizes (9 minutes)   make full    all of them (long)
 #   make lint     style, types, import walls             make bench   how fast it is
 #   make papers   the published figures, redrawn         make parity  the same code on boards' Python
-#   make mutants  faults planted all over, and how many the tests find (an hour or two)
+#   make mutants  faults planted all over, and how many the tests find (long)
 #   make boards   the folder to copy to a board          make page    build the page of `watch` (npm)
 #   make clean    remove what these made
 
