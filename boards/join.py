@@ -8,12 +8,11 @@ files have a function of the same name, the later one's is called after its file
 from __future__ import annotations
 
 import ast
-import importlib
-import inspect
 import operator
 from collections.abc import Callable, Set
-from types import ModuleType
 from typing import Any
+
+from innervate.dialect import source
 
 _COMPARE: dict[type, Callable[[Any, Any], bool]] = {
     ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Lt: operator.lt, ast.LtE: operator.le,
@@ -36,23 +35,6 @@ class _Names(ast.NodeTransformer):
         return found
 
 
-def reached(entry: str) -> list[ModuleType]:
-    """The modules that a protocol's functions lie in, callees first; `entry` is its own."""
-    found: list[ModuleType] = []
-
-    def visit(module: ModuleType) -> None:
-        for thing in vars(module).values():
-            if inspect.isfunction(thing) and thing.__module__ != module.__name__:
-                lower = importlib.import_module(thing.__module__)
-                if lower not in found:
-                    visit(lower)
-        if module not in found:
-            found.append(module)
-
-    visit(importlib.import_module(entry))
-    return found
-
-
 def functions(*entries: str, noted: Set[str] = frozenset()) -> dict[str, str]:
     """Name and source of every function that the entries' functions can reach, callees first.
 
@@ -60,20 +42,18 @@ def functions(*entries: str, noted: Set[str] = frozenset()) -> dict[str, str]:
         entries: modules with the five functions, like "innervate.networks.skin.protocol.cell".
         noted: fields that only a simulation fills in: assignments to them are left out.
     """
-    modules: list[ModuleType] = []
-    for entry in entries:
-        modules += [module for module in reached(entry) if module not in modules]
-    names = _names_of(modules)
-    wanted = _called(modules, entries, names)
     found: dict[str, str] = {}
-    for module in modules:
-        for node in ast.parse(inspect.getsource(module)).body:
-            if isinstance(node, ast.FunctionDef) and (module.__name__, node.name) in wanted:
-                known = _values(module, names)
-                node.name = names[module.__name__, node.name]
-                node.body = node.body[1:] or [ast.Pass()]  # without its docstring
-                made = ast.fix_missing_locations(_Unnoted(noted).visit(_Names(known).visit(node)))
-                found[made.name] = ast.unparse(made)
+    for name, function in source.functions(*entries).items():
+        node = function.node
+        node.name = name
+        node.body = node.body[1:] or [ast.Pass()]  # without its docstring
+        known: dict[str, ast.expr] = {
+            constant: ast.parse(repr(value), mode="eval").body
+            for constant, value in function.constants.items()
+        }
+        known |= {called: ast.Name(new, ast.Load()) for called, new in function.calls.items()}
+        made = ast.fix_missing_locations(_Unnoted(noted).visit(_Names(known).visit(node)))
+        found[name] = ast.unparse(made)
     return found
 
 
@@ -187,9 +167,9 @@ class _Pruned(ast.NodeTransformer):
         return node
 
 
-def fixed(source: str, params: dict[str, int]) -> str:
+def fixed(text: str, params: dict[str, int]) -> str:
     """The same source for given parameters, without what they rule out."""
-    made = _Pruned().visit(_Fixed(params).visit(ast.parse(source)))
+    made = _Pruned().visit(_Fixed(params).visit(ast.parse(text)))
     return ast.unparse(ast.fix_missing_locations(made))
 
 
@@ -205,9 +185,9 @@ def short(i: int) -> str:
     return name if name not in ("as", "do", "if", "in", "is", "or", "eq", "id") else name + "_"
 
 
-def shortened(source: str, renamed: dict[str, str]) -> str:
+def shortened(text: str, renamed: dict[str, str]) -> str:
     """The same source with short names; `renamed` are those of functions and attributes."""
-    return ast.unparse(_Short(renamed).visit(ast.parse(source)))
+    return ast.unparse(_Short(renamed).visit(ast.parse(text)))
 
 
 def one_text(*sources: str) -> str:
@@ -217,8 +197,8 @@ def one_text(*sources: str) -> str:
     """
     known: dict[str, ast.expr] = {}
     body: list[ast.stmt] = []
-    for source in sources:
-        for node in ast.parse(source).body:
+    for text in sources:
+        for node in ast.parse(text).body:
             if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant):
                 (name,) = node.targets
                 if isinstance(name, ast.Name) and name.id.isupper():
@@ -234,60 +214,3 @@ def _is_noise(node: ast.stmt) -> bool:
     if isinstance(node, ast.ImportFrom):
         return node.module in ("outbox", "replay")
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
-
-
-def _own(module: ModuleType) -> list[str]:
-    return [
-        name
-        for name, thing in vars(module).items()
-        if inspect.isfunction(thing) and thing.__module__ == module.__name__
-    ]
-
-
-def _names_of(modules: list[ModuleType]) -> dict[tuple[str, str], str]:
-    """What (module, function) is called in the joined module; entries keep their names."""
-    taken: set[str] = set()
-    names = {}
-    for module in reversed(modules):
-        short = module.__name__.rpartition(".")[2]
-        for name in _own(module):
-            names[module.__name__, name] = new = f"{short}_{name}" if name in taken else name
-            taken.add(new)
-    return names
-
-
-def _values(module: ModuleType, names: dict[tuple[str, str], str]) -> dict[str, ast.expr]:
-    """What stands for the names that a module's functions use."""
-    found: dict[str, ast.expr] = {}
-    for name, thing in vars(module).items():
-        if isinstance(thing, int) and name.isupper():
-            found[name] = ast.parse(repr(int(thing)), mode="eval").body
-        elif inspect.isfunction(thing):
-            key = (thing.__module__, thing.__name__)
-            if key in names:
-                found[name] = ast.Name(names[key], ast.Load())
-    return found
-
-
-def _called(modules: list[ModuleType], entries: tuple[str, ...], names: Any) -> set[Any]:
-    """(module, function) of the handlers and of all that they call, directly or not."""
-    by_name = {module.__name__: module for module in modules}
-    waiting = [
-        (entry, name)
-        for entry in entries
-        for name in _own(by_name[entry])
-        if name.startswith("on_") or len(entries) > 1
-    ]
-    found = set(waiting)
-    while waiting:
-        home, name = waiting.pop()
-        module = by_name[home]
-        code = getattr(module, name).__code__
-        for used in code.co_names:
-            thing = vars(module).get(used)
-            if inspect.isfunction(thing):
-                key = (thing.__module__, thing.__name__)
-                if key not in found:
-                    found.add(key)
-                    waiting.append(key)
-    return found

@@ -1,0 +1,144 @@
+"""A protocol's functions as one source: what boards, C and proofs are made from.
+
+The functions stay as they are written, with the lines of their files. Where two files have a
+function of the same name, the later one's is called after its file.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import inspect
+from types import ModuleType
+
+# (old, new): a text that stands once in the sources, and what is read in its place.
+Change = tuple[str, str]
+
+
+class Function:
+    """A function of a protocol.
+
+    Attributes:
+        name: in the joined source; no other function has it.
+        node: as it is written, with its docstring, its file's line numbers and its own name.
+        module: the name of the module it stands in.
+        path: the file of that module.
+        constants: the whole numbers that it may use, by their names there.
+        calls: the joined names of the functions that it may call, by their names there.
+    """
+
+    __slots__ = ("calls", "constants", "module", "name", "node", "path")
+
+    def __init__(self, name: str, node: ast.FunctionDef, module: ModuleType) -> None:
+        self.name = name
+        self.node = node
+        self.module = module.__name__
+        self.path = module.__file__ or ""
+        self.constants = {
+            known: int(thing)
+            for known, thing in vars(module).items()
+            if isinstance(thing, int) and known.isupper()
+        }
+        self.calls: dict[str, str] = {}
+
+
+def functions(*entries: str, change: Change | None = None) -> dict[str, Function]:
+    """Every function that the entries' functions can reach, by joined name, callees first.
+
+    Args:
+        entries: modules with the five functions, like "innervate.networks.skin.protocol.cell". Of
+            one, what its handlers call is taken; of several, all their functions are.
+        change: a mistake to plant, within one function, for what must be found out.
+
+    Raises:
+        ValueError: the text to change does not stand exactly once in these functions.
+    """
+    modules: list[ModuleType] = []
+    for entry in entries:
+        modules += [module for module in reached(entry) if module not in modules]
+    names = _names_of(modules)
+    wanted = _called(modules, entries)
+    found: dict[str, Function] = {}
+    changed = 0
+    for module in modules:
+        text = inspect.getsource(module)
+        if change is not None:
+            changed += text.count(change[0])
+            text = text.replace(*change)
+        for node in ast.parse(text).body:
+            if isinstance(node, ast.FunctionDef) and (module.__name__, node.name) in wanted:
+                made = Function(names[module.__name__, node.name], node, module)
+                made.calls = _calls(module, names)
+                found[made.name] = made
+    if change is not None and changed != 1:
+        raise ValueError(f"{change[0]!r} stands {changed} times in {', '.join(entries)}")
+    return found
+
+
+def reached(entry: str) -> list[ModuleType]:
+    """The modules that a protocol's functions lie in, callees first; `entry` is its own."""
+    found: list[ModuleType] = []
+
+    def visit(module: ModuleType) -> None:
+        for thing in vars(module).values():
+            if inspect.isfunction(thing) and thing.__module__ != module.__name__:
+                lower = importlib.import_module(thing.__module__)
+                if lower not in found:
+                    visit(lower)
+        if module not in found:
+            found.append(module)
+
+    visit(importlib.import_module(entry))
+    return found
+
+
+def _own(module: ModuleType) -> list[str]:
+    return [
+        name
+        for name, thing in vars(module).items()
+        if inspect.isfunction(thing) and thing.__module__ == module.__name__
+    ]
+
+
+def _names_of(modules: list[ModuleType]) -> dict[tuple[str, str], str]:
+    """What (module, function) is called in the joined source; entries keep their names."""
+    taken: set[str] = set()
+    names = {}
+    for module in reversed(modules):
+        short = module.__name__.rpartition(".")[2]
+        for name in _own(module):
+            names[module.__name__, name] = new = f"{short}_{name}" if name in taken else name
+            taken.add(new)
+    return names
+
+
+def _calls(module: ModuleType, names: dict[tuple[str, str], str]) -> dict[str, str]:
+    """Joined names of the functions that a module knows, by their names in it."""
+    return {
+        known: names[thing.__module__, thing.__name__]
+        for known, thing in vars(module).items()
+        if inspect.isfunction(thing) and (thing.__module__, thing.__name__) in names
+    }
+
+
+def _called(modules: list[ModuleType], entries: tuple[str, ...]) -> set[tuple[str, str]]:
+    """(module, function) of the handlers and of all that they call, directly or not."""
+    by_name = {module.__name__: module for module in modules}
+    waiting = [
+        (entry, name)
+        for entry in entries
+        for name in _own(by_name[entry])
+        if name.startswith("on_") or len(entries) > 1
+    ]
+    found = set(waiting)
+    while waiting:
+        home, name = waiting.pop()
+        module = by_name[home]
+        for used in getattr(module, name).__code__.co_names:
+            thing = vars(module).get(used)
+            if inspect.isfunction(thing):
+                key = (thing.__module__, thing.__name__)
+                if key not in found:
+                    found.add(key)
+                    waiting.append(key)
+    return found

@@ -1,0 +1,44 @@
+"""A protocol's functions as one source, for boards, C and proofs."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+from innervate.dialect import source
+
+CELL = "innervate.networks.skin.protocol.cell"
+MESH = "innervate.networks.mesh.protocol.node"
+
+
+def test_functions_come_callees_first_with_all_that_they_call():
+    found = source.functions(CELL)
+    places = {name: i for i, name in enumerate(found)}
+    for name, function in found.items():
+        for node in ast.walk(function.node):
+            if isinstance(node, ast.Name) and node.id in function.calls:
+                assert function.calls[node.id] in found, (name, node.id)
+    assert places["later"] < places["is_allowed"] < places["select"] < places["on_timer"]
+
+
+def test_a_function_knows_its_file_line_and_constants():
+    select = source.functions(CELL)["select"]
+    assert select.module == "innervate.networks.skin.protocol.route"
+    line = Path(select.path).read_text().splitlines()[select.node.lineno - 1]
+    assert line == "def select(cell, params, may_balance, out):"
+    assert select.constants["INFINITY"] == 255
+    assert select.constants["NONE"] == -1
+
+
+def test_names_that_two_files_share_are_told_apart():
+    found = source.functions(MESH)
+    assert len({(f.module, f.node.name) for f in found.values()}) == len(found)
+
+
+def test_a_mistake_is_planted_in_one_place_only():
+    old = "return sq == cell.fd_sq and dist < cell.fd_dist"
+    made = source.functions(CELL, change=(old, "return True"))
+    assert ast.unparse(made["nearer_than_fd"].node).endswith("return True")
+    for text in ("no such text", "cell.parent = NONE"):
+        with pytest.raises(ValueError, match="times in innervate"):
+            source.functions(CELL, change=(text, "pass"))
