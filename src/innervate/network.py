@@ -232,6 +232,19 @@ def first() -> str:
     return next(iter(networks()))
 
 
+def add_folder(folder: Path) -> Network:
+    """Make a network known to this process that stands in a folder with a `network.py`.
+
+    Raises:
+        NetworkError: it cannot be loaded, or another one has its name.
+    """
+    found = _in_folder(folder, str(folder))
+    other = networks().setdefault(found.name, found)
+    if other.package != found.package:
+        raise NetworkError(f"{folder} and {other.package} are both called {found.name!r}")
+    return other
+
+
 def _entry(point: Any) -> Network:
     try:
         return _checked(point.load(), point.value)
@@ -240,16 +253,18 @@ def _entry(point: Any) -> Network:
         raise NetworkError(message) from error
 
 
-def _in_folder(folder: Path) -> Network:
+def _in_folder(folder: Path, named: str = "") -> Network:
     if not (folder / "network.py").is_file():
-        raise NetworkError(f"{FOLDERS}: {folder} holds no network.py")
+        raise NetworkError(f"{named or f'{FOLDERS}: {folder}'} holds no network.py")
     where = str(folder.resolve().parent)
     if where not in sys.path:
         sys.path.append(where)
     try:
         return _checked(import_module(f"{folder.resolve().name}.network").NETWORK, str(folder))
     except (ImportError, AttributeError) as error:
-        raise NetworkError(f"{FOLDERS}: {folder} cannot be loaded: {error}") from error
+        raise NetworkError(
+            f"{named or f'{FOLDERS}: {folder}'} cannot be loaded: {error}"
+        ) from error
 
 
 def _checked(found: Any, where: str) -> Network:
