@@ -59,5 +59,7 @@ def json_schema() -> dict[str, Any]:
     """The JSON Schema of scenario files, for editors."""
     import msgspec
 
-    schemas, parts = msgspec.json.schema_components([n.model for n in networks().values()])
+    schemas, parts = msgspec.json.schema_components(
+        dict.fromkeys(network.model for network in networks().values())
+    )
     return {"anyOf": list(schemas), "$defs": parts}
