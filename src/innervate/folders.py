@@ -15,7 +15,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from innervate.dialect import bounds
+from innervate.dialect import counted
 from innervate.dialect import folder as checks
 from innervate.dialect.checker import functions_of
 
@@ -191,7 +191,7 @@ def _of_declared(folder: Path, network: Any, files: list[Path]) -> list[checks.F
     except Exception as error:
         path = _file_of(folder, network, "fields")
         raise NetworkError(blamed(error, folder) or f"{shown(path)}:1: {_words(error)}") from None
-    found = checks.of_fields(_file_of(folder, network, "fields"), tables)
+    found: list[checks.Finding] = checks.of_fields(_file_of(folder, network, "fields"), tables)
     if not found and network.has("frames") and not hasattr(network.frames, "encode"):
         frames, path = network.frames, _file_of(folder, network, "frames")
         found += checks.of_layouts(path, frames.LAYOUTS, frames.KIND_BITS, fields.FRAME)
@@ -202,7 +202,7 @@ def _of_declared(folder: Path, network: Any, files: list[Path]) -> list[checks.F
 
 
 def _dialects() -> set[str]:
-    """Functions of the dialect."""
+    """Names of all functions of the dialect."""
     home = Path(checks.__file__).parent
     return {name for file in ("arith", "outbox", "rng") for name in _functions(home / f"{file}.py")}
 
@@ -227,7 +227,9 @@ def invariants_of(network: Any, prefix: str) -> dict[str, Any]:
 
 def actions_of(folder: Path, network: Any) -> dict[str, tuple[int | None, str]]:
     """Most actions of a call of each handler, None if it is not seen; and its file and line."""
-    functions, constants, files = {}, {}, {}
+    functions: dict[str, Any] = {}
+    constants: dict[str, int] = {}
+    files: dict[str, Path] = {}
     for path in sources(folder, network):
         tree = ast.parse(path.read_text(encoding="utf-8"))
         constants |= checks.constants_of(tree)
@@ -237,8 +239,8 @@ def actions_of(folder: Path, network: Any) -> dict[str, tuple[int | None, str]]:
     for name in (one for one in functions if one.startswith("on_")):
         line, most = functions[name].lineno, None
         try:
-            most = bounds.actions(name, functions, constants)
-        except bounds.Unknown as error:
+            most = counted.actions(name, functions, constants)
+        except counted.Unknown as error:
             line = error.line
         found[name] = (most, f"{shown(files[name])}:{line}")
     return found

@@ -11,8 +11,22 @@ from innervate.dialect.checker import broken_rules, functions_of, imports_of, is
 HOME = Path(innervate.__file__).parent
 FOLDERS = (HOME / "dialect", *sorted((HOME / "networks").glob("*/protocol")))
 SOURCES = [path for folder in FOLDERS for path in sorted(folder.rglob("*.py"))]
-PYTHON = {"plain.py", "copies.py", "source.py", "checker.py", "folder.py", "bounds.py", "__init__.py"}  # about protocols, in full Python
-ABOUT = {"copies.py", "source.py", "checker.py", "folder.py", "bounds.py"}  # read files, so import what that takes
+PYTHON = {
+    "plain.py",
+    "copies.py",
+    "source.py",
+    "checker.py",
+    "folder.py",
+    "counted.py",
+    "__init__.py",
+}  # about protocols, in full Python
+ABOUT = {
+    "copies.py",
+    "source.py",
+    "checker.py",
+    "folder.py",
+    "counted.py",
+}  # read files, so import what that takes
 
 
 def dialect_sources():

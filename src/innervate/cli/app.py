@@ -259,7 +259,7 @@ def _with_networks(tokens: list[str]) -> list[str]:
     left: list[str] = []
     while tokens:
         one, *tokens = tokens
-        if one != "--network" and not one.startswith("--network=") or left[:1] == ["new"]:
+        if left[:1] == ["new"] or (one != "--network" and not one.startswith("--network=")):
             left.append(one)
             continue
         _, _, given = one.partition("=")

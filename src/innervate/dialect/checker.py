@@ -58,6 +58,7 @@ class Broken(str):
     """A rule that is broken, as "line: what"; `line` and `what` apart, too."""
 
     def __new__(cls, line, what):
+        """A rule broken at a line."""
         made = super().__new__(cls, f"{line}: {what}")
         made.line, made.what = line, what
         return made
@@ -137,7 +138,7 @@ class Checker:
         return getattr(node, "lineno", 1)
 
     def check(self):
-        """All that is broken."""
+        """Everything that the source breaks."""
         if ast.get_docstring(self.tree) is None:
             self.complain(self.tree, "no module docstring; begin the file with one line of it")
         for node in ast.walk(self.tree):
@@ -169,7 +170,7 @@ class Checker:
                 self.complain(node, "a module constant calls nothing; write the number")
 
     def check_Import(self, node):
-        """Imports of modules."""
+        """What is imported as modules."""
         for alias in node.names:
             if not is_ours(alias.name, self.home):
                 self.complain(node, f"imports {alias.name}; only {PACKAGE} and files of the "
@@ -177,7 +178,7 @@ class Checker:
         self.check_place_of_import(node)
 
     def check_ImportFrom(self, node):
-        """Imports from modules."""
+        """What is imported from modules."""
         if not node.level and not is_ours(node.module or "", self.home):
             self.complain(node, f"imports {node.module}; only {PACKAGE} and files of the "
                                 "protocol can be imported")  # fmt: skip
@@ -186,7 +187,7 @@ class Checker:
         self.check_place_of_import(node)
 
     def check_place_of_import(self, node):
-        """Imports stand at the top."""
+        """Imports stand at the file's top."""
         if self.parents[node] is not self.tree:
             self.complain(node, "imports inside something; import at the top")
 
@@ -238,7 +239,7 @@ class Checker:
                 self.complain(node, "range outside a for; write for i in range(...)")
 
     def check_For(self, node):
-        """Loops are over ranges."""
+        """A for loop is over a range."""
         loop = node.iter
         is_range = isinstance(loop, ast.Call) and isinstance(loop.func, ast.Name)
         if not (is_range and loop.func.id == "range"):
@@ -255,8 +256,9 @@ class Checker:
         inside = [part for statement in node.body for part in ast.walk(statement)]
         if any(isinstance(part, (ast.Break, ast.Return)) for part in inside):
             return
-        looked_at = {part.id for part in ast.walk(node.test) if isinstance(part, ast.Name)}
-        if not looked_at & _changed(inside):
+        names, records = _looked_at(node.test)
+        assigned, touched = _changed(inside)
+        if not (names & assigned or records & touched):
             self.complain(node, "a loop without bound: nothing that its condition looks at changes "
                                 "in it; write for i in range(...)")  # fmt: skip
 
@@ -281,16 +283,29 @@ class Checker:
                                         "write for i in range(...)")  # fmt: skip
 
 
+def _looked_at(test):
+    """Names of numbers, and of records, that a condition looks at."""
+    bases = {id(part.value) for part in ast.walk(test)
+             if isinstance(part, (ast.Attribute, ast.Subscript))}  # fmt: skip
+    calls = [part for part in ast.walk(test) if isinstance(part, ast.Call)]
+    handed = {id(one) for part in calls for one in part.args}
+    called = {id(part.func) for part in calls}
+    names = [part for part in ast.walk(test) if isinstance(part, ast.Name)]
+    numbers = {one.id for one in names if id(one) not in bases | called}
+    return numbers, {one.id for one in names if id(one) in bases | handed}
+
+
 def _changed(nodes):
-    """Names that are assigned to, whose fields are, or that are handed to a function."""
-    found = set()
+    """Names that are assigned to; those whose fields are, or that are handed to a function."""
+    assigned, touched = set(), set()
     for node in nodes:
         targets = node.targets if isinstance(node, ast.Assign) else []
         targets = [node.target] if isinstance(node, ast.AugAssign) else targets
-        targets = [*targets, *(node.args if isinstance(node, ast.Call) else [])]
-        for target in targets:
-            while isinstance(target, (ast.Attribute, ast.Subscript)):
-                target = target.value
-            if isinstance(target, ast.Name):
-                found.add(target.id)
-    return found
+        assigned |= {target.id for target in targets if isinstance(target, ast.Name)}
+        for target in [*targets, *(node.args if isinstance(node, ast.Call) else [])]:
+            inner = target
+            while isinstance(inner, (ast.Attribute, ast.Subscript)):
+                inner = inner.value
+            if isinstance(inner, ast.Name):
+                touched.add(inner.id)
+    return assigned, assigned | touched

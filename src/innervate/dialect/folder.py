@@ -79,7 +79,7 @@ def _pairs(target, value):
     if isinstance(target, ast.Name):
         return [(target.id, value)]
     if isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
-        return [pair for one in zip(target.elts, value.elts) for pair in _pairs(*one)]
+        return [pair for one in zip(target.elts, value.elts, strict=False) for pair in _pairs(*one)]
     return []
 
 

@@ -45,7 +45,7 @@ def template(kind: str = "") -> str:
     """
     known, kind = networks(), kind or first()
     if kind in known:
-        return str(known[kind].template) if known[kind].has("template") else _all_keys(kind)
+        return str(known[kind].template) or _all_keys(kind)
     hint = nearest(kind, list(known)).replace("it knows", "there is")
     raise ScenarioError(f'there is no kind "{kind[:40]}"{hint}')
 

@@ -275,7 +275,7 @@ def _fault(source: Source, graph: Graph, place: int, event: EventTable) -> Fault
 
 def inputs_of(model: Any, network: Any, count: int) -> list[Input]:
     """What nodes are given, repeated and for every node, in order of time."""
-    found = []
+    found: list[Input] = []
     for given in model.input:
         period = given.every_s or model.duration_s
         times = max(math.ceil((model.duration_s - given.at_s) / period), 1)
@@ -293,7 +293,11 @@ def inputs_of(model: Any, network: Any, count: int) -> list[Input]:
 
 
 def template(network: Any) -> str:
-    """A scenario of a network to start from, with its parameters as they are by themselves."""
+    """A scenario to start from, with all parameters as they are by themselves; "" for a network
+    whose scenarios have keys of their own.
+    """
+    if network.model is not CablesScenario:
+        return ""
     width = max((len(name) for name, *_ in network.fields.PARAMS), default=0)
     values = parameters(network.fields, {})
     lines = [f"{name:{width}} = {values[name]}  # {low} to {high} {unit}: {meaning}"

@@ -115,8 +115,9 @@ class Net:
                 if hasattr(node, name):
                     setattr(node, name, value)
             nodes.append(Node(_values(node, self.fields.STATE), ()))
-        state = State(tuple(nodes), ((),) * len(self.graph.peer),
-                      (budget.loss, budget.restart, budget.input))
+        state = State(
+            tuple(nodes), ((),) * len(self.graph.peer), (budget.loss, budget.restart, budget.input)
+        )
         for number in range(self.graph.cells):
             state, broken = self.call(state, number, 0, self.do.on_start, COLD)
             if broken:

@@ -38,8 +38,7 @@ class Unfit(ValueError):
 def functions(
     protocol: ModuleType, fields: ModuleType, own: Mapping[str, Any] | None = None
 ) -> ModuleType:
-    """What the medium calls (see `sim/cables`), of a protocol, its declared fields, its invariants.
-    """
+    """What the medium calls (see `sim/cables`), of a protocol, its fields, its invariants."""
     if SOURCE < protocol.TIMERS:
         raise Unfit(f"a node over cables has at most {SOURCE} timers, not {protocol.TIMERS}")
     do = ModuleType(f"{protocol.__name__} over cables")
