@@ -75,9 +75,9 @@ def numbers_of(role: Role, arguments: list[str]) -> dict[str, int]:
             like = next((p[0] for p in role.params if p[4] == "us"), "name")
             raise LiveError(f"{argument}: give a whole number, like {like}=20000")
         changes[name] = int(value)
-    parameters = program_of(role).parameters
-    if parameters:
-        made: dict[str, int] = part(parameters)(changes, "boards")
+    program_of(role)
+    if role.parameters:
+        made: dict[str, int] = part(role.parameters)(changes, "boards")
         return made
     check_parameters(changes, role.params, "boards")
     return {**plan_of(role).params, **changes}

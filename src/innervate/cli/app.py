@@ -220,6 +220,38 @@ def watch(
     return command.watch(what, list(nodes), command.Settings(set_ or [], seed, speed), page)
 
 
+@app.command
+def firmware(
+    network: str,
+    /,
+    *settings: str,
+    out: Path = Path("lib"),
+    nodes: int | None = None,
+    prefix: str = "",
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> int:
+    """Write a node's protocol as C99 for a microcontroller: one .c and one .h.
+
+    Parameters
+    ----------
+    network
+        skin, radio, mesh, csma, or a folder with a network of your own.
+    settings
+        Parameters of the protocol in place of the usual ones, like beacon_us=20000.
+    out
+        Folder to write into.
+    nodes
+        How many a network of this kind has at most, where arrays depend on it.
+    prefix
+        In front of all names; the network's name if left out.
+    json
+        Print what was written as JSON and nothing else.
+    """
+    from innervate.cli import firmware as command
+
+    return command.firmware(network, list(settings), command.Wanted(out, nodes, prefix), json)
+
+
 app.command(scenarios)
 app.command(new)
 app.command(check)

@@ -31,6 +31,8 @@ _KNOWN = (
     ("innervate.verify.errors", "VerifyError", USERS),
     ("innervate.sweeping.errors", "SweepError", USERS),
     ("innervate.live.errors", "LiveError", USERS),
+    ("innervate.firmware.errors", "FirmwareError", USERS),
+    ("innervate.network", "NetworkError", USERS),
     ("innervate.web.errors", "WatchError", USERS),
     ("innervate.export.errors", "ExportError", USERS),
     ("cyclopts", "CycloptsError", USERS),

@@ -15,6 +15,13 @@ from innervate.wire.layout import SPARE
 Declaration = tuple[tuple[str, Any, int, int, str, str], ...]
 Kinds = dict[int, tuple[tuple[str, Any], ...]]
 OUTBOX = 16
+# What an action has where a network's `fields` declare no ACTION: see dialect/outbox.py.
+ACTION: Declaration = (
+    ("kind", 0, 0, 15, "kind", "1 SEND, 2 SET_TIMER, 3 DELIVER, 4 REPORT"),
+    ("a", 0, -32768, 65535, "number", "port, timer, kind of frame or code"),
+    ("b", 0, -1073741823, 1073741823, "number", "delay, time of the timer or a of the report"),
+    ("c", 0, -1073741823, 1073741823, "number", "flags or b of the report"),
+)
 
 
 class Watched(NamedTuple):
@@ -55,14 +62,11 @@ class Program(NamedTuple):
         main: the file of `boards/micropython` that becomes main.py, without its ending.
         drivers: files of `boards/micropython` that it needs.
         sources: files of `src/innervate` that it needs.
-        parameters: "module:function", (changes, where) -> all parameters by name; "" = those of
-            the network's plainest scenario.
     """
 
     main: str
     drivers: tuple[str, ...]
     sources: tuple[str, ...]
-    parameters: str = ""
 
 
 class Role(NamedTuple):
@@ -79,7 +83,14 @@ class Role(NamedTuple):
         in_ram: 16 KiB hold its code, too.
         noted: fields of a frame that only a simulation fills in.
         counted: fields that say how much of an array is used, by the array's name.
-        has_gate: handlers are given a gateway's record behind the state.
+        gate: declaration of a second record that handlers are given behind the state, on nodes
+            that have one; () = the protocol knows none.
+        parameters: "module:function", (changes, where) -> all parameters by name; "" = those of
+            the network's plainest scenario.
+        action: declaration of what an action of the outbox has.
+        frames: frames that one call sends and delivers at most; 0 = as many as it has actions.
+        nodes: nodes of a network that its arrays hold at most; 0 = they do not depend on it.
+        sized: "module:function", nodes -> the role with arrays for so many; "" = there is one size.
     """
 
     name: str
@@ -93,10 +104,20 @@ class Role(NamedTuple):
     in_ram: bool = False
     noted: frozenset[str] = frozenset()
     counted: Mapping[str, str] = {}
-    has_gate: bool = False
+    gate: Declaration = ()
+    parameters: str = ""
+    action: Declaration = ACTION
+    frames: int = 0
+    nodes: int = 0
+    sized: str = ""
     watched: Watched = Watched()
     emulated: Emulated | None = None
     program: Program | None = None
+
+    @property
+    def has_gate(self) -> bool:
+        """True if handlers are given a second record behind the state."""
+        return bool(self.gate)
 
 
 PLAIN = Program(
@@ -125,4 +146,5 @@ def roles_of(network: Network) -> tuple[Role, ...]:
         network.name, protocol.__name__, fields.STATE, fields.PARAMS, fields.FRAME, fields.FRAME,
         {kind: on_wire(layout) for kind, _name, layout in network.frames.LAYOUTS},
         getattr(protocol, "OUTBOX", OUTBOX), program=PLAIN,
+        action=getattr(fields, "ACTION", ACTION),
     ),)  # fmt: skip

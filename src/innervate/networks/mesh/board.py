@@ -1,7 +1,14 @@
 """A node of a mesh on a board, and the access protocol below it."""
 
+from functools import partial
+from typing import Any
+
 from innervate.live.board import Role, Watched, on_wire
+from innervate.live.errors import LiveError
+from innervate.live.parameters import check_parameters
 from innervate.networks.mesh import frames, payloads
+from innervate.networks.mesh.live.parameters import mesh_parameters
+from innervate.networks.mesh.live.stack import CLASSES
 from innervate.networks.mesh.protocol import csma_fields, fields
 from innervate.networks.mesh.protocol.constants import ACK
 
@@ -9,17 +16,71 @@ NODES = 32  # the smallest capacity class
 COUNTED = {"path": "path_len", "body": "length"}
 PACKET = (*on_wire(frames.COMMON), *COUNTED.items())
 RUN = Watched("mesh", "innervate.networks.mesh.sim.simulate:simulation", node=3)
+HERE = "innervate.networks.mesh.board"
+# Of IEEE 802.15.4 at 250 kbit/s: 20 symbols.
+WAITS = {"backoff_us": 320, "exponent_min": 3, "exponent_max": 6, "busy_max": 8}
 
-ROLES = (
-    Role(
-        "csma", "innervate.networks.mesh.protocol.csma",
-        csma_fields.STATION, csma_fields.PARAMS, (), csma_fields.ITEM, {},
-        room=4, in_ram=True, watched=RUN._replace(table="macs"),
-    ),
-    Role(
-        "mesh", "innervate.networks.mesh.protocol.node",
-        fields.node(NODES), fields.PARAMS, fields.FRAME, fields.ITEM,
-        {ACK: on_wire(frames.HOP_ACK), **dict.fromkeys(payloads.FIELDS, PACKET)},
-        room=32, counted=COUNTED, has_gate=True, watched=RUN._replace(table="nodes"),
-    ),
+
+def csma_parameters(changes: dict[str, int], where: str = "") -> dict[str, int]:
+    """A station's parameters, with what is to be different.
+
+    Raises:
+        LiveError: no such parameter, or out of its range; the message begins with `where`.
+    """
+    check_parameters(changes, csma_fields.PARAMS, where)
+    return {**WAITS, **changes}
+
+
+def node_parameters(nodes: int, changes: dict[str, int], where: str = "") -> dict[str, Any]:
+    """A node's parameters, with what is to be different; `nodes` is how many its arrays hold.
+
+    Raises:
+        LiveError: no such parameter, out of its range, or more nodes than fit.
+    """
+    small = {"queue": fields.QUEUE, "kept": fields.WAITING, "hop_frames": 4}
+    wanted = {**small, **changes}
+    count = wanted.pop("nodes", nodes)
+    if not 1 <= count <= nodes:
+        raise LiveError(f"{where}: {count} nodes do not fit into a class of {nodes}")
+    for name in ("queue", "kept"):
+        if wanted[name] > small[name]:
+            raise LiveError(
+                f"{where}: {name}={wanted[name]} does not fit into {small[name]} places"
+            )
+    own = {"width": nodes, "row": fields.words(nodes), "places": min(nodes, fields.NEIGHBOURS)}
+    return {**mesh_parameters(count, wanted, where), **own}
+
+
+small_parameters, middle_parameters, large_parameters = (
+    partial(node_parameters, size) for size in CLASSES
+)
+OF_CLASS = dict(zip(CLASSES, ("small", "middle", "large"), strict=True))
+
+CSMA = Role(
+    "csma", "innervate.networks.mesh.protocol.csma",
+    csma_fields.STATION, csma_fields.PARAMS, (), csma_fields.ITEM, {},
+    room=4, in_ram=True, action=csma_fields.ACTION, watched=RUN._replace(table="macs"),
+    parameters=f"{HERE}:csma_parameters",
 )  # fmt: skip
+
+
+def node(nodes: int) -> Role:
+    """A node of a network of up to so many: of the smallest capacity class that holds them.
+
+    Raises:
+        LiveError: there is none.
+    """
+    size = next((size for size in CLASSES if nodes <= size), 0)
+    if nodes < 1 or not size:
+        raise LiveError(f"{nodes} nodes: a node's arrays hold 1 to {CLASSES[-1]}")
+    return Role(
+        "mesh", "innervate.networks.mesh.protocol.node",
+        fields.node(size), fields.PARAMS, fields.FRAME, fields.ITEM,
+        {ACK: on_wire(frames.HOP_ACK), **dict.fromkeys(payloads.FIELDS, PACKET)},
+        room=32, counted=COUNTED, gate=fields.gate(size), action=fields.ACTION,
+        nodes=size, sized=f"{HERE}:node", parameters=f"{HERE}:{OF_CLASS[size]}_parameters",
+        watched=RUN._replace(table="nodes"),
+    )  # fmt: skip
+
+
+ROLES = (CSMA, node(NODES))

@@ -12,7 +12,7 @@ ROLES = (
     Role(
         "skin", "innervate.networks.skin.protocol.cell", fields.CELL, fields.PARAMS, FRAME, FRAME,
         {kind: on_wire(layout) for kind, layout in frames.FIELDS.items()},
-        room=12, in_ram=True, noted=fields.NOTED,
+        room=12, in_ram=True, noted=fields.NOTED, action=fields.ACTION, frames=4,
         watched=Watched(
             "skin",
             "innervate.networks.skin.sim.simulate:simulation",
@@ -28,7 +28,7 @@ ROLES = (
                 "networks/skin/protocol/constants", "networks/skin/frames",
                 "wire/bits", "wire/crc", "wire/layout", "wire/cobs",
             ),
-            "innervate.networks.skin.live.parameters:skin_parameters",
         ),
+        parameters="innervate.networks.skin.live.parameters:skin_parameters",
     ),
 )  # fmt: skip

@@ -19,6 +19,14 @@ ITEM = (
     ("attempt", 0, 0, 14, "tries", "transmissions of this frame before"),
 )
 
+# What an action of a station's outbox has (dialect/outbox.py).
+ACTION = (
+    ("kind", 0, 0, 15, "kind", "1 SEND, 2 SET_TIMER, 3 DELIVER, 4 REPORT"),
+    ("a", 0, 0, 15, "number", "0, timer or code"),
+    ("b", 0, 0, 1073741823, "number", "delay, time of the timer or a of the report"),
+    ("c", 0, 0, 15, "number", "flags or b of the report"),
+)
+
 PARAMS = (
     ("backoff_us", 0, 1, 16777215, "us", "unit of the backoff"),
     ("exponent_min", 0, 0, 15, "bits", "backoff exponent of a first attempt"),

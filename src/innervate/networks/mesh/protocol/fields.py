@@ -49,6 +49,15 @@ ITEM = (
 )
 
 
+# What an action of a node's outbox has (dialect/outbox.py).
+ACTION = (
+    ("kind", 0, 0, 15, "kind", "1 SEND, 2 SET_TIMER, 3 DELIVER, 4 REPORT"),
+    ("a", 0, 0, 63, "number", "0, timer, kind of packet or code"),
+    ("b", 0, -32768, 1073741823, "number", "delay, time of the timer or a of the report"),
+    ("c", 0, 0, 65535, "number", "flags or b of the report"),
+)
+
+
 def node(n, queue=QUEUE, kept=WAITING):
     """Fields of a node in a network of up to n nodes, that queues and keeps so many packets."""
     k = min(n, NEIGHBOURS)

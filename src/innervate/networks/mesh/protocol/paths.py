@@ -4,6 +4,7 @@ Dijkstra's algorithm over hop counts is a breadth-first search; among equals the
 """
 
 from innervate.dialect.arith import MASK16, MASK30
+from innervate.dialect.rng import LOW15
 from innervate.networks.mesh.protocol.constants import LIST, TABLE_FREE
 from innervate.networks.mesh.protocol.fields import NEIGHBOURS
 
@@ -66,7 +67,9 @@ def build_graph(gate, params, round):
 def fold(mark, value):
     """A mark of a sequence of numbers, below 2^30."""
     x = (mark ^ value) & MASK30
-    x = (x * 25_173 + 13_849) & MASK30
+    low = (x & LOW15) * 25_173 + 13_849  # in two halves: a product of both would not stay small
+    high = ((x >> 15) * 25_173) & LOW15
+    x = (low + (high << 15)) & MASK30
     return x ^ (x >> 13)
 
 

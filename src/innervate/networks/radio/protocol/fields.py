@@ -28,6 +28,14 @@ PACKET = (
     ("ago", 0, 0, 268435455, "us", "clock: since that slot began"),
 )
 
+# What an action of a station's outbox has (dialect/outbox.py).
+ACTION = (
+    ("kind", 0, 0, 15, "kind", "1 SEND, 2 SET_TIMER, 3 DELIVER, 4 REPORT"),
+    ("a", 0, 0, 15, "number", "0, timer, kind of frame or code"),
+    ("b", 0, -1, 1073741823, "number", "delay, time of the timer or a of the report"),
+    ("c", 0, 0, 65535, "number", "flags or b of the report"),
+)
+
 # What every station on the channel has, whatever its protocol.
 STATION = (
     ("number", 0, 0, 1023, "station", "who we are, in our data frames"),

@@ -38,6 +38,14 @@ FRAME = (
 # Fields of a frame that only a simulation fills in, for its tables: not sent, not on boards.
 NOTED = frozenset({"made_at"})
 
+# What an action of a cell's outbox has (dialect/outbox.py).
+ACTION = (
+    ("kind", 0, 0, 15, "kind", "1 SEND, 2 SET_TIMER, 3 DELIVER, 4 REPORT"),
+    ("a", 0, 0, 15, "number", "port, timer, kind of frame or code"),
+    ("b", 0, -1, 1073741823, "number", "delay, time of the timer or a of the report"),
+    ("c", 0, -1, 15, "number", "flags or b of the report"),
+)
+
 CELL = (
     ("dist", 4, 0, 255, "hops", "per port: distance last heard"),
     ("sq", 4, 0, 65535, "number", "per port: sequence number last heard"),

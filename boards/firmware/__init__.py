@@ -1,0 +1,1 @@
+"""The protocols' C held against their Python: `python -m boards.firmware`."""

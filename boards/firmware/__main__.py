@@ -1,0 +1,95 @@
+"""Calls made in Python and in C, and compared: `python -m boards.firmware`.
+
+`python -m boards.firmware [--calls N] [--seed S] [--plain] [skin csma radio mesh ...]`: of each
+role N calls (1,000,000), half as nodes of plain simulations are told them, with one seed after the
+other, half drawn. State and outbox are compared after every call. The C is compiled with a check
+of every sum, shift and index; `--plain`: without. Exit code 1 if anything differs, 2 if something
+is not installed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from boards.errors import BoardFailed, BoardMissing
+from boards.firmware.drawn import Drawn
+from boards.firmware.native import Native
+from boards.firmware.replayed import Heard, Shadow
+from boards.parity.record import HERE
+from boards.roles import kind_of, roles
+from innervate import scenario
+from innervate.firmware.emit import Library
+from innervate.live.board import Role
+
+CALLS = 1_000_000
+
+
+def replay(native: Native, calls: int, seed: int) -> tuple[int, Heard]:
+    """Simulate until so many calls were made both ways; how many, and what nodes heard.
+
+    Raises:
+        BoardFailed: the two disagree.
+    """
+    heard, done = Heard(), 0
+    while done < calls:
+        shadow = Shadow(native, calls - done)
+        shadow.heard = heard
+        shadow.run(scenario.plan(_scenario(native.library.role, seed)))
+        if not shadow.calls:
+            raise BoardFailed(f"{native.library.role.name}: a simulation made no call")
+        done, seed = done + shadow.calls, seed + 1
+    return done, heard
+
+
+def _scenario(role: Role, seed: int) -> scenario.Scenario:
+    if role.watched.scenario:
+        return scenario.load(HERE / f"{role.watched.scenario}.toml", seed=seed)
+    return scenario.from_dict({"kind": kind_of(role)}, seed=seed)
+
+
+def compare(role: Role, calls: int, seed: int, sanitized: bool) -> tuple[int, int]:
+    """Make calls of a role both ways; how many were replayed, how many drawn.
+
+    Raises:
+        BoardMissing, BoardFailed: no compiler; they disagree.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        native = Native(Library(role, {}), Path(folder), sanitized)
+        replayed, heard = replay(native, calls // 2, seed)
+        drawn = Drawn(native, heard, seed)
+        drawn.run(calls - replayed)
+    return replayed, drawn.calls
+
+
+def main(arguments: list[str]) -> int:
+    """The command; its exit code."""
+    parser = argparse.ArgumentParser(prog="python -m boards.firmware")
+    parser.add_argument("--calls", type=int, default=CALLS)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--plain", action="store_true")
+    parser.add_argument("roles", nargs="*")
+    asked, known = parser.parse_args(arguments), roles()
+    for name in asked.roles or known:
+        if name not in known:
+            print(f"no protocol {name!r}; known: {', '.join(known)}", file=sys.stderr)
+            return 2
+        begun = time.monotonic()
+        try:
+            counts = compare(known[name], asked.calls, asked.seed, not asked.plain)
+        except BoardMissing as missing:
+            print(missing, file=sys.stderr)
+            return 2
+        except BoardFailed as failed:
+            print(f"{name}: {failed}")
+            return 1
+        print(f"{name}: {counts[0]} calls replayed and {counts[1]} drawn, Python and C alike "
+              f"({time.monotonic() - begun:.0f} s)", flush=True)  # fmt: skip
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

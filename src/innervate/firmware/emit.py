@@ -1,0 +1,213 @@
+"""A role as C: the texts of one header and one source."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import textwrap
+from collections.abc import Mapping
+from typing import Any
+
+from innervate.firmware.constants import names_of, note_of
+from innervate.firmware.errors import FirmwareError
+from innervate.firmware.expressions import Expressions, local
+from innervate.firmware.facts import Facts
+from innervate.firmware.helpers import HELPERS, own, public
+from innervate.firmware.program import Made, Program, Type
+from innervate.firmware.records import initial, name_of, records_of, struct
+from innervate.firmware.statements import Statements, comment, declaration, wrapped
+from innervate.live.board import Role
+
+ABI = 1  # counts changes of what stands in headers and how it is called
+HANDLERS = ("on_start", "on_frame", "on_timer", "on_input", "on_carrier")
+MEANINGS = {
+    "state": "What a node keeps.",
+    "gate": "What a node has besides that leads, or may have to.",
+    "params": "Parameters, the same on all nodes.",
+    "frame": "A frame, as it goes over a port.",
+    "item": "What the node's user hands down.",
+    "action": "What a handler wants done.",
+}
+
+
+class Library:
+    """A role as C.
+
+    Args:
+        role: the protocol.
+        params: what the header's default parameters are.
+        prefix: in front of all names; the role's name if left out.
+
+    Raises:
+        FirmwareError: it is outside the dialect, or a parameter is missing.
+    """
+
+    def __init__(self, role: Role, params: Mapping[str, Any], prefix: str = "") -> None:
+        self.role, self.params = role, params
+        self.prefix = prefix or name_of(role.name)
+        self.records = records_of(role)
+        self.program = Program(role, self.records)
+        self.facts = Facts(self.program)
+        self.frames = role.frames or role.room
+        self.types = self._types()
+        names = names_of((made.function for made in self.program.functions()), self.prefix)
+        self.constants: dict[str, tuple[int, str]] = {}
+        helpers: set[str] = set()
+        self.bodies: dict[Made, list[str]] = {}
+        for made in self.program.functions():
+            expressions = Expressions(self.program, self.facts, made, names)
+            self.bodies[made] = Statements(expressions, self.types).body()
+            helpers |= expressions.helpers
+            for name, value in expressions.constants.items():
+                known = names[f"{made.function.module}.{name}"]
+                self.constants[known] = (value, note_of(made.function.module, name))
+        self.helpers = helpers | {helper for name in helpers for helper in HELPERS[name].needs}
+
+    def _types(self) -> dict[Type, str]:
+        """What C calls the types of variables."""
+        found = {Type("int"): "int32_t", Type("out"): f"{self.prefix}_out_t *"}
+        for record in self.records:
+            found[Type(record)] = f"{self.prefix}_{record}_t *"
+        for made in self.program.functions():
+            for kind in made.types.values():
+                if kind.field is not None:
+                    found[kind] = f"{kind.field.type} *"
+        return found
+
+    def digest(self) -> str:
+        """A hash of the functions as they are written, and of all declarations: 16 digits."""
+        hashed = hashlib.blake2b(digest_size=8)
+        for name, function in self.program.sources.items():
+            hashed.update(f"{name}\n{ast.unparse(function.node)}\n".encode())
+        for record, fields in self.records.items():
+            hashed.update(f"{record}\n{list(fields.values())}\n".encode())
+        return hashed.hexdigest()
+
+    def header(self) -> str:
+        """The text of the header."""
+        big, small = self.prefix.upper(), self.prefix
+        top = [
+            f"/** {self.role.name}: a node's protocol, made from {self.role.entry}.",
+            " *",
+            f" * {small}_init, then {small}_on_start; from then on the driver calls a handler for",
+            " * everything that happens, carries out what is in the outbox, and calls",
+            f" * {small}_clear.",
+            " * Nothing is allocated; times are microseconds modulo 2^30. */",
+            f"#ifndef {big}_H", f"#define {big}_H", "", "#include <stdint.h>", "",
+            "#ifdef __cplusplus", 'extern "C" {', "#endif", "",
+            f"#define {big}_ABI {ABI} /* of this header */",
+            f'#define {big}_SOURCE "{self.digest()}" /* hash of functions and declarations */',
+            f"#define {big}_OUTBOX {self.role.room} /* actions of one call at most */",
+            f"#define {big}_FRAMES {self.frames} /* frames of one call at most */",
+        ]  # fmt: skip
+        if self.role.nodes:
+            top.append(f"#define {big}_NODES {self.role.nodes} /* of a network at most */")
+        parts = ["\n".join(top) + "\n", self._constants(), *self._structs(), self._public()]
+        return "\n".join([*parts, "#ifdef __cplusplus\n}\n#endif\n", f"#endif /* {big}_H */\n"])
+
+    def _constants(self) -> str:
+        lines = []
+        for name, (value, note) in sorted(self.constants.items()):
+            number = f"({value})" if value < 0 else f"{value}"
+            lines += [f"#define {name} {number}" + (f" /* {note} */" if note else "")]
+        return "\n".join(lines) + "\n"
+
+    def _structs(self) -> list[str]:
+        small = self.prefix
+        made = [
+            struct(f"{small}_{record}_t", fields, MEANINGS[record])
+            for record, fields in self.records.items()
+        ]
+        if "frame" not in self.records:
+            made.append(f"/** Handlers look into no frame. */\ntypedef void {small}_frame_t;\n")
+        if "item" not in self.records and "frame" in self.records:
+            made.append(f"typedef {small}_frame_t {small}_item_t; /* what its user hands down */\n")
+        frames = ""
+        if "frame" in self.records:
+            frames = textwrap.indent(
+                f"uint8_t frames; /* how many are in use */\n"
+                f"uint8_t place[{small.upper()}_OUTBOX]; /* by action: its frame + 1; 0 none */\n"
+                f"{small}_frame_t frame[{small.upper()}_FRAMES];\n",
+                "    ",
+            )
+        made.append(
+            "/** The outbox: what a handler wants done, in this order. */\ntypedef struct {\n"
+            "    uint8_t count; /* actions */\n"
+            "    uint8_t overflow; /* 1 = one did not fit: a broken invariant, stop */\n"
+            f"{frames}    {small}_action_t action[{small.upper()}_OUTBOX];\n}} {small}_out_t;\n"
+        )
+        return made
+
+    def _public(self) -> str:
+        lines = [public(self.prefix, self.records)]
+        for made in self.program.handlers:
+            lines += [*self._comment(made), self._head(made) + ";", ""]
+        return "\n".join(lines)
+
+    def _comment(self, made: Made) -> list[str]:
+        function = made.function
+        where = f"{function.module.replace('.', '/')}.py:{function.node.lineno}"
+        said = ast.get_docstring(function.node) or ""
+        parts = [" ".join(part.split()) for part in said.split("\n\n")]
+        lines: list[str] = []
+        for part in parts:
+            lines += [line.replace("/*", " *", bool(lines)).removesuffix(" */") for line in
+                      comment(part, "")]  # fmt: skip
+        return [*lines, f" * {where} */"]
+
+    def _head(self, made: Made) -> str:
+        """The line that a function begins with."""
+        arguments = []
+        for name in made.arguments:
+            kind = made.types[name]
+            text = self._argument(made, name, kind)
+            arguments.append(declaration(text, local(name)))
+        returns = {"none": "void", "int": "int32_t"}.get(made.returns.what)
+        returns = returns or self.types[made.returns]
+        static = "" if made.function.name in HANDLERS else "static "
+        text = declaration(f"{static}{returns}", f"{self.prefix}_{made.name}")
+        return "\n".join(wrapped(f"{text}({', '.join(arguments)})"))
+
+    def _argument(self, made: Made, name: str, kind: Type) -> str:
+        if kind.what == "frame" and "frame" not in self.records:
+            return f"const {self.prefix}_frame_t *"
+        text = self.types[kind]
+        constant = kind.is_pointer and name not in made.changed and kind.what != "out"
+        if made.function.name in HANDLERS and kind.what in ("state", "gate"):
+            constant = False
+        return f"const {text}" if constant else text
+
+    def source(self, header: str) -> str:
+        """The text of the source; `header` is the name of the header's file."""
+        prefix = self.prefix
+        top = [
+            f"/* {self.role.name}: made from {self.role.entry}, function by function.",
+            " * Above each stands where it was made from. Do not edit: edit that. */",
+            f'#include "{header}"', "",
+            "/* Sums of two values below 2^30 must fit into an int, and >> must keep the sign. */",
+            f"typedef char {prefix}_int_has_32_bits[",
+            "        (sizeof(int) >= 4 && (-1 >> 1) == -1) ? 1 : -1];",
+            "",
+        ]  # fmt: skip
+        helpers = [HELPERS[name].text.format(p=prefix, P=prefix.upper()) for name in HELPERS
+                   if name in self.helpers]  # fmt: skip
+        functions = []
+        for made, body in self.bodies.items():
+            lines = [*self._comment(made), self._head(made), "{", *body, "}", ""]
+            functions.append("\n".join(lines))
+        beginning = [*self._defaults(), own(self.prefix, self.records)]
+        return "\n".join([*top, *helpers, *beginning, *functions])
+
+    def _defaults(self) -> list[str]:
+        small = self.prefix
+        lines = [f"const {small}_params_t {small}_defaults = {{"]
+        for field in self.records["params"].values():
+            value = self.params.get(field.name, initial(field))
+            numbers = value if isinstance(value, list | tuple) else [value]
+            if any(not field.low <= number <= field.high for number in numbers):
+                what = f"{field.name}={value} is not in {field.low}..{field.high}"
+                raise FirmwareError(f"{self.role.name}: parameter {what}")
+            text = ", ".join(map(str, numbers))
+            lines += wrapped(f"    {{{text}}}," if field.length else f"    {text},")
+            lines[-1] += f" /* {field.name} */"
+        return [*lines, "};", ""]
