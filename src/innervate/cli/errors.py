@@ -25,7 +25,6 @@ _EXTRAS = {
 }  # fmt: skip
 # Errors whose text is one line for the user: module and class, and whose mistake they are.
 _KNOWN = (
-    ("innervate.folders", "NetworkError", USERS),
     ("innervate.scenario.errors", "ScenarioError", USERS),
     ("innervate.running.errors", "RunError", USERS),
     ("innervate.verify.errors", "VerifyError", USERS),
