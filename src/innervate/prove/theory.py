@@ -137,6 +137,7 @@ def prove(theory: Theory, tell: Progress | None = None, first_only: bool = False
         first_only: end with the first step that is refuted.
     """
     checked: list[Checked] = []
+    reach = not (first_only or theory.is_example)
     ended = "complete"
     lines: dict[Way, str] = {}
     for number, make in enumerate(theory.steps):
@@ -146,7 +147,7 @@ def prove(theory: Theory, tell: Progress | None = None, first_only: bool = False
             break
         lines.update(_lines(step))
         simple = theory.simple(step) if theory.simple is not None else []
-        checked.append(check(step, theory.tell, simple, first_only))
+        checked.append(check(step, theory.tell, simple, first_only, reach))
         if first_only and checked[-1].refuted:
             ended = "stopped"
             break

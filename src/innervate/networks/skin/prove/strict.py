@@ -84,7 +84,8 @@ def windowed(view: View) -> Term:
     return t.all(*parts)
 
 
-def _facts(view: View) -> list[Term]:
+def facts(view: View) -> list[Term]:
+    """What is known of a cell before any event."""
     return [goal.holds for goal in invariants(view)] + [windowed(view), true_ghosts(view)]
 
 
@@ -94,13 +95,13 @@ def _play(known: dict[str, Any], name: str, handler: str, told: list[Any]) -> St
     cause, port = t.unknown("cause", 0, 1), t.unknown("port", 0, PORTS - 1)
     stage.fix(cell.frame, "kind", BEACON)
     view = cell.view(stage.store)
-    facts = [windowed(view), true_ghosts(view)]
+    assumed = [windowed(view), true_ghosts(view)]
     if handler != "on_start":
-        facts = [*_facts(view), *([_said(cell, port)] if "frame" in told else [])]
+        assumed = [*facts(view), *([said_by(cell, port)] if "frame" in told else [])]
     given = {"cause": cause, "port": port, "frame": cell.frame}
     args = [given.get(one, one) for one in told]
     step = stage.play(
-        name, handler, [cell.cell, cell.params, stage.clock(), *args, stage.out], facts
+        name, handler, [cell.cell, cell.params, stage.clock(), *args, stage.out], assumed
     )
     step.goals = _goals(cell, step)
     if handler == "on_start":
@@ -112,7 +113,7 @@ def _play(known: dict[str, Any], name: str, handler: str, told: list[Any]) -> St
     return step
 
 
-def _said(cell: Cell, port: Term) -> Term:
+def said_by(cell: Cell, port: Term) -> Term:
     """What a beacon on a port may say: nothing older than what was taken from there before."""
     stage = cell.stage
     t, view = stage.terms, cell.view(stage.store)
@@ -170,8 +171,8 @@ def _moved(name: str, moves: Callable[[View, Any, Any, int], Term]) -> Step:
     after, known = ghosts_after(cell, moves)
     moved = View(t, cell.cell, cell.params, stage.store, after)
     goals = [*invariants(moved), Goal("what neighbours have is true", true_ghosts(moved))]
-    facts = [*_facts(view), *known]
-    return Step(name, stage.machine, stage.records, stage.store, stage.store, facts, goals)
+    assumed = [*facts(view), *known]
+    return Step(name, stage.machine, stage.records, stage.store, stage.store, assumed, goals)
 
 
 def _rises(view: View, old: Any, new: Any, p: int) -> Term:

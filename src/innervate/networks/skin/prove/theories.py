@@ -6,7 +6,7 @@ from typing import Any
 
 from innervate.dialect.source import Change
 from innervate.networks.skin.protocol.constants import INFINITY, RULE_FEASIBLE
-from innervate.networks.skin.prove import feasible, pc, stories, strict, system
+from innervate.networks.skin.prove import feasible, pc, reductions, stories, strict, system
 from innervate.networks.skin.prove.faults import FAULTS as MUTANTS
 from innervate.networks.skin.prove.faults import NO_SAFETY
 from innervate.networks.skin.prove.words import tell
@@ -62,6 +62,16 @@ def theories(_network: Any, change: Change | None = None) -> list[Theory]:
                STRICT, strict.steps(change), UNREACHABLE_STRICT, tell=tell, simple=simple),
         *_stories(change),
     ]  # fmt: skip
+
+
+def resting(rule: int, change: Change | None = None) -> list[Theory]:
+    """What a reduced search under `feasible` or `strict` rests on, of the source at hand."""
+    own = feasible.steps if rule == RULE_FEASIBLE else strict.steps
+    claim = "What the explorer forgets of a state decides nothing."
+    return [
+        Theory("the rule", claim, (), own(change), is_example=True),
+        Theory("what is forgotten", claim, (), reductions.steps(rule, change), is_example=True),
+    ]
 
 
 def _stories(change: Change | None) -> list[Theory]:
