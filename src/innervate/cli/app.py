@@ -191,6 +191,30 @@ def verify(
 
 
 @app.command
+def prove(
+    system: str | None = None,
+    /,
+    *,
+    faults: Annotated[bool, Parameter(negative="")] = False,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> int:
+    """Prove what holds for any number of nodes, from the protocol's own source; 1 if it does not.
+
+    Parameters
+    ----------
+    system
+        Which protocol: skin (if left out), radio or mesh.
+    faults
+        Plant small mistakes in the protocol, one after the other: each must be refuted.
+    json
+        Print the results as JSON and nothing else.
+    """
+    from innervate.cli import proving as command
+
+    return command.prove(system or first(), faults, json)
+
+
+@app.command
 def watch(
     what: str,
     /,
