@@ -33,7 +33,7 @@ def load(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) -
         list(overrides.items()) if isinstance(overrides, Mapping) else list(overrides)
     )
     if isinstance(scenario, Struct):
-        scenario = to_builtins(scenario)
+        return from_dict(to_builtins(scenario), changes, seed)
     if isinstance(scenario, dict):
         return from_dict(scenario, changes, seed)
     if not isinstance(scenario, Scenario):
