@@ -3,7 +3,8 @@
 `innervate.run(scenario)` runs a scenario, given as a file, as a dictionary or built in code;
 `innervate.sweep(scenario, vary=...)` runs it in many variants, many times;
 `innervate.compare(a, b)` says what differs between two runs, and `innervate.size(question)` how
-many cables a skin needs.
+many cables a skin needs. `innervate.Network` describes a network of one's own, whose folder
+`innervate.use(folder)` makes known; `innervate.explore(network)` explores it.
 The simulator behind them is loaded at the first use, so that `import innervate` stays cheap.
 """
 
@@ -11,16 +12,21 @@ from __future__ import annotations
 
 TYPE_CHECKING = False  # `typing` would be the slowest part of this import
 if TYPE_CHECKING:
+    from innervate.network import Network as Network
+    from innervate.network import NetworkError as NetworkError
+    from innervate.network import use as use
     from innervate.networks.typed import Answer as Answer
     from innervate.networks.typed import Question as Question
     from innervate.networks.typed import size as size
     from innervate.running.compare import Comparison as Comparison
     from innervate.running.compare import compare as compare
     from innervate.running.errors import RunError as RunError
+    from innervate.running.exploring import explore as explore
     from innervate.running.run import Run as Run
     from innervate.running.run import run as run
     from innervate.scenario import Scenario as Scenario
     from innervate.scenario import ScenarioError as ScenarioError
+    from innervate.scenario.declared import CablesScenario as CablesScenario
     from innervate.scenario.given import check as check
     from innervate.scenario.given import load as load
     from innervate.sweeping.errors import SweepError as SweepError
@@ -33,7 +39,10 @@ __version__ = "0.1.0"
 # Where each name comes from; the lines above say the same to type checkers.
 _PLACES = {
     "Answer": "networks.typed",
+    "CablesScenario": "scenario.declared",
     "Comparison": "running.compare",
+    "Network": "network",
+    "NetworkError": "network",
     "Question": "networks.typed",
     "Run": "running.run",
     "RunError": "running.errors",
@@ -43,11 +52,13 @@ _PLACES = {
     "SweepError": "sweeping.errors",
     "check": "scenario.given",
     "compare": "running.compare",
+    "explore": "running.exploring",
     "load": "scenario.given",
     "load_sweep": "sweeping.loading",
     "run": "running.run",
     "size": "networks.typed",
     "sweep": "sweeping.sweep",
+    "use": "network",
 }
 __all__ = ["__version__", *_PLACES]
 

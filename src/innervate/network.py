@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import os
 import pkgutil
-import sys
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
+
+from innervate import folders
+from innervate.folders import NetworkError as NetworkError
 
 HOME = GROUP = "innervate.networks"
 FOLDERS = "INNERVATE_NETWORKS"
@@ -72,12 +74,22 @@ PARTS = {
     "live_view": "class: web.live_view.LiveView, its running nodes on the page",
     "recovery": "module: recoveries, line, NOTHING: how it healed, from a capture",
     "verify": "module: explorations, notice, MUTANTS, hunt: what `verify` does (verify/cases.py)",
+    "prove": "module: theories, MUTANTS, NO_SAFETY: what `prove` does (prove/declared.py)",
     "counterexample": "(story, path): the picture of how something breaks",
     "boards": "tuple of live.board.Role: what of it runs on a board; if absent, its protocol",
     "random": "module: SHARE, drawn, smaller, trouble: networks from a number (running/fuzz.py)",
+    "invariants": "module in the dialect: node_*(node, params, now), network_*(nodes, count, "
+    "params): what must hold (verify/own.py)",
+    "measures": "(run) -> dict of str to number: its own figures in summaries (running/own.py)",
+    "shows": "dict of str to (unit, (node, params) -> number): what pages colour nodes by, too",
+    "happenings": "dict of str to (node, value) -> (kind, item) for on_input: own [[event]]s",
     "papers": "module: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up",
 }
 DEFAULTS = {
+    "model": "innervate.scenario.declared:CablesScenario",
+    "check": "innervate.scenario.declared:check",
+    "plan": "innervate.scenario.declared:plan",
+    "template": "innervate.scenario.declared:template",
     "run": "innervate.running.simulating",
     "tables": "innervate.running.simulating:TABLES",
     "report": "innervate.plot.body:body",
@@ -97,6 +109,7 @@ DEFAULTS = {
     "harm": "innervate.scenario.actions.cables:HARM",
     "simulation": "innervate.sim.cables.declared:simulation",
     "verify": "innervate.verify.declared",
+    "prove": "innervate.prove.declared",
     "interface_words": "innervate.network:NO_WORDS",
     "unfit": "innervate.network:UNFIT",
     "without_events": "innervate.network:nothing_against_it",
@@ -114,8 +127,10 @@ NO_WORDS: dict[str, str] = {}
 UNFIT = "links of this kind of network are not measured"
 
 
-class NetworkError(Exception):
-    """A network that was named cannot be loaded."""
+# Parts that stand for any network of a medium, where they are others than over cables.
+MEDIA: dict[str, dict[str, str]] = {"cables": {}}
+# Parts that can be functions of the network, which make them.
+MADE = frozenset({"template"})
 
 
 class Network:
@@ -128,13 +143,22 @@ class Network:
         link_type: of its frames in captures: LINKTYPE_USER0 .. USER15 = 147 .. 162, which pcapng
             keeps for private use.
         key_kind: its number under a seal, 1 .. 255: what is sealed for one is not taken by another.
+        medium: what its nodes are joined by, if it has no parts of its own for that: "cables".
         **parts: where each part stands: "module" or "module:name".
+
+    Attributes:
+        folder: that it was loaded from, if it is not installed.
     """
+
+    folder: Path | None = None
 
     def __init__(
         self, name: str, package: str, rank: int = 100, link_type: int = 162, key_kind: int = 255,
-        **parts: str,
+        medium: str = "cables", **parts: str,
     ) -> None:  # fmt: skip
+        if medium not in MEDIA:
+            known = ", ".join(MEDIA)
+            raise TypeError(f"network {name}: no medium {medium!r}; there are {known}")
         for part in parts:
             if part not in PARTS:
                 raise TypeError(f"network {name}: no part {part!r}; there are {', '.join(PARTS)}")
@@ -143,8 +167,10 @@ class Network:
         self.rank = rank
         self.link_type = link_type
         self.key_kind = key_kind
+        self.medium = medium
         self.parts = {
             **DEFAULTS,
+            **MEDIA[medium],
             **{part: _absolute(package, place) for part, place in parts.items()},
         }
 
@@ -161,6 +187,8 @@ class Network:
         found: Any = import_module(module)
         if name:
             found = getattr(found, name)
+        if part in MADE and callable(found):
+            found = found(self)
         self.__dict__[part] = found
         return found
 
@@ -211,18 +239,31 @@ def networks() -> dict[str, Network]:
     Raises:
         NetworkError: one that was named cannot be loaded, or a name is taken twice.
     """
+    made = {network.name: network for network in sorted(_installed(), key=lambda n: n.rank)}
+    for folder in _folders():
+        network = of_folder(folder)
+        if network.name in made:
+            raise _taken(network, made[network.name])
+        made[network.name] = network
+    return dict(sorted(made.items(), key=lambda one: one[1].rank))
+
+
+@cache
+def _installed() -> tuple[Network, ...]:
+    """The toolkit's own networks, and those of installed packages."""
     home = import_module(HOME)
     found = [import_module(f"{HOME}.{folder.name}.network").NETWORK
              for folder in pkgutil.iter_modules(home.__path__) if folder.ispkg]  # fmt: skip
     found += [_entry(point) for point in entry_points(group=GROUP)]
-    folders = os.environ.get(FOLDERS, "").split(os.pathsep)
-    found += [_in_folder(Path(folder)) for folder in folders if folder]
-    made: dict[str, Network] = {}
-    for network in sorted(found, key=lambda n: n.rank):
-        if made.setdefault(network.name, network) is not network:
-            other = made[network.name].package
-            raise NetworkError(f"{network.package} and {other} are both called {network.name!r}")
-    return made
+    for place, network in enumerate(found):
+        for other in found[:place]:
+            if other.name == network.name:
+                raise _taken(network, other)
+    return tuple(found)
+
+
+def _folders() -> list[Path]:
+    return [Path(one) for one in os.environ.get(FOLDERS, "").split(os.pathsep) if one]
 
 
 def first() -> str:
@@ -230,45 +271,102 @@ def first() -> str:
     return next(iter(networks()))
 
 
-def add_folder(folder: Path) -> Network:
-    """Make a network known to this process that stands in a folder with a `network.py`.
+def use(folder: Path) -> Network:
+    """The network of a folder, known by its name from now on: here, and in processes begun here.
+
+    Loading it runs its code. A file of it that was edited since is read again.
 
     Raises:
-        NetworkError: it cannot be loaded, or another one has its name.
+        NetworkError: it is none, or is not as it must be.
     """
-    found = _in_folder(folder, str(folder))
-    other = networks().setdefault(found.name, found)
-    if other.package != found.package:
-        raise NetworkError(f"{folder} and {other.package} are both called {found.name!r}")
-    return other
+    folder = folder.resolve()
+    others = [one for one in _folders() if one.resolve().name != folder.name]
+    was = folder in [one.resolve() for one in _folders()]
+    if not was or folders.is_stale(folder):
+        network = of_folder(folder)
+        os.environ[FOLDERS] = os.pathsep.join(map(str, [*others, folder]))
+        networks.cache_clear()
+        assert networks()[network.name] is network
+    return next(one for one in networks().values() if one.folder == folder)
+
+
+def find(kind: str, *places: Path) -> Network | None:
+    """A network by its name: one that is installed, or else a folder called so.
+
+    Args:
+        kind: its name.
+        places: folders that are looked into: for a folder of that name, or one that has it.
+
+    Raises:
+        NetworkError: such a folder cannot be loaded.
+    """
+    for network in _installed():
+        if network.name == kind:
+            return network
+    if kind.isidentifier():
+        for place in map(Path.resolve, places):
+            for folder in (place / kind, *([place] if place.name == kind else [])):
+                if folders.is_one(folder):
+                    return use(folder)
+    known = networks().get(kind)
+    return use(known.folder) if known is not None and known.folder is not None else known
 
 
 def _entry(point: Any) -> Network:
     try:
-        return _checked(point.load(), point.value)
+        found = point.load()
     except (ImportError, AttributeError) as error:
         message = f"the installed network {point.name} cannot be loaded: {error}"
         raise NetworkError(message) from error
-
-
-def _in_folder(folder: Path, named: str = "") -> Network:
-    if not (folder / "network.py").is_file():
-        raise NetworkError(f"{named or f'{FOLDERS}: {folder}'} holds no network.py")
-    where = str(folder.resolve().parent)
-    if where not in sys.path:
-        sys.path.append(where)
-    try:
-        return _checked(import_module(f"{folder.resolve().name}.network").NETWORK, str(folder))
-    except (ImportError, AttributeError) as error:
-        raise NetworkError(
-            f"{named or f'{FOLDERS}: {folder}'} cannot be loaded: {error}"
-        ) from error
-
-
-def _checked(found: Any, where: str) -> Network:
     if not isinstance(found, Network):
-        raise NetworkError(f"{where} is no Network: {type(found).__name__}")
+        raise NetworkError(f"{point.value} is no Network: {type(found).__name__}")
     return found
+
+
+def of_folder(folder: Path) -> Network:
+    """The network of a folder, checked as it is written.
+
+    Raises:
+        NetworkError: it is none, or the first thing that is wrong with it.
+    """
+    network = read(folder)
+    for one in folders.findings(folder.resolve(), network) if network.has("protocol") else []:
+        raise NetworkError(str(one))
+    return network
+
+
+def read(folder: Path) -> Network:
+    """The network of a folder, however it is written.
+
+    Raises:
+        NetworkError: it is none.
+    """
+    if not folder.is_dir():
+        raise NetworkError(f"{folder}: no such folder; name one with a network.py")
+    if not (folder / folders.NETWORK_FILE).is_file():
+        raise NetworkError(f"{folder} holds no network.py")
+    if not folder.resolve().name.isidentifier():
+        raise NetworkError(f"{folder}: a network's folder is named in letters, digits and _, "
+                           "like a Python module")  # fmt: skip
+    found, where = folders.load(folder), folders.shown(folder.resolve() / folders.NETWORK_FILE)
+    if not isinstance(found, Network):
+        raise NetworkError(f"{where}: NETWORK is no Network: {type(found).__name__}")
+    if found.name != folder.resolve().name:
+        raise NetworkError(f"{where}: the network is called {found.name!r} and its folder "
+                           f"{folder.name!r}; give both one name")  # fmt: skip
+    found.folder = folder.resolve()
+    return found
+
+
+def _taken(network: Network, other: Network) -> NetworkError:
+    where = network.package
+    if network.folder is not None:
+        path = network.folder / folders.NETWORK_FILE
+        lines = path.read_text(encoding="utf-8").splitlines()
+        line = next((n for n, text in enumerate(lines, 1) if "Network(" in text), 1)
+        where = f"{folders.shown(path)}:{line}"
+    return NetworkError(f"{where}: the name {network.name!r} is taken by {other.package}; "
+                        "give the network and its folder another")  # fmt: skip
 
 
 def _absolute(package: str, place: str) -> str:

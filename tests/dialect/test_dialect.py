@@ -6,25 +6,27 @@ from pathlib import Path
 import pytest
 
 import innervate
+from innervate.dialect.checker import broken_rules, functions_of, imports_of, is_ours
 
 HOME = Path(innervate.__file__).parent
 FOLDERS = (HOME / "dialect", *sorted((HOME / "networks").glob("*/protocol")))
-PACKAGE = "innervate.dialect"
 SOURCES = [path for folder in FOLDERS for path in sorted(folder.rglob("*.py"))]
-PYTHON = {"plain.py", "copies.py", "source.py", "__init__.py"}  # about protocols, in full Python
-ABOUT = {"copies.py", "source.py"}  # read files, so import what that takes
-BUILTINS = {"abs", "max", "min", "range"}
-
-# Every kind of syntax that the dialect has; whatever is not here is refused by its name.
-PLAIN = (
-    *(ast.Module, ast.Expr, ast.alias, ast.arguments, ast.arg, ast.Load, ast.Store),
-    *(ast.Assign, ast.AugAssign, ast.If, ast.While, ast.Return, ast.Pass, ast.Break, ast.Continue),
-    *(ast.Name, ast.Attribute, ast.Subscript, ast.IfExp),
-    *(ast.Compare, ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE),
-    *(ast.BoolOp, ast.And, ast.Or, ast.UnaryOp, ast.Not, ast.USub, ast.UAdd, ast.Invert),
-    *(ast.BinOp, ast.Add, ast.Sub, ast.Mult, ast.FloorDiv, ast.Mod),
-    *(ast.LShift, ast.RShift, ast.BitAnd, ast.BitOr, ast.BitXor),
-)
+PYTHON = {
+    "plain.py",
+    "copies.py",
+    "source.py",
+    "checker.py",
+    "folder.py",
+    "counted.py",
+    "__init__.py",
+}  # about protocols, in full Python
+ABOUT = {
+    "copies.py",
+    "source.py",
+    "checker.py",
+    "folder.py",
+    "counted.py",
+}  # read files, so import what that takes
 
 
 def dialect_sources():
@@ -32,156 +34,6 @@ def dialect_sources():
     return [
         path for path in SOURCES if path.name not in PYTHON and not path.name.endswith("fields.py")
     ]
-
-
-def functions_of(tree):
-    return [node for node in tree.body if isinstance(node, ast.FunctionDef)]
-
-
-def imports_of(tree):
-    """(module, name bound here) of every import."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            for alias in node.names:
-                yield alias.name, alias.asname or alias.name
-        elif isinstance(node, ast.ImportFrom):
-            module = f"{PACKAGE}.{node.module or ''}".rstrip(".") if node.level else node.module
-            for alias in node.names:
-                yield module, alias.asname or alias.name
-
-
-def is_ours(module):
-    parts = module.split(".")
-    of_network = parts[:2] == ["innervate", "networks"] and "protocol" in parts
-    return f"{module}.".startswith(f"{PACKAGE}.") or of_network
-
-
-def is_docstring(node, parents):
-    """A bare string is the first statement of a module or function."""
-    owner = parents.get(parents.get(node))
-    return (
-        isinstance(node.value, str)
-        and isinstance(owner, ast.Module | ast.FunctionDef)
-        and owner.body[0] is parents[node]
-    )
-
-
-class Checker:
-    """Collects what a source breaks, as "line: what"."""
-
-    def __init__(self, source, known):
-        self.tree = ast.parse(source)
-        self.broken = []
-        self.known = known | {function.name for function in functions_of(self.tree)}
-        self.imported = {name for module, name in imports_of(self.tree) if is_ours(module)}
-        self.parents = {
-            child: node for node in ast.walk(self.tree) for child in ast.iter_child_nodes(node)
-        }
-
-    def complain(self, node, what):
-        self.broken.append(f"{getattr(node, 'lineno', 1)}: {what}")
-
-    def check(self):
-        if ast.get_docstring(self.tree) is None:
-            self.complain(self.tree, "no module docstring")
-        for node in ast.walk(self.tree):
-            special = getattr(self, "check_" + type(node).__name__, None)
-            if special:
-                special(node)
-            elif not isinstance(node, PLAIN):
-                self.complain(node, f"{type(node).__name__} is not in the dialect")
-        for node in self.tree.body:
-            self.check_top(node)
-        return self.broken
-
-    def check_top(self, node):
-        is_doc = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
-        allowed = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.Assign)
-        if not is_doc and not isinstance(node, allowed):
-            self.complain(node, "only imports, constants and functions at the top")
-        if isinstance(node, ast.Assign):
-            names = [t.id for t in node.targets if isinstance(t, ast.Name)]
-            if len(names) != len(node.targets) or names != [name.upper() for name in names]:
-                self.complain(node, "a module constant is a name in capitals")
-            if any(isinstance(part, ast.Call) for part in ast.walk(node.value)):
-                self.complain(node, "a module constant calls nothing")
-
-    def check_Import(self, node):
-        for alias in node.names:
-            if not is_ours(alias.name):
-                self.complain(node, f"imports {alias.name}")
-        self.check_place_of_import(node)
-
-    def check_ImportFrom(self, node):
-        if not node.level and not is_ours(node.module or ""):
-            self.complain(node, f"imports {node.module}")
-        if any(alias.name == "*" for alias in node.names):
-            self.complain(node, "imports *")
-        self.check_place_of_import(node)
-
-    def check_place_of_import(self, node):
-        if self.parents[node] is not self.tree:
-            self.complain(node, "imports inside something")
-
-    def check_FunctionDef(self, node):
-        if self.parents[node] is not self.tree:
-            self.complain(node, "a function inside something")
-        if node.decorator_list:
-            self.complain(node, "a decorator")
-        if node.returns or any(arg.annotation for arg in node.args.args):
-            self.complain(node, "annotations")
-        args = node.args
-        if args.defaults or args.kwonlyargs or args.vararg or args.kwarg or args.posonlyargs:
-            self.complain(node, "arguments other than plain positional ones")
-        if ast.get_docstring(node) is None:
-            self.complain(node, "no docstring")
-
-    def check_Constant(self, node):
-        if isinstance(node.value, str):
-            if not is_docstring(node, self.parents):
-                self.complain(node, "a string")
-        elif isinstance(node.value, float | complex | bytes) or node.value is ...:
-            self.complain(node, f"a {type(node.value).__name__}")
-        elif node.value is None:
-            self.complain(node, "None")
-        elif node.value >= 1 << 30:
-            self.complain(node, "a number of 2^30 or more")
-
-    def check_Call(self, node):
-        if node.keywords:
-            self.complain(node, "a keyword argument")
-        called = node.func
-        if isinstance(called, ast.Attribute) and isinstance(called.value, ast.Name):
-            # module.function: only of a module of this package
-            if called.value.id not in self.imported or called.attr not in self.known:
-                self.complain(node, f"calls {called.value.id}.{called.attr}")
-        elif not isinstance(called, ast.Name):
-            self.complain(node, "calls something that is no name")
-        elif called.id not in self.known | BUILTINS:
-            self.complain(node, f"calls {called.id}")
-        if isinstance(called, ast.Name) and called.id == "range":
-            owner = self.parents[node]
-            if not (isinstance(owner, ast.For) and owner.iter is node):
-                self.complain(node, "range outside a for")
-
-    def check_For(self, node):
-        loop = node.iter
-        is_range = isinstance(loop, ast.Call) and isinstance(loop.func, ast.Name)
-        if not (is_range and loop.func.id == "range"):
-            self.complain(node, "a for over something that is no range")
-        if not isinstance(node.target, ast.Name):
-            self.complain(node, "a for with more than one variable")
-        if node.orelse:
-            self.complain(node, "a for with an else")
-
-    def check_While(self, node):
-        if node.orelse:
-            self.complain(node, "a while with an else")
-
-
-def broken_rules(source, known=frozenset()):
-    """What `source` breaks of the dialect; `known` are functions of the room's other files."""
-    return Checker(source, set(known)).check()
 
 
 def known_functions():
@@ -232,7 +84,7 @@ def on_frame(cell, params, now, port, frame, out):
 
 def test_what_the_dialect_has():
     assert broken_rules(GOOD, {"later", "after"}) == []
-    assert broken_rules(inside("return f(cell, 1073741823)")) == []
+    assert broken_rules(inside("return later(cell, 1073741823)"), {"later"}) == []
 
 
 def inside(body):
@@ -302,6 +154,9 @@ BAD = {
     "for with two": inside("for i, j in range(n):\n        pass"),
     "while with else": inside("while n:\n        pass\n    else:\n        pass"),
     "range kept": inside("m = range(n)"),
+    "while that never ends": inside("while n > 0:\n        cell.x = 1"),
+    "while true": inside("while True:\n        n -= 1"),
+    "recursion": inside("return f(cell, n)"),
 }
 
 

@@ -54,13 +54,23 @@ def test_the_same_sources_elsewhere_have_a_cache_of_their_own(copied):
     assert compilation.source_hash(copied) != compilation.source_hash()
 
 
-def test_a_file_elsewhere_is_part_of_it(tmp_path):
-    file = tmp_path / "token.py"
-    found = []
-    for text in ("a", "b"):
-        file.write_text(text)
-        found.append(compilation.source_hash(more=[file]))
-    assert len({*found, compilation.source_hash()}) == 3
+def test_each_state_of_a_file_elsewhere_has_a_folder_of_its_own(foreign, tmp_path, monkeypatch):
+    monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path / "cache"))
+    before = compilation.numba.config.CACHE_DIR
+    file, found = tmp_path / "token.py", []
+    ours = compilation.open_cache()
+    (ours / "loop.compiled").touch()
+    for number in range(compilation.CACHE_FOLDERS_MAX + 3):
+        file.write_text(f"A = {number}")
+        foreign.add(file)
+        found.append(compilation.open_cache())
+    assert len(set(found)) == len(found)
+    assert {folder.parent for folder in found} == {ours}
+    kept = [folder for folder in found if folder.exists()]
+    assert len(kept) == compilation.CACHE_FOLDERS_MAX
+    assert kept[-1] == found[-1]
+    assert (ours / "loop.compiled").exists()  # edits push out what was compiled of older edits only
+    compilation.numba.config.CACHE_DIR = before
 
 
 def test_only_what_the_cache_is_known_by_can_be_compiled(foreign):

@@ -13,7 +13,7 @@ from cyclopts import App, Parameter
 import innervate
 from innervate.cli import errors
 from innervate.cli.export_app import export, fit
-from innervate.cli.files_app import check, compare, new, scenarios
+from innervate.cli.files_app import check, check_protocol, compare, new, scenarios
 from innervate.cli.live_app import live_app
 from innervate.cli.options import (
     PAGE_DEFAULTS,
@@ -191,6 +191,30 @@ def verify(
 
 
 @app.command
+def prove(
+    system: str | None = None,
+    /,
+    *,
+    faults: Annotated[bool, Parameter(negative="")] = False,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> int:
+    """Prove what holds for any number of nodes, from the protocol's own source; 1 if it does not.
+
+    Parameters
+    ----------
+    system
+        Which protocol: skin (if left out), radio or mesh.
+    faults
+        Plant small mistakes in the protocol, one after the other: each must be refuted.
+    json
+        Print the results as JSON and nothing else.
+    """
+    from innervate.cli import proving as command
+
+    return command.prove(system or first(), faults, json)
+
+
+@app.command
 def watch(
     what: str,
     /,
@@ -255,6 +279,7 @@ def firmware(
 app.command(scenarios)
 app.command(new)
 app.command(check)
+app.command(check_protocol)
 app.command(compare)
 app.command(export)
 app.command(fit)
@@ -276,5 +301,27 @@ def main(tokens: Sequence[str] | None = None) -> int:
 
 
 def _parse_and_run(tokens: list[str]) -> int:
-    result: Any = app(tokens, exit_on_error=False, print_error=False, verbose=False)
+    result: Any = app(_with_networks(tokens), exit_on_error=False, print_error=False, verbose=False)
     return result if isinstance(result, int) else 0
+
+
+def _with_networks(tokens: list[str]) -> list[str]:
+    """A command line without its --network DIR, whose network is known from now on.
+
+    Of `new` it is a measured network, and stays.
+    """
+    from innervate.network import use
+
+    left: list[str] = []
+    while tokens:
+        one, *tokens = tokens
+        if left[:1] == ["new"] or (one != "--network" and not one.startswith("--network=")):
+            left.append(one)
+            continue
+        _, _, given = one.partition("=")
+        if not given and not tokens:
+            raise errors.UserError("--network needs a folder; see docs/own-network.md")
+        if not given:
+            given, *tokens = tokens
+        use(Path(given))
+    return left

@@ -22,12 +22,14 @@ _EXTRAS = {
     "starlette": "web", "uvicorn": "web", "websockets": "web",
     "mcap": "export",
     "rerun": "rerun",
+    "z3": "prove",
 }  # fmt: skip
 # Errors whose text is one line for the user: module and class, and whose mistake they are.
 _KNOWN = (
     ("innervate.scenario.errors", "ScenarioError", USERS),
     ("innervate.running.errors", "RunError", USERS),
     ("innervate.verify.errors", "VerifyError", USERS),
+    ("innervate.prove.errors", "ProveError", USERS),
     ("innervate.sweeping.errors", "SweepError", USERS),
     ("innervate.live.errors", "LiveError", USERS),
     ("innervate.firmware.errors", "FirmwareError", USERS),

@@ -25,15 +25,16 @@ def new(
     network: str | None = None,
     types: Annotated[list[str] | None, Parameter(consume_multiple=True)] = None,
     min_tq: float | None = None,
+    on: str | None = None,
 ) -> int:
-    """Write a commented scenario to start from.
+    """Write a commented scenario to start from, or a network of one's own.
 
     Parameters
     ----------
     kind
-        What it describes: skin, radio or mesh.
+        What it describes: skin, radio or mesh. network: a folder with a network of your own.
     file
-        Where to write it; it is printed if left out.
+        Where to write it; a scenario is printed if left out. Of a network, its folder: NAME.
     network
         Of a measured mesh: a JSON file as community meshes publish it, lines "A B 0.9 0.7",
         freifunk/leipzig, or topohub:NAME.
@@ -41,7 +42,13 @@ def new(
         Types of its links that count; wifi if left out, --empty-types for all.
     min_tq
         Worst quality of a link that counts, 0 to 1; 0.3 if left out.
+    on
+        What a network of your own is joined by: cables (if left out).
     """
+    if kind == "network":
+        from innervate.cli import making
+
+        return making.make(file, on or "cables")
     from innervate.cli import files as command
 
     return command.new(kind, file, network, types, min_tq)
@@ -77,3 +84,26 @@ def compare(first: Path, second: Path, /) -> int:
     from innervate.cli import comparing as command
 
     return command.compare(first, second)
+
+
+def check_protocol(
+    folder: Path,
+    /,
+    *,
+    tests: bool = True,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> int:
+    """Check a network of your own: dialect, ranges, frames, outbox, what no test reaches.
+
+    Parameters
+    ----------
+    folder
+        The network's folder.
+    tests
+        Run its tests, and say which functions of the protocol they do not reach.
+    json
+        Print what was found as JSON and nothing else.
+    """
+    from innervate.cli import making as command
+
+    return command.check_protocol(folder, json, tests)

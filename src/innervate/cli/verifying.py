@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from innervate.cli import errors
 from innervate.cli.progress import Display
-from innervate.network import Network, networks
+from innervate.network import Network, find, networks, use
 
 if TYPE_CHECKING:
     from innervate.cli.options import VerifyOptions
@@ -19,19 +19,31 @@ UNKNOWN = 1 << 40  # of how much
 
 def verify(system: str, options: VerifyOptions, as_json: bool, out: Path | None) -> int:
     """Explore a protocol with the options of the command line; 1 if something is broken."""
-    known = networks()
-    if system not in known:
-        names = list(known)
-        listed = f"{', '.join(names[:-1])} or {names[-1]}"
-        raise errors.UserError(f'verify explores {listed}, not "{system[:40]}"')
+    network = named(system)
     for name in ("cells", "starts", "states", "walks", "count"):
         if getattr(options, name) < 0:
             raise errors.UserError(f"--{name} must be 0 or more, not {getattr(options, name)}")
     if options.random:
         return _random(options.seed, options.count, as_json, out)
     if options.mutants:
-        return _mutants(system, as_json)
-    return _explore(known[system], options, as_json, out)
+        return _mutants(network.name, as_json)
+    return _explore(network, options, as_json, out)
+
+
+def named(system: str) -> Network:
+    """The network of a name, or of a folder: by its path, or of that name in the present one.
+
+    Raises:
+        UserError: there is none.
+    """
+    if system and Path(system).is_dir() and system not in networks():
+        return use(Path(system))
+    found = find(system, Path())
+    if found is None:
+        names = list(networks())
+        listed = f"{', '.join(names[:-1])} or {names[-1]}"
+        raise errors.UserError(f'verify explores {listed}, not "{system[:40]}"')
+    return found
 
 
 def _explore(network: Network, options: VerifyOptions, as_json: bool, out: Path | None) -> int:

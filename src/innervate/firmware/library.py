@@ -13,7 +13,7 @@ from innervate.firmware.errors import FirmwareError
 from innervate.firmware.wire import Wire
 from innervate.live.board import Role, roles_of
 from innervate.live.parameters import check_parameters
-from innervate.network import Network, add_folder, networks
+from innervate.network import Network, networks, use
 
 BESIDE = ("innervate_wire.h", "innervate_wire.c", "innervate_port.h")
 DRIVER = ("role_node.h", "role_node.c")
@@ -38,7 +38,7 @@ def role_of(name: str, nodes: int | None = None) -> tuple[Network, Role]:
     if name in known:
         network, role = known[name]
     elif Path(name).is_dir():
-        network = add_folder(Path(name))
+        network = use(Path(name))
         role = _own(network)
     else:
         raise FirmwareError(f"{name}: no folder, and none of {', '.join(known)}")

@@ -13,7 +13,7 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -33,6 +33,7 @@ except ImportError:  # not on Windows
 SOURCE_ROOMS = ("dialect", "kernel", "sim", "verify")
 PARTS = ("protocol", "sim", "verify", "baselines", "slotted", "invariants.py")
 CACHE_FOLDERS_MAX = 8
+NAME_LENGTH = 20  # of a cache folder
 ROOT = Path(__file__).resolve().parent.parent
 
 _registered: set[Callable[..., Any]] = set()
@@ -110,19 +111,23 @@ def source_files(root: Path = ROOT) -> list[Path]:
     return sorted(p for home in homes for p in ([home] if home.is_file() else home.rglob("*.py")))
 
 
-def source_hash(root: Path = ROOT, more: Collection[Path] = ()) -> str:
+def source_hash(root: Path = ROOT) -> str:
     """Hash of all sources that compiled code can come from, of what compiles it, and of where.
 
     Args:
         root: of the toolkit's sources.
-        more: files of other packages that are compiled with them.
 
     Numba takes nothing from its cache that was compiled from files elsewhere: of the same version
     in another environment nothing is compiled yet.
     """
-    digest = hashlib.blake2b(digest_size=10)
-    digest.update(f"{root}\0{sys.version_info[:3]} {numba.__version__}".encode())
-    for path in (*source_files(root), *sorted(more)):
+    begun = f"{root}\0{sys.version_info[:3]} {numba.__version__}"
+    return _hash_of(begun, source_files(root), root)
+
+
+def _hash_of(begun: str, files: Iterable[Path], root: Path = ROOT) -> str:
+    digest = hashlib.blake2b(digest_size=NAME_LENGTH // 2)
+    digest.update(begun.encode())
+    for path in files:
         where = path.relative_to(root) if path.is_relative_to(root) else path
         digest.update(where.as_posix().encode())
         digest.update(path.read_bytes() if path.is_file() else b"")
@@ -146,13 +151,20 @@ def cache_root() -> Path:
 
 
 def open_cache() -> Path:
-    """Point Numba at the cache folder of the present sources; forget the oldest others."""
-    folder = cache_root() / source_hash(more=_foreign)
+    """Point Numba at the cache folder of the present sources; forget the oldest others.
+
+    What is compiled from a network elsewhere has a folder in it for each state of its files: who
+    edits a protocol compiles that, and what the toolkit's own loops were compiled to stays.
+    """
+    folder = own = cache_root() / source_hash()
+    if _foreign:
+        folder = own / _hash_of("", sorted(_foreign))
     _foreign.clear()
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        os.utime(folder)
-        _forget_old(folder)
+        for one in {own, folder}:
+            os.utime(one)
+            _forget_old(one)
     except OSError:
         pass  # a read-only home: Numba then compiles without keeping the result
     numba.config.CACHE_DIR = str(folder)
@@ -160,7 +172,8 @@ def open_cache() -> Path:
 
 
 def _forget_old(keep: Path) -> None:
-    others = [p for p in keep.parent.iterdir() if p.is_dir() and p != keep and len(p.name) == 20]
+    others = [p for p in keep.parent.iterdir()
+              if p.is_dir() and p != keep and len(p.name) == NAME_LENGTH]  # fmt: skip
     others.sort(key=lambda p: p.stat().st_mtime, reverse=True)
     for stale in others[CACHE_FOLDERS_MAX - 1 :]:
         shutil.rmtree(stale, ignore_errors=True)

@@ -13,8 +13,9 @@ import numpy as np
 
 from innervate.analysis.summary import summarize
 from innervate.network import networks
+from innervate.running import blaming
 from innervate.sim.counts import Counts
-from innervate.sim.driver import Simulation
+from innervate.sim.driver import Ended, InvariantBroken, Simulation
 from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.sim.tables import get
 from innervate.trace.tables import Column, Table
@@ -92,11 +93,31 @@ def simulate(
     progress: Callable[[int, int], None] | None = None,
     tap: Any = None,
 ) -> Result:
-    """Run a plan; `received`: keep a row of every message delivered, None = yes."""
-    running = simulation(
-        plan, plain=plain, checks=checks, deliveries=received is not False, tap=tap is not None
-    )
-    ended = running.finish(progress, tap)
+    """Run a plan; `received`: keep a row of every message delivered, None = yes.
+
+    Raises:
+        InvariantBroken: a checker found what must not happen.
+        NetworkError: in the protocol of a folder: with its file and line.
+    """
+    kept = {"checks": checks, "deliveries": received is not False, "tap": tap is not None}
+    network = networks()[plan.kind]
+    if network.folder is None:
+        running = simulation(plan, plain=plain, **kept)
+        return _result(plan, running, running.finish(progress, tap))
+    if not plain:
+        blaming.try_plain(network, plan, checks=checks)
+    running = simulation(plan, plain=plain, **kept)
+    watch = blaming.Watched(running, network) if plain else None
+    try:
+        with blaming.blaming(network, watch):
+            ended = running.finish(progress, tap)
+    except InvariantBroken as error:
+        handled = int(get(running.world.run, 0, "handled"))
+        blaming.again(network, plan, handled, error, checks=checks)
+    return _result(plan, running, ended)
+
+
+def _result(plan: Any, running: Simulation, ended: Ended) -> Result:
     return Result(
         plan=plan,
         world=running.world,

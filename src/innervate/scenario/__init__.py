@@ -45,7 +45,7 @@ def template(kind: str = "") -> str:
     """
     known, kind = networks(), kind or first()
     if kind in known:
-        return str(known[kind].template) if known[kind].has("template") else _all_keys(kind)
+        return str(known[kind].template) or _all_keys(kind)
     hint = nearest(kind, list(known)).replace("it knows", "there is")
     raise ScenarioError(f'there is no kind "{kind[:40]}"{hint}')
 
@@ -59,5 +59,7 @@ def json_schema() -> dict[str, Any]:
     """The JSON Schema of scenario files, for editors."""
     import msgspec
 
-    schemas, parts = msgspec.json.schema_components([n.model for n in networks().values()])
+    schemas, parts = msgspec.json.schema_components(
+        dict.fromkeys(network.model for network in networks().values())
+    )
     return {"anyOf": list(schemas), "$defs": parts}

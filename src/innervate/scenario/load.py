@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from innervate.network import networks
+from innervate.network import NetworkError, find, first, networks
 from innervate.scenario.bundled import bundled
 from innervate.scenario.errors import ScenarioError
 from innervate.scenario.explain import alternatives, convert, nearest
@@ -151,7 +151,7 @@ def _build(
     if isinstance(schema, int) and schema > SCHEMA:
         message = f"schema = {schema} is newer than this version knows ({SCHEMA}); update innervate"
         raise source.error(("schema",), message)
-    kind = _check_kind(source, raw.get("kind"), list(networks()))
+    kind = _check_kind(source, raw.get("kind"))
     if not raw.get("name", "x"):
         del raw["name"]
     source.given = frozenset(keys_of(raw))
@@ -162,17 +162,20 @@ def _build(
     return Scenario(model, source)
 
 
-def _check_kind(source: Source, kind: object, known: list[str]) -> str:
-    """The kind, if this version runs it.
+def _check_kind(source: Source, kind: object) -> str:
+    """The kind, if this version runs it, or a folder of that name does: its code is loaded.
 
     Raises:
-        ScenarioError: missing or unknown.
+        ScenarioError: missing, unknown, or such a folder cannot be loaded.
     """
     if kind is None:
-        raise source.error((), f'the scenario has no kind; add kind = "{known[0]}"')
-    if isinstance(kind, str) and kind in known:
-        return kind
-    one = alternatives([f'"{name}"' for name in known])
+        raise source.error((), f'the scenario has no kind; add kind = "{first()}"')
+    try:
+        if isinstance(kind, str) and find(kind, Path(source.folder), Path()) is not None:
+            return kind
+    except NetworkError as error:
+        raise ScenarioError(str(error)) from None
+    one = alternatives([f'"{name}"' for name in networks()])
     shown = f'"{kind}"' if isinstance(kind, str) else str(kind)[:40]
     raise source.error(("kind",), f"kind must be {one}, not {shown}")
 

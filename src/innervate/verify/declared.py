@@ -1,9 +1,10 @@
 """Every order of a few nodes' events, for any network over cables that declares its protocol.
 
-The protocol's parameters are those of its EXPLORED, or else the least of their ranges.
+The protocol's parameters are those of its EXPLORED (or of EXPLORED or DEFAULTS of its `fields`), or
+else the least of their ranges. What nodes are handed is GIVEN of `fields`: (kind, item), ...
 What holds of any protocol is checked after every handler call: all fields in their declared range,
 room in the outbox, no handler that cannot go on; and of every state, that something can still
-happen (a timer is set, or a frame is on its way).
+happen (a timer is set, or a frame is on its way). A network's own `invariants` are looked at, too.
 
 Nodes know only their own time, so that a state holds timers and moments relative to it: fields in
 "us" of the full range of clocks. It passes when a timer fires, and not between; what other nodes do
@@ -12,15 +13,18 @@ meanwhile is left open.
 
 from __future__ import annotations
 
+import traceback
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
+from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
 from innervate.dialect import plain
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
+from innervate.folders import invariants_of
 from innervate.kernel.clock import wall_s
 from innervate.network import Network
 from innervate.topology import PORTS, Graph, TopologyError, free_graph
@@ -44,10 +48,11 @@ STUCK = "nothing can happen any more: no timer is set, no frame is on its way"
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """How often what may happen: lost frames, nodes that lose their memory."""
+    """How often what may happen: lost frames, nodes that lose their memory, inputs."""
 
     loss: int = 1
     restart: int = 1
+    input: int = 1
 
 
 class Node(NamedTuple):
@@ -86,6 +91,8 @@ class Net:
         self, protocol: ModuleType, fields: ModuleType, graph: Graph, params: dict[str, int]
     ) -> None:
         self.do, self.fields, self.graph = protocol, fields, graph
+        self.own: dict[str, Any] = {}  # what must hold of a node, by what it says
+        self.of_all: dict[str, Any] = {}  # and of all nodes together
         self.params = plain.make("Params", fields.PARAMS)()
         for name, value in params.items():
             setattr(self.params, name, value)
@@ -93,6 +100,8 @@ class Net:
         frame = plain.make("Frame", fields.FRAME)
         self.out = plain.Outbox(frame, getattr(protocol, "OUTBOX", OUTBOX))
         self.frame = frame()
+        self.all = [plain.make("Node", fields.STATE)() for _ in range(graph.cells)]
+        self.given = getattr(fields, "GIVEN", ())
         self.clocks = {name for name, _, _, high, unit, _ in fields.STATE
                        if unit == "us" and high == MASK30}  # fmt: skip
 
@@ -106,7 +115,9 @@ class Net:
                 if hasattr(node, name):
                     setattr(node, name, value)
             nodes.append(Node(_values(node, self.fields.STATE), ()))
-        state = State(tuple(nodes), ((),) * len(self.graph.peer), (budget.loss, budget.restart))
+        state = State(
+            tuple(nodes), ((),) * len(self.graph.peer), (budget.loss, budget.restart, budget.input)
+        )
         for number in range(self.graph.cells):
             state, broken = self.call(state, number, 0, self.do.on_start, COLD)
             if broken:
@@ -115,22 +126,25 @@ class Net:
 
     def steps(self, state: State) -> Iterator[Step]:
         """All that can happen next."""
-        loss, restart = state.left
+        loss, restart, given = state.left
         for end, frames in enumerate(state.ways):
             if frames:
                 yield self.arrive(state, end)
                 if loss:
                     rest = _with(state.ways, end, frames[1:])
                     what = f"A frame from {self.graph.label_end(end)} is lost"
-                    yield Step(what, state._replace(ways=rest, left=(loss - 1, restart)), "")
+                    yield Step(what, state._replace(ways=rest, left=(loss - 1, restart, given)), "")
         for number, node in enumerate(state.nodes):
             if node.timers:
                 yield self.fire(state, number)
             if restart:
-                lost = state._replace(left=(loss, restart - 1))
+                lost = state._replace(left=(loss, restart - 1, given))
                 lost = lost._replace(nodes=_with(lost.nodes, number, node._replace(timers=())))
                 after, broken = self.call(lost, number, 0, self.do.on_start, MEMORY_LOST)
                 yield Step(f"{self.graph.label(number)} loses its memory", after, broken)
+            if given:
+                fewer = state._replace(left=(loss, restart, given - 1))
+                yield from (self.give(fewer, number, *one) for one in self.given)
 
     def arrive(self, state: State, end: int) -> Step:
         """The oldest frame from an end comes to the other."""
@@ -142,6 +156,16 @@ class Net:
         after, broken = self.call(gone, number, 0, self.do.on_frame, port, self.frame)
         what = f"{self.graph.label(number)} gets a frame from {self.graph.label_end(end)}"
         return Step(what, after, broken)
+
+    def give(self, state: State, number: int, kind: int, item: dict[str, Any]) -> Step:
+        """A node's user hands something down."""
+        blank = plain.make("Frame", self.fields.FRAME)()
+        _put(self.frame, self.fields.FRAME, _values(blank, self.fields.FRAME))
+        for name, value in item.items():
+            setattr(self.frame, name, list(value) if isinstance(value, list | tuple) else value)
+        after, broken = self.call(state, number, 0, self.do.on_input, kind, self.frame)
+        what = f"{self.graph.label(number)} is given {kind}"
+        return Step(f"{what} by its user", after, broken)
 
     def fire(self, state: State, number: int) -> Step:
         """The next timer of a node fires; so far its time passes."""
@@ -161,9 +185,9 @@ class Net:
         out.count[0] = out.overflow[0] = 0
         try:
             handler(self.node, self.params, now, *what, out)
-        except (ArithmeticError, IndexError, TypeError, ValueError) as error:
-            return state, f"a handler cannot go on: {type(error).__name__}"
-        broken = self.broken()
+        except (ArithmeticError, AttributeError, IndexError, TypeError, ValueError) as error:
+            return state, f"a handler cannot go on: {place_of(error)}{type(error).__name__}"
+        broken = self.broken(now)
         timers, ways = dict(node.timers), list(state.ways)
         for act, frame in zip(out.action[: out.count[0]], out.frame, strict=False):
             if act.kind == SET_TIMER:
@@ -189,7 +213,16 @@ class Net:
         node = Node(_values(self.node, self.fields.STATE), waits)
         return state._replace(nodes=_with(state.nodes, number, node), ways=tuple(ways))
 
-    def broken(self) -> str:
+    def broken_of_all(self, state: State) -> str:
+        """What is broken of all nodes together."""
+        for node, at in zip(self.all, state.nodes, strict=True):
+            _put(node, self.fields.STATE, at.values)
+        for title, holds in self.of_all.items():
+            if not holds(self.all, len(self.all), self.params):
+                return title
+        return ""
+
+    def broken(self, now: int) -> str:
         """What the last handler broke."""
         if self.out.overflow[0]:
             return "an outbox overflowed"
@@ -197,6 +230,9 @@ class Net:
             value = getattr(self.node, name)
             if not all(low <= one <= high for one in (value if length else [value])):
                 return f"{name} is out of its declared range"
+        for title, holds in self.own.items():
+            if not holds(self.node, self.params, now):
+                return title
         return ""
 
 
@@ -217,8 +253,8 @@ def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tupl
             if not any(state.ways) and not any(node.timers for node in state.nodes):
                 return replace(tally, ended="broken"), _story(before, state, STUCK, "")
             for step in steps:
-                if step.broken:
-                    told = _story(before, state, step.broken, step.words)
+                if broken := step.broken or (net.of_all and net.broken_of_all(step.state)):
+                    told = _story(before, state, broken, step.words)
                     return replace(tally, ended="broken"), told
                 if max(map(len, step.state.ways)) > IN_FLIGHT:
                     tally.left_out += 1
@@ -242,6 +278,12 @@ def _story(before: Any, state: State, title: str, last: str) -> Story:
         state, words = before[state]
         sentences.append(words)
     return Story(title, [f"{text}." for text in reversed(sentences)])
+
+
+def place_of(error: BaseException) -> str:
+    """Where in a file an error came by last: "protocol.py:12: "."""
+    last = traceback.extract_tb(error.__traceback__)[-1]
+    return f"{Path(last.filename).name}:{last.lineno}: "
 
 
 def _values(record: Any, declared: Any, left_out: Any = ()) -> tuple[Any, ...]:
@@ -304,8 +346,12 @@ def _graph(text: str) -> Graph:
 
 
 def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell: Tell) -> Case:
-    params = dict(getattr(network.protocol, "EXPLORED", {}))
+    params = {**getattr(network.fields, "DEFAULTS", {}),
+              **getattr(network.fields, "EXPLORED", {}),
+              **getattr(network.protocol, "EXPLORED", {})}  # fmt: skip
     net = Net(network.protocol, network.fields, graph, params)
+    net.own = invariants_of(network, "node_")
+    net.of_all = invariants_of(network, "network_")
     cables = " ".join(f"{graph.label_end(a)}-{graph.label_end(b)}" for a, b in graph.links())
     tally, story = explore(net, budget, options.states or STATES, tell, cables)
     head = f"{cables:40} {tally.states:>10,} states {tally.generated:>10,} successors"

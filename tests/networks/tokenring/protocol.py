@@ -5,7 +5,8 @@ from innervate.dialect.outbox import deliver, report, send, set_timer
 
 TOKEN = 1
 EAST = 1
-HELD, LOST = 0, 1
+HELD = 0
+LOST = 1
 TIMERS = 2
 REPORT_MADE = 1  # a lap
 

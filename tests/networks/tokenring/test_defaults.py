@@ -33,9 +33,9 @@ HERE = Path(__file__).parent
 TOLD = {"model", "check", "plan", "protocol", "fields", "frames"}
 # What is a network's own affair: a demo, papers, its images, scenarios out of measurements ...
 OWN = {
-    "template", "received_image", "demo", "sizing", "measured_template", "capture", "dissector",
+    "received_image", "demo", "sizing", "measured_template", "capture", "dissector",
     "fit", "log", "rerun_parts", "recovery", "counterexample", "random", "papers", "event",
-    "boards",
+    "boards", "invariants", "measures", "shows", "happenings",
 }  # fmt: skip
 CUT = """
 [[event]]

@@ -10,9 +10,13 @@ from innervate.verify.errors import VerifyError
 from tests.networks.tokenring import fields, protocol
 
 
+def never(part):
+    return False
+
+
 def explored(budget="", graph="ring", states=3_000, protocol=protocol, fields=fields):
     """The case of one graph."""
-    network = SimpleNamespace(name="tokenring", protocol=protocol, fields=fields)
+    network = SimpleNamespace(name="tokenring", protocol=protocol, fields=fields, has=never)
     options = VerifyOptions(budget=budget, graph=graph, states=states)
     (explore,) = declared.explorations(network, options)
     return explore(lambda what, part, of: False)

@@ -48,6 +48,7 @@ NETWORK = Network(
     recovery="export.recovery",
     papers="papers",
     verify="verify.command",
+    prove="prove.theories",
     boards="board:ROLES",
     counterexample="plot.counterexample:save",
     random="verify.fuzz",

@@ -9,20 +9,22 @@ first sender: latencies are taken from it; 0 is for what no user handed in, whic
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import cached_property
 from types import ModuleType
 from typing import Any
 
 from innervate.dialect.arith import MASK30
+from innervate.folders import invariants_of
 from innervate.kernel import compilation
 from innervate.kernel.bits import mix
-from innervate.network import networks
+from innervate.network import Network, networks
 from innervate.scenario.actions.cables import GIVE
-from innervate.sim import clocks
+from innervate.sim import clocks, wheel
 from innervate.sim.cables import loop, recorder
 from innervate.sim.cables.build import Added, Records, build
 from innervate.sim.cables.simulation import Cables
-from innervate.sim.cables.world import ALIVE, SOURCE, World
+from innervate.sim.cables.world import ALIVE, BROKEN_OWN, SOURCE, World
 from innervate.sim.recorded import Recorded
 from innervate.sim.tables import Tables, put
 
@@ -33,8 +35,10 @@ class Unfit(ValueError):
     """A protocol cannot be simulated as it is declared."""
 
 
-def functions(protocol: ModuleType, fields: ModuleType) -> ModuleType:
-    """What the medium calls (see `sim/cables`), of a protocol and its declared fields."""
+def functions(
+    protocol: ModuleType, fields: ModuleType, own: Mapping[str, Any] | None = None
+) -> ModuleType:
+    """What the medium calls (see `sim/cables`), of a protocol, its fields, its invariants."""
     if SOURCE < protocol.TIMERS:
         raise Unfit(f"a node over cables has at most {SOURCE} timers, not {protocol.TIMERS}")
     do = ModuleType(f"{protocol.__name__} over cables")
@@ -46,7 +50,30 @@ def functions(protocol: ModuleType, fields: ModuleType) -> ModuleType:
     vars(do).update(_users_side(do, "made_at" in names))
     for name in ("on_report", "on_stop", "before_change", "on_change", "check"):
         vars(do)[name] = getattr(recorder, name)
+    if own:
+        vars(do)["check"] = _own_check(list(own.values()))
     return do
+
+
+def _own_check(own: list[Callable[..., Any]]) -> Callable[..., None]:
+    """The check of ranges, and after it those of a network's own invariants."""
+    names = {f"holds_{place}": holds for place, holds in enumerate(own)}
+    lines = [
+        line for place, name in enumerate(names)
+        for line in (f"    if run.broken == 0 and not {name}(state, params, now):",
+                     f"        run.broken = {BROKEN_OWN + place}",
+                     "        run.broken_node = node")
+    ]  # fmt: skip
+    text = "\n".join([
+        "def check(world, node):", "    check_range(world, node)", "    run = world.run[0]",
+        "    state = world.cells[node]", "    params = world.params[0]",
+        "    now = reading(world.clocks[node], world.wheel.clock[NOW]) & MASK30", *lines,
+    ])  # fmt: skip
+    made: dict[str, Any] = {"check_range": recorder.check_range, "reading": clocks.reading,
+                            "NOW": wheel.NOW, "MASK30": MASK30, **names}  # fmt: skip
+    exec(compile(text, "invariants of a protocol", "exec"), made)
+    check: Callable[..., None] = made["check"]
+    return check
 
 
 def _entries(protocol: ModuleType) -> dict[str, Callable[..., Any]]:
@@ -126,20 +153,35 @@ def _users_side(do: ModuleType, is_timed: bool) -> dict[str, Callable[..., Any]]
     }  # fmt: skip
 
 
+class DeclaredCables(Cables):
+    """Nodes whose protocol is declared, with invariants of their own."""
+
+    @cached_property
+    def broken_words(self) -> dict[int, str]:  # type: ignore[override]
+        """What is broken, by number."""
+        own = invariants_of(networks()[self.plan.kind], "node_")
+        words = {BROKEN_OWN + place: f"{title}: {{node}}" for place, title in enumerate(own)}
+        return {**Cables.broken_words, **words}
+
+
+def _functions(network: Network) -> ModuleType:
+    return functions(network.protocol, network.fields, invariants_of(network, "node_"))
+
+
 def plain_loop(kind: str) -> Callable[..., None]:
     """The loop of a network, uncompiled."""
-    network = networks()[kind]
-    return loop.bind(functions(network.protocol, network.fields))
+    return loop.bind(_functions(networks()[kind]))
 
 
 @functools.cache
-def compiled_loop(kind: str) -> Callable[..., None]:
+def compiled_loop(network: Network) -> Callable[..., None]:
     """The loop of a network over cables, compiled with its protocol."""
-    network = networks()[kind]
-    do = functions(network.protocol, network.fields)
+    do = _functions(network)
     compilation.register_functions(*(f for f in vars(do).values() if callable(f)))
-    hot = (recorder, *compilation.modules_of(network.protocol))
-    advance: Callable[..., None] = loop.compiled(do, hot, ())
+    hot = [recorder, *compilation.modules_of(network.protocol)]
+    if network.has("invariants"):
+        hot += compilation.modules_of(network.invariants)
+    advance: Callable[..., None] = loop.compiled(do, tuple(hot), ())
     return advance
 
 
@@ -159,6 +201,6 @@ def world_of(plan: Any, plain: bool, kept: Recorded) -> World:
 
 def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> Cables:
     """A plan's network before its first event; `kept` as in `sim.recorded`."""
-    advance = (plain_loop if plain else compiled_loop)(plan.kind)
+    advance = plain_loop(plan.kind) if plain else compiled_loop(networks()[plan.kind])
     name = "" if plain else plan.kind
-    return Cables(plan, world_of(plan, plain, Recorded(**kept)), advance, name)
+    return DeclaredCables(plan, world_of(plan, plain, Recorded(**kept)), advance, name)

@@ -1,0 +1,138 @@
+"""`innervate new network` and `check-protocol`: a network of one's own."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from innervate import folders
+from innervate.cli.errors import UserError
+from innervate.network import MEDIA, Network, networks, read
+
+PATTERNS = Path(__file__).parent / "folder"
+WORD = "NAME"
+TEST_S = 600
+
+
+def make(target: Path | None, on: str) -> int:
+    """Write a network's folder, whole or not at all; never over what is there."""
+    if target is None:
+        raise UserError("name it: innervate new network NAME --on cables")
+    name = target.name
+    if on not in MEDIA:
+        raise UserError(f"--on can be {', '.join(MEDIA)}, not {on[:40]!r}")
+    if not (name.isidentifier() and name.isascii() and name == name.lower()):
+        raise UserError(f"{name[:60]!r} is no name; use small letters, digits and _, "
+                        "like a Python module")  # fmt: skip
+    taken = name in networks() or name in sys.stdlib_module_names or WORD.lower() == name
+    if taken or _is_module(name):
+        raise UserError(f"the name {name!r} is taken; choose another")
+    if target.exists():
+        raise UserError(f"{target} is there already; choose another name or move it away")
+    target.parent.mkdir(parents=True, exist_ok=True)
+    fresh = Path(tempfile.mkdtemp(prefix=f".{name}-", dir=target.parent))
+    try:
+        for pattern in sorted((PATTERNS / on).iterdir()):
+            made = pattern.name.removesuffix(".txt").replace(WORD, name)
+            text = pattern.read_text(encoding="utf-8").replace(WORD, name)
+            (fresh / made).write_text(text, encoding="utf-8")
+        fresh.chmod(0o777 & ~_umask())
+        fresh.rename(target)
+    finally:
+        shutil.rmtree(fresh, ignore_errors=True)
+    print(f"Written: {target}, a network over {on}. Try it:")
+    for command in (f"innervate check-protocol {target}", f"innervate verify {target}",
+                    f"innervate run {target / name}.toml"):  # fmt: skip
+        print(f"  {command}")
+    return 0
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _is_module(name: str) -> bool:
+    """True if Python finds a module of that name that is no folder of the present one."""
+    from importlib.util import find_spec
+
+    spec = find_spec(name)
+    return spec is not None and spec.origin is not None
+
+
+def check_protocol(folder: Path, as_json: bool, with_tests: bool) -> int:
+    """Say all that is wrong with a network's protocol; 2 if something is, 1 if it can break."""
+    network = read(folder)
+    found = folders.findings(folder.resolve(), network)
+    said: dict[str, Any] = {"network": network.name, "wrong": [str(one) for one in found]}
+    lines = [*said["wrong"]]
+    if not found:
+        _look_further(folder, network, with_tests, said, lines)
+    if as_json:
+        print(json.dumps(said, indent=2))
+    else:
+        for line in lines:
+            print(line)
+    return 2 if found else 1 if said.get("broken") or said.get("tests_failed") else 0
+
+
+def _look_further(
+    folder: Path, network: Network, with_tests: bool, said: dict[str, Any], lines: list[str]
+) -> None:
+    """The outbox, every order of events on two nodes, and what no test reaches."""
+    room = getattr(network.protocol, "OUTBOX", 16)
+    said["outbox"] = {}
+    for handler, (most, where) in folders.actions_of(folder.resolve(), network).items():
+        said["outbox"][handler] = most
+        if most is None:
+            lines.append(f"{where}: {handler}: how many actions it may put is not seen from its "
+                         f"loops; the outbox holds {room}")  # fmt: skip
+        elif most > room:
+            lines.append(f"{where}: {handler} may put {most} actions, the outbox holds {room}; "
+                         f"write OUTBOX = {most}")  # fmt: skip
+    from innervate.running.exploring import explore
+
+    (case,) = explore(folder, graph="pair", states=5_000)
+    said["explored"], said["broken"] = case.record, case.record["broken"]
+    lines += case.lines
+    if with_tests:
+        said.update(_tested(folder, network))
+        lines += [f"{place}: no test reaches {what}" for what, place in said["unreached"].items()]
+        if said["tests_failed"]:
+            lines.append(said["tests_failed"])
+    most = max((n for n in said["outbox"].values() if n is not None), default=0)
+    lines.append(f"{network.name}: the dialect is kept, values and frames fit, at most {most} "
+                 f"actions a call of {room}, {case.record['states']:,} states explored, "
+                 f"{said.get('reached', 0)} of its functions reached by tests")  # fmt: skip
+
+
+def _tested(folder: Path, network: Network) -> dict[str, Any]:
+    """The functions of a protocol that the folder's tests reach, and those that they do not."""
+    if not list(folder.glob("test_*.py")):
+        raise UserError(f"{folder} has no test_*.py; write one, or leave them out: --no-tests")
+    with tempfile.TemporaryDirectory() as place:
+        out = Path(place) / "reached.json"
+        names = [str(path) for path in folders.sources(folder.resolve(), network)]
+        command = [sys.executable, "-m", "innervate.cli.reaching", str(out), str(folder.resolve()),
+                   *names]  # fmt: skip
+        done = subprocess.run(command, capture_output=True, text=True, timeout=TEST_S, check=False)
+        if not out.is_file():
+            last = (done.stderr or done.stdout).strip().splitlines()[-1:]
+            raise UserError(f"the tests of {folder} could not be run: {' '.join(last)}")
+        told = json.loads(out.read_text(encoding="utf-8"))
+    unreached = {name: f"{folders.shown(Path(path))}:{line}"
+                 for name, path, line in told["unreached"]}  # fmt: skip
+    failed = "" if told["code"] == 0 else _failed(folder, done.stdout)
+    return {"reached": told["reached"], "unreached": unreached, "tests_failed": failed}
+
+
+def _failed(folder: Path, said: str) -> str:
+    lines = [line for line in said.splitlines() if line.startswith(("FAILED", "ERROR"))]
+    return f"{folder}: {lines[0] if lines else 'its tests did not end well'}"

@@ -1,0 +1,122 @@
+"""`innervate prove`: what holds of a protocol for any number of nodes, and what does not."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from innervate.cli import errors
+from innervate.cli.progress import Display
+from innervate.network import Network, networks
+
+if TYPE_CHECKING:
+    from innervate.prove.theory import Outcome
+
+
+def prove(system: str, faults: bool, as_json: bool) -> int:
+    """Prove a network's theories; 1 if one does not come out as it should."""
+    known = networks()
+    if system not in known:
+        names = list(known)
+        listed = f"{', '.join(names[:-1])} or {names[-1]}"
+        raise errors.UserError(f'prove knows {listed}, not "{system[:40]}"')
+    if faults:
+        return _faults(known[system], as_json)
+    return _theories(known[system], as_json)
+
+
+def _theories(network: Network, as_json: bool) -> int:
+    from innervate.kernel.stop import Stop
+    from innervate.prove.theory import prove as attempt
+
+    done: list[Outcome] = []
+    with Display(as_json) as display, Stop() as stop:
+
+        def tell(what: str, part: int, of: int) -> bool:
+            display.show(what, part, of, None)
+            return stop.asked
+
+        for theory in network.prove.theories(network):
+            done.append(attempt(theory, tell))
+            if not as_json:
+                print("\n".join([*lines(done[-1]), ""]), flush=True)
+            if stop.asked:
+                break
+    if as_json:
+        print(json.dumps([outcome.as_dict() for outcome in done], indent=2))
+    else:
+        print(_verdict(done))
+    if stop.asked:
+        return errors.INTERRUPTED
+    return 0 if all(outcome.is_as_expected for outcome in done) else 1
+
+
+def lines(outcome: Outcome) -> list[str]:
+    """What came of a theory, for people."""
+    theory = outcome.theory
+    told = [f"{theory.name}: {theory.claim}"]
+    told += [f"  assumed: {one}" for one in theory.assumed]
+    for one in outcome.checked:
+        count = f"{len(one.goals)} lemma{'' if len(one.goals) == 1 else 's'}"
+        held = f"{len(one.refuted)} REFUTED" if one.refuted else "hold"
+        told.append(f"  {one.name:52} {count:>10} {held:10} {one.wall_s:6.2f} s")
+        for bad in one.refuted:
+            told.append(f"    {bad.goal}")
+            told += [f"      {sentence}" for sentence in bad.sentences]
+    told += [f"  NOT REACHED: {_way(way)}" for way in outcome.unreached]
+    told.append(f"  {_summary(outcome)}")
+    return told
+
+
+def _way(way: tuple[str, int, bool]) -> str:
+    return f"{way[0]}, line {way[1]}, {'taken' if way[2] else 'not taken'}"
+
+
+def _summary(outcome: Outcome) -> str:
+    if outcome.theory.refuted_by:
+        return "Refuted, as it must be." if outcome.is_as_expected else "NOT REFUTED."
+    if outcome.ended != "complete":
+        return "Stopped."
+    if outcome.is_refuted:
+        return "Does NOT hold."
+    branches = {way for one in outcome.checked for way in one.reached}
+    words = f"Holds: {outcome.lemmas} lemmas"
+    if branches:
+        words += f"; {len(branches)} ways of branches reached"
+    if outcome.named:
+        words += f", {len(outcome.named)} cannot be, as said"
+    return f"{words}." if not outcome.unreached else f"{words}; some are not."
+
+
+def _verdict(done: list[Outcome]) -> str:
+    bad = [outcome for outcome in done if not outcome.is_as_expected]
+    lemmas = sum(outcome.lemmas for outcome in done)
+    wall_s = sum(one.wall_s for outcome in done for one in outcome.checked)
+    much = f"{lemmas} lemmas in {wall_s:.1f} s"
+    if bad:
+        names = ", ".join(outcome.theory.name for outcome in bad)
+        return f"NOT as it should be: {names} ({much})."
+    return f"All as it should be: {much}."
+
+
+def _faults(network: Network, as_json: bool) -> int:
+    """Plant every mistake; 1 if one is not refuted."""
+    from innervate.kernel.stop import Stop
+    from innervate.prove.faults import faults_of, hunt
+
+    rows: list[dict[str, Any]] = []
+    planted = faults_of(network)
+    with Display(as_json) as display, Stop() as stop:
+        for number, fault in enumerate(planted):
+            display.show(fault.name, number, len(planted), None)
+            step, goal = hunt(network, fault)
+            rows.append({"fault": fault.name, "step": step, "refuted": goal})
+            if not as_json:
+                print(f"{fault.name}: {f'{goal} ({step})' if goal else 'NOT REFUTED'}", flush=True)
+            if stop.asked:
+                return errors.INTERRUPTED
+    if as_json:
+        print(json.dumps(rows, indent=2))
+    elif not rows:
+        print(f"No mistakes are listed for {network.name}.")
+    return 0 if all(row["refuted"] for row in rows) else 1

@@ -1,0 +1,224 @@
+"""What is wrong with a protocol as it is written: its source, its declarations, its frames.
+
+Nothing is run here but what declares: each finding names a file, a line, and what to write instead.
+"""
+
+import ast
+
+from innervate.dialect.checker import broken_rules, functions_of
+
+MOST = (1 << 30) - 1
+NOTED = {"kind", "made_at"}  # fields of a frame that no layout has to name
+FIELD = "a field is (name, length, low, high, unit, meaning)"
+HANDLERS = {
+    "on_start": "(state, params, now, cause, out)",
+    "on_frame": "(state, params, now, port, frame, out)",
+    "on_timer": "(state, params, now, timer, out)",
+    "on_input": "(state, params, now, kind, item, out)",
+}
+ON_AIR = {
+    "on_frame": "(state, params, now, frame, out)",
+    "on_carrier": "(state, params, now, cd, voc, out)",
+}
+
+
+class Finding:
+    """One thing that is wrong: `path`, `line` from 1, `text`; as a string in one line."""
+
+    __slots__ = ("line", "path", "text")
+
+    def __init__(self, path, line, text):
+        self.path, self.line, self.text = str(path), line, text
+
+    def __str__(self):
+        return f"{self.path}:{self.line}: {self.text}"
+
+
+def of_source(path, known, home, handlers):
+    """What is wrong with a file of a protocol.
+
+    Args:
+        path: the file.
+        known: functions of other files that it may call.
+        home: the package that it belongs to.
+        handlers: the functions that it must have, with their arguments; {} for other files.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+        tree = ast.parse(text)
+    except SyntaxError as error:
+        return [Finding(path, error.lineno or 1, f"is no Python: {error.msg}")]
+    except (OSError, UnicodeDecodeError) as error:
+        return [Finding(path, 1, f"cannot be read: {error}")]
+    found = [Finding(path, one.line, one.what) for one in broken_rules(text, known, home)]
+    there = {function.name: function for function in functions_of(tree)}
+    for name, arguments in handlers.items():
+        if name not in there:
+            found.append(Finding(path, 1, f"has no {name}; add def {name}{arguments}"))
+        elif len(there[name].args.args) != arguments.count(",") + 1:
+            what = f"{name} takes {len(there[name].args.args)} arguments; it is {name}{arguments}"
+            found.append(Finding(path, there[name].lineno, what))
+    if handlers and "TIMERS" not in constants_of(tree):
+        found.append(Finding(path, 1, "has no TIMERS; add TIMERS = 1, how many timers a node has"))
+    return found
+
+
+def constants_of(tree):
+    """Whole numbers that a file names, with the names it has for them."""
+    found = {}
+    for node in tree.body:
+        if not isinstance(node, ast.Assign):
+            continue
+        for target in node.targets:
+            values = _pairs(target, node.value)
+            found.update({name: _number(value, found) for name, value in values})
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def _pairs(target, value):
+    if isinstance(target, ast.Name):
+        return [(target.id, value)]
+    if isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+        return [pair for one in zip(target.elts, value.elts, strict=False) for pair in _pairs(*one)]
+    return []
+
+
+def _number(node, known):
+    """The value of an expression over numbers and names that are known; None if it is none."""
+    names = {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
+    odd = (ast.Call, ast.Attribute, ast.Lambda, ast.Subscript)
+    if any(known.get(name) is None for name in names):
+        return None
+    if any(isinstance(part, odd) for part in ast.walk(node)):
+        return None
+    try:
+        value = eval(compile(ast.Expression(node), "constant", "eval"), {}, dict(known))
+    except (TypeError, ValueError, ArithmeticError):
+        return None
+    return value if isinstance(value, int) else None
+
+
+def of_fields(path, declared):
+    """What is wrong with declarations.
+
+    Args:
+        path: the file they stand in.
+        declared: (name, fields) of STATE, FRAME and PARAMS.
+    """
+    lines, found = _lines_of(path), []
+    for table, fields in declared:
+        seen = set()
+        for field in fields:
+            name = field[0] if isinstance(field, tuple) and field else "?"
+            line = lines.get((table, name), lines.get((table, ""), 1))
+            wrong = _wrong_with(field) or ("is declared twice" if name in seen else "")
+            seen.add(name)
+            if wrong:
+                found.append(Finding(path, line, f"{table}: {name} {wrong}"))
+    return found
+
+
+def _wrong_with(field):
+    if not isinstance(field, tuple) or len(field) != 6:
+        return f"is not whole: {FIELD}"
+    name, length, low, high, unit, meaning = field
+    if not (isinstance(name, str) and name.isidentifier()):
+        return "is no name"
+    if not all(isinstance(one, int) for one in (length, low, high)):
+        return f"has a length or range that is no whole number: {FIELD}"
+    if length < 0:
+        return "has a length below 0; 0 is a single number"
+    if max(abs(low), abs(high)) > MOST:
+        return f"has a range beyond 2^30: {low} to {high}; all values stay below"
+    if low > high:
+        return f"has a range from {low} to {high}; put the lower first"
+    if not (isinstance(unit, str) and isinstance(meaning, str)):
+        return f"lacks its unit or meaning: {FIELD}"
+    return ""
+
+
+def _lines_of(path):
+    """Lines of declared fields by (table, name); of tables by (table, "")."""
+    found = {}
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            table = node.targets[0].id
+            found[table, ""] = node.lineno
+            for part in ast.walk(node.value):
+                if isinstance(part, ast.Tuple) and part.elts:
+                    first = part.elts[0]
+                    if isinstance(first, ast.Constant) and isinstance(first.value, str):
+                        found.setdefault((table, first.value), part.lineno)
+    return found
+
+
+def of_layouts(path, layouts, kind_bits, frame):
+    """What is wrong with the layouts of frames: bits that do not hold what is declared.
+
+    Args:
+        path: the file they stand in.
+        layouts: (kind, name, ((field, many, bits, signed), ...)) of each.
+        kind_bits: bits of the kind.
+        frame: the declared fields of a frame.
+    """
+    declared = {field[0]: field for field in frame}
+    line, found, laid = _lines_of(path).get(("LAYOUTS", ""), 1), [], set()
+    for kind, name, fields in layouts:
+        if not 0 <= kind < 1 << kind_bits:
+            what = f"kind {kind} of {name} does not fit into KIND_BITS = {kind_bits}"
+            found.append(Finding(path, line, what))
+        for field, many, bits, is_signed in fields:
+            laid.add(field)
+            wrong = _wrong_layout(declared, field, many, bits, is_signed) if field else ""
+            if wrong:
+                found.append(Finding(path, line, f"{name}: {wrong}"))
+    for field in declared:
+        if field not in laid | NOTED:
+            what = f"no frame carries {field} of FRAME; give it bits in LAYOUTS or leave it out"
+            found.append(Finding(path, line, what))
+    return found
+
+
+def _wrong_layout(declared, field, many, bits, is_signed):
+    if field not in declared:
+        return f"{field} is no field of FRAME; declare it in fields.py"
+    if isinstance(many, str) or many < 0 or not isinstance(bits, int):
+        return f"{field} is of variable number; a frame that is declared has a fixed length"
+    _name, length, low, high, *_ = declared[field]
+    if many != length:
+        return f"{field} has {many} here and length {length} in FRAME; make them equal"
+    least = -(1 << (bits - 1)) if is_signed else 0
+    most = least + (1 << bits) - 1
+    if low < least or high > most:
+        return f"{field} is {low} to {high} in FRAME; {bits} bits hold {least} to {most}"
+    return ""
+
+
+def of_kinds(path, kinds):
+    """Frames that a protocol sends of a kind that has no layout.
+
+    Args:
+        path: a file of the protocol.
+        kinds: the numbers of those that have one.
+    """
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    constants, found = constants_of(tree), []
+    for function in functions_of(tree):
+        sent = {part.targets[0].id for part in ast.walk(function)
+                if isinstance(part, ast.Assign) and isinstance(part.targets[0], ast.Name)
+                and "send" in _called(part.value)}  # fmt: skip
+        for part in ast.walk(function):
+            target = part.targets[0] if isinstance(part, ast.Assign) else None
+            if not (isinstance(target, ast.Attribute) and target.attr == "kind"):
+                continue
+            value = _number(part.value, constants)
+            of_sent = isinstance(target.value, ast.Name) and target.value.id in sent
+            if of_sent and value is not None and value not in kinds:
+                what = f"a frame of kind {value} is sent, and has no layout; add one to LAYOUTS"
+                found.append(Finding(path, part.lineno, what))
+    return found
+
+
+def _called(node):
+    return {part.func.id for part in ast.walk(node)
+            if isinstance(part, ast.Call) and isinstance(part.func, ast.Name)}  # fmt: skip

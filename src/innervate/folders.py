@@ -1,0 +1,246 @@
+"""Networks that are folders: loaded, checked as they are written, taken anew when they are edited.
+
+A folder is a package with a `network.py` whose `NETWORK` says what it is. Loading it runs its code.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import linecache
+import sys
+import traceback
+from importlib import import_module, invalidate_caches
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from innervate.dialect import counted
+from innervate.dialect import folder as checks
+from innervate.dialect.checker import functions_of
+
+NETWORK_FILE = "network.py"
+MEDIA_ON_AIR = ("channel", "field")
+
+_stamps: dict[str, tuple[tuple[str, int, int], ...]] = {}  # of the files of what is loaded, by name
+
+
+class NetworkError(Exception):
+    """A network that was named cannot be loaded, or is not as it must be; one line."""
+
+
+def is_one(folder: Path) -> bool:
+    """True if a folder is a network by its looks."""
+    return folder.name.isidentifier() and (folder / NETWORK_FILE).is_file()
+
+
+def load(folder: Path) -> Any:
+    """What `network.py` of a folder calls NETWORK; read again if a file of it was edited.
+
+    Raises:
+        NetworkError: it cannot be loaded; the file and line of what is wrong in it.
+    """
+    folder = folder.resolve()
+    name, stamp = folder.name, _stamp(folder)
+    if _home(name) != folder or _stamps.get(name, stamp) != stamp:
+        _forget(folder)
+        _begin(folder)
+    _stamps[name] = stamp
+    try:
+        return import_module(f"{name}.network").NETWORK
+    except Exception as error:
+        _forget(folder)
+        raise NetworkError(blamed(error, folder) or f"{folder}: {_words(error)}") from None
+
+
+def is_stale(folder: Path) -> bool:
+    """True if a file of a folder that was loaded is another by now."""
+    folder = folder.resolve()
+    return _home(folder.name) == folder and _stamps.get(folder.name) != _stamp(folder)
+
+
+def _stamp(folder: Path) -> tuple[tuple[str, int, int], ...]:
+    files = sorted(folder.glob("*.py"))
+    return tuple((str(f), (at := f.stat()).st_mtime_ns, at.st_size) for f in files)
+
+
+def _home(name: str) -> Path | None:
+    """Where a package that was loaded lies."""
+    places = list(getattr(sys.modules.get(name), "__path__", ()))
+    return Path(places[0]).resolve() if places else None
+
+
+def _forget(folder: Path) -> None:
+    """Let go of a folder's modules, or of those of another folder that had its name.
+
+    Raises:
+        NetworkError: its name is that of a module that is no network.
+    """
+    name = folder.name
+    if name not in _stamps and _home(name) != folder:
+        known = sys.modules.get(name) or importlib.util.find_spec(name)
+        origin = getattr(known, "__file__", None) or getattr(known, "origin", None)
+        if known is not None and (origin is None or Path(origin).parent.resolve() != folder):
+            where = f"{folder / NETWORK_FILE}:1"
+            raise NetworkError(f"{where}: the name {name} is taken by a Python module; "
+                               "give the folder another")  # fmt: skip
+    for module in [one for one in sys.modules if f"{one}.".startswith(f"{name}.")]:
+        del sys.modules[module]
+    _stamps.pop(name, None)
+    invalidate_caches()
+    linecache.checkcache()
+
+
+def _begin(folder: Path) -> None:
+    """The folder's package, without any of its files but `__init__.py`."""
+    first = folder / "__init__.py"
+    if first.is_file():
+        places = [str(folder)]
+        spec = importlib.util.spec_from_file_location(
+            folder.name, first, submodule_search_locations=places
+        )
+        assert spec is not None
+        assert spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[folder.name] = module
+        try:
+            spec.loader.exec_module(module)
+        except Exception as error:
+            del sys.modules[folder.name]
+            raise NetworkError(blamed(error, folder) or _words(error)) from None
+    else:
+        module = ModuleType(folder.name)
+        module.__path__ = [str(folder)]
+        sys.modules[folder.name] = module
+
+
+def _words(error: BaseException) -> str:
+    return f"{type(error).__name__}: {error}"
+
+
+def blamed(error: BaseException, folder: Path) -> str:
+    """The last line of a folder that an error came by: "ring/protocol.py:12: ..."; "" if none."""
+    if isinstance(error, SyntaxError) and error.filename:
+        path = Path(error.filename)
+        if path.is_relative_to(folder):
+            return f"{shown(path)}:{error.lineno}: is no Python: {error.msg}"
+    places = [frame for frame in traceback.extract_tb(error.__traceback__)
+              if Path(frame.filename).is_relative_to(folder)]  # fmt: skip
+    if not places:
+        return ""
+    last = places[-1]
+    where = f", in {last.name}" if last.name != "<module>" else ""
+    return f"{shown(Path(last.filename))}:{last.lineno}: {_words(error)}{where}"
+
+
+def shown(path: Path) -> str:
+    """A path as it is said: relative to the working folder where it lies below it."""
+    here = Path.cwd()
+    return str(path.relative_to(here) if path.is_relative_to(here) else path)
+
+
+def sources(folder: Path, network: Any) -> list[Path]:
+    """The files of a folder that its protocol is written in: itself, and what they import."""
+    entry = _file_of(folder, network, "protocol")
+    found, waiting = [], [entry]
+    while waiting:
+        path = waiting.pop()
+        if path in found or not path.is_file():
+            continue
+        found.append(path)
+        try:
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+        except (SyntaxError, ValueError):
+            continue
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom):
+                module = (node.module or "").removeprefix(f"{folder.name}.")
+                names = [module] if module else [alias.name for alias in node.names]
+                waiting += [folder / f"{name.replace('.', '/')}.py" for name in names]
+    return found
+
+
+def _file_of(folder: Path, network: Any, part: str) -> Path:
+    place = network.parts.get(part, part).partition(":")[0].removeprefix(f"{folder.name}.")
+    return folder / f"{place.replace('.', '/')}.py"
+
+
+def findings(folder: Path, network: Any) -> list[checks.Finding]:
+    """All that is wrong with a network as it is written, protocol first."""
+    files, known = sources(folder, network), _dialects()
+    for path in files:
+        known |= _functions(path)
+    handlers = checks.HANDLERS | (checks.ON_AIR if network.medium in MEDIA_ON_AIR else {})
+    found = []
+    for place, path in enumerate(files):
+        found += checks.of_source(path, known, folder.name, {} if place else handlers)
+    if not files:
+        found = [checks.Finding(_file_of(folder, network, "protocol"), 1, "there is no such file")]
+    if network.has("invariants"):
+        found += checks.of_source(_file_of(folder, network, "invariants"), known, folder.name, {})
+    found += [] if found else _of_declared(folder, network, files)
+    for one in found:
+        one.path = shown(Path(one.path))
+    return found
+
+
+def _of_declared(folder: Path, network: Any, files: list[Path]) -> list[checks.Finding]:
+    try:
+        fields = network.fields
+        tables = [(name, getattr(fields, name)) for name in ("STATE", "FRAME", "PARAMS")]
+    except Exception as error:
+        path = _file_of(folder, network, "fields")
+        raise NetworkError(blamed(error, folder) or f"{shown(path)}:1: {_words(error)}") from None
+    found: list[checks.Finding] = checks.of_fields(_file_of(folder, network, "fields"), tables)
+    if not found and network.has("frames") and not hasattr(network.frames, "encode"):
+        frames, path = network.frames, _file_of(folder, network, "frames")
+        found += checks.of_layouts(path, frames.LAYOUTS, frames.KIND_BITS, fields.FRAME)
+        kinds = {kind for kind, _name, _fields in frames.LAYOUTS}
+        for source in files:
+            found += checks.of_kinds(source, kinds)
+    return found
+
+
+def _dialects() -> set[str]:
+    """Names of all functions of the dialect."""
+    home = Path(checks.__file__).parent
+    return {name for file in ("arith", "outbox", "rng") for name in _functions(home / f"{file}.py")}
+
+
+def _functions(path: Path) -> set[str]:
+    try:
+        return {one.name for one in functions_of(ast.parse(path.read_text(encoding="utf-8")))}
+    except (SyntaxError, ValueError):
+        return set()
+
+
+def invariants_of(network: Any, prefix: str) -> dict[str, Any]:
+    """A network's own invariants whose names begin so, by what their first line says."""
+    if not network.has("invariants"):
+        return {}
+    return {
+        " ".join((thing.__doc__ or name).strip().splitlines()[:1]): thing
+        for name, thing in vars(network.invariants).items()
+        if name.startswith(prefix) and callable(thing)
+    }
+
+
+def actions_of(folder: Path, network: Any) -> dict[str, tuple[int | None, str]]:
+    """Most actions of a call of each handler, None if it is not seen; and its file and line."""
+    functions: dict[str, Any] = {}
+    constants: dict[str, int] = {}
+    files: dict[str, Path] = {}
+    for path in sources(folder, network):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        constants |= checks.constants_of(tree)
+        functions |= {one.name: one for one in functions_of(tree)}
+        files |= {one.name: path for one in functions_of(tree)}
+    found: dict[str, tuple[int | None, str]] = {}
+    for name in (one for one in functions if one.startswith("on_")):
+        line, most = functions[name].lineno, None
+        try:
+            most = counted.actions(name, functions, constants)
+        except counted.Unknown as error:
+            line = error.line
+        found[name] = (most, f"{shown(files[name])}:{line}")
+    return found

@@ -1,0 +1,126 @@
+"""What is between the cells: neighbours' steps, numbers that wrap, and why no ring closes.
+
+A cell's handlers see its neighbours only as ghosts. Here the ghosts move: whatever a neighbour's
+own step does to its feasible distance leaves this cell's invariants standing. That those are all
+the ways in which it moves is what F, F1 and W1 .. W3 say of the neighbour's handlers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from innervate.dialect.arith import MASK16
+from innervate.dialect.source import Change
+from innervate.networks.skin.protocol import fields
+from innervate.networks.skin.protocol.constants import INFINITY, PORTS, RULE_FEASIBLE
+from innervate.networks.skin.prove.feasible import ENTRY, facts
+from innervate.networks.skin.prove.neighbours import (
+    ROOM,
+    Cell,
+    Ghost,
+    View,
+    ghosts,
+    invariants,
+    number,
+    true_ghosts,
+)  # fmt: skip
+from innervate.prove.steps import Goal, Stage, Step
+from innervate.prove.terms import Term
+from innervate.prove.theory import source
+
+
+def steps(change: Change | None = None) -> tuple[Callable[[], Step], ...]:
+    """What neighbours do, and what makes a ring impossible."""
+    known = source(ENTRY, change)
+    return (
+        partial(_moved, "a neighbour gets nearer", nearer),
+        partial(_moved, "a neighbour loses its memory, or forgets in time", forgets),
+        partial(_moved, "a neighbour has its first route", first),
+        partial(_moved, "a neighbour has a route again, after all gave it up", again),
+        partial(compared, known),
+        ring,
+    )
+
+
+def _moved(name: str, moves: Callable[[View, Ghost, Ghost, int], Term]) -> Step:
+    """Some neighbour's feasible distance moves: this cell's invariants stand."""
+    cell = Cell(Stage({}, fields.FRAME, ROOM), RULE_FEASIBLE)
+    stage, t = cell.stage, cell.stage.terms
+    port = t.unknown("port", 0, PORTS - 1)
+    view = cell.view(stage.store)
+    after = [
+        Ghost(
+            t.as_truth(t.unknown(f"ghost{p}.known'", 0, 1)),
+            number(t, f"ghost{p}.sq'"),
+            t.unknown(f"ghost{p}.dist'", 0, INFINITY),
+            t.as_truth(t.unknown(f"ghost{p}.old'", 0, 1)),
+        )
+        for p in range(PORTS)
+    ]
+    known = facts(cell)
+    for p, (old, new) in enumerate(zip(cell.ghosts, after, strict=True)):
+        here = view.is_(port, p)
+        known.append(t.implies(here, moves(view, old, new, p)))
+        stays = t.all(t.same(old.known, new.known), t.same(old.sq, new.sq),
+                      t.same(old.dist, new.dist), t.same(old.old, new.old))  # fmt: skip
+        known.append(t.any(here, stays))
+        known.append(t.implies(new.known, view.in_window(new.sq)))
+    moved = View(t, cell.cell, cell.params, stage.store, after)
+    goals = [*invariants(moved), Goal("what neighbours have is true", true_ghosts(moved))]
+    return Step(name, stage.machine, stage.records, stage.store, stage.store, known, goals)
+
+
+def nearer(view: View, old: Ghost, new: Ghost, p: int) -> Term:
+    """F: it has one and it is not farther than before."""
+    t = view.t
+    worse = view.nearer((old.sq, old.dist), (new.sq, new.dist))
+    return t.all(old.known, new.known, t.same(old.old, new.old), t.negated(worse))
+
+
+def forgets(view: View, old: Ghost, new: Ghost, p: int) -> Term:
+    """A restart, or F1: it has none any more, and what is kept of it may be older."""
+    return view.t.all(view.t.negated(new.known), new.old)
+
+
+def first(view: View, old: Ghost, new: Ghost, p: int) -> Term:
+    """It never had a feasible distance."""
+    t = view.t
+    return t.all(t.negated(t.any(old.known, old.old)), new.known, t.negated(new.old))
+
+
+def again(view: View, old: Ghost, new: Ghost, p: int) -> Term:
+    """The timing assumptions: nothing is left here of what it said before it forgot."""
+    return view.t.all(view.is_settled(p), new.known, view.t.negated(new.old))
+
+
+def compared(known: dict[str, object]) -> Step:
+    """The protocol's `later` is the order of numbers in use, however they wrap."""
+    cell = Cell(Stage(known, fields.FRAME, ROOM), RULE_FEASIBLE)
+    stage, t = cell.stage, cell.stage.terms
+    view = cell.view(stage.store)
+    a, b = t.unknown("a", 0, MASK16), t.unknown("b", 0, MASK16)
+    both = [view.in_window(a), view.in_window(b)]
+    step = stage.play("numbers are compared", "later", [a, b], both)
+    ahead = t.less(view.offset(b), view.offset(a))
+    step.goals = [Goal("T1 later is the order of numbers", t.same(t.as_truth(step.result), ahead))]
+    return step
+
+
+def ring() -> Step:
+    """Nearer is an order: whoever follows parents from a cell never comes back to it."""
+    cell = Cell(Stage({}, fields.FRAME, ROOM), RULE_FEASIBLE)
+    stage, t = cell.stage, cell.stage.terms
+    view = cell.view(stage.store)
+    fds = [(number(t, f"sq{i}"), t.unknown(f"dist{i}", 0, INFINITY)) for i in range(3)]
+    a, b, c = fds
+    both = t.all(view.nearer(a, b), view.nearer(b, c))
+    goals = [
+        Goal("T2 nothing is nearer than itself", t.negated(view.nearer(a, a))),
+        Goal("T3 what is nearer than what is nearer is nearer", t.implies(both, view.nearer(a, c))),
+    ]
+    known = [view.in_window(sq) for sq, _ in fds]
+    return Step("a way along parents", stage.machine, {}, {}, {}, known, goals)
+
+
+__all__ = ["ghosts", "steps"]

@@ -1,0 +1,129 @@
+"""Has the solver try to refute what is to hold, and sees that nothing holds for want of cases."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+
+from innervate.kernel.clock import wall_s
+from innervate.prove.errors import ProveError
+from innervate.prove.solve import Formulas, Question
+from innervate.prove.steps import Step
+from innervate.prove.terms import Term
+
+Way = tuple[str, int, bool]  # function, line, taken: one way of a branch
+
+
+@dataclass(slots=True)
+class Refuted:
+    """A goal that does not hold.
+
+    Attributes:
+        goal: its name.
+        values: of all unknowns before the step.
+        sentences: what happens with these values.
+    """
+
+    goal: str
+    values: dict[str, int]
+    sentences: list[str] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class Checked:
+    """What came of a step.
+
+    Attributes:
+        name: of the step.
+        goals: names of what was to hold.
+        refuted: those that do not.
+        reached: ways of branches that some state takes.
+        missed: ways that none takes in this step.
+        wall_s: how long it took.
+    """
+
+    name: str
+    goals: list[str]
+    refuted: list[Refuted] = field(default_factory=list)
+    reached: set[Way] = field(default_factory=set)
+    missed: set[Way] = field(default_factory=set)
+    wall_s: float = 0.0
+
+
+Teller = Callable[[Step, Question, str], list[str]]
+
+
+def check(
+    step: Step, tell: Teller | None = None, simple: Iterable[Term] = (), first_only: bool = False
+) -> Checked:
+    """Try to refute a step's goals.
+
+    Args:
+        step: that was played, with goals.
+        tell: says in sentences what happens with the values that refute one.
+        simple: what counterexamples should keep to if they can, so that they are easy to read.
+        first_only: one goal that is refuted is enough, and no story of it.
+
+    Raises:
+        ProveError: nothing can be as the facts say, so that everything would hold; or the solver
+            could not say.
+    """
+    begun = wall_s()
+    found = Checked(step.name, [goal.name for goal in step.goals])
+    question = Question(Formulas(), step.facts)
+    if question.values() is None:
+        raise ProveError(f"{step.name}: no state is as assumed, so all would hold")
+    found.reached, found.missed = reached(step, question)
+    terms = step.terms
+    if question.values(terms.any(*(terms.negated(goal.holds) for goal in step.goals))) is not None:
+        if first_only:
+            bad = next(goal for goal in step.goals if not question.holds(goal.holds))
+            found.refuted = [Refuted(bad.name, question.values_found)]
+        else:
+            found.refuted = list(_all_refuted(step, question, tell, tuple(simple)))
+    found.wall_s = wall_s() - begun
+    return found
+
+
+def _all_refuted(
+    step: Step, question: Question, tell: Teller | None, simple: tuple[Term, ...]
+) -> Iterator[Refuted]:
+    """All goals that do not hold, with values that refute them, as simple as they can be had."""
+    for goal in step.goals:
+        wanted = [step.terms.negated(goal.holds)]
+        if question.values(*wanted) is None:
+            continue
+        for wish in simple:
+            if question.holds(wish) or question.values(*wanted, wish) is not None:
+                wanted.append(wish)
+        values = question.values(*wanted)
+        assert values is not None
+        yield Refuted(goal.name, values, tell(step, question, goal.name) if tell else [])
+
+
+def reached(step: Step, question: Question) -> tuple[set[Way], set[Way]]:
+    """The ways of branches that some state takes, and those that none does."""
+    terms = step.terms
+    open_ = {way: terms.any(*guards) for way, guards in step.machine.ways.items()}
+    missed = {way for way, guard in open_.items() if guard is terms.false}
+    for way in missed:
+        del open_[way]
+    found: set[Way] = set()
+    while open_:
+        if question.values(terms.any(*open_.values())) is None:
+            return found, missed | set(open_)
+        taken = {way for way, guard in open_.items() if question.holds(guard)}
+        found |= taken
+        for way in taken:
+            del open_[way]
+    return found, missed
+
+
+def unreached(checked: Iterable[Checked]) -> Iterator[Way]:
+    """Ways of branches that no step takes, though one comes to the branch's function."""
+    reached_: set[Way] = set()
+    missed: set[Way] = set()
+    for one in checked:
+        reached_ |= one.reached
+        missed |= one.missed
+    yield from sorted(missed - reached_)

@@ -1,0 +1,67 @@
+"""What is proved of any network that declares its protocol, without knowing what it is for.
+
+From any state whose fields are in their declared ranges: they stay there, no index leaves its
+array, every number fits 32 bits, the outbox has room, draws are out of 1 or more, loops end; and
+every branch is taken by some state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+from innervate.dialect.source import Change
+from innervate.network import Network
+from innervate.prove.errors import ProveError
+from innervate.prove.steps import Stage, Step, own_goals
+from innervate.prove.theory import Fault, Theory, source
+
+OUTBOX = 16
+PORTS = 4
+RECORDS = ("state",)
+MUTANTS: tuple[Fault, ...] = ()
+NO_SAFETY: dict[str, str] = {}
+
+
+def theories(network: Network, change: Change | None = None) -> list[Theory]:
+    """That everything stays in its declared range."""
+    if not (network.has("protocol") and network.has("fields")):
+        raise ProveError(f"{network.name} declares no protocol")
+    known = source(network.protocol.__name__, change)
+    return [
+        Theory(
+            f"{network.name}: declared ranges",
+            "Every field stays in its declared range, whatever comes in.",
+            (),
+            tuple(partial(_step, network, known, what) for what in _events(network)),
+        )
+    ]
+
+
+def _events(network: Network) -> Iterator[tuple[str, str, list[Any]]]:
+    """(name, handler, what it is told) of all that can happen to a node."""
+    yield "it is switched on", "on_start", ["cause"]
+    yield "a frame arrives", "on_frame", ["port", "frame"]
+    for timer in range(network.protocol.TIMERS):
+        yield f"timer {timer} fires", "on_timer", [timer]
+    if hasattr(network.protocol, "on_input"):
+        yield "its user hands something in", "on_input", ["kind", "frame"]
+
+
+def _step(network: Network, known: dict[str, Any], what: tuple[str, str, list[Any]]) -> Step:
+    name, handler, told = what
+    protocol, fields = network.protocol, network.fields
+    stage = Stage(known, fields.FRAME, getattr(protocol, "OUTBOX", OUTBOX))
+    state = stage.record("state", fields.STATE)
+    params = stage.record("params", fields.PARAMS)
+    given = {
+        "cause": stage.terms.unknown("cause", 0, 1),
+        "port": stage.terms.unknown("port", 0, PORTS - 1),
+        "kind": stage.terms.unknown("kind", 0, 15),
+        "frame": stage.record("frame", fields.FRAME),
+    }
+    args = [given.get(one, one) for one in told]
+    step = stage.play(name, handler, [state, params, stage.clock(), *args, stage.out], [])
+    step.goals = own_goals(step, RECORDS, protocol.TIMERS, PORTS)
+    return step

@@ -1,0 +1,325 @@
+"""Runs functions of the dialect on terms: all their paths at once.
+
+Paths part at an `if` and are merged behind it; loops are unrolled, calls followed. What a path must
+keep (indices within arrays, numbers within 32 bits, room, bounds of loops) is noted as it goes.
+"""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass, field
+from typing import Any
+
+from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
+from innervate.dialect.source import Function
+from innervate.prove.errors import ProveError
+from innervate.prove.express import Expressions
+from innervate.prove.records import (
+    Action,
+    Array,
+    Outbox,
+    Record,
+    State,
+    Store,
+    each_of,
+    either,
+    merged,
+    unknowns,
+)
+from innervate.prove.terms import Term, Terms
+
+LOOP_MAX = 40  # passes of a loop whose number is not known
+OUTBOX = "innervate.dialect.outbox"
+RANDOM = "innervate.dialect.rng"
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """Something that must hold wherever `guard` does."""
+
+    what: str
+    guard: Term
+    holds: Term
+    where: str
+
+
+@dataclass(slots=True)
+class Call:
+    """A call that is being followed.
+
+    Attributes:
+        function: that is called.
+        under: where it is called at all.
+        returned: (state, value) of its paths that have ended.
+        broken, continued: states of the innermost loop's paths that left a pass.
+    """
+
+    function: Function
+    under: Term
+    returned: list[tuple[State, Any]] = field(default_factory=list)
+    broken: list[State] = field(default_factory=list)
+    continued: list[State] = field(default_factory=list)
+
+
+class Machine(Expressions):
+    """Runs the functions of a protocol.
+
+    Args:
+        functions: of the dialect's `source.functions`.
+        terms: that all is made of.
+        out: the outbox that handlers are given.
+
+    Attributes:
+        demands: what must hold for the handlers to be sound.
+        facts: what is known of draws.
+        ways: for every (function, line, taken) of an `if`, where it is taken so.
+    """
+
+    def __init__(self, functions: dict[str, Function], terms: Terms, out: Outbox) -> None:
+        self.functions = functions
+        self.terms = terms
+        self.out = out
+        self.demands: list[Demand] = []
+        self.facts: list[Term] = []
+        self.draws: list[tuple[Term, Term]] = []
+        self.ways: dict[tuple[str, int, bool], list[Term]] = {}
+
+    def run(self, name: str, args: list[Any], store: Store, under: Term) -> tuple[Store, Any]:
+        """Call a function by its joined name; the values afterwards, and what it returned."""
+        return self.call(self.functions[name], args, store, under)
+
+    def call(
+        self, function: Function, args: list[Any], store: Store, under: Term
+    ) -> tuple[Store, Any]:
+        """Follow a call to its end."""
+        terms = self.terms
+        names = [arg.arg for arg in function.node.args.args]
+        call = Call(function, under)
+        state = State(dict(zip(names, args, strict=True)), dict(store), terms.true)
+        end = self.block(function.node.body, state, call)
+        if end is not None:
+            call.returned.append((end, None))
+        if not call.returned:
+            return store, terms.number(0)
+        state, value = call.returned[-1]
+        for before, result in reversed(call.returned[:-1]):
+            value = either(terms, before.path, result, value)
+            state = merged(terms, before.path, before, state, terms.true)
+        return state.store, value
+
+    # -- statements: each gives the state of the paths that go on behind it, or None
+
+    def block(self, body: list[ast.stmt], state: State, call: Call) -> State | None:
+        """Run statements one after the other."""
+        for statement in body:
+            if state.path is self.terms.false:
+                return None
+            after = self.statement(statement, state, call)
+            if after is None:
+                return None
+            state = after
+        return state
+
+    def statement(self, node: ast.stmt, state: State, call: Call) -> State | None:
+        """Run one statement on a state."""
+        match node:
+            case ast.Expr():
+                if not isinstance(node.value, ast.Constant):
+                    self.value(node.value, state, call)
+                return state
+            case ast.Assign(targets=[target]):
+                self.assign(target, self.value(node.value, state, call), state, call)
+                return state
+            case ast.AugAssign():
+                sum_ = ast.BinOp(node.target, node.op, node.value, lineno=node.lineno)
+                self.assign(node.target, self.value(sum_, state, call), state, call)
+                return state
+            case ast.If():
+                return self.branch(node, state, call)
+            case ast.For():
+                return self.loop(node, state, call)
+            case ast.While():
+                return self.repeat(node, state, call)
+            case ast.Return():
+                value = None if node.value is None else self.value(node.value, state, call)
+                call.returned.append((state, value))
+                return None
+            case ast.Break():
+                call.broken.append(state)
+                return None
+            case ast.Continue():
+                call.continued.append(state)
+                return None
+            case ast.Pass():
+                return state
+        raise ProveError(f"{self.place(node, call)}: the dialect has no such statement")
+
+    def branch(self, node: ast.If, state: State, call: Call) -> State | None:
+        """Run both ways of an `if` and merge them."""
+        terms = self.terms
+        test = terms.as_truth(self.value(node.test, state, call))
+        self.note(node, test, state, call)
+        if test.op == "const":
+            return self.block(node.body if test is terms.true else node.orelse, state, call)
+        whole = state.path
+        yes = terms.all(whole, test)
+        no = terms.all(whole, terms.negated(test))
+        other = state.fork(no)
+        state.path = yes
+        a, b = self.block(node.body, state, call), self.block(node.orelse, other, call)
+        if a is None or b is None:
+            return b if a is None else a
+        both = whole if a.path is yes and b.path is no else terms.any(a.path, b.path)
+        return merged(terms, test, a, b, both)
+
+    def note(self, node: ast.If | ast.IfExp, test: Term, state: State, call: Call) -> None:
+        """Note where both ways of a branch are taken."""
+        under = self.terms.all(call.under, state.path)
+        for taken, way in ((True, test), (False, self.terms.negated(test))):
+            here = self.ways.setdefault((call.function.name, node.lineno, taken), [])
+            guard = self.terms.all(under, way)
+            if guard is not self.terms.false:
+                here.append(guard)
+
+    def loop(self, node: ast.For, state: State, call: Call) -> State | None:
+        """Unroll a loop over a range."""
+        terms = self.terms
+        assert isinstance(node.iter, ast.Call)
+        ends = [terms.as_number(self.value(arg, state, call)) for arg in node.iter.args]
+        first, last = ends if len(ends) == 2 else (terms.number(0), ends[0])
+        passes = max(last.high - first.low, 0)
+        left = self.enter(call)
+        after: State | None = state
+        for k in range(min(passes, LOOP_MAX if last.value is None else passes)):
+            assert after is not None
+            at = terms.add(first, terms.number(k))
+            after = self.one_pass(node, terms.less(at, last), at, after, call)
+            if after is None:
+                break
+        else:
+            if passes > LOOP_MAX and last.value is None:
+                more = terms.less(terms.add(first, terms.number(LOOP_MAX)), last)
+                assert after is not None
+                self.demand("a loop ends", terms.negated(more), node, after, call)
+        return self.leave(left, after, call)
+
+    def repeat(self, node: ast.While, state: State, call: Call) -> State | None:
+        """Unroll a loop with a condition."""
+        left = self.enter(call)
+        after: State | None = state
+        for _ in range(LOOP_MAX):
+            assert after is not None
+            test = self.terms.as_truth(self.value(node.test, after, call))
+            if test is self.terms.false:
+                break
+            after = self.one_pass(node, test, None, after, call)
+            if after is None:
+                break
+        else:
+            assert after is not None
+            test = self.terms.as_truth(self.value(node.test, after, call))
+            self.demand("a loop ends", self.terms.negated(test), node, after, call)
+        return self.leave(left, after, call)
+
+    def one_pass(
+        self, node: ast.For | ast.While, goes: Term, at: Term | None, state: State, call: Call
+    ) -> State | None:
+        """One pass of a loop where it goes on; where it does not, it is left."""
+        terms = self.terms
+        if goes is not terms.true:
+            call.broken.append(state.fork(terms.all(state.path, terms.negated(goes))))
+            state.path = terms.all(state.path, goes)
+        if state.path is terms.false:
+            return None
+        if at is not None:
+            assert isinstance(node, ast.For)
+            assert isinstance(node.target, ast.Name)
+            state.names[node.target.id] = at
+        end = self.block(node.body, state, call)
+        ends = [*call.continued, *([end] if end is not None else [])]
+        call.continued = []
+        return self.joined(ends)
+
+    def enter(self, call: Call) -> tuple[list[State], list[State]]:
+        """Begin a loop within whatever loop there is."""
+        outer = call.broken, call.continued
+        call.broken, call.continued = [], []
+        return outer
+
+    def leave(
+        self, outer: tuple[list[State], list[State]], end: State | None, call: Call
+    ) -> State | None:
+        """End a loop: all paths that left it go on behind it."""
+        ends = [*call.broken, *([end] if end is not None else [])]
+        call.broken, call.continued = outer
+        return self.joined(ends)
+
+    def joined(self, states: list[State]) -> State | None:
+        """One state of several whose paths exclude each other."""
+        if not states:
+            return None
+        whole = states[-1]
+        for before in reversed(states[:-1]):
+            path = self.terms.any(before.path, whole.path)
+            whole = merged(self.terms, before.path, before, whole, path)
+        return whole
+
+    def assign(self, target: ast.expr, value: Any, state: State, call: Call) -> None:
+        """Give a name or a place a value."""
+        if isinstance(target, ast.Name):
+            state.names[target.id] = value
+            return
+        value = self.terms.as_number(value)
+        if isinstance(target, ast.Attribute):
+            owner = self.value(target.value, state, call)
+            for where, record in each_of(self.terms, owner, self.terms.true):
+                self.put((record, target.attr, None), where, value, state)
+            return
+        assert isinstance(target, ast.Subscript)
+        array = self.value(target.value, state, call)
+        index = self.terms.as_number(self.value(target.slice, state, call))
+        for where, one in each_of(self.terms, array, self.terms.true):
+            assert isinstance(one, Array)
+            self.check_index(index, one.length, target, state, call)
+            for k in range(max(index.low, 0), min(index.high, one.length - 1) + 1):
+                here = self.terms.same(index, self.terms.number(k))
+                key = (one.record, one.name, k)
+                self.put(key, self.terms.all(where, here), value, state)
+
+    def put(self, key: Any, where: Term, value: Term, state: State) -> None:
+        """Write a place where a truth holds."""
+        if key not in state.store:
+            raise ProveError(f"{key[0].name} declares no field {key[1]}")
+        state.store[key] = self.terms.pick(where, value, state.store[key])
+
+    # -- what stands for itself: actions and draws
+
+    def builtin(self, function: Function, args: list[Any], state: State, call: Call) -> Any:
+        """An action, or any number that a draw may return; None if it is an ordinary function."""
+        name = function.node.name
+        if function.module == RANDOM and name == "draw":
+            return self.draw(args[1], state, call)
+        if function.module != OUTBOX:
+            return None
+        zero = self.terms.number(0)
+        given = [self.terms.as_number(arg) for arg in args[1:]]
+        kind = {"send": SEND, "set_timer": SET_TIMER, "deliver": DELIVER, "report": REPORT}[name]
+        a, b, c = (*given, zero, zero)[:3]
+        number = len(self.out.actions)
+        frame = Record(f"out{number}", self.out.frame if kind in (SEND, DELIVER) else ())
+        guard = self.terms.all(call.under, state.path)
+        state.store.update(unknowns(self.terms, frame))
+        made = Action(kind, guard, a, b, c, frame, call.function.name)
+        self.out.actions.append(made)
+        return made
+
+    def draw(self, many: Term, state: State, call: Call) -> Term:
+        """Any number below `many`, which must be at least 1."""
+        many = self.terms.as_number(many)
+        least = self.terms.at_most(self.terms.number(1), many)
+        self.demand("what is drawn from is not empty", least, call.function.node, state, call)
+        drawn = self.terms.fresh("drawn", 0, max(many.high - 1, 0))
+        under = self.terms.all(call.under, state.path, least)
+        self.facts.append(self.terms.implies(under, self.terms.less(drawn, many)))
+        self.draws.append((drawn, many))
+        return drawn

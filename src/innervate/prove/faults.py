@@ -1,0 +1,29 @@
+"""A proof can fail: mistakes are planted in the protocol, and each has to be refuted."""
+
+from __future__ import annotations
+
+from innervate.network import Network
+from innervate.prove.theory import Fault, prove
+
+
+def faults_of(network: Network) -> list[Fault]:
+    """A network's own mistakes, and the explorer's that an invariant is about."""
+    part = network.prove
+    others = [Fault(one.name, one.old, one.new) for one in getattr(network.verify, "MUTANTS", ())]
+    return [*part.MUTANTS, *(one for one in others if one.name not in part.NO_SAFETY)]
+
+
+def hunt(network: Network, fault: Fault) -> tuple[str, str]:
+    """(step, lemma) that a mistake breaks first; "" if none.
+
+    Raises:
+        ProveError: its text is not in what is proved.
+    """
+    for theory in network.prove.theories(network, (fault.old, fault.new)):
+        if theory.refuted_by:
+            continue
+        outcome = prove(theory, first_only=True)
+        for one in outcome.checked:
+            if one.refuted:
+                return one.name, one.refuted[0].goal
+    return "", ""

@@ -1,0 +1,160 @@
+"""What handlers work on, while they are turned into formulas: records, arrays, the outbox."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from innervate.prove.terms import Term, Terms
+
+Declaration = Iterable[tuple[str, Any, int, int, str, str]]
+PORTS = "ports"  # the length of an array that is as long as a node has ports
+
+
+class Record:
+    """A record with declared fields.
+
+    Attributes:
+        name: how its unknowns are called.
+        fields: (length or 0, low, high) of every field.
+        parts: records within it: tuples of records, by name.
+    """
+
+    def __init__(self, name: str, declaration: Declaration = (), ports: int = 0) -> None:
+        self.name = name
+        self.fields = {
+            field: (ports if length == PORTS else length, low, high)
+            for field, length, low, high, _unit, _meaning in declaration
+        }
+        self.parts: dict[str, tuple[Record, ...]] = {}
+
+    def places(self) -> Iterator[tuple[Key, int, int]]:
+        """The place of every value, with its range."""
+        for name, (length, low, high) in self.fields.items():
+            if length:
+                for i in range(length):
+                    yield (self, name, i), low, high
+            else:
+                yield (self, name, None), low, high
+        for inner in self.parts.values():
+            for record in inner:
+                yield from record.places()
+
+
+Key = tuple[Record, str, "int | None"]
+Store = dict[Key, Term]
+
+
+def name_of(key: Key) -> str:
+    """A place as text: cell.dist[2]."""
+    record, name, index = key
+    return f"{record.name}.{name}" + ("" if index is None else f"[{index}]")
+
+
+def unknowns(terms: Terms, record: Record) -> Store:
+    """Any values in their declared ranges."""
+    return {key: terms.unknown(name_of(key), low, high) for key, low, high in record.places()}
+
+
+@dataclass(frozen=True, slots=True)
+class Array:
+    """An array of a record."""
+
+    record: Record
+    name: str
+    length: int
+
+
+@dataclass(frozen=True, slots=True)
+class Either:
+    """One reference where a truth holds, else another."""
+
+    if_: Term
+    a: Any
+    b: Any
+
+
+@dataclass(eq=False, slots=True)
+class Action:
+    """An action of the outbox: it is there where `guard` holds."""
+
+    kind: int
+    guard: Term
+    a: Term
+    b: Term
+    c: Term
+    frame: Record
+    where: str
+
+
+class Frames:
+    """The table `out.frame`; what `send` and `deliver` return stands for a place in it."""
+
+
+@dataclass(slots=True)
+class Outbox:
+    """The actions of a call in order; each is there where its guard holds."""
+
+    frame: Declaration
+    limit: int
+    actions: list[Action] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class State:
+    """The state on some of a function's paths.
+
+    Attributes:
+        names: its local names.
+        store: values of all records.
+        path: which of the function's paths.
+    """
+
+    names: dict[str, Any]
+    store: Store
+    path: Term
+
+    def fork(self, path: Term) -> State:
+        """The same, to go on with by itself."""
+        return State(dict(self.names), dict(self.store), path)
+
+
+def merged(terms: Terms, if_: Term, a: State, b: State, path: Term) -> State:
+    """State `a` where a truth holds, else `b`."""
+    store, other = a.store, b.store
+    for key, value in other.items():
+        mine = store.get(key)
+        if mine is None:
+            store[key] = value
+        elif mine is not value:
+            store[key] = terms.pick(if_, mine, value)
+    names = a.names
+    for name, value in b.names.items():
+        mine = names.get(name)
+        if mine is None:
+            names[name] = value
+        elif mine is not value:
+            names[name] = either(terms, if_, mine, value)
+    return State(names, store, path)
+
+
+def either(terms: Terms, if_: Term, a: Any, b: Any) -> Any:
+    """One value or reference where a truth holds, else another."""
+    if isinstance(a, Term) and isinstance(b, Term):
+        return terms.pick(if_, a, b)
+    if a is None or a is b or a == b:
+        return b
+    return a if b is None else Either(if_, a, b)
+
+
+def each_of(terms: Terms, ref: Any, under: Term) -> Iterator[tuple[Term, Any]]:
+    """All that a reference may stand for, and where."""
+    if isinstance(ref, Either):
+        yield from each_of(terms, ref.a, terms.all(under, ref.if_))
+        yield from each_of(terms, ref.b, terms.all(under, terms.negated(ref.if_)))
+    else:
+        yield under, ref
+
+
+Read = Callable[[Any], Term]

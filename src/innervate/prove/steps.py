@@ -1,0 +1,172 @@
+"""A step: one handler, run on any state that may come, and what has to hold behind it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from innervate.dialect.arith import MASK30
+from innervate.dialect.outbox import DELIVER, SEND, SET_TIMER
+from innervate.dialect.source import Function
+from innervate.prove.execute import Machine
+from innervate.prove.records import Declaration, Outbox, Record, Store, name_of, unknowns
+from innervate.prove.terms import Term, Terms
+
+RANGES = "every field stays in its declared range"
+SENT = "what is sent and set is in its declared range"
+ROOM = "the outbox has room"
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """Something that has to hold."""
+
+    name: str
+    holds: Term
+
+
+@dataclass(slots=True)
+class Step:
+    """A handler that was run.
+
+    Attributes:
+        name: for people: "hear a beacon".
+        machine: that ran it.
+        records: by their names in `before` and `after`.
+        before, after: all values.
+        facts: what is known of the values before.
+        goals: what has to hold; those of any protocol come by themselves.
+        result: what the function returned.
+    """
+
+    name: str
+    machine: Machine
+    records: dict[str, Record]
+    before: Store
+    after: Store
+    facts: list[Term]
+    goals: list[Goal] = field(default_factory=list)
+    result: Any = None
+
+    @property
+    def terms(self) -> Terms:
+        """That the step is made of."""
+        return self.machine.terms
+
+    def was(self, record: str, name: str, index: int | None = None) -> Term:
+        """A value before the step."""
+        return self.before[self.records[record], name, index]
+
+    def now(self, record: str, name: str, index: int | None = None) -> Term:
+        """A value after the step."""
+        return self.after[self.records[record], name, index]
+
+
+class Stage:
+    """Records and terms on which a step is to be played.
+
+    Args:
+        functions: of the protocol.
+        frame: declaration of its frames.
+        room: actions that its outbox holds.
+    """
+
+    def __init__(self, functions: dict[str, Function], frame: Declaration, room: int) -> None:
+        self.functions = functions
+        self.terms = Terms()
+        self.out = Outbox(frame, room)
+        self.machine = Machine(functions, self.terms, self.out)
+        self.records: dict[str, Record] = {}
+        self.store: Store = {}
+
+    def record(self, name: str, *declarations: Declaration, ports: int = 0) -> Record:
+        """A record of any values in their ranges."""
+        made = Record(name, [field for one in declarations for field in one], ports)
+        self.records[name] = made
+        self.store.update(unknowns(self.terms, made))
+        return made
+
+    def fix(self, record: Record, name: str, value: int, index: int | None = None) -> None:
+        """Let a field have a value that is known."""
+        self.store[record, name, index] = self.terms.number(value)
+
+    def number(self, value: int) -> Term:
+        """A number that is known."""
+        return self.terms.number(value)
+
+    def clock(self) -> Term:
+        """Any reading of a clock."""
+        return self.terms.unknown("now", 0, MASK30)
+
+    def play(self, name: str, handler: str, args: list[Any], facts: list[Term]) -> Step:
+        """Run a handler; numbers among its arguments are known ones."""
+        given = [self.number(arg) if isinstance(arg, int) else arg for arg in args]
+        before = dict(self.store)
+        after, result = self.machine.run(handler, given, before, self.terms.true)
+        known = [*facts, *self.machine.facts]
+        return Step(name, self.machine, self.records, before, after, known, result=result)
+
+
+def own_goals(step: Step, changed: tuple[str, ...], timers: int, ports: int) -> list[Goal]:
+    """What has to hold of any protocol: ranges, indices, numbers, room, what is asked for.
+
+    Args:
+        step: that was played.
+        changed: records whose fields must stay in range.
+        timers: how many there are.
+        ports: how many there are; 0 for frames that go out without one.
+    """
+    terms = step.terms
+    by_name: dict[str, list[Term]] = {}
+    for name in changed:
+        for key, low, high in step.records[name].places():
+            holds = terms.within(step.after[key], low, high)
+            if holds is not terms.true:
+                by_name.setdefault(f"{RANGES}: {name_of(key)}", []).append(holds)
+    for demand in step.machine.demands:
+        what = f"{demand.what}: {demand.where}"
+        by_name.setdefault(what, []).append(terms.implies(demand.guard, demand.holds))
+    by_name[SENT] = list(_sent(step, timers, ports))
+    by_name[ROOM] = [room(step)]
+    return [Goal(name, terms.all(*holds)) for name, holds in by_name.items()]
+
+
+def room(step: Step) -> Term:
+    """The actions fit into the outbox."""
+    terms, out = step.terms, step.machine.out
+    count = terms.number(0)
+    for action in out.actions:
+        more = terms.add(count, terms.number(1))
+        count = terms.pick(action.guard, more, count)
+    return terms.at_most(count, terms.number(out.limit))
+
+
+def _sent(step: Step, timers: int, ports: int) -> Any:
+    terms = step.terms
+    for action in step.machine.out.actions:
+        holds = [
+            terms.within(step.after[key], low, high)
+            for key, low, high in action.frame.places()
+            if key in step.after
+        ]
+        if action.kind == SEND and ports:
+            holds.append(terms.within(action.a, 0, ports - 1))
+        if action.kind == SET_TIMER:
+            holds += [terms.within(action.a, 0, timers - 1), terms.within(action.b, 0, MASK30)]
+        yield terms.implies(action.guard, terms.all(*holds))
+
+
+def sent(step: Step, kind: int | None = None) -> Any:
+    """(guard, port, frame record) of all frames that a step sends; of one type alone if wanted."""
+    terms = step.terms
+    for action in step.machine.out.actions:
+        if action.kind == SEND:
+            is_kind = terms.true
+            if kind is not None:
+                is_kind = terms.same(step.after[action.frame, "kind", None], terms.number(kind))
+            guard = terms.all(action.guard, is_kind)
+            if guard is not terms.false:
+                yield guard, action.a, action.frame
+
+
+__all__ = ["DELIVER", "Goal", "Stage", "Step", "own_goals", "room", "sent"]

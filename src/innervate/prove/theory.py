@@ -1,0 +1,172 @@
+"""What is proved of a network: theories, each of steps and lemmas, and how they come out."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from innervate.dialect.source import Change, Function, functions, reached
+from innervate.prove.check import Checked, Teller, Way, check, unreached
+from innervate.prove.steps import Step
+from innervate.prove.tell import changes
+from innervate.prove.terms import Term
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """A mistake that proofs must refute: `old` stands once in the sources and becomes `new`."""
+
+    name: str
+    old: str
+    new: str
+
+
+def source(entry: str, change: Change | None) -> dict[str, Function]:
+    """The functions of a protocol, with a mistake if its text is one of theirs."""
+    planted = change if change is not None and is_in(entry, change) else None
+    found: dict[str, Function] = functions(entry, change=planted)
+    return found
+
+
+def is_in(entry: str, change: Change) -> bool:
+    """True if the text of a mistake is in what an entry's functions can reach."""
+    return any(change[0] in inspect.getsource(module) for module in reached(entry))
+
+
+Progress = Callable[[str, int, int], bool]  # what, part, of; True to stop
+
+
+@dataclass(frozen=True, slots=True)
+class Theory:
+    """Something that is claimed of a protocol, for any number of nodes.
+
+    Attributes:
+        name: like "skin, rule feasible".
+        claim: what follows from its steps, in a sentence.
+        assumed: what it rests on besides the protocol, a sentence each.
+        steps: make its steps, one after the other.
+        unreachable: (function, part of the line, taken) of branches that no state takes, with why.
+        refuted_by: "" for one that holds, else the step that must refute it: a claim that is false.
+        tell: says in sentences what happens with values that refute a goal.
+        simple: what counterexamples should keep to, of a step.
+    """
+
+    name: str
+    claim: str
+    assumed: tuple[str, ...]
+    steps: tuple[Callable[[], Step], ...]
+    unreachable: dict[tuple[str, str, bool], str] = field(default_factory=dict)
+    refuted_by: str = ""
+    tell: Teller = changes
+    simple: Callable[[Step], list[Term]] | None = None
+
+
+@dataclass(slots=True)
+class Outcome:
+    """What came of a theory.
+
+    Attributes:
+        theory: that was tried.
+        checked: its steps.
+        unreached: ways of branches that no step takes and that are not named as such.
+        named: those that are named.
+        ended: complete, or stopped.
+    """
+
+    theory: Theory
+    checked: list[Checked]
+    unreached: list[Way]
+    named: list[Way]
+    ended: str = "complete"
+
+    @property
+    def is_refuted(self) -> bool:
+        """True if some goal does not hold."""
+        return any(one.refuted for one in self.checked)
+
+    @property
+    def is_as_expected(self) -> bool:
+        """True if it holds and nothing is vacuous; or it is refuted, and was said to be."""
+        if self.theory.refuted_by:
+            return any(one.refuted and one.name == self.theory.refuted_by for one in self.checked)
+        return self.ended == "complete" and not self.is_refuted and not self.unreached
+
+    @property
+    def lemmas(self) -> int:
+        """How many goals there are."""
+        return sum(len(one.goals) for one in self.checked)
+
+    def as_dict(self) -> dict[str, Any]:
+        """The outcome as `innervate prove --json` prints it."""
+        return {
+            "theory": self.theory.name,
+            "claim": self.theory.claim,
+            "assumed": list(self.theory.assumed),
+            "ended": self.ended,
+            "holds": not self.is_refuted and not self.unreached,
+            "expected": self.is_as_expected,
+            "lemmas": self.lemmas,
+            "unreached": [list(way) for way in self.unreached],
+            "steps": [_step_dict(one) for one in self.checked],
+        }
+
+
+def _step_dict(one: Checked) -> dict[str, Any]:
+    refuted = {bad.goal: bad for bad in one.refuted}
+    return {
+        "name": one.name,
+        "wall_s": round(one.wall_s, 3),
+        "branches": len(one.reached),
+        "lemmas": [{"name": name, "answer": "sat" if name in refuted else "unsat"}
+                   for name in one.goals],
+        "refuted": [{"lemma": bad.goal, "story": bad.sentences, "values": bad.values}
+                    for bad in one.refuted],
+    }  # fmt: skip
+
+
+def prove(theory: Theory, tell: Progress | None = None, first_only: bool = False) -> Outcome:
+    """Try to refute a theory.
+
+    Args:
+        theory: what is claimed.
+        tell: is told how far it is; says if to stop.
+        first_only: end with the first step that is refuted.
+    """
+    checked: list[Checked] = []
+    ended = "complete"
+    lines: dict[Way, str] = {}
+    for number, make in enumerate(theory.steps):
+        step = make()
+        if tell is not None and tell(f"{theory.name}: {step.name}", number, len(theory.steps)):
+            ended = "stopped"
+            break
+        lines.update(_lines(step))
+        simple = theory.simple(step) if theory.simple is not None else []
+        checked.append(check(step, theory.tell, simple, first_only))
+        if first_only and checked[-1].refuted:
+            ended = "stopped"
+            break
+    missing = list(unreached(checked)) if ended == "complete" else []
+    named = [way for way in missing if _is_named(theory, way, lines.get(way, ""))]
+    return Outcome(theory, checked, [way for way in missing if way not in named], named, ended)
+
+
+def _lines(step: Step) -> Iterator[tuple[Way, str]]:
+    """The text of every branch's line."""
+    texts: dict[str, list[str]] = {}
+    for way in step.machine.ways:
+        path = step.machine.functions[way[0]].path
+        if path not in texts:
+            with open(path, encoding="utf-8") as file:
+                texts[path] = file.read().splitlines()
+        yield way, texts[path][way[1] - 1]
+
+
+def _is_named(theory: Theory, way: Way, line: str) -> bool:
+    """True if a branch is named as one that no state takes."""
+    return any(
+        function == way[0] and part in line and taken == way[2]
+        for function, part, taken in theory.unreachable
+    )

@@ -1,0 +1,202 @@
+"""Where in a folder's files a run breaks: a compiled run cannot say it, so it is run again plain.
+
+In a watched plain run states note the line that put a value out of its range, and an index that is
+below 0, which compiled code would take as somebody else's memory, is an error.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NoReturn
+
+from innervate import folders
+from innervate.network import Network
+from innervate.sim.driver import InvariantBroken, Simulation
+
+TRIAL_EVENTS = 5_000
+TRIAL_NODES = 2_000
+AGAIN_EVENTS = 300_000  # of a compiled run that broke later than that nobody waits for a plain one
+_IN_FILE = re.compile(r'File "([^"]+)", line (\d+)')
+_tried: set[Network] = set()
+
+Notes = dict[tuple[int, str], tuple[str, int]]
+
+
+class Watched:
+    """Watches a plain simulation's nodes, and its outbox.
+
+    Args:
+        running: not yet begun.
+        network: whose it is; from a folder.
+    """
+
+    def __init__(self, running: Simulation, network: Network) -> None:
+        assert network.folder is not None
+        self.folder = network.folder
+        self.notes: Notes = {}
+        self.overflow: tuple[str, int] | None = None
+        states, self._ranges = running.world.cells, {
+            name: (low, high) for name, _length, low, high, *_ in network.fields.STATE
+        }  # fmt: skip
+        self.states = states
+        kind = self._watching(type(states[0]))
+        for number, state in enumerate(states):
+            for name, length, *_ in network.fields.STATE:
+                if length:
+                    setattr(state, name, _Row(getattr(state, name), name, number, self))
+            state.__class__ = kind
+        self._numbers = {id(state): number for number, state in enumerate(states)}
+        running.world = running.world._replace(
+            out=running.world.out._replace(overflow=_Flag([0], self))
+        )
+
+    def _watching(self, made: type) -> type:
+        """A state's class that notes what is set out of range."""
+        watch = self
+
+        def set_field(state: Any, name: str, value: Any) -> None:
+            low, high = watch._ranges.get(name, (value, value))
+            if not isinstance(value, list) and not low <= value <= high:
+                watch.note(watch._numbers[id(state)], name)
+            object.__setattr__(state, name, value)
+
+        return type(made.__name__, (made,), {"__slots__": (), "__setattr__": set_field})
+
+    def note(self, number: int, name: str) -> None:
+        """A field of a node is out of its range from this line on."""
+        self.notes[number, name] = self.here()
+
+    def here(self) -> tuple[str, int]:
+        """The innermost line of the folder that is being run."""
+        frame = sys._getframe(1)
+        while frame.f_back is not None:
+            if Path(frame.f_code.co_filename).is_relative_to(self.folder):
+                break
+            frame = frame.f_back
+        return folders.shown(Path(frame.f_code.co_filename)), frame.f_lineno
+
+    def words(self, said: str) -> str:
+        """The line that made what is broken, and what is."""
+        if self.overflow is not None:
+            path, line = self.overflow
+            return f"{path}:{line}: more actions than the outbox holds; raise OUTBOX. {said}"
+        for number, state in enumerate(self.states):
+            for name, (low, high) in self._ranges.items():
+                value = getattr(state, name)
+                if not all(low <= one <= high for one in _all(value)):
+                    path, line = self.notes.get((number, name), ("", 0))
+                    if path:
+                        return f"{path}:{line}: {name} is {value}, declared {low} to {high}. {said}"
+        return said
+
+
+class _Row(list[int]):
+    """An array field of a state."""
+
+    def __init__(self, values: Any, name: str, number: int, watch: Watched) -> None:
+        super().__init__(values)
+        self.name, self.number, self.watch = name, number, watch
+
+    def __getitem__(self, place: Any) -> Any:
+        if place < 0:
+            raise IndexError(f"{self.name}[{place}]: an index is 0 to {len(self) - 1}")
+        return super().__getitem__(place)
+
+    def __setitem__(self, place: Any, value: Any) -> None:
+        if place < 0:
+            raise IndexError(f"{self.name}[{place}]: an index is 0 to {len(self) - 1}")
+        low, high = self.watch._ranges[self.name]
+        if not low <= value <= high:
+            self.watch.note(self.number, self.name)
+        super().__setitem__(place, value)
+
+
+class _Flag(list[int]):
+    """The outbox's overflow flag: notes who set it."""
+
+    def __init__(self, values: list[int], watch: Watched) -> None:
+        super().__init__(values)
+        self.watch = watch
+
+    def __setitem__(self, place: Any, value: Any) -> None:
+        if value and self.watch.overflow is None:
+            self.watch.overflow = self.watch.here()
+        super().__setitem__(place, value)
+
+
+def _all(value: Any) -> list[int]:
+    return value if isinstance(value, list) else [value]
+
+
+@contextmanager
+def blaming(network: Network, watch: Watched | None = None) -> Iterator[None]:
+    """What goes wrong in a folder's code is told by its file and line.
+
+    Raises:
+        NetworkError: in place of any error that comes by a file of the folder.
+    """
+    try:
+        yield
+    except (InvariantBroken, folders.NetworkError) as error:
+        if watch is None:
+            raise
+        raise folders.NetworkError(watch.words(str(error))) from None
+    except Exception as error:
+        assert network.folder is not None
+        words = folders.blamed(error, network.folder) or _compiling(error, network.folder)
+        if not words:
+            raise
+        raise folders.NetworkError(words) from None
+
+
+def _compiling(error: Exception, folder: Path) -> str:
+    """Where a compiler says that it stopped."""
+    if not type(error).__module__.startswith("numba"):
+        return ""
+    places = [one for one in _IN_FILE.findall(str(error)) if Path(one[0]).is_relative_to(folder)]
+    if not places:
+        return ""
+    path, line = places[-1]
+    told = [text.strip() for text in str(error).splitlines()]
+    what = next((one for one in told if one and "Failed in" not in one and "File " not in one), "")
+    return f"{folders.shown(Path(path))}:{line}: cannot be compiled: {what}"
+
+
+def try_plain(network: Network, plan: Any, **kept: bool) -> None:
+    """Run the beginning of a plan plain, once for each network, before it is compiled.
+
+    Raises:
+        NetworkError: it breaks; the file and line.
+    """
+    if network in _tried or _size(plan) > TRIAL_NODES:
+        return
+    _play(network, plan, TRIAL_EVENTS, kept)
+    _tried.add(network)
+
+
+def again(
+    network: Network, plan: Any, handled: int, error: InvariantBroken, **kept: bool
+) -> NoReturn:
+    """Say where a compiled run broke, by a plain one.
+
+    Raises:
+        NetworkError: always, with the line if it is found.
+    """
+    if handled <= AGAIN_EVENTS and _size(plan) <= TRIAL_NODES:
+        _play(network, plan, AGAIN_EVENTS, kept)
+    raise folders.NetworkError(str(error)) from None
+
+
+def _play(network: Network, plan: Any, events: int, kept: dict[str, bool]) -> None:
+    running: Simulation = network.simulation(plan, plain=True, **kept)
+    watch = Watched(running, network)
+    with blaming(network, watch):
+        running.advance(plan.duration_us, events)
+
+
+def _size(plan: Any) -> int:
+    return plan.graph.cells if hasattr(plan, "graph") else int(plan.nodes)

@@ -1,0 +1,56 @@
+"""A network of one's own for tests: written by `innervate new network`, and changed."""
+
+import shutil
+
+import pytest
+
+from innervate import folders
+from innervate.cli import main
+from innervate.network import networks
+
+
+class Own:
+    """A folder made by the command."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.scenario = folder / f"{folder.name}.toml"
+
+    def change(self, file, old, new):
+        """Change one place of a file."""
+        path = self.folder / file
+        text = path.read_text()
+        assert text.count(old) == 1, (file, old)
+        path.write_text(text.replace(old, new))
+
+    def line(self, file, text):
+        """The number of the first line that has a text."""
+        lines = (self.folder / file).read_text().splitlines()
+        return next(number for number, line in enumerate(lines, 1) if text in line)
+
+
+@pytest.fixture
+def alone(monkeypatch, tmp_path):
+    """The working folder is an empty one, and no other folders are known."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("INNERVATE_NETWORKS", "")
+    networks.cache_clear()
+    yield tmp_path
+    for name in list(folders._stamps):
+        folders._forget(folders._home(name))
+    networks.cache_clear()
+
+
+def made(folder, medium="cables"):
+    """A network's folder of the medium."""
+    shutil.rmtree(folder, ignore_errors=True)
+    assert main(["new", "network", str(folder), "--on", medium]) == 0
+    return Own(folder)
+
+
+@pytest.fixture
+def own(alone, capsys):
+    """A network over cables called gossip, as it is written."""
+    network = made(alone / "gossip")
+    capsys.readouterr()
+    return network

@@ -1,0 +1,123 @@
+"""All paths of a function at once: merged, unrolled, followed, and what they must keep."""
+
+import ast
+from types import SimpleNamespace
+
+import pytest
+
+from innervate.dialect.plain import Outbox as PlainOutbox
+from innervate.dialect.plain import make
+from innervate.prove.check import check, reached, unreached
+from innervate.prove.errors import ProveError
+from innervate.prove.solve import Formulas, Question
+from innervate.prove.steps import Goal, Stage, own_goals
+
+FIELDS = (
+    ("a", 0, -5, 200, "x", "one"),
+    ("list", 4, 0, 9, "x", "four"),
+)
+SOURCE = """
+def least(s, n):
+    found = 99
+    at = -1
+    for i in range(n):
+        if s.list[i] == 7:
+            continue
+        if s.list[i] == 8:
+            break
+        if s.list[i] < found:
+            found = s.list[i]
+            at = i
+    return at
+
+def early(s, n):
+    if n > 3:
+        if s.a < 0:
+            return -1
+        s.a = s.a + 1
+    elif n == 2:
+        return 7 if s.a > 5 else 8
+    while s.a < n:
+        s.a = s.a + 2
+    return s.a
+
+def outside(s, n):
+    return s.list[n]
+
+def never(s, n):
+    if n > 50:
+        return 1
+    return 0
+
+def changes(s, n):
+    return n > 2 and early(s, n) == 3
+"""
+
+
+def function(name):
+    nodes = {node.name: node for node in ast.parse(SOURCE).body}
+    return SimpleNamespace(name=name, node=nodes[name], module="m", path="m.py", constants={},
+                           calls={known: known for known in nodes})  # fmt: skip
+
+
+def stage_of():
+    names = [node.name for node in ast.parse(SOURCE).body]
+    stage = Stage({name: function(name) for name in names}, FIELDS, 4)
+    return stage, stage.record("s", FIELDS)
+
+
+def plainly(name, values, n):
+    known = {}
+    exec(SOURCE, known)
+    state = make("S", FIELDS)()
+    state.a, state.list = values[0], list(values[1:])
+    return known[name](state, n), [state.a, *state.list]
+
+
+@pytest.mark.parametrize("name", ["least", "early", "changes"])
+@pytest.mark.parametrize("n", range(5))
+def test_a_function_does_what_it_does_in_python(name, n):
+    stage, s = stage_of()
+    number = stage.terms.unknown("n", 0, 4)
+    step = stage.play(name, name, [s, number], [])
+    question = Question(Formulas(), [])
+    terms = stage.terms
+    for values in ((3, 5, 7, 2, 8), (-5, 9, 9, 9, 1), (6, 7, 8, 0, 0), (0, 1, 2, 3, 4)):
+        is_it = [terms.same(number, terms.number(n))]
+        for (key, _low, _high), value in zip(s.places(), values, strict=True):
+            is_it.append(terms.same(step.before[key], terms.number(value)))
+        assert question.values(*is_it) is not None
+        result, left = plainly(name, values, n)
+        assert question.value(terms.as_number(step.result)) == result
+        assert [question.value(step.after[key]) for key, _, _ in s.places()] == left
+
+
+def test_an_index_that_may_leave_its_array_is_refuted():
+    stage, s = stage_of()
+    step = stage.play("outside", "outside", [s, stage.terms.unknown("n", 0, 4)], [])
+    step.goals = own_goals(step, ("s",), 0, 0)
+    assert [bad.goal for bad in check(step).refuted] == [
+        "no index leaves its array: outside (m.py:27)"
+    ]
+
+
+def test_a_branch_that_nothing_takes_is_found():
+    stage, s = stage_of()
+    number = stage.terms.unknown("n", 0, 60)
+    known = [stage.terms.less(number, stage.terms.number(9))]
+    step = stage.play("never", "never", [s, number], known)
+    _, missed = reached(step, Question(Formulas(), step.facts))
+    assert missed == {("never", 30, True)}
+    assert list(unreached([check(step)])) == [("never", 30, True)]
+
+
+def test_a_step_from_nowhere_proves_nothing():
+    stage, s = stage_of()
+    step = stage.play("never", "never", [s, stage.number(1)], [stage.terms.false])
+    step.goals = [Goal("anything", stage.terms.false)]
+    with pytest.raises(ProveError, match="no state is as assumed"):
+        check(step)
+
+
+def test_plain_outboxes_and_those_of_formulas_have_the_same_room():
+    assert PlainOutbox(make("F", FIELDS), 4).limit == [stage_of()[0].out.limit]

@@ -1,0 +1,62 @@
+"""Terms are what their formulas are, whatever was decided on the way."""
+
+import random
+
+import pytest
+
+from innervate.prove.solve import Formulas, Question
+from innervate.prove.terms import KNOWN, Terms
+
+NUMBERS = (-70_000, -129, -1, 0, 1, 2, 31, 255, 65_535, 1 << 20)
+OPERATIONS = {
+    "add": "add", "sub": "sub", "mul": "mul", "div": "div", "mod": "mod", "and": "bits_and",
+    "or": "bits_or", "xor": "bits_xor", "shl": "shl", "shr": "shr",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("op", OPERATIONS)
+def test_the_solver_computes_as_python_does(op):
+    terms = Terms()
+    a, b = terms.unknown("a", -70_000, 1 << 20), terms.unknown("b", -129, 255)
+    if op in ("div", "mod"):
+        b = terms.unknown("b", 1, 255)
+    elif op in ("shl", "shr"):
+        b = terms.unknown("b", 0, 20)
+    made = getattr(terms, OPERATIONS[op])(a, b)
+    question = Question(Formulas(), [])
+    draw = random.Random(f"terms {op}")
+    for _ in range(12):
+        x = draw.choice(NUMBERS)
+        y = draw.randint(b.low, b.high)
+        found = question.values(terms.same(a, terms.number(x)), terms.same(b, terms.number(y)))
+        assert found is not None
+        assert question.value(made) == KNOWN[op](x, y), (op, x, y)
+        assert made.low <= KNOWN[op](x, y) <= made.high
+
+
+def test_numbers_of_one_base_are_compared_without_it():
+    terms = Terms()
+    base = terms.unknown("base", 0, 65_535)
+    a, b = (terms.unknown(name, 0, 65_535) for name in "ab")
+    x, y = (terms.wrapped(base, ahead, 65_535) for ahead in (a, b))
+    plain = [terms.bits_and(terms.add(base, ahead), terms.number(65_535)) for ahead in (a, b)]
+    mask = terms.number(65_535)
+    question = Question(Formulas(), [])
+    for made, long in (
+        (terms.same(x, y), terms.same(*plain)),
+        (terms.bits_and(terms.sub(x, y), mask), terms.bits_and(terms.sub(*plain), mask)),
+        (terms.bits_and(terms.sub(x, base), mask), terms.bits_and(terms.sub(plain[0], base), mask)),
+        (terms.pick(terms.less(a, b), x, y), terms.pick(terms.less(a, b), *plain)),
+    ):
+        assert question.values(terms.negated(terms.same(made, long))) is None
+
+
+def test_ranges_decide_what_they_can():
+    terms = Terms()
+    a, b = terms.unknown("a", 0, 9), terms.unknown("b", 10, 20)
+    assert terms.less(a, b) is terms.true
+    assert terms.same(a, b) is terms.false
+    assert terms.all(terms.less(a, a), terms.true) is terms.false
+    c = terms.less(a, terms.number(5))
+    assert terms.any(c, terms.negated(c)) is terms.true
+    assert terms.pick(c, terms.pick(c, a, b), b) is terms.pick(c, a, b)

@@ -1,0 +1,141 @@
+"""Networks that are folders: found, loaded anew when edited, refused with file and line."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+import innervate
+from innervate.cli import main
+from innervate.network import NetworkError, networks, use
+from tests.own import alone, made, own
+
+__all__ = ["alone", "own"]
+
+
+def said(capsys, *words):
+    """What a command that fails says, in one line."""
+    assert main([str(word) for word in words]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    return line
+
+
+def test_it_is_found_beside_its_scenario_and_in_the_working_folder(own, capsys, alone):
+    assert main(["check", str(own.scenario)]) == 0
+    assert "gossip: a gossip scenario of 0.5 s" in capsys.readouterr().out
+    assert innervate.check({"kind": "gossip"}).startswith("gossip: a gossip scenario")
+    other = alone / "elsewhere" / "one.toml"
+    other.parent.mkdir()
+    other.write_text('kind = "gossip"\n')
+    assert main(["check", str(other)]) == 0
+
+
+def test_only_a_folder_of_the_kinds_name_is_loaded(own, alone):
+    (own.folder / "network.py").write_text("raise SystemError")
+    with pytest.raises(innervate.ScenarioError, match="kind must be"):
+        innervate.check({"kind": "gossips"})
+    assert "gossip" not in networks()
+
+
+def test_by_the_option_and_by_the_environment(own, capsys, monkeypatch, alone):
+    (alone / "far").mkdir()
+    monkeypatch.chdir(alone / "far")
+    (alone / "far" / "one.toml").write_text('kind = "gossip"\n')
+    assert "kind must be" in said(capsys, "check", "one.toml")
+    assert main(["check", "one.toml", "--network", str(own.folder)]) == 0
+    assert main(["check", "--network=../gossip", "one.toml"]) == 0
+    assert os.environ["INNERVATE_NETWORKS"] == str(own.folder)  # for processes begun from here
+    assert main(["check", "one.toml"]) == 0
+    assert "--network needs a folder" in said(capsys, "check", "one.toml", "--network")
+    assert "no such folder" in said(capsys, "check", "one.toml", "--network", "nowhere")
+
+
+def test_an_edited_protocol_is_read_again(own):
+    def values():
+        return {node.value for node in innervate.run(own.scenario, plain=True).result.world.cells}
+
+    assert values() == {9}
+    own.change("protocol.py", "    node.value = item.value\n", "    node.value = item.value + 1\n")
+    assert values() == {10}
+
+
+def test_of_two_folders_of_one_name_that_counts_which_was_named_last(own, alone):
+    second = made(alone / "other" / "gossip")
+    second.change("fields.py", '"beat_us": 10_000', '"beat_us": 20_000')
+    assert "beat_us 10000" in innervate.check(own.scenario)
+    text = 'kind = "gossip"\n'
+    for folder, beat in ((second.folder, 20_000), (own.folder, 10_000)):
+        (folder / "one.toml").write_text(text)
+        assert f"beat_us {beat}" in innervate.check(folder / "one.toml")
+
+
+BROKEN = {
+    "out of range": ("fields.py", "0, 0, 255, \"raw\", \"what it says\"",
+                     "0, 0, 1 << 40, \"raw\", \"what it says\"",
+                     '("value"', "has a range beyond 2^30"),
+    "turned round": ("fields.py", "0, 1000, 1_000_000", "0, 1000, 10", "beat_us", "lower first"),
+    "no field": ("fields.py", ', "who we are")', ")", '"number"', "is not whole"),
+    "handler missing": ("protocol.py", "def on_input(", "def on_inputs(", '"""', "has no on_input"),
+    "arguments": ("protocol.py", "on_timer(node, params, now, timer, out)", "on_timer(node, out)",
+                  "def on_timer", "on_timer takes 2 arguments; it is on_timer(state, params, now"),
+    "no layout": ("protocol.py", "frame.kind = NEWS", "frame.kind = NEWS", "", ""),
+    "bits": ("frames.py", '("value", 0, 8, 0)', '("value", 0, 7, 0)', "LAYOUTS",
+             "value is 0 to 255 in FRAME; 7 bits hold 0 to 127"),
+    "not carried": ("frames.py", ', ("value", 0, 8, 0)', ", ", "LAYOUTS", "no frame carries value"),
+    "no such field": ("frames.py", '("value", 0', '("valeu", 0', "LAYOUTS", "valeu is no field"),
+    "loop without bound": ("protocol.py", "    fill(out.frame[send(out, port, 0, 0)], node)\n",
+                           "    while port < 4:\n        fill(out.frame[send(out, port, 0, 0)], "
+                           "node)\n", "while", "a loop without bound"),
+    "float": ("protocol.py", "    node.value = item.value", "    node.value = item.value / 2",
+              "/ 2", "divide whole numbers with //"),
+    "import": ("protocol.py", "NEWS = 1", "import random\nNEWS = 1", "import random",
+               "imports random"),
+    "no Python": ("protocol.py", "NEWS = 1", "NEWS = = 1", "NEWS", "is no Python"),
+    "no timers": ("protocol.py", "TIMERS = 1", "TIMER_COUNT = 1", '"""', "has no TIMERS"),
+    "import that fails": ("fields.py", "STATE = (", "import nothing_of_that\nSTATE = (",
+                          "import nothing_of_that", "ModuleNotFoundError"),
+    "part": ("network.py", 'fields="fields"', 'feilds="fields"', "Network(", "no part 'feilds'"),
+    "invariant": ("invariants.py", "    return 1\n", "    return 1.0\n", "1.0", "a float"),
+}  # fmt: skip
+del BROKEN["no layout"]
+
+
+@pytest.mark.parametrize("wrong", BROKEN)
+def test_what_is_wrong_is_said_in_one_line_with_file_and_line(own, capsys, wrong):
+    file, old, new, where, words = BROKEN[wrong]
+    own.change(file, old, new)
+    line = said(capsys, "run", own.scenario)
+    assert line.startswith(f"innervate: gossip/{file}:{own.line(file, where)}: ")
+    assert words in line
+
+
+def test_a_frame_that_has_no_layout(own, capsys):
+    own.change("protocol.py", "    fill(out.frame[send(out, port, 0, 0)], node)\n",
+               "    hello = out.frame[send(out, port, 0, 0)]\n    hello.kind = 2\n")  # fmt: skip
+    at = own.line("protocol.py", "hello.kind")
+    line = said(capsys, "run", own.scenario)
+    assert f"gossip/protocol.py:{at}: a frame of kind 2 is sent, and has no layout" in line
+
+
+def test_a_name_that_is_taken(alone, own, capsys):
+    for name in ("skin", "json", "numpy"):
+        assert f"the name '{name}' is taken" in said(capsys, "new", "network", name)
+    assert "is there already" in said(capsys, "new", "network", "gossip")
+    for name in ("Mine", "my-net", "2nd"):
+        assert "is no name" in said(capsys, "new", "network", name)
+    assert "--on can be" in said(capsys, "new", "network", "mine", "--on", "air")
+    assert [path.name for path in alone.iterdir()] == ["gossip"]
+
+
+def test_a_folder_that_takes_the_name_of_ours_or_of_pythons(own, alone, capsys):
+    own.folder.rename(alone / "radio")
+    taken = alone / "radio" / "network.py"
+    taken.write_text(taken.read_text().replace('"gossip"', '"radio"'))
+    line = said(capsys, "check", "radio/gossip.toml", "--network", "radio")
+    assert "radio/network.py:5: the name 'radio' is taken by innervate.networks.radio" in line
+    (alone / "radio").rename(alone / "json")
+    with pytest.raises(NetworkError, match=r"json/network.py:1: the name json is taken by a Py"):
+        use(Path("json"))
+    (alone / "json").rename(alone / "mine")
+    with pytest.raises(NetworkError, match="called 'radio' and its folder 'mine'"):
+        use(Path("mine"))
