@@ -122,7 +122,7 @@ class Emulated(Engine):
             line.write(cobs.encode(data))
 
     async def _read(self, uart: int, reader: asyncio.StreamReader) -> None:
-        """Frames from a UART."""
+        """Take the frames that come from a UART."""
         decoder = cobs.Decoder(LINE_MAX)
         while data := await reader.read(LINE_MAX):
             for piece in decoder.feed(data):
