@@ -14,11 +14,11 @@ from typing import Any
 from boards.errors import BoardFailed, BoardMissing
 from innervate.dialect import plain
 from innervate.firmware.emit import Library
-from innervate.firmware.records import Field, layout
+from innervate.firmware.packed import CODES, Packed
+from innervate.firmware.records import Field
 
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Werror")
 SANITIZED = ("-fsanitize=undefined,bounds", "-fno-sanitize-recover=all")
-CODES = {"uint8_t": "B", "int8_t": "b", "uint16_t": "H", "int16_t": "h", "int32_t": "i"}
 
 
 def compiler(name: str = "gcc") -> str:
@@ -83,44 +83,6 @@ class Native:
         return found
 
 
-class Packed:
-    """A record's bytes in C, from an object with its fields."""
-
-    def __init__(self, fields: dict[str, Field]) -> None:
-        self.fields = fields
-        places, self.size = layout(fields)
-        code, at = "<", 0
-        for _name, (offset, kind, length) in places:
-            width = struct.calcsize(CODES[kind])
-            code += f"{offset - at}x" + (f"{length * width}s" if length else CODES[kind])
-            at = offset + max(1, length) * width
-        self.struct = struct.Struct(f"{code}{self.size - at}x")
-        self.arrays = [(name, CODES[kind] if length else "") for name, (_, kind, length) in places]
-
-    def of(self, record: Any) -> bytes:
-        """The bytes of a record.
-
-        Raises:
-            OverflowError: a value does not fit into its field.
-        """
-        values: list[Any] = []
-        for name, code in self.arrays:
-            value = getattr(record, name)
-            if code == "B":
-                value = bytes(value)
-            elif code:
-                value = array(code, [int(item) for item in value]).tobytes()
-            values.append(value)
-        return self.struct.pack(*values)
-
-    def differences(self, mine: bytes, other: bytes) -> list[str]:
-        """Names of the fields that differ, with both values."""
-        pairs = zip(self.arrays, self.struct.unpack(mine), self.struct.unpack(other), strict=True)
-        return [f"{name}: {list(a) if isinstance(a, bytes) else a} but in C "
-                f"{list(b) if isinstance(b, bytes) else b}"
-                for (name, _), a, b in pairs if a != b]  # fmt: skip
-
-
 class _Outbox:
     """Where things stand in an outbox of C."""
 
@@ -137,9 +99,12 @@ class _Outbox:
 
     def actions(self, out: bytes) -> list[tuple[int, ...]]:
         """Kind, a, b and c of every action."""
-        size = self.action.size
-        return [self.action.struct.unpack_from(out, self.actions_at + i * size)
-                for i in range(out[0])]  # fmt: skip
+        names, found = [name for name, _ in self.action.arrays], []
+        for i in range(out[0]):
+            place = self.actions_at + i * self.action.size
+            row = dict(zip(names, self.action.struct.unpack_from(out, place), strict=True))
+            found.append((row["kind"], row["a"], row["b"], row["c"]))
+        return found
 
     def frame_of(self, out: bytes, action: int) -> dict[str, Any] | None:
         """The frame of an action as values by name; None if it has none."""

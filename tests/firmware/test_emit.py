@@ -12,8 +12,12 @@ from innervate.cli import main
 from innervate.firmware import library
 from innervate.firmware.emit import Library
 from innervate.firmware.errors import FirmwareError, Refused
-from innervate.firmware.library import library_of
 from innervate.live.board import Role
+
+
+def library_of(*words):
+    return library.made_of(*words).library
+
 
 WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Werror", "-fsyntax-only"]
 COMPILERS = {
@@ -31,7 +35,7 @@ ROLES = ["skin", "radio", "csma", "mesh"]
 def made(tmp_path_factory):
     folder = tmp_path_factory.mktemp("lib")
     for role in ROLES:
-        library.write(library.library_of(role, []), folder / role)
+        library.write(library.made_of(role, []), folder / role)
     return folder
 
 

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
 from innervate.firmware import emit, library
+from innervate.firmware.emulated import engine_of
+from innervate.live.board import roles_of
+from innervate.live.engine import Engine
+from innervate.live.nodefile import load
+from innervate.network import networks
 
 
 class Wanted(NamedTuple):
@@ -19,8 +25,8 @@ class Wanted(NamedTuple):
 
 def firmware(network: str, settings: list[str], wanted: Wanted, as_json: bool) -> int:
     """Write the library of a network's node."""
-    made = library.library_of(network, settings, wanted.nodes, wanted.prefix)
-    lines = library.write(made, wanted.out)
+    files = library.made_of(network, settings, wanted.nodes, wanted.prefix)
+    lines, made = library.write(files, wanted.out), files.library
     if as_json:
         said = {"out": str(wanted.out), "source": made.digest(), "abi": emit.ABI, "lines": lines}
         print(json.dumps(said))
@@ -28,3 +34,13 @@ def firmware(network: str, settings: list[str], wanted: Wanted, as_json: bool) -
     print(f"{wanted.out}: {', '.join(f'{name} ({count} lines)' for name, count in lines.items())}")
     print(f"made from {made.role.entry}, source {made.digest()}, ABI {emit.ABI}")
     return 0
+
+
+def engine_for(file: Path, image: Path) -> Callable[..., Engine]:
+    """What runs the protocol of a node file on an emulated board.
+
+    Raises:
+        LiveError: there is no such file.
+    """
+    role = roles_of(networks()[load(file).table.kind])[-1]
+    return engine_of(image.absolute(), role)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import json
 import sys
+import tempfile
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from innervate.cli import errors, live_status
@@ -23,8 +25,17 @@ def up(file: str, options: UpOptions) -> int:
 
     loaded = scenarios.load(file, options.set_ or [])
     plan, text = scenarios.plan(loaded), scenarios.dump(loaded)
-    way = room.Way(options.folder, options.cables, options.keys)
-    return asyncio.run(room.run(plan, way, text, options.for_s, options.json))
+    if not options.firmware:
+        if options.in_python:
+            raise errors.UserError("--in-python says who stays in Python beside --firmware")
+        way = room.Way(options.folder, options.cables, options.keys)
+        return asyncio.run(room.run(plan, way, text, options.for_s, options.json))
+    from innervate.firmware import patch
+
+    with tempfile.TemporaryDirectory(prefix="innervate-firmware-") as folder:
+        images = patch.images(plan, Path(folder), options.in_python or [])
+        way = room.Way(options.folder, options.cables, options.keys, images)
+        return asyncio.run(room.run(plan, way, text, options.for_s, options.json))
 
 
 def show(names: list[str], as_json: bool) -> int:

@@ -20,17 +20,23 @@ live_app = App(
 
 
 @live_app.command(name="node")
-def live_node(file: Path, /) -> int:
+def live_node(file: Path, /, *, firmware: Path | None = None) -> int:
     """Run one node until SIGTERM or Ctrl-C; SIGHUP reads its keys again.
 
     Parameters
     ----------
     file
         A node file (see docs/live.md).
+    firmware
+        What runs its protocol, on an emulated board: an image (see docs/firmware.md).
     """
     from innervate.live.main import run as command
 
-    return command(file)
+    if firmware is None:
+        return command(file)
+    from innervate.cli.firmware import engine_for
+
+    return command(file, engine_for(file, firmware))
 
 
 @live_app.command(name="up")

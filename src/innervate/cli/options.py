@@ -215,6 +215,10 @@ class UpOptions:
         Every node in its own network namespace; needs root.
     pty
         Skin: serial cables (ptys) instead of UDP.
+    firmware
+        Nodes as C on emulated boards (QEMU), where there is such a library of them.
+    in_python
+        With --firmware: a node that stays in Python, by name; may be given again.
     sealed
         With a key made for this run.
     identities
@@ -230,6 +234,8 @@ class UpOptions:
     set_: Sets = None
     netns: Flag = False
     pty: Flag = False
+    firmware: Flag = False
+    in_python: Annotated[list[str] | None, Parameter(negative="")] = None
     sealed: Flag = False
     identities: Flag = False
     folder: Path | None = None

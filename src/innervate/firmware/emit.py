@@ -8,6 +8,7 @@ import textwrap
 from collections.abc import Mapping
 from typing import Any
 
+from innervate.dialect import outbox
 from innervate.firmware.constants import names_of, note_of
 from innervate.firmware.errors import FirmwareError
 from innervate.firmware.expressions import Expressions, local
@@ -61,6 +62,9 @@ class Library:
             for name, value in expressions.constants.items():
                 known = names[f"{made.function.module}.{name}"]
                 self.constants[known] = (value, note_of(made.function.module, name))
+        for name in ("SEND", "SET_TIMER", "DELIVER", "REPORT", "URGENT", "FLUSH"):
+            always = (int(getattr(outbox, name)), note_of(outbox.__name__, name))
+            self.constants.setdefault(f"{self.prefix.upper()}_{name}", always)
         self.helpers = helpers | {helper for name in helpers for helper in HELPERS[name].needs}
 
     def _types(self) -> dict[Type, str]:
@@ -100,6 +104,8 @@ class Library:
             f"#define {big}_OUTBOX {self.role.room} /* actions of one call at most */",
             f"#define {big}_FRAMES {self.frames} /* frames of one call at most */",
         ]  # fmt: skip
+        if self.role.timers:
+            top.append(f"#define {big}_TIMERS_MAX {self.role.timers} /* timers */")
         if self.role.nodes:
             top.append(f"#define {big}_NODES {self.role.nodes} /* of a network at most */")
         parts = ["\n".join(top) + "\n", self._constants(), *self._structs(), self._public()]

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import re
-from importlib import import_module
+from importlib import import_module, resources
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from innervate import scenario
 from innervate.firmware.emit import Library
 from innervate.firmware.errors import FirmwareError
+from innervate.firmware.wire import Wire
 from innervate.live.board import Role, roles_of
 from innervate.live.parameters import check_parameters
 from innervate.network import Network, networks, use
 
+BESIDE = ("innervate_wire.h", "innervate_wire.c", "innervate_port.h")
+DRIVER = ("role_node.h", "role_node.c")
+BARE = ("bare/start.c", "bare/board.h", "bare/board_mps2.c", "bare/link.ld")
 PREFIX = re.compile(r"[a-z][a-z0-9_]{0,30}")
 
 
@@ -81,9 +85,14 @@ def parameters_of(network: Network, role: Role, settings: list[str]) -> dict[str
     return {**plan.params, **changes}
 
 
-def library_of(
-    name: str, settings: list[str], nodes: int | None = None, prefix: str = ""
-) -> Library:
+class Files(NamedTuple):
+    """A library and all that comes with it, by path."""
+
+    library: Library
+    texts: dict[str, str]
+
+
+def made_of(name: str, settings: list[str], nodes: int | None = None, prefix: str = "") -> Files:
     """The library that a command line asks for.
 
     Raises:
@@ -92,29 +101,47 @@ def library_of(
     if prefix and not PREFIX.fullmatch(prefix):
         raise FirmwareError(f"--prefix {prefix}: begin with a letter; small letters, digits, _")
     network, role = role_of(name, nodes)
-    return Library(role, parameters_of(network, role, settings), prefix)
+    library = Library(role, parameters_of(network, role, settings), prefix)
+    return Files(library, files_of(library, network))
 
 
-def files_of(library: Library) -> dict[str, str]:
-    """Paths and texts of a library."""
-    header = f"{library.prefix}.h"
-    return {header: library.header(), f"{library.prefix}.c": library.source(header)}
+def files_of(library: Library, network: Network) -> dict[str, str]:
+    """Texts by path: the protocol, and where its frames are plain, coder and driver."""
+    name = library.prefix
+    header = f"{name}.h"
+    texts = {header: library.header(), f"{name}.c": library.source(header)}
+    if not hasattr(network.frames, "KIND_BITS"):
+        return texts
+    wire = Wire(library, network)
+    texts |= {f"{name}_wire.h": wire.header(), f"{name}_wire.c": wire.source()}
+    texts |= {file: shipped(file) for file in (*BESIDE, *BARE)}
+    named = (*DRIVER, "bare/role_main.c", "bare/role_small.c")
+    return texts | {file.replace("role", name): shipped(file, name) for file in named}
 
 
-def write(library: Library, folder: Path) -> dict[str, int]:
+def shipped(file: str, prefix: str = "") -> str:
+    """A file that lies here; one of the driver's with a network's names."""
+    text = (resources.files("innervate.firmware") / "c" / file).read_text(encoding="utf-8")
+    if prefix:
+        text = re.sub(r"\brole(?=[_.])", prefix, text)
+        text = re.sub(r"\bROLE(?=_)", prefix.upper(), text)
+    return text
+
+
+def write(files: Files, folder: Path) -> dict[str, int]:
     """Write a library into a folder; lines of each file, by path.
 
     Raises:
         FirmwareError: the folder has something else in it.
     """
-    files = files_of(library)
-    if folder.exists() and not (folder / f"{library.prefix}.h").exists() and any(folder.iterdir()):
+    named = f"{files.library.prefix}.h"
+    if folder.exists() and not (folder / named).exists() and any(folder.iterdir()):
         raise FirmwareError(f"{folder}: not empty and not made by this command; name another")
-    for name, text in files.items():
+    for name, text in files.texts.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
-    return {name: len(text.splitlines()) for name, text in files.items()}
+    return {name: len(text.splitlines()) for name, text in files.texts.items()}
 
 
 def _part(place: str) -> Any:

@@ -80,8 +80,10 @@ def records_of(role: Role) -> dict[str, dict[str, Field]]:
         named["frame"] = role.frame
     if role.item is not role.frame:
         named["item"] = role.item
-    named["action"] = role.action
-    return {record: fields_of(declared) for record, declared in named.items()}
+    found = {record: fields_of(declared) for record, declared in named.items()}
+    # Narrow ones first: there are many actions, and what aligns them would be lost.
+    actions = sorted(fields_of(role.action).values(), key=lambda field: BYTES[field.type])
+    return {**found, "action": {field.name: field for field in actions}}
 
 
 def struct(name: str, fields: dict[str, Field], meaning: str) -> str:

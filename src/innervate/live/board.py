@@ -89,6 +89,7 @@ class Role(NamedTuple):
             the network's plainest scenario.
         action: declaration of what an action of the outbox has.
         frames: frames that one call sends and delivers at most; 0 = as many as it has actions.
+        timers: how many it has.
         nodes: nodes of a network that its arrays hold at most; 0 = they do not depend on it.
         sized: "module:function", nodes -> the role with arrays for so many; "" = there is one size.
     """
@@ -108,6 +109,7 @@ class Role(NamedTuple):
     parameters: str = ""
     action: Declaration = ACTION
     frames: int = 0
+    timers: int = 0
     nodes: int = 0
     sized: str = ""
     watched: Watched = Watched()
@@ -146,5 +148,5 @@ def roles_of(network: Network) -> tuple[Role, ...]:
         network.name, protocol.__name__, fields.STATE, fields.PARAMS, fields.FRAME, fields.FRAME,
         {kind: on_wire(layout) for kind, _name, layout in network.frames.LAYOUTS},
         getattr(protocol, "OUTBOX", OUTBOX), program=PLAIN,
-        action=getattr(fields, "ACTION", ACTION),
+        action=getattr(fields, "ACTION", ACTION), timers=getattr(protocol, "TIMERS", 1),
     ),)  # fmt: skip

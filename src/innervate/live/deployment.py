@@ -82,6 +82,10 @@ class Deployment:
             LiveError: they have no such cables, or no keys.
         """
 
+    def is_board(self, number: int) -> bool:
+        """True if what the network has for boards (live/board.py) can be this node."""
+        return True
+
     def in_order(self, number: int, cables: list[int]) -> list[int]:
         """A node's cables in the order of its paths."""
         return cables

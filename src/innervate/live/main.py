@@ -6,12 +6,13 @@ import asyncio
 import os
 import signal
 from collections import Counter
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Callable
 from pathlib import Path
 from typing import Any
 
 from innervate.live import hangup, status, tap
 from innervate.live.build import build, keys_of
+from innervate.live.engine import Engine
 from innervate.live.errors import LiveError
 from innervate.live.machine import machine
 from innervate.live.metrics import MetricsPage
@@ -29,13 +30,18 @@ HEARD_MAX = 4096  # what waits for a listener that reads slowly, or not at all
 REQUESTS = ("status", "send", "listen", "cut", "restore", "loose", "capture", "revoke", "stop")
 
 
-def run(path: Path) -> int:
+def run(path: Path, engine_of: Callable[..., Engine] | None = None) -> int:
     """Run the node of a file until SIGTERM or Ctrl-C; 0.
+
+    `engine_of` makes what runs its protocol; None = it runs here.
 
     Raises:
         LiveError: it cannot run as written.
     """
-    asyncio.run(Process(load(path)).run())
+    process = Process(load(path))
+    if engine_of is not None:
+        process.node.engine_of = engine_of
+    asyncio.run(process.run())
     return 0
 
 

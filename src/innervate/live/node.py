@@ -41,6 +41,7 @@ class LiveNode:
         arrivals: what came in for its user.
         taps: who is told of every frame, as it leaves and comes in.
         callers: how often callers of the node's process could not be let in, and why.
+        engine_of: makes what runs the stack; an `Engine` unless somebody runs it elsewhere.
         requests: what may be asked of it on its status socket besides what all nodes answer.
     """
 
@@ -64,6 +65,7 @@ class LiveNode:
         self.taps: list[Tap] = []
         self.callers: Counter[str] = Counter()
         self.requests: dict[str, Answerer] = {}
+        self.engine_of: Callable[..., Engine] = Engine
         self.engine: Engine | None = None
         self.started_at = clock_us()
 
@@ -73,7 +75,7 @@ class LiveNode:
         Raises:
             LiveError: a link cannot be opened as written.
         """
-        self.engine = Engine(
+        self.engine = self.engine_of(
             self.stack, self._transmit, self._deliver, self._note_report, self._settled
         )
         for link in self.links:

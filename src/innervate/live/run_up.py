@@ -11,6 +11,7 @@ import signal
 import sys
 import tempfile
 import time
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -25,11 +26,13 @@ class Way(NamedTuple):
         folder: for node files, logs and sockets; a temporary one if None.
         cables: "udp", "pty" or "netns".
         sealed: with a "key" of all nodes, with "identities", or in the clear ("").
+        images: by name, what runs a node's protocol on an emulated board.
     """
 
     folder: Path | None
     cables: str
     sealed: str
+    images: Mapping[str, Path] = {}
 
 
 async def run(plan: Any, way: Way, scenario: str, for_s: float, as_json: bool) -> int:
@@ -38,7 +41,7 @@ async def run(plan: Any, way: Way, scenario: str, for_s: float, as_json: bool) -
     folder = Path(tempfile.mkdtemp(prefix="innervate-")) if way.folder is None else way.folder
     folder = folder.absolute()
     keys = {"use": 1, "secret.1": secrets.token_hex(32)} if way.sealed == "key" else None
-    network = Processes(plan, folder, way.cables, keys)
+    network = Processes(plan, folder, way.cables, keys, way.images)
     if way.sealed == "identities":
         network.keys = _identities(network)
     player = _player(network, as_json)

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,7 @@ class Processes:
         cables: "udp" (loopback), "pty" or "netns" (as root).
         keys: a [keys] table for all nodes, "{number}" in its identity is each one's; None = frames
             go in the clear.
+        images: by name, what runs a node's protocol on an emulated board.
 
     Attributes:
         deployment: what it knows of the plan's nodes.
@@ -42,12 +44,18 @@ class Processes:
     """
 
     def __init__(
-        self, plan: Any, folder: Path, cables: str, keys: dict[str, Any] | None = None
+        self,
+        plan: Any,
+        folder: Path,
+        cables: str,
+        keys: dict[str, Any] | None = None,
+        images: Mapping[str, Path] | None = None,
     ) -> None:
         self.plan = plan
         self.folder = folder
         self.cables = cables
         self.keys = keys
+        self.images = dict(images or {})
         self.processes: dict[str, subprocess.Popen[bytes]] = {}
         self.lab: Lab | None = None
         self.relay: Cables | None = None
@@ -107,6 +115,8 @@ class Processes:
     def start_node(self, name: str) -> None:
         """Start a node's process, or start it again."""
         command = [sys.executable, "-m", "innervate.cli", "live", "node", f"{name}.toml"]
+        if name in self.images:
+            command += ["--firmware", str(self.images[name])]
         if self.lab is not None:
             command = self.lab.inside(self.names.index(name), command)
         with (self.folder / f"{name}.log").open("a") as log, hangup.held():

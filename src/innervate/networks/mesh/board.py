@@ -10,7 +10,7 @@ from innervate.networks.mesh import frames, payloads
 from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import CLASSES
 from innervate.networks.mesh.protocol import csma_fields, fields
-from innervate.networks.mesh.protocol.constants import ACK
+from innervate.networks.mesh.protocol.constants import ACK, TIMERS
 
 NODES = 32  # the smallest capacity class
 COUNTED = {"path": "path_len", "body": "length"}
@@ -59,7 +59,7 @@ OF_CLASS = dict(zip(CLASSES, ("small", "middle", "large"), strict=True))
 CSMA = Role(
     "csma", "innervate.networks.mesh.protocol.csma",
     csma_fields.STATION, csma_fields.PARAMS, (), csma_fields.ITEM, {},
-    room=4, in_ram=True, action=csma_fields.ACTION, watched=RUN._replace(table="macs"),
+    room=4, in_ram=True, action=csma_fields.ACTION, timers=1, watched=RUN._replace(table="macs"),
     parameters=f"{HERE}:csma_parameters",
 )  # fmt: skip
 
@@ -77,7 +77,7 @@ def node(nodes: int) -> Role:
         "mesh", "innervate.networks.mesh.protocol.node",
         fields.node(size), fields.PARAMS, fields.FRAME, fields.ITEM,
         {ACK: on_wire(frames.HOP_ACK), **dict.fromkeys(payloads.FIELDS, PACKET)},
-        room=32, counted=COUNTED, gate=fields.gate(size), action=fields.ACTION,
+        room=32, counted=COUNTED, gate=fields.gate(size), action=fields.ACTION, timers=TIMERS,
         nodes=size, sized=f"{HERE}:node", parameters=f"{HERE}:{OF_CLASS[size]}_parameters",
         watched=RUN._replace(table="nodes"),
     )  # fmt: skip

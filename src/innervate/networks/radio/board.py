@@ -10,7 +10,7 @@ ROLES = (
         "radio", "innervate.networks.radio.protocol.practical",
         fields.STATION + fields.PRACTICAL, fields.PARAMS, fields.FRAME, fields.PACKET,
         {CRR: (("slots", 0),), **{kind: on_wire(f) for kind, f in frames.FIELDS.items()}},
-        action=fields.ACTION,
+        action=fields.ACTION, timers=2,
         parameters="innervate.networks.radio.live.parameters:radio_parameters",
         watched=Watched(
             "radio", "innervate.networks.radio.sim.simulate:simulation", table="stations", node=2

@@ -3,7 +3,7 @@
 from innervate.live.board import Emulated, Program, Role, Watched, on_wire
 from innervate.networks.skin import frames
 from innervate.networks.skin.protocol import fields
-from innervate.networks.skin.protocol.constants import BEACON
+from innervate.networks.skin.protocol.constants import BEACON, TIMERS
 
 # A frame as it is sent.
 FRAME = tuple(field for field in fields.FRAME if field[0] not in fields.NOTED)
@@ -12,7 +12,7 @@ ROLES = (
     Role(
         "skin", "innervate.networks.skin.protocol.cell", fields.CELL, fields.PARAMS, FRAME, FRAME,
         {kind: on_wire(layout) for kind, layout in frames.FIELDS.items()},
-        room=12, in_ram=True, noted=fields.NOTED, action=fields.ACTION, frames=4,
+        room=12, in_ram=True, noted=fields.NOTED, action=fields.ACTION, frames=4, timers=TIMERS,
         watched=Watched(
             "skin",
             "innervate.networks.skin.sim.simulate:simulation",

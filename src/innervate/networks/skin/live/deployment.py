@@ -17,6 +17,10 @@ class SkinDeployment(Deployment):
         """Names c0, c1 .. of the cells and "pc", and the cables as pairs."""
         return [*(f"c{i}" for i in range(self.plan.graph.cells)), "pc"], self.cables()
 
+    def is_board(self, number: int) -> bool:
+        """The cells; the PC is a PC."""
+        return number < int(self.plan.graph.cells)
+
     def in_order(self, number: int, cables: list[int]) -> list[int]:
         """The PC's are in order of its interface ports; a cell's file names its ports."""
         if number < self.plan.graph.cells:

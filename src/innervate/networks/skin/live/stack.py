@@ -69,6 +69,7 @@ class CellStack(SkinStack):
         super().__init__(params, OUTBOX)
         self.cell = plain.make("Cell", fields.CELL)()
         self.cell.number, self.cell.rng, self.cell.choice = number, seeded(seed), -1
+        self.node = self.cell
         self.port_of_path = ports
         self.path_of_port = {port: path for path, port in enumerate(ports)}
         self.moves = 0

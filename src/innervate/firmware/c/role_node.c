@@ -1,0 +1,188 @@
+/* A node: the protocol, its frames on serial lines, its timers. */
+#include "role_node.h"
+
+#define MASK30 0x3FFFFFFF
+#define HALF30 0x20000000
+
+static int32_t role_node_now(const role_node_t *node)
+{
+    return node->port->now(node->port->user) & MASK30;
+}
+
+/* Bytes of the frame at `at` in a queue, its zero included. */
+static uint8_t role_length(const role_line_t *line, uint8_t at)
+{
+    uint8_t length = 1;
+    while (line->out[at + length - 1] != 0) {
+        length++;
+    }
+    return length;
+}
+
+/* Takes bytes out of a queue. */
+static void role_cut(role_line_t *line, uint8_t at, uint8_t count)
+{
+    for (uint8_t i = at; i + count < line->waiting; i++) {
+        line->out[i] = line->out[i + count];
+    }
+    line->waiting = (uint8_t)(line->waiting - count);
+}
+
+/* Where the last frame of a queue begins. */
+static uint8_t role_last(const role_line_t *line)
+{
+    uint8_t at = 0;
+    while (at + role_length(line, at) < line->waiting) {
+        at = (uint8_t)(at + role_length(line, at));
+    }
+    return at;
+}
+
+/* Queues a frame: urgent ones behind what is on the wire, FLUSH drops what waits. */
+static void role_queue(role_node_t *node, role_line_t *line, const role_frame_t *frame,
+        int32_t flags)
+{
+    uint8_t bytes[ROLE_SIZE_MAX + 2];
+    const int32_t size = role_encode(frame, bytes + 1);
+    const uint8_t count = (uint8_t)innervate_stuff(bytes + 1, size, bytes);
+    uint8_t at = line->begun ? role_length(line, 0) : 0;
+    if (flags & ROLE_FLUSH) {
+        line->waiting = at;
+    }
+    while ((flags & ROLE_URGENT) && line->waiting > at && line->waiting + count > ROLE_QUEUE) {
+        line->waiting = role_last(line);
+        node->lost++;
+    }
+    if (line->waiting + count > ROLE_QUEUE) {
+        node->lost++;
+        return;
+    }
+    if (!(flags & ROLE_URGENT)) {
+        at = line->waiting;
+    }
+    for (uint8_t i = line->waiting; i > at; i--) {
+        line->out[i - 1 + count] = line->out[i - 1];
+    }
+    for (uint8_t i = 0; i < count; i++) {
+        line->out[at + i] = bytes[i];
+    }
+    line->waiting = (uint8_t)(line->waiting + count);
+}
+
+/* Hands a UART what it takes. */
+static void role_pump(role_node_t *node, int32_t port)
+{
+    role_line_t *line = &node->line[port];
+    while (line->waiting > 0) {
+        const uint8_t length = role_length(line, 0);
+        const int32_t taken = node->port->send(node->port->user, port, line->out, length);
+        if (taken <= 0) {
+            return;
+        }
+        line->begun = taken < length;
+        role_cut(line, 0, (uint8_t)taken);
+    }
+}
+
+/* Carries out what a handler wants done. */
+static void role_drain(role_node_t *node)
+{
+    role_out_t *out = &node->out;
+    for (int32_t i = 0; i < out->count; i++) {
+        const role_action_t *act = &out->action[i];
+        const role_frame_t *frame = role_frame_of(out, i);
+        const int32_t a = act->a; /* port or timer */
+        if (act->kind == ROLE_SEND && a >= 0 && a < ROLE_PORTS_MAX && frame) {
+            role_queue(node, &node->line[a], frame, act->c);
+            role_pump(node, a);
+        } else if (act->kind == ROLE_SET_TIMER && a >= 0 && a < ROLE_TIMERS_MAX) {
+            node->due[a] = act->b;
+        } else if (act->kind == ROLE_DELIVER && node->port->deliver) {
+            node->port->deliver(node->port->user, a, frame);
+        } else if (act->kind == ROLE_REPORT && node->port->report) {
+            node->port->report(node->port->user, a, act->b, act->c);
+        }
+    }
+    node->broken = node->broken || out->overflow;
+    role_clear(out);
+}
+
+void role_node_start(role_node_t *node, const role_params_t *params, const innervate_port_t *port,
+        int32_t number, int32_t seed, int32_t cause)
+{
+    uint8_t *bytes = (uint8_t *)node;
+    for (uint32_t i = 0; i < sizeof *node; i++) {
+        bytes[i] = 0;
+    }
+    node->params = params;
+    node->port = port;
+    for (int32_t timer = 0; timer < ROLE_TIMERS_MAX; timer++) {
+        node->due[timer] = -1;
+    }
+    role_init(&node->state, number, seed);
+    role_clear(&node->out);
+    role_on_start(&node->state, params, role_node_now(node), cause, &node->out);
+    role_drain(node);
+}
+
+/* A piece of a line between two zeros. */
+static void role_piece(role_node_t *node, int32_t port, uint8_t *bytes, int32_t count)
+{
+    const int32_t size = count > ROLE_SIZE_MAX + 1 ? -1 : innervate_unstuff(bytes, count);
+    if (size < 0 || role_decode(bytes, size, &node->frame) != ROLE_OK) {
+        node->dropped++;
+        return;
+    }
+    role_on_frame(&node->state, node->params, role_node_now(node), port, &node->frame, &node->out);
+    role_drain(node);
+}
+
+void role_node_bytes(role_node_t *node, int32_t port, const uint8_t *bytes, int32_t count)
+{
+    role_line_t *line = &node->line[port];
+    for (int32_t i = 0; i < count && !node->broken; i++) {
+        if (bytes[i] != 0) {
+            if (line->heard < ROLE_SIZE_MAX + 2) {
+                line->in[line->heard++] = bytes[i];
+            }
+        } else if (line->heard > 0) {
+            const uint8_t heard = line->heard;
+            line->heard = 0;
+            role_piece(node, port, line->in, heard);
+        }
+    }
+}
+
+void role_node_poll(role_node_t *node)
+{
+    int32_t soonest = HALF30;
+    for (int32_t port = 0; port < ROLE_PORTS_MAX; port++) {
+        role_pump(node, port);
+    }
+    for (int32_t timer = 0; timer < ROLE_TIMERS_MAX && !node->broken; timer++) {
+        const int32_t now = role_node_now(node);
+        if (node->due[timer] >= 0 && ((now - node->due[timer]) & MASK30) < HALF30) {
+            node->due[timer] = -1;
+            role_on_timer(&node->state, node->params, now, timer, &node->out);
+            role_drain(node);
+        }
+    }
+    for (int32_t timer = 0; timer < ROLE_TIMERS_MAX; timer++) {
+        if (node->due[timer] >= 0) {
+            const int32_t left = (node->due[timer] - role_node_now(node)) & MASK30;
+            const int32_t wait = left < HALF30 ? left : 0;
+            soonest = wait < soonest ? wait : soonest;
+        }
+    }
+    if (node->port->set_timer) {
+        node->port->set_timer(node->port->user, soonest);
+    }
+}
+
+void role_node_give(role_node_t *node, int32_t kind, const role_item_t *item)
+{
+    if (!node->broken) {
+        role_on_input(&node->state, node->params, role_node_now(node), kind, item, &node->out);
+        role_drain(node);
+    }
+}

@@ -1,0 +1,55 @@
+"""Records as they lie in a board's memory: little-endian, each number as wide as its range."""
+
+from __future__ import annotations
+
+import struct
+from array import array
+from typing import Any
+
+from innervate.firmware.records import Field, layout
+
+CODES = {"uint8_t": "B", "int8_t": "b", "uint16_t": "H", "int16_t": "h", "int32_t": "i"}
+
+
+class Packed:
+    """A record's bytes in C, from an object with its fields."""
+
+    def __init__(self, fields: dict[str, Field]) -> None:
+        self.fields = fields
+        places, self.size = layout(fields)
+        code, at = "<", 0
+        for _name, (offset, kind, length) in places:
+            width = struct.calcsize(CODES[kind])
+            code += f"{offset - at}x" + (f"{length * width}s" if length else CODES[kind])
+            at = offset + max(1, length) * width
+        self.struct = struct.Struct(f"{code}{self.size - at}x")
+        self.arrays = [(name, CODES[kind] if length else "") for name, (_, kind, length) in places]
+
+    def of(self, record: Any) -> bytes:
+        """The bytes of a record.
+
+        Raises:
+            OverflowError: a value does not fit into its field.
+        """
+        values: list[Any] = []
+        for name, code in self.arrays:
+            value = getattr(record, name)
+            if code == "B":
+                value = bytes(value)
+            elif code:
+                value = array(code, [int(item) for item in value]).tobytes()
+            values.append(value)
+        return self.struct.pack(*values)
+
+    def put(self, data: bytes, record: Any) -> None:
+        """Set a record's fields to what these bytes say, those that it has."""
+        for (name, code), value in zip(self.arrays, self.struct.unpack(data), strict=True):
+            if hasattr(record, name):
+                setattr(record, name, list(array(code, value)) if code else value)
+
+    def differences(self, mine: bytes, other: bytes) -> list[str]:
+        """Names of the fields that differ, with both values."""
+        pairs = zip(self.arrays, self.struct.unpack(mine), self.struct.unpack(other), strict=True)
+        return [f"{name}: {list(a) if isinstance(a, bytes) else a} but in C "
+                f"{list(b) if isinstance(b, bytes) else b}"
+                for (name, _), a, b in pairs if a != b]  # fmt: skip

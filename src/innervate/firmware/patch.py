@@ -1,0 +1,46 @@
+"""A scenario's nodes as firmware: what each emulated board runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from innervate.firmware.emit import Library
+from innervate.firmware.errors import FirmwareError
+from innervate.firmware.library import BARE, Files, files_of, write
+from innervate.firmware.tools import find, image
+from innervate.live.board import roles_of
+from innervate.network import networks
+
+
+def images(plan: Any, folder: Path, in_python: list[str]) -> dict[str, Path]:
+    """Images by the names of nodes: of all that can be boards, but for those that are named.
+
+    Args:
+        plan: of nodes over cables.
+        folder: where they are made.
+        in_python: names of nodes that stay as they are.
+
+    Raises:
+        FirmwareError: there are no such nodes, or a compiler or QEMU is missing.
+    """
+    network = networks()[plan.kind]
+    deployment = network.deployment(plan)
+    unknown = [name for name in in_python if name not in deployment.names]
+    if unknown:
+        raise FirmwareError(f"--in-python {unknown[0]}: there are {', '.join(deployment.names)}")
+    roles = roles_of(network)
+    if not roles or deployment.has_channel or not deployment.links:
+        raise FirmwareError(f"{plan.kind}: only nodes over cables run on emulated boards so far")
+    find("qemu-system-arm")
+    library = Library(roles[-1], plan.params)
+    files = Files(library, files_of(library, network))
+    if BARE[0] not in files.texts:
+        raise FirmwareError(f"{plan.kind}: its frames have no coder in C, so there is no driver")
+    write(files, folder / "lib")
+    made = image(folder / "lib", library.prefix, folder)
+    return {
+        name: made
+        for number, name in enumerate(deployment.names)
+        if deployment.is_board(number) and name not in in_python
+    }
