@@ -79,8 +79,8 @@ PARTS = {
     "boards": "tuple of live.board.Role: what of it runs on a board; if absent, its protocol",
     "random": "module: SHARE, drawn, smaller, trouble: networks from a number (running/fuzz.py)",
     "invariants": "module in the dialect: node_*(node, params, now), network_*(nodes, count, "
-    "params): what must hold (verify/own.py)",
-    "measures": "(run) -> dict of str to number: its own figures in summaries (running/own.py)",
+    "params): what must hold",
+    "measures": "(nodes, reports, deliveries, plan) -> dict of str to number: own figures",
     "shows": "dict of str to (unit, (node, params) -> number): what pages colour nodes by, too",
     "happenings": "dict of str to (node, value) -> (kind, item) for on_input: own [[event]]s",
     "papers": "module: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up",

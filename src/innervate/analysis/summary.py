@@ -12,6 +12,7 @@ import numpy as np
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline
 from innervate.analysis.summary_common import Common, Percentiles, measured
+from innervate.network import networks
 from innervate.sim.counts import Counts
 
 
@@ -54,9 +55,11 @@ class Reports(TypedDict, total=False):
 
     Attributes:
         reports: how often nodes reported something, by its number.
+        measures: a network's own figures, by their names, which end in a unit.
     """
 
     reports: dict[str, int]
+    measures: dict[str, float | None]
 
 
 class Summary(Common, Reports):
@@ -101,7 +104,32 @@ def summarize(result: Any) -> Summary:
             "latency_ms": latency_ms(result.rows.get("deliveries")),
         },
         **_reports(result.rows),
+        **_measures(result),
     }
+
+
+def _measures(result: Any) -> Reports:
+    """The figures that a network has of its own."""
+    network = networks()[result.plan.kind]
+    if not network.has("measures"):
+        return {}
+    nodes = states_of(result.world)
+    rows, deliveries = (result.rows.get(name, ()) for name in ("rows", "deliveries"))
+    found = network.measures(nodes, rows, deliveries, result.plan)
+    return {"measures": {name: _plain(value) for name, value in found.items()}}
+
+
+def states_of(world: Any) -> Any:
+    """The nodes' states of a simulation, their fields as attributes, compiled or plain."""
+    states = world.cells if hasattr(world, "cells") else world.stations
+    return states if isinstance(states, list) else states.view(np.recarray)
+
+
+def _plain(value: Any) -> float | None:
+    """A number as JSON has it."""
+    if value is None:
+        return None
+    return int(value) if isinstance(value, int | np.integer) else float(value)
 
 
 def _reports(rows: Mapping[str, Any]) -> Reports:

@@ -128,8 +128,8 @@ def _hash_of(begun: str, files: Iterable[Path], root: Path = ROOT) -> str:
     digest = hashlib.blake2b(digest_size=NAME_LENGTH // 2)
     digest.update(begun.encode())
     for path in files:
-        where = path.relative_to(root) if path.is_relative_to(root) else path
-        digest.update(where.as_posix().encode())
+        where = path.relative_to(root).as_posix() if path.is_relative_to(root) else path.name
+        digest.update(where.encode())
         digest.update(path.read_bytes() if path.is_file() else b"")
     return digest.hexdigest()
 

@@ -39,7 +39,15 @@ def traffic_lines(summary: Mapping[str, Any]) -> list[str]:
         shown = [ms_words(latency[name]) for name in ("p50", "p99", "max")]
         lines.append(f"Latency: half within {shown[0]}, 99 % within {shown[1]}, all within "
                      f"{shown[2]}")  # fmt: skip
+    lines += [f"{name}: {measured(value)}" for name, value in summary.get("measures", {}).items()]
     return lines
+
+
+def measured(value: float | None) -> str:
+    """A figure of a network's own."""
+    if value is None:
+        return "none"
+    return f"{value:,}" if isinstance(value, int) else f"{value:,.4g}"
 
 
 def _reasons(lost_by: Mapping[str, int]) -> str:

@@ -1,8 +1,9 @@
 """Scenario files: TOML to a validated model, and on to the plan of a run."""
 
+from pathlib import Path
 from typing import Any
 
-from innervate.network import first, networks
+from innervate.network import find, first, networks
 from innervate.scenario.bundled import bundled
 from innervate.scenario.emit import dump, inline
 from innervate.scenario.errors import ScenarioError
@@ -42,11 +43,12 @@ def template(kind: str = "") -> str:
 
     Raises:
         ScenarioError: there is no such kind.
+        NetworkError: a folder of that name, in the present one, cannot be loaded.
     """
-    known, kind = networks(), kind or first()
-    if kind in known:
-        return str(known[kind].template) or _all_keys(kind)
-    hint = nearest(kind, list(known)).replace("it knows", "there is")
+    network = find(kind or first(), Path())
+    if network is not None:
+        return str(network.template) or _all_keys(network.name)
+    hint = nearest(kind, list(networks())).replace("it knows", "there is")
     raise ScenarioError(f'there is no kind "{kind[:40]}"{hint}')
 
 

@@ -6,12 +6,14 @@ import os
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from msgspec import Struct, to_builtins
+
 from innervate.network import networks
 from innervate.scenario.emit import dump
 from innervate.scenario.load import Scenario, from_dict, loads
 from innervate.scenario.load import load as load_file
 
-Given = str | os.PathLike[str] | Scenario | dict[str, Any]
+Given = str | os.PathLike[str] | Scenario | Struct | dict[str, Any]
 Changes = Iterable[str] | Mapping[str, Any]
 
 
@@ -19,7 +21,8 @@ def load(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) -
     """The scenario meant by a file, a bundled name, tables or a Scenario, validated.
 
     Args:
-        scenario: a file, a bundled name ("setup-1"), tables as in a file, or a Scenario.
+        scenario: a file, a bundled name ("setup-1"), tables as in a file, a model of them built in
+            code (CablesScenario), or a Scenario.
         seed: in place of the scenario's, 0 .. 2^63-1.
         overrides: "a.b=c" texts, or a mapping from dotted keys to values.
 
@@ -29,6 +32,8 @@ def load(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) -
     changes: list[str | tuple[str, Any]] = (
         list(overrides.items()) if isinstance(overrides, Mapping) else list(overrides)
     )
+    if isinstance(scenario, Struct):
+        return from_dict(to_builtins(scenario), changes, seed)
     if isinstance(scenario, dict):
         return from_dict(scenario, changes, seed)
     if not isinstance(scenario, Scenario):

@@ -48,6 +48,9 @@ class DeclaredView(View):
         self.graph = self.plan.graph
         self.cables = Cables(self.plan, {kind: name for kind, name, _fields in layouts}, "data")
         self.shown = shown_fields(network)
+        self.own = network.shows if network.has("shows") else {}
+        self.shown += [{"name": name, "unit": unit, "meaning": " ".join((of.__doc__ or "").split())}
+                       for name, (unit, of) in self.own.items()]  # fmt: skip
         self.memory = Memory()
 
     def scene(self) -> dict[str, Any]:
@@ -81,9 +84,20 @@ class DeclaredView(View):
             "link_up": self.cables.up(world),
             "unconnected": apart,
             "apart": apart,
-            "fields": {one["name"]: cells[one["name"]].tolist() for one in self.shown},
+            "fields": {
+                one["name"]: self._own(one["name"], cells)
+                if one["name"] in self.own
+                else cells[one["name"]].tolist()
+                for one in self.shown
+            },
             "flights": self.cables.flights(world, self.engine.now_us) if flights else [],
         }
+
+    def _own(self, name: str, cells: Any) -> list[float]:
+        """Per node, a number that the network has a function for."""
+        params = self.engine.world.params.view(np.recarray)[0]
+        of = self.own[name][1]
+        return [float(of(node, params)) for node in cells.view(np.recarray)]
 
     def fields(self, flights: bool) -> dict[str, Any]:
         """The present state; when such a network has recovered nobody has said."""

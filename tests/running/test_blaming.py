@@ -1,0 +1,81 @@
+"""What breaks in a folder's protocol is told by file and line, compiled or plain."""
+
+import re
+
+import pytest
+
+import innervate
+from innervate.cli import main
+from innervate.network import NetworkError
+from innervate.running import blaming
+from tests.own import alone, own
+
+__all__ = ["alone", "own"]
+TAKE = "    node.value = frame.value\n"
+BROKEN = {
+    "no such field": (TAKE, "    node.valu = frame.value\n", "node.valu =", "has no attribute"),
+    "out of range": (TAKE, "    node.value = frame.value * 100\n", "* 100",
+                     "value is 700, declared 0 to 255. invariant broken at 0.1"),
+    "division": (TAKE, "    node.value = frame.value // (node.number - node.number)\n", "//",
+                 "ZeroDivisionError"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("wrong", BROKEN)
+def test_a_compiled_run_says_where(own, wrong, capsys):
+    old, new, where, words = BROKEN[wrong]
+    own.change("protocol.py", old, new)
+    assert main(["run", str(own.scenario)]) == 2
+    (line,) = capsys.readouterr().err.strip().splitlines()[-1:]
+    place = f"gossip/protocol.py:{own.line('protocol.py', where)}: "
+    assert place in line
+    assert words in line
+
+
+def test_an_outbox_that_overflows(own):
+    own.change("protocol.py", "OUTBOX = 8", "OUTBOX = 4")
+    at = own.line("protocol.py", "def on_input") - 3  # the last action of on_timer
+    words = rf"protocol.py:{at}: more actions than the outbox holds"
+    with pytest.raises(NetworkError, match=words):
+        innervate.run(own.scenario)
+
+
+def test_an_index_below_0_is_found_before_it_is_compiled(own):
+    own.change("fields.py", '("value", 0, 0, 255, "raw", "what it says"),',
+               '("value", 0, 0, 255, "raw", "what it says"),\n'
+               '    ("seen", 4, 0, 1, "flag", "by port"),')  # fmt: skip
+    own.change("protocol.py", TAKE, TAKE + "        node.seen[port - 4] = 1\n")
+    text = (own.folder / "protocol.py").read_text()
+    assert "node.seen[port - 4]" in text
+    with pytest.raises(NetworkError, match=r"protocol.py:\d+: IndexError: seen\[-\d\]: an index"):
+        innervate.run(own.scenario)
+
+
+def test_an_own_invariant_that_breaks(own):
+    own.change(
+        "protocol.py", "    node.version = 0\n", "    node.version = 0\n    node.value = 3\n"
+    )
+    own.change("protocol.py", "    node.value = 0\n", "")
+    with pytest.raises(NetworkError, match="a node without news has a value: n"):
+        innervate.run(own.scenario, plain=True)
+
+
+@pytest.mark.slow  # compiles a protocol that no other test runs
+def test_what_breaks_later_than_the_trial_is_found_by_a_second_run(own, monkeypatch):
+    monkeypatch.setattr(blaming, "TRIAL_EVENTS", 1)
+    own.change("protocol.py", TAKE, "    node.value = frame.value * 100\n")
+    at = own.line("protocol.py", "* 100")
+    with pytest.raises(NetworkError, match=re.escape(f"protocol.py:{at}: value is 700")):
+        innervate.run(own.scenario)
+
+
+@pytest.mark.slow  # compiles a protocol that no other test runs
+def test_an_edit_is_compiled_anew_and_what_was_compiled_stays(own):
+    first = innervate.run(own.scenario)
+    assert first.result.fingerprint == innervate.run(own.scenario, plain=True).result.fingerprint
+    own.change("protocol.py", "    node.value = item.value\n", "    node.value = item.value + 1\n")
+    second = innervate.run(own.scenario)
+    assert set(second.result.world.cells["value"].tolist()) == {10}
+    own.change("protocol.py", "    node.value = item.value + 1\n", "    node.value = item.value\n")
+    again = innervate.run(own.scenario)
+    assert again.result.fingerprint == first.result.fingerprint
