@@ -222,9 +222,8 @@ def draw_mesh() -> None:
     assert shown is not None
     sent, sheet = copies(result, shown), Sheet(result.plan, 680.0)
     title = "An alarm on its way round dead nodes"
-    picture = mesh_map.field_map(
-        result, sheet, title, crossings, sent, way(result, shown, sent), shown.crossed_us
-    )
+    alarm = mesh_map.Alarmed(sent, way(result, shown, sent), shown.crossed_us)
+    picture = mesh_map.field_map(result, sheet, title, crossings, alarm)
     picture.save(MESH_PICTURE, theme.drawing_style())
 
 

@@ -168,27 +168,33 @@ def test_a_suspect_is_trusted_when_its_time_is_over_or_it_is_heard():
     node, params = node_with()
     net = Net(2, line(2))
     neighbours.hear(node, params, 1, -60)
-    for free in ("heard", "acks somebody", "time"):
-        neighbours.suspect(node, params, 0, 1, 0, net.out)
-        neighbours.sweep(node, params, params.suspect_us - 1)
-        assert neighbours.is_suspect(node, params, 1)
-        if free == "heard":
-            neighbours.hear(node, params, 1, -60)
-        elif free == "time":
-            neighbours.sweep(node, params, params.suspect_us)
-        else:
-            neighbours.hear_again(node, params, 1)
-        assert not neighbours.is_suspect(node, params, 1), free
+    node.ticks, node.tick_at = 65_530, 100  # ticks wrap on the way
+    for now in (100, 101):  # at a tick, and right after it: it lasts suspect_us, not less
+        ticks = params.suspect_us // params.tick_us + (now > node.tick_at)
+        for free in ("heard", "acks somebody", "time"):
+            neighbours.suspect(node, params, now, 1, 0, net.out)
+            begun, node.ticks = node.ticks, (node.ticks + ticks - 1) & 65_535
+            neighbours.sweep(node, params)
+            assert neighbours.is_suspect(node, params, 1), (now, free)
+            if free == "heard":
+                neighbours.hear(node, params, 1, -60)
+            elif free == "time":
+                node.ticks = (node.ticks + 1) & 65_535
+                neighbours.sweep(node, params)
+            else:
+                neighbours.hear_again(node, params, 1)
+            assert not neighbours.is_suspect(node, params, 1), (now, free)
+            node.ticks = begun
 
 
 def test_neighbours_that_are_silent_for_three_periods_are_forgotten():
     node, params = node_with(period_max=10)
     neighbours.hear(node, params, 1, -60)
     node.ticks = 32
-    neighbours.sweep(node, params, 0)
+    neighbours.sweep(node, params)
     assert neighbours.place_of(node, params, 1) >= 0
     node.ticks = 33
-    neighbours.sweep(node, params, 0)
+    neighbours.sweep(node, params)
     assert neighbours.place_of(node, params, 1) == -1
     assert neighbours.loudest(node, params, 255, 255) == NOBODY
 

@@ -34,8 +34,11 @@ tells how late it is. With `hop_frames` every neighbour has frames under way of 
 them with each ack and half as many after a missing one; with `gather` all that came is handled
 before something goes, and acks to one node go in one frame.
 
-*Backoff.* Acks that are missing make for growing pauses of searches, then of all messages, never of
-alarms: a full channel heals (decision 0016).
+*Links.* Of each neighbour a node learns what share of its transmissions is acknowledged, the ETX of
+the link. One that was heard in this tick is sent a frame the more often, the less it acknowledges.
+
+*Backoff.* Acks that are missing beyond what the links explain make for growing pauses of searches,
+then of all messages, never of alarms: a full channel heals (decision 0016).
 
 *Fence.* Robots judge their position at every sample; alarms are sent, flooded, retransmitted and
 raised again until the monitor has acknowledged them. Who hears a robot outside is its witness
@@ -45,8 +48,8 @@ raised again until the monitor has acknowledged them. Who hears a robot outside 
 `graph_jobs.py`, `pack.py`, `table.py` discovery and tables; `relay.py`, `send.py`, `route.py`,
 `search.py`, `upward.py`, `overheard.py` forwarding; `queue.py` what waits to be sent;
 `messages.py`, `retransmission.py`, `timeout.py` end to end; `neighbours.py`, `duplicates.py`,
-`backoff.py`, `hop.py` what is remembered; `alarm.py`, `fence.py`, `watch.py` the fence; `frames.py`
-bytes.
+`backoff.py`, `hop.py`, `link_quality.py` what is remembered; `alarm.py`, `fence.py`, `watch.py` the
+fence; `frames.py` bytes.
 Below it lies an access protocol: `csma.py`, or one of the radio's.
 
 States
@@ -277,8 +280,13 @@ Constants and settings
 |                                                | dropped: up; routed                             |
 | `LIVELY_TICKS = 2`                             | heard so lately, a missing ack is the channel's |
 |                                                | fault                                           |
-| `STRAIN_FREE = 12`, `STRAIN_HEAVY = 28`,       | decision 0016: acks missing before searches,    |
-| `STRAIN_MAX = 44`, `PER_DOUBLING = 4`          | then messages pause; how fast pauses double     |
+| `STRAIN_FREE = 48`, `STRAIN_HEAVY = 112`,      | decision 0016: quarters of acks missing before  |
+| `STRAIN_MAX = 176`, `PER_DOUBLING = 16`        | searches, then messages pause; how fast pauses  |
+|                                                | double                                          |
+| `ALL_ACKED = 255`, `RATIO_MIN = 64`,           | shares of transmissions acknowledged: all, the  |
+| `SMOOTHING = 3`                                | least believed; an eighth of what is new        |
+| `UNIT = 4`, `SPARE = 1428`, `TRIES_MAX = 12`   | an ack in quarters; what it takes back; most    |
+|                                                | transmissions because a link is poor            |
 | `LONGEST_US = 65536`                           | of a pause before it is doubled                 |
 | `LONGEST_US = 1048576`, `DOUBLED_MAX = 2`      | of a hop's round trip; of its wait, doublings   |
 | `LONGEST_US = 134217728`,                      | bounds of timeouts, so that sums stay below     |
@@ -295,7 +303,7 @@ Constants and settings
 | `JITTER_UNIT_US = 10000`                       | of a request's jitter                           |
 | `POINTS = 48`, `FAR = 16384`, `REACH = 23170`, | the fence in whole numbers below 2^30           |
 | `FULL = 268435456`, `ROOT_BITS = 15`           |                                                 |
-| `TIME = 1073741823`, `NONE16 = 65536`          | clocks wrap at 2^30; no number yet              |
+| `TIME = 1073741823`, `TICKS_MAX = 32767`       | clocks wrap at 2^30; longest suspicion          |
 | `FREE = 255`, `UNHEARD = 255`, `NONE = 255`,   | nobody, nothing, not yet                        |
 | `NONE = -1`, `FAR = 255`, `NEVER = 255`        |                                                 |
 | `NOBODY_GAVE = 255`, `NO_OWNER = -1`,          | nobody, no message, no pause                    |

@@ -10,30 +10,38 @@ are silent do not count (they are dead, not drowned out), and alarms never wait.
 from innervate.dialect.arith import MASK30, after
 from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.constants import ALARMS, DATA, DETOURED, E2E_ACK, POSITION
+from innervate.networks.mesh.protocol.link_quality import (
+    UNIT,
+    learn_acked,
+    learn_missed,
+    relief,
+)
 
-STRAIN_FREE = 12  # more acks that are missing than acks that came: so many cost no pause
-STRAIN_HEAVY = 28  # from here on messages that know their way pause, too
-PER_DOUBLING = 4
-STRAIN_MAX = 44
+STRAIN_FREE = 48  # quarters of acks that are missing: so many cost no pause
+STRAIN_HEAVY = 112  # from here on messages that know their way pause, too
+PER_DOUBLING = 16
+STRAIN_MAX = 176
 LONGEST_US = 65_536  # before it is doubled
 NO_BACKOFF = -1
 
 
-def note_missed(node, params, now):
-    """A transmission was not acknowledged: pause, the longer the more of them there were.
+def note_missed(node, params, now, k):
+    """The neighbour in place k did not acknowledge: pause, the longer the more of them there were.
 
     Where each neighbour has frames under way of its own (`hop_frames`), those to who does not
     answer become fewer, and only searches pause.
     """
-    node.strain = min(node.strain + 1, STRAIN_HEAVY if params.hop_frames else STRAIN_MAX)
+    learn_missed(node, k)
+    node.strain = min(node.strain + UNIT, STRAIN_HEAVY if params.hop_frames else STRAIN_MAX)
     if node.strain > STRAIN_FREE:
         span = min(params.ack_us, LONGEST_US) << ((node.strain - STRAIN_FREE) // PER_DOUBLING)
         node.pause = (now + draw(node, span) + 1) & MASK30
 
 
-def note_answer(node):
-    """A transmission was acknowledged: the channel has room."""
-    node.strain = max(node.strain - 1, 0)
+def note_answer(node, k):
+    """The neighbour in place k has acknowledged: the channel has room."""
+    node.strain = max(node.strain - relief(node, k), 0)
+    learn_acked(node, k)
     node.pause = NO_BACKOFF
 
 

@@ -4,7 +4,6 @@ from innervate.dialect.arith import HALF16, MASK16
 from innervate.networks.mesh.protocol.constants import ALL, PARITY, TABLES
 from innervate.networks.mesh.protocol.fields import FORWARDED, SKIPS, WINDOW_WORDS
 
-NONE16 = 65536
 FLOODED = 20  # in done_kind: a flooded alarm, whose instances count apart
 BITS = 15
 ANEW = 320  # numbers behind the newest: more than a packet can be that is still on its way
@@ -15,7 +14,6 @@ def clear_duplicates(node, params):
     """Empty all four tables, as after switching on."""
     for k in range(params.width):
         node.idle[k] = 0
-        node.heard_seq[k] = NONE16
     for k in range(FORWARDED):
         node.done_origin[k] = ALL
     for k in range(SKIPS):
@@ -46,7 +44,6 @@ def accept(node, params, origin, seq, first):
         if not first or behind < ANEW or node.heard_seq[origin] == seq:
             return 0
         begin_window(node, params, origin, seq)
-        node.heard_seq[origin] = seq
         return 1
     node.idle[origin] = params.forget
     if ahead == 0:
@@ -67,6 +64,7 @@ def begin_window(node, params, origin, seq):
     """Of this origin nothing but `seq` was delivered."""
     node.idle[origin] = params.forget
     node.newest[origin] = seq
+    node.heard_seq[origin] = seq
     for k in range(WINDOW_WORDS):
         node.window[origin * WINDOW_WORDS + k] = 0
 

@@ -89,7 +89,7 @@ OWN = (
     ("places", 0, QUEUE, PLACES_MAX, "frames", "our queue holds"),
     ("kept", 0, WAITING, PLACES_MAX, "messages", "are kept until acknowledged end to end"),
     ("round_trip", 0, 0, 16777215, "us", "smoothed, of end-to-end acks; 0 unknown"),
-    ("strain", 0, 0, 44, "acks", "more that were missing than that came, of neighbours that live"),
+    ("strain", 0, 0, 176, "acks/4", "missing from neighbours that live, beyond what links explain"),
     ("search_backoff", 0, 0, 3, "doublings", "of the wait till unreachable ones are tried again"),
     ("pause", 0, -1, TIME, "us", "searches, at worst all messages, wait until then; -1 none"),
 )
@@ -101,8 +101,9 @@ def neighbours(k):
         ("neighbour", k, 0, 255, "node", "neighbour; 255 = free place"),
         ("heard", k, 0, 65535, "ticks", "when we heard it last"),
         ("rssi", k, -512, 511, "dBm/4", "smoothed"),
+        ("ack_ratio", k, 1, 255, "1/255", "of our transmissions to it that it acknowledged"),
         ("suspect", k, 0, 3, "flags", "1 it does not answer, until `until`; 2 nor was heard since"),
-        ("until", k, 0, TIME, "us", "... then it is trusted again"),
+        ("until", k, 0, 65535, "ticks", "... then it is trusted again"),
         ("round_rssi", k, -128, 127, "dBm", "of its request in this round"),
         ("round_depth", k, 0, 255, "hops", "it advertised in this round; 255 not heard"),
     )
@@ -161,7 +162,7 @@ def packets(n, kept=WAITING):
     return (
         ("newest", n, 0, 65535, "number", "per origin: newest seq delivered"),
         ("window", n * WINDOW_WORDS, 0, 32767, "bits", "per origin: which behind it were"),
-        ("heard_seq", n, 0, 65536, "number", "per origin: the seq that reset it; 65536 none"),
+        ("heard_seq", n, 0, 65535, "number", "per origin: the seq that its window began with"),
         ("idle", n, 0, 255, "ticks", "per origin: till the window is cleared; 0 = it is"),
         ("met", words(n), 0, 32767, "bits", "recipients that acknowledged something"),
         ("done_origin", FORWARDED, 0, 255, "node", "forwarded: origin; 255 = free place"),

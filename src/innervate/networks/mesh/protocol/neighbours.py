@@ -1,12 +1,14 @@
 """The neighbour table: who was heard, how loud, and who does not answer."""
 
-from innervate.dialect.arith import MASK30, after
+from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.outbox import report
 from innervate.networks.mesh.protocol.constants import NOBODY, REPORT_SUSPECT
+from innervate.networks.mesh.protocol.link_quality import ALL_ACKED
 
 FREE = 255
 UNHEARD = 255
 LIVELY_TICKS = 2
+TICKS_MAX = 32_767
 HOP_FIRST = 4  # frames under way to a neighbour of which nothing is known
 
 # In `suspect`.
@@ -20,11 +22,12 @@ def clear_neighbours(node, params):
         node.neighbour[k] = FREE
         node.suspect[k] = 0
         node.round_depth[k] = UNHEARD
-        forget_trips(node, k)
+        forget_link(node, k)
 
 
-def forget_trips(node, k):
-    """Nothing is known of how long the neighbour in place k takes to answer."""
+def forget_link(node, k):
+    """Nothing is known of how often the neighbour in place k answers, and how soon."""
+    node.ack_ratio[k] = ALL_ACKED
     node.hop_trip[k] = 0
     node.hop_spread[k] = 0
     node.hop_doubled[k] = 0
@@ -68,7 +71,7 @@ def hear(node, params, who, rssi):
     node.heard[k] = node.ticks
     node.suspect[k] = 0
     node.round_depth[k] = UNHEARD
-    forget_trips(node, k)
+    forget_link(node, k)
     return k
 
 
@@ -90,8 +93,19 @@ def suspect(node, params, now, who, planned, out):
     k = place_of(node, params, who)
     if k >= 0:
         node.suspect[k] = SUSPECT | DOUBT
-        node.until[k] = (now + params.suspect_us) & MASK30
+        node.until[k] = (node.ticks + ticks_until(node, params, now)) & MASK16
         report(out, REPORT_SUSPECT, who, planned)
+
+
+def ticks_until(node, params, now):
+    """The first tick that is suspect_us away or more is so many from the newest."""
+    late = (now - node.tick_at) & MASK30
+    return min((late + params.suspect_us - 1) // params.tick_us + 1, TICKS_MAX)
+
+
+def is_over(node, k):
+    """1 if the suspicion of the neighbour in place k has lasted its time."""
+    return (node.ticks - node.until[k]) & MASK16 <= TICKS_MAX
 
 
 def is_suspect(node, params, who):
@@ -106,12 +120,12 @@ def trust(node, params):
         node.suspect[k] = node.suspect[k] & DOUBT
 
 
-def sweep(node, params, now):
+def sweep(node, params):
     """Every tick: suspicions end; neighbours that were silent for too long are forgotten."""
     most = 3 * params.period_max + 2
     for k in range(params.places):
         if node.neighbour[k] != FREE:
-            if node.suspect[k] & SUSPECT and after(now, node.until[k]):
+            if node.suspect[k] & SUSPECT and is_over(node, k):
                 node.suspect[k] = DOUBT
             if ((node.ticks - node.heard[k]) & 65535) > most:
                 node.neighbour[k] = FREE

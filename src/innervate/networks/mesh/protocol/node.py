@@ -50,6 +50,7 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.duplicates import (
     age,
     clear_duplicates,
+    mark_reachable,
     record_packet,
     retry_unreachable,
 )
@@ -160,6 +161,8 @@ def on_frame(node, gate, params, now, port, frame, out):
         on_broadcast(node, params, now, frame, k, out)
     else:
         drop_overheard(node, params, frame, out)
+        if frame.kind == E2E_ACK:
+            mark_reachable(node, frame.origin)
         if frame.link_dst == node.number:
             on_unicast(node, gate, params, now, frame, out)
         else:
@@ -299,7 +302,7 @@ def on_tick(node, gate, params, now, out):
     node.ticks = (node.ticks + 1) & 65_535
     node.tick_at = now
     set_timer(out, TICK, (now + params.tick_us) & MASK30)
-    sweep(node, params, now)
+    sweep(node, params)
     end_backoff(node, now)
     age(node, params)
     if node.ticks % (UNREACHABLE_TICKS << node.search_backoff) == 0:

@@ -6,6 +6,7 @@ Who does not notice that its neighbour has a packet makes two of it by sending i
 from innervate.networks.mesh.protocol.backoff import note_answer
 from innervate.networks.mesh.protocol.constants import ALARM, DATA, E2E_ACK, PARITY
 from innervate.networks.mesh.protocol.frames import get16, inner
+from innervate.networks.mesh.protocol.neighbours import place_of
 from innervate.networks.mesh.protocol.queue import UNACKED, WAITS, drop, tell_hop
 
 
@@ -15,7 +16,7 @@ def drop_overheard(node, params, frame, out):
         state = node.q_state[i]
         if state == UNACKED or (state == WAITS and node.q_tries[i] > 0):
             if is_passed_on(node, i, frame) or is_confirmed(node, i, frame):
-                note_answer(node)
+                note_answer(node, place_of(node, params, node.q_link_dst[i]))
                 tell_hop(node, i, out)
                 drop(node, params, i)
 

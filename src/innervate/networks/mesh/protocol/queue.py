@@ -23,6 +23,7 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.fields import GATHERED
 from innervate.networks.mesh.protocol.frames import load, put16, store
 from innervate.networks.mesh.protocol.hop import begin_wait, end_wait, hop_wait, is_full
+from innervate.networks.mesh.protocol.neighbours import place_of
 
 FREE = 0
 WAITS = 1
@@ -259,19 +260,21 @@ def send_due(node, params, now, out):
             return
         node.busy = i
         node.q_state[i] = DOWN
-        load(node, i, out.frame[send(out, 0, attempt(node, i), 0)])
+        load(node, i, out.frame[send(out, 0, attempt(node, params, i), 0)])
         if not params.told:
             settle(node, params, now, 1, out)
 
 
-def attempt(node, i):
+def attempt(node, params, i):
     """How much the frame in place i yields to others' frames: as after so many attempts.
 
-    Packets that look for a way yield to those that know theirs.
+    Packets that look for a way yield to those that know theirs. What a poor link takes more (see
+    link_quality.py) says nothing of a full channel.
     """
+    tries = min(node.q_tries[i], params.transmissions - 1)
     if node.q_flags[i] & DETOURED and node.q_rank[i] == MESSAGES:
-        return node.q_tries[i] + 2
-    return node.q_tries[i]
+        return tries + 2
+    return tries
 
 
 def on_sent(node, params, now, sent, out):
@@ -336,7 +339,7 @@ def take_ack(node, params, origin, seq, who):
     for i in range(node.places):
         if node.q_state[i] == UNACKED and node.q_seq[i] == seq and node.q_origin[i] == origin:
             if node.q_link_dst[i] == who:
-                note_answer(node)
+                note_answer(node, place_of(node, params, who))
                 drop(node, params, i)
                 return i
     return -1

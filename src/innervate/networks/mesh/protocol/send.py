@@ -27,6 +27,7 @@ from innervate.networks.mesh.protocol.hop import (
     note_failed,
     overdue,
 )
+from innervate.networks.mesh.protocol.link_quality import tries_for
 from innervate.networks.mesh.protocol.neighbours import DOUBT, is_lively, place_of, suspect, trust
 from innervate.networks.mesh.protocol.queue import UNACKED, WAITS, drop, kick
 from innervate.networks.mesh.protocol.route import (
@@ -196,7 +197,7 @@ def most_tries(node, params, i, who):
     kind = node.q_kind[i]
     if who >= 0 and node.suspect[who] & DOUBT and kind != TABLE and not is_upward(kind):
         return 1
-    return params.transmissions
+    return tries_for(node, params, who)
 
 
 def on_ack_timeout(node, params, now, out):
@@ -222,7 +223,7 @@ def unanswered(node, params, now, i, out):
     """The frame in place i was not acknowledged: once more, or another way."""
     who = place_of(node, params, node.q_link_dst[i])
     if narrow(node, params, now, who, i) and (who < 0 or is_lively(node, who)):
-        note_missed(node, params, now)
+        note_missed(node, params, now, who)
     if node.q_tries[i] < most_tries(node, params, i, who):
         node.q_state[i] = WAITS
         node.q_due[i] = now

@@ -68,7 +68,7 @@ FAST = Profile(
     byte_ns=32_000, phy_bytes=6, turnaround_us=192, backoff_us=320, rssi50_cdb=-9500,
     loss_1m_cdb=4000, mtu=127, collisions=True, period=10, period_max=60, jitter=0.1, copies=2,
     listen=0.3, spread=0.4, collect=1.5, transmissions=3, ack_us=_ack_us(192, 6, 32_000, 320),
-    suspect=10, e2e=0.25, e2e_adapt=False, e2e_tries=5,
+    suspect=10, e2e=0.25, e2e_adapt=True, e2e_tries=5,
     jobs=4, job=0.35, beacon=1, dead_step=5, settled=8,
 )  # fmt: skip
 SLOW = Profile(

@@ -19,7 +19,7 @@ from innervate.networks.mesh.protocol.neighbours import SUSPECT
 
 NOW = 1 << 28  # what a node's clock shows at every event
 FEW = 8  # draws out of so many or fewer are enumerated, others have one value a node
-TIMES = ("until", "tick_at", "wait_due", "q_due")
+TIMES = ("tick_at", "wait_due", "q_due")
 GATE_TIMES = ("job_due",)
 AGES = ("q_born", "wait_at", "wait_sent")
 OLDEST_US = 5_000_000  # whatever is older is alike
@@ -152,7 +152,7 @@ def tidy(node: Any, capacity: int, adapts: int, now: int) -> None:
             for name in NEIGHBOUR:
                 getattr(node, name)[k] = 0
         if not node.suspect[k] & SUSPECT:
-            node.until[k] = now
+            node.until[k] = 0
     _sort_forwarded(node)
 
 

@@ -1,0 +1,91 @@
+"""How good a link is taken to be, and what follows from it."""
+
+import random
+from types import SimpleNamespace
+
+import pytest
+
+from innervate.networks.mesh.protocol import backoff, link_quality
+from innervate.networks.mesh.protocol.link_quality import (
+    ALL_ACKED,
+    RATIO_MIN,
+    TRIES_MAX,
+    learn_acked,
+    learn_missed,
+    relief,
+    tries_for,
+)
+
+PARAMS = SimpleNamespace(transmissions=3, hop_frames=0, ack_us=1000)
+
+
+def node(ratio=ALL_ACKED, heard=7):
+    return SimpleNamespace(
+        ack_ratio=[ratio], heard=[heard], ticks=7, strain=0, pause=-1, rng=1, choice=-1, asked=0
+    )
+
+
+def played(share, seed, count=4000):
+    """The mean ratio of a node that is so often acknowledged, and how often it pauses."""
+    chance, one, ratios, pauses = random.Random(seed), node(), [], 0
+    for i in range(count):
+        if chance.random() < share:
+            backoff.note_answer(one, 0)
+        else:
+            backoff.note_missed(one, PARAMS, 0, 0)
+        if i > 100:
+            ratios.append(one.ack_ratio[0] / ALL_ACKED)
+            pauses += one.strain > backoff.STRAIN_FREE
+    return sum(ratios) / len(ratios), pauses / len(ratios)
+
+
+@pytest.mark.parametrize("share", [0.36, 0.49, 0.56, 0.81, 0.95])
+def test_the_ratio_is_the_share_that_is_acknowledged(share):
+    for seed in range(3):
+        assert abs(played(share, seed)[0] - share) < 0.05, (share, seed)
+
+
+@pytest.mark.parametrize("share", [0.36, 0.49, 0.56, 0.81])
+def test_a_link_that_loses_evenly_is_no_strain(share):
+    """Its node pauses in one of twenty cases at most; with a worse one nearly always."""
+    for seed in range(3):
+        assert played(share, seed)[1] < 0.05, (share, seed)
+    assert played(0.1, 1)[1] > 0.95
+
+
+def test_the_ratio_keeps_within_its_range():
+    one = node()
+    for _ in range(100):
+        learn_acked(one, 0)
+        assert one.ack_ratio[0] == ALL_ACKED
+    for _ in range(100):
+        learn_missed(one, 0)
+    assert one.ack_ratio[0] == RATIO_MIN
+    for _ in range(100):
+        learn_acked(one, 0)
+    assert one.ack_ratio[0] == ALL_ACKED
+    learn_acked(one, -1)
+    learn_missed(one, -1)
+    assert one.ack_ratio == [ALL_ACKED]
+
+
+# p of 255 -> transmissions, relief in quarters of an ack: (1.4 - p) / p acks, at least one.
+KNOWN = [(255, 3, 4), (192, 3, 4), (191, 4, 4), (128, 5, 7), (92, 8, 11), (64, 11, 18)]
+
+
+@pytest.mark.parametrize(("ratio", "tries", "quarters"), KNOWN)
+def test_a_poor_link_takes_more_transmissions_and_excuses_more_misses(ratio, tries, quarters):
+    assert tries_for(node(ratio), PARAMS, 0) == tries
+    assert relief(node(ratio), 0) == quarters
+
+
+def test_who_was_not_heard_in_this_tick_is_not_tried_more_often():
+    assert tries_for(node(92, heard=6), PARAMS, 0) == 3
+    assert tries_for(node(92), PARAMS, -1) == 3
+    assert relief(node(92), -1) == link_quality.UNIT
+
+
+def test_nobody_is_tried_more_often_than_most_or_less_than_asked():
+    many = SimpleNamespace(transmissions=6)
+    assert tries_for(node(64), many, 0) == TRIES_MAX
+    assert tries_for(node(64), SimpleNamespace(transmissions=15), 0) == 15
