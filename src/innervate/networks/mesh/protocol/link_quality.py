@@ -8,9 +8,16 @@ acks that are missing because the link is as it is are not held against the chan
 ALL_ACKED = 255
 RATIO_MIN = 64  # a quarter: worse is the channel, or the neighbour
 SMOOTHING = 3  # an eighth of what is new
+MISSES = 7  # a seventh more is what was before a miss took an eighth
 TRIES_MAX = 12
 UNIT = 4  # strain is counted in quarters of an ack
 SPARE = 1428  # (1.4 - p) / p: the misses that go with an ack, and 0.4 / p for chance
+
+
+def learn_missed(node, k):
+    """The neighbour in place k, which lives, has not acknowledged a transmission."""
+    if k >= 0:
+        node.ack_ratio[k] = node.ack_ratio[k] - (node.ack_ratio[k] >> SMOOTHING)
 
 
 def learn_acked(node, k):
@@ -20,26 +27,23 @@ def learn_acked(node, k):
         node.ack_ratio[k] = node.ack_ratio[k] + (rise >> SMOOTHING)
 
 
-def learn_missed(node, k):
-    """The neighbour in place k, which lives, has not acknowledged a transmission."""
-    if k >= 0:
-        lower = node.ack_ratio[k] - (node.ack_ratio[k] >> SMOOTHING)
-        node.ack_ratio[k] = max(lower, RATIO_MIN)
-
-
 def relief(node, k):
     """How much of the strain an ack from the neighbour in place k takes back, in quarters."""
     if k < 0:
         return UNIT
-    return max(UNIT, SPARE // node.ack_ratio[k] - UNIT)
+    return max(UNIT, SPARE // max(node.ack_ratio[k], RATIO_MIN) - UNIT)
 
 
-def tries_for(node, params, k):
-    """How often a frame is sent to the neighbour in place k before it counts as unanswered.
+def tries_for(node, params, k, tries):
+    """How often a frame, sent `tries` times in vain, is sent to the neighbour in place k in all.
 
-    More than usual only where it was heard in this tick: one that has died is soon not tried so.
+    More than usual only where it was heard in this tick, and by what was known of the link before
+    this frame: one that has died is soon not tried so, and its silence makes no poor link.
     """
     if k < 0 or node.heard[k] != node.ticks:
         return params.transmissions
-    wanted = params.transmissions * ALL_ACKED // node.ack_ratio[k]
+    ratio = node.ack_ratio[k]
+    for _ in range(tries):
+        ratio = min(ratio + ratio // MISSES + 1, ALL_ACKED)
+    wanted = params.transmissions * ALL_ACKED // max(ratio, RATIO_MIN)
     return max(params.transmissions, min(wanted, TRIES_MAX))

@@ -20,8 +20,12 @@ NAMED = {
     "spare": "0-1 0-2 1-3 2-3 3-4",
     "prism": "0-1 0-2 1-2 1-3 2-4 0-5 3-4 3-5 4-5",
 }
-# Times that suit nodes whose frames take no time; what is not here is the radio profile's.
-BRISK = {"jitter_s": 0.02, "listen_s": 0.1, "spread_s": 0.1, "collect_s": 0.4, "copies": 1}
+# Times that suit nodes whose frames take no time; what is not here is the radio profile's. Where
+# any event may be next, measured round trips change no order, but make many states of one.
+BRISK = {
+    "jitter_s": 0.02, "listen_s": 0.1, "spread_s": 0.1, "collect_s": 0.4, "copies": 1,
+    "e2e_adapt": False,
+}  # fmt: skip
 FENCE = {
     "points": 4,
     "px": [0, 1000, 1000, 0] + [0] * (mesh_fields.POINTS - 4),
