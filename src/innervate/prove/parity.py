@@ -8,7 +8,7 @@ on plain objects. Draws return what is scripted in both.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any
 
@@ -163,18 +163,17 @@ class Twin:
 
     Args:
         step: that was played, on plain unknowns.
-        entry: the module with the handlers.
         handler: the function that was played.
         args: of the handler: names of records, numbers, names of unknowns; "out" the outbox.
         declared: of every record its declaration.
     """
 
     def __init__(
-        self, step: Step, entry: str, handler: str, args: tuple[Any, ...],
-        declared: dict[str, Declaration],
-    ) -> None:  # fmt: skip
+        self, step: Step, handler: str, args: tuple[Any, ...], declared: Mapping[str, Declaration]
+    ) -> None:
         self.step = step
-        self.handler = getattr(import_module(entry), handler)
+        home = step.machine.functions[handler].module
+        self.handler = getattr(import_module(home), handler)
         self.args = args
         self.classes = {name: plain.make(name, fields) for name, fields in declared.items()}
         self.declared = declared
@@ -201,7 +200,8 @@ class Twin:
         """That all demands hold, all values afterwards, of every action its guard and content."""
         terms = self.step.terms
         demands = [terms.implies(one.guard, one.holds) for one in self.step.machine.demands]
-        found = [terms.all(*demands), *(self.step.after[key] for key in self._places())]
+        result = self.step.result if isinstance(self.step.result, Term) else terms.number(0)
+        found = [terms.all(*demands), result, *(self.step.after[key] for key in self._places())]
         for action in self.actions:
             found += [action.guard, action.a, action.b, action.c]
             found += [self.step.after[key] for key, _, _ in action.frame.places()]
@@ -223,10 +223,12 @@ class Twin:
         records = {name: self._plain(name, known, scripted) for name in self.declared}
         out = plain.Outbox(self.frame_class, ROOM)
         given = [self._given(arg, records, known, out) for arg in self.args]
-        sound, *found = self.formula(known, scripted)
+        sound, result, *found = self.formula(known, scripted)
         if not sound:
             return None
-        self.handler(*given)
+        plainly = int(self.handler(*given) or 0)
+        if plainly != (_signed(int(result), self.widths[1]) if self.widths[1] else int(result)):
+            return f"it returns {plainly}, in the formula {result}"
         return self._differs(found, records, out)
 
     def _given(self, arg: Any, records: dict[str, Any], known: dict[str, int], out: Any) -> Any:
@@ -250,7 +252,7 @@ class Twin:
 
     def _differs(self, found: list[Any], records: dict[str, Any], out: Any) -> str:
         values = [_signed(int(value), bits) if bits else int(value)
-                  for value, bits in zip(found, self.widths[1:], strict=True)]  # fmt: skip
+                  for value, bits in zip(found, self.widths[2:], strict=True)]  # fmt: skip
         places = self._places()
         for key, value in zip(places, values, strict=False):
             if key[1] in NOT_COMPARED:
@@ -300,7 +302,7 @@ class Twin:
 
 
 def twin(
-    entry: str, handler: str, args: tuple[Any, ...], declared: dict[str, Declaration],
+    entry: str, handler: str, args: tuple[Any, ...], declared: Mapping[str, Declaration],
     change: Change | None = None,
 ) -> Twin:  # fmt: skip
     """A handler beside its formula, on any values in their declared ranges.
@@ -321,7 +323,7 @@ def twin(
         return stage.out if arg == "out" else records.get(arg, arg)
 
     step = stage.play(handler, handler, [given(arg) for arg in args], [])
-    return Twin(step, entry, handler, args, declared)
+    return Twin(step, handler, args, declared)
 
 
 def _drawn(draw: random.Random, name: str, fields: Declaration) -> dict[str, int]:
