@@ -1,9 +1,11 @@
 """Calls made in Python and in C, and compared: `python -m boards.firmware`.
 
-`python -m boards.firmware [--calls N] [--seed S] [--plain] [skin csma radio mesh ...]`: of each
+`python -m boards.firmware [--calls N] [--seed S] [--plain] [--emulated] [skin csma ...]`: of each
 role N calls (1,000,000), half as nodes of plain simulations are told them, with one seed after the
 other, half drawn. State and outbox are compared after every call. The C is compiled with a check
-of every sum, shift and index; `--plain`: without. Exit code 1 if anything differs, 2 if something
+of every sum, shift and index; `--plain`: without. `--emulated`: the same calls besides on an
+emulated Cortex-M3, once with a Cortex-M0's code, and on RISC-V; hashes over states and outboxes
+of all calls are compared with this machine's. Exit code 1 if anything differs, 2 if something
 is not installed.
 """
 
@@ -16,6 +18,7 @@ import time
 from pathlib import Path
 
 from boards.errors import BoardFailed, BoardMissing
+from boards.firmware import qemu
 from boards.firmware.drawn import Drawn
 from boards.firmware.native import Native
 from boards.firmware.replayed import Heard, Shadow
@@ -58,11 +61,38 @@ def compare(role: Role, calls: int, seed: int, sanitized: bool) -> tuple[int, in
         BoardMissing, BoardFailed: no compiler; they disagree.
     """
     with tempfile.TemporaryDirectory() as folder:
-        native = Native(Library(role, {}), Path(folder), sanitized)
-        replayed, heard = replay(native, calls // 2, seed)
-        drawn = Drawn(native, heard, seed)
-        drawn.run(calls - replayed)
+        return _both(Native(Library(role, {}), Path(folder), sanitized), calls, seed)
+
+
+def _both(native: Native, calls: int, seed: int) -> tuple[int, int]:
+    replayed, heard = replay(native, calls // 2, seed)
+    drawn = Drawn(native, heard, seed)
+    drawn.run(calls - replayed)
     return replayed, drawn.calls
+
+
+def emulate(role: Role, calls: int, seed: int, counted: bool = False) -> dict[str, qemu.Result]:
+    """Make calls of a role in Python, here in C, and on emulated processors; what came of them.
+
+    `counted`: the emulated Cortex's timer counts instructions.
+
+    Raises:
+        BoardMissing, BoardFailed: something is not installed; they disagree.
+    """
+    with tempfile.TemporaryDirectory() as name:
+        folder, script = Path(name), Path(name, "script")
+        native = Native(Library(role, {}), folder)
+        with script.open("wb") as file:
+            native.script = qemu.Script(file)
+            _both(native, calls, seed)
+            native.script.end()
+        here = qemu.on_host(native.library, folder, script)
+        found = {"here": here}
+        for target in qemu.TARGETS:
+            found[target] = there = qemu.on_target(native.library, folder, script, target, counted)
+            if (there.mark, there.calls) != (here.mark, here.calls):
+                raise BoardFailed(f"{target}: hash {there.mark:08x}, here {here.mark:08x}")
+        return found
 
 
 def main(arguments: list[str]) -> int:
@@ -71,6 +101,7 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--calls", type=int, default=CALLS)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--plain", action="store_true")
+    parser.add_argument("--emulated", action="store_true")
     parser.add_argument("roles", nargs="*")
     asked, known = parser.parse_args(arguments), roles()
     for name in asked.roles or known:
@@ -79,6 +110,12 @@ def main(arguments: list[str]) -> int:
             return 2
         begun = time.monotonic()
         try:
+            if asked.emulated:
+                found = emulate(known[name], asked.calls, asked.seed)
+                print(f"{name}: {asked.calls} calls, 0x{found['here'].mark:08x} here, on "
+                      f"{', '.join(qemu.TARGETS)} ({time.monotonic() - begun:.0f} s)",
+                      flush=True)  # fmt: skip
+                continue
             counts = compare(known[name], asked.calls, asked.seed, not asked.plain)
         except BoardMissing as missing:
             print(missing, file=sys.stderr)

@@ -74,6 +74,7 @@ class Native:
         self.loaded = ctypes.CDLL(str(made))
         self.records = {name: Packed(fields) for name, fields in library.records.items()}
         self.outbox = _Outbox(self)
+        self.script: Any = None  # what writes all calls down, if anything does
 
     def handler(self, name: str) -> Callable[..., None] | None:
         """One of the five functions; None if the role has no such handler."""
@@ -124,8 +125,8 @@ def _aligned(at: int, fields: dict[str, Field]) -> int:
 class Twin:
     """A node's state in C beside that in Python."""
 
-    def __init__(self, native: Native, state: Any, gate: Any = None) -> None:
-        self.native, self.state, self.gate = native, state, gate
+    def __init__(self, native: Native, state: Any, gate: Any = None, slot: int = 0) -> None:
+        self.native, self.state, self.gate, self.slot = native, state, gate, slot
         records = native.records
         self.memory = ctypes.create_string_buffer(records["state"].size)
         self.gate_memory = None
@@ -139,11 +140,16 @@ class Twin:
         self.memory.raw = self.native.records["state"].of(self.state)
         if self.gate_memory is not None:
             self.gate_memory.raw = self.native.records["gate"].of(self.gate)
+        if self.native.script is not None:
+            gate = None if self.gate_memory is None else self.gate_memory.raw
+            self.native.script.sync(self.slot, self.memory.raw, gate)
 
     def call(self, name: str, params: bytes, now: int, given: tuple[Any, ...]) -> None:
         """The same call in C; records in `given` are bytes already."""
         handler = self.native.handler(name)
         assert handler is not None, f"C has no {name}"
+        if self.native.script is not None:
+            self.native.script.call(self.slot, name, params, int(now), given)
         gate = (self.gate_memory,) if self.native.library.role.has_gate else ()
         ctypes.memset(self.out, 0, self.native.outbox.size)
         handler(self.memory, *gate, params, int(now), *given, self.out)

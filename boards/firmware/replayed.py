@@ -86,7 +86,9 @@ class Shadow:
         *given, out = rest
         twin = self.twins.get(id(state))
         if twin is None:
-            twin = self.twins[id(state)] = Twin(self.native, state, self._own(gate))
+            twin = self.twins[id(state)] = Twin(
+                self.native, state, self._own(gate), len(self.twins)
+            )
         elif name == "on_start":
             twin.sync()
         packed = self.packed(params)

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from innervate.networks.skin.verify import assumptions
+
 SMALL = ("--plain", "--graph", "pc-1 1-2", "--updates", "periodic", "--budget", "ticks=2,faults=1")
 
 
@@ -14,6 +16,16 @@ def test_nothing_broken_is_0(sh):
     assert first.startswith("pc-1 1-2 ")
     assert "all states; settled in" in first
     assert last == "Nothing broken in 1 explorations, all completely."
+
+
+def test_without_the_solver_the_command_says_what_it_trusts(sh, monkeypatch):
+    words = ("verify", "--plain", "--graph", "pc-1", "--updates", "periodic", "--states", "50")
+    monkeypatch.setattr(assumptions, "can_prove", lambda: False)
+    assert sh(*words) == 0
+    assert "taken on trust, since z3 is missing" in sh.out
+    monkeypatch.undo()
+    assert sh(*words) == 0
+    assert "trust" not in sh.out
 
 
 def test_states_can_be_explored_unreduced(sh):

@@ -54,7 +54,11 @@ Teller = Callable[[Step, Question, str], list[str]]
 
 
 def check(
-    step: Step, tell: Teller | None = None, simple: Iterable[Term] = (), first_only: bool = False
+    step: Step,
+    tell: Teller | None = None,
+    simple: Iterable[Term] = (),
+    first_only: bool = False,
+    reach: bool = True,
 ) -> Checked:
     """Try to refute a step's goals.
 
@@ -62,6 +66,7 @@ def check(
         step: that was played, with goals.
         tell: says in sentences what happens with the values that refute one.
         simple: what counterexamples should keep to if they can, so that they are easy to read.
+        reach: see which branches some state takes, too.
         first_only: one goal that is refuted is enough, and no story of it.
 
     Raises:
@@ -73,7 +78,8 @@ def check(
     question = Question(Formulas(), step.facts)
     if question.values() is None:
         raise ProveError(f"{step.name}: no state is as assumed, so all would hold")
-    found.reached, found.missed = reached(step, question)
+    if reach:
+        found.reached, found.missed = reached(step, question)
     terms = step.terms
     if question.values(terms.any(*(terms.negated(goal.holds) for goal in step.goals))) is not None:
         if first_only:

@@ -2,6 +2,16 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
+
 
 class ProveError(Exception):
     """What is asked for cannot be turned into a formula, or cannot be proved at all."""
+
+
+def can_prove() -> bool:
+    """True if the solver is installed."""
+    try:
+        return find_spec("z3") is not None
+    except ValueError:  # somebody hides it
+        return False

@@ -49,6 +49,7 @@ class Theory:
         steps: make its steps, one after the other.
         unreachable: (function, part of the line, taken) of branches that no state takes, with why.
         refuted_by: "" for one that holds, else the step that must refute it: a claim that is false.
+        is_example: it plays one story, so that branches are left out on purpose.
         tell: says in sentences what happens with values that refute a goal.
         simple: what counterexamples should keep to, of a step.
     """
@@ -59,6 +60,7 @@ class Theory:
     steps: tuple[Callable[[], Step], ...]
     unreachable: dict[tuple[str, str, bool], str] = field(default_factory=dict)
     refuted_by: str = ""
+    is_example: bool = False
     tell: Teller = changes
     simple: Callable[[Step], list[Term]] | None = None
 
@@ -135,6 +137,7 @@ def prove(theory: Theory, tell: Progress | None = None, first_only: bool = False
         first_only: end with the first step that is refuted.
     """
     checked: list[Checked] = []
+    reach = not (first_only or theory.is_example)
     ended = "complete"
     lines: dict[Way, str] = {}
     for number, make in enumerate(theory.steps):
@@ -144,11 +147,11 @@ def prove(theory: Theory, tell: Progress | None = None, first_only: bool = False
             break
         lines.update(_lines(step))
         simple = theory.simple(step) if theory.simple is not None else []
-        checked.append(check(step, theory.tell, simple, first_only))
+        checked.append(check(step, theory.tell, simple, first_only, reach))
         if first_only and checked[-1].refuted:
             ended = "stopped"
             break
-    missing = list(unreached(checked)) if ended == "complete" else []
+    missing = list(unreached(checked)) if ended == "complete" and not theory.is_example else []
     named = [way for way in missing if _is_named(theory, way, lines.get(way, ""))]
     return Outcome(theory, checked, [way for way in missing if way not in named], named, ended)
 

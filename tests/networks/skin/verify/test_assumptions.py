@@ -2,6 +2,7 @@
 
 import pytest
 
+from innervate.networks.skin.prove.faults import FAULTS
 from innervate.networks.skin.verify import assumptions, cases, graphs, mutants
 from innervate.networks.skin.verify.system import RULES, UPDATES, Budget, SkinModel
 from innervate.verify.errors import VerifyError
@@ -32,6 +33,21 @@ HIDING = {
 def test_mistakes_that_could_hide_behind_it_are_found(name):
     mutant = next(one for one in mutants.MUTANTS if one.name == name)
     assert "is taken beside" in assumptions.broken(model(*HIDING[name]), mutants.copy_of(mutant))
+
+
+# Planted by an independent check: a reduced search that trusts the rule ends with nothing broken.
+CUT = FAULTS[:5]
+
+
+@pytest.mark.parametrize("fault", CUT, ids=lambda one: one.name)
+def test_what_the_reductions_would_hide_is_refuted_first(fault):
+    assert assumptions.refuted("feasible", (fault.old, fault.new)).startswith("refuted: "), fault
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", FAULTS[5:], ids=lambda one: one.name)
+def test_so_is_what_else_was_planted_in_the_paths_that_are_cut(fault):
+    assert assumptions.refuted("feasible", (fault.old, fault.new)).startswith("refuted: "), fault
 
 
 def test_a_reduced_search_does_not_start_without_them(monkeypatch):

@@ -231,9 +231,7 @@ def _kept(cell: Cell, step: Step, may_forget: Term | None = None) -> list[Goal]:
     """What a step that is no restart does to the feasible distance, and to the route."""
     t = step.terms
     before, after = cell.view(step.before), cell.view(step.after)
-    told = [t.all(action.guard, t.same(action.a, t.number(REPORT_FORGET)))
-            for action in step.machine.out.actions if action.kind == REPORT]  # fmt: skip
-    forgot = t.any(*told)
+    forgot = forgotten(step)
     had = before.is_(before.fd_known, 1)
     better = t.all(after.is_(after.fd_known, 1), t.negated(before.nearer(before.fd(), after.fd())))
     switched = t.all(after.has_parent(), t.negated(t.same(before.parent, after.parent)))
@@ -253,3 +251,11 @@ def _kept(cell: Cell, step: Step, may_forget: Term | None = None) -> list[Goal]:
         Goal("R3 who waits takes no parent",
              t.implies(after.has_parent(), after.is_(after.wait, 0))),
     ]  # fmt: skip
+
+
+def forgotten(step: Step) -> Term:
+    """The cell reports that it has forgotten."""
+    t = step.terms
+    told = [t.all(action.guard, t.same(action.a, t.number(REPORT_FORGET)))
+            for action in step.machine.out.actions if action.kind == REPORT]  # fmt: skip
+    return t.any(*told)

@@ -7,6 +7,7 @@ how many cells there are, nor of how they are joined.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from innervate.dialect.arith import HALF16, MASK16
@@ -103,6 +104,10 @@ class View:
         """A number is among those in use: all of them lie within half of all numbers."""
         return self.t.less(self.offset(sq), self.t.number(HALF16))
 
+    def no_newer(self, a: Term, b: Term) -> Term:
+        """Number a is no newer than number b."""
+        return self.t.at_most(self.offset(a), self.offset(b))
+
     # -- words of the invariants
 
     def fd(self) -> tuple[Term, Term]:
@@ -117,12 +122,15 @@ class View:
         """Port p leads to the parent."""
         return self.is_(self.parent, p)
 
+    def works(self, p: Term | int) -> Term:
+        """The cable at port p works."""
+        return self.t.less(self.at("pf", p), self.t.number(ONE))
+
     def has_route(self, p: int) -> Term:
         """Port p has said a distance, and what it said may be used."""
         t = self.t
-        works = t.less(self.at("pf", p), t.number(ONE))
         finite = t.less(self.at("dist", p), t.number(INFINITY))
-        return t.all(finite, t.any(works, self.is_(self.at("heard", p), 1)))
+        return t.all(finite, t.any(self.works(p), self.is_(self.at("heard", p), 1)))
 
     def route(self, p: int) -> tuple[Term, Term]:
         """What port p said last."""
@@ -180,19 +188,19 @@ def invariants(view: View) -> list[Goal]:
         Goal("I5 fd is strictly worse than the parent's", t.all(*behind)),
         Goal("I6 nothing is kept of who never had a route", t.all(*unheard)),
         Goal("I7 the parent's port works",
-             t.implies(has, t.less(view.at("pf", view.parent), t.number(ONE)))),
+             t.implies(has, view.works(view.parent))),
     ]  # fmt: skip
 
 
-def ghosts(stage: Stage) -> list[Ghost]:
+def ghosts(stage: Stage, mark: str = "") -> list[Ghost]:
     """Any neighbours, one for every port."""
     t = stage.terms
     return [
         Ghost(
-            t.as_truth(t.unknown(f"ghost{p}.known", 0, 1)),
-            number(t, f"ghost{p}.sq"),
-            t.unknown(f"ghost{p}.dist", 0, INFINITY),
-            t.as_truth(t.unknown(f"ghost{p}.old", 0, 1)),
+            t.as_truth(t.unknown(f"ghost{p}.known{mark}", 0, 1)),
+            number(t, f"ghost{p}.sq{mark}"),
+            t.unknown(f"ghost{p}.dist{mark}", 0, INFINITY),
+            t.as_truth(t.unknown(f"ghost{p}.old{mark}", 0, 1)),
         )
         for p in range(PORTS)
     ]
@@ -222,3 +230,23 @@ class Cell:
     def view(self, store: Store) -> View:
         """The cell with these values."""
         return View(self.stage.terms, self.cell, self.params, store, self.ghosts)
+
+
+Moves = Callable[[View, Ghost, Ghost, int], Term]
+
+
+def ghosts_after(cell: Cell, moves: Moves) -> tuple[list[Ghost], list[Term]]:
+    """The neighbours after the one on some port has moved, and what is known of that."""
+    stage, t = cell.stage, cell.stage.terms
+    port = t.unknown("port", 0, PORTS - 1)
+    view = cell.view(stage.store)
+    after = ghosts(stage, "'")
+    known = []
+    for p, (old, new) in enumerate(zip(cell.ghosts, after, strict=True)):
+        here = view.is_(port, p)
+        known.append(t.implies(here, moves(view, old, new, p)))
+        stays = t.all(t.same(old.known, new.known), t.same(old.sq, new.sq),
+                      t.same(old.dist, new.dist), t.same(old.old, new.old))  # fmt: skip
+        known.append(t.any(here, stays))
+        known.append(t.implies(new.known, view.in_window(new.sq)))
+    return after, known

@@ -13,18 +13,18 @@ from functools import partial
 from innervate.dialect.arith import MASK16
 from innervate.dialect.source import Change
 from innervate.networks.skin.protocol import fields
-from innervate.networks.skin.protocol.constants import INFINITY, PORTS, RULE_FEASIBLE
+from innervate.networks.skin.protocol.constants import INFINITY, RULE_FEASIBLE
 from innervate.networks.skin.prove.feasible import ENTRY, facts
 from innervate.networks.skin.prove.neighbours import (
     ROOM,
     Cell,
     Ghost,
     View,
-    ghosts,
+    ghosts_after,
     invariants,
     number,
     true_ghosts,
-)  # fmt: skip
+)
 from innervate.prove.steps import Goal, Stage, Step
 from innervate.prove.terms import Term
 from innervate.prove.theory import source
@@ -47,25 +47,8 @@ def _moved(name: str, moves: Callable[[View, Ghost, Ghost, int], Term]) -> Step:
     """Some neighbour's feasible distance moves: this cell's invariants stand."""
     cell = Cell(Stage({}, fields.FRAME, ROOM), RULE_FEASIBLE)
     stage, t = cell.stage, cell.stage.terms
-    port = t.unknown("port", 0, PORTS - 1)
-    view = cell.view(stage.store)
-    after = [
-        Ghost(
-            t.as_truth(t.unknown(f"ghost{p}.known'", 0, 1)),
-            number(t, f"ghost{p}.sq'"),
-            t.unknown(f"ghost{p}.dist'", 0, INFINITY),
-            t.as_truth(t.unknown(f"ghost{p}.old'", 0, 1)),
-        )
-        for p in range(PORTS)
-    ]
-    known = facts(cell)
-    for p, (old, new) in enumerate(zip(cell.ghosts, after, strict=True)):
-        here = view.is_(port, p)
-        known.append(t.implies(here, moves(view, old, new, p)))
-        stays = t.all(t.same(old.known, new.known), t.same(old.sq, new.sq),
-                      t.same(old.dist, new.dist), t.same(old.old, new.old))  # fmt: skip
-        known.append(t.any(here, stays))
-        known.append(t.implies(new.known, view.in_window(new.sq)))
+    after, moved_facts = ghosts_after(cell, moves)
+    known = [*facts(cell), *moved_facts]
     moved = View(t, cell.cell, cell.params, stage.store, after)
     goals = [*invariants(moved), Goal("what neighbours have is true", true_ghosts(moved))]
     return Step(name, stage.machine, stage.records, stage.store, stage.store, known, goals)
@@ -121,6 +104,3 @@ def ring() -> Step:
     ]
     known = [view.in_window(sq) for sq, _ in fds]
     return Step("a way along parents", stage.machine, {}, {}, {}, known, goals)
-
-
-__all__ = ["ghosts", "steps"]

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from innervate.dialect.source import Change
-from innervate.networks.skin.protocol.constants import INFINITY
-from innervate.networks.skin.prove import feasible, pc, system
+from innervate.networks.skin.protocol.constants import INFINITY, RULE_FEASIBLE
+from innervate.networks.skin.prove import feasible, pc, reductions, stories, strict, system
 from innervate.networks.skin.prove.faults import FAULTS as MUTANTS
 from innervate.networks.skin.prove.faults import NO_SAFETY
 from innervate.networks.skin.prove.words import tell
@@ -28,15 +27,25 @@ ASSUMED = (
     "First start: a cell is switched on with cause 0 only if it never was on before.",
     "A cable joins the same two ends for ever; it may be cut and mended.",
 )
+STRICT = (
+    "The PC is not restarted, and a cable keeps the order of its frames: a route is announced with "
+    "no older number than before.",
+    *ASSUMED[1:],
+)
 OTHER_FRAMES = "only data and commands are copied"
 UNREACHABLE = {
     ("copy_frame", "kind == DATA or kind == COMMAND", False): OTHER_FRAMES,
     ("is_allowed", "params.rule == RULE_FEASIBLE", False): "another rule",
 }
+UNREACHABLE_STRICT = {
+    ("is_allowed", "params.rule == RULE_FEASIBLE", True): "another rule",
+    ("is_allowed", "params.rule == RULE_PAPER", True): "another rule",
+    ("on_frame", "frame.kind == BEACON", False): "data and commands are proved under feasible",
+}
 
 
 def theories(_network: Any, change: Change | None = None) -> list[Theory]:
-    """All claims, smallest first.
+    """All claims, smallest first; then those that must be refuted, told as stories.
 
     Raises:
         ProveError: the mistake to plant is in none of the sources.
@@ -44,15 +53,44 @@ def theories(_network: Any, change: Change | None = None) -> list[Theory]:
     if change is not None and not any(is_in(entry, change) for entry in (feasible.ENTRY, pc.ENTRY)):
         raise ProveError(f"{change[0]!r} is in no source that is proved")
     return [
-        _theory("the PC", "It announces distance 0 and its number, which only rises.",
-                pc.steps(change)),
-        _theory("rule feasible", "At no moment parents close a ring, of any number of cells.",
-                feasible.steps(change) + system.steps(change)),
+        Theory("skin, the PC", "It announces distance 0 and its number, which only rises.",
+               (), pc.steps(change), UNREACHABLE, tell=tell, simple=simple),
+        Theory("skin, rule feasible", "At no moment parents close a ring, of any number of cells.",
+               ASSUMED, feasible.steps(change) + system.steps(change), UNREACHABLE,
+               tell=tell, simple=simple),
+        Theory("skin, rule strict", "The same, while the PC's number never goes back.",
+               STRICT, strict.steps(change), UNREACHABLE_STRICT, tell=tell, simple=simple),
+        *_stories(change),
     ]  # fmt: skip
 
 
-def _theory(name: str, claim: str, steps: tuple[Callable[[], Step], ...]) -> Theory:
-    return Theory(f"skin, {name}", claim, ASSUMED, steps, UNREACHABLE, tell=tell, simple=simple)
+def resting(rule: int, change: Change | None = None) -> list[Theory]:
+    """What a reduced search under `feasible` or `strict` rests on, of the source at hand."""
+    own = feasible.steps if rule == RULE_FEASIBLE else strict.steps
+    claim = "What the explorer forgets of a state decides nothing."
+    return [
+        Theory("the rule", claim, (), own(change), is_example=True),
+        Theory("what is forgotten", claim, (), reductions.steps(rule, change), is_example=True),
+    ]
+
+
+def _stories(change: Change | None) -> list[Theory]:
+    """Two cells that close a ring where a rule or its condition is given up, and do not else."""
+    lose, back = stories.BOTH_LOSE, stories.PC_GOES_BACK
+    rows = (
+        ("paper", "two cells close no ring", stories.both_lose(change), lose),
+        ("feasible, two cells", "both lose the PC and close no ring",
+         stories.both_lose(change, RULE_FEASIBLE), ""),
+        ("strict, the PC restarts", "two cells close no ring", stories.goes_back(change), back),
+        ("strict, the PC does not", "the same two close none", stories.rises(change), ""),
+        ("feasible, the PC restarts", "the same two close none",
+         stories.goes_back(change, RULE_FEASIBLE), ""),
+    )  # fmt: skip
+    return [
+        Theory(f"skin, rule {name}", claim[0].upper() + claim[1:] + ".", (), (step,),
+               refuted_by=by, tell=stories.tell, simple=stories.simple, is_example=True)
+        for name, claim, step, by in rows
+    ]  # fmt: skip
 
 
 def simple(step: Step) -> list[Term]:

@@ -1,8 +1,9 @@
-"""What the reductions rest on, tried on the protocol itself before they are used.
+"""What the reductions rest on, shown of the protocol itself before they are used.
 
 They forget routes that the rule refuses (reduction.py), and so could hide a mistake in the rule. So
-a cell without a route is told of every such route there can be in small numbers, in a frame and
-before a tick: it must not take it.
+its lemmas are proved first, of the very source at hand and for all numbers (networks/skin/prove).
+Without the solver they are taken on trust, but for this: a cell without a route is told of every
+such route there can be in small numbers, in a frame and before a tick, and must not take it.
 """
 
 from __future__ import annotations
@@ -12,14 +13,19 @@ from collections.abc import Iterator
 from itertools import product
 from typing import Any
 
-from innervate.networks.skin.protocol.constants import INFINITY, NONE
+from innervate.dialect.source import Change
+from innervate.networks.skin.protocol.constants import INFINITY, NONE, RULE_FEASIBLE, RULE_STRICT
 from innervate.networks.skin.verify import check as skin_check
 from innervate.networks.skin.verify import graphs
 from innervate.networks.skin.verify import row as skin_row
 from innervate.networks.skin.verify import system as system
 from innervate.networks.skin.verify import world as w
+from innervate.prove.errors import can_prove
 from innervate.verify.twin import Twin
 
+RULES = {"feasible": RULE_FEASIBLE, "strict": RULE_STRICT}
+ON_TRUST = "taken on trust, since z3 is missing (pip install 'innervate[prove]'): "
+TRUSTED = "that the rule refuses what reductions forget, beyond small numbers"
 NUMBERS, HOPS = range(4), range(6)
 
 
@@ -32,9 +38,34 @@ def broken(model: system.SkinModel, bound: Any = None) -> str:
     """
     if model.rule.startswith("paper") or (model.rule == "strict" and model.budget.restart):
         return ""
-    if bound is None:
-        return _tried(model.rule, model.updates)
-    return _try(model.rule, model.updates, bound)
+    if bound is not None:
+        return _try(model.rule, model.updates, bound)
+    return _tried(model.rule, model.updates) or refuted(model.rule)
+
+
+def is_proved(model: system.SkinModel) -> bool:
+    """True if the lemmas are shown, and not taken on trust."""
+    return model.rule not in RULES or can_prove()
+
+
+@functools.cache
+def refuted(rule: str, change: Change | None = None) -> str:
+    """The first lemma under the reductions that does not hold; "" if all do, or none was tried.
+
+    Args:
+        rule: what is explored.
+        change: a mistake to plant, as in the dialect's `source.functions`.
+    """
+    if not can_prove() or rule not in RULES:
+        return ""
+    from innervate.networks.skin.prove.theories import resting
+    from innervate.prove.theory import prove
+
+    for theory in resting(RULES[rule], change):
+        for one in prove(theory, first_only=True).checked:
+            if one.refuted:
+                return f"refuted: {one.refuted[0].goal} ({one.name})"
+    return ""
 
 
 @functools.cache

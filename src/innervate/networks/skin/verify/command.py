@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 from innervate.kernel import compilation
-from innervate.networks.skin.verify import cases
+from innervate.networks.skin.verify import assumptions, cases
 from innervate.networks.skin.verify.mutants import MUTANTS, hunt
 from innervate.verify import cases as common
 from innervate.verify.cases import Case, Explore, Tell
@@ -41,10 +41,13 @@ def explorations(_network: Any, options: Any) -> Iterator[Explore]:
         plain=options.plain,
         lean=options.reduce,
     )
-    return (partial(_explore, model, wanted) for model in cases.models(wanted))
+    first = True
+    for model in cases.models(wanted):
+        yield partial(_explore, model, wanted, first)
+        first = False
 
 
-def _explore(model: Any, wanted: cases.Wanted, tell: Tell) -> Case:
+def _explore(model: Any, wanted: cases.Wanted, first: bool, tell: Tell) -> Case:
     def progress(name: str, tally: Tally) -> bool:
         what = f"{name}: {tally.states:,} states, {tally.depth} events deep"
         return tell(f"{what}, {tally.per_s / 1e6:.2f} M/s", 0, 0)
@@ -52,9 +55,12 @@ def _explore(model: Any, wanted: cases.Wanted, tell: Tell) -> Case:
     case = cases.run(model, wanted, progress)
     if not wanted.plain:
         compilation.mark_compiled(COMPILED)
+    lines, trusts = _lines(case), model.lean and not assumptions.is_proved(model)
+    if first and trusts:
+        lines.append(f"    {assumptions.ON_TRUST}{assumptions.TRUSTED}")
     return Case(
-        lines=_lines(case),
-        record=case.as_dict(),
+        lines=lines,
+        record={**case.as_dict(), "trusted": assumptions.TRUSTED if trusts else ""},
         is_broken=case.is_broken,
         is_complete=case.is_complete,
         story=case.story,

@@ -1,0 +1,160 @@
+"""The same calls on emulated processors: a hash over all of them, compared with this machine's."""
+
+from __future__ import annotations
+
+import re
+import struct
+import subprocess
+from pathlib import Path
+from typing import Any, BinaryIO, NamedTuple
+
+from boards.errors import BoardFailed, BoardMissing
+from boards.firmware.native import run, write
+from innervate.firmware.emit import Library
+from innervate.firmware.tools import find
+
+HERE = Path(__file__).resolve().parent
+WHAT = ("on_start", "on_frame", "on_timer", "on_input", "on_carrier")
+END, STATE, PARAMS, GATE = 5, 6, 7, 8
+ROW = struct.Struct("<BBxxiii")
+SLOTS = 16
+TICK_INSTRUCTIONS = 40  # of the board's timer at 25 MHz, where an instruction counts as 1 ns
+
+
+class Target(NamedTuple):
+    """An emulated processor."""
+
+    compiler: str
+    options: tuple[str, ...]
+    emulator: tuple[str, ...]
+    origin: str
+    stack: str
+
+
+CORTEX = ("qemu-system-arm", "-M", "mps2-an385")
+RISCV = ("qemu-system-riscv32", "-M", "virt", "-bios", "none")
+TARGETS = {
+    "cortex-m0": Target("arm-none-eabi-gcc", ("-mcpu=cortex-m0", "-mthumb"), CORTEX,
+                        "0x00000000", "0x20400000"),
+    "cortex-m3": Target("arm-none-eabi-gcc", ("-mcpu=cortex-m3", "-mthumb"), CORTEX,
+                        "0x00000000", "0x20400000"),
+    "risc-v": Target("riscv64-unknown-elf-gcc", ("-march=rv32imac", "-mabi=ilp32",
+                     "--specs=picolibc.specs"), RISCV, "0x80000000", "0x80800000"),
+}  # fmt: skip
+
+
+class Script:
+    """Calls as check.c reads them.
+
+    Args:
+        file: to write to.
+    """
+
+    def __init__(self, file: BinaryIO) -> None:
+        self.file = file
+        self.params = b""
+        self.calls = 0
+
+    def sync(self, slot: int, state: bytes, gate: bytes | None) -> None:
+        """A node's records, as its driver has set them."""
+        self.file.write(ROW.pack(STATE, slot, 0, 0, 0) + state)
+        if gate is not None:
+            self.file.write(ROW.pack(GATE, slot, 0, 0, 0) + gate)
+
+    def call(self, slot: int, name: str, params: bytes, now: int, given: tuple[Any, ...]) -> None:
+        """A call of a node."""
+        if params != self.params:
+            self.params = params
+            self.file.write(ROW.pack(PARAMS, 0, 0, 0, 0) + params)
+        a, b = given[0], given[1] if len(given) > 1 and isinstance(given[1], int) else 0
+        record = given[1] if len(given) > 1 and isinstance(given[1], bytes) else b""
+        self.file.write(ROW.pack(WHAT.index(name), slot, now, a, b) + record)
+        self.calls += 1
+
+    def end(self) -> None:
+        """Nothing more comes."""
+        self.file.write(ROW.pack(END, 0, 0, 0, 0))
+
+
+class Result(NamedTuple):
+    """What a script gave: a hash, and by handler how many calls and ticks."""
+
+    mark: int
+    calls: dict[str, int]
+    ticks: dict[str, int]
+
+
+def _compile(library: Library, folder: Path, command: list[str], beside: str, made: Path) -> None:
+    source = write(library, folder)
+    text = (HERE / "check.c").read_text()
+    text = re.sub(r"\brole(?=[_.])", library.prefix, text)
+    (folder / "check.c").write_text(text)
+    flags = [flag for flag, there in (
+        ("-DHAS_FRAME", "frame" in library.records), ("-DHAS_GATE", "gate" in library.records),
+        ("-DHAS_CARRIER", any(m.name == "on_carrier" for m in library.program.handlers)),
+    ) if there]  # fmt: skip
+    run(
+        [
+            *command,
+            *flags,
+            "-I",
+            folder,
+            source,
+            folder / "check.c",
+            HERE / beside,
+            "-o",
+            made,
+            "-lgcc",
+        ]
+    )
+
+
+def _result(said: str) -> Result:
+    numbers = [int(word, 16) for word in said.split()]
+    if len(numbers) != 1 + 2 * len(WHAT):
+        raise BoardFailed(f"the check said {said[:200]!r}")
+    calls = dict(zip(WHAT, numbers[1::2], strict=True))
+    return Result(numbers[0], calls, dict(zip(WHAT, numbers[2::2], strict=True)))
+
+
+def on_host(library: Library, folder: Path, script: Path) -> Result:
+    """Play a script here.
+
+    Raises:
+        BoardMissing, BoardFailed: no compiler, or it does not get through.
+    """
+    made = folder / "check"
+    _compile(library, folder, ["gcc", "-std=c99", "-O1"], "host.c", made)
+    with script.open("rb") as file:
+        done = subprocess.run([made], stdin=file, capture_output=True, text=True, check=True)
+    return _result(done.stdout)
+
+
+def on_target(
+    library: Library, folder: Path, script: Path, name: str, counted: bool = False
+) -> Result:
+    """Play a script on an emulated processor; `counted`: an instruction takes a nanosecond.
+
+    Raises:
+        BoardMissing, BoardFailed: something is not installed, or it does not get through.
+    """
+    target = TARGETS[name]
+    for tool in (target.compiler, target.emulator[0]):
+        try:
+            find(tool)
+        except Exception as missing:
+            raise BoardMissing(str(missing)) from missing
+    ld = folder / f"{name}.ld"
+    text = (HERE / "target.ld").read_text()
+    ld.write_text(text.replace("ORIGIN_", target.origin).replace("STACK_", target.stack))
+    made = folder / f"{name}.elf"
+    command = [target.compiler, *target.options, "-std=gnu99", "-Os", "-ffreestanding", "-nostdlib",
+               "-nostartfiles", "-T", str(ld), "-Wl,--no-warn-rwx-segments"]  # fmt: skip
+    _compile(library, folder, command, "target.c", made)
+    words = [*target.emulator, "-display", "none", "-monitor", "none", "-serial", "none",
+             "-kernel", str(made), "-semihosting-config", "enable=on,target=native"]  # fmt: skip
+    if counted:
+        words += ["-icount", "shift=0"]
+    assert script.name == "script"
+    done = subprocess.run(words, cwd=script.parent, capture_output=True, text=True, check=False)
+    return _result(done.stderr or done.stdout)
