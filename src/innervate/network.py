@@ -128,7 +128,22 @@ UNFIT = "links of this kind of network are not measured"
 
 
 # Parts that stand for any network of a medium, where they are others than over cables.
-MEDIA: dict[str, dict[str, str]] = {"cables": {}}
+MEDIA: dict[str, dict[str, str]] = {
+    "cables": {},
+    "channel": {
+        "model": "innervate.scenario.declared_channel:ChannelScenario",
+        "check": "innervate.scenario.declared_channel:check",
+        "plan": "innervate.scenario.declared_channel:plan",
+        "template": "innervate.scenario.declared_channel:template",
+        "describe": "innervate.scenario.declared_channel:describe",
+        "fault_words": "innervate.scenario.declared_channel:fault_words",
+        "actions": "innervate.scenario.actions.channel:ACTIONS",
+        "harm": "innervate.scenario.actions.channel:HARM",
+        "simulation": "innervate.sim.channel.declared:simulation",
+        "unwatchable": "innervate.scenario.declared_channel:unwatchable",
+        "deployment": "innervate.live.deployment:NotYet",
+    },
+}
 # Parts that can be functions of the network, which make them.
 MADE = frozenset({"template"})
 
