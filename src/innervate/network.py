@@ -74,7 +74,7 @@ PARTS = {
     "live_view": "class: web.live_view.LiveView, its running nodes on the page",
     "recovery": "module: recoveries, line, NOTHING: how it healed, from a capture",
     "verify": "module: explorations, notice, MUTANTS, hunt: what `verify` does (verify/cases.py)",
-    "prove": "module: theories, MUTANTS, NO_SAFETY: what `prove` does (prove/declared.py)",
+    "prove": "module: theories, MUTANTS, EXPLORERS: what `prove` does (prove/declared.py)",
     "counterexample": "(story, path): the picture of how something breaks",
     "boards": "tuple of live.board.Role: what of it runs on a board; if absent, its protocol",
     "random": "module: SHARE, drawn, smaller, trouble: networks from a number (running/fuzz.py)",

@@ -85,7 +85,7 @@ def test_every_port_names_files_that_are_there(made):
     assert json.loads((folder / "library.json").read_text())["name"] == "innervate_skin"
     zephyr = (folder / "zephyr/CMakeLists.txt").read_text()
     named = re.findall(r"\.\./\w+\.c", zephyr)
-    assert len(named) == 4
+    assert len(named) == 5
     assert all((folder / "zephyr" / name).is_file() for name in named)
     assert "includes=skin_node.h" in (folder / "library.properties").read_text()
     left = [path for path in folder.rglob("*") if path.is_file()

@@ -16,6 +16,7 @@ from innervate.live.parameters import check_parameters
 from innervate.network import Network, networks, use
 
 BESIDE = ("innervate_wire.h", "innervate_wire.c", "innervate_port.h")
+SEAL = ("innervate_seal.h", "innervate_seal.c")
 DRIVER = ("role_node.h", "role_node.c")
 BARE = ("bare/start.c", "bare/board.h", "bare/board_mps2.c", "bare/link.ld")
 # For build systems: CMake, Zephyr, PlatformIO, Arduino.
@@ -119,7 +120,7 @@ def files_of(library: Library, network: Network) -> dict[str, str]:
         return texts
     wire = Wire(library, network)
     texts |= {f"{name}_wire.h": wire.header(), f"{name}_wire.c": wire.source()}
-    texts |= {file: shipped(file) for file in (*BESIDE, *BARE)}
+    texts |= {file: shipped(file) for file in (*BESIDE, *SEAL, *BARE)}
     named = (*DRIVER, "bare/role_main.c", "bare/role_small.c")
     texts |= {file.replace("role", name): shipped(file, name) for file in named}
     return texts | {file.replace("role", name): shipped(f"ports/{file}", name) for file in PORTS}
