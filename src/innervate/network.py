@@ -140,7 +140,7 @@ MEDIA: dict[str, dict[str, str]] = {
         "actions": "innervate.scenario.actions.channel:ACTIONS",
         "harm": "innervate.scenario.actions.channel:HARM",
         "simulation": "innervate.sim.channel.declared:simulation",
-        "unwatchable": "innervate.scenario.declared_channel:unwatchable",
+        "view": "innervate.web.channel_view:ChannelView",
         "deployment": "innervate.live.deployment:NotYet",
     },
 }

@@ -215,11 +215,6 @@ def fault_words(plan: Any, fault: Any) -> str:
     return f"at {fault.at_us / 1e6:g} s {ACTIONS[fault.action]} node {fault.node}"
 
 
-def unwatchable(plan: Any) -> str:
-    """Why it cannot be watched."""
-    return f"a {plan.kind} shares a channel; pages show networks of your own over cables so far"
-
-
 def template(network: Any) -> str:
     """A scenario to start from, with all parameters; "" for a network with keys of its own."""
     if network.model is not ChannelScenario:
