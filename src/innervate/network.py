@@ -74,7 +74,7 @@ PARTS = {
     "live_view": "class: web.live_view.LiveView, its running nodes on the page",
     "recovery": "module: recoveries, line, NOTHING: how it healed, from a capture",
     "verify": "module: explorations, notice, MUTANTS, hunt: what `verify` does (verify/cases.py)",
-    "prove": "module: theories, MUTANTS, NO_SAFETY: what `prove` does (prove/declared.py)",
+    "prove": "module: theories, MUTANTS, EXPLORERS: what `prove` does (prove/declared.py)",
     "counterexample": "(story, path): the picture of how something breaks",
     "boards": "tuple of live.board.Role: what of it runs on a board; if absent, its protocol",
     "random": "module: SHARE, drawn, smaller, trouble: networks from a number (running/fuzz.py)",
@@ -128,7 +128,22 @@ UNFIT = "links of this kind of network are not measured"
 
 
 # Parts that stand for any network of a medium, where they are others than over cables.
-MEDIA: dict[str, dict[str, str]] = {"cables": {}}
+MEDIA: dict[str, dict[str, str]] = {
+    "cables": {},
+    "channel": {
+        "model": "innervate.scenario.declared_channel:ChannelScenario",
+        "check": "innervate.scenario.declared_channel:check",
+        "plan": "innervate.scenario.declared_channel:plan",
+        "template": "innervate.scenario.declared_channel:template",
+        "describe": "innervate.scenario.declared_channel:describe",
+        "fault_words": "innervate.scenario.declared_channel:fault_words",
+        "actions": "innervate.scenario.actions.channel:ACTIONS",
+        "harm": "innervate.scenario.actions.channel:HARM",
+        "simulation": "innervate.sim.channel.declared:simulation",
+        "view": "innervate.web.channel_view:ChannelView",
+        "deployment": "innervate.live.deployment:NotYet",
+    },
+}
 # Parts that can be functions of the network, which make them.
 MADE = frozenset({"template"})
 

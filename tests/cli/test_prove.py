@@ -5,14 +5,21 @@ import subprocess
 import sys
 
 
-def test_a_skin_is_proved(sh):
-    assert sh("prove", "--json") == 0
-    found = json.loads(sh.out)
-    assert all(theory["expected"] for theory in found)
-    feasible = next(one for one in found if one["theory"] == "skin, rule feasible")
-    assert feasible["holds"]
-    assert len(feasible["assumed"]) > 3
-    assert {lemma["answer"] for step in feasible["steps"] for lemma in step["lemmas"]} == {"unsat"}
+def test_what_is_proved_is_told_lemma_by_lemma(sh):
+    assert sh("prove", "radio", "--json") == 0
+    (found,) = json.loads(sh.out)
+    assert found["expected"]
+    assert found["holds"]
+    assert {lemma["answer"] for step in found["steps"] for lemma in step["lemmas"]} == {"unsat"}
+    assert sum(len(step["lemmas"]) for step in found["steps"]) == found["lemmas"]
+    assert sh("prove", "radio") == 0
+    assert sh.out.splitlines()[-1].startswith("All as it should be: 7 lemmas in ")
+
+
+def test_planted_mistakes_are_refuted(sh):
+    assert sh("prove", "radio", "--faults") == 0
+    assert all(": Q" in line or ": no " in line or ": every " in line
+               for line in sh.out.splitlines())  # fmt: skip
 
 
 def test_an_unknown_network_is_named(sh):

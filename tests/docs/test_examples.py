@@ -1,6 +1,7 @@
 """Every example runs."""
 
 import runpy
+import shutil
 import sys
 from pathlib import Path
 
@@ -10,6 +11,9 @@ import pytest
 import innervate
 from innervate.cli import main
 from innervate.sweeping.planfile import is_plan
+from tests.own import alone
+
+__all__ = ["alone"]
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples"
 
@@ -135,3 +139,11 @@ def test_every_example_is_run():
         "which_medium_access.py",
         "standby_or_posts.py",
     }
+
+
+def test_a_network_of_ones_own_is_whole(alone, capsys):
+    shutil.copytree(FOLDER / "aloha", alone / "aloha")
+    assert main(["check-protocol", "aloha"]) == 0
+    said = capsys.readouterr().out
+    assert "actions a call of 4, 5,001 states explored, 8 of 8 functions reached by tests" in said
+    assert "no test reaches" not in said

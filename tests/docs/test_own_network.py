@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from innervate.cli import main
 from innervate.network import networks
 from tests.own import alone
@@ -45,10 +47,27 @@ def carried_out(command, capfd):
     return done.stdout + done.stderr
 
 
-def test_every_step_of_the_page(alone, capfd, monkeypatch):
-    monkeypatch.syspath_prepend(str(Path(__file__).resolve().parents[2]))
+def parts():
+    """The page but for the channel, and what it says of that."""
+    before, rest = PAGE.read_text(encoding="utf-8").split("## On a shared channel")
+    channel, after = rest.split("\n## ", 1)
+    return before + "## " + after, channel
+
+
+def test_every_step_of_the_page(alone, capfd):
+    assert played(parts()[0], capfd) >= 15
+    assert {"gossip", "ring"} <= set(networks())
+
+
+@pytest.mark.slow  # compiles a protocol that no other test runs
+def test_every_step_on_the_channel(alone, capfd):
+    assert played(parts()[1], capfd) == 6
+
+
+def played(text, capfd):
+    """Carry out all steps of a text; how many commands there were."""
     count = 0
-    for step in STEP.finditer(PAGE.read_text(encoding="utf-8")):
+    for step in STEP.finditer(text):
         if step["file"]:
             Path(step["file"]).write_text(step["text"])
         elif step["edited"]:
@@ -63,5 +82,4 @@ def test_every_step_of_the_page(alone, capfd, monkeypatch):
                 for line in filter(None, lines):
                     assert line.rstrip(". ") in said, (command, line, said)
         capfd.readouterr()
-    assert count >= 15
-    assert {"gossip", "ring"} <= set(networks())
+    return count

@@ -146,6 +146,7 @@ def test_what_is_not_there_or_does_not_fit_is_one_line(tmp_path, capsys, monkeyp
         ("mesh", "--nodes", "400"): "hold 1 to 254",
         ("mesh", "nodes=40"): "40 nodes do not fit into a class of 32",
         ("mesh", "queue=9"): "does not fit into 8 places",
+        ("mesh", "monitor=32"): "monitor=32 is none of 32 nodes",
         ("skin", "--prefix", "9x"): "begin with a letter",
         ("skin", "--out", str(tmp_path / "full")): "not empty",
     }

@@ -31,7 +31,9 @@ def firmware(network: str, settings: list[str], wanted: Wanted, as_json: bool) -
         said = {"out": str(wanted.out), "source": made.digest(), "abi": emit.ABI, "lines": lines}
         print(json.dumps(said))
         return 0
-    print(f"{wanted.out}: {', '.join(f'{name} ({count} lines)' for name, count in lines.items())}")
+    own = [f"{name} ({count} lines)" for name, count in lines.items() if name in made.own_files]
+    more = f" and {len(lines) - len(own)} files around them" if len(lines) > len(own) else ""
+    print(f"{wanted.out}: {', '.join(own)}{more}")
     print(f"made from {made.role.entry}, source {made.digest()}, ABI {emit.ABI}")
     return 0
 

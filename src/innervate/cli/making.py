@@ -108,9 +108,12 @@ def _look_further(
         if said["tests_failed"]:
             lines.append(said["tests_failed"])
     most = max((n for n in said["outbox"].values() if n is not None), default=0)
+    reached = ""
+    if with_tests:
+        reached = f", {said['reached']} of {said['functions']} functions reached by tests"
     lines.append(f"{network.name}: the dialect is kept, values and frames fit, at most {most} "
-                 f"actions a call of {room}, {case.record['states']:,} states explored, "
-                 f"{said.get('reached', 0)} of its functions reached by tests")  # fmt: skip
+                 f"actions a call of {room}, {case.record['states']:,} states explored"
+                 f"{reached}")  # fmt: skip
 
 
 def _tested(folder: Path, network: Network) -> dict[str, Any]:
@@ -130,7 +133,13 @@ def _tested(folder: Path, network: Network) -> dict[str, Any]:
     unreached = {name: f"{folders.shown(Path(path))}:{line}"
                  for name, path, line in told["unreached"]}  # fmt: skip
     failed = "" if told["code"] == 0 else _failed(folder, done.stdout)
-    return {"reached": told["reached"], "unreached": unreached, "tests_failed": failed}
+    count = told["reached"] + len(unreached)
+    return {
+        "reached": told["reached"],
+        "functions": count,
+        "unreached": unreached,
+        "tests_failed": failed,
+    }
 
 
 def _failed(folder: Path, said: str) -> str:

@@ -17,7 +17,6 @@ HANDLERS = {
     "on_input": "(state, params, now, kind, item, out)",
 }
 ON_AIR = {
-    "on_frame": "(state, params, now, frame, out)",
     "on_carrier": "(state, params, now, cd, voc, out)",
 }
 

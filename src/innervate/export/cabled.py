@@ -45,6 +45,16 @@ def _cabled(graph: Any) -> list[int]:
     return [end for end, peer in enumerate(graph.peer) if peer >= 0]
 
 
+def on_air(plan: Any) -> list[tuple[str, str]]:
+    """(name, description) of every node on a channel, in order."""
+    return [(f"node {i}", links.describe("node", i)) for i in range(plan.nodes)]
+
+
+def stations(plan: Any) -> Any:
+    """As `numbers`, for nodes on a channel."""
+    return np.arange(plan.nodes)
+
+
 def packed(layouts: Any, kind_bits: int, kept: Any) -> list[bytes]:
     """The bytes of frames of a type, the type's fields and a CRC, from an array of records."""
     return bulk.by_kind(kept, {
@@ -57,17 +67,19 @@ class Captured:
     """What a network without a part `capture` has in its place."""
 
     LATE_US = 0  # a row is told at its moment
-    interfaces = staticmethod(interfaces)
-    numbers = staticmethod(numbers)
 
     def __init__(self, network: Network) -> None:
         self.simulate = network.run.simulate
+        self.interfaces: Any = interfaces
+        self.numbers: Any = numbers
+        if network.medium == "channel":
+            self.interfaces, self.numbers = on_air, stations
         self._layouts = network.frames.LAYOUTS if network.has("frames") else ()
         self._kind_bits = network.frames.KIND_BITS if self._layouts else 0
 
     def refusal(self, plan: Any) -> str:
         """Why there is no capture of a plan; "" if there is one."""
-        if not hasattr(plan, "graph"):
+        if not hasattr(plan, "graph") and self.interfaces is not on_air:
             return f"a {plan.kind} has no cables, and says nothing of its frames on another medium"
         return "" if self._layouts else f"a {plan.kind} does not say how its frames are laid out"
 

@@ -78,6 +78,11 @@ class Library:
                     found[kind] = f"{kind.field.type} *"
         return found
 
+    @property
+    def own_files(self) -> tuple[str, str]:
+        """The names of the two files that a library is."""
+        return f"{self.prefix}.h", f"{self.prefix}.c"
+
     def digest(self) -> str:
         """A hash of the functions as they are written, and of all declarations: 16 digits."""
         hashed = hashlib.blake2b(digest_size=8)

@@ -58,7 +58,7 @@ class Emulated(Engine):
     def start(self, cause: int = 0) -> None:
         """Switch the board on; the node starts as soon as its lines are there."""
         node = self.stack.node  # type: ignore[attr-defined]
-        self._begun = (node.number, node.rng, cause)
+        self._begun = (getattr(node, "number", 0), getattr(node, "rng", 1), cause)
         self._tasks.append(self._loop.create_task(self._run()))
 
     def stop(self) -> None:

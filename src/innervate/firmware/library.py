@@ -16,8 +16,14 @@ from innervate.live.parameters import check_parameters
 from innervate.network import Network, networks, use
 
 BESIDE = ("innervate_wire.h", "innervate_wire.c", "innervate_port.h")
+SEAL = ("innervate_seal.h", "innervate_seal.c")
 DRIVER = ("role_node.h", "role_node.c")
 BARE = ("bare/start.c", "bare/board.h", "bare/board_mps2.c", "bare/link.ld")
+# For build systems: CMake, Zephyr, PlatformIO, Arduino.
+PORTS = (
+    "CMakeLists.txt", "zephyr/module.yml", "zephyr/Kconfig", "zephyr/CMakeLists.txt",
+    "library.json", "library.properties", "examples/role_node/role_node.ino",
+)  # fmt: skip
 PREFIX = re.compile(r"[a-z][a-z0-9_]{0,30}")
 
 
@@ -114,17 +120,18 @@ def files_of(library: Library, network: Network) -> dict[str, str]:
         return texts
     wire = Wire(library, network)
     texts |= {f"{name}_wire.h": wire.header(), f"{name}_wire.c": wire.source()}
-    texts |= {file: shipped(file) for file in (*BESIDE, *BARE)}
+    texts |= {file: shipped(file) for file in (*BESIDE, *SEAL, *BARE)}
     named = (*DRIVER, "bare/role_main.c", "bare/role_small.c")
-    return texts | {file.replace("role", name): shipped(file, name) for file in named}
+    texts |= {file.replace("role", name): shipped(file, name) for file in named}
+    return texts | {file.replace("role", name): shipped(f"ports/{file}", name) for file in PORTS}
 
 
 def shipped(file: str, prefix: str = "") -> str:
     """A file that lies here; one of the driver's with a network's names."""
     text = (resources.files("innervate.firmware") / "c" / file).read_text(encoding="utf-8")
     if prefix:
-        text = re.sub(r"\brole(?=[_.])", prefix, text)
-        text = re.sub(r"\bROLE(?=_)", prefix.upper(), text)
+        text = re.sub(r"(?<![a-z])role(?![a-z])", prefix, text)
+        text = re.sub(r"(?<![A-Z])ROLE(?![A-Z])", prefix.upper(), text)
     return text
 
 

@@ -128,6 +128,9 @@ PLAIN = Program(
     ("wire/bits", "wire/crc", "wire/layout", "wire/cobs", "wire/frames"),
 )
 
+CABLES = "cables"
+ON_AIR = Watched(simulation="innervate.sim.channel.declared:simulation", table="stations")
+
 
 def on_wire(fields: Any) -> tuple[tuple[str, Any], ...]:
     """(name, how many) of a layout's fields."""
@@ -147,6 +150,7 @@ def roles_of(network: Network) -> tuple[Role, ...]:
     return (Role(
         network.name, protocol.__name__, fields.STATE, fields.PARAMS, fields.FRAME, fields.FRAME,
         {kind: on_wire(layout) for kind, _name, layout in network.frames.LAYOUTS},
-        getattr(protocol, "OUTBOX", OUTBOX), program=PLAIN,
+        getattr(protocol, "OUTBOX", OUTBOX), program=PLAIN if network.medium == CABLES else None,
+        watched=Watched() if network.medium == CABLES else ON_AIR,
         action=getattr(fields, "ACTION", ACTION), timers=getattr(protocol, "TIMERS", 1),
     ),)  # fmt: skip

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from innervate.live.asking import ask, sleep_until
+from innervate.live.errors import LiveError
 from innervate.network import networks
 from innervate.scenario.actions import ON_LINKS
 
@@ -124,3 +125,16 @@ class Deployment:
             await sleep_until(began + one.at_us / 1e6)
             request = {"do": "input", "kind": one.kind, "item": one.item}
             await ask(stage.socket(self.names[one.node]), request)
+
+
+class NotYet(Deployment):
+    """Of nodes that have no links to run on."""
+
+    def layout(self) -> tuple[list[str], Pairs]:
+        """Refuse them.
+
+        Raises:
+            LiveError: always.
+        """
+        raise LiveError(f"a {self.plan.kind} shares a channel; of networks of your own those over "
+                        "cables are brought up live so far")  # fmt: skip

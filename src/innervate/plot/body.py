@@ -133,7 +133,8 @@ def _report_names(kind: str) -> dict[int, str]:
 def _nodes(result: Any) -> str:
     """What the nodes of a network that declares its fields were at the end, as a table."""
     network = networks()[result.plan.kind]
-    nodes, cells = network.graph(result.plan).nodes, getattr(result.world, "cells", None)
+    nodes = network.graph(result.plan).nodes
+    cells = getattr(result.world, "cells", getattr(result.world, "stations", None))
     declares = network.has("fields") and hasattr(network.fields, "STATE")
     if cells is None or not declares or len(nodes) > NAMED_MAX:
         return ""

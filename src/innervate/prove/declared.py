@@ -21,7 +21,7 @@ OUTBOX = 16
 PORTS = 4
 RECORDS = ("state",)
 MUTANTS: tuple[Fault, ...] = ()
-NO_SAFETY: dict[str, str] = {}
+EXPLORERS = False
 
 
 def theories(network: Network, change: Change | None = None) -> list[Theory]:

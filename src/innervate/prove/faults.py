@@ -9,8 +9,8 @@ from innervate.prove.theory import Fault, prove
 def faults_of(network: Network) -> list[Fault]:
     """A network's own mistakes, and the explorer's that an invariant is about."""
     part = network.prove
-    others = [Fault(one.name, one.old, one.new) for one in getattr(network.verify, "MUTANTS", ())]
-    return [*part.MUTANTS, *(one for one in others if one.name not in part.NO_SAFETY)]
+    others = network.verify.MUTANTS if part.EXPLORERS else ()
+    return [*part.MUTANTS, *(Fault(one.name, one.old, one.new) for one in others)]
 
 
 def hunt(network: Network, fault: Fault) -> tuple[str, str]:

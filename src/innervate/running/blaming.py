@@ -39,7 +39,9 @@ class Watched:
         self.folder = network.folder
         self.notes: Notes = {}
         self.overflow: tuple[str, int] | None = None
-        states, self._ranges = running.world.cells, {
+        world = running.world
+        states = world.cells if hasattr(world, "cells") else world.stations
+        self._ranges = {
             name: (low, high) for name, _length, low, high, *_ in network.fields.STATE
         }  # fmt: skip
         self.states = states

@@ -254,7 +254,7 @@ def plan(scenario: Any) -> CablesPlan:
         queue_frames=model.links.queue_frames,
         loss_q15=round(model.links.loss * LOSS_ONE),
         faults=sorted(faults, key=lambda fault: (fault.at_us, fault.index)),
-        inputs=inputs_of(model, network, graph.cells),
+        inputs=inputs_of(model, network, graph.cells, ACTIONS),
     )
 
 
@@ -273,8 +273,18 @@ def _fault(source: Source, graph: Graph, place: int, event: EventTable) -> Fault
     )
 
 
-def inputs_of(model: Any, network: Any, count: int) -> list[Input]:
-    """What nodes are given, repeated and for every node, in order of time."""
+def inputs_of(model: Any, network: Any, count: int, actions: tuple[str, ...]) -> list[Input]:
+    """What nodes are given, repeated and for every node, in order of time.
+
+    Args:
+        model: with the tables `input` and `event`.
+        network: whose `happenings` are events, too.
+        count: how many nodes there are.
+        actions: words of events that are no inputs.
+
+    Raises:
+        ScenarioError: more inputs than can be held.
+    """
     found: list[Input] = []
     for given in model.input:
         period = given.every_s or model.duration_s
@@ -286,7 +296,7 @@ def inputs_of(model: Any, network: Any, count: int) -> list[Input]:
         found += [Input(round(1e6 * (given.at_s + k * period)), node, given.kind, dict(given.item))
                   for k in range(times) for node in who]  # fmt: skip
     for event in model.event:
-        if event.action not in network.actions:
+        if event.action not in actions:
             kind, item = network.happenings[event.action](event.node, event.value)
             found.append(Input(round(1e6 * event.at_s), event.node, kind, dict(item)))
     return sorted(found, key=lambda one: one.at_us)

@@ -13,11 +13,9 @@ meanwhile is left open.
 
 from __future__ import annotations
 
-import traceback
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
@@ -31,8 +29,8 @@ from innervate.topology import PORTS, Graph, TopologyError, free_graph
 from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent, lines_of
 from innervate.verify.errors import VerifyError
 from innervate.verify.tally import Tally
+from innervate.verify.values import ahead, place_of, put, values, with_one
 
-HALF = 1 << 29
 OUTBOX = 16
 IN_FLIGHT = 3  # most frames on a cable per direction; states with more are left out, and counted
 STATES = 20_000
@@ -91,6 +89,7 @@ class Net:
         self, protocol: ModuleType, fields: ModuleType, graph: Graph, params: dict[str, int]
     ) -> None:
         self.do, self.fields, self.graph = protocol, fields, graph
+        self.on_air = hasattr(protocol, "on_carrier")
         self.own: dict[str, Any] = {}  # what must hold of a node, by what it says
         self.of_all: dict[str, Any] = {}  # and of all nodes together
         self.params = plain.make("Params", fields.PARAMS)()
@@ -114,7 +113,7 @@ class Net:
             for name, value in (("number", number), ("rng", 1 + number), ("choice", -1)):
                 if hasattr(node, name):
                     setattr(node, name, value)
-            nodes.append(Node(_values(node, self.fields.STATE), ()))
+            nodes.append(Node(values(node, self.fields.STATE), ()))
         state = State(
             tuple(nodes), ((),) * len(self.graph.peer), (budget.loss, budget.restart, budget.input)
         )
@@ -131,15 +130,15 @@ class Net:
             if frames:
                 yield self.arrive(state, end)
                 if loss:
-                    rest = _with(state.ways, end, frames[1:])
-                    what = f"A frame from {self.graph.label_end(end)} is lost"
-                    yield Step(what, state._replace(ways=rest, left=(loss - 1, restart, given)), "")
+                    rest = with_one(state.ways, end, frames[1:])
+                    gone = state._replace(ways=rest, left=(loss - 1, restart, given))
+                    yield self.missed(gone, end)
         for number, node in enumerate(state.nodes):
             if node.timers:
                 yield self.fire(state, number)
             if restart:
                 lost = state._replace(left=(loss, restart - 1, given))
-                lost = lost._replace(nodes=_with(lost.nodes, number, node._replace(timers=())))
+                lost = lost._replace(nodes=with_one(lost.nodes, number, node._replace(timers=())))
                 after, broken = self.call(lost, number, 0, self.do.on_start, MEMORY_LOST)
                 yield Step(f"{self.graph.label(number)} loses its memory", after, broken)
             if given:
@@ -151,16 +150,46 @@ class Net:
         first, *rest = state.ways[end]
         peer = self.graph.peer[end]
         number, port = self.graph.node_of(peer), self.graph.port_of(peer)
-        _put(self.frame, self.fields.FRAME, first)
-        gone = state._replace(ways=_with(state.ways, end, tuple(rest)))
+        put(self.frame, self.fields.FRAME, first)
+        gone = state._replace(ways=with_one(state.ways, end, tuple(rest)))
+        if self.on_air:
+            return self.heard(gone, number, end)
         after, broken = self.call(gone, number, 0, self.do.on_frame, port, self.frame)
         what = f"{self.graph.label(number)} gets a frame from {self.graph.label_end(end)}"
         return Step(what, after, broken)
 
+    def heard(self, state: State, number: int, end: int) -> Step:
+        """A frame on the air: a carrier alone, the frame, silence."""
+        frame = values(self.frame, self.fields.FRAME)
+        what = f"{self.graph.label(number)} hears a frame of {self.graph.label(end // PORTS)}"
+        after, broken = self.call(state, number, 0, self.do.on_carrier, 1, 1)
+        if not broken:
+            put(self.frame, self.fields.FRAME, frame)
+            after, broken = self.call(after, number, 0, self.do.on_frame, 0, self.frame)
+        if not broken:
+            after, broken = self.call(after, number, 0, self.do.on_carrier, 0, 0)
+        return Step(what, after, broken)
+
+    def missed(self, state: State, end: int) -> Step:
+        """A frame is lost; on the air its receiver hears that there was something."""
+        what = f"A frame from {self.graph.label_end(end)} is lost"
+        if not self.on_air:
+            return Step(what, state, "")
+        number = self.graph.node_of(self.graph.peer[end])
+        after, broken = self.call(state, number, 0, self.do.on_carrier, 1, 0)
+        if not broken:
+            after, broken = self.call(after, number, 0, self.do.on_carrier, 0, 0)
+        return Step(what, after, broken)
+
+    def ends_of(self, number: int, port: int) -> list[int]:
+        """Where what a node sends goes: to all who hear it, or out of a port."""
+        ends = self.graph.ends_of(number) if self.on_air else [self.graph.end(number, port)]
+        return [end for end in ends if self.graph.peer[end] >= 0]
+
     def give(self, state: State, number: int, kind: int, item: dict[str, Any]) -> Step:
         """A node's user hands something down."""
         blank = plain.make("Frame", self.fields.FRAME)()
-        _put(self.frame, self.fields.FRAME, _values(blank, self.fields.FRAME))
+        put(self.frame, self.fields.FRAME, values(blank, self.fields.FRAME))
         for name, value in item.items():
             setattr(self.frame, name, list(value) if isinstance(value, list | tuple) else value)
         after, broken = self.call(state, number, 0, self.do.on_input, kind, self.frame)
@@ -172,7 +201,7 @@ class Net:
         node = state.nodes[number]
         timer, wait = min(node.timers, key=lambda one: (one[1], one[0]))
         rest = tuple(one for one in node.timers if one[0] != timer)
-        waiting = state._replace(nodes=_with(state.nodes, number, node._replace(timers=rest)))
+        waiting = state._replace(nodes=with_one(state.nodes, number, node._replace(timers=rest)))
         after, broken = self.call(waiting, number, max(wait, 0), self.do.on_timer, timer)
         return Step(f"Timer {timer} of {self.graph.label(number)} fires", after, broken)
 
@@ -181,7 +210,7 @@ class Net:
     ) -> tuple[State, str]:
         """The state after a handler of a node at its time `now`, and what it broke."""
         node, out = state.nodes[number], self.out
-        _put(self.node, self.fields.STATE, node.values)
+        put(self.node, self.fields.STATE, node.values)
         out.count[0] = out.overflow[0] = 0
         try:
             handler(self.node, self.params, now, *what, out)
@@ -191,14 +220,14 @@ class Net:
         timers, ways = dict(node.timers), list(state.ways)
         for act, frame in zip(out.action[: out.count[0]], out.frame, strict=False):
             if act.kind == SET_TIMER:
-                timers[act.a] = _ahead(act.b)
+                timers[act.a] = ahead(act.b)
                 broken = broken or ("" if 0 <= act.a < self.do.TIMERS else "there is no such timer")
             elif act.kind == SEND:
-                end = self.graph.end(number, act.a)
                 if not 0 <= act.a < PORTS:
                     broken = broken or "a frame is sent on a port that no node has"
-                elif self.graph.peer[end] >= 0:
-                    ways[end] = (*ways[end], _values(frame, self.fields.FRAME, {"made_at"}))
+                    continue
+                for end in self.ends_of(number, act.a):
+                    ways[end] = (*ways[end], values(frame, self.fields.FRAME, {"made_at"}))
             elif act.kind not in (DELIVER, REPORT):
                 broken = broken or "the outbox holds what is no action"
         return self.kept(state, number, now, timers, ways), broken
@@ -210,13 +239,13 @@ class Net:
         for name in self.clocks:
             setattr(self.node, name, (getattr(self.node, name) - now) & MASK30)
         waits = tuple(sorted((timer, at - now) for timer, at in timers.items()))
-        node = Node(_values(self.node, self.fields.STATE), waits)
-        return state._replace(nodes=_with(state.nodes, number, node), ways=tuple(ways))
+        node = Node(values(self.node, self.fields.STATE), waits)
+        return state._replace(nodes=with_one(state.nodes, number, node), ways=tuple(ways))
 
     def broken_of_all(self, state: State) -> str:
         """What is broken of all nodes together."""
         for node, at in zip(self.all, state.nodes, strict=True):
-            _put(node, self.fields.STATE, at.values)
+            put(node, self.fields.STATE, at.values)
         for title, holds in self.of_all.items():
             if not holds(self.all, len(self.all), self.params):
                 return title
@@ -278,36 +307,6 @@ def _story(before: Any, state: State, title: str, last: str) -> Story:
         state, words = before[state]
         sentences.append(words)
     return Story(title, [f"{text}." for text in reversed(sentences)])
-
-
-def place_of(error: BaseException) -> str:
-    """Where in a file an error came by last: "protocol.py:12: "."""
-    last = traceback.extract_tb(error.__traceback__)[-1]
-    return f"{Path(last.filename).name}:{last.lineno}: "
-
-
-def _values(record: Any, declared: Any, left_out: Any = ()) -> tuple[Any, ...]:
-    """The declared fields of a record; those left out as 0."""
-    found = []
-    for name, length, *_ in declared:
-        value = getattr(record, name)
-        found.append(0 if name in left_out else tuple(value) if length else value)
-    return tuple(found)
-
-
-def _put(record: Any, declared: Any, values: tuple[Any, ...]) -> None:
-    for (name, length, *_), value in zip(declared, values, strict=True):
-        setattr(record, name, list(value) if length else value)
-
-
-def _with(row: tuple[Any, ...], place: int, value: Any) -> tuple[Any, ...]:
-    return (*row[:place], value, *row[place + 1 :])
-
-
-def _ahead(at: int) -> int:
-    """How far a moment is ahead of clock reading 0; negative if it is behind."""
-    at &= MASK30
-    return at - (1 << 30) if at >= HALF else at
 
 
 MUTANTS: tuple[Any, ...] = ()

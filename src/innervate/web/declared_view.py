@@ -10,7 +10,7 @@ from innervate.analysis.headline import Headline
 from innervate.analysis.spread import spread
 from innervate.analysis.summary import headline
 from innervate.analysis.ways import reach
-from innervate.network import networks
+from innervate.network import Network, networks
 from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE
 from innervate.scenario.cables import Fault
 from innervate.sim.cables.world import DEAD
@@ -33,6 +33,10 @@ class DeclaredView(View):
 
     speed: ClassVar[float] = 0.1
     slow: ClassVar[float] = 0.05
+    series: ClassVar[list[dict[str, Any]]] = [
+        {"id": "lost", "label": "frames lost so far", "unit": "frames"},
+        {"id": "delivered", "label": "messages delivered so far", "unit": ""},
+    ]
     can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
 
     def __init__(self, engine: Engine, history: History) -> None:
@@ -47,10 +51,7 @@ class DeclaredView(View):
         layouts = network.frames.LAYOUTS if network.has("frames") else ()
         self.graph = self.plan.graph
         self.cables = Cables(self.plan, {kind: name for kind, name, _fields in layouts}, "data")
-        self.shown = shown_fields(network)
-        self.own = network.shows if network.has("shows") else {}
-        self.shown += [{"name": name, "unit": unit, "meaning": " ".join((of.__doc__ or "").split())}
-                       for name, (unit, of) in self.own.items()]  # fmt: skip
+        self.shown, self.own = shown_by(network)
         self.memory = Memory()
 
     def scene(self) -> dict[str, Any]:
@@ -59,12 +60,8 @@ class DeclaredView(View):
             {"id": i, "label": self.graph.label(i), "x": x, "y": y, "role": "node"}
             for i, (x, y) in enumerate(self._places())
         ]
-        series = [
-            {"id": "lost", "label": "frames lost so far", "unit": "frames"},
-            {"id": "delivered", "label": "messages delivered so far", "unit": ""},
-        ]
         return {"nodes": nodes, "links": self.cables.scene(), "ports": 0, "fence": None,
-                "series": series, "fields": self.shown}  # fmt: skip
+                "series": self.series, "fields": self.shown}  # fmt: skip
 
     def note(self, rows: Rows) -> None:
         """Take in what happened since the last call."""
@@ -84,20 +81,18 @@ class DeclaredView(View):
             "link_up": self.cables.up(world),
             "unconnected": apart,
             "apart": apart,
-            "fields": {
-                one["name"]: self._own(one["name"], cells)
-                if one["name"] in self.own
-                else cells[one["name"]].tolist()
-                for one in self.shown
-            },
+            "fields": self.coloured(cells),
             "flights": self.cables.flights(world, self.engine.now_us) if flights else [],
         }
 
-    def _own(self, name: str, cells: Any) -> list[float]:
-        """Per node, a number that the network has a function for."""
+    def coloured(self, states: Any) -> dict[str, list[float]]:
+        """Per node, every field that they can be coloured by."""
         params = self.engine.world.params.view(np.recarray)[0]
-        of = self.own[name][1]
-        return [float(of(node, params)) for node in cells.view(np.recarray)]
+        nodes = states.view(np.recarray)
+        own = {name: [float(of(node, params)) for node in nodes]
+               for name, (_unit, of) in self.own.items()}  # fmt: skip
+        return {one["name"]: own.get(one["name"]) or states[one["name"]].tolist()
+                for one in self.shown}  # fmt: skip
 
     def fields(self, flights: bool) -> dict[str, Any]:
         """The present state; when such a network has recovered nobody has said."""
@@ -165,3 +160,11 @@ class DeclaredView(View):
             return [(x / PITCH_MM, y / PITCH_MM) for x, y in cell_places(self.graph)]
         links = [(a // PORTS, b // PORTS) for a, b in self.cables.ends.tolist()]
         return [(x, y) for x, y in spread(self.graph.cells, links).round(3).tolist()]
+
+
+def shown_by(network: Network) -> tuple[list[dict[str, str]], dict[str, Any]]:
+    """What nodes can be coloured by: all of it, and what of it the network has functions for."""
+    own = network.shows if network.has("shows") else {}
+    more = [{"name": name, "unit": unit, "meaning": " ".join((of.__doc__ or "").split())}
+            for name, (unit, of) in own.items()]  # fmt: skip
+    return [*shown_fields(network), *more], own

@@ -10,7 +10,7 @@ from innervate.networks.mesh import frames, payloads
 from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import CLASSES
 from innervate.networks.mesh.protocol import csma_fields, fields
-from innervate.networks.mesh.protocol.constants import ACK, TIMERS
+from innervate.networks.mesh.protocol.constants import ACK, MONITOR, TIMERS
 
 NODES = 32  # the smallest capacity class
 COUNTED = {"path": "path_len", "body": "length"}
@@ -42,6 +42,8 @@ def node_parameters(nodes: int, changes: dict[str, int], where: str = "") -> dic
     count = wanted.pop("nodes", nodes)
     if not 1 <= count <= nodes:
         raise LiveError(f"{where}: {count} nodes do not fit into a class of {nodes}")
+    if count <= wanted.get("monitor", MONITOR) < MONITOR:
+        raise LiveError(f"{where}: monitor={wanted['monitor']} is none of {count} nodes")
     for name in ("queue", "kept"):
         if wanted[name] > small[name]:
             raise LiveError(

@@ -45,6 +45,7 @@ NETWORK = Network(
     live_view="view.live:MeshLiveView",
     papers="papers",
     verify="verify.command",
+    prove="prove.theories",
     boards="board:ROLES",
     counterexample="plot.counterexample:save",
     random="verify.fuzz",

@@ -44,6 +44,7 @@ NETWORK = Network(
     live_view="view.live:RadioLiveView",
     papers="papers",
     verify="verify.command",
+    prove="prove.theories",
     boards="board:ROLES",
     random="verify.fuzz",
 )

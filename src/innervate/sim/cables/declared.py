@@ -43,7 +43,7 @@ def functions(
         raise Unfit(f"a node over cables has at most {SOURCE} timers, not {protocol.TIMERS}")
     do = ModuleType(f"{protocol.__name__} over cables")
     vars(do).update(_entries(protocol))
-    vars(do).update(_of_frames(fields.FRAME))
+    vars(do).update(frames_of(fields.FRAME))
     if hasattr(protocol, "copy_frame"):
         vars(do)["copy_frame"] = protocol.copy_frame
     names = {name for name, length, *_ in fields.FRAME if not length}
@@ -97,8 +97,8 @@ def _entries(protocol: ModuleType) -> dict[str, Callable[..., Any]]:
     return {"on_start": on_start, "on_frame": on_frame, "on_timer": on_timer, "on_input": on_input}
 
 
-def _of_frames(declared: Any) -> dict[str, Callable[..., Any]]:
-    """`copy_frame`, `digest` and `kind_of`, written out for the fields of a frame."""
+def frames_of(declared: Any) -> dict[str, Callable[..., Any]]:
+    """`copy_frame`, `digest`, `kind_of` and `block_of`, written out for the fields of a frame."""
     copies, words = [], []
     for name, length, *_ in declared:
         for place in [f"{name}[{i}]" for i in range(length)] if length else [name]:

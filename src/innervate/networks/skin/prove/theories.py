@@ -7,15 +7,15 @@ from typing import Any
 from innervate.dialect.source import Change
 from innervate.networks.skin.protocol.constants import INFINITY, RULE_FEASIBLE
 from innervate.networks.skin.prove import feasible, pc, reductions, stories, strict, system
+from innervate.networks.skin.prove.faults import EXPLORERS
 from innervate.networks.skin.prove.faults import FAULTS as MUTANTS
-from innervate.networks.skin.prove.faults import NO_SAFETY
 from innervate.networks.skin.prove.words import tell
 from innervate.prove.errors import ProveError
 from innervate.prove.steps import Step
 from innervate.prove.terms import Term
 from innervate.prove.theory import Theory, is_in
 
-__all__ = ["MUTANTS", "NO_SAFETY", "theories"]
+__all__ = ["EXPLORERS", "MUTANTS", "theories"]
 
 ASSUMED = (
     "A frame arrives as it was sent or not at all; late, doubled and out of order as it may.",

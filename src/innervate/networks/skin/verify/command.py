@@ -41,10 +41,8 @@ def explorations(_network: Any, options: Any) -> Iterator[Explore]:
         plain=options.plain,
         lean=options.reduce,
     )
-    first = True
-    for model in cases.models(wanted):
-        yield partial(_explore, model, wanted, first)
-        first = False
+    models = enumerate(cases.models(wanted))
+    return (partial(_explore, model, wanted, number == 0) for number, model in models)
 
 
 def _explore(model: Any, wanted: cases.Wanted, first: bool, tell: Tell) -> Case:
@@ -60,7 +58,7 @@ def _explore(model: Any, wanted: cases.Wanted, first: bool, tell: Tell) -> Case:
         lines.append(f"    {assumptions.ON_TRUST}{assumptions.TRUSTED}")
     return Case(
         lines=lines,
-        record={**case.as_dict(), "trusted": assumptions.TRUSTED if trusts else ""},
+        record=case.as_dict() | ({"trusted": assumptions.TRUSTED} if trusts else {}),
         is_broken=case.is_broken,
         is_complete=case.is_complete,
         story=case.story,

@@ -1,0 +1,99 @@
+"""What C of the protocols takes on a microcontroller: `python -m boards.firmware.measure`.
+
+Prints the tables of docs/firmware.md, in Markdown: flash, RAM and worst stack as arm-none-eabi-gcc
+makes and counts them with -Os for a Cortex-M0; instructions per handler as an emulated Cortex-M3
+takes them in replayed and drawn calls (QEMU's clock: a nanosecond an instruction).
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import tempfile
+from pathlib import Path
+
+from boards.firmware import qemu
+from boards.firmware.__main__ import emulate
+from boards.firmware.native import write as write_bare
+from boards.firmware.stack import chain, worst
+from boards.roles import roles
+from innervate.firmware import library, tools
+from innervate.firmware.records import layout
+
+M0 = (*tools.CORTEX_M0, "-DBOARD_UARTS=4", "-DBOARD_RING=16")
+CALLS = 20_000
+LOOP_HZ = 250
+WHOLE = "skin"  # the role of which a whole image is measured
+
+
+def sizes(path: Path) -> tuple[int, int, int]:
+    """Text, data and bss of an object or image."""
+    said = subprocess.run(["arm-none-eabi-size", path], capture_output=True, text=True, check=True)
+    text, data, bss = map(int, said.stdout.splitlines()[1].split()[:3])
+    return text, data, bss
+
+
+def protocol_row(name: str, folder: Path) -> str:
+    """A row of the table of protocols alone."""
+    made = library.made_of(name, []).library
+    source = write_bare(made, folder)
+    done = folder / f"{name}.o"
+    tools.run("arm-none-eabi-gcc", *tools.CORTEX_M0, *tools.SMALL, "-I", folder,
+              "-fcallgraph-info=su", "-c", source, "-o", done)  # fmt: skip
+    flash = sizes(done)[0]
+    state, gate = (layout(made.records[record])[1] if record in made.records else 0
+                   for record in ("state", "gate"))  # fmt: skip
+    outbox = int(re.findall(r"(\d+)", _size_of(made.prefix, folder))[0])
+    stack = chain(done.with_suffix(".ci").read_text(), f"{made.prefix}_on_")
+    lead = f" (+ {gate:,} of one that leads)" if gate else ""
+    return f"| {name} | {flash:,} | {state:,}{lead} | {outbox:,} | {stack:,} |"
+
+
+def _size_of(prefix: str, folder: Path) -> str:
+    """Sizeof an outbox, as the compiler says it in an error."""
+    (folder / "size.c").write_text(
+        f'#include "{prefix}.h"\nchar (*x)[sizeof({prefix}_out_t)] = 1;\n'
+    )
+    command = ["arm-none-eabi-gcc", *tools.CORTEX_M0, "-I", str(folder), "-fsyntax-only",
+               str(folder / "size.c")]  # fmt: skip
+    said = subprocess.run(command, capture_output=True, text=True, check=False).stderr
+    return re.findall(r"char \(\*\)\[(\d+)\]", said)[0]
+
+
+def whole_row(folder: Path) -> str:
+    """A row for the image of a whole node."""
+    library.write(library.made_of(WHOLE, []), folder)
+    image = tools.image(folder, WHOLE, folder, "small", M0)
+    text, data, bss = sizes(image)
+    stack = worst(folder, WHOLE, "small", M0, folder)
+    what = "with coder, driver, port layer, vectors"
+    return f"| {WHOLE}, {what} | {text + data:,} | {data + bss:,} | {stack:,} |"
+
+
+def instructions(name: str) -> str:
+    """A row of the table of instructions."""
+    found = emulate(roles()[name], CALLS, 1, counted=True)["cortex-m3"]
+    per = {what: found.ticks[what] * qemu.TICK_INSTRUCTIONS / count
+           for what, count in found.calls.items() if count}  # fmt: skip
+    cells = [f"{per[what]:,.0f}" if what in per else "" for what in qemu.WHAT]
+    return f"| {name} | {' | '.join(cells)} |"
+
+
+def main() -> None:
+    """Print all tables."""
+    names = ["skin", "radio", "csma", "mesh"]
+    print("| protocol | flash | state | outbox | worst stack |\n|---|---:|---:|---:|---:|")
+    with tempfile.TemporaryDirectory() as folder:
+        for name in names:
+            print(protocol_row(name, Path(folder)), flush=True)
+    print("\n| image | flash | static RAM | worst stack |\n|---|---:|---:|---:|")
+    with tempfile.TemporaryDirectory() as folder:
+        print(whole_row(Path(folder)), flush=True)
+    print(f"\n| protocol | {' | '.join(f'`{what}`' for what in qemu.WHAT)} |")
+    print("|---|" + "---:|" * len(qemu.WHAT))
+    for name in names:
+        print(instructions(name), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""Slotted ALOHA with acknowledgements, on a shared channel."""

@@ -1,0 +1,97 @@
+"""What `innervate prove radio` claims: of a station's queue, and of switching it on.
+
+That no two turns overlap is not proved: it is about what two stations hear of one another, and
+when. `innervate verify radio` tries it.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+from innervate.dialect.arith import MASK30
+from innervate.dialect.source import Change
+from innervate.networks.radio.protocol import fields
+from innervate.prove.errors import ProveError
+from innervate.prove.parity import Twin, twin
+from innervate.prove.steps import Goal, Stage, Step, own_goals
+from innervate.prove.terms import Term
+from innervate.prove.theory import Fault, Theory, is_in, source
+
+ENTRY = "innervate.networks.radio.protocol.practical"
+STATION = (*fields.STATION, *fields.PRACTICAL)
+ROOM = 16
+TIMERS = 2
+EXPLORERS = False  # its mutants are about turns
+PLACES = 16
+MUTANTS = tuple(
+    Fault(*texts)
+    for texts in (
+        ("a packet is put where the oldest is", "station.head + station.queued", "station.head"),
+        ("a full queue takes another", "station.queued >= QUEUE", "station.queued > QUEUE"),
+    )
+)
+
+
+def theories(_network: Any, change: Change | None = None) -> list[Theory]:
+    """What can be shown of one station by itself.
+
+    Raises:
+        ProveError: the mistake to plant is in none of the sources.
+    """
+    if change is not None and not is_in(ENTRY, change):
+        raise ProveError(f"{change[0]!r} is in no source that is proved")
+    known = source(ENTRY, change)
+    claim = "A packet that is taken waits in the queue, and none that waits is lost or changed."
+    return [Theory("radio, the queue of a station", claim, (),
+                   (partial(_start, known), partial(_packet, known)), is_example=True)]  # fmt: skip
+
+
+def _stage(known: dict[str, Any]) -> tuple[Stage, list[Any]]:
+    stage = Stage(known, fields.FRAME, ROOM)
+    station = stage.record("station", STATION)
+    return stage, [station, stage.record("params", fields.PARAMS), stage.clock()]
+
+
+def _start(known: dict[str, Any]) -> Step:
+    stage, given = _stage(known)
+    cause = stage.terms.unknown("cause", 0, 1)
+    step = stage.play("a station is switched on", "on_start", [*given, cause, stage.out], [])
+    step.goals = own_goals(step, ("station",), TIMERS, 0)
+    return step
+
+
+def _packet(known: dict[str, Any]) -> Step:
+    stage, given = _stage(known)
+    t, kind = stage.terms, stage.terms.unknown("kind", 0, 3)
+    item = stage.record("item", fields.PACKET)
+    step = stage.play(
+        "its user hands something in", "on_input", [*given, kind, item, stage.out], []
+    )
+    kept: list[Term] = []
+    for k in range(PLACES):
+        place = t.add(step.was("station", "head"), t.number(k))
+        waits = t.less(t.number(k), step.was("station", "queued"))
+        for p in range(PLACES):
+            here = t.same(t.bits_and(place, t.number(PLACES - 1)), t.number(p))
+            same = [t.same(step.was("station", name, p), step.now("station", name, p))
+                    for name in ("size", "handle")]  # fmt: skip
+            kept.append(t.implies(t.all(waits, here), t.all(*same)))
+    grown = t.sub(step.now("station", "queued"), step.was("station", "queued"))
+    step.goals = [
+        *own_goals(step, ("station",), TIMERS, 0),
+        Goal("Q1 what waits in the queue stays as it is", t.all(*kept)),
+        Goal("Q2 the queue grows by one at most", t.within(grown, 0, 1)),
+    ]
+    return step
+
+
+def twins(change: Change | None = None) -> list[Twin]:
+    """A station's handlers that are proved, each beside its formula."""
+    declared = {"station": STATION, "params": fields.PARAMS, "frame": fields.FRAME}
+    given = ("station", "params", ("now", 0, MASK30))
+    items = {**declared, "item": fields.PACKET}
+    return [
+        twin(ENTRY, "on_start", (*given, ("cause", 0, 1), "out"), declared, change),
+        twin(ENTRY, "on_input", (*given, ("kind", 0, 3), "item", "out"), items, change),
+    ]

@@ -1,0 +1,228 @@
+"""Scenarios of any network on a shared channel that has no keys of its own, and their plans.
+
+Built in code they are the same: `ChannelScenario(kind="aloha", nodes=5)`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated, Any, Literal
+
+from msgspec import Meta
+
+from innervate.network import networks
+from innervate.scenario.actions.channel import ACTIONS, FADE, GARBLE, WORDS
+from innervate.scenario.cables import LOSS_ONE, Input
+from innervate.scenario.declared import InputTable, check_declared, inputs_of, parameters
+from innervate.scenario.events import told
+from innervate.scenario.explain import alternatives
+from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
+from innervate.scenario.source import Source, shown
+
+NODES_MAX = 1_000
+DONE = ("join", "kill", "revive")  # what can be done to any node on a channel
+
+
+class AirTable(Table, frozen=True, kw_only=True):
+    """The channel.
+
+    Attributes:
+        slot_us: the unit of a frame's length, us: a frame takes `frame.slots` of them.
+        turnaround_us: from the decision to send to the first sound, and back to hearing, us.
+        delay_us: between any two nodes, us.
+        loss: share of frames that a receiver cannot read though it heard them alone, 0 to 1.
+    """
+
+    slot_us: Annotated[int, whole("microseconds", 1, 100_000)] = 100
+    turnaround_us: Micros = 20
+    delay_us: Annotated[int, whole("microseconds", 1, 10_000)] = 1
+    loss: Annotated[float, number("frames lost", 0, 1)] = 0.0
+
+
+class EventTable(Table, frozen=True, kw_only=True):
+    """What happens to a node.
+
+    Attributes:
+        at_s: when, s.
+        action: kill, revive or join; or a word of the network's own.
+        node: its number.
+        value: of the network's own actions: a number for them.
+    """
+
+    at_s: Annotated[float, number("seconds", 0)]
+    action: str
+    node: Annotated[int, whole("", 0)]
+    value: int = 0
+
+
+class ChannelScenario(Table, frozen=True, kw_only=True):
+    """A network on a shared channel.
+
+    Attributes:
+        kind: the network's name.
+        nodes: how many there are.
+        hidden: pairs of nodes that do not hear each other.
+        absent: nodes that are off until they join.
+        duration_s: simulated time, s.
+        air: the channel.
+        protocol: parameters of the protocol, by name.
+        input, event: in any order.
+    """
+
+    kind: str
+    schema: Schema = 1
+    name: Name = "network"
+    duration_s: Annotated[float, above_0("seconds", 1e6)] = 1.0
+    seed: Seed = 1
+    nodes: Annotated[int, whole("nodes", 2, NODES_MAX)] = 4
+    hidden: list[tuple[int, int]] = []  # noqa: RUF012
+    absent: list[int] = []  # noqa: RUF012
+    air: AirTable = AirTable()
+    protocol: dict[str, int] = {}  # noqa: RUF012
+    input: Annotated[list[InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
+    event: Annotated[list[EventTable], Meta(max_length=100_000)] = []  # noqa: RUF012
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One event: `at_us`, an action of `actions/channel`, the `node`; place in the file."""
+
+    at_us: int
+    action: int
+    node: int
+    index: int = 0
+    value: int = 0
+
+
+@dataclass(slots=True)
+class ChannelPlan:
+    """Everything a run on a channel needs, as whole numbers.
+
+    Attributes:
+        stations: how many.
+        params: of the protocol, by name, and those of the medium.
+        delays_us: per sender and receiver; -1 = they do not hear each other.
+        arrivals: per station, the moments of its inputs.
+        inputs: all of them, station by station, each in order of time.
+        absent: per station, 1 = off until it joins.
+        faults: in order of time.
+    """
+
+    scenario: Any
+    kind: str
+    seed: int
+    duration_us: int
+    stations: int
+    params: dict[str, int]
+    delays_us: list[list[int]]
+    loss_q15: int
+    arrivals: list[list[int]]
+    inputs: list[Input]
+    absent: list[int]
+    faults: list[Fault] = field(default_factory=list)
+    sizes: list[list[int]] = field(default_factory=list)
+    saturated: Literal[False] = False
+    forced: Literal[False] = False
+    wanted: Literal[0] = 0
+
+    @property
+    def nodes(self) -> int:
+        """How many nodes there are, as over cables."""
+        return self.stations
+
+
+def check(source: Source, model: ChannelScenario) -> None:
+    """Everything that single keys do not show.
+
+    Raises:
+        ScenarioError: the first thing that cannot be.
+    """
+    network = networks()[model.kind]
+    check_declared(source, ("protocol",), model.protocol, network.fields.PARAMS)
+    for place, one in enumerate(model.hidden):
+        for node in one:
+            _check_node(source, ("hidden", place), node, model.nodes)
+    for place, node in enumerate(model.absent):
+        _check_node(source, ("absent", place), node, model.nodes)
+    for place, given in enumerate(model.input):
+        _check_node(source, ("input", place, "node"), given.node or 0, model.nodes)
+        check_declared(source, ("input", place, "item"), given.item, network.fields.FRAME)
+    known = [*DONE, *(network.happenings if network.has("happenings") else ())]
+    for place, event in enumerate(model.event):
+        _check_node(source, ("event", place, "node"), event.node, model.nodes)
+        if event.action not in known:
+            what = f"action must be {alternatives(known)}, not {shown(event.action)}"
+            raise source.error(("event", place, "action"), what)
+
+
+def _check_node(source: Source, key: Any, node: int, nodes: int) -> None:
+    if not 0 <= node < nodes:
+        raise source.error(key, f"there is no node {node}; they are 0 to {nodes - 1}")
+
+
+def plan(scenario: Any) -> ChannelPlan:
+    """The plan of a scenario.
+
+    Raises:
+        ScenarioError: more inputs than can be held.
+    """
+    model, network = scenario.model, networks()[scenario.model.kind]
+    count, air = model.nodes, model.air
+    given = inputs_of(model, network, count, DONE)
+    by_node = [[one for one in given if one.node == node] for node in range(count)]
+    delays = [[0 if a == b else air.delay_us for b in range(count)] for a in range(count)]
+    for a, b in model.hidden:
+        delays[a][b] = delays[b][a] = -1
+    medium = {"slot_us": air.slot_us, "ta_us": air.turnaround_us, "oracle": 0, "full_duplex": 0,
+              "period_us": 0, "per_turn": 1}  # fmt: skip
+    faults = [Fault(round(1e6 * event.at_s), WORDS[event.action], event.node, place)
+              for place, event in enumerate(model.event) if event.action in DONE]  # fmt: skip
+    return ChannelPlan(
+        scenario=scenario,
+        kind=model.kind,
+        seed=model.seed,
+        duration_us=round(1e6 * model.duration_s),
+        stations=count,
+        params={**medium, **parameters(network.fields, model.protocol)},
+        delays_us=delays,
+        loss_q15=round(air.loss * LOSS_ONE),
+        arrivals=[[one.at_us for one in some] for some in by_node],
+        inputs=[one for some in by_node for one in some],
+        absent=[int(node in model.absent) for node in range(count)],
+        faults=sorted(faults, key=lambda fault: (fault.at_us, fault.index)),
+        sizes=[[1]] * count,
+    )
+
+
+def describe(plan: Any) -> str:
+    """A plan in words, several lines, without a newline at the end."""
+    own = [name for name, *_ in networks()[plan.kind].fields.PARAMS]
+    params = ", ".join(f"{name} {plan.params[name]}" for name in own)
+    hidden = sum(row.count(-1) for row in plan.delays_us) // 2
+    apart = f", {hidden} pairs hidden from each other" if hidden else ""
+    lines = [
+        f"{plan.scenario.name}: a {plan.kind} scenario of {plan.duration_us / 1e6:g} s, "
+        f"seed {plan.seed}",
+        f"  nodes      {plan.stations:,} on a channel, {plan.params['slot_us']} us a slot{apart}",
+        f"  protocol   {params}",
+    ]
+    return "\n".join([*lines, *told(plan, fault_words, ())])
+
+
+def fault_words(plan: Any, fault: Any) -> str:
+    """A fault in words: "at 2 s kill node 3"."""
+    assert fault.action not in (GARBLE, FADE)
+    return f"at {fault.at_us / 1e6:g} s {ACTIONS[fault.action]} node {fault.node}"
+
+
+def template(network: Any) -> str:
+    """A scenario to start from, with all parameters; "" for a network with keys of its own."""
+    if network.model is not ChannelScenario:
+        return ""
+    values = parameters(network.fields, {})
+    lines = [f"{name} = {values[name]}  # {low} to {high} {unit}: {meaning}"
+             for name, _length, low, high, unit, meaning in network.fields.PARAMS]  # fmt: skip
+    head = [f"# A {network.name} on a shared channel.", f'kind = "{network.name}"', "nodes = 6",
+            "duration_s = 1.0", "", "[air]", "slot_us = 100", "turnaround_us = 20", "",
+            "[protocol]"]  # fmt: skip
+    return "\n".join([*head, *lines, ""])

@@ -1,0 +1,83 @@
+"""What is kept and checked of any network on a channel: frames by what became of them, deliveries.
+
+The counters stand in `world.above.counters`.
+"""
+
+from innervate.dialect.access import PACKET as PACKET
+from innervate.sim import taps
+from innervate.sim.channel.loop import BROKEN_OUTBOX
+from innervate.sim.channel.medium import BROKEN_AIR, BROKEN_DEAF
+
+BROKEN_RANGE = 4
+BROKEN_OWN = 64  # and from there on: invariants that a network says itself
+WORDS = {
+    BROKEN_DEAF: "{node} sent while it was sending, or before its radio heard again",
+    BROKEN_AIR: "{node} has too many transmissions under way",
+    BROKEN_OUTBOX: "outbox of {node} overflowed",
+    BROKEN_RANGE: "a value of {node} is out of its declared range",
+}
+SENT = 0
+ARRIVED = 1
+COLLIDED = 2
+SENDING = 3
+NOISY = 4
+OFF = 5
+BROKEN_OFF = 6
+DELIVERED = 7
+COUNTERS = 8
+LOST = {"collision": COLLIDED, "sending": SENDING, "noise": NOISY, "off": OFF,
+        "broken_off": BROKEN_OFF}  # fmt: skip
+
+
+def why(world, node, what, clear, received):
+    """Count what became of a frame at a node, and say it as taps do."""
+    counters, radio = world.above.counters, world.radios[node]
+    if received:
+        counters[ARRIVED] += 1
+        return taps.FINE
+    if not radio.alive:
+        counters[OFF] += 1
+        return taps.COLLISION
+    if radio.deaf:
+        counters[SENDING] += 1
+        return taps.SENDING
+    if not clear:
+        counters[COLLIDED] += 1
+        return taps.COLLISION
+    if world.air[what].spoilt:
+        counters[BROKEN_OFF] += 1
+        return taps.SPOILT
+    counters[NOISY] += 1
+    return taps.NOISE
+
+
+def keep(world, node, kind, time, latency):
+    """A node's user got a frame; how long it took, us, -1 = nobody knows."""
+    run = world.run[0]
+    world.above.counters[DELIVERED] += 1
+    if run.packet_limit > 0:
+        row = world.packets[run.packets]
+        run.packets += 1
+        row.time = time
+        row.node = node
+        row.handle = kind
+        row.slots = latency
+
+
+def note_sent(world, node, frame, time):
+    """Frames with packets of the medium's own; there are none."""
+
+
+def note_delivered(world, node, handle, time):
+    """Packets of the medium's own; there are none."""
+
+
+def check_range(world, node):
+    """Every word of a node's record lies in its declared range."""
+    run = world.run[0]
+    if run.checks and run.broken == 0:
+        words = world.words[node]
+        for i in range(len(world.low)):
+            if words[i] < world.low[i] or words[i] > world.high[i]:
+                run.broken = BROKEN_RANGE
+                run.broken_node = node

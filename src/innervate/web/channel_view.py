@@ -1,0 +1,81 @@
+"""What pages show of any simulated network on a channel: its nodes by the fields they declare."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar
+
+import numpy as np
+
+from innervate.network import networks
+from innervate.scenario.actions.channel import JOIN, KILL
+from innervate.scenario.declared_channel import Fault
+from innervate.web.declared_view import DeclaredView, shown_by
+from innervate.web.engine import Engine
+from innervate.web.errors import Refused
+from innervate.web.history import History
+from innervate.web.messages import number
+from innervate.web.view import Memory, View
+
+
+class ChannelView(DeclaredView):
+    """Nodes in a circle, as all hear each other; who is off is apart from the others."""
+
+    can: tuple[str, ...] = ("kill", "revive")
+    around: ClassVar[float] = 1.5  # from one node to the next, in their diameters
+
+    def __init__(self, engine: Engine, history: History) -> None:
+        View.__init__(self, engine, history)
+        network = networks()[self.plan.kind]
+        self.saves = network.has("event")
+        self.shown, self.own = shown_by(network)
+        self.memory = Memory()
+
+    def scene(self) -> dict[str, Any]:
+        """Nodes, and the fields that they can be coloured by."""
+        count = self.plan.nodes
+        turns = [2 * math.pi * i / count for i in range(count)]
+        radius = self.around * count / (2 * math.pi)
+        nodes = [
+            {"id": i, "label": f"node {i}", "role": "node",
+             "x": round(radius * math.cos(turn), 3), "y": round(radius * math.sin(turn), 3)}
+            for i, turn in enumerate(turns)
+        ]  # fmt: skip
+        return {"nodes": nodes, "links": [], "ports": 0, "fence": None, "series": self.series,
+                "fields": self.shown}  # fmt: skip
+
+    def arrays(self, flights: bool) -> dict[str, Any]:
+        """The state's fields for nodes."""
+        on, states = self._on(), self.engine.world.stations
+        return {
+            "node_up": on.astype(np.int64),
+            "link_up": np.zeros(0, np.int64),
+            "unconnected": 0,
+            "apart": 0,
+            "fields": self.coloured(states),
+            "flights": [],
+        }
+
+    def takes(self, fault: Any) -> bool:
+        """True if a fault takes something away, false if it gives it back."""
+        return bool(fault.action == KILL)
+
+    def cut(self, link: int, heal: bool) -> dict[str, int]:
+        """There are no links to be cut."""
+        raise Refused("nodes on a channel have no links; switch one off")
+
+    def kill(self, node: int, revive: bool) -> dict[str, int]:
+        """The fault that switches a node off, or on."""
+        if bool(self._on()[number("node", node, self.plan.nodes)]) == revive:
+            raise Refused("this node is on" if revive else "this node is off already")
+        return {"action": JOIN if revive else KILL, "node": node}
+
+    def make(self, at_us: int, index: int, fields: dict[str, int]) -> Any:
+        """A fault of the plan's own type."""
+        return Fault(at_us=at_us, index=index, **fields)
+
+    def _on(self) -> Any:
+        """Per node, true while it is on; before anything happens, who will be."""
+        if not int(self.engine.world.run["handled"][0]):
+            return np.array(self.plan.absent) == 0
+        return self.engine.world.radios["alive"][: self.plan.nodes] != 0

@@ -1,0 +1,93 @@
+"""What goes around a library: CMake package, Arduino and PlatformIO library, Zephyr module."""
+
+import json
+import re
+import shutil
+
+import pytest
+
+from boards.firmware.native import run
+from innervate.firmware import library
+
+USER = """cmake_minimum_required(VERSION 3.16)
+project(user LANGUAGES C)
+find_package(innervate_skin REQUIRED)
+add_executable(user main.c)
+target_link_libraries(user PRIVATE innervate::skin)
+"""
+MAIN = """#include "skin_node.h"
+#include <stdio.h>
+static int32_t port_now(void *user) { (void)user; return 0; }
+static int32_t port_send(void *user, int32_t port, const uint8_t *bytes, int32_t count)
+{
+    (void)user; (void)port; (void)bytes;
+    return count;
+}
+int main(void)
+{
+    static skin_node_t node;
+    static const innervate_port_t port = {port_now, port_send, 0, 0, 0, 0};
+    skin_node_start(&node, &skin_defaults, &port, 7, 1, 0);
+    skin_node_poll(&node);
+    printf("%d %d %s\\n", node.state.number, node.due[0], SKIN_SOURCE);
+    return 0;
+}
+"""
+ARDUINO = """#include <stddef.h>
+#include <stdint.h>
+struct HardwareSerial {
+    void begin(long) {}
+    int availableForWrite() { return 9; }
+    size_t write(const uint8_t *, size_t count) { return count; }
+    int available() { return 0; }
+    int read() { return 0; }
+};
+static HardwareSerial Serial1, Serial2;
+static unsigned long micros() { return 0; }
+"""
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    folder, files = tmp_path_factory.mktemp("lib"), library.made_of("skin", [])
+    library.write(files, folder)
+    return files.library, folder
+
+
+def test_a_cmake_package_is_installed_and_found(made, tmp_path):
+    for tool in ("cmake", "gcc", "make"):
+        if shutil.which(tool) is None:
+            pytest.skip(f"{tool} is not installed")
+    skin, folder = made
+    (tmp_path / "CMakeLists.txt").write_text(USER)
+    (tmp_path / "main.c").write_text(MAIN)
+    run(["cmake", "-S", folder, "-B", tmp_path / "lib"])
+    run(["cmake", "--build", tmp_path / "lib"])
+    run(["cmake", "--install", tmp_path / "lib", "--prefix", tmp_path / "there"])
+    run(["cmake", "-S", tmp_path, "-B", tmp_path / "user",
+         f"-DCMAKE_PREFIX_PATH={tmp_path / 'there'}"])  # fmt: skip
+    run(["cmake", "--build", tmp_path / "user"])
+    assert run([tmp_path / "user/user"]).split() == ["7", "20000", skin.digest()]
+
+
+def test_an_arduino_sketch_compiles_against_what_it_uses_of_arduino(made, tmp_path):
+    if shutil.which("g++") is None:
+        pytest.skip("g++ is not installed")
+    _, folder = made
+    sketch = (folder / "examples/skin_node/skin_node.ino").read_text()
+    (tmp_path / "sketch.cpp").write_text(ARDUINO + sketch)
+    run(["g++", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function", "-fsyntax-only",
+         "-I", folder, tmp_path / "sketch.cpp"])  # fmt: skip
+
+
+def test_every_port_names_files_that_are_there(made):
+    _, folder = made
+    assert json.loads((folder / "library.json").read_text())["name"] == "innervate_skin"
+    zephyr = (folder / "zephyr/CMakeLists.txt").read_text()
+    named = re.findall(r"\.\./\w+\.c", zephyr)
+    assert len(named) == 5
+    assert all((folder / "zephyr" / name).is_file() for name in named)
+    assert "includes=skin_node.h" in (folder / "library.properties").read_text()
+    left = [path for path in folder.rglob("*") if path.is_file()
+            if "role" in path.name or "role_" in path.read_text()]  # fmt: skip
+    assert left == []

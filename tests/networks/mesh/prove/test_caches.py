@@ -1,0 +1,45 @@
+"""What is proved of the mesh's duplicate caches, and that mistakes in them are refuted."""
+
+import pytest
+
+from innervate.network import networks
+from innervate.networks.mesh.prove import theories
+from innervate.networks.mesh.prove.twins import twins
+from innervate.prove.faults import faults_of, hunt
+from innervate.prove.theory import prove
+
+MESH = networks()["mesh"]
+QUICK = {"what is behind is not noted": 0, "every packet is noted in the same place": 1}
+
+
+@pytest.mark.parametrize("number", range(2))
+def test_a_packet_is_delivered_and_passed_on_once(number):
+    outcome = prove(theories.theories(MESH)[number])
+    assert [bad.goal for one in outcome.checked for bad in one.refuted] == []
+    assert outcome.is_as_expected
+    assert outcome.lemmas > 10
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_a_mistake_is_refuted(name):
+    fault = next(one for one in faults_of(MESH) if one.name == name)
+    wrong = theories.theories(MESH, (fault.old, fault.new))[QUICK[name]]
+    assert prove(wrong, first_only=True).is_refuted, name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", faults_of(MESH), ids=lambda one: one.name)
+def test_every_mistake_is_refuted(fault):
+    assert hunt(MESH, fault)[1], fault.name
+
+
+def test_drawn_calls_leave_the_same_state():
+    assert [one.calls(300, 1) for one in twins()] == ["", ""]
+    fault = next(one for one in faults_of(MESH) if one.name == "what is behind is not noted")
+    assert "in the formula" in twins((fault.old, fault.new))[0].calls(4_000, 1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(2))
+def test_a_hundred_thousand_drawn_calls_do(number):
+    assert twins()[number].calls(50_000, 2) == ""

@@ -1,0 +1,90 @@
+"""A network of one's own on a channel, by the defaults of its medium."""
+
+import numpy as np
+import pytest
+
+import innervate
+from innervate.cli import main
+from innervate.network import NetworkError
+from tests.own import alone, made
+
+__all__ = ["alone"]
+
+
+@pytest.fixture
+def talk(alone, capsys):
+    network = made(alone / "talk", "channel")
+    capsys.readouterr()
+    return network
+
+
+def ran(talk, **changes):
+    return innervate.run(talk.scenario, plain=True, overrides=changes)
+
+
+def test_every_frame_is_accounted_for(talk):
+    for changes in ({}, {"protocol.wait_us": 100}, {"air.loss": 0.2}, {"hidden": [[0, 1], [2, 5]]}):
+        frames = ran(talk, **changes).summary["frames"]
+        assert frames["sent"] == frames["arrived"] + frames["lost"] > 100, changes
+    assert ran(talk, **{"air.loss": 0.2}).summary["frames"]["lost_by"]["noise"] > 20
+
+
+def test_who_does_not_hear_the_other_speaks_over_it(talk):
+    hidden = {"hidden": [[a, b] for a in range(1, 6) for b in range(1, a)], "input.0.every_s": 0.02}
+    assert ran(talk, **hidden).summary["frames"]["lost_by"]["collision"] > 20
+
+
+def test_inputs_come_to_whom_and_when_they_are_given(talk):
+    run = ran(talk, input=[{"at_s": 0.1, "node": 2, "item": {"value": 41}}], event=[])
+    assert run.summary["messages"]["sent"] == 1
+    assert [node.value for node in run.result.world.stations] == [0, 0, 41, 0, 0, 0]
+    rows = run.result.rows["deliveries"]
+    assert sorted(rows["node"].tolist()) == [0, 1, 3, 4, 5]
+    assert (rows["latency"] == rows["time"] - 100_000).all()
+
+
+def test_what_breaks_is_told_by_file_and_line(talk):
+    talk.change("protocol.py", "    node.busy = cd\n", "    node.busy = cd + 1\n")
+    at = talk.line("protocol.py", "cd + 1")
+    with pytest.raises(NetworkError, match=rf"talk/protocol.py:{at}: busy is 2, declared 0 to 1"):
+        innervate.run(talk.scenario)
+
+
+def test_who_sends_while_it_sends_is_told(talk):
+    talk.change("protocol.py", "    if node.waiting and not node.busy and not node.sending:\n",
+                "    if node.waiting:\n")  # fmt: skip
+    talk.change("protocol.py", "        node.waiting = 0\n        node.sending = 1\n", "")
+    with pytest.raises(NetworkError, match="sent while it was sending"):
+        ran(talk, **{"protocol.wait_us": 50})
+
+
+def test_an_explored_collision_is_heard_as_one(talk):
+    talk.change("protocol.py", "    node.busy = cd\n", "    node.busy = cd + (cd - voc)\n")
+    (case,) = innervate.explore(talk.folder, graph="pair", budget="restart=0")
+    assert case.story.title == "busy is out of its declared range"
+    assert case.story.sentences[-1].endswith("is lost.")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("nodes = 6", "nodes = 3", "talk/talk.toml:21: there is no node 3; they are 0 to 2"),
+        ('action = "kill"', 'action = "cut"', 'action must be join, kill or revive, not "cut"'),
+        ("wait_us = 10_000", "wait_us = 0", "wait_us must be 1 to 1000000 us, not 0"),
+        ("value = 7", "valeu = 7", 'did you mean "value"'),
+    ],
+)
+def test_mistakes_of_a_scenario_are_one_line(talk, capsys, old, new, says):
+    talk.change("talk.toml", old, new)
+    assert main(["check", str(talk.scenario)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert says in line
+
+
+@pytest.mark.slow  # compiles a protocol that no other test runs
+def test_compiled_runs_equal_plain_ones(talk):
+    one, other = (innervate.run(talk.scenario, plain=plain).result for plain in (False, True))
+    assert one.fingerprint == other.fingerprint
+    assert one.counts == other.counts
+    for name in ("rows", "deliveries"):
+        assert np.array_equal(one.rows[name], other.rows[name])
