@@ -89,6 +89,7 @@ def test_nobody_is_tried_more_often_than_most_or_less_than_asked():
     many = SimpleNamespace(transmissions=6)
     assert tries_for(node(64), many, 0, 0) == TRIES_MAX
     assert tries_for(node(64), SimpleNamespace(transmissions=15), 0, 0) == 15
+    assert tries_for(node(64), SimpleNamespace(transmissions=1), 0, 0) == 1
 
 
 @pytest.mark.parametrize(("ratio", "sent"), [(255, 3), (150, 5), (92, 8)])

@@ -38,9 +38,10 @@ def tries_for(node, params, k, tries):
     """How often a frame, sent `tries` times in vain, is sent to the neighbour in place k in all.
 
     More than usual only where it was heard in this tick, and by what was known of the link before
-    this frame: one that has died is soon not tried so, and its silence makes no poor link.
+    this frame: one that has died is soon not tried so, and its silence makes no poor link. Where a
+    frame is to be sent once, it is [mesh A3].
     """
-    if k < 0 or node.heard[k] != node.ticks:
+    if k < 0 or node.heard[k] != node.ticks or params.transmissions == 1:
         return params.transmissions
     ratio = node.ack_ratio[k]
     for _ in range(tries):
