@@ -13,6 +13,9 @@ from innervate.firmware import library
 from innervate.firmware.emit import Library
 from innervate.firmware.errors import FirmwareError, Refused
 from innervate.live.board import Role
+from tests.own import alone
+
+__all__ = ["alone"]
 
 
 def library_of(*words):
@@ -127,7 +130,8 @@ def test_what_is_outside_the_dialect_is_refused_with_file_and_line(tmp_path, mon
     assert "\n" not in str(refused.value)
 
 
-def test_what_is_not_there_or_does_not_fit_is_one_line(tmp_path, capsys, monkeypatch):
+def test_what_is_not_there_or_does_not_fit_is_one_line(alone, capsys):
+    tmp_path = alone
     (tmp_path / "bare").mkdir()
     (tmp_path / "bare" / "network.py").write_text(
         "from innervate.network import Network\n"
@@ -150,7 +154,6 @@ def test_what_is_not_there_or_does_not_fit_is_one_line(tmp_path, capsys, monkeyp
         ("skin", "--prefix", "9x"): "begin with a letter",
         ("skin", "--out", str(tmp_path / "full")): "not empty",
     }
-    monkeypatch.chdir(tmp_path)
     for words, said in cases.items():
         assert main(["firmware", *words]) == 2, words
         (line,) = capsys.readouterr().err.splitlines()

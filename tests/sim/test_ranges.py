@@ -8,6 +8,7 @@ import pytest
 
 import innervate
 from innervate.dialect import plain
+from innervate.kernel import records
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.sim import build as mesh_build
 from innervate.networks.mesh.sim import over_medium
@@ -29,8 +30,9 @@ from innervate.networks.skin.verify import system as skin_system
 from innervate.networks.skin.verify import world as skin_verify
 from innervate.sim.cables import recorder as cables_recorder
 from innervate.sim.cables.world import BROKEN_RANGE
+from innervate.sim.channel import listening
 from innervate.sim.status import BROKEN, DONE
-from innervate.sim.tables import get, put
+from innervate.sim.tables import Tables, get, put
 from innervate.verify import declared
 from tests.networks.mesh.runs import mesh_plan
 from tests.networks.radio.runs import radio_plan
@@ -131,6 +133,26 @@ def gateways(rank, is_plain):
     return looked_at_between(running, mesh_fields.gate(4), record, BROKEN_MESH, node)
 
 
+def channel_nodes(is_plain):
+    """Of a network of one's own on a channel: the record of a cell serves as well as any."""
+    tables = Tables(is_plain)
+    states = tables.states(skin_fields.CELL, NODE + 1)
+    low, high = records.bounds(skin_fields.CELL)
+    world = SimpleNamespace(
+        words=tables.words(states, skin_fields.CELL), low=low, high=high,
+        run=[SimpleNamespace(broken=0, broken_node=-1, checks=1)],
+    )  # fmt: skip
+
+    def speaks():
+        run = world.run[0]
+        run.broken, run.broken_node = 0, -1
+        listening.check_range(world, NODE)
+        assert (run.broken, run.broken_node) in ((0, -1), (listening.BROKEN_RANGE, NODE))
+        return run.broken != 0
+
+    return Watched(skin_fields.CELL, states[NODE], speaks)
+
+
 def explored_cells():
     world = skin_system.world_of(skin_system.SkinModel(graphs.parse("pair")), True)
 
@@ -164,7 +186,7 @@ def explored_declared():
     net = declared.Net(protocol, fields, declared._graph(declared.GRAPHS["pair"]), {})
 
     def speaks():
-        said = net.broken()
+        said = net.broken(0)
         assert said == "" or said.endswith(" is out of its declared range")
         return said != ""
 
@@ -189,6 +211,10 @@ WATCHES = {
     ],
     "networks.mesh.sim.stacks": [
         (f"routers, {form}", routers, (is_plain,)) for form, is_plain in FORMS.items()
+    ],
+    "sim.channel.listening": [
+        (f"nodes on a channel, {form}", channel_nodes, (is_plain,))
+        for form, is_plain in FORMS.items()
     ],
     "sim.ranges": [
         (f"{name}, {form}", make, (which, is_plain))
@@ -249,5 +275,7 @@ def test_every_checker_of_ranges_has_a_row():
         )
         if any(word in text for word in watches):
             found.add(".".join(path.relative_to(home).with_suffix("").parts))
-    # Where a lost memory is put back no range is looked at; what users give is refused in a line.
-    assert found - {"networks.mesh.sim.loop", "live.declared"} == set(WATCHES)
+    # Where a lost memory is put back no range is looked at; what users give is refused in a line;
+    # which line put a value out of its range is tried in tests/running/test_blaming.py.
+    others = {"networks.mesh.sim.loop", "live.declared", "scenario.declared", "running.blaming"}
+    assert found - others == set(WATCHES)

@@ -107,7 +107,7 @@ class Outcome:
             "claim": self.theory.claim,
             "assumed": list(self.theory.assumed),
             "ended": self.ended,
-            "holds": not self.is_refuted and not self.unreached,
+            "holds": self.ended == "complete" and not self.is_refuted and not self.unreached,
             "expected": self.is_as_expected,
             "lemmas": self.lemmas,
             "unreached": [list(way) for way in self.unreached],

@@ -24,7 +24,7 @@ from innervate.sim import clocks, wheel
 from innervate.sim.cables import loop, recorder
 from innervate.sim.cables.build import Added, Records, build
 from innervate.sim.cables.simulation import Cables
-from innervate.sim.cables.world import ALIVE, BROKEN_OWN, SOURCE, World
+from innervate.sim.cables.world import ALIVE, OWN_BROKEN, SOURCE, World
 from innervate.sim.recorded import Recorded
 from innervate.sim.tables import Tables, put
 
@@ -61,7 +61,7 @@ def _own_check(own: list[Callable[..., Any]]) -> Callable[..., None]:
     lines = [
         line for place, name in enumerate(names)
         for line in (f"    if run.broken == 0 and not {name}(state, params, now):",
-                     f"        run.broken = {BROKEN_OWN + place}",
+                     f"        run.broken = {OWN_BROKEN + place}",
                      "        run.broken_node = node")
     ]  # fmt: skip
     text = "\n".join([
@@ -160,7 +160,7 @@ class DeclaredCables(Cables):
     def broken_words(self) -> dict[int, str]:  # type: ignore[override]
         """What is broken, by number."""
         own = invariants_of(networks()[self.plan.kind], "node_")
-        words = {BROKEN_OWN + place: f"{title}: {{node}}" for place, title in enumerate(own)}
+        words = {OWN_BROKEN + place: f"{title}: {{node}}" for place, title in enumerate(own)}
         return {**Cables.broken_words, **words}
 
 

@@ -149,7 +149,7 @@ def _watching(own: list[Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
     lines = [
         line for place, name in enumerate(names)
         for line in (f"    if run.checks and run.broken == 0 and not {name}(state, params, now):",
-                     f"        run.broken = {listening.BROKEN_OWN + place}",
+                     f"        run.broken = {listening.OWN_BROKEN + place}",
                      "        run.broken_node = node")
     ]  # fmt: skip
     text = "\n".join([
@@ -192,7 +192,7 @@ class DeclaredChannel(Channel):
     def broken_words(self) -> dict[int, str]:
         """What is broken, by number, with {node} for who it concerns."""
         own = invariants_of(networks()[self.plan.kind], "node_")
-        words = {listening.BROKEN_OWN + k: f"{title}: {{node}}" for k, title in enumerate(own)}
+        words = {listening.OWN_BROKEN + k: f"{title}: {{node}}" for k, title in enumerate(own)}
         return {**listening.WORDS, **words}
 
     def take(self) -> dict[str, Any]:

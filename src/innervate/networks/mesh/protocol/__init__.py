@@ -152,6 +152,8 @@ A hop for which there is no room gets no ack, so that another is tried.
 |            |                                 | `send_buffered`                  |                |
 | waits      | `E2E_ACK`                       | `take`, `on_end_ack`:            | FREE           |
 |            |                                 | REPORT_ARRIVED, `pass_over`      |                |
+| in vain    | `E2E_ACK` for anybody           | `mark_reachable`: who sent it    | tried again    |
+|            |                                 | lives                            |                |
 | at its end | `HANDED_UP`, in order           | `on_handed_up`                   | acknowledged   |
 | waits      | `RETRY`                         | `on_retry`, `retransmit`;        | waits          |
 |            |                                 | alarms: `flood_again`            |                |

@@ -176,5 +176,5 @@ What holds, and under what assumption
 - Data of a cell come in order while routes stand, and at most once; nothing is retransmitted: what
   is lost at a failure is lost. A command reaches everybody whose way stands while it goes down.
 - Shown by the checks of every run, and by exploring every interleaving of up to three cells
-  (docs/verify.md); `feasible` is proved for any number (docs/prove.md).
+  (docs/verify.md); the rule feasible is proved for any number (docs/prove.md).
 """
