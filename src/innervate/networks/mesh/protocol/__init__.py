@@ -286,7 +286,7 @@ Constants and settings
 | `STRAIN_MAX = 176`, `PER_DOUBLING = 16`        | searches, then messages pause; how fast pauses  |
 |                                                | double                                          |
 | `ALL_ACKED = 255`, `RATIO_MIN = 64`,           | shares of transmissions acknowledged: all, the  |
-| `SMOOTHING = 3`, `MISSES = 7`                  | least believed; an eighth of what is new        |
+| `SMOOTHING = 3`, `MISSES_MAX = 31`             | least believed; an eighth of what is new        |
 | `UNIT = 4`, `SPARE = 1428`, `TRIES_MAX = 12`   | an ack in quarters; what it takes back; most    |
 |                                                | transmissions because a link is poor            |
 | `LONGEST_US = 65536`                           | of a pause before it is doubled                 |

@@ -12,8 +12,9 @@ from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.constants import ALARMS, DATA, DETOURED, E2E_ACK, POSITION
 from innervate.networks.mesh.protocol.link_quality import (
     UNIT,
-    learn_acked,
-    learn_missed,
+    learn_ack,
+    learn_misses,
+    note_miss,
     relief,
 )
 
@@ -31,7 +32,7 @@ def note_missed(node, params, now, k):
     Where each neighbour has frames under way of its own (`hop_frames`), those to who does not
     answer become fewer, and only searches pause.
     """
-    learn_missed(node, k)
+    note_miss(node, k)
     node.strain = min(node.strain + UNIT, STRAIN_HEAVY if params.hop_frames else STRAIN_MAX)
     if node.strain > STRAIN_FREE:
         span = min(params.ack_us, LONGEST_US) << ((node.strain - STRAIN_FREE) // PER_DOUBLING)
@@ -40,8 +41,9 @@ def note_missed(node, params, now, k):
 
 def note_answer(node, k):
     """The neighbour in place k has acknowledged: the channel has room."""
+    learn_misses(node, k)
     node.strain = max(node.strain - relief(node, k), 0)
-    learn_acked(node, k)
+    learn_ack(node, k)
     node.pause = NO_BACKOFF
 
 

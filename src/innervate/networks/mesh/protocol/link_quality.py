@@ -8,19 +8,31 @@ acks that are missing because the link is as it is are not held against the chan
 ALL_ACKED = 255
 RATIO_MIN = 64  # a quarter: worse is the channel, or the neighbour
 SMOOTHING = 3  # an eighth of what is new
-MISSES = 7  # a seventh more is what was before a miss took an eighth
+MISSES_MAX = 31  # so many in a row leave nothing of a ratio
 TRIES_MAX = 12
 UNIT = 4  # strain is counted in quarters of an ack
 SPARE = 1428  # (1.4 - p) / p: the misses that go with an ack, and 0.4 / p for chance
 
 
-def learn_missed(node, k):
-    """The neighbour in place k, which lives, has not acknowledged a transmission."""
+def note_miss(node, k):
+    """The neighbour in place k has not acknowledged a transmission.
+
+    That counts as soon as it acknowledges another: one that has died does not make a poor link,
+    which would be tried the more often, the longer it is silent.
+    """
     if k >= 0:
-        node.ack_ratio[k] = node.ack_ratio[k] - (node.ack_ratio[k] >> SMOOTHING)
+        node.misses[k] = min(node.misses[k] + 1, MISSES_MAX)
 
 
-def learn_acked(node, k):
+def learn_misses(node, k):
+    """The neighbour in place k answers again: what it did not acknowledge was lost on the link."""
+    if k >= 0:
+        for _ in range(node.misses[k]):
+            node.ack_ratio[k] = node.ack_ratio[k] - (node.ack_ratio[k] >> SMOOTHING)
+        node.misses[k] = 0
+
+
+def learn_ack(node, k):
     """The neighbour in place k has acknowledged a transmission."""
     if k >= 0:
         rise = ALL_ACKED + (1 << SMOOTHING) - 1 - node.ack_ratio[k]
@@ -34,17 +46,13 @@ def relief(node, k):
     return max(UNIT, SPARE // max(node.ack_ratio[k], RATIO_MIN) - UNIT)
 
 
-def tries_for(node, params, k, tries):
-    """How often a frame, sent `tries` times in vain, is sent to the neighbour in place k in all.
+def tries_for(node, params, k):
+    """How often a frame is sent to the neighbour in place k before it counts as unanswered.
 
-    More than usual only where it was heard in this tick, and by what was known of the link before
-    this frame: one that has died is soon not tried so, and its silence makes no poor link. Where a
-    frame is to be sent once, it is [mesh A3].
+    More than usual only where it was heard in this tick: one that has died is soon not tried so.
+    Where a frame is to be sent once, it is [mesh A3].
     """
     if k < 0 or node.heard[k] != node.ticks or params.transmissions == 1:
         return params.transmissions
-    ratio = node.ack_ratio[k]
-    for _ in range(tries):
-        ratio = min(ratio + ratio // MISSES + 1, ALL_ACKED)
-    wanted = params.transmissions * ALL_ACKED // max(ratio, RATIO_MIN)
+    wanted = params.transmissions * ALL_ACKED // max(node.ack_ratio[k], RATIO_MIN)
     return max(params.transmissions, min(wanted, TRIES_MAX))

@@ -28,6 +28,7 @@ def clear_neighbours(node, params):
 def forget_link(node, k):
     """Nothing is known of how often the neighbour in place k answers, and how soon."""
     node.ack_ratio[k] = ALL_ACKED
+    node.misses[k] = 0
     node.hop_trip[k] = 0
     node.hop_spread[k] = 0
     node.hop_doubled[k] = 0

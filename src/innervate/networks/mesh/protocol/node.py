@@ -182,7 +182,7 @@ def on_hop_ack(node, params, now, frame, k, out):
 
 def note_ack(node, params, now, origin, seq, who, k, out):
     """`who`, in place k, has taken over a packet: 1 if we waited for that."""
-    i = take_ack(node, params, origin, seq, who)
+    i = take_ack(node, params, origin, seq, who, k)
     if i < 0:
         if params.ack_adapt:
             learn_late(node, now, k)

@@ -23,7 +23,6 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.fields import GATHERED
 from innervate.networks.mesh.protocol.frames import load, put16, store
 from innervate.networks.mesh.protocol.hop import begin_wait, end_wait, hop_wait, is_full
-from innervate.networks.mesh.protocol.neighbours import place_of
 
 FREE = 0
 WAITS = 1
@@ -334,12 +333,12 @@ def send_acks(node, out):
     node.acks = 0
 
 
-def take_ack(node, params, origin, seq, who):
-    """The place of the frame that `who` acknowledges so, which is free then; -1 if for none."""
+def take_ack(node, params, origin, seq, who, k):
+    """The place of the frame that `who`, in place k, acknowledges so: free now; -1 if for none."""
     for i in range(node.places):
         if node.q_state[i] == UNACKED and node.q_seq[i] == seq and node.q_origin[i] == origin:
             if node.q_link_dst[i] == who:
-                note_answer(node, place_of(node, params, who))
+                note_answer(node, k)
                 drop(node, params, i)
                 return i
     return -1

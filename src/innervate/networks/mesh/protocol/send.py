@@ -197,7 +197,7 @@ def most_tries(node, params, i, who):
     kind = node.q_kind[i]
     if who >= 0 and node.suspect[who] & DOUBT and kind != TABLE and not is_upward(kind):
         return 1
-    return tries_for(node, params, who, node.q_tries[i])
+    return tries_for(node, params, who)
 
 
 def on_ack_timeout(node, params, now, out):
