@@ -141,7 +141,8 @@ MEDIA: dict[str, dict[str, str]] = {
         "harm": "innervate.scenario.actions.channel:HARM",
         "simulation": "innervate.sim.channel.declared:simulation",
         "view": "innervate.web.channel_view:ChannelView",
-        "deployment": "innervate.live.deployment:NotYet",
+        "live_node": "innervate.live.on_air:build",
+        "deployment": "innervate.live.on_channel:ChannelDeployment",
     },
 }
 # Parts that can be functions of the network, which make them.
@@ -325,6 +326,18 @@ def find(kind: str, *places: Path) -> Network | None:
                     return use(folder)
     known = networks().get(kind)
     return use(known.folder) if known is not None and known.folder is not None else known
+
+
+def known(kind: str, *places: Path) -> Network:
+    """A network by its name, as `find` has it; looked for in the working folder, too.
+
+    Raises:
+        NetworkError: there is none, or it cannot be loaded.
+    """
+    network = find(kind, *places, Path())
+    if network is None:
+        raise NetworkError(f"no network here is called {kind!r}; name its folder: --network DIR")
+    return network
 
 
 def _entry(point: Any) -> Network:

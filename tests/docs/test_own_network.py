@@ -61,7 +61,7 @@ def test_every_step_of_the_page(alone, capfd):
 
 @pytest.mark.slow  # compiles a protocol that no other test runs
 def test_every_step_on_the_channel(alone, capfd):
-    assert played(parts()[1], capfd) == 6
+    assert played(parts()[1], capfd) == 7
 
 
 def played(text, capfd):
