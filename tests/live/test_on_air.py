@@ -81,19 +81,25 @@ def test_a_scenario_too_fast_for_processes_is_slowed_down_as_a_whole(talk):
     ],
 )
 def test_what_cannot_be_brought_up_is_said_in_one_line(talk, changes, sealed, says):
+    plan = planned(talk, **changes)
     with pytest.raises(LiveError, match=says):
-        deployment = ChannelDeployment(planned(talk, **changes))
-        deployment.check("udp", sealed)
-        deployment.file(0, [])
+        brought_up(plan, sealed)
+
+
+def brought_up(plan, sealed):
+    deployment = ChannelDeployment(plan)
+    deployment.check("udp", sealed)
+    deployment.file(0, [])
 
 
 def test_a_node_file_beside_its_network_needs_no_more(talk, monkeypatch, tmp_path):
     monkeypatch.setenv("INNERVATE_NETWORKS", "")
     networks.cache_clear()
     path = tmp_path / "n1.toml"
-    path.write_text("kind = 'talk'\nnumber = 1\n[[link]]\nkind = 'medium'\naddress = 'nowhere:1'\n")
+    head = "kind = 'talk'\nnumber = 1\n[[link]]\n"
+    path.write_text(f"{head}kind = 'medium'\naddress = 'nowhere:1'\n")
     assert build(load(path)).radio.mode == "off"
-    path.write_text("kind = 'talk'\nnumber = 1\n[[link]]\nkind = 'udp'\nbind = ':1'\npeers = [':2']")
+    path.write_text(f"{head}kind = 'udp'\nbind = ':1'\npeers = [':2']")
     with pytest.raises(LiveError, match=r"n1.toml: a node on a channel has one \[\[link\]\]"):
         build(load(path))
 

@@ -11,7 +11,6 @@ from innervate.dialect import plain
 from innervate.kernel import records
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.sim import build as mesh_build
-from innervate.networks.mesh.sim import over_medium
 from innervate.networks.mesh.sim import simulate as mesh_simulate
 from innervate.networks.mesh.sim import stacks as mesh_stacks
 from innervate.networks.mesh.sim.recorder import BROKEN_RANGE as BROKEN_MESH
@@ -31,6 +30,7 @@ from innervate.networks.skin.verify import world as skin_verify
 from innervate.sim.cables import recorder as cables_recorder
 from innervate.sim.cables.world import BROKEN_RANGE
 from innervate.sim.channel import listening
+from innervate.sim.field import access as over_medium
 from innervate.sim.status import BROKEN, DONE
 from innervate.sim.tables import Tables, get, put
 from innervate.verify import declared
@@ -277,5 +277,5 @@ def test_every_checker_of_ranges_has_a_row():
             found.add(".".join(path.relative_to(home).with_suffix("").parts))
     # Where a lost memory is put back no range is looked at; what users give is refused in a line;
     # which line put a value out of its range is tried in tests/running/test_blaming.py.
-    others = {"networks.mesh.sim.loop", "live.declared", "scenario.declared", "running.blaming"}
+    others = {"networks.mesh.sim.orders", "live.declared", "scenario.declared", "running.blaming"}
     assert found - others == set(WATCHES)

@@ -89,7 +89,7 @@ class DeclaredAirStack(DeclaredStack):
 
 
 class DeclaredAirNode(AirNode, DeclaredNode):
-    """The same, running."""
+    """A node of such a network: what it sends goes out by its radio."""
 
 
 def medium_of(loaded: Loaded) -> tuple[str, tuple[str, int]]:

@@ -8,7 +8,7 @@ from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.mesh.scenario.plan import MeshFault as Fault
 from innervate.networks.mesh.sim import build
-from innervate.networks.mesh.sim.loop import wipe
+from innervate.networks.mesh.sim.orders import wipe
 from innervate.networks.mesh.sim.recorder import MAC
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.sim.field import medium as field
