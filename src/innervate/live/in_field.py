@@ -37,7 +37,7 @@ class FieldStack(DeclaredStack):
         return "" if to in (ALL, self.number) else "for another node"
 
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
-        """All paths."""
+        """All paths: who is in reach hears it."""
         return None
 
     def on_sent(self, now: int) -> None:
@@ -72,14 +72,14 @@ class FieldDeployment(Deployment):
         return [f"n{i}" for i in range(self.plan.nodes)], list(self.plan.good)
 
     def check(self, cables: str, sealed: bool) -> None:
-        """Refuse serial cables."""
+        """Refuse serial cables, which join two ends each."""
         if cables == "pty":
             raise LiveError("--pty joins two ends; nodes of a field take --netns or UDP")
 
     def file(self, number: int, cables: list[int]) -> tuple[Table, dict[str, Table]]:
-        """A node's parameters."""
+        """A node's parameters; one that nobody hears has no file."""
         if not cables:
-            raise LiveError(f"node {number} hears nobody; raise radio.reach_m")
+            raise LiveError(f"node {number} hears nobody; raise air.reach_m")
         return {}, {"protocol": dict(self.plan.params)}
 
     def cable_of(self, fault: Any) -> int:

@@ -62,10 +62,6 @@ class AirNode(LiveNode):
             self.engine.receive(0, at)
         self._tell(at_ns, 0, False, data, why)
 
-    def status(self) -> dict[str, Any]:
-        """What is known here, and what the radio does: "off", "listening" or "sending"."""
-        return {**super().status(), "radio": self.radio.mode}
-
     def packed(self, frame: Any) -> bytes:
         """The bytes of a frame that goes on the air."""
         return self.stack.encode(frame)

@@ -32,7 +32,7 @@ LEAST = 0.01  # who receives less than that of a node's frames is out of its rea
 PAIRS = ("cut", "restore")
 
 
-class RadioTable(Table, frozen=True, kw_only=True):
+class AirTable(Table, frozen=True, kw_only=True):
     """All nodes' radios.
 
     Attributes:
@@ -109,7 +109,7 @@ class FieldScenario(Table, frozen=True, kw_only=True):
         absent: nodes that are off until they are revived.
         duration_s: simulated time, s.
         start_us: nodes are switched on within so long, us.
-        radio: what all nodes have.
+        air: what all nodes' radios have.
         protocol: parameters of the protocol, by name.
         input, event: in any order.
     """
@@ -127,7 +127,7 @@ class FieldScenario(Table, frozen=True, kw_only=True):
     link: list[LinkTable] = []  # noqa: RUF012
     absent: list[int] = []  # noqa: RUF012
     start_us: Annotated[int, whole("microseconds", 1, 10_000_000)] = 1000
-    radio: RadioTable = RadioTable()
+    air: AirTable = AirTable()
     protocol: dict[str, int] = {}  # noqa: RUF012
     input: Annotated[list[InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
     event: Annotated[list[EventTable], Meta(max_length=100_000)] = []  # noqa: RUF012
@@ -177,7 +177,7 @@ class FieldPlan:
     duration_us: int
     nodes: int
     params: dict[str, int]
-    radio: RadioTable
+    air: AirTable
     positions_cm: list[tuple[int, int]]
     heard: Heard
     good: list[tuple[int, int]]
@@ -198,8 +198,8 @@ def check(source: Source, model: FieldScenario) -> None:
     if model.positions_m and len(model.positions_m) != model.nodes:
         what = f"positions_m has {len(model.positions_m)} places for {model.nodes} nodes"
         raise source.error(("positions_m",), what)
-    if model.radio.exponent_min > model.radio.exponent_max:
-        raise source.error(("radio", "exponent_min"), "radio.exponent_min is above exponent_max")
+    if model.air.exponent_min > model.air.exponent_max:
+        raise source.error(("air", "exponent_min"), "air.exponent_min is above exponent_max")
     for place, link in enumerate(model.link):
         _check_pair(source, ("link", place, "nodes"), link.nodes, model.nodes)
     for place, node in enumerate(model.absent):
@@ -258,7 +258,7 @@ def plan(scenario: Any) -> FieldPlan:
         duration_us=round(1e6 * model.duration_s),
         nodes=count,
         params=parameters(network.fields, model.protocol),
-        radio=model.radio,
+        air=model.air,
         positions_cm=points,
         heard=heard,
         good=placement.good_links(heard.rssi_cdb, count, RSSI50_CDB),
@@ -292,7 +292,7 @@ def _points(model: FieldScenario) -> list[tuple[int, int]]:
 
 
 def _placed(model: FieldScenario, points: list[tuple[int, int]]) -> Heard:
-    count, radio = model.nodes, model.radio
+    count, radio = model.nodes, model.air
     exponent_c = round(100 * radio.exponent)
     shadowing = round(100 * radio.shadowing_db)
     faded = placement.fading(count, shadowing, 0, stream(model.seed, "fading"))
@@ -366,6 +366,6 @@ def template(network: Any) -> str:
              for name, _length, low, high, unit, meaning in network.fields.PARAMS]  # fmt: skip
     head = [f"# A {network.name} over a field.", f'kind = "{network.name}"', "nodes = 9",
             'layout = "grid"  # line, grid, random; or positions_m; or [[link]]s',
-            "spacing_m = 20", "duration_s = 1.0", "", "[radio]", "reach_m = 30", "",
+            "spacing_m = 20", "duration_s = 1.0", "", "[air]", "reach_m = 30", "",
             "[protocol]"]  # fmt: skip
     return "\n".join([*head, *lines, ""])

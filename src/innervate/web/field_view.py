@@ -34,7 +34,7 @@ class FieldView(ChannelView):
         if not plan.positions_cm:
             links = np.array(plan.good, np.int64).reshape(-1, 2)
             return [(x, y) for x, y in spread(plan.nodes, links).round(3).tolist()]
-        unit = 50 * plan.radio.reach_m
+        unit = 50 * plan.air.reach_m
         return [(round(x / unit, 3), round(y / unit, 3)) for x, y in plan.positions_cm]
 
     def arrays(self, flights: bool) -> dict[str, Any]:

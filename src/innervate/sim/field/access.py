@@ -76,12 +76,8 @@ def drain_mac(world, do, node, time, handler):
 
 def hand_down(world, do, node, frame, act, time):
     """The protocol sends a frame: put it where frames under way are; returns its digest."""
-    return go_down(world, do, node, frame, act.b, act.c & URGENT, time)
-
-
-def go_down(world, do, node, frame, attempt, urgent, time):
-    """The same of a frame that has been sent `attempt` times."""
     run, radio, item = world.run[0], world.radios[node], world.mac_item[0]
+    urgent = act.c & URGENT
     if radio.held != NONE and not urgent:
         breaks(world, BROKEN_HELD, node)
         return 0
@@ -105,7 +101,7 @@ def go_down(world, do, node, frame, attempt, urgent, time):
     radio.hot = place
     item.us = medium.airtime(world, do.frame_bytes(kept))
     item.urgent = 1 if urgent else 0
-    item.attempt = attempt
+    item.attempt = act.b
     do.mac_on_input(world, node, (time + radio.offset) & MASK30, PACKET)
     drain_mac(world, do, node, time, MAC + ON_INPUT)
     return mark

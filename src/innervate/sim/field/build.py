@@ -46,12 +46,7 @@ def build(plan: Any, network: Network, plain: bool, kept: Recorded) -> w.World:
         radios=tables.records(w.RADIO, n, wide=w.RADIO),
         below=(),
         due=tables.numbers(n * timers, NEVER, np.int64),
-        macs=tables.states(below.state if below else NOTHING, n),
-        mac_params=tables.states(below.params if below else NOTHING, 1),
-        mac_item=tables.states(below.item if below else NOT_USED, 1),
-        mac_out=tables.outbox(
-            below.room if below else 1, below.item if below else NOT_USED, ACTION
-        ),
+        **_access(tables, below, n),
         **_medium(tables, plan, fields.FRAME),
         **_given(tables, plan, fields.FRAME),
         item=tables.states(fields.FRAME, 1),
@@ -61,19 +56,39 @@ def build(plan: Any, network: Network, plain: bool, kept: Recorded) -> w.World:
     )
     _set_run(world, plan, timers, own_timers)
     _set_limits(world, tables.rows, kept)
-    for name, *_ in fields.PARAMS:
+    _set_params(world, plan, fields.PARAMS, below)
+    _set_nodes(world, plan, {name for name, *_ in fields.STATE}, below)
+    _set_events(world, plan)
+    return world
+
+
+def _access(tables: Tables, below: Any, nodes: int) -> dict[str, Any]:
+    """What the medium access has, a record for each node, and its outbox."""
+    item = below.item if below else NOT_USED
+    return {
+        "macs": tables.states(below.state if below else NOTHING, nodes),
+        "mac_params": tables.states(below.params if below else NOTHING, 1),
+        "mac_item": tables.states(item, 1),
+        "mac_out": tables.outbox(below.room if below else 1, item, ACTION),
+    }
+
+
+def _set_params(world: w.World, plan: Any, params: Any, below: Any) -> None:
+    for name, *_ in params:
         put(world.params, 0, **{name: plan.params[name]})
     if below:
         put(world.run, 0, mac=1)
         for name, _length, least, *_ in below.params:
-            put(world.mac_params, 0, **{name: getattr(plan.radio, name, least)})
-    _set_nodes(world, plan, {name for name, *_ in fields.STATE}, below)
+            put(world.mac_params, 0, **{name: getattr(plan.air, name, least)})
+
+
+def _set_events(world: w.World, plan: Any) -> None:
+    """Queue the first event of every kind; each queues the next."""
     if plan.inputs:
         queue.push(world.heap, queue.key_of(plan.inputs[0].at_us, queue.OFFER, 0, 0))
     events = _events(plan)
     if events:
         queue.push(world.heap, queue.key_of(events[0][0], queue.COMMAND, 0, 0))
-    return world
 
 
 def _medium(tables: Tables, plan: Any, frame: Any) -> dict[str, Any]:
@@ -85,7 +100,7 @@ def _medium(tables: Tables, plan: Any, frame: Any) -> dict[str, Any]:
     power[:: n + 1] = [0] * n  # nobody hears himself
     prob = list(heard.prob_q15)
     prob[:: n + 1] = [0] * n
-    waiting = n * plan.radio.queue_frames
+    waiting = n * plan.air.queue_frames
     return {
         "rssi": tables.given(heard.rssi_cdb, np.int32),
         "prob": tables.given(prob, np.int32),
@@ -100,7 +115,7 @@ def _medium(tables: Tables, plan: Any, frame: Any) -> dict[str, Any]:
         "free": tables.given(range(places - 1, -1, -1)),
         "got": tables.numbers(n),
         "ring": tables.states(frame, waiting),
-        "tries": tables.numbers(waiting, 0, np.int64),
+        "acts": tables.records(ACTION, waiting, wide=ACTION),
     }
 
 
@@ -150,7 +165,7 @@ def _set_limits(world: w.World, rows: int, kept: Recorded) -> None:
 
 
 def _set_run(world: w.World, plan: Any, timers: int, own_timers: int) -> None:
-    radio = plan.radio
+    radio = plan.air
     sense_cdb = RSSI50_CDB - round(100 * radio.sense_db)
     put(
         world.run,

@@ -179,11 +179,11 @@ def _noted(copy: Any, kind_of: Any, names: set[str]) -> tuple[Callable[..., Any]
 
     def hand_down(world, do, node, frame, act, time):  # type: ignore[no-untyped-def]
         radio = world.radios[node]
-        attempt = min(act.b, access.ATTEMPT_MAX)
+        act.b, act.c = min(max(act.b, 0), access.ATTEMPT_MAX), 0
         if radio.held != medium.NONE or radio.waiting > 0:
-            listening.put_off(world, do, node, frame, attempt)
+            listening.put_off(world, do, node, frame, act)
             return do.digest(frame)
-        return access.go_down(world, do, node, frame, attempt, 0, time)
+        return access.hand_down(world, do, node, frame, act, time)
 
     def record_delivered(world, node, frame, time):  # type: ignore[no-untyped-def]
         listening.keep(world, node, kind_of(frame), time, -1)

@@ -104,7 +104,7 @@ def keep(world, node, kind, time, latency):
         row.latency = latency
 
 
-def put_off(world, do, node, frame, attempt):
+def put_off(world, do, node, frame, act):
     """A frame has to wait for those before it."""
     run, radio = world.run[0], world.radios[node]
     if radio.waiting >= run.room:
@@ -112,7 +112,7 @@ def put_off(world, do, node, frame, attempt):
         return
     place = node * run.room + (radio.first + radio.waiting) % run.room
     do.copy_frame(world.ring[place], frame)
-    world.tries[place] = attempt
+    world.acts[place].b = act.b
     radio.waiting += 1
 
 
@@ -123,7 +123,7 @@ def next_one(world, do, node, time):
         place = node * run.room + radio.first
         radio.first = (radio.first + 1) % run.room
         radio.waiting -= 1
-        access.go_down(world, do, node, world.ring[place], world.tries[place], 0, time)
+        access.hand_down(world, do, node, world.ring[place], world.acts[place], time)
 
 
 def tell_sent(world, do, node, time, ok):
@@ -139,7 +139,7 @@ def note_report(_world, _node, _time, _code):
 
 
 def sample(_world, _do, _index, _time):
-    """Nobody walks."""
+    """A place that a node would be told; nobody walks."""
 
 
 def offer(world, do, index, time):

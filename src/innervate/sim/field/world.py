@@ -59,7 +59,7 @@ class World(NamedTuple):
     free: Any  # places that are free
     got: Any  # who receives the frame that ends
     ring: Any  # per node: frames that wait for those before them
-    tries: Any  # ... which attempt each is, as the protocol said
+    acts: Any  # ... with what each was sent
     commands: Any
     offers: Any  # what nodes are handed, in order of time
     items: Any  # ... the items

@@ -78,6 +78,10 @@ class RadioNode(AirNode):
         self.engine.input(PACKET, item)
         return receipt
 
+    def status(self) -> dict[str, Any]:
+        """What is known here, and what the radio does: "off", "listening" or "sending"."""
+        return {**super().status(), "radio": self.radio.mode}
+
     def packed(self, frame: Any) -> bytes:
         """The bytes of a frame, with the packets that it carries."""
         payload = b""
