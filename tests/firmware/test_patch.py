@@ -1,7 +1,10 @@
 """A patch of emulated cells around an ordinary PC: comes up, is cut, is killed, heals."""
 
 import asyncio
+import os
+import re
 import shutil
+import signal
 from pathlib import Path
 
 import pytest
@@ -75,6 +78,12 @@ def test_four_cells_of_firmware_come_up_and_heal(tmp_path):
             await heals(network, 2, 4)
             got = samples(network)
             await until(lambda: samples(network) > got + 20, FIRST_S)
+            os.kill(int(children(network.processes["c1"].pid)[0]), signal.SIGKILL)
+            await until(lambda: network.processes["c1"].poll() is not None, FIRST_S)
+            assert network.processes["c1"].returncode == 1
+            said = (tmp_path / "run/c1.log").read_text().splitlines()[-1]
+            assert re.fullmatch(r"c1: its board is gone: \S+qemu-system-arm ended \(SIGKILL\)", said)
+            await until(lambda: asked(network, "pc")["cells"] == [2, 3], FIRST_S)
         finally:
             await network.down()
 
