@@ -108,7 +108,9 @@ def test_a_radio_board_takes_part_in_a_team(tmp_path):
         team = [RadioNode(f"s{i}", StationStack(i, radio_parameters(timing), 97 + i),
                           MediumRadio(i, where)) for i in (0, 2)]  # fmt: skip
         for node in team:
-            node.receive_packets(lambda source, payload, n=node: heard.append((n.name, source, payload)))
+            node.receive_packets(
+                lambda source, payload, n=node: heard.append((n.name, source, payload))
+            )
         modem = Modem(SerialLink(cables.devices[0], BAUD), MediumRadio(BOARD, where))
         user = SerialLink(cables.devices[3], BAUD)
         with board(made, cables.devices[1:3]):

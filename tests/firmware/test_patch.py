@@ -82,7 +82,9 @@ def test_four_cells_of_firmware_come_up_and_heal(tmp_path):
             await until(lambda: network.processes["c1"].poll() is not None, FIRST_S)
             assert network.processes["c1"].returncode == 1
             said = (tmp_path / "run/c1.log").read_text().splitlines()[-1]
-            assert re.fullmatch(r"c1: its board is gone: \S+qemu-system-arm ended \(SIGKILL\)", said)
+            assert re.fullmatch(
+                r"c1: its board is gone: \S+qemu-system-arm ended \(SIGKILL\)", said
+            )
             await until(lambda: asked(network, "pc")["cells"] == [2, 3], FIRST_S)
         finally:
             await network.down()

@@ -69,7 +69,7 @@ class Wire:
             payload = [f"#ifndef {big}_PAYLOAD_MAX",
                        f"#define {big}_PAYLOAD_MAX {self.payload_max} /* bytes of a payload */",
                        "#endif",
-                       f"#define {big}_PAYLOAD_AT {at} /* where it begins in a frame */"]  # fmt: skip
+                       f"#define {big}_PAYLOAD_AT {at} /* where it begins */"]  # fmt: skip
             size_max = f"({self.coded.size_max} + {big}_PAYLOAD_MAX)"
             front = "const uint8_t *payload, int32_t count,\n        "
         return "\n".join([
@@ -113,18 +113,23 @@ class Wire:
         def inside(form: Form) -> list[str]:
             limits = [f"frame->{name_of(self._counter(form, name))} > {most}"
                       for name, (most, _) in form.most.items()]  # fmt: skip
-            more = "".join(f" + frame->{name_of(self._counter(form, name))}"
-                           for name, many, *_ in form.fields if many == REST or isinstance(many, str)
-                           )  # fmt: skip
+            counters = [self._counter(form, name) for name, many, *_ in form.fields
+                        if name != SPARE and _varies(many)]  # fmt: skip
+            more = "".join(f" + frame->{name_of(counter)}" for counter in counters)
             whole_size = f"{self._bytes(form)}{more}"
             return [f"return ({' || '.join(limits)}) ? 0 : {whole_size};" if limits
                     else f"return {whole_size};"]  # fmt: skip
 
         alone = []
         if self.coded.alone:
-            alone = [f"    if (frame->kind == {self.coded.alone[1]}) {{", "        return 1;", "    }"]
-        return "\n".join([f"int32_t {self.prefix}_size(const {self.prefix}_frame_t *frame)", "{",
-                          *alone, *self._switch("frame->kind", inside, "return 0;"), "}", ""])  # fmt: skip
+            alone = [
+                f"    if (frame->kind == {self.coded.alone[1]}) {{",
+                "        return 1;",
+                "    }",
+            ]
+        head = f"int32_t {self.prefix}_size(const {self.prefix}_frame_t *frame)"
+        cases = self._switch("frame->kind", inside, "return 0;")
+        return "\n".join([head, "{", *alone, *cases, "}", ""])
 
     @staticmethod
     def _counter(form: Form, array: str) -> str:
@@ -194,7 +199,10 @@ class Wire:
             lines += [f"if (data[{byte}] > {most}) {{", f"    return {big}_BAD_{why.upper()};", "}",
                       f"size -= data[{byte}];"]  # fmt: skip
         rest = next(name for name, many, *_ in form.fields if many == REST)
-        tests = [*(["size < 0"] if counted else []), *([f"size > {form.most[rest][0]}"] if rest in form.most else [])]
+        tests = [
+            *(["size < 0"] if counted else []),
+            *([f"size > {form.most[rest][0]}"] if rest in form.most else []),
+        ]
         tests += [f"size % {form.step} != 0"] if form.step > 1 else []
         lines += [f"if ({' || '.join(tests)}) {{", f"    return {big}_BAD_LENGTH;", "}"]
         if not form.payloads:
@@ -220,7 +228,8 @@ class Wire:
                       f"        return {big}_OK;", "    }"]  # fmt: skip
         return "\n".join([
             f"int32_t {small}_decode(const uint8_t *data, int32_t size, {small}_frame_t *frame)",
-            "{", f"    int32_t at = {bits};", f"    const int32_t why = {small}_reason(data, size);",
+            "{", f"    int32_t at = {bits};",
+            f"    const int32_t why = {small}_reason(data, size);",
             f"    if (why != {big}_OK) {{", "        return why;", "    }", *blank, *single,
             f"    frame->kind = ({self._type('kind')})"
             f"innervate_get(data, &at, {self.coded.kind_bits});",
@@ -268,10 +277,15 @@ class Wire:
         if not many:
             return [text.format(place=place)]
         count = many
-        if many == REST or isinstance(many, str):
+        if _varies(many):
             count = f"frame->{name_of(self._counter(form, name))}"
         return [f"for (int32_t i = 0; i < {count}; i++) {{",
                 "    " + text.format(place=f"{place}[i]"), "}"]  # fmt: skip
+
+
+def _varies(many: Any) -> bool:
+    """True if a field has a variable number."""
+    return many == REST or isinstance(many, str)
 
 
 def _bits_before(fields: tuple[Any, ...], name: str) -> int:

@@ -84,7 +84,8 @@ OF_CLASS = dict(zip(CLASSES, ("small", "middle", "large"), strict=True))
 CSMA = Role(
     "csma", "innervate.networks.mesh.protocol.csma",
     csma_fields.STATION, csma_fields.PARAMS, (), csma_fields.ITEM, {},
-    room=4, in_ram=True, driver="", action=csma_fields.ACTION, timers=1, watched=RUN._replace(table="macs"),
+    room=4, in_ram=True, driver="", action=csma_fields.ACTION, timers=1,
+    watched=RUN._replace(table="macs"),
     parameters=f"{HERE}:csma_parameters",
 )  # fmt: skip
 

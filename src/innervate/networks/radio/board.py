@@ -20,6 +20,7 @@ def payload_max(params: dict[str, int]) -> int:
     """Bytes of the packets in a frame at most; each has two of a CRC on the air."""
     return min(frames.PAYLOAD_MAX, params["per_turn"] * (params["packet_slots"] - 2))
 
+
 ROLES = (
     Role(
         "radio", "innervate.networks.radio.protocol.practical",

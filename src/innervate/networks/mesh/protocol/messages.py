@@ -95,7 +95,9 @@ def on_message(node, params, now, item, out):
     elif make_room(node, OWN if owner >= 0 else MESSAGES, out):
         i = compose(node, now, MESSAGES, DATA, dest, flags, out)
     if i < 0 and owner >= 0:
-        buffer_unsent(node, params, now, owner, item, dest, flags | first_flag(node, params, dest), out)
+        buffer_unsent(
+            node, params, now, owner, item, dest, flags | first_flag(node, params, dest), out
+        )
         return
     if i < 0:
         report(out, REPORT_FULL, item.handle, NO_ROOM)
