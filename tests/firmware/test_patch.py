@@ -94,7 +94,7 @@ def test_four_cells_of_firmware_come_up_and_heal(tmp_path):
 
 def test_what_cannot_be_brought_up_is_one_line(tmp_path, capsys, monkeypatch):
     for words, said in (
-        (["mesh-field"], "no coder in C"),
+        (["mesh-field"], "among live nodes on serial lines"),
         (["setup-3", "--in-python", "c99999"], "--in-python c99999"),
     ):
         assert main(["live", "up", words[0], "--firmware", *words[1:]]) == 2

@@ -15,74 +15,94 @@ static int32_t role_node_now(const role_node_t *node)
 }
 
 /*+ lines */
-/* Bytes of the frame at `at` in a queue, its zero included. */
-static int32_t role_length(const role_line_t *line, int32_t at)
+/* Bytes of what stands at `at` in the queue: a port, a frame, a zero. */
+static int32_t role_length(const role_node_t *node, int32_t at)
 {
     int32_t length = 1;
-    while (line->out[at + length - 1] != 0) {
+    while (node->queue[at + length - 1] != 0) {
         length++;
     }
     return length;
 }
 
-/* Takes bytes out of a queue, from its beginning. */
-static void role_cut(role_line_t *line, int32_t count)
+/* Where the first frame for a port stands, from `at` on; behind all if there is none. */
+static int32_t role_find(const role_node_t *node, int32_t at, int32_t port)
 {
-    for (int32_t i = 0; i + count < line->waiting; i++) {
-        line->out[i] = line->out[i + count];
-    }
-    line->waiting = (uint16_t)(line->waiting - count);
-}
-
-/* Where the last frame of a queue begins. */
-static int32_t role_last(const role_line_t *line)
-{
-    int32_t at = 0;
-    while (at + role_length(line, at) < line->waiting) {
-        at += role_length(line, at);
+    while (at < node->waiting && node->queue[at] != port + 1) {
+        at += role_length(node, at);
     }
     return at;
 }
 
-/* Queues a frame: urgent ones behind what is on the wire, FLUSH drops what waits. */
-static void role_queue(role_node_t *node, role_line_t *line, const role_frame_t *frame,
-        int32_t flags)
+/* Takes bytes out of the queue. */
+static void role_cut(role_node_t *node, int32_t at, int32_t count)
 {
-    const int32_t count = role_size(frame) + 2;
-    int32_t at = line->begun ? role_length(line, 0) : 0;
-    if (flags & ROLE_FLUSH) {
-        line->waiting = (uint16_t)at;
+    node->waiting = (uint16_t)(node->waiting - count);
+    for (int32_t i = at; i < node->waiting; i++) {
+        node->queue[i] = node->queue[i + count];
     }
-    while ((flags & ROLE_URGENT) && line->waiting > at && line->waiting + count > ROLE_QUEUE) {
-        line->waiting = (uint16_t)role_last(line);
-        node->lost++;
+}
+
+/* Drops the last frame for a port, from `at` on; 0 if there is none. */
+static int32_t role_drop(role_node_t *node, int32_t at, int32_t port)
+{
+    int32_t last = -1, length = 0;
+    while ((at = role_find(node, at + length, port)) < node->waiting) {
+        last = at;
+        length = role_length(node, at);
     }
-    if (line->waiting + count > ROLE_QUEUE) {
+    if (last >= 0) {
+        role_cut(node, last, length);
+    }
+    return last >= 0;
+}
+
+/* Queues a frame: urgent ones behind what is on the wire, FLUSH drops what waits for the port. */
+static void role_queue(role_node_t *node, int32_t port, const role_frame_t *frame, int32_t flags)
+{
+    const int32_t count = role_size(frame) + 3;
+    int32_t at = role_find(node, 0, port);
+    if (node->line[port].begun) {
+        at = role_find(node, at + role_length(node, at), port);
+    }
+    while (((flags & ROLE_FLUSH) ||
+            ((flags & ROLE_URGENT) && node->waiting + count > ROLE_QUEUE)) &&
+            role_drop(node, at, port)) {
+        node->lost = (uint16_t)(node->lost + !(flags & ROLE_FLUSH));
+    }
+    if (node->waiting + count > ROLE_QUEUE) {
         node->lost++;
         return;
     }
     if (!(flags & ROLE_URGENT)) {
-        at = line->waiting;
+        at = node->waiting;
     }
-    for (int32_t i = line->waiting; i > at; i--) {
-        line->out[i - 1 + count] = line->out[i - 1];
+    for (int32_t i = node->waiting; i > at; i--) {
+        node->queue[i - 1 + count] = node->queue[i - 1];
     }
-    innervate_stuff(line->out + at + 1, role_encode(frame, line->out + at + 1), line->out + at);
-    line->waiting = (uint16_t)(line->waiting + count);
+    node->queue[at] = (uint8_t)(port + 1);
+    innervate_stuff(node->queue + at + 2, role_encode(frame, node->queue + at + 2),
+            node->queue + at + 1);
+    node->waiting = (uint16_t)(node->waiting + count);
 }
 
 /* Hands a UART what it takes. */
 static void role_pump(role_node_t *node, int32_t port)
 {
-    role_line_t *line = &node->line[port];
-    while (line->waiting > 0) {
-        const int32_t length = role_length(line, 0);
-        const int32_t taken = node->port->send(node->port->user, port, line->out, length);
+    int32_t at = role_find(node, 0, port);
+    while (at < node->waiting) {
+        const int32_t left = role_length(node, at) - 1;
+        const int32_t taken = node->port->send(node->port->user, port, node->queue + at + 1, left);
         if (taken <= 0) {
             return;
         }
-        line->begun = taken < length;
-        role_cut(line, taken);
+        node->line[port].begun = taken < left;
+        if (taken < left) {
+            role_cut(node, at + 1, taken);
+        } else {
+            role_cut(node, at, left + 1);
+            at = role_find(node, at, port);
+        }
     }
 }
 
@@ -118,14 +138,14 @@ static void role_drain(role_node_t *node)
 /*- */
 /*+ ports */
             if (a >= 0 && a < ROLE_PORTS_MAX) {
-                role_queue(node, &node->line[a], frame, act->c);
+                role_queue(node, a, frame, act->c);
                 role_pump(node, a);
             }
 /*- */
 /*+ hooks */
             for (int32_t port = 0; port < ROLE_PORTS_MAX; port++) {
                 if (role_links_leaves(&node->links, port, frame, act->b)) {
-                    role_queue(node, &node->line[port], frame, act->c);
+                    role_queue(node, port, frame, act->c);
                     role_pump(node, port);
                 }
             }
@@ -184,7 +204,8 @@ static void role_piece(role_node_t *node, int32_t port, uint8_t *bytes, int32_t 
 /*+ hooks */
     role_links_heard(&node->links, port, &node->frame);
 /*- */
-    role_on_frame(&node->state, /*gate*/node->params, role_node_now(node), port, &node->frame, &node->out);
+    const int32_t now = role_node_now(node);
+    role_on_frame(&node->state, /*gate*/node->params, now, port, &node->frame, &node->out);
     role_drain(node);
 }
 
@@ -265,7 +286,8 @@ void role_node_poll(role_node_t *node)
 void role_node_give(role_node_t *node, int32_t kind, const role_item_t *item)
 {
     if (!node->broken) {
-        role_on_input(&node->state, /*gate*/node->params, role_node_now(node), kind, item, &node->out);
+        const int32_t now = role_node_now(node);
+        role_on_input(&node->state, /*gate*/node->params, now, kind, item, &node->out);
         role_drain(node);
     }
 }

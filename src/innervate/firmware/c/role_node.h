@@ -36,16 +36,14 @@ extern "C" {
 #define ROLE_PORTS_MAX 4 /* serial lines */
 #endif
 #ifndef ROLE_QUEUE
-#define ROLE_QUEUE (5 * ROLE_SIZE_MAX / 2 + 6) /* bytes that wait for a line at most */
+#define ROLE_QUEUE (8 * ROLE_SIZE_MAX + 3) /* bytes that wait for lines at most */
 #endif
 
 /** One end of a cable. */
 typedef struct {
-    uint16_t waiting; /* bytes in `out` */
     uint8_t heard; /* bytes in `in`; more than fit = too long, wait for the zero */
-    uint8_t begun; /* 1 = the first frame in `out` is on the wire */
+    uint8_t begun; /* 1 = the first frame that waits for it is on the wire */
     uint8_t in[ROLE_SIZE_MAX + 2]; /* of the frame that comes in */
-    uint8_t out[ROLE_QUEUE]; /* whole frames that wait, the first perhaps begun */
 } role_line_t;
 
 /*- */
@@ -71,6 +69,8 @@ typedef struct {
     role_frame_t frame; /* what came in */
 /*+ lines */
     role_line_t line[ROLE_PORTS_MAX];
+    uint16_t waiting; /* bytes in `queue` */
+    uint8_t queue[ROLE_QUEUE]; /* frames for all lines: port + 1, what is left of it, a zero */
 /*- */
 /*+ air */
     role_packet_t packet[ROLE_PACKETS]; /* by the lowest bits of its handle */

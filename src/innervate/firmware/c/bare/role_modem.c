@@ -1,6 +1,6 @@
 /* A station on a bare board: on UART 0 a radio modem, on UART 1 the station's user.
  *
- * All frames are stuffed as on any line; numbers have their lowest byte first, ages are microseconds.
+ * Frames are stuffed as on any line; numbers have their lowest byte first, ages are microseconds.
  * From the modem: `C` cd, voc, age: the carrier came or went so long ago. `F` age, frame: received.
  * To it: `T` age, slots, frame: it was decided so long ago to send this. What the user says is a
  * packet to all; he hears sender (two bytes) and packet. */
