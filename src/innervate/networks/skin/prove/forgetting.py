@@ -164,7 +164,7 @@ class Runs:
         ]
 
     def may_differ(self, field: str, index: int | None) -> Term:
-        """What is forgotten."""
+        """What is forgotten may differ: the port's words, and loads."""
         return self.t.truth_of(field in LOADS or (field in STORED and index == self.p))
 
 
