@@ -31,7 +31,9 @@ def test_cells_in_three_languages_make_one_patch(tmp_path, files):
         pc.receive_touch(lambda touch: heard[touch.cell].append(touch))
         with micropython(near, *ends[1:3]), board(made, ends[3:5]):
             async with pc, cell:
-                await until(lambda: None not in pc.status()["cells"] and all(pc.status()["cells"]), FIRST_S)
+                await until(
+                    lambda: None not in pc.status()["cells"] and all(pc.status()["cells"]), FIRST_S
+                )
                 cables.cut = {3}  # the Python cell's own way: it has to go by the other two
                 await until(lambda: pc.status()["cells"][0] == 3, FIRST_S)
                 count = len(heard[IN_PYTHON])
