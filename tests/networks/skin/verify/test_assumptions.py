@@ -2,9 +2,12 @@
 
 import pytest
 
+from innervate.networks.skin.protocol.constants import RULE_FEASIBLE
 from innervate.networks.skin.prove.faults import FAULTS
+from innervate.networks.skin.prove.theories import resting
 from innervate.networks.skin.verify import assumptions, cases, graphs, mutants
 from innervate.networks.skin.verify.system import RULES, UPDATES, Budget, SkinModel
+from innervate.prove.theory import prove
 from innervate.verify.errors import VerifyError
 
 
@@ -57,3 +60,22 @@ def test_a_reduced_search_does_not_start_without_them(monkeypatch):
         cases.run(model("feasible", "periodic"), wanted, lambda *_: False)
     whole = model("feasible", "periodic").changed(lean=False)
     assert cases.run(whole, wanted, lambda *_: False).tally.ended == "limit"
+
+
+# Each lemma about what is forgotten, and a mistake that it refutes.
+FORGETTING = {
+    "what is only stored, news, loads": ("cell.heard[port] = 1\n", "cell.heard[port] = 1\n    "
+                                         "cell.sq_own = sq\n"),
+    "what dead ports said": ("p != cell.parent and is_usable(cell, params, p) and is_allowed("
+                             "cell, params, p):", "p != cell.parent and is_usable(cell, params, "
+                             "p):"),
+    "beacons that repeat the last": ("    if parent != NONE and cell.dist[port] >= cell.dist"
+                                     "[parent]:", "    if parent != NONE and cell.dist[port] > "
+                                     "cell.dist[parent]:"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FORGETTING)
+def test_a_mistake_in_what_is_forgotten_is_refuted_by_its_own_lemma(name):
+    wrong = next(one for one in resting(RULE_FEASIBLE, FORGETTING[name]) if one.name == name)
+    assert prove(wrong, first_only=True).is_refuted

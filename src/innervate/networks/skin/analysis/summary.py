@@ -11,6 +11,7 @@ from innervate.networks.skin.analysis.commands import commands_summary
 from innervate.networks.skin.analysis.frames import beacon_share, data_summary
 from innervate.networks.skin.analysis.headline import skin_headline
 from innervate.networks.skin.analysis.load import balance_factor, port_loads
+from innervate.networks.skin.analysis.proved import outside
 from innervate.networks.skin.analysis.reach import reach, skin_facts
 from innervate.networks.skin.analysis.recovery import recoveries, start_up
 from innervate.networks.skin.analysis.rows import (
@@ -60,7 +61,7 @@ def summarize(result: Any) -> SkinSummary:
         "name": plan.scenario.name,
         **measured(result, result.handled + result.arrived),
         "headline": skin_headline(facts, plan.graph.label).as_summary(),
-        "warnings": warnings(plan),
+        "warnings": [*warnings(plan), *outside(result.rows, plan.graph.label)],
         "cells": plan.graph.cells,
         "depth_max": plan.depth_max,
         "start_up": start_up(result),

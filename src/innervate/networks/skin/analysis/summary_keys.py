@@ -212,7 +212,8 @@ class SkinSummary(Common, Reach):
     """The summary of a skin's run.
 
     Attributes:
-        warnings: what makes the scenario weaker than it looks, as `check` says it.
+        warnings: what makes the scenario weaker than it looks, as `check` says it; what of the
+            proofs' assumptions the run left (docs/prove.md).
         cells: how many there are.
         depth_max: hops of the deepest cell to the PC, by breadth-first search.
         start_up: from switching on.

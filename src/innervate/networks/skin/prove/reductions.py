@@ -97,7 +97,7 @@ class Pair:
         """The runs as a step with goals; corresponding draws have the same outcome."""
         first, *others = self.machines
         same = [self.t.same(a[0], b[0]) for other in others
-                for a, b in zip(first.draws, other.draws, strict=True)]  # fmt: skip
+                for a, b in zip(first.draws, other.draws, strict=False)]  # fmt: skip
         facts = [fact for machine in self.machines for fact in machine.facts]
         return Step(name, first, self.stage.records, self.stage.store, self.stage.store,
                     [*self.facts, *more, *facts, *same], goals)  # fmt: skip

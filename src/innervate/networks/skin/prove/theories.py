@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from innervate.dialect.source import Change
 from innervate.networks.skin.protocol.constants import INFINITY, RULE_FEASIBLE
-from innervate.networks.skin.prove import feasible, pc, reductions, stories, strict, system
+from innervate.networks.skin.prove import (
+    feasible,
+    forgetting,
+    pc,
+    reductions,
+    repeating,
+    stories,
+    strict,
+    system,
+)
 from innervate.networks.skin.prove.faults import EXPLORERS
 from innervate.networks.skin.prove.faults import FAULTS as MUTANTS
 from innervate.networks.skin.prove.words import tell
@@ -68,10 +78,14 @@ def resting(rule: int, change: Change | None = None) -> list[Theory]:
     """What a reduced search under `feasible` or `strict` rests on, of the source at hand."""
     own = feasible.steps if rule == RULE_FEASIBLE else strict.steps
     claim = "What the explorer forgets of a state decides nothing."
-    return [
-        Theory("the rule", claim, (), own(change), is_example=True),
-        Theory("what is forgotten", claim, (), reductions.steps(rule, change), is_example=True),
-    ]
+    parts = (
+        ("the rule", own),
+        ("what is only stored, news, loads", partial(reductions.steps, rule)),
+        ("what dead ports said", partial(forgetting.steps, rule)),
+        ("beacons that repeat the last", partial(repeating.steps, rule)),
+    )
+    return [Theory(name, claim, (), steps(change=change), is_example=True)
+            for name, steps in parts]  # fmt: skip
 
 
 def _stories(change: Change | None) -> list[Theory]:

@@ -44,6 +44,9 @@ class Watch(NamedTuple):
     ring: Any  # start of the forwarding loop the cell is in, -1 none
     before: Any  # `routed` as it was before the present command
     stack: Any
+    was_on: Any  # 1 = it was switched on before
+    forgot: Any  # why it forgot all that it announced (see proved.py); -1 = it did not
+    clear_at: Any  # until when some of that may be under way, us
     due: Any  # per newest commands of the PC and cell: what is known (see orders.py)
     due_number: Any  # ... the commands' numbers, -1 none
 
@@ -95,6 +98,9 @@ def _watch(tables: Tables, cells: int, orders: bool) -> Watch:
         ring=tables.numbers(cells, NIL),
         before=tables.numbers(cells),
         stack=tables.numbers(cells),
+        was_on=tables.numbers(cells),
+        forgot=tables.numbers(cells, NIL),
+        clear_at=tables.numbers(cells, NIL, np.int64),
         due=tables.numbers(slots * cells),
         due_number=tables.numbers(slots, NIL),
     )

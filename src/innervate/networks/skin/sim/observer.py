@@ -30,8 +30,9 @@ APART = 104  # a = cells that are on and that no live cable joins with the PC, b
 JOINED = 105  # a = cells that live cables join with the PC, from now on
 
 # Its numbers in `world.run`: connected cells without a route, and as they were last noted; cells
-# cut off, and connected; loops so far, and open ones.
-NUMBERS = ("unrouted", "noted", "apart", "joined", "loops", "loops_open")
+# cut off, and connected; loops so far, and open ones; what the proofs assume that was left, as
+# bits, and the PC's number when all were last looked at (see proved.py).
+NUMBERS = ("unrouted", "noted", "apart", "joined", "loops", "loops_open", "outside", "counted")
 
 BROKEN_LOOP = 1
 BROKEN_FEASIBLE = 2

@@ -38,9 +38,9 @@ def _modules() -> tuple[ModuleType, ...]:
 
 def _rare() -> tuple[ModuleType, ...]:
     """What runs too seldom to be worth copying into every caller."""
-    from innervate.networks.skin.sim import orders, touch
+    from innervate.networks.skin.sim import orders, proved, touch
 
-    return (observer, orders, touch)
+    return (observer, orders, proved, touch)
 
 
 @functools.cache

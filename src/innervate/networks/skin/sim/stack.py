@@ -4,8 +4,18 @@ from innervate.dialect.arith import MASK30
 from innervate.networks.skin.protocol import cell as skin
 from innervate.networks.skin.protocol import sink as skin_sink
 from innervate.networks.skin.protocol.cell import copy_frame
-from innervate.networks.skin.protocol.constants import BEACON, COMMAND, DATA, NONE, REPORT_BALANCE
-from innervate.networks.skin.sim import observer, orders
+from innervate.networks.skin.protocol.constants import (
+    BEACON,
+    COMMAND,
+    DATA,
+    NONE,
+    REPORT_BALANCE,
+    REPORT_FORGET,
+    REPORT_PARENT,
+    RULE_STRICT,
+    TICK,
+)
+from innervate.networks.skin.sim import observer, orders, proved
 from innervate.networks.skin.sim.checks import check_route
 from innervate.networks.skin.sim.counters import COMMAND_BLOCK
 from innervate.networks.skin.sim.observer import on_links_changed as on_change
@@ -16,6 +26,7 @@ from innervate.sim import delays
 from innervate.sim.cables.recorder import check_range
 from innervate.sim.cables.wires import DELIVERED
 from innervate.sim.clocks import reading
+from innervate.sim.wheel import NOW
 
 __all__ = ["before_change", "copy_frame", "on_change", "sense", "take_input"]
 
@@ -26,6 +37,8 @@ def on_start(world, node, now, cause):
         skin_sink.on_start(world.pc, world.params[0], now, cause, world.out)
     else:
         skin.on_start(world.cells[node], world.params[0], now, cause, world.out)
+    if world.run[0].checks:
+        proved.on_started(world, world.wheel.clock[NOW], node, cause)
 
 
 def on_frame(world, node, time, port, frame):
@@ -36,6 +49,8 @@ def on_frame(world, node, time, port, frame):
     if node == world.run[0].cells:
         skin_sink.on_frame(world.pc, params, local(world, node, time), port, frame, out)
     elif frame.kind == BEACON:
+        if params.rule == RULE_STRICT and world.run[0].checks:
+            proved.on_beacon(world, time, node, port, frame)
         if skin.hear(world.cells[node], params, port, frame, out):
             skin.announce_soon(world.cells[node], params, local(world, node, time), out)
     else:
@@ -51,6 +66,8 @@ def on_timer(world, node, now, timer):
     """A timer of a cell or the PC fires at its own clock's `now`, us."""
     if node == world.run[0].cells:
         skin_sink.on_timer(world.pc, world.params[0], now, timer, world.out)
+        if timer == TICK and world.run[0].checks:
+            proved.on_counted(world, world.wheel.clock[NOW])
     else:
         skin.on_timer(world.cells[node], world.params[0], now, timer, world.out)
 
@@ -85,14 +102,21 @@ def digest(frame):
 def on_report(world, time, node, code, a, b):
     """Note a report; one that changes a route is checked at once."""
     observer.on_report(world, time, node, code, a, b)
-    if world.run[0].checks and code <= REPORT_BALANCE:
+    if world.run[0].checks == 0:
+        return
+    if code <= REPORT_BALANCE:
         check_route(world, node)
+        if code == REPORT_PARENT and b != NONE and world.watch.forgot[node] != NONE:
+            proved.on_routed(world, time, node)
+    elif code == REPORT_FORGET:
+        proved.on_forgotten(world, node, proved.HOLD)
 
 
 def on_stop(world, time, node):
     """A node lost its memory or went dark: it has no parent any more."""
     if node < world.run[0].cells and world.run[0].observe:
         observer.follow(world, time, node, NONE)
+        proved.on_stopped(world, node)
 
 
 def check(world, node):

@@ -11,6 +11,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Iterator
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 from innervate.dialect.source import Change
@@ -58,6 +59,25 @@ def refuted(rule: str, change: Change | None = None) -> str:
     """
     if not can_prove() or rule not in RULES:
         return ""
+    if change is not None:
+        return _refuted(rule, change)
+    from innervate.networks.skin.prove.feasible import ENTRY
+    from innervate.prove import kept
+    from innervate.prove.theory import source
+
+    found: list[str] = []
+
+    def attempt() -> bool:
+        found.append(_refuted(rule, None))
+        return not found[0]
+
+    home = Path(__file__).resolve().parent.parent
+    folders = home / "protocol", home / "prove"
+    held = kept.holds(f"skin, reduced, {rule}", source(ENTRY, None), folders, attempt)
+    return "" if held else found[0]
+
+
+def _refuted(rule: str, change: Change | None) -> str:
     from innervate.networks.skin.prove.theories import resting
     from innervate.prove.theory import prove
 

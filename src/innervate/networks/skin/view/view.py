@@ -12,6 +12,7 @@ from innervate.analysis.headline import Headline
 from innervate.analysis.ways import NOWHERE
 from innervate.networks.skin.analysis.headline import skin_headline
 from innervate.networks.skin.analysis.load import balance_factor
+from innervate.networks.skin.analysis.proved import sentence
 from innervate.networks.skin.analysis.reach import world_facts
 from innervate.networks.skin.plot.words import fault_words
 from innervate.networks.skin.protocol.constants import (
@@ -23,6 +24,7 @@ from innervate.networks.skin.protocol.constants import (
 from innervate.networks.skin.sim.counters import EARLY, LOOPED, NO_ROUTE
 from innervate.networks.skin.sim.observer import APART, CUT_OFF, LOOP_OPEN, UNROUTED
 from innervate.networks.skin.sim.orders import ORDER_CAME, ORDER_GIVEN
+from innervate.networks.skin.sim.proved import OUTSIDE
 from innervate.networks.skin.view import giving
 from innervate.networks.skin.view.engine import SkinEngine
 from innervate.networks.skin.view.scene import places
@@ -120,7 +122,7 @@ class SkinView(View):
                 memory.waited[0] + len(told), memory.waited[1] + int(told["latency"].sum())
             )  # fmt: skip
         codes = (APART, CUT_OFF, UNROUTED, LOOP_OPEN, REPORT_BROKEN, REPORT_PARENT, REPORT_BALANCE,
-                 ORDER_GIVEN, ORDER_CAME)  # fmt: skip
+                 ORDER_GIVEN, ORDER_CAME, OUTSIDE)  # fmt: skip
         found = rows["rows"]
         found = found[np.isin(found["code"], codes)]
         for at, node, code, a, b in found.tolist():
@@ -130,6 +132,8 @@ class SkinView(View):
                 self._apart(at, a)
             elif code == UNROUTED:
                 self._unrouted(at, a)
+            elif code == OUTSIDE:
+                self._outside(at, node, a, b)
             elif code == ORDER_GIVEN:
                 memory.given[a] = giving.begin(self.log, self.plan.graph, at, a, b)
             elif code == ORDER_CAME and a in memory.given:
@@ -142,6 +146,12 @@ class SkinView(View):
             elif code == REPORT_PARENT and b == NONE and memory.settled:
                 label = self.plan.graph.label(node)
                 self.log.often("lost", at, f"{label} lost its parent", "bad")
+
+    def _outside(self, at_us: int, node: int, what: int, other: int) -> None:
+        """An assumption of the proofs is left."""
+        label = self.plan.graph.label
+        said = sentence(at_us, what, label(node), label(other) if other >= 0 else "")
+        self.log.often("outside", at_us, said, "bad")
 
     def _apart(self, at_us: int, cells: int) -> None:
         """So many cells are cut off from the PC from now on."""

@@ -1,0 +1,206 @@
+"""What the explorer forgets of a port changes no future: two runs of a handler side by side.
+
+A port is *dead* if it said "no route" or "you are my parent", or, and is not the parent's, a route
+that the rule refuses. It stays so until it says something else, since what is refused stays refused
+(F, T4). So in both runs a dead port may be taken for one that cannot be had, wherever the handler
+asks; that it is so at each of these places is a goal, too.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from innervate.dialect.source import Change, Function
+from innervate.networks.skin.protocol import fields
+from innervate.networks.skin.protocol.constants import (
+    INFINITY,
+    NONE,
+    PERIODIC,
+    PORTS,
+    RULE_FEASIBLE,
+    SOON,
+    TICK,
+)
+from innervate.networks.skin.prove.feasible import ENTRY
+from innervate.networks.skin.prove.neighbours import ROOM
+from innervate.networks.skin.prove.reductions import STORED, Pair
+from innervate.prove.execute import Call, Demand, Machine
+from innervate.prove.records import Array, Outbox, State, Store
+from innervate.prove.steps import Goal, Step
+from innervate.prove.terms import Term, Terms
+from innervate.prove.theory import source
+
+LOADS = frozenset({"load", "size", "own_load"})
+SAYS = frozenset({"dist", "sq", "child", "load", "size"})
+SAID, REFUSED = "is_usable", "is_allowed"  # why a port is dead: the question that says so
+WORDS = {SAID: "says that it cannot be had", REFUSED: "says what the rule refuses"}
+
+
+class Asked(Machine):
+    """Answers a question about a port with no, and demands that this be the answer.
+
+    Args:
+        functions, terms: as of every machine.
+        question: a function of cell, parameters and port.
+        port: that.
+    """
+
+    def __init__(self, functions: Any, terms: Terms, question: str, port: int) -> None:
+        super().__init__(functions, terms, Outbox(fields.FRAME, ROOM))
+        self.question = question
+        self.port = terms.number(port)
+
+    def call(
+        self, function: Function, args: list[Any], store: Store, under: Term
+    ) -> tuple[Store, Any]:
+        """Follow a call; the answer to the question is known."""
+        after, value = super().call(function, args, store, under)
+        if function.name == self.question and args[2] is self.port:
+            no = self.terms.negated(self.terms.as_truth(value))
+            self.demands.append(Demand("a dead port cannot be had", under, no, self.question))
+            return after, self.terms.false
+        return after, value
+
+    def element(self, array: Array, index: Term, node: ast.AST, state: State, call: Call) -> Term:
+        """An element of an array: at an unknown index it is not the dead port's."""
+        if index.value is not None or array.name not in SAYS:
+            return super().element(array, index, node, state, call)
+        t = self.terms
+        others = [k for k in range(max(index.low, 0), array.length) if k != self.port.value]
+        other = t.negated(t.same(index, self.port))
+        guard = t.all(call.under, state.path)
+        self.demands.append(Demand("a dead port is not looked at", guard, other, self.question))
+        found = state.store[array.record, array.name, others[0]]
+        for k in others[1:]:
+            here = t.same(index, t.number(k))
+            found = t.pick(here, state.store[array.record, array.name, k], found)
+        return found
+
+    def draw(self, many: Term, state: State, call: Call) -> Term:
+        """The same draw of both runs returns the same number."""
+        t = self.terms
+        drawn = t.unknown(f"draw {len(self.draws)}", 0, PORTS - 1)
+        under = t.all(call.under, state.path, t.at_most(t.number(1), many))
+        self.facts.append(t.implies(under, t.less(drawn, many)))
+        self.draws.append((drawn, many))
+        return drawn
+
+
+def steps(rule: int, change: Change | None = None) -> tuple[Callable[[], Step], ...]:
+    """That what a dead port said decides nothing, under a rule."""
+    known = source(ENTRY, change)
+    return tuple(
+        partial(_dead, known, rule, p, parent, why)
+        for p in range(PORTS)
+        for parent in (NONE, *range(PORTS))
+        for why in (SAID, REFUSED)
+        if parent != p or why == SAID
+    )
+
+
+class Runs:
+    """Runs of a cell one of whose ports is dead.
+
+    Args:
+        known: functions of the protocol.
+        rule: that it is under.
+        p: the port that is dead.
+        parent: the cell's.
+        why: SAID or REFUSED.
+    """
+
+    def __init__(self, known: dict[str, Any], rule: int, p: int, parent: int, why: str) -> None:
+        self.pair = Pair(known, rule)
+        self.known, self.rule, self.p, self.why = known, rule, p, why
+        self.t, self.stage, self.cell = self.pair.t, self.pair.stage, self.pair.cell
+        self.stage.fix(self.cell.cell, "parent", parent)
+        self.stage.fix(self.cell.params, "balance_periods", 0)
+        if parent == p:  # only until the next tick
+            self.stage.fix(self.cell.params, "updates", PERIODIC)
+        self.pair.facts = []
+        if parent != NONE:
+            self.stage.fix(self.cell.cell, "wait", 0)  # I2
+        self.goals: list[Term] = []
+
+    def dead(self, sq: Term, dist: Term, child: Term) -> Term:
+        """Who says this is dead, unless a feasible distance is forgotten."""
+        t, view = self.t, self.pair.view(self.stage.store)
+        if self.why == SAID:
+            return t.any(view.is_(dist, INFINITY), view.is_(child, 1))
+        asked = "nearer_than_fd" if self.rule == RULE_FEASIBLE else "later"
+        known = view.fd_known if self.rule == RULE_FEASIBLE else view.sq_known
+        args = [self.cell.cell, sq, dist] if self.rule == RULE_FEASIBLE else [sq, view.sq_own]
+        machine = Machine(self.known, t, Outbox(fields.FRAME, ROOM))
+        _, better = machine.run(asked, args, self.stage.store, t.true)
+        return t.all(view.is_(known, 1), t.negated(t.as_truth(better)))
+
+    def forgotten(self, store: Store) -> Store:
+        """The same where the port has said "no route"."""
+        words = {"dist": INFINITY, "sq": 0, "child": 0, "load": 0, "size": 0}
+        return {**store, **{(self.cell.cell, name, self.p): self.t.number(value)
+                            for name, value in words.items()}}  # fmt: skip
+
+    def run(self, store: Store, handler: str, *told: Any) -> tuple[Store, Asked]:
+        """The values after a handler, where the question is answered."""
+        machine = Asked(self.known, self.t, self.why, self.p)
+        args = [self.t.number(one) if isinstance(one, int) else one for one in told]
+        given = [self.cell.cell, self.cell.params, self.pair.clock, *args, machine.out]
+        after, _ = machine.run(handler, given, store, self.t.true)
+        self.pair.machines.append(machine)
+        self.goals += [self.t.implies(one.guard, one.holds) for one in machine.demands
+                       if one.where == self.why]  # fmt: skip
+        return after, machine
+
+    def compare(self, a: tuple[Store, Asked], b: tuple[Store, Asked]) -> None:
+        """Both runs leave the same, but for the port's words and for loads, and send the same."""
+        t, pair = self.t, self.pair
+        self.goals += [
+            pair.same_state(a[0], b[0], self.may_differ).holds,
+            pair.same_sent(a[1], b[1], (a[0], b[0]), LOADS).holds,
+            *(t.same(x[1], y[1]) for x, y in zip(a[1].draws, b[1].draws, strict=True)),
+        ]
+
+    def may_differ(self, field: str, index: int | None) -> Term:
+        """What is forgotten may differ: the port's words, and loads."""
+        return self.t.truth_of(field in LOADS or (field in STORED and index == self.p))
+
+
+def _dead(known: dict[str, Any], rule: int, p: int, parent: int, why: str) -> Step:
+    """What a dead port said decides nothing at a tick, and at no beacon."""
+    two = Runs(known, rule, p, parent, why)
+    t, pair, cell = two.t, two.pair, two.cell
+    before = two.stage.store
+    view = pair.view(before)
+    forgets = t.at_most(view.param("hold_periods"), t.add(view.hold, t.number(1)))
+    now = two.dead(view.at("sq", p), view.at("dist", p), view.at("child", p))
+    ticks = [two.run(store, "on_timer", TICK) for store in (before, two.forgotten(before))]
+    two.compare(*ticks)
+    if why == REFUSED:
+        two.goals = [t.any(forgets, one) for one in two.goals]
+    if p != parent:
+        two.compare(*(two.run(store, "on_timer", SOON)
+                      for store in (before, two.forgotten(before))))  # fmt: skip
+    for q in range(PORTS):
+        if q != p:
+            two.compare(*(two.run(store, "on_frame", q, cell.frame)
+                          for store in (before, two.forgotten(before))))  # fmt: skip
+    two.goals = [t.implies(now, one) for one in two.goals]
+    if p != parent:
+        two.goals.append(_hears(two))
+    words = f"a port {WORDS[why]}: {p}, the parent's {parent if parent >= 0 else 'none'}"
+    return pair.step(words, [Goal("it may be forgotten", t.all(*two.goals))])
+
+
+def _hears(two: Runs) -> Term:
+    """A port that is not the parent's hears something dead: that is stored, and that is all."""
+    t, frame, before = two.t, two.cell.frame, two.stage.store
+    place = len(two.goals)
+    after, machine = two.run(before, "on_frame", two.p, frame)
+    asked, two.goals = two.goals[place:], two.goals[:place]
+    said = [before[frame, name, None] for name in ("sq", "dist", "parent")]
+    quiet = [t.negated(action.guard) for action in machine.out.actions]
+    same = two.pair.same_state(before, after, two.may_differ).holds
+    return t.implies(two.dead(*said), t.all(*asked, *quiet, same))
