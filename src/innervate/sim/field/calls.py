@@ -59,3 +59,12 @@ def take(world, do, node, frame, time):
     now = time + world.radios[node].offset
     do.on_frame(world, node, now & MASK30, frame)
     finish(world, do, node, time, ON_FRAME, frame.kind)
+
+
+def is_sound(world, node):
+    """True if every word of a node's record is in its range."""
+    words, low, high = world.words[node], world.low, world.high
+    wrong = 0
+    for i in range(len(low)):
+        wrong += (words[i] < low[i]) | (words[i] > high[i])
+    return wrong == 0

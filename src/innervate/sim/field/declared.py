@@ -221,10 +221,7 @@ def _checks(own: list[Callable[..., Any]]) -> tuple[Callable[..., Any], ...]:
     check_own = check_of(own, "stations")
 
     def check(world, do, node, time):  # type: ignore[no-untyped-def]
-        words, wrong = world.words[node], 0
-        for i in range(len(world.low)):
-            wrong |= (words[i] < world.low[i]) | (words[i] > world.high[i])
-        if wrong:
+        if not calls.is_sound(world, node):
             medium.breaks(world, medium.BROKEN_RANGE, node)
         check_own(world, node, (time + world.radios[node].offset) & arith.MASK30)
 

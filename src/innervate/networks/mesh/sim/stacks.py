@@ -13,6 +13,7 @@ from innervate.networks.mesh.protocol import csma
 from innervate.networks.mesh.protocol.constants import ACK
 from innervate.networks.mesh.protocol.frames import copy_frame, frame_bytes
 from innervate.networks.mesh.sim import orders, recorder
+from innervate.sim.field.calls import is_sound
 
 # What the loop asks of the layer below.
 BELOW = (
@@ -59,15 +60,6 @@ def digest(frame):
     for i in range(frame.length):
         mark = mix(mark, frame.body[i])
     return mark
-
-
-def is_sound(world, node):
-    """True if every word of a node's record is in its range."""
-    words, low, high = world.words[node], world.low, world.high
-    wrong = 0
-    for i in range(len(low)):
-        wrong += (words[i] < low[i]) | (words[i] > high[i])
-    return wrong == 0
 
 
 def bind(entry: ModuleType, layer: Layer, *others: Callable[..., Any]) -> ModuleType:
