@@ -27,7 +27,7 @@ from innervate.networks.skin.live.items import Frame
 from innervate.wire import cobs, crc
 
 HERE = Path(__file__).parent
-SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-O1")
+SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g")
 
 
 def needs(*names):
@@ -128,7 +128,7 @@ def shared(folder, role):
 def test_c_codes_packets_and_acks_of_a_mesh_as_python_does(folders):
     native, packed = shared(folders["mesh"], "mesh")
     draw, reasons, fields = random.Random(5), set(), [field[0] for field in mesh_fields.FRAME]
-    for _ in range(4000):
+    for _ in range(1500):
         frame, data = drawn_mesh(draw, MeshFrame()), ctypes.create_string_buffer(200)
         try:
             wanted = mesh_frames.encode(frame)
