@@ -209,9 +209,8 @@ WATCHES = {
         for form, is_plain in FORMS.items()
         for protocol in ("csma-cd-r/practical", "csma-cd-r/paper", "token-ring")
     ],
-    "sim.field.calls": [
-        (f"routers, {form}", routers, (is_plain,)) for form, is_plain in FORMS.items()
-    ],
+    "sim.field.calls": [("routers, arrays", routers, (False,))],
+    "networks.mesh.sim.stacks": [("routers, plain", routers, (True,))],
     "sim.channel.listening": [
         (f"nodes on a channel, {form}", channel_nodes, (is_plain,))
         for form, is_plain in FORMS.items()
@@ -278,7 +277,6 @@ def test_every_checker_of_ranges_has_a_row():
     # Where a lost memory is put back no range is looked at; what users give is refused in a line;
     # which line put a value out of its range is tried in tests/running/test_blaming.py.
     others = {
-        "sim.field.listening",
         "networks.mesh.sim.orders",
         "live.declared",
         "scenario.declared",
