@@ -209,8 +209,9 @@ WATCHES = {
         for form, is_plain in FORMS.items()
         for protocol in ("csma-cd-r/practical", "csma-cd-r/paper", "token-ring")
     ],
-    "sim.field.calls": [("routers, arrays", routers, (False,))],
-    "networks.mesh.sim.stacks": [("routers, plain", routers, (True,))],
+    "sim.field.calls": [
+        (f"routers, {form}", routers, (is_plain,)) for form, is_plain in FORMS.items()
+    ],
     "sim.channel.listening": [
         (f"nodes on a channel, {form}", channel_nodes, (is_plain,))
         for form, is_plain in FORMS.items()

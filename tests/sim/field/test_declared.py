@@ -161,7 +161,7 @@ def test_mistakes_of_a_scenario_are_one_line(bare, capsys, old, new, says):
     [
         ("protocol.py", "def on_carrier(", "def on_carriers(", "flood/protocol.py:1: .*on_carrier"),
         ("protocol.py", "    for i in range(PLACES):\n        node.seen[i] = -1",
-         "    while node.seq == 0:\n        pass", "flood/protocol.py:2[0-9]: "),
+         "    while node.seq == 0:\n        node.busy = 0", "flood/protocol.py:2[0-9]: "),
         ("frames.py", '"hops", 0, 4, 0', '"hops", 0, 2, 0', "flood/frames.py:[0-9]+: .*hops"),
         ("protocol.py", "    frame.kind = NEWS", "    frame.kind = 2", "no layout"),
         ("network.py", 'medium="field"', 'medium="feild"', "flood/network.py:5: .*no medium 'fei"),
