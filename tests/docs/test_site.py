@@ -1,12 +1,14 @@
 """The documentation as a site: `mkdocs.yml` is strict, so a link that leads nowhere fails."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+import innervate
 from innervate.cli.app import app
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -51,9 +53,7 @@ def test_the_python_page_has_signatures_units_and_errors(site):
 def test_nothing_is_fetched_from_elsewhere(site):
     for page in site.glob("*.html"):
         text = page.read_text(encoding="utf-8")
-        assert not [mark for mark in ('src="http', 'href="https://fonts') if mark in text], (
-            page.name
-        )
+        assert not re.findall(r'<(?:script|img|link)[^>]*="https?:[^>]*>', text), page.name
 
 
 def test_a_broken_link_fails(tmp_path):
@@ -66,3 +66,8 @@ def test_a_broken_link_fails(tmp_path):
     done = build(tmp_path / "site", tmp_path / "mkdocs.yml")
     assert done.returncode == 1
     assert "other.md" in done.stderr
+
+
+def test_the_citation_names_this_version():
+    text = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert re.search(r"^version: (.*)$", text, re.MULTILINE)[1] == innervate.__version__

@@ -27,6 +27,11 @@ static void port_deliver(void *user, int32_t kind, const void *frame)
     (void)user;
     (void)kind;
     delivered += frame != 0;
+#ifdef AIR
+    for (int32_t i = 0; i < node.payload_count; i++) {
+        sent += node.payload[i] == 1;
+    }
+#endif
 }
 
 /* A frame that makes sense more often than chance would have it. */

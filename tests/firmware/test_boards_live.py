@@ -36,10 +36,10 @@ def needed():
             pytest.skip(f"{name} is not installed")
 
 
-def image(tmp_path, role, main, settings):
+def image(tmp_path, role, main, settings, *more):
     files = library.made_of(role, [f"{name}={value}" for name, value in settings.items()])
     library.write(files, tmp_path / "lib")
-    options = (*tools.CORTEX_M3, f"-DNUMBER={BOARD}", "-DSEED=4711")
+    options = (*tools.CORTEX_M3, *(more or (f"-DNUMBER={BOARD}",)), "-DSEED=4711")
     return tools.image(tmp_path / "lib", role, tmp_path, main, options)
 
 
@@ -92,6 +92,28 @@ def test_a_mesh_board_answers_discovery_and_relays(tmp_path):
                 own = n2.send_message(BOARD, b"for the board itself")
                 assert await own.wait() == DELIVERED
         assert heard == [(0, b"by the board %d" % k) for k in range(20)]
+
+    with serial(2) as cables:
+        asyncio.run(go(cables))
+
+
+@pytest.mark.slow
+def test_a_mesh_board_leads(tmp_path):
+    made = image(tmp_path, "mesh", "small", {"nodes": 3, **PATIENT}, "-DNUMBER=0", "-DLEADS")
+    params = mesh_parameters(3, PATIENT)
+
+    async def go(cables):
+        n1, n2 = (
+            MeshNode(f"n{i}", MeshStack(i, -1, params, 7919 + i), [SerialLink(device, BAUD)])
+            for i, device in ((1, cables.devices[0]), (2, cables.devices[3]))
+        )
+        with board(made, cables.devices[1:3]):
+            async with n2, n1:
+                await until(lambda: n2.stack.node.version and n1.stack.node.version, FIRST_S)
+                assert n1.status()["gateway"] == n2.status()["gateway"] == 0
+                assert n1.status()["routes"]["2"][0] == 0
+                receipts = [n1.send_message(2, b"%d" % k) for k in range(20)]
+                assert {await receipt.wait() for receipt in receipts} == {DELIVERED}
 
     with serial(2) as cables:
         asyncio.run(go(cables))

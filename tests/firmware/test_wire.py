@@ -86,10 +86,10 @@ def drawn_mesh(draw, frame):
         setattr(frame, name, draw.randrange(1 << bits) - (signed << (bits - 1)))
     frame.flags = draw.choice((0, 8, 16, 24, 255))
     frame.path_len = draw.choice((0, 1, 3, 24))
-    frame.path = [draw.randrange(256) for _ in range(24)]
+    frame.path = list(draw.randbytes(24))
     size = mesh_payloads.SIZES.get(frame.kind, draw.randrange(40))
     frame.length = draw.choice((size, size, 3 * draw.randrange(5), draw.randrange(115)))
-    frame.body = [draw.choice((0, 0, 1, 2, 3, draw.randrange(256))) for _ in range(114)]
+    frame.body = draw.choices((0, 0, 1, 2, 3, draw.randrange(256)), k=114)
     return frame
 
 
@@ -119,7 +119,7 @@ def test_c_codes_frames_byte_by_byte_as_python_does(native, files):
 def shared(folder, role):
     needs("gcc")
     made = folder / "wire.so"
-    sources = [folder / name for name in (f"{role}.c", f"{role}_wire.c", "innervate_wire.c")]
+    sources = [folder / name for name in (f"{role}_wire.c", "innervate_wire.c")]
     run(["gcc", "-std=c99", "-O1", "-fPIC", "-shared", "-fsanitize=undefined,bounds",
          "-fno-sanitize-recover=all", *sources, "-o", made])  # fmt: skip
     return ctypes.CDLL(str(made)), Packed(library.made_of(role, []).library.records["frame"])

@@ -27,6 +27,7 @@ PORTS = (
 )  # fmt: skip
 # A line at which a part of a driver begins, by its name, or ends.
 SECTION = re.compile(r"(?:/\*|#) ?([+-]) ?(\w*)(?: \*/)?")
+FRAME_MAX = 245  # bytes of a frame: what a modem says with it has to be stuffed at once, too
 PREFIX = re.compile(r"[a-z][a-z0-9_]{0,30}")
 
 
@@ -123,6 +124,11 @@ def files_of(library: Library, network: Network) -> dict[str, str]:
     if coded is None:
         return texts
     most = _part(coded.payload_max)(library.params) if coded.payload_max else 0
+    if coded.size_max + most > FRAME_MAX:
+        raise FirmwareError(
+            f"{library.role.name}: frames of up to {coded.size_max + most} bytes; lines carry "
+            f"{FRAME_MAX}: choose parameters with shorter ones"
+        )
     wire = Wire(library, coded, most)
     texts |= {f"{name}_wire.h": wire.header(), f"{name}_wire.c": wire.source()}
     texts |= {file: shipped(file) for file in (*BESIDE, *SEAL, *BARE)}

@@ -116,9 +116,11 @@ class Wire:
             counters = [self._counter(form, name) for name, many, *_ in form.fields
                         if name != SPARE and _varies(many)]  # fmt: skip
             more = "".join(f" + frame->{name_of(counter)}" for counter in counters)
-            whole_size = f"{self._bytes(form)}{more}"
-            return [f"return ({' || '.join(limits)}) ? 0 : {whole_size};" if limits
-                    else f"return {whole_size};"]  # fmt: skip
+            size = f"{self._bytes(form)}{more}"
+            if not more:
+                return [f"return {size};"]
+            tests = " || ".join([*limits, f"{size} > {self.big}_SIZE_MAX"])
+            return [f"if ({tests}) {{", "    return 0;", "}", f"return {size};"]
 
         alone = []
         if self.coded.alone:

@@ -184,6 +184,9 @@ void role_node_start(role_node_t *node, const role_params_t *params, const INNER
         role_init_gate(gate);
     }
 /*- */
+/*+ air */
+    node->at = role_node_now(node);
+/*- */
 /*+ hooks */
     role_links_begin(&node->state, HAS_GATE);
 /*- */
@@ -243,11 +246,14 @@ void role_node_heard(role_node_t *node, int32_t at, const uint8_t *bytes, int32_
         return;
     }
     node->at = at & MASK30;
-    node->payload = count > ROLE_PAYLOAD_AT + 2 && node->frame.count ? bytes + ROLE_PAYLOAD_AT : 0;
-    node->payload_count = count - ROLE_PAYLOAD_AT - 2;
+    if (node->frame.count > 0 && count > ROLE_PAYLOAD_AT + 2) {
+        node->payload = bytes + ROLE_PAYLOAD_AT;
+        node->payload_count = count - ROLE_PAYLOAD_AT - 2;
+    }
     role_on_frame(&node->state, node->params, node->at, 0, &node->frame, &node->out);
     role_drain(node);
     node->payload = 0;
+    node->payload_count = 0;
 }
 
 /*- */

@@ -10,6 +10,11 @@
 #endif
 
 static role_node_t node;
+/*+ gate */
+#ifdef LEADS
+static role_gate_t gate; /* what a node needs that leads */
+#endif
+/*- */
 static int32_t wait_us;
 
 static int32_t port_now(void *user)
@@ -34,6 +39,11 @@ int main(void)
 {
     static const innervate_port_t port = {port_now, port_send, port_timer, 0, 0, 0};
     board_start();
+/*+ gate */
+#ifdef LEADS
+    node.gate = &gate;
+#endif
+/*- */
     role_node_start(&node, &role_defaults, &port, NUMBER, SEED, 1);
     for (;;) {
         uint8_t bytes[4];
