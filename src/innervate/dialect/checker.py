@@ -306,8 +306,8 @@ def _looked_at(test):
     called = {id(part.func) for part in calls}
     names = [part for part in ast.walk(test) if isinstance(part, ast.Name)]
     numbers = {one.id for one in names if id(one) not in inner | called}
-    looked = [part for part in ast.walk(test)
-              if isinstance(part, (ast.Attribute, ast.Subscript)) or id(part) in handed]  # fmt: skip
+    inside = (ast.Attribute, ast.Subscript)
+    looked = [one for one in ast.walk(test) if isinstance(one, inside) or id(one) in handed]
     return numbers, set(map(_field, looked)) - {None}
 
 
