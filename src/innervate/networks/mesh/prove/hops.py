@@ -61,6 +61,7 @@ class Router:
     def ask(self, store: Store, question: str, *told: Term) -> Term:
         """What a function of the node says."""
         _, answer = self.stage.machine.run(question, [self.node, *told], store, self.t.true)
+        assert isinstance(answer, Term)
         return answer
 
     def had(self, store: Store, who: Term) -> Term:
