@@ -5,6 +5,7 @@
 #   make lint     style, types, import walls             make bench   how fast it is
 #   make papers   the published figures, redrawn         make parity  the same code on boards' Python
 #   make mutants  faults planted all over, and how many the tests find (long)
+#   make docs     the documentation as a site, in site/     make dist     wheel and source archive, in dist/
 #   make boards   the folder to copy to a board          make page    build the page of `watch` (npm)
 #   make clean    remove what these made
 
@@ -25,7 +26,7 @@ LOOPS = $(BIN)/python -m tests.loops $(WORKERS)
 PAGE := src/innervate/web/page
 MODULES := $(PAGE)/node_modules/.package-lock.json
 
-.PHONY: help demo test full mutants lint bench papers boards parity page page-check clean
+.PHONY: help demo test full mutants lint bench papers boards parity docs dist page page-check clean
 
 help:
 	@sed -n '2,/^$$/s/^# \{0,1\}//p' Makefile
@@ -87,6 +88,14 @@ boards: $(STAMP)
 parity: $(STAMP)
 	@$(BIN)/python -m boards.parity
 
+docs: $(STAMP)
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
+	@echo "Written: site/. To read it with its search: $(BIN)/python -m http.server -d site"
+
+# Without a network: what builds the wheel is in .venv already.
+dist: docs
+	@$(BIN)/python -m build --no-isolation
+
 $(MODULES): $(PAGE)/package-lock.json
 	@command -v npm >/dev/null || { echo "npm is missing (Debian, Ubuntu: apt install npm)" >&2; exit 1; }
 	npm ci --prefix $(PAGE) --ignore-scripts --no-audit --no-fund --loglevel=error
@@ -102,5 +111,5 @@ page-check: $(MODULES)
 
 clean:
 	rm -rf $(PAGE)/node_modules
-	rm -rf .venv .mutants build dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv .mutants build dist site .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	find src tests benchmarks boards examples -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,7 +1,10 @@
 """A patch of emulated cells around an ordinary PC: comes up, is cut, is killed, heals."""
 
 import asyncio
+import os
+import re
 import shutil
+import signal
 from pathlib import Path
 
 import pytest
@@ -75,6 +78,14 @@ def test_four_cells_of_firmware_come_up_and_heal(tmp_path):
             await heals(network, 2, 4)
             got = samples(network)
             await until(lambda: samples(network) > got + 20, FIRST_S)
+            os.kill(int(children(network.processes["c1"].pid)[0]), signal.SIGKILL)
+            await until(lambda: network.processes["c1"].poll() is not None, FIRST_S)
+            assert network.processes["c1"].returncode == 1
+            said = (tmp_path / "run/c1.log").read_text().splitlines()[-1]
+            assert re.fullmatch(
+                r"c1: its board is gone: \S+qemu-system-arm ended \(SIGKILL\)", said
+            )
+            await until(lambda: asked(network, "pc")["cells"] == [2, 3], FIRST_S)
         finally:
             await network.down()
 
@@ -83,7 +94,7 @@ def test_four_cells_of_firmware_come_up_and_heal(tmp_path):
 
 def test_what_cannot_be_brought_up_is_one_line(tmp_path, capsys, monkeypatch):
     for words, said in (
-        (["mesh-field"], "no coder in C"),
+        (["mesh-field"], "among live nodes on serial lines"),
         (["setup-3", "--in-python", "c99999"], "--in-python c99999"),
     ):
         assert main(["live", "up", words[0], "--firmware", *words[1:]]) == 2

@@ -80,14 +80,39 @@ def test_an_arduino_sketch_compiles_against_what_it_uses_of_arduino(made, tmp_pa
          "-I", folder, tmp_path / "sketch.cpp"])  # fmt: skip
 
 
-def test_every_port_names_files_that_are_there(made):
-    _, folder = made
-    assert json.loads((folder / "library.json").read_text())["name"] == "innervate_skin"
+# Of an Arduino library, as arduino.github.io/arduino-cli/library-specification has them.
+ASKED = {"name", "version", "author", "maintainer", "sentence", "paragraph", "category", "url",
+         "architectures"}  # fmt: skip
+# Of a module.yml, as docs.zephyrproject.org/latest/develop/modules.html has it.
+MODULE = {"name", "build"}
+BUILD = {"cmake", "kconfig"}
+
+
+@pytest.mark.parametrize("role", ["skin", "mesh", "radio"])
+def test_every_port_names_files_that_are_there(role, tmp_path):
+    library.write(library.made_of(role, []), tmp_path)
+    folder, own = tmp_path, {path.name for path in tmp_path.glob("*.c")}
+    platformio = json.loads((folder / "library.json").read_text())
+    assert platformio["name"] == f"innervate_{role}"
+    assert re.fullmatch(r"\d+\.\d+\.\d+", platformio["version"])
     zephyr = (folder / "zephyr/CMakeLists.txt").read_text()
-    named = re.findall(r"\.\./\w+\.c", zephyr)
-    assert len(named) == 5
-    assert all((folder / "zephyr" / name).is_file() for name in named)
-    assert "includes=skin_node.h" in (folder / "library.properties").read_text()
+    assert {name[3:] for name in re.findall(r"\.\./\w+\.c", zephyr)} == own
+    assert f"if(CONFIG_INNERVATE_{role.upper()})" in zephyr
+    assert f"config INNERVATE_{role.upper()}" in (folder / "zephyr/Kconfig").read_text()
+    module = dict(re.findall(r"^( *\w+):(.*)$", (folder / "zephyr/module.yml").read_text(), re.M))
+    assert {name for name in module if not name.startswith(" ")} == MODULE
+    assert {name.strip() for name in module if name.startswith(" ")} == BUILD
+    assert (folder / module["  kconfig"].strip()).is_file()
+    assert (folder / module["  cmake"].strip() / "CMakeLists.txt").is_file()
+    cmake = (folder / "CMakeLists.txt").read_text()
+    assert set(re.findall(r"\b\w+\.c\b", cmake)) == own
+    assert set(re.findall(r"\b\w+\.h\b", cmake)) == {path.name for path in folder.glob("*.h")}
+    lines = (folder / "library.properties").read_text().splitlines()
+    properties = dict(line.split("=", 1) for line in lines)
+    assert set(properties) >= ASKED
+    assert all(properties.values())
+    assert properties["category"] in ("Communication", "Other")
+    assert properties["includes"] == f"{role}_node.h"
     left = [path for path in folder.rglob("*") if path.is_file()
             if "role" in path.name or "role_" in path.read_text()]  # fmt: skip
     assert left == []

@@ -13,7 +13,15 @@ from cyclopts import App, Parameter
 import innervate
 from innervate.cli import errors
 from innervate.cli.export_app import export, fit
-from innervate.cli.files_app import check, check_protocol, compare, new, scenarios
+from innervate.cli.files_app import (
+    check,
+    check_protocol,
+    compare,
+    doctor,
+    new,
+    scenarios,
+    schema,
+)
 from innervate.cli.live_app import live_app
 from innervate.cli.options import (
     PAGE_DEFAULTS,
@@ -280,10 +288,13 @@ app.command(scenarios)
 app.command(new)
 app.command(check)
 app.command(check_protocol)
+app.command(schema)
+app.command(doctor)
 app.command(compare)
 app.command(export)
 app.command(fit)
 app.command(live_app)
+app.register_install_completion_command()
 
 
 def main(tokens: Sequence[str] | None = None) -> int:

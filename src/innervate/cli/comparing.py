@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from innervate.running.compare import Comparison
 
 DIFFERENCES_MAX = 40
 
 
-def compare(first: Path, second: Path) -> int:
+def compare(first: Path, second: Path, as_json: bool) -> int:
     """Say what differs between two runs."""
     from innervate.plot.words import headline_line
     from innervate.running import compare as room
 
     found = room(first, second)
+    if as_json:
+        print(json.dumps(_record(found, (first, second)), indent=2, ensure_ascii=False))
+        return 0
     for name, headline in zip((first, second), found.headlines, strict=True):
         if headline is not None:
             print(f"{name}: {headline_line(headline)}")
@@ -28,6 +35,19 @@ def compare(first: Path, second: Path) -> int:
     for note in found.notes:
         print(f"Note: {note}")
     return 0
+
+
+def _record(found: Comparison, runs: tuple[Path, Path]) -> dict[str, Any]:
+    """A comparison for programs; values that are None are not set."""
+    return {
+        "same": found.same,
+        "runs": [str(run) for run in runs],
+        "headlines": found.headlines,
+        "scenario": [{"key": key, "a": a, "b": b} for key, a, b in found.scenario],
+        "summary": [{"key": key, "a": a, "b": b} for key, a, b in found.summary],
+        "first_event_that_differs": None if found.divergence is None else str(found.divergence),
+        "notes": found.notes,
+    }
 
 
 def _print(head: str, differences: list[tuple[str, Any, Any]]) -> None:

@@ -1,20 +1,29 @@
-"""`innervate scenarios`, `new` and `check`: scenario files, without a simulation."""
+"""`innervate scenarios`, `new`, `check`, `schema`: scenario files, without a simulation."""
 
 from __future__ import annotations
 
+import json
 import os
 import re
 from itertools import takewhile
 from pathlib import Path
+from typing import Any
 
 from innervate import scenario
 from innervate.cli.errors import UserError
 from innervate.network import networks
 
 
-def scenarios() -> int:
+def scenarios(as_json: bool) -> int:
     """List the bundled scenarios, a line each: the first sentence of the file's first comment."""
     files = scenario.bundled()
+    if as_json:
+        listed = [
+            {"name": name, "shows": _first_sentence(path), "path": str(path)}
+            for name, path in files.items()
+        ]
+        print(json.dumps(listed, indent=2, ensure_ascii=False))
+        return 0
     width = max(len(name) for name in files)
     for name, path in files.items():
         print(f"{name:<{width}}  {_first_sentence(path)}")
@@ -82,7 +91,39 @@ def _of_network(
     return text, scenario.summary(scenario.loads(text, folder=str(folder)))
 
 
-def check(file: str, sets: list[str], seed: int | None) -> int:
+def check(file: str, sets: list[str], seed: int | None, as_json: bool) -> int:
     """Say what a scenario holds."""
-    print(scenario.check(file, overrides=sets, seed=seed))
+    loaded = scenario.load(file, overrides=sets, seed=seed)
+    said = scenario.summary(loaded)
+    if as_json:
+        print(json.dumps(_held(loaded, said), indent=2, ensure_ascii=False))
+    else:
+        print(said)
+    return 0
+
+
+def _held(loaded: scenario.Scenario, said: str) -> dict[str, Any]:
+    """What `check` says, line by line: what each is about, and what it says of that."""
+    lines = [line.split(maxsplit=1) for line in said.splitlines()[1:]]
+    return {
+        "name": loaded.name,
+        "kind": loaded.kind,
+        "duration_s": loaded.duration_s,
+        "seed": loaded.seed,
+        "holds": [{"what": line[0], "says": " ".join(line[1:])} for line in lines],
+    }
+
+
+def schema(out: Path | None) -> int:
+    """Print or write the JSON Schema of scenario files."""
+    text = json.dumps(scenario.json_schema(), indent=2, ensure_ascii=False) + "\n"
+    if out is None:
+        print(text, end="")
+        return 0
+    try:
+        out.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise UserError(f"{out} cannot be written: {error.strerror}") from None
+    print(f"Written: {out}. Editors take it with the line `#:schema {out.name}` on top of a "
+          "scenario beside it.")  # fmt: skip
     return 0

@@ -1,4 +1,4 @@
-"""`innervate scenarios`, `new`, `check` and `compare`: their options."""
+"""`innervate scenarios`, `new`, `check`, `schema`, `compare` and `doctor`: their options."""
 
 from __future__ import annotations
 
@@ -9,12 +9,46 @@ from cyclopts import Parameter
 
 from innervate.cli.seeds import Seed, Sets
 
+Json = Annotated[bool, Parameter(negative="")]
 
-def scenarios() -> int:
-    """List the bundled scenarios, each with what it shows."""
+
+def scenarios(*, json: Json = False) -> int:
+    """List the bundled scenarios, each with what it shows.
+
+    Parameters
+    ----------
+    json
+        Print names, sentences and files as JSON.
+    """
     from innervate.cli import files as command
 
-    return command.scenarios()
+    return command.scenarios(json)
+
+
+def schema(*, out: Path | None = None) -> int:
+    """Print the JSON Schema of scenario files, for editors.
+
+    Parameters
+    ----------
+    out
+        File to write it to.
+    """
+    from innervate.cli import files as command
+
+    return command.schema(out)
+
+
+def doctor(*, json: Json = False) -> int:
+    """Say what is installed, what is missing and what will be slow; 1 if nothing can be simulated.
+
+    Parameters
+    ----------
+    json
+        Print it as JSON and nothing else.
+    """
+    from innervate.cli import doctor as command
+
+    return command.doctor(json)
 
 
 def new(
@@ -54,7 +88,7 @@ def new(
     return command.new(kind, file, network, types, min_tq)
 
 
-def check(file: str, /, *, set_: Sets = None, seed: Seed = None) -> int:
+def check(file: str, /, *, set_: Sets = None, seed: Seed = None, json: Json = False) -> int:
     """Check a scenario without running it; says what it holds.
 
     Parameters
@@ -65,13 +99,15 @@ def check(file: str, /, *, set_: Sets = None, seed: Seed = None) -> int:
         Change a key, as for run.
     seed
         Root seed in place of the scenario's.
+    json
+        Print it as JSON and nothing else.
     """
     from innervate.cli import files as command
 
-    return command.check(file, set_ or [], seed)
+    return command.check(file, set_ or [], seed, json)
 
 
-def compare(first: Path, second: Path, /) -> int:
+def compare(first: Path, second: Path, /, *, json: Json = False) -> int:
     """Compare two run folders: scenario, summary, first event that differs.
 
     Parameters
@@ -80,10 +116,12 @@ def compare(first: Path, second: Path, /) -> int:
         A run folder.
     second
         Another one.
+    json
+        Print all that differs as JSON and nothing else.
     """
     from innervate.cli import comparing as command
 
-    return command.compare(first, second)
+    return command.compare(first, second, json)
 
 
 def check_protocol(
@@ -91,7 +129,7 @@ def check_protocol(
     /,
     *,
     tests: bool = True,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    json: Json = False,
 ) -> int:
     """Check a network of your own: dialect, ranges, frames, outbox, what no test reaches.
 

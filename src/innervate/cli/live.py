@@ -124,6 +124,14 @@ def change(name: str, port: int, what: str) -> int:
     return 0
 
 
+def modem(device: str, where: str, number: int, baud: int) -> int:
+    """Put a board at a serial line on a radio channel, until a signal comes."""
+    from innervate.live import modem as room
+
+    asyncio.run(room.run(device, baud, number, where))
+    return 0
+
+
 def medium(where: str, slot_us: int, turnaround_us: int) -> int:
     """Run a radio channel for stations that are processes, until a signal comes."""
     from innervate.live import channel as room

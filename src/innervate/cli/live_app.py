@@ -220,6 +220,33 @@ def live_medium(
     return command.medium(address, slot_us, turnaround_us)
 
 
+@live_app.command(name="modem")
+def live_modem(
+    device: str,
+    address: str = "127.0.0.1:4600",
+    /,
+    *,
+    number: int = 0,
+    baud: int = 1_000_000,
+) -> int:
+    """Put a board at a serial line on a radio channel of `live medium`, as one of its stations.
+
+    Parameters
+    ----------
+    device
+        The serial port, like /dev/ttyUSB0.
+    address
+        Where the channel is.
+    number
+        The board's, as its firmware has it.
+    baud
+        Bits per second.
+    """
+    from innervate.cli import live as command
+
+    return command.modem(device, address, number, baud)
+
+
 @live_app.command(name="enrol")
 def live_enrol(folder: Path, /, *numbers: int, nodes: int = 0) -> int:
     """Make an identity for each node of a network: one file for each, which is all that it needs.

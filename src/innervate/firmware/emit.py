@@ -19,7 +19,7 @@ from innervate.firmware.records import initial, name_of, records_of, struct
 from innervate.firmware.statements import Statements, comment, declaration, wrapped
 from innervate.live.board import Role
 
-ABI = 1  # counts changes of what stands in headers and how it is called
+ABI = 2  # counts changes of what stands in headers and how it is called
 HANDLERS = ("on_start", "on_frame", "on_timer", "on_input", "on_carrier")
 MEANINGS = {
     "state": "What a node keeps.",

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import asyncio
 import ctypes
+import os
 import signal
 import struct
 import subprocess
@@ -54,6 +55,7 @@ class Emulated(Engine):
         self._tasks: list[asyncio.Task[None]] = []
         self._state = bytearray(packed["state"].size)
         self._begun: tuple[int, int, int] | None = None
+        self._watch = -1  # becomes readable when the emulator ends
 
     def start(self, cause: int = 0) -> None:
         """Switch the board on; the node starts as soon as its lines are there."""
@@ -66,6 +68,7 @@ class Emulated(Engine):
         super().stop()
         for task in self._tasks:
             task.cancel()
+        self._unwatch()
         if self._process is not None:
             self._process.kill()
             self._process.wait()
@@ -108,6 +111,8 @@ class Emulated(Engine):
             [self.emulator, "-M", "mps2-an385", "-display", "none", "-monitor", "none",
              "-kernel", str(self.image), *words], stdin=subprocess.DEVNULL, preexec_fn=_end_with_us,
         )  # fmt: skip
+        self._watch = os.pidfd_open(self._process.pid)
+        self._loop.add_reader(self._watch, self._gone)
         await there.wait()
         assert self._begun is not None
         number, seed, cause = self._begun
@@ -115,6 +120,20 @@ class Emulated(Engine):
         while True:
             self._send(LOOK, b"?")
             await asyncio.sleep(ASK_S)
+
+    def _gone(self) -> None:
+        """The emulator has ended, and nobody asked it to."""
+        self._unwatch()
+        assert self._process is not None
+        code = self._process.wait()
+        how = signal.Signals(-code).name if code < 0 else f"exit code {code}"
+        self.ended(f"its board is gone: {self.emulator} ended ({how})")
+
+    def _unwatch(self) -> None:
+        if self._watch >= 0:
+            self._loop.remove_reader(self._watch)
+            os.close(self._watch)
+            self._watch = -1
 
     def _send(self, uart: int, data: bytes) -> None:
         line = self._lines[uart]

@@ -10,20 +10,24 @@ from typing import Any, NamedTuple
 from innervate import scenario
 from innervate.firmware.emit import Library
 from innervate.firmware.errors import FirmwareError
-from innervate.firmware.wire import Wire
-from innervate.live.board import Role, roles_of
+from innervate.firmware.wire import Wire, coded_of
+from innervate.live.board import CABLES, Role, roles_of
 from innervate.live.parameters import check_parameters
 from innervate.network import Network, networks, use
 
 BESIDE = ("innervate_wire.h", "innervate_wire.c", "innervate_port.h")
 SEAL = ("innervate_seal.h", "innervate_seal.c")
 DRIVER = ("role_node.h", "role_node.c")
+MAINS = {"node": ("bare/role_main.c", "bare/role_small.c"), "station": ("bare/role_modem.c",)}
 BARE = ("bare/start.c", "bare/board.h", "bare/board_mps2.c", "bare/link.ld")
 # For build systems: CMake, Zephyr, PlatformIO, Arduino.
 PORTS = (
     "CMakeLists.txt", "zephyr/module.yml", "zephyr/Kconfig", "zephyr/CMakeLists.txt",
     "library.json", "library.properties", "examples/role_node/role_node.ino",
 )  # fmt: skip
+# A line at which a part of a driver begins, by its name, or ends.
+SECTION = re.compile(r"(?:/\*|#) ?([+-]) ?(\w*)(?: \*/)?")
+FRAME_MAX = 245  # bytes of a frame: what a modem says with it has to be stuffed at once, too
 PREFIX = re.compile(r"[a-z][a-z0-9_]{0,30}")
 
 
@@ -116,23 +120,86 @@ def files_of(library: Library, network: Network) -> dict[str, str]:
     name = library.prefix
     header = f"{name}.h"
     texts = {header: library.header(), f"{name}.c": library.source(header)}
-    if not hasattr(network.frames, "KIND_BITS"):
+    coded = coded_of(library.role, network)
+    if coded is None:
         return texts
-    wire = Wire(library, network)
+    most = _part(coded.payload_max)(library.params) if coded.payload_max else 0
+    if coded.size_max + most > FRAME_MAX:
+        raise FirmwareError(
+            f"{library.role.name}: frames of up to {coded.size_max + most} bytes; lines carry "
+            f"{FRAME_MAX}: choose parameters with shorter ones"
+        )
+    wire = Wire(library, coded, most)
     texts |= {f"{name}_wire.h": wire.header(), f"{name}_wire.c": wire.source()}
     texts |= {file: shipped(file) for file in (*BESIDE, *SEAL, *BARE)}
-    named = (*DRIVER, "bare/role_main.c", "bare/role_small.c")
-    texts |= {file.replace("role", name): shipped(file, name) for file in named}
-    return texts | {file.replace("role", name): shipped(f"ports/{file}", name) for file in PORTS}
+    driver = library.role.driver if network.medium == CABLES or library.role.coded else ""
+    if not driver:
+        return texts
+    having = _sections(library)
+    for file in (*DRIVER, *MAINS[driver]):
+        text = _told(library, shipped(file, "", having))
+        texts[file.replace("role", name)] = renamed(text, name)
+    if library.role.hooks:
+        package, _, stem = library.role.hooks.partition(":")
+        for end in ("h", "c"):
+            text = (resources.files(package) / f"{stem}.{end}").read_text(encoding="utf-8")
+            texts[f"{name}_links.{end}"] = renamed(text, name)
+    ports = [file for file in PORTS if driver == "node" or not file.endswith(".ino")]
+    for file in ports:
+        texts[file.replace("role", name)] = shipped(f"ports/{file}", name, having)
+    return texts
 
 
-def shipped(file: str, prefix: str = "") -> str:
-    """A file that lies here; one of the driver's with a network's names."""
-    text = (resources.files("innervate.firmware") / "c" / file).read_text(encoding="utf-8")
-    if prefix:
-        text = re.sub(r"(?<![a-z])role(?![a-z])", prefix, text)
-        text = re.sub(r"(?<![A-Z])ROLE(?![A-Z])", prefix.upper(), text)
+def _sections(library: Library) -> frozenset[str]:
+    """The parts of the driver that a role has: see `shipped`."""
+    role = library.role
+    found = {"lines" if role.driver == "node" else "air"}
+    if role.driver == "node":
+        found.add("hooks" if role.hooks else "ports")
+    return frozenset(found | ({"gate"} if role.has_gate else set()))
+
+
+def _told(library: Library, text: str) -> str:
+    """A driver's text with what it calls differently from role to role."""
+    role, params = library.role, library.params
+    air = role.driver == "station"
+    words = {
+        "/*gate*/": "node->gate, " if role.has_gate else "",
+        "HAS_GATE": "gate != 0" if role.has_gate else "0",
+        "INNERVATE_PORT *": "innervate_air_t *" if air else "innervate_port_t *",
+    }
+    if air:
+        words["PACKET_BYTES"] = str(min(255, params["packet_slots"] - 2))
+        words["PER_TURN"] = str(params["per_turn"])
+    for old, new in words.items():
+        text = text.replace(old, new)
     return text
+
+
+def shipped(file: str, prefix: str = "", having: frozenset[str] = frozenset()) -> str:
+    """A file that lies here; one of the driver's with a network's names.
+
+    Of sections, which stand between `/*+ name */` and `/*- */` (or `# + name`, `# -`) on lines of
+    their own, those are kept that are in `having`.
+    """
+    text = (resources.files("innervate.firmware") / "c" / file).read_text(encoding="utf-8")
+    kept, inside = [], []  # type: ignore[var-annotated]
+    for line in text.splitlines(keepends=True):
+        found = SECTION.fullmatch(line.rstrip())
+        if found is None:
+            kept += [line] * all(inside)
+        elif found[1] == "+":
+            inside.append(found[2] in having)
+        else:
+            inside.pop()
+    text = "".join(kept)
+    return renamed(text, prefix) if prefix else text
+
+
+def renamed(text: str, prefix: str) -> str:
+    """A text with a network's names for the word role."""
+    text = re.sub(r"(?<![a-z])role(?![a-z])", prefix, text)
+    return re.sub(r"(?<![A-Z])ROLE(?![A-Z])", prefix.upper(), text)
 
 
 def write(files: Files, folder: Path) -> dict[str, int]:

@@ -32,6 +32,11 @@ def images(plan: Any, folder: Path, in_python: list[str]) -> dict[str, Path]:
     roles = roles_of(network)
     if not roles or deployment.has_channel or not deployment.links:
         raise FirmwareError(f"{plan.kind}: only nodes over cables run on emulated boards so far")
+    if roles[-1].hooks:
+        raise FirmwareError(
+            f"{plan.kind}: --firmware brings up nodes whose ports are cables; a board of this kind "
+            "takes its place among live nodes on serial lines (docs/firmware.md)"
+        )
     find("qemu-system-arm")
     library = Library(roles[-1], plan.params)
     files = Files(library, files_of(library, network))

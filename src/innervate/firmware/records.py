@@ -80,10 +80,16 @@ def records_of(role: Role) -> dict[str, dict[str, Field]]:
         named["frame"] = role.frame
     if role.item is not role.frame:
         named["item"] = role.item
-    found = {record: fields_of(declared) for record, declared in named.items()}
+    found = {record: _ordered(fields_of(declared)) for record, declared in named.items()}
     # Narrow ones first: there are many actions, and what aligns them would be lost.
     actions = sorted(fields_of(role.action).values(), key=lambda field: BYTES[field.type])
     return {**found, "action": {field.name: field for field in actions}}
+
+
+def _ordered(fields: dict[str, Field]) -> dict[str, Field]:
+    """Numbers before arrays, narrow ones first: small processors reach what is near at once."""
+    ranked = sorted(fields.values(), key=lambda f: (f.length * BYTES[f.type], BYTES[f.type]))
+    return {field.name: field for field in ranked}
 
 
 def struct(name: str, fields: dict[str, Field], meaning: str) -> str:

@@ -2,59 +2,88 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from innervate.firmware.emit import Library
 from innervate.firmware.errors import FirmwareError
+from innervate.firmware.payloads import whole
 from innervate.firmware.records import name_of
+from innervate.live.board import Coded, Form, Role
 from innervate.network import Network
-from innervate.wire.layout import SPARE, is_fixed, width
+from innervate.wire.frames import REASONS
+from innervate.wire.layout import REST, SPARE, is_fixed, width
 
 CRC_BYTES = 2
-REASONS = ("OK", "BAD_LENGTH", "BAD_CRC", "BAD_KIND")
+
+
+def coded_of(role: Role, network: Network) -> Coded | None:
+    """How a role's frames lie on the wire; None = it looks into none, or has a coder of its own.
+
+    Raises:
+        FirmwareError: fields of variable number that nobody says more of.
+    """
+    if role.coded is not None or not role.frame or not hasattr(network.frames, "KIND_BITS"):
+        return role.coded
+    frames = network.frames
+    shared: dict[Any, dict[int, str]] = {}
+    for kind, name, fields in frames.LAYOUTS:
+        if not is_fixed(fields):
+            raise FirmwareError(f"{network.name}: a {name} has fields of variable number")
+        shared.setdefault(fields, {})[kind] = name
+    forms = tuple(Form(kinds, fields) for fields, kinds in shared.items())
+    bytes_max = max((frames.KIND_BITS + width(form.fields) + 7) // 8 for form in forms)
+    return Coded((0, 0), frames.KIND_BITS, forms, REASONS, bytes_max + CRC_BYTES)
 
 
 class Wire:
-    """The coder of a network whose frames are a kind, fields of fixed number and a CRC.
+    """The coder of a network.
 
     Args:
         library: the role.
-        network: its network.
-
-    Attributes:
-        sizes: bytes of a whole frame of each kind.
-
-    Raises:
-        FirmwareError: its frames are others.
+        coded: its frames.
+        payload_max: bytes that a frame's payload has at most, where it is none of the record's.
     """
 
-    def __init__(self, library: Library, network: Network) -> None:
-        frames = network.frames
-        if not hasattr(frames, "KIND_BITS"):
-            raise FirmwareError(f"{network.name}: its frames do not begin with a kind alone")
-        self.library, self.prefix = library, library.prefix
-        self.kind_bits: int = frames.KIND_BITS
-        self.layouts: tuple[tuple[int, str, Any], ...] = frames.LAYOUTS
-        for _kind, name, fields in self.layouts:
-            if not is_fixed(fields):
-                raise FirmwareError(f"{network.name}: a {name} has fields of variable number")
-        self.sizes = {kind: (self.kind_bits + width(fields) + 7) // 8 + CRC_BYTES
-                      for kind, _name, fields in self.layouts}  # fmt: skip
+    def __init__(self, library: Library, coded: Coded, payload_max: int = 0) -> None:
+        self.library, self.prefix, self.coded = library, library.prefix, coded
+        self.big = self.prefix.upper()
+        self.head_bits = coded.version[1] + coded.kind_bits
+        self.has_payload = any(form.has_payload for form in coded.forms)
+        self.payload_max = payload_max
+        smallest = min(self._bytes(form) for form in coded.forms)
+        self.size_min = 1 if coded.alone else smallest
+
+    def _bytes(self, form: Form) -> int:
+        """Bytes of a frame of this form, but for arrays of variable number."""
+        return (self.head_bits + width(form.fields) + 7) // 8 + CRC_BYTES
 
     def header(self) -> str:
         """The text of the coder's header."""
-        small, big = self.prefix, self.prefix.upper()
-        reasons = [f"#define {big}_{name} {i}" for i, name in enumerate(REASONS)]
+        small, big = self.prefix, self.big
+        words = ["OK", *(f"BAD_{word.upper()}" for word in self.coded.reasons[1:])]
+        reasons = [f"#define {big}_{name} {i}" for i, name in enumerate(words)]
+        payload, size_max, front = [], f"{self.coded.size_max}", ""
+        if self.has_payload:
+            at = next(self._bytes(f) for f in self.coded.forms if f.has_payload) - CRC_BYTES
+            payload = [f"#ifndef {big}_PAYLOAD_MAX",
+                       f"#define {big}_PAYLOAD_MAX {self.payload_max} /* bytes of a payload */",
+                       "#endif",
+                       f"#define {big}_PAYLOAD_AT {at} /* where it begins */"]  # fmt: skip
+            size_max = f"({self.coded.size_max} + {big}_PAYLOAD_MAX)"
+            front = "const uint8_t *payload, int32_t count,\n        "
         return "\n".join([
             f"/** Frames of {small} on the wire, made from its layouts. */",
             f"#ifndef {big}_WIRE_H", f"#define {big}_WIRE_H", "", f'#include "{small}.h"', "",
-            "#ifdef __cplusplus", 'extern "C" {', "#endif", "",
-            f"#define {big}_SIZE_MAX {max(self.sizes.values())} /* bytes of the longest frame */",
-            f"#define {big}_SIZE_MIN {min(self.sizes.values())} /* of the shortest */", "",
+            "#ifdef __cplusplus", 'extern "C" {', "#endif", "", *payload,
+            f"#define {big}_SIZE_MAX {size_max} /* bytes of the longest frame */",
+            f"#define {big}_SIZE_MIN {self.size_min} /* of the shortest */", "",
             f"/* What {small}_decode says: read, or why not. */", *reasons, "",
+            "/** Bytes of a frame on the wire; 0 if there is no such frame. */",
+            f"int32_t {small}_size(const {small}_frame_t *frame);", "",
             f"/** The bytes of a frame, {big}_SIZE_MAX at most; how many, 0 if there is no such",
-            " * kind. Bits that a field has too many of are left out. */",
-            f"int32_t {small}_encode(const {small}_frame_t *frame, uint8_t *data);", "",
+            " * frame. Bits that a field has too many of are left out. */",
+            f"int32_t {small}_encode(const {small}_frame_t *frame, {front}uint8_t *data);", "",
             "/** Reads received bytes into a frame; any bytes at all will do. Sets `kind` and the",
             f" * fields of that kind. Returns {big}_OK, or else why not, with the frame as it",
             " * was. */",
@@ -64,70 +93,204 @@ class Wire:
 
     def source(self) -> str:
         """The text of the coder's source."""
-        small, big = self.prefix, self.prefix.upper()
-        sizes = [f"    case {kind}:\n        return {size}; /* {name} */"
-                 for kind, name, _ in self.layouts for size in (self.sizes[kind],)]  # fmt: skip
+        small = self.prefix
+        parts = [
+            f"/* Frames of {small} on the wire, most significant bit first. */\n"
+            f'#include "{small}_wire.h"\n#include "innervate_wire.h"\n',
+            *whole(small, self.coded), self._size(), self._encode(), self._reason(), self._decode(),
+        ]  # fmt: skip
+        return "\n".join(parts)
+
+    def _switch(self, what: str, inside: Callable[[Form], list[str]], other: str) -> list[str]:
+        """A switch by the kind, with a case for each form."""
+        found = [f"    switch ({what}) {{"]
+        for form in self.coded.forms:
+            found += [f"    case {kind}: /* {name} */" for kind, name in form.kinds.items()]
+            found += [f"        {line}" for line in inside(form)]
+        return [*found, "    default:", f"        {other}", "    }"]
+
+    def _size(self) -> str:
+        def inside(form: Form) -> list[str]:
+            limits = [f"frame->{name_of(self._counter(form, name))} > {most}"
+                      for name, (most, _) in form.most.items()]  # fmt: skip
+            counters = [self._counter(form, name) for name, many, *_ in form.fields
+                        if name != SPARE and _varies(many)]  # fmt: skip
+            more = "".join(f" + frame->{name_of(counter)}" for counter in counters)
+            size = f"{self._bytes(form)}{more}"
+            if not more:
+                return [f"return {size};"]
+            tests = " || ".join([*limits, f"{size} > {self.big}_SIZE_MAX"])
+            return [f"if ({tests}) {{", "    return 0;", "}", f"return {size};"]
+
+        alone = []
+        if self.coded.alone:
+            alone = [
+                f"    if (frame->kind == {self.coded.alone[1]}) {{",
+                "        return 1;",
+                "    }",
+            ]
+        head = f"int32_t {self.prefix}_size(const {self.prefix}_frame_t *frame)"
+        cases = self._switch("frame->kind", inside, "return 0;")
+        return "\n".join([head, "{", *alone, *cases, "}", ""])
+
+    @staticmethod
+    def _counter(form: Form, array: str) -> str:
+        """The field that says how many an array has."""
+        many = next(field[1] for field in form.fields if field[0] == array)
+        return form.length if many == REST else str(many)
+
+    def _encode(self) -> str:
+        small, big, alone = self.prefix, self.big, self.coded.alone
+        version, bits = self.coded.version
+        given = "const uint8_t *payload, int32_t count,\n        " if self.has_payload else ""
+        more = " + count" if self.has_payload else ""
+        first = [f"    innervate_put(&place, {bits}, {version});"] if bits else []
+        single = []
+        if alone:
+            single = [f"    if (frame->kind == {alone[1]}) {{", f"        data[0] = {alone[0]};",
+                      "        return 1;", "    }"]  # fmt: skip
+        test = f"size == {'count' if self.has_payload else 0} || size > {big}_SIZE_MAX"
         return "\n".join([
-            f"/* Frames of {small} on the wire, most significant bit first. */",
-            f'#include "{small}_wire.h"', '#include "innervate_wire.h"', "",
-            "/* Bytes of a frame of a kind, its CRC included; 0 if there is none. */",
-            f"static int32_t {small}_size_of(int32_t kind)", "{", "    switch (kind) {", *sizes,
-            "    default:", "        return 0;", "    }", "}", "",
-            f"int32_t {small}_encode(const {small}_frame_t *frame, uint8_t *data)", "{",
-            f"    const int32_t size = {small}_size_of(frame->kind);",
-            "    innervate_bits_t place = {0, 0};", "    place.data = data;",
-            "    for (int32_t i = 0; i < size; i++) {", "        data[i] = 0;", "    }",
-            "    if (size == 0) {", "        return 0;", "    }",
-            f"    innervate_put(&place, {self.kind_bits}, frame->kind);",
-            "    switch (frame->kind) {", *self._cases(self._put), "    }",
+            f"int32_t {small}_encode(const {small}_frame_t *frame, {given}uint8_t *data)", "{",
+            f"    const int32_t size = {small}_size(frame){more};",
+            "    innervate_bits_t place = {0, 0};", "    place.data = data;", *single,
+            f"    if ({test}) {{", "        return 0;", "    }",
+            "    for (int32_t i = 0; i < size; i++) {", "        data[i] = 0;", "    }", *first,
+            f"    innervate_put(&place, {self.coded.kind_bits}, frame->kind);",
+            *self._switch("frame->kind", lambda form: self._fields(form, self._put), "break;"),
             "    innervate_seal_crc(data, size);", "    return size;", "}", "",
-            f"int32_t {small}_decode(const uint8_t *data, int32_t size, {small}_frame_t *frame)",
-            "{", "    int32_t at = 0;",
-            f"    if (size < {big}_SIZE_MIN || size > {big}_SIZE_MAX) {{",
+        ])  # fmt: skip
+
+    def _reason(self) -> str:
+        small, big, coded = self.prefix, self.big, self.coded
+        version, bits = coded.version
+        alone, first = [], []
+        if coded.alone:
+            alone = ["    if (size == 1) {",
+                     f"        return data[0] == {coded.alone[0]} ? {big}_OK : {big}_BAD_KIND;",
+                     "    }"]  # fmt: skip
+        if bits:
+            first = [f"    if (innervate_get(data, &at, {bits}) != {version}) {{",
+                     f"        return {big}_BAD_VERSION;", "    }"]  # fmt: skip
+        least = min(self._bytes(form) for form in coded.forms)
+        return "\n".join([
+            "/* OK if these bytes are a frame, else why not. */",
+            f"static int32_t {small}_reason(const uint8_t *data, int32_t size)", "{",
+            "    int32_t at = 0;", *alone,
+            f"    if (size < {least} || size > {big}_SIZE_MAX) {{",
             f"        return {big}_BAD_LENGTH;", "    }",
             "    if (!innervate_is_sound(data, size)) {", f"        return {big}_BAD_CRC;", "    }",
-            f"    const int32_t kind = innervate_get(data, &at, {self.kind_bits});",
-            f"    if ({small}_size_of(kind) == 0) {{", f"        return {big}_BAD_KIND;", "    }",
-            f"    if ({small}_size_of(kind) != size) {{", f"        return {big}_BAD_LENGTH;",
-            "    }", f"    frame->kind = ({self._type('kind')})kind;", "    switch (kind) {",
-            *self._cases(self._get), "    }", f"    return {big}_OK;", "}", "",
+            *first,
+            *self._switch(f"innervate_get(data, &at, {coded.kind_bits})", self._lengths,
+                          f"return {big}_BAD_KIND;"), "}", "",
+        ])  # fmt: skip
+
+    def _lengths(self, form: Form) -> list[str]:
+        """What says whether a frame of a form is as long as it has to be."""
+        big, fixed = self.big, self._bytes(form)
+        counted = [f for f in form.fields if isinstance(f[1], str)]
+        if form.has_payload:
+            return [f"return size < {fixed} ? {big}_BAD_LENGTH : {big}_OK;"]
+        if not counted and not form.length:
+            return [f"return size == {fixed} ? {big}_OK : {big}_BAD_LENGTH;"]
+        lines = [f"size -= {fixed}; /* what is more than its fixed fields */",
+                 "if (size < 0) {", f"    return {big}_BAD_LENGTH;", "}"]  # fmt: skip
+        for name, counter, _, _ in counted:
+            byte = (self.head_bits + _bits_before(form.fields, counter)) // 8
+            most, why = form.most[name]
+            lines += [f"if (data[{byte}] > {most}) {{", f"    return {big}_BAD_{why.upper()};", "}",
+                      f"size -= data[{byte}];"]  # fmt: skip
+        rest = next(name for name, many, *_ in form.fields if many == REST)
+        tests = [
+            *(["size < 0"] if counted else []),
+            *([f"size > {form.most[rest][0]}"] if rest in form.most else []),
+        ]
+        tests += [f"size % {form.step} != 0"] if form.step > 1 else []
+        lines += [f"if ({' || '.join(tests)}) {{", f"    return {big}_BAD_LENGTH;", "}"]
+        if not form.payloads:
+            return [*lines, f"return {big}_OK;"]
+        front = "".join(f" + data[{(self.head_bits + _bits_before(form.fields, c)) // 8}]"
+                        for _, c, _, _ in counted)  # fmt: skip
+        lines += [f"at = {fixed - CRC_BYTES}{front};",
+                  f"return {self.prefix}_fits(data, at, at + size) ? {big}_OK "
+                  f": {big}_BAD_PAYLOAD;"]  # fmt: skip
+        return lines
+
+    def _decode(self) -> str:
+        small, big, alone = self.prefix, self.big, self.coded.alone
+        bits = self.coded.version[1]
+        blank, single = [], []
+        if bits:
+            blank = ["    for (uint32_t i = 0; i < sizeof *frame; i++) {",
+                     "        ((uint8_t *)frame)[i] = 0;", "    }"]  # fmt: skip
+        if alone:
+            values = {"kind": alone[1], **alone[2]}
+            single = ["    if (size == 1) {",
+                      *(f"        frame->{name_of(n)} = {v};" for n, v in values.items()),
+                      f"        return {big}_OK;", "    }"]  # fmt: skip
+        return "\n".join([
+            f"int32_t {small}_decode(const uint8_t *data, int32_t size, {small}_frame_t *frame)",
+            "{", f"    int32_t at = {bits};",
+            f"    const int32_t why = {small}_reason(data, size);",
+            f"    if (why != {big}_OK) {{", "        return why;", "    }", *blank, *single,
+            f"    frame->kind = ({self._type('kind')})"
+            f"innervate_get(data, &at, {self.coded.kind_bits});",
+            *self._switch("frame->kind", lambda form: self._fields(form, self._get), "break;"),
+            f"    return {big}_OK;", "}", "",
         ])  # fmt: skip
 
     def _type(self, name: str) -> str:
         return self.library.records["frame"][name].type
 
-    def _cases(self, line: Any) -> list[str]:
-        """Cases by kind; kinds of the same layout share one."""
-        shared: dict[Any, list[tuple[int, str]]] = {}
-        for kind, name, fields in self.layouts:
-            shared.setdefault(fields, []).append((kind, name))
+    def _fields(self, form: Form, line: Any) -> list[str]:
+        """What writes or reads all fields of a form."""
         found = []
-        for fields, kinds in shared.items():
-            found += [f"    case {kind}: /* {name} */" for kind, name in kinds[:-1]]
-            kind, name = kinds[-1]
-            found.append(f"    case {kind}: /* {name} */")
-            for field in fields:
-                found += line(*field)
-            found.append("        break;")
-        return [*found, "    default:", "        break;"]
+        if form.has_payload and line == self._put:
+            behind = ["for (int32_t i = 0; i < count; i++) {",
+                      "    innervate_put(&place, 8, payload[i]);", "}"]  # fmt: skip
+        else:
+            behind = [f"frame->{name_of(to)} = frame->{name_of(frm)};"
+                      for to, frm in form.same.items() if line == self._get]  # fmt: skip
+        for name, many, bits, is_signed in form.fields:
+            found += line(form, name, many, (bits, is_signed))
+        return [*found, *behind, "break;"]
 
-    def _put(self, name: str, many: int, bits: int, _signed: int) -> list[str]:
+    def _put(self, form: Form, name: str, many: Any, how: tuple[int, int]) -> list[str]:
+        bits = how[0]
         if name == SPARE:
-            return [f"        place.at += {bits};"]
-        return self._each(name, many, "innervate_put(&place, {bits}, {place});", bits)
+            return [f"place.at += {bits};"]
+        return self._each(form, name, many, f"innervate_put(&place, {bits}, {{place}});")
 
-    def _get(self, name: str, many: int, bits: int, signed: int) -> list[str]:
+    def _get(self, form: Form, name: str, many: Any, how: tuple[int, int]) -> list[str]:
+        bits, is_signed = how
         if name == SPARE:
-            return [f"        at += {bits};"]
-        how = "innervate_get_signed" if signed else "innervate_get"
-        text = f"{{place}} = ({self._type(name)}){how}(data, &at, {{bits}});"
-        return self._each(name, many, text, bits)
+            return [f"at += {bits};"]
+        call = "innervate_get_signed" if is_signed else "innervate_get"
+        text = f"{{place}} = ({self._type(name)}){call}(data, &at, {bits});"
+        front = []
+        if many == REST:
+            kind = self._type(form.length)
+            front = [f"frame->{name_of(form.length)} = "
+                     f"({kind})(size - {CRC_BYTES} - (at >> 3));"]  # fmt: skip
+        return front + self._each(form, name, many, text)
 
-    def _each(self, name: str, many: int, text: str, bits: int) -> list[str]:
+    def _each(self, form: Form, name: str, many: Any, text: str) -> list[str]:
         place = f"frame->{name_of(name)}"
         if not many:
-            return ["        " + text.format(bits=bits, place=place)]
-        return [
-            f"        for (int32_t i = 0; i < {many}; i++) {{",
-            "            " + text.format(bits=bits, place=f"{place}[i]"), "        }",
-        ]  # fmt: skip
+            return [text.format(place=place)]
+        count = many
+        if _varies(many):
+            count = f"frame->{name_of(self._counter(form, name))}"
+        return [f"for (int32_t i = 0; i < {count}; i++) {{",
+                "    " + text.format(place=f"{place}[i]"), "}"]  # fmt: skip
+
+
+def _varies(many: Any) -> bool:
+    """True if a field has a variable number."""
+    return many == REST or isinstance(many, str)
+
+
+def _bits_before(fields: tuple[Any, ...], name: str) -> int:
+    """Bits in front of a field."""
+    at = next(i for i, field in enumerate(fields) if field[0] == name)
+    return width(fields[:at])

@@ -69,6 +69,57 @@ class Program(NamedTuple):
     sources: tuple[str, ...]
 
 
+class Form(NamedTuple):
+    """Frames of some kinds, as they lie on the wire behind the kind.
+
+    Attributes:
+        kinds: what each is called, by number.
+        fields: of fixed number, but for arrays as many as an earlier field says, and at the very
+            end one up to the end of the frame (see wire/layout.py).
+        most: how many such an array has at most, and what a decoder says of more, by its name.
+        length: the field that holds how many that array at the end has, if there is one.
+        step: it has a multiple of that.
+        payloads: what that array has to be, by kind.
+        same: fields that are set to what another is, by name.
+        has_payload: behind the fields are bytes that are none of the record's.
+    """
+
+    kinds: Mapping[int, str]
+    fields: tuple[Any, ...]
+    most: Mapping[str, tuple[int, str]] = {}
+    length: str = ""
+    step: int = 1
+    payloads: Mapping[int, tuple[Any, ...]] = {}
+    same: Mapping[str, str] = {}
+    has_payload: bool = False
+
+
+class Coded(NamedTuple):
+    """Frames that are more than a kind and fields of fixed number; all have a CRC at the end.
+
+    Attributes:
+        version: what stands in front of the kind, and in how many bits.
+        kind_bits: how many the kind has.
+        forms: of frames, each of some kinds.
+        reasons: words for what a decoder says, 0 is "read".
+        size_max: bytes of a frame at most, but for those of a payload.
+        lead, trail: flags, in the field `flags`, of a payload that begins with a number of bytes
+            and these, or may end with bytes and their number, besides what its kind has.
+        alone: a byte that is a frame by itself, its kind, and what fields it then has.
+        payload_max: "module:function", parameters -> bytes of a payload at most.
+    """
+
+    version: tuple[int, int]
+    kind_bits: int
+    forms: tuple[Form, ...]
+    reasons: tuple[str, ...]
+    size_max: int
+    lead: int = 0
+    trail: int = 0
+    alone: tuple[int, int, Mapping[str, int]] | None = None
+    payload_max: str = ""
+
+
 class Role(NamedTuple):
     """A node's protocol.
 
@@ -91,6 +142,9 @@ class Role(NamedTuple):
         frames: frames that one call sends and delivers at most; 0 = as many as it has actions.
         timers: how many it has.
         nodes: nodes of a network that its arrays hold at most; 0 = they do not depend on it.
+        coded: how its frames lie on the wire, where that is more than the network's `LAYOUTS`.
+        driver: what carries it on a board: "node" over cables, "station" on a channel, "" nothing.
+        hooks: "package:file", C of its own beside the driver: where frames leave, which come in.
         sized: "module:function", nodes -> the role with arrays for so many; "" = there is one size.
     """
 
@@ -111,6 +165,9 @@ class Role(NamedTuple):
     frames: int = 0
     timers: int = 0
     nodes: int = 0
+    coded: Coded | None = None
+    driver: str = "node"
+    hooks: str = ""
     sized: str = ""
     watched: Watched = Watched()
     emulated: Emulated | None = None

@@ -67,6 +67,10 @@ def clock_us() -> int:
     return machine().monotonic_ns() // 1000
 
 
+def _nobody(why: str) -> None:
+    """Whom an end is told that nobody asked for."""
+
+
 class Engine:
     """Runs one stack: calls its functions, drains what they put out.
 
@@ -81,6 +85,7 @@ class Engine:
     Attributes:
         counters: what happened how often: handler calls, and frames dropped by reason.
         now: when what is drained now was decided, us.
+        ended: is told why, if what runs the handlers ends by itself.
     """
 
     def __init__(
@@ -105,6 +110,7 @@ class Engine:
         self._loop = asyncio.get_running_loop()
         self._stopped = False
         self.now = 0
+        self.ended: Callable[[str], None] = _nobody
 
     def start(self, cause: int = 0) -> None:
         """Switch the node on: 0 first, 1 again with its memory lost."""

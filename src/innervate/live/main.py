@@ -31,7 +31,7 @@ REQUESTS = ("status", "send", "listen", "cut", "restore", "loose", "capture", "r
 
 
 def run(path: Path, engine_of: Callable[..., Engine] | None = None) -> int:
-    """Run the node of a file until SIGTERM or Ctrl-C; 0.
+    """Run the node of a file until SIGTERM or Ctrl-C; 0, or 1 if it ended by itself.
 
     `engine_of` makes what runs its protocol; None = it runs here.
 
@@ -42,7 +42,7 @@ def run(path: Path, engine_of: Callable[..., Engine] | None = None) -> int:
     if engine_of is not None:
         process.node.engine_of = engine_of
     asyncio.run(process.run())
-    return 0
+    return int(process.failed)
 
 
 class Process:
@@ -61,6 +61,8 @@ class Process:
         if loaded.table.metrics is not None:
             self.page = MetricsPage(address(loaded.table.metrics, str(loaded.path)), self.node)
         self.ending = asyncio.Event()
+        self.failed = False
+        self.node.ended = self._ended
         self.notices = Notices(self._say)
         if sealer is not None:
             sealer.said = self.notices.tell
@@ -93,6 +95,12 @@ class Process:
                 await self.page.stop()
             await self.server.stop()
         self._look()
+
+    def _ended(self, why: str) -> None:
+        """What runs the protocol is gone: so is the node, for all to see."""
+        self._say(why)
+        self.failed = True
+        self.ending.set()
 
     def reload(self) -> None:
         """SIGHUP: read the file again; keys may be others, all else needs a restart."""

@@ -42,6 +42,7 @@ class LiveNode:
         taps: who is told of every frame, as it leaves and comes in.
         callers: how often callers of the node's process could not be let in, and why.
         engine_of: makes what runs the stack; an `Engine` unless somebody runs it elsewhere.
+        ended: is told why, if what runs the stack ends by itself; then nothing moves any more.
         requests: what may be asked of it on its status socket besides what all nodes answer.
     """
 
@@ -67,6 +68,7 @@ class LiveNode:
         self.requests: dict[str, Answerer] = {}
         self.engine_of: Callable[..., Engine] = Engine
         self.engine: Engine | None = None
+        self.ended: Callable[[str], None] = lambda why: machine().say(f"{name}: {why}")
         self.started_at = clock_us()
 
     async def start(self) -> None:
@@ -78,6 +80,7 @@ class LiveNode:
         self.engine = self.engine_of(
             self.stack, self._transmit, self._deliver, self._note_report, self._settled
         )
+        self.engine.ended = lambda why: self.ended(why)
         for link in self.links:
             await link.open(self._receive)
         self.save()

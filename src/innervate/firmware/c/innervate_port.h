@@ -19,4 +19,16 @@ typedef struct {
     void *user; /* what they are given */
 } innervate_port_t;
 
+/** The same of a radio, for stations on a channel. */
+typedef struct {
+    int32_t (*now)(void *user);
+    /** A frame to send, of so many slots: decided at `at`, on the air a turnaround later. The radio
+     * is deaf until it says a carrier again (or none). */
+    void (*send)(void *user, int32_t at, const uint8_t *bytes, int32_t count, int32_t slots);
+    void (*set_timer)(void *user, int32_t in_us);
+    void (*deliver)(void *user, int32_t kind, const void *frame);
+    void (*report)(void *user, int32_t code, int32_t a, int32_t b);
+    void *user; /* what they are given */
+} innervate_air_t;
+
 #endif /* INNERVATE_PORT_H */

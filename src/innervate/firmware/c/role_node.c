@@ -1,4 +1,9 @@
+/*+ lines */
 /* A node: the protocol, its frames on serial lines, its timers. */
+/*- */
+/*+ air */
+/* A station: the protocol, its packets, its timers. */
+/*- */
 #include "role_node.h"
 
 #define MASK30 0x3FFFFFFF
@@ -9,81 +14,116 @@ static int32_t role_node_now(const role_node_t *node)
     return node->port->now(node->port->user) & MASK30;
 }
 
-/* Bytes of the frame at `at` in a queue, its zero included. */
-static uint8_t role_length(const role_line_t *line, uint8_t at)
+/*+ lines */
+/* Bytes of what stands at `at` in the queue: a port, a frame, a zero. */
+static int32_t role_length(const role_node_t *node, int32_t at)
 {
-    uint8_t length = 1;
-    while (line->out[at + length - 1] != 0) {
+    int32_t length = 1;
+    while (node->queue[at + length - 1] != 0) {
         length++;
     }
     return length;
 }
 
-/* Takes bytes out of a queue. */
-static void role_cut(role_line_t *line, uint8_t at, uint8_t count)
+/* Where the first frame for a port stands, from `at` on; behind all if there is none. */
+static int32_t role_find(const role_node_t *node, int32_t at, int32_t port)
 {
-    for (uint8_t i = at; i + count < line->waiting; i++) {
-        line->out[i] = line->out[i + count];
-    }
-    line->waiting = (uint8_t)(line->waiting - count);
-}
-
-/* Where the last frame of a queue begins. */
-static uint8_t role_last(const role_line_t *line)
-{
-    uint8_t at = 0;
-    while (at + role_length(line, at) < line->waiting) {
-        at = (uint8_t)(at + role_length(line, at));
+    while (at < node->waiting && node->queue[at] != port + 1) {
+        at += role_length(node, at);
     }
     return at;
 }
 
-/* Queues a frame: urgent ones behind what is on the wire, FLUSH drops what waits. */
-static void role_queue(role_node_t *node, role_line_t *line, const role_frame_t *frame,
-        int32_t flags)
+/* Takes bytes out of the queue. */
+static void role_cut(role_node_t *node, int32_t at, int32_t count)
 {
-    uint8_t bytes[ROLE_SIZE_MAX + 2];
-    const int32_t size = role_encode(frame, bytes + 1);
-    const uint8_t count = (uint8_t)innervate_stuff(bytes + 1, size, bytes);
-    uint8_t at = line->begun ? role_length(line, 0) : 0;
-    if (flags & ROLE_FLUSH) {
-        line->waiting = at;
+    node->waiting = (uint16_t)(node->waiting - count);
+    for (int32_t i = at; i < node->waiting; i++) {
+        node->queue[i] = node->queue[i + count];
     }
-    while ((flags & ROLE_URGENT) && line->waiting > at && line->waiting + count > ROLE_QUEUE) {
-        line->waiting = role_last(line);
-        node->lost++;
+}
+
+/* Drops the last frame for a port, from `at` on; 0 if there is none. */
+static int32_t role_drop(role_node_t *node, int32_t at, int32_t port)
+{
+    int32_t last = -1, length = 0;
+    while ((at = role_find(node, at + length, port)) < node->waiting) {
+        last = at;
+        length = role_length(node, at);
     }
-    if (line->waiting + count > ROLE_QUEUE) {
+    if (last >= 0) {
+        role_cut(node, last, length);
+    }
+    return last >= 0;
+}
+
+/* Queues a frame: urgent ones behind what is on the wire, FLUSH drops what waits for the port. */
+static void role_queue(role_node_t *node, int32_t port, const role_frame_t *frame, int32_t flags)
+{
+    const int32_t count = role_size(frame) + 3;
+    int32_t at = role_find(node, 0, port);
+    if (node->line[port].begun) {
+        at = role_find(node, at + role_length(node, at), port);
+    }
+    while (((flags & ROLE_FLUSH) ||
+            ((flags & ROLE_URGENT) && node->waiting + count > ROLE_QUEUE)) &&
+            role_drop(node, at, port)) {
+        node->lost = (uint16_t)(node->lost + !(flags & ROLE_FLUSH));
+    }
+    if (node->waiting + count > ROLE_QUEUE) {
         node->lost++;
         return;
     }
     if (!(flags & ROLE_URGENT)) {
-        at = line->waiting;
+        at = node->waiting;
     }
-    for (uint8_t i = line->waiting; i > at; i--) {
-        line->out[i - 1 + count] = line->out[i - 1];
+    for (int32_t i = node->waiting; i > at; i--) {
+        node->queue[i - 1 + count] = node->queue[i - 1];
     }
-    for (uint8_t i = 0; i < count; i++) {
-        line->out[at + i] = bytes[i];
-    }
-    line->waiting = (uint8_t)(line->waiting + count);
+    node->queue[at] = (uint8_t)(port + 1);
+    innervate_stuff(node->queue + at + 2, role_encode(frame, node->queue + at + 2),
+            node->queue + at + 1);
+    node->waiting = (uint16_t)(node->waiting + count);
 }
 
 /* Hands a UART what it takes. */
 static void role_pump(role_node_t *node, int32_t port)
 {
-    role_line_t *line = &node->line[port];
-    while (line->waiting > 0) {
-        const uint8_t length = role_length(line, 0);
-        const int32_t taken = node->port->send(node->port->user, port, line->out, length);
+    int32_t at = role_find(node, 0, port);
+    while (at < node->waiting) {
+        const int32_t left = role_length(node, at) - 1;
+        const int32_t taken = node->port->send(node->port->user, port, node->queue + at + 1, left);
         if (taken <= 0) {
             return;
         }
-        line->begun = taken < length;
-        role_cut(line, 0, (uint8_t)taken);
+        node->line[port].begun = taken < left;
+        if (taken < left) {
+            role_cut(node, at + 1, taken);
+        } else {
+            role_cut(node, at, left + 1);
+            at = role_find(node, at, port);
+        }
     }
 }
 
+/*- */
+/*+ air */
+/* Hands the radio a frame, with the packets in it. */
+static void role_send(role_node_t *node, const role_frame_t *frame)
+{
+    uint8_t bytes[ROLE_SIZE_MAX], payload[ROLE_PAYLOAD_MAX];
+    int32_t count = 0;
+    for (int32_t k = 0; k < frame->count; k++) {
+        const role_packet_t *packet = &node->packet[(frame->handle + k) % ROLE_PACKETS];
+        for (int32_t i = 0; i < packet->count && count < ROLE_PAYLOAD_MAX; i++) {
+            payload[count++] = packet->bytes[i];
+        }
+    }
+    count = role_encode(frame, payload, count, bytes);
+    node->port->send(node->port->user, node->at, bytes, count, frame->slots);
+}
+
+/*- */
 /* Carries out what a handler wants done. */
 static void role_drain(role_node_t *node)
 {
@@ -92,9 +132,24 @@ static void role_drain(role_node_t *node)
         const role_action_t *act = &out->action[i];
         const role_frame_t *frame = role_frame_of(out, i);
         const int32_t a = act->a; /* port or timer */
-        if (act->kind == ROLE_SEND && a >= 0 && a < ROLE_PORTS_MAX && frame) {
-            role_queue(node, &node->line[a], frame, act->c);
-            role_pump(node, a);
+        if (act->kind == ROLE_SEND && frame) {
+/*+ air */
+            role_send(node, frame);
+/*- */
+/*+ ports */
+            if (a >= 0 && a < ROLE_PORTS_MAX) {
+                role_queue(node, a, frame, act->c);
+                role_pump(node, a);
+            }
+/*- */
+/*+ hooks */
+            for (int32_t port = 0; port < ROLE_PORTS_MAX; port++) {
+                if (role_links_leaves(&node->links, port, frame, act->b)) {
+                    role_queue(node, port, frame, act->c);
+                    role_pump(node, port);
+                }
+            }
+/*- */
         } else if (act->kind == ROLE_SET_TIMER && a >= 0 && a < ROLE_TIMERS_MAX) {
             node->due[a] = act->b;
         } else if (act->kind == ROLE_DELIVER && node->port->deliver) {
@@ -107,10 +162,13 @@ static void role_drain(role_node_t *node)
     role_clear(out);
 }
 
-void role_node_start(role_node_t *node, const role_params_t *params, const innervate_port_t *port,
+void role_node_start(role_node_t *node, const role_params_t *params, const INNERVATE_PORT *port,
         int32_t number, int32_t seed, int32_t cause)
 {
     uint8_t *bytes = (uint8_t *)node;
+/*+ gate */
+    role_gate_t *const gate = node->gate;
+/*- */
     for (uint32_t i = 0; i < sizeof *node; i++) {
         bytes[i] = 0;
     }
@@ -120,11 +178,24 @@ void role_node_start(role_node_t *node, const role_params_t *params, const inner
         node->due[timer] = -1;
     }
     role_init(&node->state, number, seed);
+/*+ gate */
+    node->gate = gate;
+    if (gate) {
+        role_init_gate(gate);
+    }
+/*- */
+/*+ air */
+    node->at = role_node_now(node);
+/*- */
+/*+ hooks */
+    role_links_begin(&node->state, HAS_GATE);
+/*- */
     role_clear(&node->out);
-    role_on_start(&node->state, params, role_node_now(node), cause, &node->out);
+    role_on_start(&node->state, /*gate*/params, role_node_now(node), cause, &node->out);
     role_drain(node);
 }
 
+/*+ lines */
 /* A piece of a line between two zeros. */
 static void role_piece(role_node_t *node, int32_t port, uint8_t *bytes, int32_t count)
 {
@@ -133,7 +204,11 @@ static void role_piece(role_node_t *node, int32_t port, uint8_t *bytes, int32_t 
         node->dropped++;
         return;
     }
-    role_on_frame(&node->state, node->params, role_node_now(node), port, &node->frame, &node->out);
+/*+ hooks */
+    role_links_heard(&node->links, port, &node->frame);
+/*- */
+    const int32_t now = role_node_now(node);
+    role_on_frame(&node->state, /*gate*/node->params, now, port, &node->frame, &node->out);
     role_drain(node);
 }
 
@@ -153,17 +228,51 @@ void role_node_bytes(role_node_t *node, int32_t port, const uint8_t *bytes, int3
     }
 }
 
+/*- */
+/*+ air */
+void role_node_carrier(role_node_t *node, int32_t at, int32_t cd, int32_t voc)
+{
+    if (!node->broken) {
+        node->at = at & MASK30;
+        role_on_carrier(&node->state, node->params, node->at, cd, voc, &node->out);
+        role_drain(node);
+    }
+}
+
+void role_node_heard(role_node_t *node, int32_t at, const uint8_t *bytes, int32_t count)
+{
+    if (node->broken || role_decode(bytes, count, &node->frame) != ROLE_OK) {
+        node->dropped++;
+        return;
+    }
+    node->at = at & MASK30;
+    if (node->frame.count > 0 && count > ROLE_PAYLOAD_AT + 2) {
+        node->payload = bytes + ROLE_PAYLOAD_AT;
+        node->payload_count = count - ROLE_PAYLOAD_AT - 2;
+    }
+    role_on_frame(&node->state, node->params, node->at, 0, &node->frame, &node->out);
+    role_drain(node);
+    node->payload = 0;
+    node->payload_count = 0;
+}
+
+/*- */
 void role_node_poll(role_node_t *node)
 {
     int32_t soonest = HALF30;
+/*+ lines */
     for (int32_t port = 0; port < ROLE_PORTS_MAX; port++) {
         role_pump(node, port);
     }
+/*- */
     for (int32_t timer = 0; timer < ROLE_TIMERS_MAX && !node->broken; timer++) {
         const int32_t now = role_node_now(node);
         if (node->due[timer] >= 0 && ((now - node->due[timer]) & MASK30) < HALF30) {
             node->due[timer] = -1;
-            role_on_timer(&node->state, node->params, now, timer, &node->out);
+/*+ air */
+            node->at = now;
+/*- */
+            role_on_timer(&node->state, /*gate*/node->params, now, timer, &node->out);
             role_drain(node);
         }
     }
@@ -179,10 +288,35 @@ void role_node_poll(role_node_t *node)
     }
 }
 
+/*+ lines */
 void role_node_give(role_node_t *node, int32_t kind, const role_item_t *item)
 {
     if (!node->broken) {
-        role_on_input(&node->state, node->params, role_node_now(node), kind, item, &node->out);
+        const int32_t now = role_node_now(node);
+        role_on_input(&node->state, /*gate*/node->params, now, kind, item, &node->out);
         role_drain(node);
     }
 }
+/*- */
+/*+ air */
+int32_t role_node_give(role_node_t *node, const uint8_t *bytes, int32_t count)
+{
+    role_packet_t *packet = &node->packet[node->handle % ROLE_PACKETS];
+    role_item_t item;
+    if (node->broken || count < 0 || count > ROLE_PACKET_MAX ||
+            node->state.queued >= ROLE_PACKETS) {
+        return 0;
+    }
+    packet->count = (uint8_t)count;
+    for (int32_t i = 0; i < count; i++) {
+        packet->bytes[i] = bytes[i];
+    }
+    item.slots = (uint16_t)(count + 2 > ROLE_SLOTS_MIN ? count + 2 : ROLE_SLOTS_MIN);
+    item.handle = node->handle++;
+    item.ago = 0;
+    node->at = role_node_now(node);
+    role_on_input(&node->state, node->params, node->at, ROLE_PACKET, &item, &node->out);
+    role_drain(node);
+    return 1;
+}
+/*- */

@@ -3,18 +3,41 @@
 from functools import partial
 from typing import Any
 
-from innervate.live.board import Role, Watched, on_wire
+from innervate.live.board import Coded, Form, Role, Watched, on_wire
 from innervate.live.errors import LiveError
 from innervate.live.parameters import check_parameters
 from innervate.networks.mesh import frames, payloads
 from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import CLASSES
 from innervate.networks.mesh.protocol import csma_fields, fields
-from innervate.networks.mesh.protocol.constants import ACK, MONITOR, TIMERS
+from innervate.networks.mesh.protocol.constants import (
+    ACK,
+    ACK_MORE_BYTES,
+    BODY,
+    DETOURED,
+    MONITOR,
+    PATH_MAX,
+    SOURCE_ROUTE,
+    TIMERS,
+)
+from innervate.wire.layout import REST
 
+FRAMES = 26  # a whole queue, acks to as many as are gathered, what is handed up
 NODES = 32  # the smallest capacity class
 COUNTED = {"path": "path_len", "body": "length"}
 PACKET = (*on_wire(frames.COMMON), *COUNTED.items())
+BODY_OF = ("body", REST, 8, 0)
+CODED = Coded(
+    (frames.VERSION, 2), 6,
+    (
+        Form({ACK: "ack"}, (*frames.HOP_ACK, BODY_OF), {"body": (BODY, "length")}, "length",
+             ACK_MORE_BYTES, same={"dest": "link_dst"}),
+        Form(payloads.NAMES, (*frames.COMMON, ("path", "path_len", 8, 0), BODY_OF),
+             {"path": (PATH_MAX, "path"), "body": (BODY, "length")}, "length",
+             payloads=payloads.FIELDS),
+    ),
+    frames.REASONS, frames.MTU_MAX, SOURCE_ROUTE, DETOURED,
+)  # fmt: skip
 RUN = Watched("mesh", "innervate.networks.mesh.sim.simulate:simulation", node=3)
 HERE = "innervate.networks.mesh.board"
 # Of IEEE 802.15.4 at 250 kbit/s: 20 symbols.
@@ -61,7 +84,8 @@ OF_CLASS = dict(zip(CLASSES, ("small", "middle", "large"), strict=True))
 CSMA = Role(
     "csma", "innervate.networks.mesh.protocol.csma",
     csma_fields.STATION, csma_fields.PARAMS, (), csma_fields.ITEM, {},
-    room=4, in_ram=True, action=csma_fields.ACTION, timers=1, watched=RUN._replace(table="macs"),
+    room=4, in_ram=True, driver="", action=csma_fields.ACTION, timers=1,
+    watched=RUN._replace(table="macs"),
     parameters=f"{HERE}:csma_parameters",
 )  # fmt: skip
 
@@ -81,7 +105,8 @@ def node(nodes: int) -> Role:
         {ACK: on_wire(frames.HOP_ACK), **dict.fromkeys(payloads.FIELDS, PACKET)},
         room=32, counted=COUNTED, gate=fields.gate(size), action=fields.ACTION, timers=TIMERS,
         nodes=size, sized=f"{HERE}:node", parameters=f"{HERE}:{OF_CLASS[size]}_parameters",
-        watched=RUN._replace(table="nodes"),
+        watched=RUN._replace(table="nodes"), coded=CODED, frames=FRAMES,
+        hooks="innervate.networks.mesh:board_links",
     )  # fmt: skip
 
 

@@ -2,10 +2,19 @@
 #include "board.h"
 #include "role_node.h"
 
+#ifndef NUMBER
 #define NUMBER 1 /* every node has another */
+#endif
+#ifndef SEED
 #define SEED 334214459 /* 1 to 1072496638, on every node another, not near each other */
+#endif
 
 static role_node_t node;
+/*+ gate */
+#ifdef LEADS
+static role_gate_t gate; /* what a node needs that leads */
+#endif
+/*- */
 static int32_t wait_us;
 
 static int32_t port_now(void *user)
@@ -30,9 +39,14 @@ int main(void)
 {
     static const innervate_port_t port = {port_now, port_send, port_timer, 0, 0, 0};
     board_start();
+/*+ gate */
+#ifdef LEADS
+    node.gate = &gate;
+#endif
+/*- */
     role_node_start(&node, &role_defaults, &port, NUMBER, SEED, 1);
     for (;;) {
-        uint8_t bytes[16];
+        uint8_t bytes[4];
         for (int32_t uart = 0; uart < ROLE_PORTS_MAX; uart++) {
             const int32_t count = board_receive(uart, bytes, (int32_t)sizeof bytes);
             role_node_bytes(&node, uart, bytes, count);

@@ -74,7 +74,7 @@ def raise_alarm(node, params, now, kind, robot, x, y, vx, vy, out):
         return 1
     if monitor == ALL:
         return 0
-    flags = END_TO_END | PRIORITY | first_flag(node, monitor)
+    flags = END_TO_END | PRIORITY | first_flag(node, params, monitor)
     i = compose(node, now, ALARMS, ALARM, monitor, flags, out)
     if i < 0:
         return 0

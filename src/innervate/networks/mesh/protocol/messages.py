@@ -60,9 +60,9 @@ def payload_limit(params):
     return min(DATA_MAX, params.mtu - HEADER_BYTES - CRC_BYTES - PATH_MAX)
 
 
-def first_flag(node, dest):
+def first_flag(node, params, dest):
     """FIRST until `dest` has acknowledged something since we switched on: a lost one is no use."""
-    if dest >= ALL or node.met[dest // BITS] >> (dest % BITS) & 1:
+    if dest >= params.nodes or node.met[dest // BITS] >> (dest % BITS) & 1:
         return 0
     return FIRST
 
@@ -95,12 +95,14 @@ def on_message(node, params, now, item, out):
     elif make_room(node, OWN if owner >= 0 else MESSAGES, out):
         i = compose(node, now, MESSAGES, DATA, dest, flags, out)
     if i < 0 and owner >= 0:
-        buffer_unsent(node, params, now, owner, item, dest, flags | first_flag(node, dest), out)
+        buffer_unsent(
+            node, params, now, owner, item, dest, flags | first_flag(node, params, dest), out
+        )
         return
     if i < 0:
         report(out, REPORT_FULL, item.handle, NO_ROOM)
         return
-    node.q_flags[i] = node.q_flags[i] | first_flag(node, dest)
+    node.q_flags[i] = node.q_flags[i] | first_flag(node, params, dest)
     for k in range(item.length):
         add8(node, i, item.body[k])
     report(out, REPORT_ACCEPTED, item.handle, node.seq)
@@ -161,7 +163,7 @@ def acknowledge_end(node, params, now, frame, out):
 
 def tell_origin(node, params, now, rank, origin, seq, out):
     """Acknowledge packet `seq` of a node, end to end."""
-    flags = first_flag(node, origin)
+    flags = first_flag(node, params, origin)
     i = waiting_ack(node, params, origin, rank, flags)
     if i >= 0:
         add16(node, i, seq)

@@ -55,7 +55,7 @@ def beacon(node, params, now, out):
         write_position(node, i)
     monitor = resolve(node, params, MONITOR)
     if params.watch and monitor < ALL and monitor != node.number:
-        i = compose(node, now, MESSAGES, POSITION, monitor, first_flag(node, monitor), out)
+        i = compose(node, now, MESSAGES, POSITION, monitor, first_flag(node, params, monitor), out)
         if i >= 0:
             write_position(node, i)
             send_on(node, params, now, i, out)

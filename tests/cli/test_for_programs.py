@@ -1,0 +1,90 @@
+"""What other programs take: `--json`, the schema of scenario files, completion of shells."""
+
+import json
+import os
+import subprocess
+import sys
+import tomllib
+
+import jsonschema
+import pytest
+
+from innervate import scenario
+from innervate.cli import main
+
+
+def said(capsys, *words):
+    assert main(list(words)) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_scenarios(capsys):
+    listed = said(capsys, "scenarios", "--json")
+    assert {one["name"] for one in listed} == set(scenario.bundled())
+    assert all(one["shows"].endswith(".") and os.path.isfile(one["path"]) for one in listed)
+
+
+def test_check_says_line_by_line_what_it_says_to_people(capsys):
+    found = said(capsys, "check", "line", "--json", "--seed", "7", "--set", "protocol.k=4")
+    assert (found["name"], found["kind"], found["seed"]) == ("line", "skin", 7)
+    main(["check", "line", "--seed", "7", "--set", "protocol.k=4"])
+    lines = capsys.readouterr().out.splitlines()[1:]
+    assert [f"{one['what']} {one['says']}".split() for one in found["holds"]] == [
+        line.split() for line in lines
+    ]
+    assert len(lines) >= 4
+
+
+def test_compare(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for seed in ("1", "2"):
+        assert main(["run", "line", "--seed", seed, "--out", seed, "--no-report"]) == 0
+    capsys.readouterr()
+    assert said(capsys, "compare", "1", "1", "--json")["same"]
+    found = said(capsys, "compare", "1", "2", "--json")
+    assert not found["same"]
+    assert found["scenario"] == [{"key": "seed", "a": 1, "b": 2}]
+    assert found["first_event_that_differs"]
+    assert found["headlines"][0]["text"] == "Every cell has a way to the PC."
+
+
+@pytest.mark.parametrize("name", scenario.bundled())
+def test_bundled_scenarios_are_as_the_schema_says(capsys, name):
+    made = said(capsys, "schema")
+    tables = tomllib.loads(scenario.bundled()[name].read_text(encoding="utf-8"))
+    jsonschema.validate(tables, made)
+
+
+def test_the_schema_refuses_an_unknown_value(capsys, tmp_path):
+    out = tmp_path / "scenario.schema.json"
+    assert main(["schema", "--out", str(out)]) == 0
+    assert "#:schema scenario.schema.json" in capsys.readouterr().out
+    made = json.loads(out.read_text())
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({"kind": "skin", "duration_s": "long"}, made)
+
+
+def test_a_schema_that_cannot_be_written_is_one_line(capsys, tmp_path):
+    assert main(["schema", "--out", str(tmp_path)]) == 2
+    assert str(tmp_path) in capsys.readouterr().err
+
+
+def test_a_shell_completes_commands(tmp_path):
+    """As a user would: install it, then let bash itself ask for what begins with `sce`."""
+    env = os.environ | {"HOME": str(tmp_path), "SHELL": "/bin/bash"}
+    done = subprocess.run([sys.executable, "-m", "innervate.cli", "--install-completion"],
+                          env=env, capture_output=True, text=True, check=True)  # fmt: skip
+    (script,) = (tmp_path / ".local").rglob("innervate")
+    assert str(script) in done.stdout
+    asked = f"""source {script}
+COMP_WORDS=(innervate sce) COMP_CWORD=1
+read -ra words <<< "$(complete -p innervate)"
+for i in "${{!words[@]}}"; do
+  [ "${{words[i]}}" = -F ] && "${{words[i+1]}}" innervate sce innervate
+done
+echo "${{COMPREPLY[@]}}"
+"""
+    answer = subprocess.run(
+        ["bash", "-c", asked], env=env, capture_output=True, text=True, check=True
+    )
+    assert answer.stdout.split() == ["scenarios"]

@@ -1,0 +1,73 @@
+"""The documentation as a site: `mkdocs.yml` is strict, so a link that leads nowhere fails."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import innervate
+from innervate.cli.app import app
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def build(folder, config):
+    return subprocess.run(
+        [sys.executable, "-m", "mkdocs", "build", "--config-file", config, "-d", folder],
+        env=os.environ | {"NO_MKDOCS_2_WARNING": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("site")
+    done = build(folder, ROOT / "mkdocs.yml")
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+def test_every_page_is_there_and_every_link_leads_somewhere(site):
+    for page in (ROOT / "docs").rglob("*.md"):
+        assert (site / page.relative_to(ROOT / "docs").with_suffix(".html")).is_file(), page.name
+
+
+def test_every_command_is_described(site):
+    said = (site / "commands.html").read_text(encoding="utf-8")
+    for name in app:
+        if not name.startswith("-"):
+            assert f'id="innervate-{name}"' in said, name
+
+
+def test_the_python_page_has_signatures_units_and_errors(site):
+    said = (site / "api.html").read_text(encoding="utf-8")
+    for words in ("duration_us", "InvariantBroken", "in place of the scenario", "Raises"):
+        assert words in said
+
+
+def test_nothing_is_fetched_from_elsewhere(site):
+    for page in site.glob("*.html"):
+        text = page.read_text(encoding="utf-8")
+        assert not re.findall(r'<(?:script|img|link)[^>]*="https?:[^>]*>', text), page.name
+
+
+def test_a_broken_link_fails(tmp_path):
+    config = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
+    (tmp_path / "docs").mkdir()
+    (tmp_path / "docs" / "index.md").write_text("# One\n\n[nowhere](other.md)\n")
+    before, rest = config.split("\nplugins:")
+    checks = rest[rest.index("\nvalidation:") : rest.index("\nmarkdown_extensions:")]
+    (tmp_path / "mkdocs.yml").write_text(f"{before}\nplugins: []{checks}")
+    done = build(tmp_path / "site", tmp_path / "mkdocs.yml")
+    assert done.returncode == 1
+    assert "other.md" in done.stderr
+
+
+def test_the_citation_names_this_version():
+    text = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert re.search(r"^version: (.*)$", text, re.MULTILINE)[1] == innervate.__version__
