@@ -15,7 +15,7 @@ from pathlib import Path
 from boards.firmware import qemu
 from boards.firmware.__main__ import emulate
 from boards.firmware.native import write as write_bare
-from boards.firmware.stack import chain, worst
+from boards.firmware.stack import COUNTED, chain, worst
 from boards.roles import roles
 from innervate.firmware import library, tools
 from innervate.firmware.records import layout
@@ -39,7 +39,7 @@ def protocol_row(name: str, folder: Path) -> str:
     source = write_bare(made, folder)
     done = folder / f"{name}.o"
     tools.run("arm-none-eabi-gcc", *tools.CORTEX_M0, *tools.SMALL, "-I", folder,
-              "-fcallgraph-info=su", "-c", source, "-o", done)  # fmt: skip
+              COUNTED, "-c", source, "-o", done)  # fmt: skip
     flash = sizes(done)[0]
     state, gate = (layout(made.records[record])[1] if record in made.records else 0
                    for record in ("state", "gate"))  # fmt: skip
@@ -63,9 +63,10 @@ def _size_of(prefix: str, folder: Path) -> str:
 def whole(name: str, folder: Path, out: Path) -> tuple[int, int, int]:
     """Flash, static RAM and worst stack of the image of a whole node; its library lies there."""
     main, uarts, ring = WHOLE[name]
-    options = (*tools.CORTEX_M0, f"-DBOARD_UARTS={uarts}", f"-DBOARD_RING={ring}")
-    text, data, bss = sizes(tools.image(folder, name, out, main, options))
-    return text + data, data + bss, worst(folder, name, main, options, out)
+    options = (*tools.CORTEX_M0, f"-DBOARD_UARTS={uarts}", f"-DBOARD_RING={ring}", COUNTED)
+    image = tools.image(folder, name, out, main, options)
+    text, data, bss = sizes(image)
+    return text + data, data + bss, worst(image)
 
 
 def whole_row(name: str) -> str:

@@ -3,33 +3,27 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from pathlib import Path
 
 from boards.errors import BoardFailed
-from innervate.firmware.tools import SMALL, run, sources
 
 NODE = re.compile(r'node: \{ title: "([^"]+)" label: "[^"]*?(\d+) bytes \(static\)')
 EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
+COUNTED = "-fcallgraph-info=su"  # has a compiler write beside its output who calls whom
 INDIRECT = "__indirect_call"
 LIBGCC = 8  # of its functions, which call nothing
 INTERRUPT = 32  # bytes that a Cortex-M puts there by itself
 
 
-def worst(folder: Path, prefix: str, main: str, options: Iterable[str], out: Path) -> int:
-    """Bytes of stack from `main` on, with an interrupt on top.
+def worst(image: Path) -> int:
+    """Bytes of stack from `main` on, with an interrupt on top; it was compiled with COUNTED.
 
     What is called by a pointer is taken for the deepest of the functions of the port layer.
 
     Raises:
         BoardFailed: a function's stack is not known, or something calls itself.
     """
-    text = ""
-    for source in sources(folder, prefix, main):
-        made = out / f"{source.stem}.o"
-        asked = ("-fcallgraph-info=su", "-c", source, "-o", made)
-        run("arm-none-eabi-gcc", *options, *SMALL, "-I", folder, *asked)
-        text += made.with_suffix(".ci").read_text()
+    text = "".join(path.read_text() for path in image.parent.glob(f"{image.name}-*.ci"))
     return chain(text, "main") + INTERRUPT + chain(text, "board_interrupt")
 
 
