@@ -33,7 +33,7 @@ ROOM = 16
 PLANNED = ("dmin_us", "dmax_us", "ta_us", "minislot_us", "dead_us")
 MINISLOTS = 8  # of a report's 32: those behind them are counted alike
 CLAIM = (
-    "Of two stations that heard the same frames one takes a turn, alone on the channel. NOT proved: "
+    "Of two stations that heard the same frames one takes a turn, alone on it. NOT proved: "
     "stations that missed a frame, who joins, and how openings and windows end."
 )
 ASSUMED = (
