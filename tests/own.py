@@ -41,10 +41,11 @@ def alone(monkeypatch, tmp_path):
     networks.cache_clear()
 
 
-def made(folder, medium="cables"):
-    """A network's folder of the medium."""
+def made(folder, medium="cables", over=""):
+    """A network's folder of the medium, above a medium access if one is named."""
     shutil.rmtree(folder, ignore_errors=True)
-    assert main(["new", "network", str(folder), "--on", medium]) == 0
+    below = ["--over", over] if over else []
+    assert main(["new", "network", str(folder), "--on", medium, *below]) == 0
     return Own(folder)
 
 

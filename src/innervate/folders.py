@@ -170,7 +170,8 @@ def findings(folder: Path, network: Any) -> list[checks.Finding]:
     files, known = sources(folder, network), _dialects()
     for path in files:
         known |= _functions(path)
-    handlers = checks.HANDLERS | (checks.ON_AIR if network.medium in MEDIA_ON_AIR else {})
+    on_air = network.medium in MEDIA_ON_AIR and not network.over
+    handlers = checks.HANDLERS | (checks.ON_AIR if on_air else {})
     found = []
     for place, path in enumerate(files):
         found += checks.of_source(path, known, folder.name, {} if place else handlers)

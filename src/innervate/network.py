@@ -17,135 +17,13 @@ from typing import Any
 
 from innervate import folders
 from innervate.folders import NetworkError as NetworkError
+from innervate.parts import DEFAULTS, MADE, MEDIA, PARTS
 
 HOME = GROUP = "innervate.networks"
 FOLDERS = "INNERVATE_NETWORKS"
 
-# Every part that a network can have, and what it is. Those with a default may be left out.
-PARTS = {
-    "model": "msgspec.Struct: the keys of its scenarios, with ranges and meanings",
-    "check": "(source, model): raises ScenarioError at the first thing that does not fit together",
-    "plan": "(scenario) -> the plan of its run, whole numbers only; `plan.kind` is the name",
-    "describe": "(plan) -> str: the scenario in a few lines, without running it",
-    "fault_words": '(plan, fault) -> str: "at 2 s cut pc.1 - p0 r16 c7 down"',
-    "actions": "tuple of str: what can be done to it while it runs, in the order of their numbers",
-    "harm": "tuple of str: those of the actions that make it worse",
-    "template": "str: a commented scenario to start from; if absent, all keys as they are by "
-    "themselves",
-    "anchor": "(tables, source): readies a scenario's tables to be written: relative paths become "
-    "absolute, what its runs refuse to be given is left out",
-    "run": "module: simulate, summarize, tables_of, written_of, columns, trail, call_words",
-    "tables": "tuple of Table: all tables that its runs can have",
-    "received_image": "(result, time_s, window_s): what was felt, as it was received",
-    "report": "(result, summary) -> str: the body of its report, HTML",
-    "notebook": "(result, summary) -> str: the same for a notebook, its top and a picture",
-    "figures": "module: draw(run, figure) -> a matplotlib figure",
-    "summary_lines": "(run) -> list of str: what a person wants to know first",
-    "summary_name": '(summary) -> str: by what name a run has it, like "skin" for `run.skin`',
-    "without_events": '(summary) -> str: why a run has no events to compare; "" if it has',
-    "loop_name": '(plan) -> str: the compiled loop that it runs on; "" = it needs no compiling',
-    "demo": "module: SCENARIO, INTRODUCTION, LOOK, NEXT, lines(run): its chapter of `demo`",
-    "sizing": "module: Question, parse_ports, size, RECOVERY: what `size` answers",
-    "measured_template": "(name, network, link types, least quality) -> str: of what was measured",
-    "capture": "module: LATE_US, refusal, interfaces, numbers, frames, simulate; if absent, any "
-    "network of cables with `frames` has one (export/cabled.py)",
-    "interface_words": 'dict: what captures call a node, by its role; others are a "node"',
-    "dissector": "() -> export.dissector.Frames: its frames for Wireshark, from `frames` if absent",
-    "fit": "module: Reader, tables_of, named, named_again: a scenario out of a capture",
-    "unfit": "str: why no scenario comes out of its captures",
-    "log": "module: looks_like_one(path), measure(path): what `fit` reads besides captures",
-    "graph": "(plan) -> export.graphs.Graph: its network as a graph",
-    "scenes": "(plan, tables) -> list of export.scenes.Channel: what a recording shows in space",
-    "has_places": "(plan) -> bool: its nodes lie somewhere in space",
-    "rerun_parts": "(rerun, plan, tables) -> export.rrd_parts.Parts: a run in space",
-    "simulation": "(plan) -> sim.driver.Simulation: the network as it is watched, not yet begun; "
-    "for the default `run` also by name plain, checks, observe, deliveries, trail, tap",
-    "unwatchable": '(plan) -> str: why it cannot be watched; "" if it can',
-    "engine": "class: web.engine.Engine, or what can do more",
-    "view": "class: what the live page shows of its simulation (web/view.py)",
-    "event": "(plan, fault) -> dict: the [[event]] table of a fault, without its time",
-    "protocol": "module: on_start, on_frame, on_timer, on_input of a node; OUTBOX, TIMERS",
-    "fields": "module: PARAMS, STATE, FRAME: the declared fields of its protocol",
-    "frames": "module: LAYOUTS, KIND_BITS of its frames; encode, decode, REASONS if it has own",
-    "node_file": "live.nodefile.NodeFile: the keys of its node files",
-    "live_node": "(nodefile.Loaded) -> live.node.LiveNode: the node of a node file",
-    "deployment": "class: live.deployment.Deployment, how a plan becomes node files and cables",
-    "live_words": "module: lines, ports, heard: what its running nodes say, for people",
-    "live_view": "class: web.live_view.LiveView, its running nodes on the page",
-    "recovery": "module: recoveries, line, NOTHING: how it healed, from a capture",
-    "verify": "module: explorations, notice, MUTANTS, hunt: what `verify` does (verify/cases.py)",
-    "prove": "module: theories, MUTANTS, EXPLORERS: what `prove` does (prove/declared.py)",
-    "counterexample": "(story, path): the picture of how something breaks",
-    "boards": "tuple of live.board.Role: what of it runs on a board; if absent, its protocol",
-    "random": "module: SHARE, drawn, smaller, trouble: networks from a number (running/fuzz.py)",
-    "invariants": "module in the dialect: node_*(node, params, now), network_*(nodes, count, "
-    "params): what must hold",
-    "measures": "(nodes, reports, deliveries, plan) -> dict of str to number: own figures",
-    "shows": "dict of str to (unit, (node, params) -> number): what pages colour nodes by, too",
-    "happenings": "dict of str to (node, value) -> (kind, item) for on_input: own [[event]]s",
-    "papers": "module: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up",
-}
-DEFAULTS = {
-    "model": "innervate.scenario.declared:CablesScenario",
-    "check": "innervate.scenario.declared:check",
-    "plan": "innervate.scenario.declared:plan",
-    "template": "innervate.scenario.declared:template",
-    "run": "innervate.running.simulating",
-    "tables": "innervate.running.simulating:TABLES",
-    "report": "innervate.plot.body:body",
-    "notebook": "innervate.plot.body:notebook",
-    "figures": "innervate.plot.figures",
-    "summary_lines": "innervate.plot.lines:summary_lines",
-    "graph": "innervate.export.cabled:graph",
-    "scenes": "innervate.network:nothing_to_show",
-    "has_places": "innervate.network:no_places",
-    "unwatchable": "innervate.network:nothing_against_it",
-    "engine": "innervate.web.engine:Engine",
-    "view": "innervate.web.declared_view:DeclaredView",
-    "anchor": "innervate.network:nothing_to_anchor",
-    "describe": "innervate.scenario.cables:describe",
-    "fault_words": "innervate.scenario.cables:fault_words",
-    "actions": "innervate.scenario.actions.cables:ACTIONS",
-    "harm": "innervate.scenario.actions.cables:HARM",
-    "simulation": "innervate.sim.cables.declared:simulation",
-    "verify": "innervate.verify.declared",
-    "prove": "innervate.prove.declared",
-    "interface_words": "innervate.network:NO_WORDS",
-    "unfit": "innervate.network:UNFIT",
-    "without_events": "innervate.network:nothing_against_it",
-    "loop_name": "innervate.network:no_name",
-    "summary_name": "innervate.network:kind_of",
-    "node_file": "innervate.live.declared:DeclaredFile",
-    "live_node": "innervate.live.declared:build",
-    "deployment": "innervate.live.deployment:Deployment",
-    "live_words": "innervate.live.words",
-    "live_view": "innervate.web.live_view:LiveView",
-}
-
-
 NO_WORDS: dict[str, str] = {}
 UNFIT = "links of this kind of network are not measured"
-
-
-# Parts that stand for any network of a medium, where they are others than over cables.
-MEDIA: dict[str, dict[str, str]] = {
-    "cables": {},
-    "channel": {
-        "model": "innervate.scenario.declared_channel:ChannelScenario",
-        "check": "innervate.scenario.declared_channel:check",
-        "plan": "innervate.scenario.declared_channel:plan",
-        "template": "innervate.scenario.declared_channel:template",
-        "describe": "innervate.scenario.declared_channel:describe",
-        "fault_words": "innervate.scenario.declared_channel:fault_words",
-        "actions": "innervate.scenario.actions.channel:ACTIONS",
-        "harm": "innervate.scenario.actions.channel:HARM",
-        "simulation": "innervate.sim.channel.declared:simulation",
-        "view": "innervate.web.channel_view:ChannelView",
-        "deployment": "innervate.live.deployment:NotYet",
-    },
-}
-# Parts that can be functions of the network, which make them.
-MADE = frozenset({"template"})
 
 
 class Network:
@@ -159,6 +37,7 @@ class Network:
             keeps for private use.
         key_kind: its number under a seal, 1 .. 255: what is sealed for one is not taken by another.
         medium: what its nodes are joined by, if it has no parts of its own for that: "cables".
+        over: on a field, a medium access of another network below it: "csma".
         **parts: where each part stands: "module" or "module:name".
 
     Attributes:
@@ -171,6 +50,7 @@ class Network:
         self, name: str, package: str, rank: int = 100, link_type: int = 162, key_kind: int = 255,
         medium: str = "cables", **parts: str,
     ) -> None:  # fmt: skip
+        self.over = parts.pop("over", "")
         if medium not in MEDIA:
             known = ", ".join(MEDIA)
             raise TypeError(f"network {name}: no medium {medium!r}; there are {known}")
@@ -325,6 +205,37 @@ def find(kind: str, *places: Path) -> Network | None:
                     return use(folder)
     known = networks().get(kind)
     return use(known.folder) if known is not None and known.folder is not None else known
+
+
+def known(kind: str, *places: Path) -> Network:
+    """A network by its name, as `find` has it; looked for in the working folder, too.
+
+    Raises:
+        NetworkError: there is none, or it cannot be loaded.
+    """
+    network = find(kind, *places, Path())
+    if network is None:
+        raise NetworkError(f"no network here is called {kind!r}; name its folder: --network DIR")
+    return network
+
+
+def accesses() -> dict[str, Any]:
+    """Medium access protocols, which look into no frame, of all networks: by name, their roles."""
+    return {role.name: role for other in networks().values() if other.has("boards")
+            for role in other.boards if not role.frame}  # fmt: skip
+
+
+def access_of(network: Network) -> Any:
+    """The medium access that a network stands on: a role of another's boards (`live/board.py`).
+
+    Raises:
+        NetworkError: no network has one of that name.
+    """
+    found = accesses()
+    if network.over not in found:
+        names = " or ".join(found)
+        raise NetworkError(f"network {network.name}: over can be {names}, not {network.over!r}")
+    return found[network.over]
 
 
 def _entry(point: Any) -> Network:

@@ -48,10 +48,10 @@ def carried_out(command, capfd):
 
 
 def parts():
-    """The page but for the channel, and what it says of that."""
+    """The page but for channel and field, and what it says of each."""
     before, rest = PAGE.read_text(encoding="utf-8").split("## On a shared channel")
-    channel, after = rest.split("\n## ", 1)
-    return before + "## " + after, channel
+    channel, field, after = rest.split("\n## ", 2)
+    return before + "## " + after, channel, field
 
 
 def test_every_step_of_the_page(alone, capfd):
@@ -61,7 +61,12 @@ def test_every_step_of_the_page(alone, capfd):
 
 @pytest.mark.slow  # compiles a protocol that no other test runs
 def test_every_step_on_the_channel(alone, capfd):
-    assert played(parts()[1], capfd) == 6
+    assert played(parts()[1], capfd) == 7
+
+
+@pytest.mark.slow  # compiles a protocol that no other test runs
+def test_every_step_over_a_field(alone, capfd):
+    assert played(parts()[2], capfd) == 8
 
 
 def played(text, capfd):

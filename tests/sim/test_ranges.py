@@ -11,10 +11,8 @@ from innervate.dialect import plain
 from innervate.kernel import records
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.sim import build as mesh_build
-from innervate.networks.mesh.sim import over_medium
 from innervate.networks.mesh.sim import simulate as mesh_simulate
 from innervate.networks.mesh.sim import stacks as mesh_stacks
-from innervate.networks.mesh.sim.recorder import BROKEN_RANGE as BROKEN_MESH
 from innervate.networks.mesh.verify import shape as mesh_shape
 from innervate.networks.radio.protocol import fields as radio_fields
 from innervate.networks.radio.sim import build as radio_build
@@ -31,6 +29,8 @@ from innervate.networks.skin.verify import world as skin_verify
 from innervate.sim.cables import recorder as cables_recorder
 from innervate.sim.cables.world import BROKEN_RANGE
 from innervate.sim.channel import listening
+from innervate.sim.field import access as over_medium
+from innervate.sim.field.medium import BROKEN_RANGE as BROKEN_MESH
 from innervate.sim.status import BROKEN, DONE
 from innervate.sim.tables import Tables, get, put
 from innervate.verify import declared
@@ -209,7 +209,7 @@ WATCHES = {
         for form, is_plain in FORMS.items()
         for protocol in ("csma-cd-r/practical", "csma-cd-r/paper", "token-ring")
     ],
-    "networks.mesh.sim.stacks": [
+    "sim.field.calls": [
         (f"routers, {form}", routers, (is_plain,)) for form, is_plain in FORMS.items()
     ],
     "sim.channel.listening": [
@@ -277,5 +277,10 @@ def test_every_checker_of_ranges_has_a_row():
             found.add(".".join(path.relative_to(home).with_suffix("").parts))
     # Where a lost memory is put back no range is looked at; what users give is refused in a line;
     # which line put a value out of its range is tried in tests/running/test_blaming.py.
-    others = {"networks.mesh.sim.loop", "live.declared", "scenario.declared", "running.blaming"}
+    others = {
+        "networks.mesh.sim.orders",
+        "live.declared",
+        "scenario.declared",
+        "running.blaming",
+    }
     assert found - others == set(WATCHES)

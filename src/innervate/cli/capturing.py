@@ -16,7 +16,7 @@ from innervate.cli.errors import UserError, say
 from innervate.export import links, pcapng
 from innervate.export.errors import ExportError
 from innervate.live import private, status
-from innervate.network import networks
+from innervate.network import known
 
 # Nodes tell of their frames a little later, each when it gets to it: time to put them in order.
 HOLD_S = 0.25
@@ -138,7 +138,7 @@ class Recorder:
         """Write those of a node's interfaces that are new; their numbers by port."""
         if about["sealed"] and about["capturing"] not in self.sealed:
             self.sealed.append(about["capturing"])
-        network = networks()[about["kind"]]
+        network = known(about["kind"])
         what = network.interface_words.get(about["role"], "node")
         numbers = {}
         for path, port, here, there in about["paths"]:

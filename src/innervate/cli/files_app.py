@@ -7,6 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from innervate.cli.options import OWN_DEFAULTS, OwnOptions
 from innervate.cli.seeds import Seed, Sets
 
 Json = Annotated[bool, Parameter(negative="")]
@@ -59,7 +60,7 @@ def new(
     network: str | None = None,
     types: Annotated[list[str] | None, Parameter(consume_multiple=True)] = None,
     min_tq: float | None = None,
-    on: str | None = None,
+    own: Annotated[OwnOptions, Parameter(name="*")] = OWN_DEFAULTS,
 ) -> int:
     """Write a commented scenario to start from, or a network of one's own.
 
@@ -76,13 +77,13 @@ def new(
         Types of its links that count; wifi if left out, --empty-types for all.
     min_tq
         Worst quality of a link that counts, 0 to 1; 0.3 if left out.
-    on
-        What a network of your own is joined by: cables (if left out).
+    own
+        What a network of your own is joined by.
     """
     if kind == "network":
         from innervate.cli import making
 
-        return making.make(file, on or "cables")
+        return making.make(file, own.on, own.over)
     from innervate.cli import files as command
 
     return command.new(kind, file, network, types, min_tq)

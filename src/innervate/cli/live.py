@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from innervate.cli import errors, live_status
 from innervate.live import status
 from innervate.live.errors import LiveError
-from innervate.network import networks
+from innervate.network import known
 
 if TYPE_CHECKING:
     from innervate.cli.options import UpOptions
@@ -86,7 +86,7 @@ def send(name: str, to: int, text: str, how: dict[str, bool], as_json: bool) -> 
 def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:
     """Print messages that come in at a node."""
     heard, where = 0, status.find(name)
-    words = networks()[status.ask_one(where, {"do": "status"})["kind"]].live_words
+    words = known(status.ask_one(where, {"do": "status"})["kind"]).live_words
     request = {"do": "listen", "alarms": True, **({"in_order": True} if in_order else {})}
     for answer in status.ask(where, request):
         if "missed" in answer:

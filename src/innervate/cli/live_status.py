@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from innervate.network import networks
+from innervate.network import known
 
 LOSSES = ("unsent", "dropped", "unplugged")  # a path's counters that somebody should see
 
@@ -18,7 +18,7 @@ def headline(told: list[dict[str, Any]], silent: int) -> str:
         return f"{' and '.join(sorted(kinds))} nodes: name those of one network to have it judged"
     found = nobody(silent, "node")
     if told:
-        view = networks()[min(kinds)].live_view()
+        view = known(min(kinds)).live_view()
         where = view.map(dict(enumerate([*told, *view.unknown(told, silent)])))
         found = view.state(where, dict(enumerate(told))).headline()
     return f"{found.level}: {found.text}"
@@ -37,7 +37,7 @@ def broken(told: list[dict[str, Any]]) -> list[str]:
 
 def lines(told: dict[str, Any]) -> list[str]:
     """A node's status, line by line."""
-    words = networks()[told["kind"]].live_words
+    words = known(told["kind"]).live_words
     key = "sealed" if told["sealed"] else "no key"
     found = [f"{told['name']}: {told['kind']} {told['role']}, up {told['up_s']:g} s, {key}"]
     state = told.get("state")

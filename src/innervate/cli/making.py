@@ -13,20 +13,23 @@ from typing import Any
 
 from innervate import folders
 from innervate.cli.errors import UserError
-from innervate.network import MEDIA, Network, networks, read
+from innervate.network import Network, accesses, networks, read
+from innervate.parts import MEDIA
 
 PATTERNS = Path(__file__).parent / "folder"
 WORD = "NAME"
 TEST_S = 600
 
 
-def make(target: Path | None, on: str) -> int:
+def make(target: Path | None, on: str, over: str = "") -> int:
     """Write a network's folder, whole or not at all; never over what is there."""
     if target is None:
         raise UserError("name it: innervate new network NAME --on cables")
     name = target.name
     if on not in MEDIA:
         raise UserError(f"--on can be {', '.join(MEDIA)}, not {on[:40]!r}")
+    if over and (on != "field" or over not in accesses()):
+        raise UserError(f"--over can be {', '.join(accesses())}, with --on field")
     if not (name.isidentifier() and name.isascii() and name == name.lower()):
         raise UserError(f"{name[:60]!r} is no name; use small letters, digits and _, "
                         "like a Python module")  # fmt: skip
@@ -38,15 +41,17 @@ def make(target: Path | None, on: str) -> int:
     target.parent.mkdir(parents=True, exist_ok=True)
     fresh = Path(tempfile.mkdtemp(prefix=f".{name}-", dir=target.parent))
     try:
-        for pattern in sorted((PATTERNS / on).iterdir()):
-            made = pattern.name.removesuffix(".txt").replace(WORD, name)
-            text = pattern.read_text(encoding="utf-8").replace(WORD, name)
-            (fresh / made).write_text(text, encoding="utf-8")
+        for home in [on, f"{on}_over"] if over else [on]:
+            for pattern in sorted((PATTERNS / home).iterdir()):
+                made = pattern.name.removesuffix(".txt").replace(WORD, name)
+                text = pattern.read_text(encoding="utf-8").replace(WORD, name)
+                (fresh / made).write_text(text.replace("OVER", over), encoding="utf-8")
         fresh.chmod(0o777 & ~_umask())
         fresh.rename(target)
     finally:
         shutil.rmtree(fresh, ignore_errors=True)
-    print(f"Written: {target}, a network over {on}. Try it:")
+    what = f"{on}, above {over}" if over else on
+    print(f"Written: {target}, a network over {what}. Try it:")
     for command in (f"innervate check-protocol {target}", f"innervate verify {target}",
                     f"innervate run {target / name}.toml"):  # fmt: skip
         print(f"  {command}")

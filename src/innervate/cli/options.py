@@ -16,6 +16,25 @@ Numbers = Annotated[list[float] | None, Parameter(negative="")]
 
 
 @dataclass(frozen=True)
+class OwnOptions:
+    """What a network of one's own is joined by.
+
+    Parameters
+    ----------
+    on
+        What a network of your own is joined by: cables (if left out), channel or field.
+    over
+        On a field: the medium access below it, csma; it sends by itself if left out.
+    """
+
+    on: str = "cables"
+    over: str = ""
+
+
+OWN_DEFAULTS = OwnOptions()
+
+
+@dataclass(frozen=True)
 class SweepOptions:
     """What is varied, how often it runs, and where.
 

@@ -16,6 +16,8 @@ FORCE = 3  # paper mode: a packet to send at once, whatever the carrier says
 RESULT = 4  # baselines: item.handle stations received our last packet
 CLOCK = 5  # baselines: slot item.handle began item.ago us ago
 QUEUE = 16  # packets a station holds; its user keeps the rest
+ALL = 65535  # a frame's field `to`, where it is declared: for everybody in reach
 # Reports: (code, a, b).
 REPORT_DELIVERED = 1  # packet handle a and the b - 1 after it are taken for delivered
 REPORT_LEFT = 8  # sends no more and may be switched off
+REPORT_GAVE_UP = 1  # a medium access in a field: the channel was busy a times; the frame is back

@@ -8,7 +8,7 @@ import ast
 from innervate.dialect.checker import broken_rules, functions_of
 
 MOST = (1 << 30) - 1
-NOTED = {"kind", "made_at"}  # fields of a frame that no layout has to name
+NOTED = {"kind", "made_at", "rssi"}  # fields of a frame that no layout has to name
 FIELD = "a field is (name, length, low, high, unit, meaning)"
 HANDLERS = {
     "on_start": "(state, params, now, cause, out)",

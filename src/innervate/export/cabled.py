@@ -9,6 +9,7 @@ import numpy as np
 
 from innervate.export import bulk, links
 from innervate.export.graphs import Graph
+from innervate.folders import MEDIA_ON_AIR
 from innervate.network import Network
 from innervate.topology import PORT_NAMES
 from innervate.topology.layout import cell_places
@@ -72,7 +73,7 @@ class Captured:
         self.simulate = network.run.simulate
         self.interfaces: Any = interfaces
         self.numbers: Any = numbers
-        if network.medium == "channel":
+        if network.medium in MEDIA_ON_AIR:
             self.interfaces, self.numbers = on_air, stations
         self._layouts = network.frames.LAYOUTS if network.has("frames") else ()
         self._kind_bits = network.frames.KIND_BITS if self._layouts else 0
@@ -91,7 +92,8 @@ class Captured:
 def graph(plan: Any) -> Graph:
     """Nodes, with their places if they have any, and cables; a plan without cables has none."""
     if not hasattr(plan, "graph"):
-        return Graph(False, [(f"node {i}", {"number": i}) for i in range(plan.nodes)], [])
+        pairs: list[Any] = [(f"node {a}", f"node {b}", {}) for a, b in getattr(plan, "good", ())]
+        return Graph(False, [(f"node {i}", {"number": i}) for i in range(plan.nodes)], pairs)
     made = plan.graph
     has_places = bool(made.patches or made.positions)
     places = cell_places(made) if has_places else [()] * made.cells

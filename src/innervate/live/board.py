@@ -186,7 +186,11 @@ PLAIN = Program(
 )
 
 CABLES = "cables"
-ON_AIR = Watched(simulation="innervate.sim.channel.declared:simulation", table="stations")
+WATCHED = {
+    CABLES: Watched(),
+    "channel": Watched(simulation="innervate.sim.channel.declared:simulation", table="stations"),
+    "field": Watched(simulation="innervate.sim.field.declared:simulation", table="stations"),
+}
 
 
 def on_wire(fields: Any) -> tuple[tuple[str, Any], ...]:
@@ -208,6 +212,6 @@ def roles_of(network: Network) -> tuple[Role, ...]:
         network.name, protocol.__name__, fields.STATE, fields.PARAMS, fields.FRAME, fields.FRAME,
         {kind: on_wire(layout) for kind, _name, layout in network.frames.LAYOUTS},
         getattr(protocol, "OUTBOX", OUTBOX), program=PLAIN if network.medium == CABLES else None,
-        watched=Watched() if network.medium == CABLES else ON_AIR,
+        watched=WATCHED[network.medium],
         action=getattr(fields, "ACTION", ACTION), timers=getattr(protocol, "TIMERS", 1),
     ),)  # fmt: skip

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from innervate.live.asking import ask, sleep_until
-from innervate.live.errors import LiveError
 from innervate.network import networks
 from innervate.scenario.actions import ON_LINKS
 
@@ -83,6 +82,18 @@ class Deployment:
             LiveError: they have no such cables, or no keys.
         """
 
+    def channel(self) -> tuple[int, int]:
+        """A slot of the channel that the nodes share and its turnaround, us, if they do.
+
+        Raises:
+            LookupError: they share none.
+        """
+        raise LookupError(self.plan.kind)
+
+    def slower(self) -> int:
+        """How many times as long everything takes as in the scenario."""
+        return 1
+
     def is_board(self, number: int) -> bool:
         """True if what the network has for boards (live/board.py) can be this node."""
         return True
@@ -120,21 +131,8 @@ class Deployment:
         return [self._play_inputs(stage)]
 
     async def _play_inputs(self, stage: Stage) -> None:
-        began = asyncio.get_running_loop().time()
-        for one in getattr(self.plan, "inputs", ()):
-            await sleep_until(began + one.at_us / 1e6)
+        began, scale = asyncio.get_running_loop().time(), self.slower() / 1e6
+        for one in sorted(getattr(self.plan, "inputs", ()), key=lambda one: one.at_us):
+            await sleep_until(began + one.at_us * scale)
             request = {"do": "input", "kind": one.kind, "item": one.item}
             await ask(stage.socket(self.names[one.node]), request)
-
-
-class NotYet(Deployment):
-    """Of nodes that have no links to run on."""
-
-    def layout(self) -> tuple[list[str], Pairs]:
-        """Refuse them.
-
-        Raises:
-            LiveError: always.
-        """
-        raise LiveError(f"a {self.plan.kind} shares a channel; of networks of your own those over "
-                        "cables are brought up live so far")  # fmt: skip

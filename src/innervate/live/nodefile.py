@@ -13,7 +13,7 @@ from msgspec import Meta, Struct, field
 
 from innervate.live.errors import LiveError
 from innervate.live.machine import machine
-from innervate.network import networks
+from innervate.network import find, networks
 
 Port = Annotated[int, Meta(ge=1, le=65_535)]
 
@@ -144,19 +144,20 @@ def load(path: Path) -> Loaded:
         raise LiveError(f"{path}: is not UTF-8 text; name a node file") from None
     except tomllib.TOMLDecodeError as error:
         raise LiveError(f"{path}: not valid TOML: {error}") from None
-    return Loaded(parse(raw, str(path)), path)
+    return Loaded(parse(raw, str(path), path.parent), path)
 
 
-def parse(raw: dict[str, Any], where: str = "node") -> NodeFile:
-    """The node of a file's tables.
+def parse(raw: dict[str, Any], where: str = "node", folder: Path = Path()) -> NodeFile:
+    """The node of a file's tables; a network of that kind may be a folder beside it, in `folder`.
 
     Raises:
         LiveError: see load().
     """
-    kind, known = raw.get("kind"), networks()
-    if not isinstance(kind, str) or kind not in known:
-        raise LiveError(f"{where}: kind must be {' or '.join(known)}")
-    file = known[kind].node_file
+    kind = raw.get("kind")
+    network = find(kind, folder, Path()) if isinstance(kind, str) else None
+    if network is None:
+        raise LiveError(f"{where}: kind must be {' or '.join(networks())}")
+    file = network.node_file
     _refuse_unknown(raw, file.__struct_fields__, where)
     try:
         table: NodeFile = msgspec.convert(raw, file)

@@ -47,7 +47,8 @@ def events(deployment: Deployment) -> list[Event]:
         name = names[fault.node] if cable < 0 else ""
         where = name or " - ".join(names[node] for node in deployment.links[cable])
         loss = getattr(fault, "loss_q15", 0) / LOSS_ONE
-        found.append(Event(fault.at_us / 1e6, what, cable, name, loss, f"{what} {where}"))
+        at_s = fault.at_us * deployment.slower() / 1e6
+        found.append(Event(at_s, what, cable, name, loss, f"{what} {where}"))
     return found
 
 

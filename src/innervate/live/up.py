@@ -104,7 +104,9 @@ class Processes:
     async def _start_medium(self) -> None:
         """The channel that the nodes share, a process of its own."""
         self._medium = f"127.0.0.1:{free_ports(1)[0]}"
+        slot_us, turnaround_us = self.deployment.channel()
         command = [sys.executable, "-m", "innervate.cli", "live", "medium", self._medium]
+        command += ["--slot-us", str(slot_us), "--turnaround-us", str(turnaround_us)]
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE)
         self.processes["medium"] = process
         assert process.stdout is not None

@@ -20,9 +20,10 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 from innervate.dialect import plain
+from innervate.dialect.access import ALL
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
-from innervate.folders import invariants_of
+from innervate.folders import MEDIA_ON_AIR, invariants_of
 from innervate.kernel.clock import wall_s
 from innervate.network import Network
 from innervate.topology import PORTS, Graph, TopologyError, free_graph
@@ -90,6 +91,8 @@ class Net:
     ) -> None:
         self.do, self.fields, self.graph = protocol, fields, graph
         self.on_air = hasattr(protocol, "on_carrier")
+        self.has_carrier = self.on_air
+        self.is_addressed = False  # a frame's field `to` says who is given it
         self.own: dict[str, Any] = {}  # what must hold of a node, by what it says
         self.of_all: dict[str, Any] = {}  # and of all nodes together
         self.params = plain.make("Params", fields.PARAMS)()
@@ -162,18 +165,21 @@ class Net:
         """A frame on the air: a carrier alone, the frame, silence."""
         frame = values(self.frame, self.fields.FRAME)
         what = f"{self.graph.label(number)} hears a frame of {self.graph.label(end // PORTS)}"
-        after, broken = self.call(state, number, 0, self.do.on_carrier, 1, 1)
-        if not broken:
-            put(self.frame, self.fields.FRAME, frame)
+        after, broken = state, ""
+        if self.has_carrier:
+            after, broken = self.call(state, number, 0, self.do.on_carrier, 1, 1)
+        put(self.frame, self.fields.FRAME, frame)
+        is_ours = not self.is_addressed or self.frame.to in (number, ALL)
+        if not broken and is_ours:
             after, broken = self.call(after, number, 0, self.do.on_frame, 0, self.frame)
-        if not broken:
+        if not broken and self.has_carrier:
             after, broken = self.call(after, number, 0, self.do.on_carrier, 0, 0)
         return Step(what, after, broken)
 
     def missed(self, state: State, end: int) -> Step:
         """A frame is lost; on the air its receiver hears that there was something."""
         what = f"A frame from {self.graph.label_end(end)} is lost"
-        if not self.on_air:
+        if not self.has_carrier:
             return Step(what, state, "")
         number = self.graph.node_of(self.graph.peer[end])
         after, broken = self.call(state, number, 0, self.do.on_carrier, 1, 0)
@@ -349,6 +355,8 @@ def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell:
               **getattr(network.fields, "EXPLORED", {}),
               **getattr(network.protocol, "EXPLORED", {})}  # fmt: skip
     net = Net(network.protocol, network.fields, graph, params)
+    net.on_air = network.medium in MEDIA_ON_AIR
+    net.is_addressed = network.medium == "field" and hasattr(net.frame, "to")
     net.own = invariants_of(network, "node_")
     net.of_all = invariants_of(network, "network_")
     cables = " ".join(f"{graph.label_end(a)}-{graph.label_end(b)}" for a, b in graph.links())

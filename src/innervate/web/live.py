@@ -10,7 +10,7 @@ from typing import Any
 
 from innervate import __version__
 from innervate.live import status
-from innervate.network import networks
+from innervate.network import known
 from innervate.web import live_known
 from innervate.web.errors import Refused, WatchError
 from innervate.web.history import LOSS, RETURN, SERIES, Logbook
@@ -82,7 +82,7 @@ class Live(Source):
         if len(kinds) > 1:
             raise WatchError(f"{' and '.join(sorted(kinds))} nodes: name those of one network")
         self._kind = min(kinds)
-        self._view: LiveView = networks()[self._kind].live_view()
+        self._view: LiveView = known(self._kind).live_view()
         self._never = self._unheard(sockets)  # who has not answered yet
         for i in sorted(self._never):
             self._log.often("none", 0, f"{self._names[i]}: nobody answers at its socket", "bad")

@@ -27,7 +27,8 @@ import pytest
 
 import innervate
 from innervate.cli import main
-from innervate.network import DEFAULTS, PARTS, networks
+from innervate.network import networks
+from innervate.parts import DEFAULTS, PARTS
 
 HERE = Path(__file__).parent
 TOLD = {"model", "check", "plan", "protocol", "fields", "frames"}

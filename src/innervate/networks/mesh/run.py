@@ -14,7 +14,7 @@ from innervate.networks.mesh.analysis.messages import NEVER, messages
 from innervate.networks.mesh.analysis.summary import summarize
 from innervate.networks.mesh.plot.words import HANDED, PACKETS, TIMERS
 from innervate.networks.mesh.sim import simulate as simulator
-from innervate.networks.mesh.sim.recorder import MAC
+from innervate.sim.field.access import MAC
 from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.trace.tables import Table
 

@@ -9,7 +9,7 @@ first sender: latencies are taken from it; 0 is for what no user handed in, whic
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from types import ModuleType
 from typing import Any
@@ -24,7 +24,8 @@ from innervate.sim import clocks, wheel
 from innervate.sim.cables import loop, recorder
 from innervate.sim.cables.build import Added, Records, build
 from innervate.sim.cables.simulation import Cables
-from innervate.sim.cables.world import ALIVE, OWN_BROKEN, SOURCE, World
+from innervate.sim.cables.world import ALIVE, SOURCE, World
+from innervate.sim.own import check_of, words_of
 from innervate.sim.recorded import Recorded
 from innervate.sim.tables import Tables, put
 
@@ -51,29 +52,20 @@ def functions(
     for name in ("on_report", "on_stop", "before_change", "on_change", "check"):
         vars(do)[name] = getattr(recorder, name)
     if own:
-        vars(do)["check"] = _own_check(list(own.values()))
+        vars(do).update(_checks(own.values()))
     return do
 
 
-def _own_check(own: list[Callable[..., Any]]) -> Callable[..., None]:
+def _checks(own: Iterable[Callable[..., Any]]) -> dict[str, Callable[..., None]]:
     """The check of ranges, and after it those of a network's own invariants."""
-    names = {f"holds_{place}": holds for place, holds in enumerate(own)}
-    lines = [
-        line for place, name in enumerate(names)
-        for line in (f"    if run.broken == 0 and not {name}(state, params, now):",
-                     f"        run.broken = {OWN_BROKEN + place}",
-                     "        run.broken_node = node")
-    ]  # fmt: skip
-    text = "\n".join([
-        "def check(world, node):", "    check_range(world, node)", "    run = world.run[0]",
-        "    state = world.cells[node]", "    params = world.params[0]",
-        "    now = reading(world.clocks[node], world.wheel.clock[NOW]) & MASK30", *lines,
-    ])  # fmt: skip
-    made: dict[str, Any] = {"check_range": recorder.check_range, "reading": clocks.reading,
-                            "NOW": wheel.NOW, "MASK30": MASK30, **names}  # fmt: skip
-    exec(compile(text, "invariants of a protocol", "exec"), made)
-    check: Callable[..., None] = made["check"]
-    return check
+    check_own = check_of(own, "cells")
+
+    def check(world, node):  # type: ignore[no-untyped-def]
+        recorder.check_range(world, node)
+        now = clocks.reading(world.clocks[node], world.wheel.clock[wheel.NOW]) & MASK30
+        check_own(world, node, now)
+
+    return {"check": check, "check_own": check_own}
 
 
 def _entries(protocol: ModuleType) -> dict[str, Callable[..., Any]]:
@@ -159,9 +151,7 @@ class DeclaredCables(Cables):
     @cached_property
     def broken_words(self) -> dict[int, str]:  # type: ignore[override]
         """What is broken, by number."""
-        own = invariants_of(networks()[self.plan.kind], "node_")
-        words = {OWN_BROKEN + place: f"{title}: {{node}}" for place, title in enumerate(own)}
-        return {**Cables.broken_words, **words}
+        return {**Cables.broken_words, **words_of(self.plan.kind)}
 
 
 def _functions(network: Network) -> ModuleType:

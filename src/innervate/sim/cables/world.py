@@ -41,7 +41,6 @@ DEAD = 2
 # What is broken; a network's recorder may have more, below these.
 BROKEN_RANGE = 3
 BROKEN_OUTBOX = 4
-OWN_BROKEN = 64  # and from there on: invariants that a network says itself
 
 # Timers of a node: the protocol's own first, then the driver's source of samples.
 SOURCE = 3

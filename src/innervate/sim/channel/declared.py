@@ -24,8 +24,10 @@ from innervate.sim.cables.declared import Unfit, frames_of
 from innervate.sim.channel import listening, loop, medium, traffic
 from innervate.sim.channel import world as w
 from innervate.sim.channel.build import Records, build
+from innervate.sim.channel.calls import handlers
 from innervate.sim.channel.simulation import Channel
 from innervate.sim.counts import Counts
+from innervate.sim.own import check_of, words_of
 from innervate.sim.recorded import Recorded
 from innervate.sim.tables import Tables, get, put, row_dtype
 
@@ -73,20 +75,7 @@ def functions(network: Network) -> ModuleType:
 
 def _entries(protocol: ModuleType, copy: Any, is_timed: bool) -> dict[str, Callable[..., Any]]:
     """The protocol's functions with the world as their first argument."""
-    start, frame_in, timer_due = protocol.on_start, protocol.on_frame, protocol.on_timer
-    given, carrier = protocol.on_input, protocol.on_carrier
-
-    def on_start(world, node, now, cause):  # type: ignore[no-untyped-def]
-        start(world.stations[node], world.params[0], now, cause, world.out)
-
-    def on_frame(world, node, now, frame):  # type: ignore[no-untyped-def]
-        frame_in(world.stations[node], world.params[0], now, 0, frame, world.out)
-
-    def on_timer(world, node, now, timer):  # type: ignore[no-untyped-def]
-        timer_due(world.stations[node], world.params[0], now, timer, world.out)
-
-    def on_carrier(world, node, now, cd, voc):  # type: ignore[no-untyped-def]
-        carrier(world.stations[node], world.params[0], now, cd, voc, world.out)
+    given = protocol.on_input
 
     def hand_down(world, node):  # type: ignore[no-untyped-def]
         radio = world.radios[node]
@@ -107,9 +96,8 @@ def _entries(protocol: ModuleType, copy: Any, is_timed: bool) -> dict[str, Calla
             kind = world.above.kinds[down(world, node)]
             given(world.stations[node], world.params[0], now, kind, world.item[0], world.out)
 
-    return {"on_start": on_start, "on_frame": on_frame, "on_timer": on_timer,
-            "on_carrier": on_carrier, "on_input": on_input, "hand_down": hand_down,
-            "hand_down_timed": down}  # fmt: skip
+    made = {one.__name__: one for one in handlers(protocol)}
+    return {**made, "on_input": on_input, "hand_down": hand_down, "hand_down_timed": down}
 
 
 def _noted(copy: Any, kind_of: Any, is_timed: bool) -> dict[str, Callable[..., Any]]:
@@ -145,24 +133,14 @@ def _noted(copy: Any, kind_of: Any, is_timed: bool) -> dict[str, Callable[..., A
 
 def _watching(own: list[Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
     """The checks after every call: ranges, and the network's own invariants."""
-    names = {f"holds_{place}": holds for place, holds in enumerate(own)}
-    lines = [
-        line for place, name in enumerate(names)
-        for line in (f"    if run.checks and run.broken == 0 and not {name}(state, params, now):",
-                     f"        run.broken = {listening.OWN_BROKEN + place}",
-                     "        run.broken_node = node")
-    ]  # fmt: skip
-    text = "\n".join([
-        "def watch(world, node, time, handler, port):", "    check_range(world, node)",
-        "    run = world.run[0]", "    state = world.stations[node]",
-        "    params = world.params[0]",
-        "    now = (time + world.radios[node].offset) & MASK30", *lines,
-        "    record_step(world, node, time, handler, port)",
-    ])  # fmt: skip
-    made: dict[str, Any] = {"check_range": listening.check_range, "MASK30": arith.MASK30,
-                            "record_step": rows.record_step, **names}  # fmt: skip
-    exec(compile(text, "invariants of a protocol", "exec"), made)
-    return {"watch": made["watch"]}
+    check_own = check_of(own, "stations")
+
+    def watch(world, node, time, handler, port):  # type: ignore[no-untyped-def]
+        listening.check_range(world, node)
+        check_own(world, node, (time + world.radios[node].offset) & arith.MASK30)
+        rows.record_step(world, node, time, handler, port)
+
+    return {"watch": watch, "check_own": check_own}
 
 
 @functools.cache
@@ -191,9 +169,7 @@ class DeclaredChannel(Channel):
     @cached_property
     def broken_words(self) -> dict[int, str]:
         """What is broken, by number, with {node} for who it concerns."""
-        own = invariants_of(networks()[self.plan.kind], "node_")
-        words = {listening.OWN_BROKEN + k: f"{title}: {{node}}" for k, title in enumerate(own)}
-        return {**listening.WORDS, **words}
+        return {**listening.WORDS, **words_of(self.plan.kind)}
 
     def take(self) -> dict[str, Any]:
         """The rows by table; packets that were handed up are deliveries."""

@@ -9,7 +9,6 @@ from innervate.sim.channel.loop import BROKEN_OUTBOX
 from innervate.sim.channel.medium import BROKEN_AIR, BROKEN_DEAF
 
 BROKEN_RANGE = 4
-OWN_BROKEN = 64  # and from there on: invariants that a network says itself
 WORDS = {
     BROKEN_DEAF: "{node} sent while it was sending, or before its radio heard again",
     BROKEN_AIR: "{node} has too many transmissions under way",

@@ -21,14 +21,24 @@ DEAF = (1 << 62) - 1  # interference that nothing survives
 RSSI_LOW, RSSI_HIGH = -128, 127
 
 BROKEN_AIR = 1  # too many frames under way at once
+BROKEN_OUTBOX = 2
+BROKEN_RANGE = 3
+BROKEN_HELD = 5  # a frame was handed down while another was under way
+BROKEN_FRAME = 6  # a receiver changed the frame that it was handed
+
+
+def breaks(world, what, node):
+    """Something happened that must not; the first is told."""
+    run = world.run[0]
+    if run.broken == 0:
+        run.broken, run.broken_node = what, node
 
 
 def reserve(world, node, state):
     """A place for a frame of `node`, or NONE: the run is broken then."""
     run = world.run[0]
     if run.free == 0:
-        if run.broken == 0:
-            run.broken, run.broken_node = BROKEN_AIR, node
+        breaks(world, BROKEN_AIR, node)
         return NONE
     run.free -= 1
     place = world.free[run.free]

@@ -8,10 +8,10 @@ from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.mesh.scenario.plan import MeshFault as Fault
 from innervate.networks.mesh.sim import build
-from innervate.networks.mesh.sim.loop import wipe
-from innervate.networks.mesh.sim.recorder import MAC
+from innervate.networks.mesh.sim.orders import wipe
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.sim.field import medium as field
+from innervate.sim.field.access import MAC
 from tests.networks.mesh.pinger import REPORT_HEARD, REPORT_SENT, REPORT_TICK
 from tests.networks.mesh.runs import LOUD, TURN_US, both_ways, mesh_plan, radio, run
 

@@ -15,6 +15,7 @@ from innervate.networks.mesh.protocol import fields
 from innervate.networks.mesh.protocol.constants import PARITY
 from innervate.networks.mesh.protocol.duplicates import ANEW, BITS, FLOODED
 from innervate.networks.mesh.protocol.fields import FORWARDED, WINDOW_WORDS
+from innervate.networks.mesh.prove import hops
 from innervate.prove.errors import ProveError
 from innervate.prove.records import Record, Store
 from innervate.prove.steps import Goal, Stage, Step, own_goals
@@ -54,6 +55,14 @@ MUTANTS = tuple(
          "        if node.done_kind[k] == kind:\n            return 1\n        node.done_kind",
          "        node.done_kind"),
         ("every packet is noted in the same place", "(k + 1) % FORWARDED", "k % FORWARDED"),
+        ("who had the packet is asked again",
+         "    if who == NONE or was_at(node, i, who) or is_suspect(node, params, who):\n",
+         "    if who == NONE or is_suspect(node, params, who):\n"),
+        ("who failed for a packet is asked again",
+         "            if who == NONE or is_skipped(node, node.q_origin[i], node.q_seq[i], who):\n",
+         "            if who == NONE:\n"),
+        ("who transmits a packet is not in its path",
+         "    node.q_path_len[i] = count + 1\n", "    node.q_path_len[i] = count\n"),
     )
 )  # fmt: skip
 
@@ -75,8 +84,9 @@ def theories(_network: Any, change: Change | None = None) -> list[Theory]:
                (partial(_again, known), partial(_first, known), partial(_other, known)),
                is_example=True),
         Theory("mesh, passing on", "A node takes a packet from others once for each try of its "
-               "origin, so that under search it takes no hop twice.", KEPT,
+               "origin; what comes back is told by its path.", KEPT,
                (partial(_taken, known), partial(_noted, known)), is_example=True),
+        *hops.theories(known),
     ]  # fmt: skip
 
 

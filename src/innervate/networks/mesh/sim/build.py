@@ -8,14 +8,15 @@ import numpy as np
 
 from innervate.dialect import rng
 from innervate.kernel import records
+from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import csma_fields
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.sim import channel, recorder
 from innervate.networks.mesh.sim import world as m
-from innervate.networks.mesh.sim.loop import BOOT, NEVER
 from innervate.networks.mesh.sim.over_channel import KEPT
 from innervate.sim.channel.world import Heap
 from innervate.sim.field import powers, queue
+from innervate.sim.field.loop import BOOT, NEVER
 from innervate.sim.field.medium import NONE
 from innervate.sim.recorded import Recorded
 from innervate.sim.tables import ACTION, TAP, Tables, get, put, uniform
@@ -208,6 +209,8 @@ def _set_run(world: m.World, plan: Any) -> None:
         world.run,
         0,
         nodes=n,
+        timers=m.TIMERS,
+        own_timers=mesh_const.TIMERS,
         mac=MACS.get(plan.mac, 0),
         collisions=int(radio.collisions and plan.mac in MACS),
         turnaround=radio.turnaround_us,

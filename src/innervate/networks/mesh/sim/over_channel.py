@@ -10,13 +10,13 @@ from innervate.dialect.outbox import URGENT
 from innervate.kernel.bits import mix
 from innervate.networks.mesh.protocol.constants import ACK
 from innervate.networks.mesh.scenario.plan import HEADER_SLOTS
-from innervate.networks.mesh.sim import calls, recorder
+from innervate.networks.mesh.sim import recorder
 from innervate.sim import heap, taps
 from innervate.sim.channel import loop as radio_loop
 from innervate.sim.channel import medium as channel
 from innervate.sim.channel import traffic
 from innervate.sim.channel.world import RING
-from innervate.sim.field import medium, queue
+from innervate.sim.field import calls, medium, queue
 from innervate.sim.field.medium import NONE
 from innervate.sim.field.states import ALIVE, HELD, VOID
 
@@ -79,7 +79,7 @@ def short(world):
     below = world.below
     found = radio_loop.pressing(below)
     if below.run[0].broken:
-        recorder.breaks(world, recorder.BROKEN_BELOW, below.run[0].broken_node)
+        medium.breaks(world, recorder.BROKEN_BELOW, below.run[0].broken_node)
     return found
 
 
@@ -111,7 +111,7 @@ def hand_down(world, do, node, frame, act, time):
     run, radio, below = world.run[0], world.radios[node], world.below
     urgent = act.c & URGENT
     if radio.held != NONE and not urgent:
-        recorder.breaks(world, recorder.BROKEN_HELD, node)
+        medium.breaks(world, medium.BROKEN_HELD, node)
         return 0
     if urgent and below.radios[node].backlog >= QUEUE:
         run.blocked += 1
@@ -184,7 +184,7 @@ def note_end(world, do, node, place, time):
     recorder.tap(world, place, node, air.start, 1, taps.FINE)
     air.receivers = 0
     if run.checks and do.digest(world.frames[place]) != air.digest:
-        recorder.breaks(world, recorder.BROKEN_FRAME, node)
+        medium.breaks(world, medium.BROKEN_FRAME, node)
 
 
 def dispatch_below(world, do, rank, node, what, time):
@@ -197,4 +197,4 @@ def dispatch_below(world, do, rank, node, what, time):
         note_end(world, do, node, what, time)
     elif world.radios[node].held == what:
         world.radios[node].held = NONE
-        calls.tell_sent(world, do, node, time, 1)
+        do.tell_sent(world, do, node, time, 1)

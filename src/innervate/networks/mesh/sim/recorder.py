@@ -3,26 +3,14 @@
 from innervate.kernel.bits import mix
 from innervate.networks.mesh.protocol.frames import copy_frame
 from innervate.sim import taps
+from innervate.sim.field.medium import breaks
 from innervate.sim.field.states import ON_AIR
 
-BROKEN_OUTBOX = 2
-BROKEN_RANGE = 3
 BROKEN_TWICE = 4  # a packet was delivered twice
-BROKEN_HELD = 5  # a frame was handed down while another was under way
-BROKEN_FRAME = 6  # a receiver changed the frame that it was handed
 BROKEN_BELOW = 7  # the channel below says what
-
-MAC = 8  # in trails: a handler of the medium access
 
 WORD_BITS = 15
 DUPLICATES_HASH = 0x5EE
-
-
-def breaks(world, what, node):
-    """Something happened that must not; the first is told."""
-    run = world.run[0]
-    if run.broken == 0:
-        run.broken, run.broken_node = what, node
 
 
 def record_sent(world, place, time, length, receivers):

@@ -12,23 +12,22 @@ from innervate.kernel import compilation, tables
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.sim import build as builder
 from innervate.networks.mesh.sim import (
-    calls,
     channel,
-    loop,
+    orders,
     over_channel,
-    over_medium,
     recorder,
     stacks,
 )
 from innervate.networks.mesh.sim import world as w
-from innervate.networks.mesh.sim.timers import set_timer
 from innervate.networks.radio.sim import recorder as radio_recorder
 from innervate.networks.radio.sim import simulate as radio_simulate
 from innervate.networks.radio.sim import stacks as radio_stacks
 from innervate.sim import heap, rows, taps
 from innervate.sim.driver import Progress
-from innervate.sim.field import medium, motion, powers
+from innervate.sim.field import access as over_medium
+from innervate.sim.field import calls, loop, medium, motion, powers
 from innervate.sim.field.simulation import Field
+from innervate.sim.field.timers import set_timer
 from innervate.sim.ranges import is_in_range
 from innervate.sim.status import POOL_FULL
 from innervate.sim.tables import get
@@ -51,7 +50,7 @@ class MeshResult:
         delivered: what nodes gave to their users.
         rounds: what a gateway knew after each of its rounds.
         trail: all handler calls, if asked for; those of the medium access are numbered from
-            `recorder.MAC`.
+            `access.MAC`.
         counts: the numbers of the run by name, see COUNTS.
         ended_us: up to where it ran.
     """
@@ -100,7 +99,7 @@ def _compiled(entry: ModuleType, access: radio_stacks.Protocol | None) -> Callab
     layer = stacks.Layer(over_medium)
     if access is not None:
         layer = stacks.Layer(over_channel, radio_simulate.registered(access, over_channel))
-    compilation.register(calls, loop, layer.part, hot=False)
+    compilation.register(calls, orders, loop, layer.part, hot=False)
     do = stacks.bind(entry, layer)
     compilation.register_functions(*filter(callable, vars(do).values()), hot=False)
     advance = compilation.compiled_as_one(loop.bind(do))
@@ -160,7 +159,7 @@ class MeshSimulation(Field):
         """Make room for more events, or for more deliveries to be remembered."""
         if status == POOL_FULL:
             self.world = channel.grown(self.world)
-        if status == loop.DUPLICATES_FULL:
+        if status == orders.DUPLICATES_FULL:
             self.world = builder.grow_duplicates(self.world)
 
     def broken_between(self) -> tuple[int, int] | None:
@@ -168,7 +167,7 @@ class MeshSimulation(Field):
         fields = mesh_fields.gate(self.plan.capacity)
         for rank in range(len(self.world.gates) - 1):
             if not is_in_range(self.world.gates[rank], fields):
-                return recorder.BROKEN_RANGE, self.plan.ranks.index(rank)
+                return medium.BROKEN_RANGE, self.plan.ranks.index(rank)
         return None
 
     def broken_line(self) -> str:
@@ -224,11 +223,11 @@ def _plain_layer(mac: str) -> stacks.Layer:
 # What is broken, with {node} for who it concerns; what is below has its own words.
 BROKEN_WORDS = {
     medium.BROKEN_AIR: "node {node} has too many frames under way",
-    recorder.BROKEN_OUTBOX: "outbox of node {node} overflowed",
-    recorder.BROKEN_RANGE: "a value of node {node} is out of its declared range",
+    medium.BROKEN_OUTBOX: "outbox of node {node} overflowed",
+    medium.BROKEN_RANGE: "a value of node {node} is out of its declared range",
     recorder.BROKEN_TWICE: "node {node} delivered a packet twice",
-    recorder.BROKEN_HELD: "node {node} handed down a frame while another was under way",
-    recorder.BROKEN_FRAME: "a receiver changed the frame that node {node} had sent",
+    medium.BROKEN_HELD: "node {node} handed down a frame while another was under way",
+    medium.BROKEN_FRAME: "a receiver changed the frame that node {node} had sent",
 }
 
 

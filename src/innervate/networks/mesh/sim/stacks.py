@@ -12,6 +12,8 @@ from innervate.kernel.bits import mix
 from innervate.networks.mesh.protocol import csma
 from innervate.networks.mesh.protocol.constants import ACK
 from innervate.networks.mesh.protocol.frames import copy_frame, frame_bytes
+from innervate.networks.mesh.sim import orders, recorder
+from innervate.sim.field.calls import is_sound
 
 # What the loop asks of the layer below.
 BELOW = (
@@ -19,11 +21,19 @@ BELOW = (
 )  # fmt: skip
 
 
+# What it asks of the mesh, besides its handlers.
+ORDERS = (
+    orders.pressing, orders.wipe, orders.offer, orders.sample, orders.tell_sent, orders.note_heard,
+    orders.note_report, orders.note_carriers, orders.check,
+    recorder.record_sent, recorder.record_delivered, recorder.tap,
+)  # fmt: skip
+
+
 class Layer(NamedTuple):
     """What lies below the router.
 
     Attributes:
-        part: `over_medium` or `over_channel`.
+        part: `sim.field.access` or `over_channel`.
         channel: what the channel of the latter calls; None = there is none.
     """
 
@@ -52,15 +62,6 @@ def digest(frame):
     return mark
 
 
-def is_sound(world, node):
-    """True if every word of a node's record is in its range."""
-    words, low, high = world.words[node], world.low, world.high
-    wrong = 0
-    for i in range(len(low)):
-        wrong += (words[i] < low[i]) | (words[i] > high[i])
-    return wrong == 0
-
-
 def bind(entry: ModuleType, layer: Layer, *others: Callable[..., Any]) -> ModuleType:
     """What a mesh's loop calls, of a router and what lies below it.
 
@@ -71,7 +72,7 @@ def bind(entry: ModuleType, layer: Layer, *others: Callable[..., Any]) -> Module
     below = (getattr(layer.part, name) for name in BELOW)
     made = compilation.bound(
         f"{entry.on_start.__module__} {layer.part.__name__}",
-        others, _router(entry), _csma(), (digest, copy_frame, frame_bytes, is_sound), below,
+        others, _router(entry), _csma(), (digest, copy_frame, frame_bytes, is_sound), ORDERS, below,
     )  # fmt: skip
     vars(made)["channel"] = layer.channel
     return made

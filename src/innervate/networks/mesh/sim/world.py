@@ -10,7 +10,8 @@ from innervate.sim.channel.world import Heap
 from innervate.sim.tables import Out
 
 RUN = (
-    "nodes", "mac", "collisions", "turnaround", "byte_ns", "phy_bytes", "sense", "capture",
+    "nodes", "timers", "own_timers",
+    "mac", "collisions", "turnaround", "byte_ns", "phy_bytes", "sense", "capture",
     "rng", "sample", "origin_x", "origin_y", "unit", "moving", "rssi50", "told", "row", "good",
     "on_air", "free", "gate_words", "next_command", "commands", "next_offer", "offers",
     "duplicates", "duplicate_limit", "forget", "checks", "watchful", "status", "fingerprint", "now",

@@ -7,9 +7,8 @@ from typing import Any
 
 from innervate.dialect import plain
 from innervate.dialect.access import PACKET, QUEUE, REPORT_DELIVERED
-from innervate.live.machine import machine
-from innervate.live.node import LiveNode
-from innervate.live.radio import Aerial, Radio
+from innervate.live.on_air import AirNode
+from innervate.live.radio import Radio
 from innervate.live.receipts import DELIVERED, REFUSED, Receipt
 from innervate.live.streams import Arrivals, Stream, message_line
 from innervate.networks.radio import frames as wire
@@ -22,7 +21,7 @@ HANDLES = 65_536
 Packet = plain.make("Packet", fields.PACKET)
 
 
-class RadioNode(LiveNode):
+class RadioNode(AirNode):
     """A station: sends packets to all, receives theirs.
 
     Args:
@@ -38,22 +37,10 @@ class RadioNode(LiveNode):
         self, name: str, stack: StationStack, radio: Radio, channel: str = "channel"
     ) -> None:
         super().__init__(name, stack, [])
-        self.radio = radio
-        self.paths = [Aerial(radio, channel)]
+        self.take_radio(radio, channel)
         self.arrivals = Arrivals(is_spread=True)
         self._packets: dict[int, tuple[bytes, Receipt]] = {}
         self._handle = 0
-        self._bytes = b""
-
-    async def start(self) -> None:
-        """Switch on protocol and radio."""
-        await super().start()
-        await self.radio.start(self)
-
-    async def stop(self) -> None:
-        """Switch the radio off, then the node."""
-        self.radio.stop()
-        await super().stop()
 
     def send_request(self, request: dict[str, Any]) -> Receipt:
         """Send the payload of a status request to all stations."""
@@ -91,46 +78,20 @@ class RadioNode(LiveNode):
         self.engine.input(PACKET, item)
         return receipt
 
-    def on_carrier(self, at: int, cd: bool, voc: bool) -> None:
-        """The radio's carrier came or went."""
-        assert self.engine is not None
-        self.paths[0].heard_at = at
-        self.engine.call(lambda now: self.stack.on_carrier(now, cd, voc), at)
-
-    def on_frame(self, at: int, data: bytes) -> None:
-        """The radio received a frame."""
-        path = self.paths[0]
-        if path.loss and machine().chance.random() < path.loss:
-            return
-        path.counters["received"] += 1
-        path.counters["received bytes"] += len(data)
-        assert self.engine is not None
-        at_ns = machine().time_ns() if self.taps else 0
-        why = self.engine.read(data)
-        if not why:
-            self._bytes = data
-            self.engine.receive(0, at)
-        self._tell(at_ns, 0, False, data, why)
-
     def status(self) -> dict[str, Any]:
         """What is known here, and what the radio does: "off", "listening" or "sending"."""
         return {**super().status(), "radio": self.radio.mode}
 
-    def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
+    def packed(self, frame: Any) -> bytes:
+        """The bytes of a frame, with the packets that it carries."""
         payload = b""
         for k in range(frame.count):
             payload += self._packets[(frame.handle + k) % HANDLES][0]
-        assert self.engine is not None
-        data = wire.encode(frame, payload)
-        at_ns = machine().time_ns() if self.taps else 0
-        self.radio.send(self.engine.now, data, frame.slots)
-        self.paths[0].sent(data)
-        self._tell(at_ns, 0, True, data, "")
-        self.outcomes["frames sent"] += 1
+        return wire.encode(frame, payload)
 
     def _deliver(self, kind: int, frame: Any) -> None:
         self.outcomes["packets received"] += 1
-        self.arrivals.put((frame.source, wire.payload_of(self._bytes)))
+        self.arrivals.put((frame.source, wire.payload_of(self.heard)))
 
     def _reported(self, code: int, a: int, b: int) -> None:
         if code == REPORT_DELIVERED:

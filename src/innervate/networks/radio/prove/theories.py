@@ -1,7 +1,7 @@
 """What `innervate prove radio` claims: of a station's queue, and of switching it on.
 
-That no two turns overlap is not proved: it is about what two stations hear of one another, and
-when. `innervate verify radio` tries it.
+That no two turns overlap is proved of stations that heard the same frames (turns.py), and not of
+others: `innervate verify radio` tries those.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import Any
 from innervate.dialect.arith import MASK30
 from innervate.dialect.source import Change
 from innervate.networks.radio.protocol import fields
+from innervate.networks.radio.prove import turns
 from innervate.prove.errors import ProveError
 from innervate.prove.parity import Twin, twin
 from innervate.prove.steps import Goal, Stage, Step, own_goals
@@ -29,6 +30,31 @@ MUTANTS = tuple(
     for texts in (
         ("a packet is put where the oldest is", "station.head + station.queued", "station.head"),
         ("a full queue takes another", "station.queued >= QUEUE", "station.queued > QUEUE"),
+        (
+            "a place that another gets is kept",
+            "                if place == station.pos:\n                    station.pos = NONE\n",
+            "",
+        ),
+        (
+            "who is not named takes the turn",
+            "    if cur == station.pos:\n",
+            "    if cur <= station.pos:\n",
+        ),
+        (
+            "a turn does not wait for the one before it",
+            "2 * least_delay(params, wide) - params.ta_us)",
+            "3 * least_delay(params, wide) - params.ta_us)",
+        ),
+        (
+            "a turn is given up too soon",
+            "+ 4 * most_delay(params, wide) + minislot(params, wide)",
+            "+ minislot(params, wide)",
+        ),
+        (
+            "who is passed over takes the sender's place",
+            "            station.pos = NONE\n    if lone:",
+            "            station.pos = sender\n    if lone:",
+        ),
     )
 )
 
@@ -43,8 +69,11 @@ def theories(_network: Any, change: Change | None = None) -> list[Theory]:
         raise ProveError(f"{change[0]!r} is in no source that is proved")
     known = source(ENTRY, change)
     claim = "A packet that is taken waits in the queue, and none that waits is lost or changed."
-    return [Theory("radio, the queue of a station", claim, (),
-                   (partial(_start, known), partial(_packet, known)), is_example=True)]  # fmt: skip
+    return [
+        Theory("radio, the queue of a station", claim, (),
+               (partial(_start, known), partial(_packet, known)), is_example=True),
+        Theory("radio, turns", turns.CLAIM, turns.ASSUMED, turns.steps(known), is_example=True),
+    ]  # fmt: skip
 
 
 def _stage(known: dict[str, Any]) -> tuple[Stage, list[Any]]:

@@ -27,6 +27,7 @@ from innervate.networks.radio.protocol import window as radio_window
 from innervate.networks.radio.protocol.station import copy_frame
 from innervate.networks.radio.scenario.baselines import NUMBERS
 from innervate.sim.channel import traffic
+from innervate.sim.channel.calls import handlers
 
 
 class Protocol(NamedTuple):
@@ -88,27 +89,9 @@ def bind(entry: ModuleType, recorder: Any, packets: Any = traffic) -> ModuleType
         packets: follows what becomes of packets (note_sent, note_received, note_delivered):
             `traffic`, or a protocol above whose frames they are.
     """
-    start, frame_in, timer_due = entry.on_start, entry.on_frame, entry.on_timer
-    given, carrier = entry.on_input, entry.on_carrier
-
-    def on_start(world, node, now, cause):  # type: ignore[no-untyped-def]
-        start(world.stations[node], world.params[0], now, cause, world.out)
-
-    def on_frame(world, node, now, frame):  # type: ignore[no-untyped-def]
-        frame_in(world.stations[node], world.params[0], now, 0, frame, world.out)
-
-    def on_timer(world, node, now, timer):  # type: ignore[no-untyped-def]
-        timer_due(world.stations[node], world.params[0], now, timer, world.out)
-
-    def on_input(world, node, now, kind):  # type: ignore[no-untyped-def]
-        given(world.stations[node], world.params[0], now, kind, world.item[0], world.out)
-
-    def on_carrier(world, node, now, cd, voc):  # type: ignore[no-untyped-def]
-        carrier(world.stations[node], world.params[0], now, cd, voc, world.out)
-
     return compilation.bound(
         f"{entry.__name__} on a channel",
-        (on_start, on_frame, on_timer, on_input, on_carrier, digest, copy_frame),
+        (*handlers(entry), digest, copy_frame),
         (recorder.record_sent, recorder.record_received, recorder.watch),
         (packets.note_sent, packets.note_received, packets.note_delivered),
     )

@@ -6,7 +6,11 @@ from functools import partial
 from typing import Any
 
 from innervate.dialect.source import Change
-from innervate.networks.skin.protocol.constants import INFINITY, RULE_FEASIBLE
+from innervate.networks.skin.protocol.constants import (
+    INFINITY,
+    RULE_FEASIBLE,
+    RULE_PAPER_LAX,
+)  # fmt: skip
 from innervate.networks.skin.prove import (
     feasible,
     forgetting,
@@ -93,6 +97,7 @@ def _stories(change: Change | None) -> list[Theory]:
     lose, back = stories.BOTH_LOSE, stories.PC_GOES_BACK
     rows = (
         ("paper", "two cells close no ring", stories.both_lose(change), lose),
+        ("paper-lax", "two cells close no ring", stories.both_lose(change, RULE_PAPER_LAX), lose),
         ("feasible, two cells", "both lose the PC and close no ring",
          stories.both_lose(change, RULE_FEASIBLE), ""),
         ("strict, the PC restarts", "two cells close no ring", stories.goes_back(change), back),

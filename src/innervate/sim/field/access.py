@@ -1,21 +1,25 @@
-"""Below the router: CSMA, or nothing, on a medium in which not everybody hears everybody."""
+"""Below a protocol in a field: a medium access like CSMA, or nothing (see `sim/field`)."""
 
+from innervate.dialect.access import PACKET, REPORT_GAVE_UP
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.kernel.bits import mix
-from innervate.networks.mesh.protocol import constants as mesh_const
-from innervate.networks.mesh.protocol import csma
-from innervate.networks.mesh.protocol.constants import ACK
-from innervate.networks.mesh.sim import calls, recorder
-from innervate.networks.mesh.sim.recorder import MAC
-from innervate.networks.mesh.sim.timers import set_timer
 from innervate.sim import rows, taps
-from innervate.sim.field import medium, queue
-from innervate.sim.field.medium import NONE
+from innervate.sim.field import calls, medium, queue
+from innervate.sim.field.medium import (
+    BROKEN_FRAME,
+    BROKEN_HELD,
+    BROKEN_OUTBOX,
+    NONE,
+    breaks,
+)
 from innervate.sim.field.states import COMMITTED, FREE, HELD, ON_AIR
+from innervate.sim.field.timers import set_timer
 from innervate.sim.status import DONE, ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 
 NEVER = -1
+MAC = 8  # in trails: a handler of the medium access
+ATTEMPT_MAX = 14
 
 
 def give_up(world, node, time):
@@ -35,7 +39,7 @@ def short(_world):
 
 
 def due(_world):
-    """When the layer below has something to do that is not in the mesh's own queue: never."""
+    """When the layer below has something to do that is not in the field's queue: never."""
     return queue.TIME_MAX
 
 
@@ -56,26 +60,26 @@ def drain_mac(world, do, node, time, handler):
         if kind == SEND:
             medium.commit(world, radio.hot if c & URGENT else radio.held, time)
         elif kind == SET_TIMER:
-            set_timer(world, node, mesh_const.TIMERS + a, b, time, now)
-        elif kind == REPORT and a == csma.REPORT_GAVE_UP:
+            set_timer(world, node, run.own_timers + a, b, time, now)
+        elif kind == REPORT and a == REPORT_GAVE_UP:
             give_up(world, node, time)
         elif kind == DELIVER:
             handed_up = True
     out.count[0] = 0
     run.fingerprint = mark
     if out.overflow[0]:
-        recorder.breaks(world, recorder.BROKEN_OUTBOX, node)
+        breaks(world, BROKEN_OUTBOX, node)
     if run.watchful:
         rows.record_step(world, node, time, handler, 0)
     return handed_up
 
 
 def hand_down(world, do, node, frame, act, time):
-    """The router sends a frame: put it where frames under way are; returns its digest."""
+    """The protocol sends a frame: put it where frames under way are; returns its digest."""
     run, radio, item = world.run[0], world.radios[node], world.mac_item[0]
     urgent = act.c & URGENT
     if radio.held != NONE and not urgent:
-        recorder.breaks(world, recorder.BROKEN_HELD, node)
+        breaks(world, BROKEN_HELD, node)
         return 0
     if radio.deaf and (urgent or not run.mac):
         run.blocked += 1
@@ -98,7 +102,7 @@ def hand_down(world, do, node, frame, act, time):
     item.us = medium.airtime(world, do.frame_bytes(kept))
     item.urgent = 1 if urgent else 0
     item.attempt = act.b
-    do.mac_on_input(world, node, (time + radio.offset) & MASK30, csma.PACKET)
+    do.mac_on_input(world, node, (time + radio.offset) & MASK30, PACKET)
     drain_mac(world, do, node, time, MAC + ON_INPUT)
     return mark
 
@@ -118,7 +122,7 @@ def power_off(world, do, node, time):
         air = world.air[place]
         if air.node == node and air.state != FREE:
             length = do.frame_bytes(world.frames[place])
-            recorder.record_sent(world, place, time, length, 0)
+            do.record_sent(world, place, time, length, 0)
             medium.abandon(world, place)
 
 
@@ -131,17 +135,16 @@ def expire_below(world, do, node, timer, time):
     if carrier != radio.told:
         radio.told = carrier
         do.mac_on_carrier(world, node, now & MASK30, carrier, 0)
-    do.mac_on_timer(world, node, now & MASK30, timer - mesh_const.TIMERS)
+    do.mac_on_timer(world, node, now & MASK30, timer - run.own_timers)
     drain_mac(world, do, node, time, MAC + ON_TIMER)
 
 
 def arrive(world, do, node, place, time):
     """A node has received the frame at `place`."""
     run, frame = world.run[0], world.frames[place]
-    if frame.kind != ACK:
-        frame.rssi = medium.rssi_dbm(world, world.air[place].node, node)
+    do.note_heard(world, node, place)
     run.arrived += 1
-    recorder.tap(world, place, node, time, 0, taps.FINE)
+    do.tap(world, place, node, time, 0, taps.FINE)
     if run.mac:
         do.mac_on_frame(world, node, (time + world.radios[node].offset) & MASK30, frame)
         if not drain_mac(world, do, node, time, MAC + ON_FRAME):
@@ -155,28 +158,30 @@ def end(world, do, place, time):
     frame, node, is_whole = world.frames[place], air.node, air.state == ON_AIR
     if is_whole:
         medium.leave(world, place)
-        count = medium.receivers(world, place, recorder.tap)
-        recorder.record_sent(world, place, time, do.frame_bytes(frame), count)
+        count = medium.receivers(world, place, do.tap)
+        do.record_sent(world, place, time, do.frame_bytes(frame), count)
         for i in range(count):
             arrive(world, do, world.got[i], place, time)
         if run.checks and do.digest(frame) != air.digest:
-            recorder.breaks(world, recorder.BROKEN_FRAME, node)
+            breaks(world, BROKEN_FRAME, node)
     medium.release(world, place)
     if is_whole and world.radios[node].held == place:
         world.radios[node].held = NONE
-        calls.tell_sent(world, do, node, time, 1)
+        do.tell_sent(world, do, node, time, 1)
 
 
 def dispatch_below(world, do, rank, node, what, time):
     """An event of the medium, or of the medium access."""
     if rank == queue.ENDS:
         end(world, do, what, time)
+        do.note_carriers(world, do, time)
     elif rank == queue.STARTS:
         if world.air[what].state == COMMITTED:
             medium.start(world, what, time, do.frame_bytes(world.frames[what]))
-            recorder.tap(world, what, world.air[what].node, time, 1, taps.FINE)
+            do.tap(world, what, world.air[what].node, time, 1, taps.FINE)
         else:
             medium.release(world, what)
+        do.note_carriers(world, do, time)
     elif world.radios[node].tell_at == time:
         world.radios[node].tell_at = NEVER
-        calls.tell_sent(world, do, node, time, 0)
+        do.tell_sent(world, do, node, time, 0)

@@ -1,15 +1,11 @@
-"""A router's handlers called, and what they ask for carried out.
-
-`do` are the functions of the router, and of what lies below it (see stacks.py).
-"""
+"""A protocol's handlers called, and what they ask for carried out (see `sim/field`)."""
 
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
 from innervate.kernel.bits import mix
-from innervate.networks.mesh.protocol.constants import REPORT_GRAPH, SENT
-from innervate.networks.mesh.sim import recorder
-from innervate.networks.mesh.sim.timers import set_timer
 from innervate.sim import rows
+from innervate.sim.field.medium import BROKEN_OUTBOX, breaks
+from innervate.sim.field.timers import set_timer
 from innervate.sim.status import ON_FRAME, ON_INPUT
 
 
@@ -29,14 +25,13 @@ def drain(world, do, node, time):
             set_timer(world, node, a, b, time, now)
         elif kind == REPORT:
             rows.record_row(world, time, node, a, b, c)
-            if a == REPORT_GRAPH:
-                recorder.record_round(world, node, time)
+            do.note_report(world, node, time, a)
         elif kind == DELIVER:
             run.fingerprint = mix(mark, do.digest(out.frame[i]))
-            recorder.record_delivered(world, node, out.frame[i], time)
+            do.record_delivered(world, node, out.frame[i], time)
     out.count[0] = 0
     if out.overflow[0]:
-        recorder.breaks(world, recorder.BROKEN_OUTBOX, node)
+        breaks(world, BROKEN_OUTBOX, node)
 
 
 def finish(world, do, node, time, handler, port):
@@ -47,8 +42,8 @@ def finish(world, do, node, time, handler, port):
     if world.out.count[0] > 0:
         drain(world, do, node, time)
     if run.watchful:
-        if run.checks and not do.is_sound(world, node):
-            recorder.breaks(world, recorder.BROKEN_RANGE, node)
+        if run.checks:
+            do.check(world, do, node, time)
         rows.record_step(world, node, time, handler, port)
 
 
@@ -59,15 +54,17 @@ def give(world, do, node, time, kind):
     finish(world, do, node, time, ON_INPUT, kind)
 
 
-def tell_sent(world, do, node, time, ok):
-    """The router's frame has left the air, or could not."""
-    if world.run[0].told:
-        world.item[0].ok = ok
-        give(world, do, node, time, SENT)
-
-
 def take(world, do, node, frame, time):
     """A node's router is handed a frame that was received."""
     now = time + world.radios[node].offset
     do.on_frame(world, node, now & MASK30, frame)
     finish(world, do, node, time, ON_FRAME, frame.kind)
+
+
+def is_sound(world, node):
+    """True if every word of a node's record is in its range."""
+    words, low, high = world.words[node], world.low, world.high
+    wrong = 0
+    for i in range(len(low)):
+        wrong += (words[i] < low[i]) | (words[i] > high[i])
+    return wrong == 0

@@ -1,0 +1,123 @@
+"""A live node on a shared channel: a protocol over any `Radio` (see radio.py)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from innervate.live.declared import DeclaredFile, DeclaredNode, DeclaredStack
+from innervate.live.errors import LiveError
+from innervate.live.machine import machine
+from innervate.live.node import LiveNode
+from innervate.live.nodefile import Loaded, MediumTable, address
+from innervate.live.parameters import check_parameters
+from innervate.live.radio import Aerial, Radio
+from innervate.network import networks
+
+
+class AirNode(LiveNode):
+    """A node whose frames go out by a radio, and come in from it.
+
+    Attributes:
+        radio: what it sends and hears with.
+        heard: the bytes of the frame that was received last.
+    """
+
+    radio: Radio
+    heard: bytes = b""
+
+    def take_radio(self, radio: Radio, channel: str) -> None:
+        """The node's radio, its one path, and what that is called."""
+        self.radio = radio
+        self.paths = [Aerial(radio, channel)]
+
+    async def start(self) -> None:
+        """Switch on protocol and radio."""
+        await super().start()
+        await self.radio.start(self)
+
+    async def stop(self) -> None:
+        """Switch the radio off, then the node."""
+        self.radio.stop()
+        await super().stop()
+
+    def on_carrier(self, at: int, cd: bool, voc: bool) -> None:
+        """The radio's carrier came or went."""
+        assert self.engine is not None
+        self.paths[0].heard_at = at
+        stack: Any = self.stack
+        self.engine.call(lambda now: stack.on_carrier(now, cd, voc), at)
+
+    def on_frame(self, at: int, data: bytes) -> None:
+        """The radio received a frame."""
+        path = self.paths[0]
+        if path.loss and machine().chance.random() < path.loss:
+            return
+        path.counters["received"] += 1
+        path.counters["received bytes"] += len(data)
+        assert self.engine is not None
+        at_ns = machine().time_ns() if self.taps else 0
+        why = self.engine.read(data)
+        if not why:
+            self.heard = data
+            self.engine.receive(0, at)
+        self._tell(at_ns, 0, False, data, why)
+
+    def packed(self, frame: Any) -> bytes:
+        """The bytes of a frame that goes on the air."""
+        return self.stack.encode(frame)
+
+    def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
+        assert self.engine is not None
+        data = self.packed(frame)
+        at_ns = machine().time_ns() if self.taps else 0
+        self.radio.send(self.engine.now, data, frame.slots)
+        self.paths[0].sent(data)
+        self._tell(at_ns, 0, True, data, "")
+        self.outcomes["frames sent"] += 1
+
+
+class DeclaredAirStack(DeclaredStack):
+    """One node of a network on a channel that only declares its protocol."""
+
+    def on_carrier(self, now: int, cd: bool, voc: bool) -> None:
+        """The carrier came or went, or our own frame has ended."""
+        self._do.on_carrier(self.node, self.params, now, int(cd), int(voc), self.out)
+
+
+class DeclaredAirNode(AirNode, DeclaredNode):
+    """A node of such a network: what it sends goes out by its radio."""
+
+
+def medium_of(loaded: Loaded) -> tuple[str, tuple[str, int]]:
+    """The channel that a node file names: as it is written, and its address.
+
+    Raises:
+        LiveError: it names none, or keys besides.
+    """
+    table, where = loaded.table, f"{loaded.path}"
+    if len(table.link) != 1 or not isinstance(table.link[0], MediumTable):
+        raise LiveError(f'{where}: a node on a channel has one [[link]], of kind = "medium"')
+    if table.keys is not None:
+        raise LiveError(f"{where}: frames on a shared channel are not sealed; remove [keys]")
+    text = table.link[0].address
+    return text, address(text, where)
+
+
+def build(loaded: Loaded) -> DeclaredAirNode:
+    """The node of a file, not yet started.
+
+    Raises:
+        LiveError: it cannot be as written.
+    """
+    from innervate.live.channel_radio import MediumRadio
+
+    table = loaded.table
+    assert isinstance(table, DeclaredFile)
+    text, where = medium_of(loaded)
+    network = networks()[table.kind]
+    check_parameters(table.protocol, network.fields.PARAMS, f"{loaded.path}")
+    seed = machine().chance.getrandbits(60)
+    stack = DeclaredAirStack(network, table.number, dict(table.protocol), seed, [0])
+    node = DeclaredAirNode(loaded.name, stack, [])
+    node.take_radio(MediumRadio(table.number, where), f"medium {text}")
+    return node

@@ -1,0 +1,371 @@
+"""Scenarios of any network over a field that has no keys of its own, and their plans.
+
+Built in code they are the same: `FieldScenario(kind="flood", nodes=20)`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Annotated, Any, Literal
+
+from msgspec import Meta
+
+from innervate.network import networks
+from innervate.scenario.actions.field import ACTIONS, JAM
+from innervate.scenario.cables import Input
+from innervate.scenario.declared import InputTable, check_declared, inputs_of, parameters
+from innervate.scenario.events import told
+from innervate.scenario.explain import alternatives
+from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
+from innervate.scenario.lines import Key
+from innervate.scenario.source import Source, shown
+from innervate.topology import placement
+from innervate.trace.streams import stream
+from innervate.wire.frames import Codec
+
+NODES_MAX = 254
+ONE = 32_768
+RSSI50_CDB = -9_500  # half of the frames are received at -95 dBm
+GOOD_CDB = 300  # a good link is so much louder: 95 % are received
+LEAST = 0.01  # who receives less than that of a node's frames is out of its reach
+PAIRS = ("cut", "restore")
+
+
+class AirTable(Table, frozen=True, kw_only=True):
+    """All nodes' radios.
+
+    Attributes:
+        reach_m: over so many metres 95 % of the frames are received, where nothing disturbs them.
+        bits_per_s: of a frame on the air.
+        preamble_bytes: in front of each.
+        turnaround_us: from the decision to send to the first sound; the radio is deaf then.
+        exponent: of the path loss: 2 in free space, 3 among machines.
+        shadowing_db: sigma of what a pair gains or loses besides, drawn from the seed.
+        capture_db: a frame survives others that are weaker by so much.
+        sense_db: the carrier is sensed down to so much below the level of 50 % reception.
+        queue_frames: frames that wait in a node for those before them.
+        backoff_us, exponent_min, exponent_max, busy_max: of CSMA, where the network is over it.
+    """
+
+    reach_m: Annotated[float, above_0("metres", 100_000)] = 30.0
+    bits_per_s: Annotated[int, whole("bits per second", 100, 1_000_000_000)] = 250_000
+    preamble_bytes: Annotated[int, whole("bytes", 0, 1000)] = 6
+    turnaround_us: Micros = 192
+    exponent: Annotated[float, number("", 1, 6)] = 3.0
+    shadowing_db: Annotated[float, number("dB", 0, 20)] = 0.0
+    capture_db: Annotated[float, number("dB", 0, 60)] = 6.0
+    sense_db: Annotated[float, number("dB", 0, 60)] = 5.0
+    queue_frames: Annotated[int, whole("frames", 1, 64)] = 8
+    backoff_us: Annotated[int, whole("microseconds", 1, 10_000_000)] = 320
+    exponent_min: Annotated[int, whole("bits", 0, 15)] = 3
+    exponent_max: Annotated[int, whole("bits", 0, 15)] = 6
+    busy_max: Annotated[int, whole("times", 1, 255)] = 8
+
+
+class LinkTable(Table, frozen=True, kw_only=True):
+    """Two nodes that hear each other; if there is one such table, no others do.
+
+    Attributes:
+        nodes: their numbers.
+        quality: share of the frames that is received, where nothing disturbs them, 0 to 1.
+    """
+
+    nodes: tuple[int, int]
+    quality: Annotated[float, number("frames received", 0, 1)] = 1.0
+
+
+class EventTable(Table, frozen=True, kw_only=True):
+    """What happens to a node, or between two.
+
+    Attributes:
+        at_s: when, s.
+        action: kill, revive, restart, jam, quiet; cut, restore with `other`; or an own word.
+        node: its number.
+        other: of cut and restore: the other node's number.
+        noise_dbm: of jam: how loud, dBm.
+        value: of the network's own actions: a number for them.
+    """
+
+    at_s: Annotated[float, number("seconds", 0)]
+    action: str
+    node: Annotated[int, whole("", 0)]
+    other: Annotated[int, whole("", 0)] | None = None
+    noise_dbm: Annotated[float, number("dBm", -150, 0)] = -60.0
+    value: int = 0
+
+
+class FieldScenario(Table, frozen=True, kw_only=True):
+    """A network over a field: who is near enough hears.
+
+    Attributes:
+        kind: the network's name.
+        nodes: how many there are.
+        layout: in a line, on a square grid, or anywhere in a square.
+        spacing_m: between neighbours of a line or grid, m.
+        side_m: of the square, m.
+        positions_m: instead of a layout: (x, y) of every node, m.
+        link: instead of places: who hears whom.
+        absent: nodes that are off until they are revived.
+        duration_s: simulated time, s.
+        start_us: nodes are switched on within so long, us.
+        air: what all nodes' radios have.
+        protocol: parameters of the protocol, by name.
+        input, event: in any order.
+    """
+
+    kind: str
+    schema: Schema = 1
+    name: Name = "network"
+    duration_s: Annotated[float, above_0("seconds", 1e6)] = 1.0
+    seed: Seed = 1
+    nodes: Annotated[int, whole("nodes", 2, NODES_MAX)] = 9
+    layout: Literal["line", "grid", "random"] = "grid"
+    spacing_m: Annotated[float, above_0("metres", 100_000)] = 20.0
+    side_m: Annotated[float, above_0("metres", 100_000)] = 100.0
+    positions_m: list[tuple[float, float]] = []  # noqa: RUF012
+    link: list[LinkTable] = []  # noqa: RUF012
+    absent: list[int] = []  # noqa: RUF012
+    start_us: Annotated[int, whole("microseconds", 1, 10_000_000)] = 1000
+    air: AirTable = AirTable()
+    protocol: dict[str, int] = {}  # noqa: RUF012
+    input: Annotated[list[InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
+    event: Annotated[list[EventTable], Meta(max_length=100_000)] = []  # noqa: RUF012
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One event: `at_us`, an action of `actions/field`, its nodes; place in the file."""
+
+    at_us: int
+    action: int
+    node: int
+    other: int = -1
+    value: int = 0
+    index: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Heard:
+    """Who hears whom, per sender and receiver, row after row.
+
+    Attributes:
+        rssi_cdb: how loud, 0.01 dBm.
+        prob_q15: chance of reception in 1/32768, where nothing disturbs.
+    """
+
+    rssi_cdb: list[int]
+    prob_q15: list[int]
+
+
+@dataclass(slots=True)
+class FieldPlan:
+    """Everything a run over a field needs, as whole numbers.
+
+    Attributes:
+        nodes: how many.
+        positions_cm: where they are; empty where only links are known.
+        heard: who hears whom.
+        good: pairs that hear at least half of each other's frames.
+        starts_us: when each is switched on; of absent ones not looked at.
+        absent: per node, 1 = off until it is revived.
+    """
+
+    scenario: Any
+    kind: str
+    seed: int
+    duration_us: int
+    nodes: int
+    params: dict[str, int]
+    air: AirTable
+    positions_cm: list[tuple[int, int]]
+    heard: Heard
+    good: list[tuple[int, int]]
+    starts_us: list[int]
+    absent: list[int]
+    inputs: list[Input]
+    faults: list[Fault] = field(default_factory=list)
+
+
+def check(source: Source, model: FieldScenario) -> None:
+    """Everything that single keys do not show.
+
+    Raises:
+        ScenarioError: the first thing that cannot be.
+    """
+    network = networks()[model.kind]
+    check_declared(source, ("protocol",), model.protocol, network.fields.PARAMS)
+    if model.positions_m and len(model.positions_m) != model.nodes:
+        what = f"positions_m has {len(model.positions_m)} places for {model.nodes} nodes"
+        raise source.error(("positions_m",), what)
+    if model.air.exponent_min > model.air.exponent_max:
+        raise source.error(("air", "exponent_min"), "air.exponent_min is above exponent_max")
+    for place, link in enumerate(model.link):
+        _check_pair(source, ("link", place, "nodes"), link.nodes, model.nodes)
+    for place, node in enumerate(model.absent):
+        _check_node(source, ("absent", place), node, model.nodes)
+    for place, given in enumerate(model.input):
+        _check_node(source, ("input", place, "node"), given.node or 0, model.nodes)
+        check_declared(source, ("input", place, "item"), given.item, network.fields.FRAME)
+    known = [*ACTIONS, *(network.happenings if network.has("happenings") else ())]
+    for place, event in enumerate(model.event):
+        _check_event(source, ("event", place), event, model.nodes, known)
+
+
+def _check_event(source: Source, key: Key, event: EventTable, nodes: int, known: Any) -> None:
+    _check_node(source, (*key, "node"), event.node, nodes)
+    if event.action not in known:
+        what = f"action must be {alternatives(known)}, not {shown(event.action)}"
+        raise source.error((*key, "action"), what)
+    if event.action in PAIRS and event.other is None:
+        raise source.error(key, f"{event.action} needs the other node; add other = 1")
+    if event.action not in PAIRS and event.other is not None:
+        raise source.error((*key, "other"), f"{event.action} has no other; leave it out")
+    if event.other is not None:
+        _check_pair(source, (*key, "other"), (event.node, event.other), nodes)
+
+
+def _check_node(source: Source, key: Key, node: int, nodes: int) -> None:
+    if not 0 <= node < nodes:
+        raise source.error(key, f"there is no node {node}; they are 0 to {nodes - 1}")
+
+
+def _check_pair(source: Source, key: Key, pair: tuple[int, int], nodes: int) -> None:
+    for node in pair:
+        _check_node(source, key, node, nodes)
+    if pair[0] == pair[1]:
+        raise source.error(key, f"node {pair[0]} is named twice; name two nodes")
+
+
+def plan(scenario: Any) -> FieldPlan:
+    """The plan of a scenario.
+
+    Raises:
+        ScenarioError: more inputs than can be held.
+    """
+    model, network = scenario.model, networks()[scenario.model.kind]
+    count = model.nodes
+    points = [] if model.link else _points(model)
+    heard = _linked(model) if model.link else _placed(model, points)
+    draw = stream(model.seed, "starts")
+    starts = [draw.uniform(0, model.start_us - 1) for _ in range(count)]
+    faults = [_fault(event, place) for place, event in enumerate(model.event)
+              if event.action in ACTIONS]  # fmt: skip
+    return FieldPlan(
+        scenario=scenario,
+        kind=model.kind,
+        seed=model.seed,
+        duration_us=round(1e6 * model.duration_s),
+        nodes=count,
+        params=parameters(network.fields, model.protocol),
+        air=model.air,
+        positions_cm=points,
+        heard=heard,
+        good=placement.good_links(heard.rssi_cdb, count, RSSI50_CDB),
+        starts_us=starts,
+        absent=[int(node in model.absent) for node in range(count)],
+        inputs=inputs_of(model, network, count, ACTIONS),
+        faults=sorted(faults, key=lambda fault: (fault.at_us, fault.index)),
+    )
+
+
+def _fault(event: EventTable, place: int) -> Fault:
+    action = ACTIONS.index(event.action)
+    return Fault(
+        at_us=round(1e6 * event.at_s),
+        action=action,
+        node=event.node,
+        other=-1 if event.other is None else event.other,
+        value=round(100 * event.noise_dbm) if action == JAM else 0,
+        index=place,
+    )
+
+
+def _points(model: FieldScenario) -> list[tuple[int, int]]:
+    if model.positions_m:
+        return [(round(100 * x), round(100 * y)) for x, y in model.positions_m]
+    if model.layout == "random":
+        side_cm = round(100 * model.side_m)
+        return placement.square(model.nodes, side_cm, stream(model.seed, "placement"))
+    columns = model.nodes if model.layout == "line" else math.isqrt(model.nodes - 1) + 1
+    return placement.grid(model.nodes, columns, round(100 * model.spacing_m))
+
+
+def _placed(model: FieldScenario, points: list[tuple[int, int]]) -> Heard:
+    count, radio = model.nodes, model.air
+    exponent_c = round(100 * radio.exponent)
+    shadowing = round(100 * radio.shadowing_db)
+    faded = placement.fading(count, shadowing, 0, stream(model.seed, "fading"))
+    at_1m = RSSI50_CDB + GOOD_CDB
+    at_1m += placement.path_loss_cdb(round(100 * radio.reach_m), exponent_c)
+    gains = placement.gains(points, faded, exponent_c)
+    rssi = [placement.UNHEARD if i % (count + 1) == 0 else max(at_1m + one, placement.UNHEARD + 1)
+            for i, one in enumerate(gains)]  # fmt: skip
+    return Heard(rssi, [_chance(one - RSSI50_CDB) for one in rssi])
+
+
+def _chance(over_cdb: int) -> int:
+    steps = min(max((over_cdb + 5) // 10, -120), 120)  # of 0.1 dB: the same on any machine
+    chance = 1 / (1 + math.exp(-steps / 10))
+    return round(ONE * chance) if chance >= LEAST else 0
+
+
+def _linked(model: FieldScenario) -> Heard:
+    count = model.nodes
+    rssi, prob = [placement.UNHEARD] * (count * count), [0] * (count * count)
+    for link in model.link:
+        share = min(max(link.quality, 1e-4), 1 - 1e-4)
+        for a, b in (link.nodes, link.nodes[::-1]):
+            rssi[a * count + b] = RSSI50_CDB + round(100 * math.log(share / (1 - share)))
+            prob[a * count + b] = round(link.quality * ONE)
+    return Heard(rssi, prob)
+
+
+def sizes_of(frames: Any) -> dict[int, int]:
+    """Bytes of a frame of each kind, its check sum included: of the part `frames` of a network."""
+    sizes: dict[int, int] = Codec(frames.LAYOUTS, frames.KIND_BITS).sizes
+    return sizes
+
+
+def describe(plan: Any) -> str:
+    """A plan in words, several lines, without a newline at the end."""
+    params = ", ".join(f"{name} {value}" for name, value in plan.params.items())
+
+    lines = [
+        f"{plan.scenario.name}: a {plan.kind} scenario of {plan.duration_us / 1e6:g} s, "
+        f"seed {plan.seed}",
+        f"  nodes      {plan.nodes:,} in a field, {len(plan.good):,} pairs hear each other",
+        f"  protocol   {params}",
+    ]
+    return "\n".join([*lines, *told(plan, fault_words, ())])
+
+
+def fault_words(plan: Any, fault: Any) -> str:
+    """A fault in words: "at 2 s cut node 3 - node 4"."""
+    where = f"node {fault.node}" + (f" - node {fault.other}" if fault.other >= 0 else "")
+    loud = f" with {fault.value / 100:g} dBm" if fault.action == JAM else ""
+    return f"at {fault.at_us / 1e6:g} s {ACTIONS[fault.action]} {where}{loud}"
+
+
+def event(plan: Any, fault: Any) -> dict[str, Any]:
+    """The [[event]] table of a fault, without its time."""
+    made: dict[str, Any] = {"action": ACTIONS[fault.action], "node": fault.node}
+    if fault.other >= 0:
+        made["other"] = fault.other
+    if fault.action == JAM:
+        made["noise_dbm"] = fault.value / 100
+    return made
+
+
+def template(network: Any) -> str:
+    """A scenario to start from, with all parameters; "" for a network with keys of its own."""
+    if network.model is not FieldScenario:
+        return ""
+    values = parameters(network.fields, {})
+    lines = [f"{name} = {values[name]}  # {low} to {high} {unit}: {meaning}"
+             for name, _length, low, high, unit, meaning in network.fields.PARAMS]  # fmt: skip
+    head = [f"# A {network.name} over a field.", f'kind = "{network.name}"', "nodes = 9",
+            'layout = "grid"  # line, grid, random; or positions_m; or [[link]]s',
+            "spacing_m = 20", "duration_s = 1.0", "", "[air]", "reach_m = 30", "",
+            "[protocol]"]  # fmt: skip
+    return "\n".join([*head, *lines, ""])

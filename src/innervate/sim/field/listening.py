@@ -1,0 +1,178 @@
+"""What is kept of any network in a field, and what it hands down: frames, deliveries, a queue.
+
+Frames are counted once for every node that could hear them, in `world.counters`.
+"""
+
+from innervate.dialect.arith import MASK30
+from innervate.sim import taps
+from innervate.sim.field import access, calls, medium
+from innervate.sim.field.medium import NONE
+from innervate.sim.field.states import ALIVE, ON_AIR
+from innervate.sim.status import BROKEN, DONE, POOL_FULL, ROWS_FULL
+
+ON_CARRIER = 4  # in trails
+SENT = 0
+ARRIVED = 1
+COLLIDED = 2
+SENDING = 3
+NOISY = 4
+OFF = 5
+BROKEN_OFF = 6
+CUT = 7
+BUSY = 8
+FULL = 9
+OFFERED = 10
+DELIVERED = 11
+COUNTERS = 12
+LOST = {"collision": COLLIDED, "sending": SENDING, "noise": NOISY, "off": OFF,
+        "broken_off": BROKEN_OFF, "cut": CUT, "busy": BUSY, "queue": FULL}  # fmt: skip
+
+
+def pressing(world):
+    """Why the loop has to stop before the next event, or DONE; limits leave room for one."""
+    run = world.run[0]
+    if run.broken:
+        return BROKEN
+    if run.rows > run.row_limit or run.deliveries > run.delivery_limit:
+        return ROWS_FULL
+    if run.trail > run.trail_limit or run.taps > run.tap_limit:
+        return ROWS_FULL
+    if world.heap.size[0] + 64 * run.nodes + 64 > len(world.heap.keys):
+        return POOL_FULL
+    return DONE
+
+
+def reach_of(world, node):
+    """How many could hear a node."""
+    nodes, count = world.run[0].nodes, 0
+    for j in range(nodes):
+        count += world.prob[node * nodes + j] > 0
+    return count
+
+
+def lose_all(world, node, why):
+    """A frame of a node does not get on the air."""
+    count = reach_of(world, node)
+    world.counters[SENT] += count
+    world.counters[why] += count
+
+
+def record_sent(world, place, time, length, receivers):
+    """A frame has left the air: who was off or cut off; or its sender died in the middle of it."""
+    air = world.air[place]
+    if air.state != ON_AIR:
+        return
+    if time < air.end:
+        world.counters[BROKEN_OFF] += air.receivers
+        return
+    nodes = world.run[0].nodes
+    for j in range(nodes):
+        at = air.node * nodes + j
+        if world.prob[at] > 0 and world.radios[j].state != ALIVE:
+            world.counters[OFF] += 1
+        elif world.prob[at] > 0 and world.power[at] == 0:
+            world.counters[CUT] += 1
+
+
+def count_frame(world, place, out, why):
+    """Count a frame as it goes out, or what became of it at a node."""
+    if out:
+        air = world.air[place]
+        air.receivers = reach_of(world, air.node)
+        world.counters[SENT] += air.receivers
+    elif why == taps.FINE:
+        world.counters[ARRIVED] += 1
+    elif why == taps.SENDING:
+        world.counters[SENDING] += 1
+    elif why == taps.COLLISION:
+        world.counters[COLLIDED] += 1
+    else:
+        world.counters[NOISY] += 1
+
+
+def keep(world, node, kind, time, latency):
+    """A node's user got a frame; how long it took, us, -1 = nobody knows."""
+    run = world.run[0]
+    world.counters[DELIVERED] += 1
+    if run.delivery_limit > 0:
+        row = world.deliveries[run.deliveries]
+        run.deliveries += 1
+        row.time = time
+        row.node = node
+        row.port = 0
+        row.kind = kind
+        row.latency = latency
+
+
+def put_off(world, do, node, frame, act):
+    """A frame has to wait for those before it."""
+    run, radio = world.run[0], world.radios[node]
+    if radio.waiting >= run.room:
+        lose_all(world, node, FULL)
+        return
+    place = node * run.room + (radio.first + radio.waiting) % run.room
+    do.copy_frame(world.ring[place], frame)
+    world.acts[place].b = act.b
+    radio.waiting += 1
+
+
+def next_one(world, do, node, time):
+    """The node's radio is free: the frame that waited longest."""
+    run, radio = world.run[0], world.radios[node]
+    if radio.waiting > 0 and radio.held == NONE and radio.state == ALIVE:
+        place = node * run.room + radio.first
+        radio.first = (radio.first + 1) % run.room
+        radio.waiting -= 1
+        access.hand_down(world, do, node, world.ring[place], world.acts[place], time)
+
+
+def tell_sent(world, do, node, time, ok):
+    """A node's frame has left the air, or the medium access has given it up."""
+    if not ok:
+        lose_all(world, node, BUSY)
+    do.tell_end(world, do, node, time)
+    next_one(world, do, node, time)
+
+
+def note_report(_world, _node, _time, _code):
+    """A report has its row, and no more."""
+
+
+def sample(_world, _do, _index, _time):
+    """A place that a node would be told; nobody walks."""
+
+
+def offer(world, do, index, time):
+    """Hand a node what its user has for it."""
+    given = world.offers[index]
+    node = given.node
+    world.counters[OFFERED] += 1
+    if world.radios[node].state == ALIVE:
+        do.take_item(world, index)
+        calls.give(world, do, node, time, given.kind)
+
+
+def tell_carrier(world, do, node, time):
+    """Tell a node what its radio hears now."""
+    radio = world.radios[node]
+    cd = 1 if medium.senses(world, node) else 0
+    radio.told = cd
+    do.on_carrier(world, node, (time + radio.offset) & MASK30, cd, 0)
+    calls.finish(world, do, node, time, ON_CARRIER, cd)
+
+
+def tell_changes(world, do, time):
+    """Tell every node whose carrier has come or gone, and that listens."""
+    for node in range(world.run[0].nodes):
+        radio = world.radios[node]
+        if radio.state == ALIVE and not radio.deaf:
+            cd = 1 if medium.senses(world, node) else 0
+            if cd != radio.told:
+                tell_carrier(world, do, node, time)
+
+
+def wipe_words(world, node):
+    """A node's record as one is before its start."""
+    words, blank = world.words[node], world.words[world.run[0].nodes]
+    for i in range(len(world.low)):
+        words[i] = blank[i]

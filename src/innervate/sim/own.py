@@ -1,0 +1,41 @@
+"""Invariants that a network says itself, looked at after every call of a run on any medium."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from innervate.folders import invariants_of
+from innervate.network import networks
+
+OWN_BROKEN = 64  # `run.broken` of the first of them; below it are those of the media
+
+
+def check_of(own: Iterable[Callable[..., Any]], states: str) -> Callable[..., None]:
+    """`check_own(world, node, now)`: the first of a network's `node_...` that does not hold.
+
+    Args:
+        own: its functions.
+        states: the table of the world that has its nodes' records.
+    """
+    names = {f"holds_{place}": holds for place, holds in enumerate(own)}
+    lines = [
+        line for place, name in enumerate(names)
+        for line in (f"    if run.checks and run.broken == 0 and not {name}(state, params, now):",
+                     f"        run.broken = {OWN_BROKEN + place}",
+                     "        run.broken_node = node")
+    ]  # fmt: skip
+    text = "\n".join([
+        "def check_own(world, node, now):", "    run = world.run[0]",
+        f"    state = world.{states}[node]", "    params = world.params[0]", *lines,
+    ])  # fmt: skip
+    made: dict[str, Any] = dict(names)
+    exec(compile(text, "invariants of a protocol", "exec"), made)
+    check: Callable[..., None] = made["check_own"]
+    return check
+
+
+def words_of(kind: str) -> dict[int, str]:
+    """What is broken, by number, with {node} for who it concerns."""
+    own = invariants_of(networks()[kind], "node_")
+    return {OWN_BROKEN + place: f"{title}: {{node}}" for place, title in enumerate(own)}

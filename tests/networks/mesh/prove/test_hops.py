@@ -1,0 +1,53 @@
+"""Which hops a packet takes under `search`: what is proved of them, and what is not so."""
+
+import pytest
+
+from innervate.dialect.plain import make
+from innervate.network import networks
+from innervate.networks.mesh.protocol import duplicates, fields
+from innervate.networks.mesh.prove import hops, theories
+from innervate.prove.faults import faults_of
+from innervate.prove.theory import prove, source
+
+FAULTS = (
+    "who had the packet is asked again",
+    "who failed for a packet is asked again",
+    pytest.param("who transmits a packet is not in its path", marks=pytest.mark.slow),
+)
+
+
+def claims(change=None):
+    return hops.theories(source(theories.ENTRY, change))
+
+
+def test_no_copy_goes_forward_to_who_had_it(monkeypatch):
+    monkeypatch.setattr(hops, "SIZE", 1)  # two neighbours take six times as long: below
+    outcome = prove(claims()[0])
+    assert [bad.goal for one in outcome.checked for bad in one.refuted] == []
+    assert outcome.lemmas == 7
+
+
+@pytest.mark.slow
+def test_nor_does_one_where_neighbours_are_chosen_from():
+    assert prove(claims()[0]).is_as_expected
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_mistake_is_refuted(name, monkeypatch):
+    monkeypatch.setattr(hops, "SIZE", 1)
+    fault = next(one for one in faults_of(networks()["mesh"]) if one.name == name)
+    assert prove(claims((fault.old, fault.new))[0], first_only=True).is_refuted
+
+
+def test_what_goes_back_twice_is_told_of_three_nodes_and_so_in_python():
+    outcome = prove(claims()[1])
+    assert outcome.is_as_expected
+    (bad,) = outcome.checked[0].refuted
+    assert "The packet has gone from B to A twice, as two copies." in bad.sentences[-1]
+    node, frame = make("Node", fields.packets(2))(), make("Frame", fields.FRAME)()
+    frame.kind, frame.seq, frame.path_len = 1, 7, 1
+    assert duplicates.record_packet(node, frame) == 0
+    taken = []
+    for frame.path_len in (3, 4, 4):
+        taken.append(duplicates.record_return(node, frame) == 0)
+    assert taken == [True, True, False]

@@ -1,0 +1,230 @@
+"""Networks of one's own over a field, by the defaults of its medium; above CSMA, too."""
+
+import re
+
+import numpy as np
+import pytest
+
+import innervate
+from innervate import scenario as scenarios
+from innervate.cli import main
+from innervate.network import NetworkError, networks
+from innervate.sim.field import listening
+from innervate.sim.field.declared import simulation
+from innervate.web.field_view import FieldView
+from tests.own import alone, made
+
+__all__ = ["alone"]
+ENDS = [{"nodes": [0, 1], "quality": 1.0}, {"nodes": [1, 2], "quality": 1.0}]
+
+
+@pytest.fixture(params=["", "csma"])
+def flood(alone, capsys, request):
+    network = made(alone / "flood", "field", request.param)
+    capsys.readouterr()
+    return network
+
+
+@pytest.fixture
+def bare(alone, capsys):
+    network = made(alone / "flood", "field")
+    capsys.readouterr()
+    return network
+
+
+def ran(flood, **changes):
+    return innervate.run(flood.scenario, plain=True, overrides=changes)
+
+
+def in_line(flood, **changes):
+    """Three nodes, of which those at the ends do not hear each other; node 0 has news once."""
+    once = [{"at_s": 0.1, "node": 0, "item": {"value": 7}}]
+    usual = {"nodes": 3, "link": ENDS, "input": once, "event": []}
+    return ran(flood, **{**usual, **changes})
+
+
+def test_every_frame_is_accounted_for(flood):
+    for changes in ({}, {"protocol.hops": 2}, {"spacing_m": 30}, {"air.queue_frames": 1},
+                    {"event": [{"at_s": 0.10001, "action": "kill", "node": 0}]}):  # fmt: skip
+        frames = ran(flood, **changes).summary["frames"]
+        assert frames["sent"] == frames["arrived"] + frames["lost"] > 20, changes
+
+
+def test_news_go_from_hop_to_hop(flood):
+    run = in_line(flood)
+    assert run.summary["frames"]["lost"] == 0
+    assert sorted(run.result.rows["deliveries"]["node"].tolist()) == [1, 2]
+    assert (run.result.rows["deliveries"]["latency"] > 0).all()
+    one_hop = in_line(flood, **{"protocol.hops": 1}).result.rows["deliveries"]
+    assert one_hop["node"].tolist() == [1]
+
+
+@pytest.mark.parametrize(
+    ("event", "got"),
+    [
+        ([{"at_s": 0.05, "action": "cut", "node": 1, "other": 2}], [1]),
+        ([{"at_s": 0.05, "action": "kill", "node": 1}], []),
+        ([{"at_s": 0.05, "action": "jam", "node": 2, "noise_dbm": -60}], [1]),
+        ([{"at_s": 0.04, "action": "kill", "node": 1},
+          {"at_s": 0.05, "action": "revive", "node": 1}], [1, 2]),
+    ],
+)  # fmt: skip
+def test_what_happens_to_nodes_and_between_them(flood, event, got):
+    run = in_line(flood, event=event)
+    assert sorted(run.result.rows["deliveries"]["node"].tolist()) == got
+
+
+def test_a_frame_for_one_node_is_given_to_that_one_alone(flood):
+    flood.change("protocol.py", "    frame.to = ALL\n", "    frame.to = 2\n")
+    links = [{"nodes": [0, 1]}, {"nodes": [0, 2]}]
+    run = in_line(flood, link=links)
+    assert run.result.rows["deliveries"]["node"].tolist() == [2]
+    assert run.summary["frames"]["arrived"] >= 2  # the radio of the other one hears it, too
+
+
+def test_quality_is_the_share_of_frames_that_is_received(flood):
+    links = [{"nodes": [0, 1], "quality": 0.6}]
+    often = [{"at_s": 0.01, "every_s": 0.05, "node": 0}]
+    frames = ran(flood, nodes=2, link=links, input=often, event=[], duration_s=20).summary["frames"]
+    assert 0.5 < frames["arrived"] / frames["sent"] < 0.7
+
+
+def test_how_loud_a_frame_came_in_is_known(flood):
+    flood.change("protocol.py", "    node.value = frame.value\n    copy",
+                 "    node.value = -frame.rssi\n    copy")  # fmt: skip
+    often = [{"at_s": 0.1, "every_s": 0.1, "node": 0}]
+    places = {"nodes": 2, "positions_m": [[0, 0], [30, 0]], "protocol.hops": 1}
+    run = ran(flood, event=[], input=often, **places)
+    assert run.result.world.stations[1].value == 92  # 3 dB above -95 dBm, where half are received
+
+
+def test_who_sends_at_once_is_not_heard_but_waits_in_the_node(bare):
+    """Without a random wait both ends answer at once: neighbours of both hear neither."""
+    run = ran(bare, nodes=3, link=ENDS, event=[], input=[{"at_s": 0.1}],
+              **{"protocol.wait_us": 1})  # fmt: skip
+    lost = run.summary["frames"]["lost_by"]
+    assert lost.get("collision", 0) + lost.get("sending", 0) >= 2, lost
+
+
+def test_a_carrier_is_told_when_it_comes_and_goes(bare, monkeypatch):
+    told = []
+    was = listening.tell_carrier
+
+    def noted(world, do, node, time):
+        was(world, do, node, time)
+        told.append((node, world.radios[node].told))
+
+    monkeypatch.setattr(listening, "tell_carrier", noted)
+    in_line(bare, nodes=2, link=ENDS[:1])
+    assert told == [(1, 1), (0, 0), (1, 0), (0, 1), (1, 0), (0, 0)]  # news, and passed on
+
+
+def test_what_breaks_is_told_by_file_and_line(flood):
+    flood.change("protocol.py", "    node.value = frame.value\n    copy",
+                 "    node.value = frame.value + 250\n    copy")  # fmt: skip
+    at = flood.line("protocol.py", "+ 250")
+    says = rf"flood/protocol.py:{at}: value is 2\d\d, declared 0 to 255"
+    with pytest.raises(NetworkError, match=says):
+        innervate.run(flood.scenario, overrides={"protocol.hops": 1})
+
+
+def test_its_own_invariants_are_looked_at(flood):
+    flood.change("invariants.py", "node.hops <= params.hops", "node.seq < 2")
+    with pytest.raises(NetworkError, match="a message may go further than `hops` says: node 0"):
+        ran(flood)
+    (case,) = innervate.explore(flood.folder, graph="pair", budget="input=2,restart=0")
+    assert case.is_broken
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("nodes = 16", "nodes = 4", "flood/flood.toml:23: there is no node 15; they are 0 to 3"),
+        ('action = "kill"', 'action = "cut"', "flood.toml:26: cut needs the other node; add other"),
+        ('action = "kill"', 'action = "hide"', "action must be kill, revive, cut, restore, jam"),
+        ("hops = 7", "hops = 0", "flood/flood.toml:12: hops must be 1 to 15 hops, not 0"),
+        ("value = 7", "valeu = 7", 'did you mean "value"'),
+        ('layout = "grid"', "positions_m = [[0, 0]]", "positions_m has 1 places for 16 nodes"),
+        ('layout = "grid"', 'link = [{ nodes = [1, 1] }]', "node 1 is named twice"),
+        ("reach_m = 30", "exponent_min = 9", "air.exponent_min is above exponent_max"),
+    ],
+)  # fmt: skip
+def test_mistakes_of_a_scenario_are_one_line(bare, capsys, old, new, says):
+    bare.change("flood.toml", old, new)
+    assert main(["check", str(bare.scenario)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert says in line
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "says"),
+    [
+        ("protocol.py", "def on_carrier(", "def on_carriers(", "flood/protocol.py:1: .*on_carrier"),
+        ("protocol.py", "    for i in range(PLACES):\n        node.seen[i] = -1",
+         "    while node.seq == 0:\n        node.busy = 0", "flood/protocol.py:2[0-9]: "),
+        ("frames.py", '"hops", 0, 4, 0', '"hops", 0, 2, 0', "flood/frames.py:[0-9]+: .*hops"),
+        ("protocol.py", "    frame.kind = NEWS", "    frame.kind = 2", "no layout"),
+        ("network.py", 'medium="field"', 'medium="feild"', "flood/network.py:5: .*no medium 'fei"),
+        ("network.py", 'medium="field"', 'medium="field", over="tdma"', "over can be csma"),
+    ],
+)  # fmt: skip
+def test_mistakes_of_a_protocol_are_one_line(bare, capsys, file, old, new, says):
+    bare.change(file, old, new)
+    assert main(["run", str(bare.scenario)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert re.search(says, line), line
+
+
+def test_over_goes_with_a_field_and_a_medium_access_that_there_is(alone, capsys):
+    for words in (["--on", "field", "--over", "tdma"], ["--over", "csma"]):
+        assert main(["new", "network", "flood", *words]) == 2
+        assert "--over can be csma, with --on field" in capsys.readouterr().err
+    assert not (alone / "flood").exists()
+
+
+def test_a_page_shows_it_where_it_lies_and_cuts_its_links(bare):
+    plan = scenarios.plan(scenarios.load(bare.scenario))
+    from innervate.web.engine import Engine
+    from innervate.web.history import History
+
+    view = FieldView(Engine(simulation(plan)), History())
+    scene = view.scene()
+    assert len(scene["nodes"]) == 16
+    assert len(scene["links"]) == len(plan.good) == 42
+    assert (scene["nodes"][5]["x"], scene["nodes"][5]["y"]) == (1.333, 1.333)
+    fault = view.make(10, 0, view.cut(0, False))
+    assert (fault.node, fault.other) == plan.good[0]
+    arrays = view.arrays(False)
+    assert arrays["link_up"].tolist() == [1] * 42
+    assert set(arrays["fields"]) >= {"seq", "value"}
+
+
+def test_its_captures_and_its_graph(bare, tmp_path):
+    out = tmp_path / "flood.pcapng"
+    words = ["--pcapng", str(out), "--set", "duration_s=0.2"]
+    assert main(["export", str(bare.scenario), *words]) == 0
+    assert out.stat().st_size > 1_000
+    graph = networks()["flood"].graph(scenarios.plan(scenarios.load(bare.scenario)))
+    assert len(graph.edges) == 42
+
+
+@pytest.mark.slow  # compiles a protocol that no other test runs
+def test_compiled_runs_equal_plain_ones(flood):
+    one, other = (innervate.run(flood.scenario, plain=plain).result for plain in (False, True))
+    assert one.fingerprint == other.fingerprint
+    assert one.counts == other.counts
+    for name in ("rows", "deliveries"):
+        assert np.array_equal(one.rows[name], other.rows[name])
+
+
+def test_a_run_goes_on_from_where_it_was(bare):
+    """A page's slices give what one run gives."""
+    plan = scenarios.plan(scenarios.load(bare.scenario))
+    whole, sliced = simulation(plan, plain=True), simulation(plan, plain=True)
+    whole.finish(None, None)
+    while sliced.clock_us() < plan.duration_us and sliced.next_us() is not None:
+        sliced.advance(min(sliced.clock_us() + 50_000, plan.duration_us), 1_000_000)
+        if sliced.next_us() >= plan.duration_us:
+            break
+        sliced.advance(min(sliced.next_us() + 1, plan.duration_us), 1_000_000)
+    assert whole.fingerprint == sliced.fingerprint
