@@ -17,7 +17,12 @@ def test_what_waits_in_the_queue_stays_there():
     assert outcome.is_as_expected
 
 
-@pytest.mark.parametrize("fault", faults_of(RADIO), ids=lambda one: one.name)
+QUICK = ("a full queue takes another", "who is not named takes the turn")
+FAULTS = [pytest.param(one, id=one.name, marks=[] if one.name in QUICK else pytest.mark.slow)
+          for one in faults_of(RADIO)]  # fmt: skip
+
+
+@pytest.mark.parametrize("fault", FAULTS)
 def test_a_mistake_is_refuted(fault):
     assert hunt(RADIO, fault)[1], fault.name
 

@@ -32,7 +32,10 @@ STATION = (*fields.STATION, *fields.PRACTICAL)
 ROOM = 16
 PLANNED = ("dmin_us", "dmax_us", "ta_us", "minislot_us", "dead_us")
 MINISLOTS = 8  # of a report's 32: those behind them are counted alike
-CLAIM = "Of two stations that heard the same frames one takes a turn, alone on the channel."
+CLAIM = (
+    "Of two stations that heard the same frames one takes a turn, alone on it. NOT proved: "
+    "stations that missed a frame, who joins, and how openings and windows end."
+)
 ASSUMED = (
     "Both heard every frame since the round began, and have places of their own in it.",
     f"Of a report's minislots the first {MINISLOTS} are tried; those behind are counted alike.",
