@@ -12,7 +12,17 @@ import tempfile
 import time
 from pathlib import Path
 
-from benchmarks import beacons, c_heap, explorer, mesh, page, radio, simpy_timeouts, sweeps
+from benchmarks import (
+    beacons,
+    c_heap,
+    explorer,
+    mesh,
+    own_network,
+    page,
+    radio,
+    simpy_timeouts,
+    sweeps,
+)
 
 NS3_BEST = {204: 0.64e6, 10_020: 0.13e6}  # beacons/s of ns-3 3.37, measured on another such machine
 COMMAND_RUNS = 5
@@ -47,6 +57,7 @@ def main():
         print("1,000,000 cells at 10 Hz, one second, warm:",
               ", ".join(f"{k} {v:.2f}" if isinstance(v, float) else f"{k} {v:,}"
                         for k, v in figures["million"].items()))  # fmt: skip
+    figures["own_network"] = own_network.told()
     figures["sweeps"] = sweep_row()
     figures["page"] = [page_row(cells) for cells in page.CELLS]
     figures["commands"] = commands()

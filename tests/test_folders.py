@@ -1,6 +1,8 @@
 """Networks that are folders: found, loaded anew when edited, refused with file and line."""
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -139,3 +141,23 @@ def test_a_folder_that_takes_the_name_of_ours_or_of_pythons(own, alone, capsys):
     (alone / "json").rename(alone / "mine")
     with pytest.raises(NetworkError, match="called 'radio' and its folder 'mine'"):
         use(Path("mine"))
+
+
+def test_an_installed_package_is_found_by_its_entry_point(alone, tmp_path_factory):
+    """As pip leaves it: the package and its metadata lie on the path, the scenario elsewhere."""
+    site = tmp_path_factory.mktemp("site")
+    assert main(["new", "network", "ring"]) == 0
+    (alone / "ring" / "ring.toml").rename(alone / "elsewhere.toml")
+    (alone / "ring").rename(site / "ring")
+    metadata = site / "ring_network-1.0.dist-info"
+    metadata.mkdir()
+    (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: ring-network\nVersion: 1.0\n")
+    point = "[innervate.networks]\nring = ring.network:NETWORK\n"
+    (metadata / "entry_points.txt").write_text(point)
+    check = [sys.executable, "-m", "innervate.cli", "check", "elsewhere.toml"]
+    lacking = subprocess.run(check, capture_output=True, text=True, check=False)
+    assert lacking.returncode == 2
+    env = os.environ | {"PYTHONPATH": str(site)}
+    done = subprocess.run(check, capture_output=True, text=True, check=False, env=env)
+    assert done.returncode == 0, done.stderr
+    assert "nodes" in done.stdout

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from innervate.scenario import Scenario as Scenario
     from innervate.scenario import ScenarioError as ScenarioError
     from innervate.scenario.declared import CablesScenario as CablesScenario
+    from innervate.scenario.declared_channel import ChannelScenario as ChannelScenario
+    from innervate.scenario.declared_field import FieldScenario as FieldScenario
     from innervate.scenario.given import check as check
     from innervate.scenario.given import load as load
     from innervate.sweeping.errors import SweepError as SweepError
@@ -40,7 +42,9 @@ __version__ = "0.1.0"
 _PLACES = {
     "Answer": "networks.typed",
     "CablesScenario": "scenario.declared",
+    "ChannelScenario": "scenario.declared_channel",
     "Comparison": "running.compare",
+    "FieldScenario": "scenario.declared_field",
     "Network": "network",
     "NetworkError": "network",
     "Question": "networks.typed",

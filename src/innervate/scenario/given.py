@@ -22,7 +22,7 @@ def load(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) -
 
     Args:
         scenario: a file, a bundled name ("setup-1"), tables as in a file, a model of them built in
-            code (CablesScenario), or a Scenario.
+            code (like CablesScenario), or a Scenario.
         seed: in place of the scenario's, 0 .. 2^63-1.
         overrides: "a.b=c" texts, or a mapping from dotted keys to values.
 
