@@ -37,8 +37,8 @@ class Network:
             keeps for private use.
         key_kind: its number under a seal, 1 .. 255: what is sealed for one is not taken by another.
         medium: what its nodes are joined by, if it has no parts of its own for that: "cables".
-        over: on a field, a medium access of another network below it: "csma".
-        **parts: where each part stands: "module" or "module:name".
+        **parts: where each part stands: "module" or "module:name"; and `over`, on a field, what
+            medium access of another network is below it: "csma".
 
     Attributes:
         folder: that it was loaded from, if it is not installed.

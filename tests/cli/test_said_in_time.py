@@ -39,7 +39,7 @@ def test_a_missing_package_is_said_before_the_simulation(monkeypatch, tmp_path):
 
 
 def test_every_bundled_scenario_has_a_whole_sentence(capsys):
-    files.scenarios()
+    files.scenarios(as_json=False)
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == len(scenario.bundled())
     for text in lines:

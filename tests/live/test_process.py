@@ -117,7 +117,7 @@ def test_a_cut_cable_is_named_and_messages_go_round(tmp_path):
     asyncio.run(main())
 
 
-@pytest.mark.parametrize("cables", ["udp", "pty"])
+@pytest.mark.parametrize("cables", ["udp", pytest.param("pty", marks=pytest.mark.slow)])
 def test_a_skin_of_twenty_processes_heals(tmp_path, cables):
     async def main():
         network = await network_of(skin_scenario(), tmp_path, cables)

@@ -117,14 +117,15 @@ FAULTS = (
           "skin"),
     Fault("a node's timers are late by a second", LIVE + "engine",
           "wait = max(0, soonest - now) / 1e6", "wait = 1.0 + max(0, soonest - now) / 1e6", {}),
-    Fault("a station's frame is taken twice", "innervate.networks.radio.live.node",
+    Fault("a station's frame is taken twice", LIVE + "on_air",
           "            self.engine.receive(0, at)\n",
           "            self.engine.receive(0, at)\n            self.engine.receive(0, at)\n", {},
           "radio"),
     Fault("a packet is delivered when it is sent", "innervate.networks.radio.live.node",
-          '        self.outcomes["frames sent"] += 1\n',
+          "        return wire.encode(frame, payload)\n",
           "        for k in range(frame.count):\n"
-          "            self._packets[frame.handle + k][1].move(DELIVERED)\n",
+          "            self._packets[frame.handle + k][1].move(DELIVERED)\n"
+          "        return wire.encode(frame, payload)\n",
           {"hurts": ("channel", "unplugged"), "every_s": 0.5}, "radio"),
     Fault("a radio stays deaf once it has sent", LIVE + "channel_radio",
           '        if what == b"R":\n            self.mode = "listening"\n', "", {}, "radio"),

@@ -16,7 +16,8 @@ def never(part):
 
 def explored(budget="", graph="ring", states=3_000, protocol=protocol, fields=fields):
     """The case of one graph."""
-    network = SimpleNamespace(name="tokenring", protocol=protocol, fields=fields, has=never)
+    parts = {"protocol": protocol, "fields": fields, "has": never}
+    network = SimpleNamespace(name="tokenring", medium="cables", **parts)
     options = VerifyOptions(budget=budget, graph=graph, states=states)
     (explore,) = declared.explorations(network, options)
     return explore(lambda what, part, of: False)

@@ -32,8 +32,9 @@ def station_states(result):
 
 @pytest.mark.parametrize(
     ("seed", "sets", "chance"),
-    [(1, (), ONE), (2, (EVENTS,), ONE), (3, (*BUSY, EVENTS), LOSSY),
-     (4, (*BUSY, "protocol.hop_acks=true"), LOSSY)],
+    [(1, (), ONE), pytest.param(2, (EVENTS,), ONE, marks=pytest.mark.slow),
+     (3, (*BUSY, EVENTS), LOSSY),
+     pytest.param(4, (*BUSY, "protocol.hop_acks=true"), LOSSY, marks=pytest.mark.slow)],
 )  # fmt: skip
 def test_compiled_equals_plain(seed, sets, chance):
     made = plan(load("mesh-team", ["flow.0.start_s=3", "robot.0.start_s=2", *sets], seed))

@@ -77,6 +77,7 @@ def test_a_search_ends_where_it_is_told_to_and_says_so(monkeypatch):
     assert full.expanded < full.states
 
 
+@pytest.mark.slow  # the longest of all in this room; test_finds.py has small walks
 def test_walks_find_what_a_search_finds():
     fine = explore.wander(model("triangle", budget=Budget(ticks=6, counts=5, faults=4)), 200)
     assert (fine.broken, fine.tally.ended, fine.tally.states) == (0, "walked", 200)
