@@ -18,4 +18,4 @@ def test_no_nonce_comes_twice_where_the_disk_is_full_and_processes_are_killed():
 
 def test_nothing_is_taken_from_a_recording_by_a_node_that_was_killed():
     hurts = ("replays", "restarts")
-    assert broken_in((1,), sealed=True, in_order=False, hurts=hurts, old_lives=True) == []
+    assert broken_in((1, 2), sealed=True, in_order=False, hurts=hurts, old_lives=True) == []
