@@ -11,7 +11,6 @@ import os
 import pkgutil
 from functools import cache
 from importlib import import_module
-from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
@@ -146,6 +145,8 @@ def networks() -> dict[str, Network]:
 @cache
 def _installed() -> tuple[Network, ...]:
     """The toolkit's own networks, and those of installed packages."""
+    from importlib.metadata import entry_points  # a tenth of what `--help` takes
+
     home = import_module(HOME)
     found = [import_module(f"{HOME}.{folder.name}.network").NETWORK
              for folder in pkgutil.iter_modules(home.__path__) if folder.ispkg]  # fmt: skip
