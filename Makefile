@@ -16,8 +16,7 @@ SHELL := /bin/bash
 BIN := .venv/bin
 # The environment is made again when pyproject.toml says something else, and only then.
 STAMP := .venv/stamp-$(shell cksum < pyproject.toml | cut -d ' ' -f 1)
-# One more than cores, at least three: some tests wait for processes and clocks.
-WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 2 ? 3 : n + 1)))
+WORKERS ?= 2
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
 # What many tests run is compiled before they start, where it is not compiled yet.

@@ -26,6 +26,7 @@ def explored():
 
     model = SkinModel(graphs.parse("pc-1"), keep=True, budget=Budget(ticks=1))
     fair.check(explore.explore(model))
+    explore.wander(model, 1)
 
 
 # What shares a protocol is compiled by one process, which types its functions once: the second mesh

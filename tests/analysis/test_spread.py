@@ -3,6 +3,7 @@
 from itertools import combinations
 from math import dist
 
+import numpy as np
 import pytest
 
 from innervate.analysis.spread import spread
@@ -42,3 +43,19 @@ def test_whom_no_link_joins_is_a_hop_farther_than_the_farthest():
 def test_who_is_as_far_from_everybody_lies_by_itself():
     places = spread(6, list(combinations(range(6), 2))).tolist()
     assert min(dist(a, b) for a, b in combinations(places, 2)) > 0.05
+
+
+def test_a_ring_is_drawn_the_same_whatever_the_processor_takes_for_its_axes(monkeypatch):
+    ring = [(k, (k + 1) % 5) for k in range(5)]
+    places, found = spread(5, ring), np.linalg.eigh
+
+    def turned(matrix):
+        """The same spaces, other axes in those that have more than one."""
+        values, vectors = found(matrix)
+        c, s = np.cos(0.7), np.sin(0.7)
+        assert values[-1] == pytest.approx(values[-2])
+        vectors[:, -2:] = vectors[:, -2:] @ np.array([[c, s], [-s, c]])
+        return values, -vectors
+
+    monkeypatch.setattr(np.linalg, "eigh", turned)
+    assert spread(5, ring) == pytest.approx(places, abs=1e-9)

@@ -37,6 +37,14 @@ def test_a_difference_is_named_with_both_values():
     ]
 
 
+def test_last_digits_of_floats_do_not_count_and_no_more_than_those():
+    kept = {"busy_s": [0.1, {"share": 0.3}], "fingerprint": "00ff"}
+    assert record.differences("run", kept, {**kept, "busy_s": [0.1, {"share": 0.1 + 0.2}]}) == []
+    for other in ([0.1, {"share": 0.3 + 1e-9}], [0.1], [0.1, {}]):
+        assert len(record.differences("run", kept, {**kept, "busy_s": other})) == 1
+    assert len(record.differences("run", kept, {**kept, "fingerprint": "00fe"})) == 1
+
+
 @pytest.mark.parametrize("name", QUICK)
 def test_a_run_is_as_recorded(name):
     assert not record.differences(name, recorded(name), record.measure(SOURCES[name]))

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+EQUAL = 1e-6  # relative: what differs by less is the same, as far as rounding goes
+
 
 def spread(count: int, links: Iterable[tuple[int, int]]) -> Any:
     """x, y of every node: as far apart as they are in hops, about one from the next.
@@ -20,25 +22,39 @@ def spread(count: int, links: Iterable[tuple[int, int]]) -> Any:
     if count < 3 or not pairs:
         turn = 2 * math.pi * np.arange(count) / max(1, count)
         return max(1.0, count / 6) * np.stack([np.sin(turn), -np.cos(turn)], axis=1)
-    far = np.full((count, count), np.inf)
+    far: Any = np.full((count, count), np.inf)
     np.fill_diagonal(far, 0)
     for a, b in pairs:
         far[a, b] = far[b, a] = 1
     for middle in range(count):
         far = np.minimum(far, far[:, middle : middle + 1] + far[middle])
     far[np.isinf(far)] = far[np.isfinite(far)].max() + 1
-    return _scaled(far)
+    turn = np.arange(count) * 2.4
+    # Who is as far from everybody as another would lie on one place with it.
+    return scaled(far) + 0.15 * np.stack([np.cos(turn), np.sin(turn)], axis=1)
 
 
-def _scaled(far: Any) -> Any:
-    """Places whose distances are about those given (classical scaling)."""
+def scaled(far: Any) -> Any:
+    """Places whose distances are about those given (classical scaling).
+
+    Args:
+        far: distance of each of n from each, (n, n), n >= 2.
+
+    Returns:
+        x, y of each, (n, 2), the longest extent across, the first up left. On any machine the same:
+        where extents are equal, as in a ring, a fixed direction is taken rather than what comes.
+    """
     squares = far**2
     centred = -0.5 * (
         squares - squares.mean(axis=0) - squares.mean(axis=1)[:, None] + squares.mean()
     )
     values, vectors = np.linalg.eigh(centred)
-    places = vectors[:, :-3:-1] * np.sqrt(np.maximum(values[:-3:-1], 0.0))
-    # Signs of eigenvectors are arbitrary; who is as far from everybody would lie on one place.
-    places = places * np.where(places[0] > 0, -1.0, 1.0)
-    turn = np.arange(len(places)) * 2.4
-    return places + 0.15 * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    chosen: list[Any] = []
+    for place, value in enumerate(values[:-3:-1]):
+        alike = vectors[:, np.abs(values - value) <= EQUAL * np.abs(values).max()]
+        towards = alike @ (alike.T @ np.cos((1.3 + place) * np.arange(len(far))))
+        for one in chosen:
+            towards = towards - one * (one @ towards)
+        chosen.append(towards / np.linalg.norm(towards))
+    places = np.stack(chosen, axis=1) * np.sqrt(np.maximum(values[:-3:-1], 0.0))
+    return places * np.where(places[0] > EQUAL * np.abs(places).max(), -1.0, 1.0)

@@ -84,7 +84,7 @@ def check(plan):
 
 
 @given(plans())
-@settings(QUIET_RUN, max_examples=60)
+@settings(QUIET_RUN, max_examples=25)
 def test_compiled_equals_plain(plan):
     check(plan)
 

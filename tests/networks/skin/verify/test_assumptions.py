@@ -15,8 +15,15 @@ def model(rule, updates):
     return SkinModel(graphs.parse("pair"), rule, updates, Budget(restart=0), lean=True)
 
 
-@pytest.mark.parametrize("updates", UPDATES)
-@pytest.mark.parametrize("rule", RULES)
+RESTING = [(rule, updates) for rule in RULES for updates in UPDATES]
+
+
+# Beacons take longest; one rule's are enough here.
+@pytest.mark.parametrize(
+    ("rule", "updates"),
+    [pytest.param(*one, marks=pytest.mark.slow) if one == ("strict", "periodic") else one
+     for one in RESTING],
+)  # fmt: skip
 def test_the_shipped_rule_keeps_them(rule, updates):
     assert assumptions.broken(model(rule, updates)) == ""
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.spread import scaled
 from innervate.networks.mesh.analysis.fence import edges_of
 from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
 from innervate.plot.svg import Point
@@ -97,18 +98,9 @@ def laid_out(plan: Any) -> Floats:
         near[b].append(a)
     far = np.array([distances(near, node) for node in range(plan.nodes)], np.float64)
     far[far == UNREACHABLE] = far.max() + 2
-    squares = far**2
-    centred = -0.5 * (
-        squares - squares.mean(axis=0) - squares.mean(axis=1)[:, None] + squares.mean()
-    )
-    values, vectors = np.linalg.eigh(centred)
-    # The longest extent lies across.
-    places = vectors[:, :-3:-1] * np.sqrt(np.maximum(values[:-3:-1], 0.0))
     if plan.nodes < 3:
         return np.array([[100.0 * i, 0.0] for i in range(plan.nodes)])
-    # Signs of eigenvectors are arbitrary: the first node lies up left.
-    places *= np.where(places[0] > 0, -1.0, 1.0)
-    return _spread(100.0 * places, near)
+    return _spread(100.0 * scaled(far), near)
 
 
 def _spread(places: Floats, near: list[list[int]]) -> Floats:
