@@ -22,16 +22,16 @@ def spread(count: int, links: Iterable[tuple[int, int]]) -> Any:
     if count < 3 or not pairs:
         turn = 2 * math.pi * np.arange(count) / max(1, count)
         return max(1.0, count / 6) * np.stack([np.sin(turn), -np.cos(turn)], axis=1)
-    far: Any = np.full((count, count), np.inf)
+    far = np.full((count, count), np.inf)
     np.fill_diagonal(far, 0)
     for a, b in pairs:
         far[a, b] = far[b, a] = 1
     for middle in range(count):
         far = np.minimum(far, far[:, middle : middle + 1] + far[middle])
     far[np.isinf(far)] = far[np.isfinite(far)].max() + 1
-    turn = np.arange(count) * 2.4
+    aside = np.arange(count) * 2.4
     # Who is as far from everybody as another would lie on one place with it.
-    return scaled(far) + 0.15 * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    return scaled(far) + 0.15 * np.stack([np.cos(aside), np.sin(aside)], axis=1)
 
 
 def scaled(far: Any) -> Any:
