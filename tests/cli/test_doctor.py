@@ -2,12 +2,15 @@
 
 import json
 import os
+import tomllib
 from importlib import util
+from pathlib import Path
 
 import pytest
 
-from innervate.cli import doctor, main
+from innervate.cli import doctor, errors, main
 
+ROOT = Path(__file__).resolve().parents[2]
 find_spec = util.find_spec
 
 
@@ -36,6 +39,12 @@ def test_what_is_missing_is_named_with_what_to_do(without, capsys):
     said = capsys.readouterr().out
     assert "needs z3: pip install 'innervate[prove]'" in said
     assert "needs collada: pip install 'innervate[body]'" in said
+
+
+def test_every_extra_that_errors_name_is_looked_at_and_can_be_installed():
+    known = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    extras = set(known["optional-dependencies"]) - {"all", "dev", "docs"}
+    assert set(doctor.EXTRAS) == set(errors.EXTRA_OF.values()) == extras
 
 
 def test_without_the_simulator_it_ends_with_1(without, capsys):

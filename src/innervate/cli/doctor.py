@@ -14,17 +14,18 @@ import innervate
 from innervate.cli import errors
 from innervate.network import networks
 
-# Packages by the extra that brings them, and what it is for.
+# What each extra is for; which modules it brings is in errors.EXTRA_OF.
 EXTRAS = {
-    "sim": (("numba", "numpy", "polars"), "simulate: run, sweep, verify, watch"),
-    "plot": (("matplotlib",), "papers and Run.plot"),
-    "web": (("starlette", "uvicorn", "websockets"), "watch"),
-    "live": (("cryptography",), "live nodes with a key or an identity"),
-    "sweep": (("distributed",), "sweeps on a Dask cluster"),
-    "export": (("mcap",), "export --mcap"),
-    "prove": (("z3",), "prove, and verify's reductions proved rather than trusted"),
-    "body": (("trimesh", "collada", "icub_models"), "cells on a robot's description, size"),
-    "topohub": (("topohub",), "published graphs for a mesh"),
+    "sim": "simulate: run, sweep, verify, watch",
+    "plot": "papers and Run.plot",
+    "web": "watch",
+    "live": "live nodes with a key or an identity",
+    "sweep": "sweeps on a Dask cluster",
+    "export": "export --mcap",
+    "prove": "prove, and verify's reductions proved rather than trusted",
+    "body": "cells on a robot's description, size",
+    "topohub": "published graphs for a mesh",
+    "rerun": "export --rerun (large, so not in innervate[all])",
 }
 # Programs by what they are for.
 PROGRAMS = {
@@ -49,8 +50,8 @@ def doctor(as_json: bool) -> int:
 def look() -> dict[str, Any]:
     """All that is looked at, as `--json` prints it."""
     extras = {
-        name: {"for": what, "missing": [one for one in parts if util.find_spec(one) is None]}
-        for name, (parts, what) in EXTRAS.items()
+        name: {"for": what, "missing": [one for one in brought_by(name) if not util.find_spec(one)]}
+        for name, what in EXTRAS.items()
     }
     return {
         "innervate": innervate.__version__,
@@ -65,6 +66,11 @@ def look() -> dict[str, Any]:
     }
 
 
+def brought_by(extra: str) -> list[str]:
+    """The modules that an extra is installed for."""
+    return [module for module, of in errors.EXTRA_OF.items() if of == extra]
+
+
 def _version(package: str) -> str | None:
     try:
         return metadata.version(package)
@@ -73,7 +79,7 @@ def _version(package: str) -> str | None:
 
 
 def _cache() -> dict[str, Any]:
-    """Where compiled loops are kept, and which bundled scenarios start at once."""
+    """Where compiled loops are kept, with what room, and which are there."""
     from innervate.kernel import compilation
 
     folder = compilation.cache_root()

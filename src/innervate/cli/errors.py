@@ -13,16 +13,17 @@ INTERRUPTED = 130
 PIPE_CLOSED = 141
 
 # Which extra brings a module that is not there.
-_EXTRAS = {
+EXTRA_OF = {
     "numba": "sim", "llvmlite": "sim", "numpy": "sim", "polars": "sim",
     "matplotlib": "plot",
-    "icub_models": "body", "trimesh": "body",
-    "distributed": "sweep",
-    "cryptography": "live",
     "starlette": "web", "uvicorn": "web", "websockets": "web",
+    "cryptography": "live",
+    "distributed": "sweep",
     "mcap": "export",
-    "rerun": "rerun",
     "z3": "prove",
+    "collada": "body", "icub_models": "body", "trimesh": "body",
+    "topohub": "topohub",
+    "rerun": "rerun",
 }  # fmt: skip
 # Errors whose text is one line for the user: module and class, and whose mistake they are.
 _KNOWN = (
@@ -117,7 +118,7 @@ def _missing(error: Any) -> str:
 
 
 def _extra_of(error: ModuleNotFoundError) -> str | None:
-    extra = _EXTRAS.get((error.name or "").partition(".")[0])
+    extra = EXTRA_OF.get((error.name or "").partition(".")[0])
     return None if extra is None else f"innervate[{extra}]"
 
 
