@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from innervate.running.run import run as run
     from innervate.scenario import Scenario as Scenario
     from innervate.scenario import ScenarioError as ScenarioError
-    from innervate.scenario.declared import CablesScenario as CablesScenario
-    from innervate.scenario.declared_channel import ChannelScenario as ChannelScenario
-    from innervate.scenario.declared_field import FieldScenario as FieldScenario
+    from innervate.scenario.declared.cables import CablesScenario as CablesScenario
+    from innervate.scenario.declared.channel import ChannelScenario as ChannelScenario
+    from innervate.scenario.declared.field import FieldScenario as FieldScenario
     from innervate.scenario.given import check as check
     from innervate.scenario.given import load as load
     from innervate.sweeping.errors import SweepError as SweepError
@@ -41,10 +41,10 @@ __version__ = "0.1.0"
 # Where each name comes from; the lines above say the same to type checkers.
 _PLACES = {
     "Answer": "networks.typed",
-    "CablesScenario": "scenario.declared",
-    "ChannelScenario": "scenario.declared_channel",
+    "CablesScenario": "scenario.declared.cables",
+    "ChannelScenario": "scenario.declared.channel",
     "Comparison": "running.compare",
-    "FieldScenario": "scenario.declared_field",
+    "FieldScenario": "scenario.declared.field",
     "Network": "network",
     "NetworkError": "network",
     "Question": "networks.typed",

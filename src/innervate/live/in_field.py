@@ -50,6 +50,7 @@ class FieldNode(DeclaredNode):
     """A node that is told when its own frames have ended."""
 
     stack: FieldStack
+    _unended = 0  # own frames that it was not told of yet
 
     def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
         super()._transmit(port, frame, attempt, flags)
@@ -61,11 +62,17 @@ class FieldNode(DeclaredNode):
             self._unended -= 1
             self.engine.call(self.stack.on_sent, self.engine.now)
 
-    _unended = 0
-
 
 class FieldDeployment(Deployment):
-    """Nodes, and a cable for every pair that hears each other."""
+    """Nodes, and a cable for every pair that hears each other.
+
+    Attributes:
+        no_serial: why serial cables are refused.
+        no_link: what is wrong with a pair of nodes, `a` and `b`, that no cable joins.
+    """
+
+    no_serial = "--pty joins two ends; nodes of a field take --netns or UDP"
+    no_link = "{a} and {b} do not hear each other"
 
     def layout(self) -> tuple[list[str], Pairs]:
         """Nodes by number; pairs that hear at least half of each other's frames."""
@@ -74,7 +81,7 @@ class FieldDeployment(Deployment):
     def check(self, cables: str, sealed: bool) -> None:
         """Refuse serial cables, which join two ends each."""
         if cables == "pty":
-            raise LiveError("--pty joins two ends; nodes of a field take --netns or UDP")
+            raise LiveError(self.no_serial)
 
     def file(self, number: int, cables: list[int]) -> tuple[Table, dict[str, Table]]:
         """A node's parameters; one that nobody hears has no file."""
@@ -89,7 +96,7 @@ class FieldDeployment(Deployment):
         pair = (min(fault.node, fault.other), max(fault.node, fault.other))
         if pair not in self.links:
             a, b = (self.names[node] for node in pair)
-            raise LiveError(f"event.{fault.index}: {a} and {b} do not hear each other")
+            raise LiveError(f"event.{fault.index}: {self.no_link.format(a=a, b=b)}")
         return self.links.index(pair)
 
 

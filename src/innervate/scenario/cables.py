@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from innervate.scenario.actions.cables import ACTIONS, LOOSE
-from innervate.scenario.events import told
+from innervate.scenario.events import opening, told
 from innervate.topology.graph import Graph
 
 LOSS_ONE = 32_768
@@ -90,8 +90,7 @@ def describe(plan: Any) -> str:
     graph = plan.graph
     params = ", ".join(f"{name} {value}" for name, value in plan.params.items())
     lines = [
-        f"{plan.scenario.name}: a {plan.kind} scenario of {plan.duration_us / 1e6:g} s, "
-        f"seed {plan.seed}",
+        opening(plan),
         f"  nodes      {graph.cells:,}, {sum(1 for _ in graph.links()):,} cables",
         f"  protocol   {params}",
     ]

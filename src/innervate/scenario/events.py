@@ -28,11 +28,15 @@ def in_order(key: Key, pair: tuple[float, float], names: str = "least, most") ->
 
 
 def in_time(
-    index: int, at_s: float | tuple[float, float], duration_s: float, names: str = "from, to"
+    index: int,
+    at_s: float | tuple[float, float],
+    duration_s: float,
+    names: str = "from, to",
+    table: str = "event",
 ) -> Iterator[Finding]:
-    """That event `index` happens: a run ends just before `duration_s`."""
+    """That event (or `table`) `index` happens: a run ends just before `duration_s`."""
     first, last = at_s if isinstance(at_s, tuple) else (at_s, at_s)
-    key: Key = ("event", index, "at_s")
+    key: Key = (table, index, "at_s")
     name = dotted(key)
     yield from in_order(key, (first, last), names)
     if not first >= 0:
@@ -69,6 +73,14 @@ def at_us(event: Any, draw: Stream) -> int:
     if isinstance(event.at_s, tuple):
         return draw.uniform(micros(event.at_s[0]), micros(event.at_s[1]))
     return micros(event.at_s)
+
+
+def opening(made: Any) -> str:
+    """The first line on a plan: its name, network, length and seed."""
+    return (
+        f"{made.scenario.name}: a {made.kind} scenario of {made.duration_us / 1e6:g} s, "
+        f"seed {made.seed}"
+    )
 
 
 def told(

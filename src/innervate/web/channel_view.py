@@ -9,7 +9,7 @@ import numpy as np
 
 from innervate.network import networks
 from innervate.scenario.actions.channel import JOIN, KILL
-from innervate.scenario.declared_channel import Fault
+from innervate.scenario.declared.channel import Fault
 from innervate.web.declared_view import DeclaredView, shown_by
 from innervate.web.engine import Engine
 from innervate.web.errors import Refused

@@ -8,7 +8,7 @@ import numpy as np
 
 from innervate.analysis.spread import spread
 from innervate.scenario.actions.field import CUT, KILL, RESTORE, REVIVE
-from innervate.scenario.declared_field import Fault
+from innervate.scenario.declared.field import Fault
 from innervate.sim.field.states import ALIVE
 from innervate.web.channel_view import ChannelView
 from innervate.web.errors import Refused

@@ -206,7 +206,7 @@ class DeclaredChannel(Channel):
 
 
 def world_of(plan: Any, plain: bool, kept: Recorded) -> w.World:
-    """The world of a plan (see `scenario/declared_channel.py`), before its first event."""
+    """The world of a plan (see `scenario/declared/channel.py`), before its first event."""
     fields = networks()[plan.kind].fields
     made = Tables(plain)
     frame = extended(fields.FRAME, OF_FRAME)

@@ -20,7 +20,7 @@ from innervate.dialect.access import ALL
 from innervate.folders import invariants_of
 from innervate.kernel import compilation, tables
 from innervate.network import Network, access_of, networks
-from innervate.scenario.declared_field import sizes_of
+from innervate.scenario.declared.field import sizes_of
 from innervate.sim import clocks, heap, rows, taps
 from innervate.sim.cables.declared import Unfit, frames_of
 from innervate.sim.channel.build import grow_heap

@@ -5,27 +5,20 @@ from __future__ import annotations
 from collections.abc import Coroutine
 from typing import Any
 
-from innervate.live.deployment import Deployment, Pairs, Stage, Table
-from innervate.live.errors import LiveError
+from innervate.live.deployment import Stage, Table
+from innervate.live.in_field import FieldDeployment
 from innervate.networks.mesh.live import walks
-from innervate.scenario.actions import ON_LINKS
 
 # They follow from the file itself, stand in its [fence], or are of live links and no simulation.
 NOT_IN_FILES = ("nodes", "width", "row", "told", "places", "points", "px", "py", "after",
                 "ack_adapt", "hop_frames", "gather", "queue", "kept")  # fmt: skip
 
 
-class MeshDeployment(Deployment):
+class MeshDeployment(FieldDeployment):
     """The nodes of a mesh; a cable for every good link."""
 
-    def layout(self) -> tuple[list[str], Pairs]:
-        """Names n0, n1 .. of the nodes, and the good links as pairs."""
-        return [f"n{i}" for i in range(self.plan.nodes)], list(self.plan.good)
-
-    def check(self, cables: str, sealed: bool) -> None:
-        """Refuse cables that mesh nodes cannot have."""
-        if cables == "pty":
-            raise LiveError("--pty joins the cells of a skin; mesh nodes take --netns or UDP")
+    no_serial = "--pty joins the cells of a skin; mesh nodes take --netns or UDP"
+    no_link = "no cable joins {a} and {b}; name a good link"
 
     def file(self, number: int, cables: list[int]) -> tuple[Table, dict[str, Table]]:
         """The head of a node's file, and its tables."""
@@ -41,16 +34,6 @@ class MeshDeployment(Deployment):
         if rings:
             tables["fence"] = {"polygon": rings[0], "holes": rings[1:]}
         return head, tables
-
-    def cable_of(self, fault: Any) -> int:
-        """The number of the link that a fault is done to; -1 if it is done to none."""
-        if self.word(fault) not in ON_LINKS:
-            return -1
-        pair = (min(fault.node, fault.other), max(fault.node, fault.other))
-        if pair not in self.links:
-            a, b = (self.names[node] for node in pair)
-            raise LiveError(f"event.{fault.index}: no cable joins {a} and {b}; name a good link")
-        return self.links.index(pair)
 
     def others(self, stage: Stage) -> list[Coroutine[Any, Any, None]]:
         """Robots say where they are; that has no end."""

@@ -9,7 +9,7 @@ from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.networks.mesh.scenario.nodes import listed
 from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan
 from innervate.scenario.actions.field import JAM
-from innervate.scenario.events import told
+from innervate.scenario.events import opening, told
 from innervate.topology.placement import distances, neighbours
 
 NEIGHBOURS_MIN, GATEWAY_MIN = 3, 5  # rules for planning WirelessHART networks [mesh 9]
@@ -32,7 +32,7 @@ def describe(made: MeshPlan) -> str:
     degree = 2 * len(made.good) / made.nodes
     forwarding = {TABLES: model.protocol.failover, TABLE_FREE: "table-free"}
     lines = [
-        f"{made.scenario.name}: a mesh scenario of {made.duration_us / 1e6:g} s, seed {made.seed}",
+        opening(made),
         f"  nodes      {made.nodes}, gateway {made.names[gateway]}{standby}, monitor {monitor}",
         f"  radio      {model.radio.profile}, {made.mac}, {len(made.good)} good links, "
         f"{degree:.1f} a node, at most {max(hops)} hops from the gateway",

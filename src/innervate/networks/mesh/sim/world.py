@@ -7,6 +7,10 @@ from typing import Any, NamedTuple
 from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import csma
 from innervate.sim.channel.world import Heap
+from innervate.sim.field.world import AIR as AIR
+from innervate.sim.field.world import COMMAND as COMMAND
+from innervate.sim.field.world import ROW as ROW
+from innervate.sim.field.world import TRAIL as TRAIL
 from innervate.sim.tables import Out
 
 RUN = (
@@ -23,19 +27,15 @@ RUN = (
 # What the medium knows of a node.
 RADIO = ("state", "deaf", "on_air", "held", "hot", "told", "tell_at", "boots", "gate", "offset",
          "noise", "x", "y")  # fmt: skip
-AIR = ("node", "state", "start", "end", "digest", "receivers")
 WALK = ("node", "point", "last", "phase", "placed")
 POINT = ("time", "x", "y")
-COMMAND = ("time", "action", "node", "other", "value")
 OFFER = ("time", "node", "dest", "flags", "length")
 
-ROW = ("time", "node", "code", "a", "b")
 SENT = ("time", "end", "node", "kind", "flags", "link_dst", "origin", "dest", "seq", "path_len",
         "bytes", "receivers")  # fmt: skip
 DELIVERED = ("time", "node", "kind", "flags", "origin", "dest", "seq", "path_len", "looped",
              "body0", "body1", "body2", "body3")  # fmt: skip
 ROUND = ("time", "node", "round", "links", "good", "both")
-TRAIL = ("time", "node", "handler", "port", "fingerprint")
 
 # All fields have 32 bits, these and all of RUN 64.
 WIDE = frozenset({"time", "start", "end", "phase", "offset", "noise", "x", "y", "value", "digest",

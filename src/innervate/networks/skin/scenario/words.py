@@ -5,7 +5,7 @@ from __future__ import annotations
 from innervate.networks.skin.scenario.plan import RULES, UPDATES, Plan
 from innervate.networks.skin.scenario.warnings import port_rate, warnings
 from innervate.scenario.cables import fault_words as fault_words
-from innervate.scenario.events import told
+from innervate.scenario.events import opening, told
 
 
 def describe(made: Plan) -> str:
@@ -22,8 +22,7 @@ def describe(made: Plan) -> str:
             f"{ports} carr{'y' if graph.interfaces != 1 else 'ies'} at most {room:,.0f}"
         )
     lines = [
-        f"{made.scenario.name}: a {made.kind} scenario of {made.duration_us / 1e6:g} s, "
-        f"seed {made.seed}",
+        opening(made),
         f"  cells      {graph.cells:,}, {ports}, {cables:,} cables, "
         f"at most {made.depth_max} hops deep",
         f"  protocol   {RULES[params['rule']]}, {UPDATES[params['updates']]}, "

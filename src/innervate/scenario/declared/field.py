@@ -14,12 +14,20 @@ from msgspec import Meta
 from innervate.network import networks
 from innervate.scenario.actions.field import ACTIONS, JAM
 from innervate.scenario.cables import Input
-from innervate.scenario.declared import InputTable, check_declared, inputs_of, parameters
-from innervate.scenario.events import told
-from innervate.scenario.explain import alternatives
+from innervate.scenario.declared.shared import (
+    InputTable,
+    check_happening,
+    check_inputs,
+    check_node,
+    check_values,
+    inputs_of,
+    parameter_lines,
+    parameters,
+)
+from innervate.scenario.events import opening, told
 from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
 from innervate.scenario.lines import Key
-from innervate.scenario.source import Source, shown
+from innervate.scenario.source import Source
 from innervate.topology import placement
 from innervate.trace.streams import stream
 from innervate.wire.frames import Codec
@@ -194,7 +202,7 @@ def check(source: Source, model: FieldScenario) -> None:
         ScenarioError: the first thing that cannot be.
     """
     network = networks()[model.kind]
-    check_declared(source, ("protocol",), model.protocol, network.fields.PARAMS)
+    check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
     if model.positions_m and len(model.positions_m) != model.nodes:
         what = f"positions_m has {len(model.positions_m)} places for {model.nodes} nodes"
         raise source.error(("positions_m",), what)
@@ -203,20 +211,15 @@ def check(source: Source, model: FieldScenario) -> None:
     for place, link in enumerate(model.link):
         _check_pair(source, ("link", place, "nodes"), link.nodes, model.nodes)
     for place, node in enumerate(model.absent):
-        _check_node(source, ("absent", place), node, model.nodes)
-    for place, given in enumerate(model.input):
-        _check_node(source, ("input", place, "node"), given.node or 0, model.nodes)
-        check_declared(source, ("input", place, "item"), given.item, network.fields.FRAME)
-    known = [*ACTIONS, *(network.happenings if network.has("happenings") else ())]
+        check_node(source, ("absent", place), node, model.nodes)
+    check_inputs(source, model, network, model.nodes)
     for place, event in enumerate(model.event):
-        _check_event(source, ("event", place), event, model.nodes, known)
+        check_node(source, ("event", place, "node"), event.node, model.nodes)
+        check_happening(source, model, place, network, ACTIONS)
+        _check_other(source, ("event", place), event, model.nodes)
 
 
-def _check_event(source: Source, key: Key, event: EventTable, nodes: int, known: Any) -> None:
-    _check_node(source, (*key, "node"), event.node, nodes)
-    if event.action not in known:
-        what = f"action must be {alternatives(known)}, not {shown(event.action)}"
-        raise source.error((*key, "action"), what)
+def _check_other(source: Source, key: Key, event: EventTable, nodes: int) -> None:
     if event.action in PAIRS and event.other is None:
         raise source.error(key, f"{event.action} needs the other node; add other = 1")
     if event.action not in PAIRS and event.other is not None:
@@ -225,14 +228,9 @@ def _check_event(source: Source, key: Key, event: EventTable, nodes: int, known:
         _check_pair(source, (*key, "other"), (event.node, event.other), nodes)
 
 
-def _check_node(source: Source, key: Key, node: int, nodes: int) -> None:
-    if not 0 <= node < nodes:
-        raise source.error(key, f"there is no node {node}; they are 0 to {nodes - 1}")
-
-
 def _check_pair(source: Source, key: Key, pair: tuple[int, int], nodes: int) -> None:
     for node in pair:
-        _check_node(source, key, node, nodes)
+        check_node(source, key, node, nodes)
     if pair[0] == pair[1]:
         raise source.error(key, f"node {pair[0]} is named twice; name two nodes")
 
@@ -330,10 +328,8 @@ def sizes_of(frames: Any) -> dict[int, int]:
 def describe(plan: Any) -> str:
     """A plan in words, several lines, without a newline at the end."""
     params = ", ".join(f"{name} {value}" for name, value in plan.params.items())
-
     lines = [
-        f"{plan.scenario.name}: a {plan.kind} scenario of {plan.duration_us / 1e6:g} s, "
-        f"seed {plan.seed}",
+        opening(plan),
         f"  nodes      {plan.nodes:,} in a field, {len(plan.good):,} pairs hear each other",
         f"  protocol   {params}",
     ]
@@ -361,11 +357,8 @@ def template(network: Any) -> str:
     """A scenario to start from, with all parameters; "" for a network with keys of its own."""
     if network.model is not FieldScenario:
         return ""
-    values = parameters(network.fields, {})
-    lines = [f"{name} = {values[name]}  # {low} to {high} {unit}: {meaning}"
-             for name, _length, low, high, unit, meaning in network.fields.PARAMS]  # fmt: skip
     head = [f"# A {network.name} over a field.", f'kind = "{network.name}"', "nodes = 9",
             'layout = "grid"  # line, grid, random; or positions_m; or [[link]]s',
             "spacing_m = 20", "duration_s = 1.0", "", "[air]", "reach_m = 30", "",
             "[protocol]"]  # fmt: skip
-    return "\n".join([*head, *lines, ""])
+    return "\n".join([*head, *parameter_lines(network), ""])

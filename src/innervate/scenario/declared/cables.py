@@ -13,9 +13,17 @@ from msgspec import Meta
 
 from innervate.network import networks
 from innervate.scenario.actions.cables import ACTIONS, LOOSE, LOSE, TABLE
-from innervate.scenario.cables import LOSS_ONE, CablesPlan, Fault, Input
-from innervate.scenario.errors import ScenarioError
-from innervate.scenario.explain import alternatives, nearest
+from innervate.scenario.cables import LOSS_ONE, CablesPlan, Fault
+from innervate.scenario.declared.shared import (
+    InputTable,
+    check_happening,
+    check_inputs,
+    check_node,
+    check_values,
+    inputs_of,
+    parameter_lines,
+    parameters,
+)
 from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source, shown
@@ -23,9 +31,7 @@ from innervate.topology import PORTS, TopologyError, free_graph
 from innervate.topology.graph import Graph
 
 NODES_MAX = 1_000_000
-INPUTS_MAX = 1_000_000
 WEST, EAST, NORTH, SOUTH = range(4)  # ports
-Numbers = int | list[int]
 
 
 class Links(Table, frozen=True, kw_only=True):
@@ -42,24 +48,6 @@ class Links(Table, frozen=True, kw_only=True):
     wire_us: Micros = 60
     loss: Annotated[float, number("frames lost", 0, 1)] = 0.0
     queue_frames: Annotated[int, whole("frames", 1, 1000)] = 8
-
-
-class InputTable(Table, frozen=True, kw_only=True):
-    """What a node is given by its user.
-
-    Attributes:
-        at_s: when first, s.
-        kind: as the protocol's `on_input` has it.
-        node: its number; every node if left out.
-        every_s: again after so long, s; 0 = once.
-        item: fields of a frame.
-    """
-
-    at_s: Annotated[float, number("seconds", 0)] = 0.0
-    kind: Annotated[int, whole("", 0, 1 << 20)] = 1
-    node: Annotated[int, whole("", 0)] | None = None
-    every_s: Annotated[float, number("seconds", 0)] = 0.0
-    item: dict[str, Numbers] = {}  # noqa: RUF012
 
 
 class EventTable(Table, frozen=True, kw_only=True):
@@ -116,40 +104,6 @@ class CablesScenario(Table, frozen=True, kw_only=True):
     event: Annotated[list[EventTable], Meta(max_length=100_000)] = []  # noqa: RUF012
 
 
-def parameters(fields: Any, given: dict[str, int]) -> dict[str, int]:
-    """All parameters of a protocol: what is given, or as `fields.DEFAULTS` has them, or the value
-    in range nearest 0.
-    """
-    usual = getattr(fields, "DEFAULTS", {})
-    return {
-        name: given.get(name, usual.get(name, min(max(0, low), high)))
-        for name, _length, low, high, *_ in fields.PARAMS
-    }
-
-
-def check_declared(source: Source, key: Key, given: dict[str, Any], declared: Any) -> None:
-    """Names and ranges of values for declared fields.
-
-    Raises:
-        ScenarioError: the first that is none, or out of its range.
-    """
-    known = {name: (length, low, high, unit) for name, length, low, high, unit, _ in declared}
-    for name, value in given.items():
-        if name not in known:
-            hint = nearest(name, list(known)) if known else "; it has none"
-            raise source.error((*key, name), f"{key[0]} has no {shown(name)}{hint}")
-        length, low, high, unit = known[name]
-        values = value if isinstance(value, list) else [value]
-        if (length and (not isinstance(value, list) or len(value) != length)) or (
-            not length and isinstance(value, list)
-        ):
-            many = f"{length} numbers" if length else "one number"
-            raise source.error((*key, name), f"{name} must be {many}, not {shown(value)}")
-        if not all(low <= one <= high for one in values):
-            what = f"{name} must be {low} to {high} {unit}, not {shown(value)}"
-            raise source.error((*key, name), what)
-
-
 def check(source: Source, model: CablesScenario) -> None:
     """Everything that single keys do not show.
 
@@ -160,25 +114,15 @@ def check(source: Source, model: CablesScenario) -> None:
     low, high = model.links.latency_us
     if low > high:
         raise source.error(("links", "latency_us"), "links.latency_us must be [least, greatest]")
-    check_declared(source, ("protocol",), model.protocol, network.fields.PARAMS)
+    check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
     graph = _graph(source, model)
-    for place, given in enumerate(model.input):
-        _check_node(source, ("input", place, "node"), given.node, graph)
-        check_declared(source, ("input", place, "item"), given.item, network.fields.FRAME)
+    check_inputs(source, model, network, graph.cells)
     for place, event in enumerate(model.event):
-        _check_event(source, ("event", place), event, graph, network)
+        check_happening(source, model, place, network, ACTIONS)
+        _check_target(source, ("event", place), event, graph)
 
 
-def _check_node(source: Source, key: Key, node: int | None, graph: Graph) -> None:
-    if node is not None and node >= graph.cells:
-        raise source.error(key, f"there is no node {node}; they are 0 to {graph.cells - 1}")
-
-
-def _check_event(source: Source, key: Key, event: EventTable, graph: Graph, network: Any) -> None:
-    own = list(network.happenings) if network.has("happenings") else []
-    if event.action not in (*ACTIONS, *own):
-        one = alternatives([*ACTIONS, *own])
-        raise source.error((*key, "action"), f"action must be {one}, not {shown(event.action)}")
+def _check_target(source: Source, key: Key, event: EventTable, graph: Graph) -> None:
     on_cable = event.action in ACTIONS and TABLE[ACTIONS.index(event.action)].target == "cable"
     wanted, other = ("link", "node") if on_cable else ("node", "link")
     if getattr(event, wanted) is None:
@@ -188,7 +132,7 @@ def _check_event(source: Source, key: Key, event: EventTable, graph: Graph, netw
         raise source.error((*key, other), f"{event.action} has no {other}; leave it out")
     if on_cable:
         _end_of(source, (*key, "link"), graph, str(event.link))
-    _check_node(source, (*key, "node"), event.node, graph)
+    check_node(source, (*key, "node"), event.node, graph.cells)
 
 
 def _end_of(source: Source, key: Key, graph: Graph, text: str) -> int:
@@ -273,45 +217,12 @@ def _fault(source: Source, graph: Graph, place: int, event: EventTable) -> Fault
     )
 
 
-def inputs_of(model: Any, network: Any, count: int, actions: tuple[str, ...]) -> list[Input]:
-    """What nodes are given, repeated and for every node, in order of time.
-
-    Args:
-        model: with the tables `input` and `event`.
-        network: whose `happenings` are events, too.
-        count: how many nodes there are.
-        actions: words of events that are no inputs.
-
-    Raises:
-        ScenarioError: more inputs than can be held.
-    """
-    found: list[Input] = []
-    for given in model.input:
-        period = given.every_s or model.duration_s
-        times = max(math.ceil((model.duration_s - given.at_s) / period), 1)
-        who = range(count) if given.node is None else [given.node]
-        if len(found) + times * len(who) > INPUTS_MAX:
-            what = f"more than {INPUTS_MAX:,} inputs; make every_s longer or the run shorter"
-            raise ScenarioError(what)
-        found += [Input(round(1e6 * (given.at_s + k * period)), node, given.kind, dict(given.item))
-                  for k in range(times) for node in who]  # fmt: skip
-    for event in model.event:
-        if event.action not in actions:
-            kind, item = network.happenings[event.action](event.node, event.value)
-            found.append(Input(round(1e6 * event.at_s), event.node, kind, dict(item)))
-    return sorted(found, key=lambda one: one.at_us)
-
-
 def template(network: Any) -> str:
     """A scenario to start from, with all parameters as they are by themselves; "" for a network
     whose scenarios have keys of their own.
     """
     if network.model is not CablesScenario:
         return ""
-    width = max((len(name) for name, *_ in network.fields.PARAMS), default=0)
-    values = parameters(network.fields, {})
-    lines = [f"{name:{width}} = {values[name]}  # {low} to {high} {unit}: {meaning}"
-             for name, _length, low, high, unit, meaning in network.fields.PARAMS]  # fmt: skip
     return "\n".join([
         f"# A {network.name} over cables.",
         f'kind = "{network.name}"',
@@ -320,7 +231,7 @@ def template(network: Any) -> str:
         "duration_s = 1.0",
         "",
         "[protocol]",
-        *lines,
+        *parameter_lines(network),
         "",
         "# [[event]]",
         "# at_s = 0.5",
@@ -328,6 +239,3 @@ def template(network: Any) -> str:
         '# link = "n0-n1"',
         "",
     ])  # fmt: skip
-
-
-__all__ = ["CablesScenario", "EventTable", "InputTable", "Links", "check", "plan"]

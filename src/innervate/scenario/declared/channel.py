@@ -13,11 +13,19 @@ from msgspec import Meta
 from innervate.network import networks
 from innervate.scenario.actions.channel import ACTIONS, FADE, GARBLE, WORDS
 from innervate.scenario.cables import LOSS_ONE, Input
-from innervate.scenario.declared import InputTable, check_declared, inputs_of, parameters
-from innervate.scenario.events import told
-from innervate.scenario.explain import alternatives
+from innervate.scenario.declared.shared import (
+    InputTable,
+    check_happening,
+    check_inputs,
+    check_node,
+    check_values,
+    inputs_of,
+    parameter_lines,
+    parameters,
+)
+from innervate.scenario.events import opening, told
 from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
-from innervate.scenario.source import Source, shown
+from innervate.scenario.source import Source
 
 NODES_MAX = 1_000
 DONE = ("join", "kill", "revive")  # what can be done to any node on a channel
@@ -138,26 +146,16 @@ def check(source: Source, model: ChannelScenario) -> None:
         ScenarioError: the first thing that cannot be.
     """
     network = networks()[model.kind]
-    check_declared(source, ("protocol",), model.protocol, network.fields.PARAMS)
+    check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
     for place, one in enumerate(model.hidden):
         for node in one:
-            _check_node(source, ("hidden", place), node, model.nodes)
+            check_node(source, ("hidden", place), node, model.nodes)
     for place, node in enumerate(model.absent):
-        _check_node(source, ("absent", place), node, model.nodes)
-    for place, given in enumerate(model.input):
-        _check_node(source, ("input", place, "node"), given.node or 0, model.nodes)
-        check_declared(source, ("input", place, "item"), given.item, network.fields.FRAME)
-    known = [*DONE, *(network.happenings if network.has("happenings") else ())]
+        check_node(source, ("absent", place), node, model.nodes)
+    check_inputs(source, model, network, model.nodes)
     for place, event in enumerate(model.event):
-        _check_node(source, ("event", place, "node"), event.node, model.nodes)
-        if event.action not in known:
-            what = f"action must be {alternatives(known)}, not {shown(event.action)}"
-            raise source.error(("event", place, "action"), what)
-
-
-def _check_node(source: Source, key: Any, node: int, nodes: int) -> None:
-    if not 0 <= node < nodes:
-        raise source.error(key, f"there is no node {node}; they are 0 to {nodes - 1}")
+        check_node(source, ("event", place, "node"), event.node, model.nodes)
+        check_happening(source, model, place, network, DONE)
 
 
 def plan(scenario: Any) -> ChannelPlan:
@@ -201,8 +199,7 @@ def describe(plan: Any) -> str:
     hidden = sum(row.count(-1) for row in plan.delays_us) // 2
     apart = f", {hidden} pairs hidden from each other" if hidden else ""
     lines = [
-        f"{plan.scenario.name}: a {plan.kind} scenario of {plan.duration_us / 1e6:g} s, "
-        f"seed {plan.seed}",
+        opening(plan),
         f"  nodes      {plan.stations:,} on a channel, {plan.params['slot_us']} us a slot{apart}",
         f"  protocol   {params}",
     ]
@@ -219,10 +216,7 @@ def template(network: Any) -> str:
     """A scenario to start from, with all parameters; "" for a network with keys of its own."""
     if network.model is not ChannelScenario:
         return ""
-    values = parameters(network.fields, {})
-    lines = [f"{name} = {values[name]}  # {low} to {high} {unit}: {meaning}"
-             for name, _length, low, high, unit, meaning in network.fields.PARAMS]  # fmt: skip
     head = [f"# A {network.name} on a shared channel.", f'kind = "{network.name}"', "nodes = 6",
             "duration_s = 1.0", "", "[air]", "slot_us = 100", "turnaround_us = 20", "",
             "[protocol]"]  # fmt: skip
-    return "\n".join([*head, *lines, ""])
+    return "\n".join([*head, *parameter_lines(network), ""])

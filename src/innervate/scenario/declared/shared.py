@@ -1,0 +1,147 @@
+"""What scenarios of declared networks have in common, whatever medium their nodes are on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import Annotated, Any
+
+from innervate.network import Network
+from innervate.scenario.cables import Input
+from innervate.scenario.errors import ScenarioError
+from innervate.scenario.events import in_time, refuse
+from innervate.scenario.explain import alternatives, nearest
+from innervate.scenario.keys import Table, number, whole
+from innervate.scenario.lines import Key
+from innervate.scenario.source import Source, shown
+
+INPUTS_MAX = 1_000_000
+Numbers = int | list[int]
+
+
+class InputTable(Table, frozen=True, kw_only=True):
+    """What a node is given by its user.
+
+    Attributes:
+        at_s: when first, s.
+        kind: as the protocol's `on_input` has it.
+        node: its number; every node if left out.
+        every_s: again after so long, s; 0 = once.
+        item: fields of a frame.
+    """
+
+    at_s: Annotated[float, number("seconds", 0)] = 0.0
+    kind: Annotated[int, whole("", 0, 1 << 20)] = 1
+    node: Annotated[int, whole("", 0)] | None = None
+    every_s: Annotated[float, number("seconds", 0)] = 0.0
+    item: dict[str, Numbers] = {}  # noqa: RUF012
+
+
+def parameters(fields: Any, given: dict[str, int]) -> dict[str, int]:
+    """All parameters of a protocol: what is given, or as `fields.DEFAULTS` has them, or the value
+    in range nearest 0.
+    """
+    usual = getattr(fields, "DEFAULTS", {})
+    return {
+        name: given.get(name, usual.get(name, min(max(0, low), high)))
+        for name, _length, low, high, *_ in fields.PARAMS
+    }
+
+
+def check_values(source: Source, key: Key, given: dict[str, Any], declared: Any) -> None:
+    """Names and ranges of values for declared fields.
+
+    Raises:
+        ScenarioError: the first that is none, or out of its range.
+    """
+    known = {name: (length, low, high, unit) for name, length, low, high, unit, _ in declared}
+    for name, value in given.items():
+        if name not in known:
+            hint = nearest(name, list(known)) if known else "; it has none"
+            raise source.error((*key, name), f"{key[0]} has no {shown(name)}{hint}")
+        length, low, high, unit = known[name]
+        values = value if isinstance(value, list) else [value]
+        if (length and (not isinstance(value, list) or len(value) != length)) or (
+            not length and isinstance(value, list)
+        ):
+            many = f"{length} numbers" if length else "one number"
+            raise source.error((*key, name), f"{name} must be {many}, not {shown(value)}")
+        if not all(low <= one <= high for one in values):
+            what = f"{name} must be {low} to {high} {unit}, not {shown(value)}"
+            raise source.error((*key, name), what)
+
+
+def check_node(source: Source, key: Key, node: int | None, nodes: int) -> None:
+    """That there is a node of this number, if one is named.
+
+    Raises:
+        ScenarioError: there is none.
+    """
+    if node is not None and not 0 <= node < nodes:
+        raise source.error(key, f"there is no node {node}; they are 0 to {nodes - 1}")
+
+
+def check_inputs(source: Source, model: Any, network: Network, nodes: int) -> None:
+    """That nodes can be given what the tables `input` say, and that it happens.
+
+    Raises:
+        ScenarioError: the first thing that cannot be.
+    """
+    for place, given in enumerate(model.input):
+        key: Key = ("input", place)
+        refuse(source, in_time(place, given.at_s, model.duration_s, table="input"))
+        check_node(source, (*key, "node"), given.node, nodes)
+        check_values(source, (*key, "item"), given.item, network.fields.FRAME)
+
+
+def check_happening(
+    source: Source, model: Any, place: int, network: Network, actions: Iterable[str]
+) -> None:
+    """That event `place` is one of the medium's `actions` or the network's own, and happens.
+
+    Raises:
+        ScenarioError: it is not, or does not.
+    """
+    action = model.event[place].action
+    known = [*actions, *(network.happenings if network.has("happenings") else ())]
+    if action not in known:
+        what = f"action must be {alternatives(known)}, not {shown(action)}"
+        raise source.error(("event", place, "action"), what)
+    refuse(source, in_time(place, model.event[place].at_s, model.duration_s))
+
+
+def inputs_of(model: Any, network: Network, nodes: int, actions: tuple[str, ...]) -> list[Input]:
+    """What nodes are given, repeated and for every node, in order of time.
+
+    Args:
+        model: with the tables `input` and `event`.
+        network: whose `happenings` are events, too.
+        nodes: how many there are.
+        actions: words of events that are no inputs.
+
+    Raises:
+        ScenarioError: more inputs than can be held.
+    """
+    found: list[Input] = []
+    for given in model.input:
+        period = given.every_s or model.duration_s
+        times = math.ceil((model.duration_s - given.at_s) / period)
+        who = range(nodes) if given.node is None else [given.node]
+        if len(found) + times * len(who) > INPUTS_MAX:
+            what = f"more than {INPUTS_MAX:,} inputs; make every_s longer or the run shorter"
+            raise ScenarioError(what)
+        found += [Input(round(1e6 * (given.at_s + k * period)), node, given.kind, dict(given.item))
+                  for k in range(times) for node in who]  # fmt: skip
+    for event in model.event:
+        if event.action not in actions:
+            kind, item = network.happenings[event.action](event.node, event.value)
+            found.append(Input(round(1e6 * event.at_s), event.node, kind, dict(item)))
+    return sorted(found, key=lambda one: one.at_us)
+
+
+def parameter_lines(network: Network) -> Iterator[str]:
+    """Every parameter of a protocol as a line of a scenario, with its range and meaning."""
+    width = max((len(name) for name, *_ in network.fields.PARAMS), default=0)
+    values = parameters(network.fields, {})
+    for name, _length, low, high, unit, meaning in network.fields.PARAMS:
+        yield f"{name:{width}} = {values[name]}  # {low} to {high} {unit}: {meaning}"

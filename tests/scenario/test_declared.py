@@ -1,0 +1,46 @@
+"""Scenarios of networks that declare no keys of their own: what is the same on every medium."""
+
+import pytest
+from msgspec import to_builtins
+
+from innervate import scenario as scenarios
+from innervate.scenario.errors import ScenarioError
+from tests.own import alone, made
+
+__all__ = ["alone"]
+
+
+@pytest.fixture(params=["cables", "channel", "field"])
+def own(request, alone, capsys):
+    network = made(alone / "own", request.param)
+    capsys.readouterr()
+    return network
+
+
+def loaded(own, **changes):
+    return scenarios.load(own.scenario, overrides={"duration_s": 2, **changes}.items())
+
+
+@pytest.mark.parametrize("table", ["input", "event"])
+def test_what_would_never_happen_is_refused(own, table):
+    last = to_builtins(getattr(loaded(own).model, table)[-1])
+    assert scenarios.plan(loaded(own, **{table: [{**last, "at_s": 1.999999}]}))
+    with pytest.raises(ScenarioError, match=rf"{table}\.0\.at_s = 2 is the end of the run"):
+        loaded(own, **{table: [{**last, "at_s": 2}]})
+    with pytest.raises(ScenarioError, match=rf"{table}\.0\.at_s = 3 is outside the run"):
+        loaded(own, **{table: [{**last, "at_s": 3}]})
+
+
+def test_inputs_are_repeated_up_to_the_end_and_not_at_it(own):
+    given = {"at_s": 0.5, "every_s": 0.5, "node": 1, "item": {}}
+    plan = scenarios.plan(loaded(own, input=[given], event=[]))
+    assert [one.at_us for one in plan.inputs] == [500_000, 1_000_000, 1_500_000]
+    plan = scenarios.plan(loaded(own, input=[{**given, "every_s": 0}], event=[]))
+    assert [one.at_us for one in plan.inputs] == [500_000]
+
+
+def test_the_node_that_an_input_is_for_is_there(own):
+    with pytest.raises(ScenarioError, match="there is no node 500; they are 0 to"):
+        loaded(own, input=[{"node": 500}])
+    with pytest.raises(ScenarioError, match='input has no "valeu"; did you mean "value"'):
+        loaded(own, input=[{"item": {"valeu": 1}}])
