@@ -1,6 +1,7 @@
 """A network of one's own for tests: written by `innervate new network`, and changed."""
 
 import shutil
+from importlib import import_module
 
 import pytest
 
@@ -39,6 +40,18 @@ def alone(monkeypatch, tmp_path):
     for name in list(folders._stamps):
         folders._forget(folders._home(name))
     networks.cache_clear()
+
+
+@pytest.fixture
+def plain(monkeypatch):
+    """Runs of own networks are plain ones: each would be compiled anew, for half a minute."""
+    for medium in ("cables", "channel", "field"):
+        module = import_module(f"innervate.sim.{medium}.declared")
+
+        def plainly(plan, begun=module.simulation, **kept):
+            return begun(plan, **kept | {"plain": True})
+
+        monkeypatch.setattr(module, "simulation", plainly)
 
 
 def made(folder, medium="cables", over=""):

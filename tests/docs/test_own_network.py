@@ -6,15 +6,11 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 from innervate.cli import main
-from innervate.kernel import compilation
 from innervate.network import networks
-from innervate.sim.cables import declared
-from tests.own import alone
+from tests.own import alone, plain
 
-__all__ = ["alone"]
+__all__ = ["alone", "plain"]
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "own-network.md"
 STEP = re.compile(
     r"<!-- file: (?P<file>\S+) -->\n```\w+\n(?P<text>.*?)```"
@@ -49,25 +45,6 @@ def carried_out(command, capfd):
     return done.stdout + done.stderr
 
 
-@pytest.fixture
-def mostly_plain(monkeypatch):
-    """Runs of the page's first and last protocol are not compiled: one in the middle is enough."""
-    build, seen = declared.world_of, declared.compiled_loop
-
-    def is_plain(kind):
-        return kind == "gossip" or Path("ring/poked.toml").exists()
-
-    def world_of(plan, plain, kept):
-        return build(plan, plain or is_plain(plan.kind), kept)
-
-    def loop(network):
-        return declared.plain_loop(network.name) if is_plain(network.name) else seen(network)
-
-    monkeypatch.setattr(declared, "world_of", world_of)
-    monkeypatch.setattr(declared, "compiled_loop", loop)
-    monkeypatch.setattr(compilation, "mark_compiled", lambda _: None)
-
-
 def parts():
     """The page but for channel and field, and what it says of each."""
     before, rest = PAGE.read_text(encoding="utf-8").split("## On a shared channel")
@@ -75,18 +52,16 @@ def parts():
     return before + "## " + after, channel, field
 
 
-def test_every_step_of_the_page(alone, mostly_plain, capfd):
+def test_every_step_of_the_page(alone, plain, capfd):
     assert played(parts()[0], capfd) >= 15
     assert {"gossip", "ring"} <= set(networks())
 
 
-@pytest.mark.slow  # compiles a protocol that no other test runs
-def test_every_step_on_the_channel(alone, capfd):
+def test_every_step_on_the_channel(alone, plain, capfd):
     assert played(parts()[1], capfd) == 7
 
 
-@pytest.mark.slow  # compiles a protocol that no other test runs
-def test_every_step_over_a_field(alone, capfd):
+def test_every_step_over_a_field(alone, plain, capfd):
     assert played(parts()[2], capfd) == 8
 
 

@@ -10,7 +10,7 @@ SMALL = {"nodes": 6, "storms": 1, "storm_s": 20, "calm_s": 0, "rate": 5}
 FULL_CPU_S = 480.0
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+@pytest.mark.parametrize("seed", [1, 2])
 def test_a_mesh_that_is_hurt_keeps_what_it_promises(seed):
     found = runs.run(seed, "mesh", **SMALL)
     assert found.broken == []
@@ -40,7 +40,7 @@ def test_a_team_that_is_hurt_delivers_what_it_says(seed):
     assert found.told["lives"] > 6
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_in_order_with_restarting_recipients_delivered_means_handed_up(seed):
     often = {"storm_s": 60, "rate": 20, "in_order": True, "hurts": ("crash", "restarts")}
     found = runs.run(seed, "mesh", **SMALL | often)
@@ -49,9 +49,10 @@ def test_in_order_with_restarting_recipients_delivered_means_handed_up(seed):
 
 
 def test_a_seed_shows_the_same_again():
-    first, again = (runs.run(5, "mesh", **SMALL) for _ in range(2))
+    soon = SMALL | {"storm_s": 5}
+    first, again = (runs.run(5, "mesh", **soon) for _ in range(2))
     assert first == again
-    assert first.fingerprint != runs.run(6, "mesh", **SMALL).fingerprint
+    assert first.fingerprint != runs.run(6, "mesh", **soon).fingerprint
 
 
 @pytest.mark.slow

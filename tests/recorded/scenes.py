@@ -129,7 +129,7 @@ def of_skin() -> Iterator[tuple[str, Drawn]]:
 @cache
 def mesh_runs() -> dict[str, Any]:
     """Runs of meshes."""
-    big = without_fence() | {"name": "big", "nodes": 70, "duration_s": 3.0}
+    big = without_fence() | {"name": "big", "nodes": 70, "duration_s": 1.0}
     silent = without_fence() | {
         "name": "silent",
         "nodes": 2,

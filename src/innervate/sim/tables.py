@@ -161,8 +161,22 @@ def hand_over(world: Any, tap: taps.Tap | None, now: int) -> None:
     """Give a tap the frames that were kept, and make room for more."""
     if tap is not None:
         count = int(get(world.run, 0, "taps"))
-        tap(world.taps[:count], world.tapped[:count], now)
+        tap(_as_rows(world.taps, count), _as_rows(world.tapped, count), now)
         put(world.run, 0, taps=0)
+
+
+def _as_rows(table: Any, count: int) -> Any:
+    """The first records of a table as rows of an array, whose fields have 64 bits if plain."""
+    if not isinstance(table, list):
+        return table[:count]
+    names = table[0].__slots__
+    columns = [np.array([getattr(one, name) for one in table[: count or 1]]) for name in names]
+    kinds = [(name, np.int64, column.shape[1:])
+             for name, column in zip(names, columns, strict=True)]  # fmt: skip
+    rows = np.zeros(count, np.dtype(kinds))
+    for name, column in zip(names, columns, strict=True):
+        rows[name] = column[:count]
+    return rows
 
 
 def move_rows(

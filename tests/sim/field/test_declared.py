@@ -12,9 +12,9 @@ from innervate.network import NetworkError, networks
 from innervate.sim.field import listening
 from innervate.sim.field.declared import simulation
 from innervate.web.field_view import FieldView
-from tests.own import alone, made
+from tests.own import alone, made, plain
 
-__all__ = ["alone"]
+__all__ = ["alone", "plain"]
 ENDS = [{"nodes": [0, 1], "quality": 1.0}, {"nodes": [1, 2], "quality": 1.0}]
 
 
@@ -199,9 +199,9 @@ def test_a_page_shows_it_where_it_lies_and_cuts_its_links(bare):
     assert set(arrays["fields"]) >= {"seq", "value"}
 
 
-def test_its_captures_and_its_graph(bare, tmp_path):
+def test_its_captures_and_its_graph(bare, plain, tmp_path):
     out = tmp_path / "flood.pcapng"
-    words = ["--pcapng", str(out), "--set", "duration_s=0.2"]
+    words = ["--pcapng", str(out), "--set", "duration_s=1.05"]
     assert main(["export", str(bare.scenario), *words]) == 0
     assert out.stat().st_size > 1_000
     graph = networks()["flood"].graph(scenarios.plan(scenarios.load(bare.scenario)))

@@ -247,7 +247,7 @@ def test_a_mesh_that_mixes_them_up_hands_them_up_in_order(count):
             await until(lambda: len(ordered) == count)
             return states, mixed, ordered, mesh.nodes[2].status()
 
-    states, mixed, ordered, told = asyncio.run(main())
+    states, mixed, ordered, told = time_by_hand.run(main())
     assert states == {DELIVERED}
     assert mixed != sorted(mixed), "nothing was out of order: the test shows nothing"
     assert ordered == sorted(mixed)

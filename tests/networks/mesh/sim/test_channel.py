@@ -154,7 +154,7 @@ def team_plan(*sets, duration_us=14_000_000, seed=1):
 
 
 def test_the_bundled_team_delivers_everything_and_its_alarm():
-    result = run_scenario("mesh-team", plain=True)
+    result = run_scenario("mesh-team")
     summary = result.summary
     assert summary["delivery_ratio"] == 1.0
     assert (summary["alarms"]["sent"], summary["alarms"]["delivered"]) == (1, 1)

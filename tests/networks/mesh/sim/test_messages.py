@@ -225,7 +225,13 @@ def nets(request):
     return found
 
 
-@pytest.mark.parametrize("deaths", range(1, 9))
+SOME_DEATHS = [
+    deaths if deaths in (1, 4, 8) else pytest.param(deaths, marks=pytest.mark.slow)
+    for deaths in range(1, 9)
+]
+
+
+@pytest.mark.parametrize("deaths", SOME_DEATHS)
 def test_what_is_connected_is_delivered_around_the_dead(nets, deaths):
     """Unknown to all, before the packet is sent."""
     runs = 0

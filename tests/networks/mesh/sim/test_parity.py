@@ -84,7 +84,7 @@ def check(plan):
 
 
 @given(plans())
-@settings(QUIET_RUN, max_examples=25)
+@settings(QUIET_RUN, max_examples=12)
 def test_compiled_equals_plain(plan):
     check(plan)
 

@@ -158,8 +158,10 @@ def test_slotted_aloha_with_poisson_offers(carried):
     assert close(found, forms.aloha_throughput(load))
 
 
-@pytest.mark.parametrize("packet_slots", [5, 25])
-@pytest.mark.parametrize("mac", ["nonpersistent", "p-persistent"])
+@pytest.mark.parametrize(("mac", "packet_slots"), [
+    ("nonpersistent", 5), ("nonpersistent", 25), ("p-persistent", 25),
+    pytest.param("p-persistent", 5, marks=pytest.mark.slow),
+])  # fmt: skip
 def test_csma(mac, packet_slots):
     n = 50
     for per_slot in (0.1, 0.5):

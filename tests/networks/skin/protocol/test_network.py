@@ -47,14 +47,11 @@ def test_many_random_networks_keep_the_invariants(rule, updates):
 
 
 def test_the_paper_rule_closes_loops_in_such_histories():
-    closed = {
-        updates: sum(
+    for updates in UPDATES:
+        assert any(
             check_random_network(seed, rule="paper", updates=updates, steps=WITH_DETECT).rings
             for seed in range(40)
-        )
-        for updates in UPDATES
-    }
-    assert min(closed.values()) > 0, closed
+        ), updates
 
 
 def test_the_checker_sees_a_ring():

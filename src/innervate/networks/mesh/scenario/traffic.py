@@ -102,14 +102,15 @@ def offers(
         for place, (node, dest) in enumerate(flows[index]):
             draw = stream(model.seed, f"flow/{index}/{place}")
             flags = _flags(model, flow, dest)
-            for at in _times(flow, settled_s, duration_us, draw):
-                found.append((at, index, place, Offer(at, node, dest, flags, flow.bytes, index)))
-                if len(found) > OFFERS_MAX:
-                    raise nodes.source.error(
-                        ("flow", index),
-                        f"more than {OFFERS_MAX:,} messages would be offered; shorten duration_s "
-                        f"or raise flow.{index}.every_s",
-                    )
+            times = _times(flow, settled_s, duration_us, draw)
+            if len(found) + len(times) > OFFERS_MAX:
+                raise nodes.source.error(
+                    ("flow", index),
+                    f"more than {OFFERS_MAX:,} messages would be offered; shorten duration_s "
+                    f"or raise flow.{index}.every_s",
+                )
+            found += [(at, index, place, Offer(at, node, dest, flags, flow.bytes, index))
+                      for at in times]  # fmt: skip
     return [offer for *_, offer in sorted(found, key=lambda item: item[:3])]
 
 
