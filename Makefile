@@ -7,7 +7,7 @@
 #   make mutants  faults planted all over, and how many the tests find (long)
 #   make docs     the documentation as a site, in site/     make dist     wheel and source archive, in dist/
 #   make boards   the folder to copy to a board          make page    build the page of `watch` (npm)
-#   make clean    remove what these made
+#   make env      only the environment, .venv         make clean    remove what these made
 
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
@@ -26,7 +26,7 @@ LOOPS = $(BIN)/python -m tests.loops $(WORKERS)
 PAGE := src/innervate/web/page
 MODULES := $(PAGE)/node_modules/.package-lock.json
 
-.PHONY: help demo test full mutants lint bench papers boards parity docs dist page page-check clean
+.PHONY: help env demo test full mutants lint bench papers boards parity docs dist page page-check clean
 
 help:
 	@sed -n '2,/^$$/s/^# \{0,1\}//p' Makefile
@@ -53,6 +53,8 @@ $(STAMP):
 	  $(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[all,dev]'; \
 	fi
 	@touch $@
+
+env: $(STAMP)
 
 demo: $(STAMP)
 	@$(BIN)/innervate demo

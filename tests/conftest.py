@@ -59,8 +59,24 @@ def fail_instead(report):
     )
 
 
+def spread_out(items):
+    """Of tests marked `few(count)` so many of the parameters stay; the others are slow."""
+    families = {}
+    for item in items:
+        if few := item.get_closest_marker("few"):
+            _, members = families.setdefault(item.nodeid.split("[")[0], (few.args[0], []))
+            members.append(item)
+    for count, members in families.values():
+        kept = {round(k * (len(members) - 1) / max(count - 1, 1)) for k in range(count)}
+        for place, item in enumerate(members):
+            if place not in kept:
+                item.add_marker(pytest.mark.slow)
+
+
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
     """What works against a clock outside this process has a second try, which is counted."""
+    spread_out(items)
     for item in items:
         if REAL_TIME & set(item.path.relative_to(HERE).parts):
             item.add_marker(pytest.mark.flaky(reruns=1))

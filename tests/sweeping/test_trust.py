@@ -19,6 +19,7 @@ from tests.sweeping.conftest import TIMEOUT_S, start, until
 VARY = {"protocol.beacon_hz": [100, 250], "protocol.k": "2..4"}
 COMMAND = ("sweep", "four.toml", "--vary", "protocol.beacon_hz=100,250", "--vary",
            "protocol.k=2..4")  # fmt: skip
+REPEATS = 40
 STARTS_MAX = 12  # the first ones can be killed before anything is done
 
 
@@ -73,6 +74,7 @@ class Shuffled(Here):
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.few(1)
 def test_any_order_gives_the_same_bytes(four, seed, monkeypatch):
     rules = {"until": "recoveries.routed_ms.ci=8%", "repeat": 24, "batch": 6}
     innervate.sweep(four, vary=VARY, out="one", workers=1, **rules)
@@ -93,11 +95,11 @@ def test_any_order_gives_the_same_bytes(four, seed, monkeypatch):
 
 def test_kill_9_at_any_moment_loses_nothing_and_does_nothing_twice(four):
     """Killed again and again, at some moment between two results, until it is through."""
-    innervate.sweep(four, vary=VARY, repeat=60, out="whole")
+    innervate.sweep(four, vary=VARY, repeat=REPEATS, out="whole")
     seen, kills = {}, 0
     for starts in range(STARTS_MAX):
         growth = Growth(3 + starts)
-        process = start(*COMMAND, "--repeat", 60, "--out", "killed", cwd=four.parent,
+        process = start(*COMMAND, "--repeat", REPEATS, "--out", "killed", cwd=four.parent,
                         start_new_session=True)  # fmt: skip
         if kills < 3:
             until(lambda g=growth, p=process: g() or p.poll() is not None, "results")
@@ -112,7 +114,7 @@ def test_kill_9_at_any_moment_loses_nothing_and_does_nothing_twice(four):
             break
     assert process.returncode == 0, err
     assert kills == 3
-    assert len(seen) == 6 * 60
+    assert len(seen) == 6 * REPEATS
     assert table("killed") == table("whole")
 
 

@@ -225,13 +225,8 @@ def nets(request):
     return found
 
 
-SOME_DEATHS = [
-    deaths if deaths in (1, 4, 8) else pytest.param(deaths, marks=pytest.mark.slow)
-    for deaths in range(1, 9)
-]
-
-
-@pytest.mark.parametrize("deaths", SOME_DEATHS)
+@pytest.mark.parametrize("deaths", range(1, 9))
+@pytest.mark.few(6)
 def test_what_is_connected_is_delivered_around_the_dead(nets, deaths):
     """Unknown to all, before the packet is sent."""
     runs = 0

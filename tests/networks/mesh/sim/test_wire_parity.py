@@ -54,6 +54,7 @@ def story(bench_class, **settings):
 
 @pytest.mark.parametrize("mtu", [64, 127])
 @pytest.mark.parametrize("mode", [0, 1, 2])
+@pytest.mark.few(2)
 def test_frames_as_bytes_change_nothing(mode, mtu):
     reports, handed, kinds = story(Bench, mode=mode, mtu=mtu)
     assert story(Wired, mode=mode, mtu=mtu) == (reports, handed, kinds)

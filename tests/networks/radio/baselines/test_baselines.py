@@ -79,6 +79,7 @@ def test_nobody_hears_a_lone_station():
 
 @pytest.mark.parametrize("packet_slots", [5, 25])
 @pytest.mark.parametrize("mac", ["csma-cd-d1", "csma-cd-d2", "csma-cd-d2p"])
+@pytest.mark.few(3)
 def test_csma_cd_agrees_with_the_slotted_level(mac, packet_slots):
     # Delays of half a slot put all stations on a grid of slots. One station at a time has the
     # channel for long: means settle slowly.
@@ -135,6 +136,7 @@ def aloha(result):
 
 
 @pytest.mark.parametrize("load", [0.25, 0.5, 1.0, 1.5, 2.0])
+@pytest.mark.few(3)
 def test_slotted_aloha_in_saturation(load):
     n = 60
     found_load, found = aloha(saturate("slotted-aloha", n, 5, 18_000, p=load / n))

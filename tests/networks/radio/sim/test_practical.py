@@ -51,6 +51,7 @@ def line_through(means, sizes=SIZES):
 @pytest.mark.parametrize("packet_slots", [5, 25])
 @pytest.mark.parametrize("ta", [0, 2000])
 @pytest.mark.parametrize("together", [True, False])
+@pytest.mark.few(4)
 def test_every_disaster_completes_in_linear_time(packet_slots, ta, together):
     means = disasters(packet_slots, ta, 0 if together else ta + 104, range(1, 11))
     slope, fit = line_through(means)

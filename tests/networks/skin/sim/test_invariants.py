@@ -39,6 +39,7 @@ def soak(seeds, keys_for):
 @pytest.mark.parametrize("what", PLAN)
 @pytest.mark.parametrize("updates", UPDATES)
 @pytest.mark.parametrize("rule", SAFE)
+@pytest.mark.few(12)
 def test_no_loop_and_no_disorder_whatever_breaks(rule, updates, what):
     for number, shape in enumerate(SHAPES.values()):
         gap_s = (0.003, 0.02, 0.1)[number]
