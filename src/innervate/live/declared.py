@@ -33,7 +33,8 @@ if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
 FOR_EVER_US = 1 << 62  # protocols that do not say when a path is broken never call one so
 OUTBOX = 16
 # Fields that the driver sets as a node is made, and that nobody wants to read.
-DRIVERS = ("number", "rng", "choice")
+DRIVERS = ("number", "rng", "choice")  # a node's driver sets them
+HIDDEN = (*DRIVERS, "asked")  # says nothing of the network: nobody is shown it
 
 
 class DeclaredFile(NodeFile, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -203,7 +204,7 @@ def values_of(record: Any, declared: Any) -> dict[str, Any]:
     """The declared fields of a record by name, but for those that are the driver's."""
     found = {}
     for name, length, *_ in declared:
-        if name not in DRIVERS:
+        if name not in HIDDEN:
             value = getattr(record, name)
             found[name] = list(value) if length else value
     return found

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from innervate.live.declared import DRIVERS
+from innervate.live.declared import HIDDEN
 from innervate.network import Network, networks
 from innervate.web.errors import Refused
 from innervate.web.live_map import Map, Place, Status
@@ -24,7 +24,7 @@ def shown_fields(network: Network) -> list[dict[str, str]]:
     return [
         {"name": name, "unit": unit, "meaning": meaning}
         for name, length, _low, _high, unit, meaning in declared
-        if not length and name not in DRIVERS
+        if not length and name not in HIDDEN
     ]
 
 
