@@ -16,15 +16,13 @@ FIELDS = ("time", "start", "at", "sender", "out", "why")
 class Tap:
     """Keeps rows and bytes of compiled and plain runs alike."""
 
-    def __init__(self, wire, kind, plain):
-        self.wire, self.kind, self.plain = wire, kind, plain
+    def __init__(self, wire, plain):
+        self.wire, self.plain = wire, plain
         self.kept = []
 
     def __call__(self, rows, frames, now):
         for row, frame in zip(rows, frames, strict=True):
-            read = getattr if self.plain else (lambda record, name: record[name])
-            data = self.wire.encode(frame if self.plain else Frame(frame))
-            self.kept.append((*(int(read(row, name)) for name in FIELDS), data))
+            self.kept.append((*(int(row[name]) for name in FIELDS), self.wire.encode(Frame(frame))))
 
 
 class Frame:
@@ -43,7 +41,7 @@ def test_taps(keys, wire):
     home = networks()[plan.kind].package
     simulate = import_module(f"{home}.sim.simulate").simulate
     bare = simulate(plan)
-    taps = [Tap(wire, plan.kind, plain) for plain in (False, True)]
+    taps = [Tap(wire, plain) for plain in (False, True)]
     done = [simulate(plan, plain=tap.plain, tap=tap) for tap in taps]
     assert {one.fingerprint for one in done} == {bare.fingerprint}
     assert taps[0].kept == taps[1].kept

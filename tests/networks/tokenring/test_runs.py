@@ -80,5 +80,5 @@ def test_frames_of_a_declared_network_are_tapped():
     running, _ = finished(
         plan_of(event=[]), lambda rows, frames, _now: seen.extend(rows), plain=True
     )
-    arrived = [row for row in seen if row.out == 0 and row.why == taps.FINE]
+    arrived = [row for row in seen if row["out"] == 0 and row["why"] == taps.FINE]
     assert len(arrived) == running.counts().arrived
