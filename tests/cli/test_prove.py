@@ -5,21 +5,36 @@ import re
 import subprocess
 import sys
 
+from innervate.network import networks
+from innervate.networks.radio.protocol.constants import WIDE_MOST
+from innervate.networks.radio.prove import turns
+
 
 def test_what_is_proved_is_told_lemma_by_lemma(sh):
+    """All that is proved of a radio: its queue, and its turns."""
     assert sh("prove", "radio", "--json") == 0
-    queue, turns = json.loads(sh.out)
-    for found in (queue, turns):
-        assert found["expected"]
-        assert found["holds"]
-        assert {lemma["answer"] for step in found["steps"] for lemma in step["lemmas"]} == {"unsat"}
-        assert sum(len(step["lemmas"]) for step in found["steps"]) == found["lemmas"]
-    assert (queue["lemmas"], turns["lemmas"]) == (7, 15)
+    found = json.loads(sh.out)
+    for one in found:
+        assert one["expected"]
+        assert one["holds"]
+        assert one["unreached"] == []
+        assert {lemma["answer"] for step in one["steps"] for lemma in step["lemmas"]} == {"unsat"}
+        assert sum(len(step["lemmas"]) for step in one["steps"]) == one["lemmas"]
+    assert [one["lemmas"] for one in found] == [7, 7 + 2 * (WIDE_MOST + 1)]
+    assert found[1]["assumed"] == list(turns.ASSUMED)
+
+
+def test_people_are_told_in_lines(sh, monkeypatch):
+    queue = networks()["radio"].prove.theories(networks()["radio"])[0]
+    monkeypatch.setattr(networks()["radio"].prove, "theories", lambda _: [queue])
     assert sh("prove", "radio") == 0
-    assert sh.out.splitlines()[-1].startswith("All as it should be: 22 lemmas in ")
+    *_, holds, _, last = sh.out.splitlines()
+    assert holds == "  Holds: 7 lemmas; 18 ways of branches reached, 2 cannot be, as said."
+    assert last.startswith("All as it should be: 7 lemmas in ")
 
 
 def test_planted_mistakes_are_refuted(sh):
+    """All of a radio's: of its queue and of turns."""
     assert sh("prove", "radio", "--faults") == 0
     refuted = [re.search(r": ([QR]\d|no |every )", line) for line in sh.out.splitlines()]
     assert len(refuted) >= 7

@@ -1,6 +1,7 @@
 """`innervate verify`: what it prints, writes and returns."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -12,20 +13,31 @@ SMALL = ("--plain", "--graph", "pc-1 1-2", "--updates", "periodic", "--budget", 
 
 def test_nothing_broken_is_0(sh):
     assert sh("verify", *SMALL) == 0
-    first, last = sh.out.splitlines()
+    first, *_, last = sh.out.splitlines()
     assert first.startswith("pc-1 1-2 ")
     assert "all states; settled in" in first
     assert last == "Nothing broken in 1 explorations, all completely."
 
 
-def test_without_the_solver_the_command_says_what_it_trusts(sh, monkeypatch):
+def test_the_command_says_what_is_proved_argued_and_trusted(sh, monkeypatch):
     words = ("verify", "--plain", "--graph", "pc-1", "--updates", "periodic", "--states", "50")
     monkeypatch.setattr(assumptions, "can_prove", lambda: False)
     assert sh(*words) == 0
     assert "taken on trust, since z3 is missing" in sh.out
+    assert "proved:" not in sh.out
+    assert sh(*words, "--json") == 0
+    assert set(json.loads(sh.out)[0]["reductions"]) == {"trusted", "argued", "page"}
     monkeypatch.undo()
     assert sh(*words) == 0
+    (line,) = [line for line in sh.out.splitlines() if "argued" in line]
+    assert re.search(r"proved: the rule, .*; argued: covering states, mirror images", line)
     assert "trust" not in sh.out
+    assert sh(*words, "--json") == 0
+    assert set(json.loads(sh.out)[0]["reductions"]) == {"proved", "argued", "page"}
+    assert sh(*words, "--rule", "paper", "--json") == 0
+    assert set(json.loads(sh.out)[0]["reductions"]) == {"argued", "page"}
+    assert sh(*words, "--no-reduce") == 0
+    assert "argued" not in sh.out
 
 
 def test_states_can_be_explored_unreduced(sh):

@@ -59,6 +59,7 @@ def check(
     simple: Iterable[Term] = (),
     first_only: bool = False,
     reach: bool = True,
+    known: Iterable[Way] = (),
 ) -> Checked:
     """Try to refute a step's goals.
 
@@ -67,6 +68,7 @@ def check(
         tell: says in sentences what happens with the values that refute one.
         simple: what counterexamples should keep to if they can, so that they are easy to read.
         reach: see which branches some state takes, too.
+        known: ways of branches that other steps have taken: they need not be asked for.
         first_only: one goal that is refuted is enough, and no story of it.
 
     Raises:
@@ -79,7 +81,7 @@ def check(
     if question.values() is None:
         raise ProveError(f"{step.name}: no state is as assumed, so all would hold")
     if reach:
-        found.reached, found.missed = reached(step, question)
+        found.reached, found.missed = reached(step, question, known)
     terms = step.terms
     if question.values(terms.any(*(terms.negated(goal.holds) for goal in step.goals))) is not None:
         if first_only:
@@ -107,21 +109,26 @@ def _all_refuted(
         yield Refuted(goal.name, values, tell(step, question, goal.name) if tell else [])
 
 
-def reached(step: Step, question: Question) -> tuple[set[Way], set[Way]]:
+def reached(
+    step: Step, question: Question, known: Iterable[Way] = ()
+) -> tuple[set[Way], set[Way]]:
     """The ways of branches that some state takes, and those that none does."""
-    terms = step.terms
-    open_ = {way: terms.any(*guards) for way, guards in step.machine.ways.items()}
+    terms, seen = step.terms, set(known)
+    open_ = {way: terms.any(*guards) for way, guards in step.all_ways().items() if way not in seen}
     missed = {way for way, guard in open_.items() if guard is terms.false}
     for way in missed:
         del open_[way]
     found: set[Way] = set()
-    while open_:
-        if question.values(terms.any(*open_.values())) is None:
-            return found, missed | set(open_)
-        taken = {way for way, guard in open_.items() if question.holds(guard)}
-        found |= taken
-        for way in taken:
-            del open_[way]
+    while open_:  # one at a time: a way's formula is a small part of all of them
+        way, guard = open_.popitem()
+        if question.values(guard) is None:
+            missed.add(way)
+            continue
+        also = question.which(list(open_.values()))
+        taken = {other for other, holds in zip(open_, also, strict=True) if holds}
+        found |= {way} | taken
+        for other in taken:
+            del open_[other]
     return found, missed
 
 

@@ -188,6 +188,15 @@ class Question:
         """If a truth holds for the values that were found last."""
         return bool(z3.is_true(self.model.eval(self.formulas.of(term), model_completion=True)))
 
+    def which(self, terms: list[Term]) -> list[bool]:
+        """Which truths hold for the values that were found last, all asked at once."""
+        if len(terms) < 2:
+            return [self.holds(term) for term in terms]
+        bits = [z3.If(self.formulas.of(term), z3.BitVecVal(1, 1), z3.BitVecVal(0, 1))
+                for term in terms]  # fmt: skip
+        found = self.model.eval(z3.Concat(*bits), model_completion=True).as_long()
+        return [bool(found >> place & 1) for place in reversed(range(len(terms)))]
+
     def value(self, term: Term) -> int:
         """A number for the values that were found last."""
         return _signed(self.model.eval(self.formulas.of(term), model_completion=True))

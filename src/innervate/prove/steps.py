@@ -37,6 +37,7 @@ class Step:
         facts: what is known of the values before.
         goals: what has to hold; those of any protocol come by themselves.
         result: what the function returned.
+        others: machines that have a part in it, too.
     """
 
     name: str
@@ -47,6 +48,15 @@ class Step:
     facts: list[Term]
     goals: list[Goal] = field(default_factory=list)
     result: Any = None
+    others: list[Machine] = field(default_factory=list)
+
+    def all_ways(self) -> dict[tuple[str, int, bool], list[Term]]:
+        """Where every way of a branch is taken, whichever of its machines comes there."""
+        found: dict[tuple[str, int, bool], list[Term]] = {}
+        for machine in (self.machine, *self.others):
+            for way, guards in machine.ways.items():
+                found.setdefault(way, []).extend(guards)
+        return found
 
     @property
     def terms(self) -> Terms:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 from innervate.dialect.source import Change, Function, functions, reached
@@ -23,11 +25,57 @@ class Fault:
     new: str
 
 
-def source(entry: str, change: Change | None) -> dict[str, Function]:
+class Source(dict[str, Function]):
+    """The functions of a protocol, which know who was asked for them.
+
+    Attributes:
+        changed: names of those that a planted mistake is in.
+        asked: names of those that were called since this was emptied last.
+    """
+
+    def __init__(self, found: dict[str, Function], changed: frozenset[str]) -> None:
+        super().__init__(found)
+        self.changed = changed
+        self.asked: set[str] = set()
+
+    def __getitem__(self, name: str) -> Function:
+        self.asked.add(name)
+        return super().__getitem__(name)
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """A function, if there is one of this name."""
+        self.asked.add(name)
+        return super().get(name, default)
+
+
+def source(entry: str, change: Change | None) -> Source:
     """The functions of a protocol, with a mistake if its text is one of theirs."""
     planted = change if change is not None and is_in(entry, change) else None
     found: dict[str, Function] = functions(entry, change=planted)
-    return found
+    if planted is None:
+        return Source(found, frozenset())
+    shipped = _texts(entry)
+    changed = (name for name, one in found.items() if ast.dump(one.node) != shipped.get(name))
+    return Source(found, frozenset(changed))
+
+
+@cache
+def _texts(entry: str) -> dict[str, str]:
+    """What every function of a protocol says as it is shipped."""
+    return {name: ast.dump(one.node) for name, one in functions(entry).items()}
+
+
+def is_touched(step: Step) -> bool:
+    """True if a function with a planted mistake was called since this was asked last.
+
+    Where none was, a step is what it is of the shipped source. Without a mistake it is always true.
+    """
+    known = step.machine.functions
+    if not isinstance(known, Source):
+        return True
+    asked = known.asked & known.changed
+    known.asked.clear()
+    return bool(asked) or not known.changed
 
 
 def is_in(entry: str, change: Change) -> bool:
@@ -134,7 +182,8 @@ def prove(theory: Theory, tell: Progress | None = None, first_only: bool = False
     Args:
         theory: what is claimed.
         tell: is told how far it is; says if to stop.
-        first_only: end with the first step that is refuted.
+        first_only: end with the first step that is refuted; leave out those that a planted mistake
+            does not touch.
     """
     checked: list[Checked] = []
     reach = not (first_only or theory.is_example)
@@ -145,9 +194,15 @@ def prove(theory: Theory, tell: Progress | None = None, first_only: bool = False
         if tell is not None and tell(f"{theory.name}: {step.name}", number, len(theory.steps)):
             ended = "stopped"
             break
+        if first_only and not is_touched(step):
+            continue
         lines.update(_lines(step))
         simple = theory.simple(step) if theory.simple is not None else []
-        checked.append(check(step, theory.tell, simple, first_only, reach))
+        if reach:
+            known = {way for one in checked for way in one.reached}
+            checked.append(check(step, theory.tell, simple, known=known))
+        else:
+            checked.append(check(step, theory.tell, simple, first_only, reach=False))
         if first_only and checked[-1].refuted:
             ended = "stopped"
             break
@@ -159,7 +214,7 @@ def prove(theory: Theory, tell: Progress | None = None, first_only: bool = False
 def _lines(step: Step) -> Iterator[tuple[Way, str]]:
     """The text of every branch's line."""
     texts: dict[str, list[str]] = {}
-    for way in step.machine.ways:
+    for way in step.all_ways():
         path = step.machine.functions[way[0]].path
         if path not in texts:
             with open(path, encoding="utf-8") as file:

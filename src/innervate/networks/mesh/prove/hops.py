@@ -26,6 +26,10 @@ KEPT = (
     f"Failures: the {SKIPS} that a node noted last, of all packets.",
     f"A path holds {PATH_MAX} nodes; who is in it does not enter it again.",
 )
+UNREACHABLE = {
+    ("search", "if params.failover != SEARCH:", True): "search is what is proved",
+    ("last_resort", "planned(node, params, node.q_dest[i]):", True): "`named` has asked it before",
+}
 TWICE = "a packet comes back twice"
 ONCE = "a packet that came back is not taken back again"
 
@@ -35,7 +39,7 @@ def theories(known: dict[str, Any]) -> list[Theory]:
     steps = (_chosen, _entered, _stored, _failed)
     return [
         Theory("mesh, hops", CLAIM, KEPT, tuple(partial(one, known) for one in steps),
-               is_example=True),
+               UNREACHABLE),
         Theory("mesh, hops back", "No packet goes back over a hop twice.", (),
                (partial(_returned, known),), refuted_by=TWICE, is_example=True, tell=tell,
                simple=simple),

@@ -81,11 +81,10 @@ def theories(_network: Any, change: Change | None = None) -> list[Theory]:
     known = source(ENTRY, change)
     return [
         Theory("mesh, delivery", "A packet that was delivered is not delivered again.", ASSUMED,
-               (partial(_again, known), partial(_first, known), partial(_other, known)),
-               is_example=True),
+               (partial(_again, known), partial(_first, known), partial(_other, known))),
         Theory("mesh, passing on", "A node takes a packet from others once for each try of its "
                "origin; what comes back is told by its path.", KEPT,
-               (partial(_taken, known), partial(_noted, known)), is_example=True),
+               (partial(_taken, known), partial(_noted, known))),
         *hops.theories(known),
     ]  # fmt: skip
 

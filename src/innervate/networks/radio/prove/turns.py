@@ -27,6 +27,7 @@ from innervate.prove.execute import Machine
 from innervate.prove.records import Outbox, Record, Store
 from innervate.prove.steps import Goal, Stage, Step
 from innervate.prove.terms import Term, Terms
+from innervate.prove.theory import Source
 
 STATION = (*fields.STATION, *fields.PRACTICAL)
 ROOM = 16
@@ -44,6 +45,20 @@ ASSUMED = (
     "dead_us is 2 ta_us + 3 dmax_us + minislot_us or more, as plans make it.",
 )
 
+OPENINGS = "no turn is named: how openings end is not proved"
+UNREACHABLE = {
+    ("hear_data", "if sender >= POSITIONS or behind == NEXT_NONE:", True): "a turn is named",
+    ("hear_data", "if WINDOWS <= behind < NEXT_NONE:", True): OPENINGS,
+    ("hear_data", "if lone:", True): OPENINGS,
+    ("hear_data", "if frame.more:", False): OPENINGS,
+    ("hear_data", "if frame.more:", True): OPENINGS,
+    ("hear_data", "elif opens:", True): OPENINGS,
+    ("enter_turn", "if cur == NONE:", True): "it is some place's turn",
+    ("disprove", "if station.pending:", False): "it is asked where packets wait for their proof",
+    ("prove", "if count:", False): "it is asked where packets wait for their proof",
+    ("schedule", "if after(station.at, now):", False): "what is waited for is always to come",
+}
+
 
 class Ending(Machine):
     """Leaves out what follows the report: what comes of that is a step of its own."""
@@ -57,7 +72,7 @@ class Ending(Machine):
         return super().call(function, args, store, under)
 
 
-def steps(known: dict[str, Any]) -> tuple[Callable[[], Step], ...]:
+def steps(known: Source) -> tuple[Callable[[], Step], ...]:
     """What two stations do, and when."""
     return (
         partial(_reported, known),
@@ -94,18 +109,20 @@ def _apart(terms: Terms, store: Store, a: Record, b: Record) -> Term:
     return terms.any(terms.same(mine, terms.number(NONE)), terms.negated(terms.same(mine, other)))
 
 
-def _reported(known: dict[str, Any]) -> Step:
+def _reported(known: Source) -> Step:
     """Both hear the report of a window, which gives out places."""
     stage, (a, b), params = _stage(known, "a", "b")
     t, frame = stage.terms, stage.record("frame", fields.FRAME)
     before = dict(stage.store)
     after, facts = dict(before), []
-    known = {name: _short(one) for name, one in known.items()}
+    known = Source({name: _short(one) for name, one in known.items()}, known.changed)
+    machines = []
     for one in (a, b):
         machine = Ending(known, t, Outbox(fields.FRAME, ROOM))
         given = [one, params, t.unknown(f"{one.name}.now", 0, (1 << 30) - 1), frame, machine.out]
         after, _ = machine.run("hear_report", given, after, t.true)
         facts += machine.facts
+        machines.append(machine)
     slot = [before[one, "slot", None] for one in (a, b)]
     for i in range(MINISLOTS):
         word = before[frame, "good", i >> 4]
@@ -120,7 +137,7 @@ def _reported(known: dict[str, Any]) -> Step:
              t.same(after[a, "cur", None], after[b, "cur", None])),
     ]  # fmt: skip
     return Step("two stations hear a report", machine, stage.records, before, after,
-                [_apart(t, before, a, b), *facts], goals)  # fmt: skip
+                [_apart(t, before, a, b), *facts], goals, others=machines[:-1])  # fmt: skip
 
 
 def _named(known: dict[str, Any]) -> Step:
@@ -130,7 +147,7 @@ def _named(known: dict[str, Any]) -> Step:
     sender, behind = (stage.store[frame, name, None] for name in ("pos", "next"))
     names = t.all(t.less(behind, t.number(WINDOWS)), t.negated(t.same(behind, sender)),
                   t.less(sender, t.number(POSITIONS)))  # fmt: skip
-    before, turns = dict(stage.store), []
+    before, turns, machines = dict(stage.store), [], []
     after = dict(before)
     for one in (a, b):
         machine = Ending(known, t, Outbox(fields.FRAME, ROOM))
@@ -139,13 +156,14 @@ def _named(known: dict[str, Any]) -> Step:
         kept = t.any(*(t.same(after[one, "pos", None], value)
                        for value in (before[one, "pos", None], t.number(NONE))))  # fmt: skip
         turns.append(kept)
+        machines.append(machine)
     live = t.all(*(t.same(after[a, "live", k], after[b, "live", k]) for k in range(POSITIONS)))
     goals = [
         Goal("R4 nobody gets another's place", t.all(*turns)),
         Goal("R5 they have the same record of the round", live),
     ]
     return Step("two stations hear a data frame", machine, stage.records, before, after,
-                [names, _apart(t, before, a, b)], goals)  # fmt: skip
+                [names, _apart(t, before, a, b)], goals, others=machines[:-1])  # fmt: skip
 
 
 def _taken(known: dict[str, Any]) -> Step:

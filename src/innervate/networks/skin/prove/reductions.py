@@ -100,7 +100,7 @@ class Pair:
                 for a, b in zip(first.draws, other.draws, strict=False)]  # fmt: skip
         facts = [fact for machine in self.machines for fact in machine.facts]
         return Step(name, first, self.stage.records, self.stage.store, self.stage.store,
-                    [*self.facts, *more, *facts, *same], goals)  # fmt: skip
+                    [*self.facts, *more, *facts, *same], goals, others=others)  # fmt: skip
 
     def same_state(self, a: Store, b: Store, but: Callable[[str, int | None], Term]) -> Goal:
         """All fields of the cell are equal, but where they need not be."""

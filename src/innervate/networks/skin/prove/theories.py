@@ -57,6 +57,23 @@ UNREACHABLE_STRICT = {
     ("on_frame", "frame.kind == BEACON", False): "data and commands are proved under feasible",
 }
 
+BALANCING = "the explorer does without balancing"
+NOT_EXPLORED = {
+    ("is_worth_moving", "params.balance_rule == BALANCE_PAPER", True): BALANCING,
+    ("is_worth_moving", "params.balance_rule == BALANCE_PAPER", False): BALANCING,
+    ("select", "elif lightest != NONE:", True): BALANCING,
+    ("select", "if is_worth_moving(", True): BALANCING,
+    ("select", "if is_worth_moving(", False): BALANCING,
+    ("on_start", "params.balance_periods > 0", True): BALANCING,
+    ("tick", "params.balance_periods > 0", True): BALANCING,
+    ("tick", "if cell.countdown <= 0:", True): BALANCING,
+    ("tick", "if cell.countdown <= 0:", False): BALANCING,
+    ("tick", "if may_balance and cell.parent != before:", True): BALANCING,
+    ("on_frame", "frame.kind == BEACON", False): "the explorer's frames are beacons",
+    ("on_timer", "if is_news(cell, params):", True): "of news that are none",
+    ("tick", "if not silent:", False): "triggered updates only",
+}
+
 
 def theories(_network: Any, change: Change | None = None) -> list[Theory]:
     """All claims, smallest first; then those that must be refuted, told as stories.
@@ -88,7 +105,9 @@ def resting(rule: int, change: Change | None = None) -> list[Theory]:
         ("what dead ports said", partial(forgetting.steps, rule)),
         ("beacons that repeat the last", partial(repeating.steps, rule)),
     )
-    return [Theory(name, claim, (), steps(change=change), is_example=True)
+    unreachable = UNREACHABLE if rule == RULE_FEASIBLE else UNREACHABLE_STRICT
+    return [Theory(name, claim, (), steps(change=change),
+                   unreachable if own is steps else unreachable | NOT_EXPLORED)
             for name, steps in parts]  # fmt: skip
 
 

@@ -26,7 +26,11 @@ from innervate.verify.twin import Twin
 
 RULES = {"feasible": RULE_FEASIBLE, "strict": RULE_STRICT}
 ON_TRUST = "taken on trust, since z3 is missing (pip install 'innervate[prove]'): "
-TRUSTED = "that the rule refuses what reductions forget, beyond small numbers"
+TRUSTED = "all that reductions forget, but that the rule refuses it in small numbers"
+PROVED = "the rule, stored beacons, news, loads, dead ports, repeated beacons"
+ARGUED = "covering states, mirror images, dead cables, time without a route, fields never read"
+ALL = "all that is forgotten, as this rule takes routes that it refused"
+PAGE = "docs/verify.md"
 NUMBERS, HOPS = range(4), range(6)
 
 
@@ -37,16 +41,34 @@ def broken(model: system.SkinModel, bound: Any = None) -> str:
         model: what is to be explored.
         bound: the system of a copy of the protocol; None the real one.
     """
-    if model.rule.startswith("paper") or (model.rule == "strict" and model.budget.restart):
+    if not is_asked(model):
         return ""
     if bound is not None:
         return _try(model.rule, model.updates, bound)
     return _tried(model.rule, model.updates) or refuted(model.rule)
 
 
-def is_proved(model: system.SkinModel) -> bool:
-    """True if the lemmas are shown, and not taken on trust."""
-    return model.rule not in RULES or can_prove()
+def grounds(model: system.SkinModel) -> dict[str, str]:
+    """What a reduced search rests on: what is proved, argued, taken on trust; {} if it is none."""
+    if not model.lean:
+        return {}
+    if not is_asked(model):
+        return {"argued": ALL, "page": PAGE}
+    how = {"proved": PROVED} if can_prove() else {"trusted": TRUSTED}
+    return how | {"argued": ARGUED, "page": PAGE}
+
+
+def told(model: system.SkinModel) -> str:
+    """The same as a line; "" if there is nothing to tell."""
+    found = grounds(model)
+    heads = {"proved": "proved: ", "trusted": ON_TRUST, "argued": "argued: "}
+    parts = [head + found[name] for name, head in heads.items() if name in found]
+    return f"    what is left out: {'; '.join(parts)} ({PAGE})" if parts else ""
+
+
+def is_asked(model: system.SkinModel) -> bool:
+    """True if the reductions rest on the rule: it refuses a route for good."""
+    return model.rule in RULES and not (model.rule == "strict" and bool(model.budget.restart))
 
 
 @functools.cache

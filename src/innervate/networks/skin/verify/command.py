@@ -53,12 +53,12 @@ def _explore(model: Any, wanted: cases.Wanted, first: bool, tell: Tell) -> Case:
     case = cases.run(model, wanted, progress)
     if not wanted.plain:
         compilation.mark_compiled(COMPILED)
-    lines, trusts = _lines(case), model.lean and not assumptions.is_proved(model)
-    if first and trusts:
-        lines.append(f"    {assumptions.ON_TRUST}{assumptions.TRUSTED}")
+    lines, words = _lines(case), assumptions.told(model)
+    if first and words:
+        lines.append(words)
     return Case(
         lines=lines,
-        record=case.as_dict() | ({"trusted": assumptions.TRUSTED} if trusts else {}),
+        record=case.as_dict() | {"reductions": assumptions.grounds(model)},
         is_broken=case.is_broken,
         is_complete=case.is_complete,
         story=case.story,
