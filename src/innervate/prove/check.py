@@ -109,9 +109,7 @@ def _all_refuted(
         yield Refuted(goal.name, values, tell(step, question, goal.name) if tell else [])
 
 
-def reached(
-    step: Step, question: Question, known: Iterable[Way] = ()
-) -> tuple[set[Way], set[Way]]:
+def reached(step: Step, question: Question, known: Iterable[Way] = ()) -> tuple[set[Way], set[Way]]:
     """The ways of branches that some state takes, and those that none does."""
     terms, seen = step.terms, set(known)
     open_ = {way: terms.any(*guards) for way, guards in step.all_ways().items() if way not in seen}

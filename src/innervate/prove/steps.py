@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -48,7 +49,7 @@ class Step:
     facts: list[Term]
     goals: list[Goal] = field(default_factory=list)
     result: Any = None
-    others: list[Machine] = field(default_factory=list)
+    others: Sequence[Machine] = ()
 
     def all_ways(self) -> dict[tuple[str, int, bool], list[Term]]:
         """Where every way of a branch is taken, whichever of its machines comes there."""
