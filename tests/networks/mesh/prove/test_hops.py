@@ -6,6 +6,7 @@ from innervate.dialect.plain import make
 from innervate.network import networks
 from innervate.networks.mesh.protocol import duplicates, fields
 from innervate.networks.mesh.prove import hops, theories
+from innervate.networks.mesh.prove.twins import HOPS, hop_twin
 from innervate.prove.faults import faults_of
 from innervate.prove.theory import prove, source
 
@@ -51,3 +52,22 @@ def test_what_goes_back_twice_is_told_of_three_nodes_and_so_in_python():
     for frame.path_len in (3, 4, 4):
         taken.append(duplicates.record_return(node, frame) == 0)
     assert taken == [True, True, False]
+
+
+SMALL = ("add_hop", "store", "skip", "record_return")  # a search takes long to make
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_drawn_calls_leave_the_same_state(name):
+    assert hop_twin(name).calls(100, 1) == ""
+
+
+def test_a_formula_of_another_path_differs():
+    wrong = ("    node.q_path_len[i] = count + 1\n", "    node.q_path_len[i] = count\n")
+    assert "in the formula" in hop_twin("add_hop", wrong).calls(300, 1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", HOPS)
+def test_a_hundred_thousand_drawn_calls_do(name):
+    assert hop_twin(name).calls(20_000, 2) == ""
