@@ -13,14 +13,17 @@ from innervate.networks.radio.prove import turns
 def test_what_is_proved_is_told_lemma_by_lemma(sh):
     """All that is proved of a radio: its queue, and its turns."""
     assert sh("prove", "radio", "--json") == 0
-    found = json.loads(sh.out)
+    *found, missed = json.loads(sh.out)
+    assert missed["expected"]
+    (story,) = [bad["story"] for bad in missed["steps"][0]["refuted"]]
+    assert "B misses the report, and keeps place" in story[2]
     for one in found:
         assert one["expected"]
         assert one["holds"]
         assert one["unreached"] == []
         assert {lemma["answer"] for step in one["steps"] for lemma in step["lemmas"]} == {"unsat"}
         assert sum(len(step["lemmas"]) for step in one["steps"]) == one["lemmas"]
-    assert [one["lemmas"] for one in found] == [7, 7 + 2 * (WIDE_MOST + 1)]
+    assert [one["lemmas"] for one in found] == [7, 7 + 2 * (WIDE_MOST + 1), 1]
     assert found[1]["assumed"] == list(turns.ASSUMED)
 
 

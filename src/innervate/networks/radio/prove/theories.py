@@ -13,7 +13,7 @@ from innervate.dialect.arith import MASK30
 from innervate.dialect.source import Change
 from innervate.networks.radio.protocol import fields
 from innervate.networks.radio.protocol.constants import WIDE_MOST
-from innervate.networks.radio.prove import turns
+from innervate.networks.radio.prove import missed, turns
 from innervate.prove.errors import ProveError
 from innervate.prove.parity import Twin, twin
 from innervate.prove.steps import Goal, Stage, Step, own_goals
@@ -78,6 +78,7 @@ def theories(_network: Any, change: Change | None = None) -> list[Theory]:
         Theory("radio, the queue of a station", claim, (),
                (partial(_start, known), partial(_packet, known)), UNREACHABLE),
         Theory("radio, turns", turns.CLAIM, turns.ASSUMED, turns.steps(known), turns.UNREACHABLE),
+        *missed.theories(known),
     ]  # fmt: skip
 
 

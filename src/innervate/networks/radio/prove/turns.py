@@ -8,7 +8,7 @@ frame, and how windows and openings end, is not proved.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from copy import copy
 from functools import partial
 from typing import Any
@@ -95,7 +95,7 @@ def _stage(known: dict[str, Any], *names: str) -> tuple[Stage, list[Record], Rec
     return stage, stations, stage.record("params", fields.PARAMS)
 
 
-def _short(function: Function) -> Function:
+def short(function: Function) -> Function:
     """A function as it is where reports have few minislots."""
     made = copy(function)
     if "MINISLOTS" in made.constants:
@@ -103,10 +103,23 @@ def _short(function: Function) -> Function:
     return made
 
 
-def _apart(terms: Terms, store: Store, a: Record, b: Record) -> Term:
+def apart(terms: Terms, store: Store, a: Record, b: Record) -> Term:
     """Two stations have no place in common."""
     mine, other = store[a, "pos", None], store[b, "pos", None]
     return terms.any(terms.same(mine, terms.number(NONE)), terms.negated(terms.same(mine, other)))
+
+
+def used_by_one(
+    terms: Terms, store: Store, frame: Record, stations: Sequence[Record]
+) -> list[Term]:
+    """A minislot that a report calls good was used by one of the stations at most."""
+    found = []
+    for i in range(MINISLOTS):
+        bits = terms.shr(store[frame, "good", i >> 4], terms.number(i & 15))
+        good = terms.as_truth(terms.bits_and(bits, terms.number(1)))
+        here = [terms.same(store[one, "slot", None], terms.number(i)) for one in stations]
+        found.append(terms.negated(terms.all(good, *here)))
+    return found
 
 
 def _reported(known: Source) -> Step:
@@ -115,7 +128,7 @@ def _reported(known: Source) -> Step:
     t, frame = stage.terms, stage.record("frame", fields.FRAME)
     before = dict(stage.store)
     after, facts = dict(before), []
-    known = Source({name: _short(one) for name, one in known.items()}, known.changed)
+    known = Source({name: short(one) for name, one in known.items()}, known.changed)
     machines = []
     for one in (a, b):
         machine = Ending(known, t, Outbox(fields.FRAME, ROOM))
@@ -123,21 +136,16 @@ def _reported(known: Source) -> Step:
         after, _ = machine.run("hear_report", given, after, t.true)
         facts += machine.facts
         machines.append(machine)
-    slot = [before[one, "slot", None] for one in (a, b)]
-    for i in range(MINISLOTS):
-        word = before[frame, "good", i >> 4]
-        good = t.as_truth(t.bits_and(t.shr(word, t.number(i & 15)), t.number(1)))
-        here = [t.same(one, t.number(i)) for one in slot]
-        facts.append(t.negated(t.all(good, *here)))
+    facts += used_by_one(t, before, frame, (a, b))
     live = t.all(*(t.same(after[a, "live", k], after[b, "live", k]) for k in range(POSITIONS)))
     goals = [
-        Goal("R1 they have places of their own", _apart(t, after, a, b)),
+        Goal("R1 they have places of their own", apart(t, after, a, b)),
         Goal("R2 they have the same record of the round", live),
         Goal("R3 they go on with the same place",
              t.same(after[a, "cur", None], after[b, "cur", None])),
     ]  # fmt: skip
     return Step("two stations hear a report", machine, stage.records, before, after,
-                [_apart(t, before, a, b), *facts], goals, others=machines[:-1])  # fmt: skip
+                [apart(t, before, a, b), *facts], goals, others=machines[:-1])  # fmt: skip
 
 
 def _named(known: dict[str, Any]) -> Step:
@@ -163,7 +171,7 @@ def _named(known: dict[str, Any]) -> Step:
         Goal("R5 they have the same record of the round", live),
     ]
     return Step("two stations hear a data frame", machine, stage.records, before, after,
-                [names, _apart(t, before, a, b)], goals, others=machines[:-1])  # fmt: skip
+                [names, apart(t, before, a, b)], goals, others=machines[:-1])  # fmt: skip
 
 
 def _taken(known: dict[str, Any]) -> Step:
