@@ -5,7 +5,7 @@
 #   make lint     style, types, import walls             make bench   how fast it is
 #   make papers   the published figures, redrawn         make parity  the same code on boards' Python
 #   make mutants  faults planted all over, and how many the tests find (long)
-#   make docs     the documentation as a site, in site/     make dist     wheel and source archive, in dist/
+#   make docs     the documentation as a site, in site/     make dist     wheel and source archive, in dist/ (minutes; LOOPS=no: at once)
 #   make boards   the folder to copy to a board          make page    build the page of `watch` (npm)
 #   make env      only the environment, .venv         make clean    remove what these made
 
@@ -20,7 +20,7 @@ WORKERS ?= 2
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
 # What many tests run is compiled before they start, where it is not compiled yet.
-LOOPS = $(BIN)/python -m tests.loops $(WORKERS)
+COMPILE = $(BIN)/python -m tests.loops $(WORKERS)
 
 # Packages that the page is built with, as package-lock.json has them; no scripts of theirs are run.
 PAGE := src/innervate/web/page
@@ -60,11 +60,11 @@ demo: $(STAMP)
 	@$(BIN)/innervate demo
 
 test: $(STAMP)
-	$(LOOPS)
+	$(COMPILE)
 	$(PYTEST) -m "not slow"
 
 full: $(STAMP)
-	$(LOOPS)
+	$(COMPILE)
 	$(PYTEST)
 	$(BIN)/python -m tests.mutants --workers $(WORKERS) --seed $$(date +%Y%m%d) --count 40 --least 0.7
 
@@ -94,9 +94,17 @@ docs: $(STAMP)
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
 	@echo "Written: site/. To read it with its search: $(BIN)/python -m http.server -d site"
 
-# Without a network: what builds the wheel is in .venv already.
+# Without a network: what builds the wheel is in .venv already. The wheel has loops for this system
+# and processor, compiled in some minutes; LOOPS=no leaves them out, and it is for any.
+LOOPS = yes
 dist: docs
-	@$(BIN)/python -m build --no-isolation
+	@$(BIN)/python -m build --no-isolation --sdist
+ifeq ($(LOOPS),no)
+	@$(BIN)/python -m build --no-isolation --wheel
+else
+	@$(BIN)/python -m innervate.kernel.readying build/loops
+	@INNERVATE_LOOPS=build/loops $(BIN)/python -m build --no-isolation --wheel
+endif
 
 $(MODULES): $(PAGE)/package-lock.json
 	@command -v npm >/dev/null || { echo "npm is missing (Debian, Ubuntu: apt install npm)" >&2; exit 1; }

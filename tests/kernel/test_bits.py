@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from innervate.dialect import arith, rng
-from innervate.kernel import bits, compilation
+from innervate.kernel import bits, compilation, lowering  # noqa: F401 - Numba has to know bits
 from innervate.networks.skin.protocol import cell as skin
 
 SIGNED = st.integers(-(2**63), 2**63 - 1)

@@ -8,6 +8,7 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
 
@@ -56,7 +57,7 @@ def test_the_same_sources_elsewhere_have_a_cache_of_their_own(copied):
 
 def test_each_state_of_a_file_elsewhere_has_a_folder_of_its_own(foreign, tmp_path, monkeypatch):
     monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path / "cache"))
-    before = compilation.numba.config.CACHE_DIR
+    before = numba.config.CACHE_DIR
     file, found = tmp_path / "token.py", []
     ours = compilation.open_cache()
     (ours / "loop.compiled").touch()
@@ -70,7 +71,7 @@ def test_each_state_of_a_file_elsewhere_has_a_folder_of_its_own(foreign, tmp_pat
     assert len(kept) == compilation.CACHE_FOLDERS_MAX
     assert kept[-1] == found[-1]
     assert (ours / "loop.compiled").exists()  # edits push out what was compiled of older edits only
-    compilation.numba.config.CACHE_DIR = before
+    numba.config.CACHE_DIR = before
 
 
 def test_only_what_the_cache_is_known_by_can_be_compiled(foreign):
@@ -82,19 +83,19 @@ def test_only_what_the_cache_is_known_by_can_be_compiled(foreign):
 
 def test_functions_of_other_packages_are_noted_for_the_next_loop(foreign, tmp_path, monkeypatch):
     monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path))
-    before = compilation.numba.config.CACHE_DIR
+    before = numba.config.CACHE_DIR
     compilation.register_functions(lambda: None)
     assert {path.name for path in foreign} == {"test_compilation.py"}
     with_ours = compilation.open_cache()
     assert not foreign
     assert compilation.open_cache() != with_ours
-    compilation.numba.config.CACHE_DIR = before
+    numba.config.CACHE_DIR = before
 
 
 @pytest.fixture
 def own_cache(tmp_path, monkeypatch):
     """A cache that holds nothing yet."""
-    monkeypatch.setattr(compilation.numba.config, "CACHE_DIR", compilation.numba.config.CACHE_DIR)
+    monkeypatch.setattr(numba.config, "CACHE_DIR", numba.config.CACHE_DIR)
     monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path))
     return tmp_path
 
@@ -126,7 +127,7 @@ def test_a_loop_is_compiled_alone_and_once(own_cache, monkeypatch):
     assert (sum(one.stats.cache_misses.values()), sum(other.stats.cache_hits.values())) == (1, 1)
     assert len(entered) == 2  # to compile, and to load what is compiled
     assert len(set(entered)) == 1
-    assert entered[0].parent == Path(compilation.numba.config.CACHE_DIR)
+    assert entered[0].parent == Path(numba.config.CACHE_DIR)
 
 
 @pytest.mark.parametrize("way", [compilation.compiled, compilation.compiled_as_one])

@@ -15,26 +15,21 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
+from importlib import metadata
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import numba
-from numba.extending import register_jitable
-
-from innervate.kernel.linking import as_one
+from innervate.kernel import ready
+from innervate.kernel.ready import Loop
+from innervate.kernel.sources import NAME_LENGTH, ROOT, hash_of, homes, source_files
 
 try:
     import fcntl
 except ImportError:  # not on Windows
     fcntl = None  # type: ignore[assignment]
 
-# What of the sources ends up in compiled code: rooms, and of every network these parts.
-SOURCE_ROOMS = ("dialect", "kernel", "sim", "verify")
-PARTS = ("protocol", "sim", "verify", "baselines", "slotted", "invariants.py")
 CACHE_FOLDERS_MAX = 8
-NAME_LENGTH = 20  # of a cache folder
-ROOT = Path(__file__).resolve().parent.parent
 
 _registered: set[Callable[..., Any]] = set()
 _foreign: set[Path] = set()  # files of other packages that the next loop is compiled from
@@ -77,6 +72,10 @@ def register_functions(*functions: Callable[..., Any], hot: bool = True) -> None
 
     Nothing else calls them: without a wrapper for C each, a loop compiles a fifth faster.
     """
+    from numba.extending import register_jitable
+
+    from innervate.kernel import lowering  # noqa: F401 - what it tells Numba of our tables
+
     for function in functions:
         _note(function)
         if function not in _registered:
@@ -95,20 +94,7 @@ def _note(function: Callable[..., Any]) -> None:
 
 @cache
 def _is_hashed(path: Path) -> bool:
-    return any(map(path.is_relative_to, _homes(ROOT)))
-
-
-def _homes(root: Path) -> list[Path]:
-    """Folders and files that compiled code can come from."""
-    networks = [path for path in (root / "networks").iterdir() if path.is_dir()]
-    inside = [network / part for network in networks for part in PARTS]
-    return [root / room for room in SOURCE_ROOMS] + inside
-
-
-def source_files(root: Path = ROOT) -> list[Path]:
-    """All files that compiled code of the toolkit can come from, in order."""
-    homes = _homes(root)
-    return sorted(p for home in homes for p in ([home] if home.is_file() else home.rglob("*.py")))
+    return any(map(path.is_relative_to, homes(ROOT)))
 
 
 def source_hash(root: Path = ROOT) -> str:
@@ -120,18 +106,8 @@ def source_hash(root: Path = ROOT) -> str:
     Numba takes nothing from its cache that was compiled from files elsewhere: of the same version
     in another environment nothing is compiled yet.
     """
-    begun = f"{root}\0{sys.version_info[:3]} {numba.__version__}"
-    return _hash_of(begun, source_files(root), root)
-
-
-def _hash_of(begun: str, files: Iterable[Path], root: Path = ROOT) -> str:
-    digest = hashlib.blake2b(digest_size=NAME_LENGTH // 2)
-    digest.update(begun.encode())
-    for path in files:
-        where = path.relative_to(root).as_posix() if path.is_relative_to(root) else path.name
-        digest.update(where.encode())
-        digest.update(path.read_bytes() if path.is_file() else b"")
-    return digest.hexdigest()
+    begun = f"{root}\0{sys.version_info[:3]} {metadata.version('numba')}"
+    return hash_of(begun, source_files(root), root)
 
 
 def cache_root() -> Path:
@@ -158,7 +134,7 @@ def open_cache() -> Path:
     """
     folder = own = cache_root() / source_hash()
     if _foreign:
-        folder = own / _hash_of("", sorted(_foreign))
+        folder = own / hash_of("", sorted(_foreign))
     _foreign.clear()
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -167,6 +143,8 @@ def open_cache() -> Path:
             _forget_old(one)
     except OSError:
         pass  # a read-only home: Numba then compiles without keeping the result
+    import numba
+
     numba.config.CACHE_DIR = str(folder)
     return folder
 
@@ -180,14 +158,18 @@ def _forget_old(keep: Path) -> None:
 
 
 def mark_compiled(name: str) -> None:
-    """Remember in the cache folder that a loop is compiled."""
+    """Remember in the cache folder that a loop is compiled, unless it came with the toolkit."""
+    if ready.is_ready(name):
+        return
+    import numba
+
     with contextlib.suppress(OSError):  # nothing is kept where nothing can be written
         (Path(numba.config.CACHE_DIR) / f"{name}.compiled").touch()
 
 
 def is_compiled(name: str) -> bool:
-    """True if the cache folder of the present sources holds that loop."""
-    return (cache_root() / source_hash() / f"{name}.compiled").exists()
+    """True if that loop came with the toolkit, or is in the cache folder of the sources."""
+    return ready.is_ready(name) or (cache_root() / source_hash() / f"{name}.compiled").exists()
 
 
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -200,10 +182,39 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
 
 def compiled_as_one(function: Callable[..., Any]) -> Callable[..., Any]:
     """As `compiled`, in half the time, for loops over hundreds of functions (see linking.py)."""
+    from innervate.kernel.linking import as_one
+
     return _compiled(function, as_one)
 
 
+def loop(name: str, jitted: Callable[[], Any]) -> Loop:
+    """A loop over a world of arrays, ready if it came with the toolkit, or else compiled.
+
+    Args:
+        name: of what it runs (see `ready.Loop`); "" = never ready.
+        jitted: registers what it calls and makes it, as `compiled_as_one` does.
+    """
+
+    def advance() -> Callable[[Any, int, int], None]:
+        from innervate.kernel import tables
+
+        made = jitted()
+        return lambda world, until, budget: made(tables.borrowed(world), until, budget)
+
+    return Loop(name, advance)
+
+
+def is_own(module: ModuleType) -> bool:
+    """True for a module of the toolkit itself, as it was imported: not a copy, not a folder's."""
+    name = module.__name__
+    return name.startswith("innervate.") and sys.modules.get(name) is module
+
+
 def _compiled(function: Callable[..., Any], way: Callable[[str], Any]) -> Callable[..., Any]:
+    import numba
+
+    from innervate.kernel import lowering  # noqa: F401 - what it tells Numba of our tables
+
     folder = open_cache()
     numba.config.SLP_VECTORIZE = 1  # a tenth faster: frames are copied in whole words
     jitted = numba.njit(cache=True, nogil=True, error_model="numpy")(function)

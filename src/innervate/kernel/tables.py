@@ -4,30 +4,15 @@ A tuple of dozens of NumPy arrays costs an atomic count up and down for each at 
 compiled functions: a microsecond an event. A `Table` borrows the memory of an array that the caller
 keeps alive. `table[i]` is a number, or a record whose fields are read and written in place;
 negative indices are not supported.
+What compiled code does with them is in
+lowering.py.
 """
 
 from __future__ import annotations
 
-import functools
-import operator
 from typing import Any
 
 import numpy as np
-from llvmlite import ir
-from numba import types
-from numba.core import cgutils
-from numba.core.datamodel import StructModel
-from numba.extending import (
-    NativeValue,
-    intrinsic,
-    overload,
-    register_model,
-    typeof_impl,
-    unbox,
-)
-from numba.np import numpy_support
-
-INSIDE = {"forceinline": True, "no_cfunc_wrapper": True}  # becomes part of its callers
 
 
 class Table:
@@ -43,141 +28,8 @@ class Table:
         self.length = len(array)
 
 
-class TableType(types.Type):  # type: ignore[misc]
-    """Numba's type of a Table; `row` > 0 makes its items rows of that many numbers."""
-
-    def __init__(self, dtype: Any, row: int) -> None:
-        self.dtype = dtype
-        self.row = row
-        super().__init__(name=f"Table({dtype}, {row})")
-
-
-@register_model(TableType)
-class _TableModel(StructModel):  # type: ignore[misc]
-    def __init__(self, manager: Any, table: Any) -> None:
-        members = [("address", types.CPointer(types.uint8)), ("length", types.int64)]
-        super().__init__(manager, table, members)
-
-
-@typeof_impl.register(Table)
-def _typeof_table(value: Table, _context: Any) -> TableType:
-    return _type_of(value.array.dtype, value.array.shape[1] if value.array.ndim == 2 else 0)
-
-
-@functools.cache
-def _type_of(dtype: np.dtype[Any], row: int) -> TableType:
-    """Worked out anew for every table, this was nine tenths of calling a compiled loop."""
-    return TableType(numpy_support.from_dtype(dtype), row)
-
-
-@unbox(TableType)
-def _unbox_table(table: Any, obj: Any, c: Any) -> Any:
-    proxy = cgutils.create_struct_proxy(table)(c.context, c.builder)
-    for name in ("address", "length"):
-        value = c.pyapi.object_getattr_string(obj, name)
-        number = c.pyapi.long_as_longlong(value)
-        if name == "address":
-            number = c.builder.inttoptr(number, ir.IntType(8).as_pointer())
-        setattr(proxy, name, number)
-        c.pyapi.decref(value)
-    is_error = cgutils.is_not_null(c.builder, c.pyapi.err_occurred())
-    return NativeValue(proxy._getvalue(), is_error=is_error)
-
-
-def _item_pointer(context: Any, builder: Any, table: Any, value: Any, index: Any) -> Any:
-    proxy = cgutils.create_struct_proxy(table)(context, builder, value=value)
-    size = context.get_abi_sizeof(context.get_data_type(table.dtype)) * max(table.row, 1)
-    offset = builder.mul(index, ir.Constant(ir.IntType(64), size), flags=["nsw"])
-    return builder.gep(proxy.address, [offset], inbounds=True)
-
-
-@intrinsic  # type: ignore[untyped-decorator]
-def _load(typing_context: Any, table: Any, index: Any) -> Any:
-    if table.row:
-        result: Any = TableType(table.dtype, 0)
-    else:
-        result = table.dtype
-    widen = isinstance(result, types.Integer)
-
-    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        pointer = _item_pointer(context, builder, table, args[0], args[1])
-        if table.row:
-            proxy = cgutils.create_struct_proxy(result)(context, builder)
-            proxy.address = pointer
-            proxy.length = ir.Constant(ir.IntType(64), table.row)
-            return proxy._getvalue()
-        data = context.get_data_type(table.dtype)
-        if widen:
-            value = builder.load(builder.bitcast(pointer, data.as_pointer()))
-            return context.cast(builder, value, table.dtype, types.int64)
-        return builder.bitcast(pointer, context.get_value_type(table.dtype))
-
-    return (types.int64 if widen else result)(table, types.int64), generate
-
-
-@intrinsic  # type: ignore[untyped-decorator]
-def _store(typing_context: Any, table: Any, index: Any, value: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        pointer = _item_pointer(context, builder, table, args[0], args[1])
-        data = context.get_data_type(table.dtype)
-        number = context.cast(builder, args[2], types.int64, table.dtype)
-        builder.store(number, builder.bitcast(pointer, data.as_pointer()))
-        return context.get_dummy_value()
-
-    return types.void(table, types.int64, types.int64), generate
-
-
-@intrinsic  # type: ignore[untyped-decorator]
-def _length(typing_context: Any, table: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return cgutils.create_struct_proxy(table)(context, builder, value=args[0]).length
-
-    return types.int64(table), generate
-
-
-@overload(operator.getitem, jit_options=INSIDE)  # type: ignore[untyped-decorator]
-def _getitem(table, index):
-    if isinstance(table, TableType):
-        return lambda table, index: _load(table, index)
-    return None
-
-
-@overload(operator.setitem, jit_options=INSIDE)  # type: ignore[untyped-decorator]
-def _setitem(table, index, value):
-    if isinstance(table, TableType):
-        return lambda table, index, value: _store(table, index, value)
-    return None
-
-
-@overload(len, jit_options=INSIDE)  # type: ignore[untyped-decorator]
-def _len(table):
-    if isinstance(table, TableType):
-        return lambda table: _length(table)
-    return None
-
-
-@intrinsic  # type: ignore[untyped-decorator]
-def _prefetch(typing_context: Any, table: Any, index: Any, line: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        pointer = _item_pointer(context, builder, table, args[0], args[1])
-        offset = builder.mul(args[2], ir.Constant(ir.IntType(64), 64))
-        address = builder.gep(pointer, [offset])
-        flag, kind = ir.IntType(32), ir.IntType(8).as_pointer()
-        shape = ir.FunctionType(ir.VoidType(), [kind, flag, flag, flag])
-        function = builder.module.declare_intrinsic("llvm.prefetch", [kind], shape)
-        builder.call(function, [address, flag(1), flag(3), flag(1)])
-        return context.get_dummy_value()
-
-    return types.void(table, types.int64, types.int64), generate
-
-
 def fetch(table: Any, index: int, line: int) -> None:
     """Have the processor fetch a cache line of table[index]; changes nothing."""
-
-
-@overload(fetch, jit_options=INSIDE)  # type: ignore[untyped-decorator]
-def _fetch(table, index, line):
-    return lambda table, index, line: _prefetch(table, index, line)
 
 
 def borrowed(value: Any) -> Any:

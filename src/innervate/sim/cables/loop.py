@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import Any
 
 from innervate.dialect import arith, outbox, rng
-from innervate.kernel import compilation, tables
+from innervate.kernel import compilation
 from innervate.kernel.tables import fetch
 from innervate.scenario.actions.cables import GIVE
 from innervate.sim import clocks, delays, rows, taps
@@ -133,16 +133,22 @@ def bind(do: Any) -> Callable[..., None]:
     return advance
 
 
-def compiled(do: ModuleType, hot: tuple[ModuleType, ...], rare: tuple[ModuleType, ...]) -> Any:
+def compiled(
+    do: ModuleType, hot: tuple[ModuleType, ...], rare: tuple[ModuleType, ...], name: str = ""
+) -> Callable[..., None]:
     """The loop over a network's functions, compiled.
 
     Args:
         do: a module (see `kernel/compilation.bound`) with the network's functions.
         hot: the modules that they stand in, and all that they call.
         rare: those of them that run too seldom to be worth copying into every caller.
+        name: under which it may have come with the toolkit (see kernel/ready.py).
     """
-    compilation.register(*rare, commands, rows, taps, hot=False)
-    compilation.register(arith, outbox, rng, *hot, queue, clocks, wires, delays, calls)
-    compilation.register_functions(pressing, foresee, dispatch, run_batch, run_until)
-    advance = compilation.compiled_as_one(bind(do))
-    return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
+
+    def jitted() -> Any:
+        compilation.register(*rare, commands, rows, taps, hot=False)
+        compilation.register(arith, outbox, rng, *hot, queue, clocks, wires, delays, calls)
+        compilation.register_functions(pressing, foresee, dispatch, run_batch, run_until)
+        return compilation.compiled_as_one(bind(do))
+
+    return compilation.loop(name, jitted)

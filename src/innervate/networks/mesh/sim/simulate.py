@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, ClassVar
 
-from innervate.kernel import compilation, tables
+from innervate.kernel import compilation
+from innervate.networks.mesh.protocol import csma
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.sim import build as builder
 from innervate.networks.mesh.sim import (
@@ -87,8 +88,15 @@ def compiled_loop(entry: ModuleType, mac: str) -> Callable[..., None]:
 @functools.cache
 def _compiled(entry: ModuleType, access: radio_stacks.Protocol | None) -> Callable[..., None]:
     """The same; CSMA is what there is without a protocol for a channel that all share."""
+    below = csma if access is None else access.entry
+    own = entry is stacks.mesh() and compilation.is_own(entry) and compilation.is_own(below)
+    name = f"{entry.__name__} over {below.__name__}" if own else ""
+    return compilation.loop(name, lambda: _jitted(entry, access))
+
+
+def _jitted(entry: ModuleType, access: radio_stacks.Protocol | None) -> Any:
+    """That loop's functions registered, and the loop for Numba."""
     from innervate.dialect import arith, outbox, rng
-    from innervate.networks.mesh.protocol import csma
 
     compilation.register(arith, outbox, rng, heap)
     compilation.register(
@@ -102,8 +110,7 @@ def _compiled(entry: ModuleType, access: radio_stacks.Protocol | None) -> Callab
     compilation.register(calls, orders, loop, layer.part, hot=False)
     do = stacks.bind(entry, layer)
     compilation.register_functions(*filter(callable, vars(do).values()), hot=False)
-    advance = compilation.compiled_as_one(loop.bind(do))
-    return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
+    return compilation.compiled_as_one(loop.bind(do))
 
 
 def simulate(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, ClassVar
 
-from innervate.kernel import compilation, tables
+from innervate.kernel import compilation
 from innervate.networks.radio.sim import build as builder
 from innervate.networks.radio.sim import recorder, stacks
 from innervate.scenario.actions.channel import KILL, LEAVE
@@ -55,8 +55,10 @@ def compiled_loop(name: str) -> Callable[..., None]:
 @functools.cache
 def _compiled(protocol: stacks.Protocol) -> Callable[..., None]:
     """Its loop; all names of one protocol share it."""
-    advance = compilation.compiled_as_one(loop.bind(registered(protocol, traffic)))
-    return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
+    name = protocol.entry.__name__ if compilation.is_own(protocol.entry) else ""
+    return compilation.loop(
+        name, lambda: compilation.compiled_as_one(loop.bind(registered(protocol, traffic)))
+    )
 
 
 def registered(protocol: stacks.Protocol, packets: ModuleType) -> ModuleType:
@@ -112,11 +114,13 @@ class RadioSimulation(Channel):
     def prepare(self) -> None:
         """Compile the loop; all names of one protocol share it."""
         super().prepare()
-        if self.name:
-            same = stacks.PROTOCOLS[self.plan.protocol]
-            for name, protocol in stacks.PROTOCOLS.items():
-                if protocol == same:
-                    compilation.mark_compiled(name.replace("/", "-"))
+        for name in self.loop_names() if self.name else ():
+            compilation.mark_compiled(name)
+
+    def loop_names(self) -> list[str]:
+        """What `loop_name` says of plans that run on the same loop."""
+        same = stacks.PROTOCOLS[self.plan.protocol]
+        return [name.replace("/", "-") for name, one in stacks.PROTOCOLS.items() if one == same]
 
     def schedule(self, fault: Any) -> None:
         """As a plan with such events has it: turns may overlap, who is gone delivers no more."""

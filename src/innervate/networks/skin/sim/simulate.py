@@ -47,7 +47,7 @@ def _rare() -> tuple[ModuleType, ...]:
 def compiled_loop(static: bool) -> Callable[..., None]:
     """The compiled loop of the skin, or of its static baseline."""
     stack = static_stack if static else skin_stack
-    return loop.compiled(stack, _modules(), _rare())
+    return loop.compiled(stack, _modules(), _rare(), "static" if static else "skin")
 
 
 def loop_name(plan: Any) -> str:

@@ -1,0 +1,35 @@
+"""What the wheel is built with: ready loops from the folder INNERVATE_LOOPS, if it is set.
+
+`python -m innervate.kernel.readying FOLDER` fills that folder; the wheel is then one for this
+system and processor, for every Python. Without, it is for any system, and compiles.
+"""
+
+import os
+import platform
+import sys
+import sysconfig
+
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+
+class Loops(BuildHookInterface):
+    """Puts ready loops into the wheel, and says in its name where they run."""
+
+    def initialize(self, version, build_data):
+        """Before a wheel is built; an editable one has none: its sources are yet to change."""
+        folder = os.environ.get("INNERVATE_LOOPS")
+        if not folder or version == "editable":
+            return
+        if not os.path.isfile(os.path.join(folder, "about.json")):
+            raise FileNotFoundError(f"INNERVATE_LOOPS: no ready loops in {folder}")
+        build_data["force_include"][os.path.abspath(folder)] = "innervate/kernel/loops"
+        build_data["pure_python"] = False
+        build_data["tag"] = f"py3-none-{_platform()}"
+
+
+def _platform():
+    """A loop asks for nothing of a C library, so that on Linux any will do."""
+    if sys.platform == "linux":
+        machine = platform.machine()
+        return f"manylinux_2_17_{machine}.musllinux_1_1_{machine}"
+    return sysconfig.get_platform().replace("-", "_").replace(".", "_")

@@ -1,0 +1,196 @@
+"""Ready loops: taken only where they fit, never when stale, and then the same run."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from collections import namedtuple
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from innervate.kernel import ready, readying
+from innervate.kernel.sources import ROOT, content_hash
+
+World = namedtuple("World", "run numbers")
+KIND = np.dtype([("count", np.int64), ("step", np.int32)], align=True)
+PACKAGE = """
+import sys
+from innervate.kernel import compilation, ready, readying, tables
+
+def advance(world, until, budget):
+    run = world.run[0]
+    for number in range(budget):
+        run.count += run.step * until
+        world.numbers[number] = run.count
+"""
+
+
+def counting(step=3, length=4):
+    run = np.zeros(1, KIND)
+    run["step"] = step
+    return World(run, np.zeros(length, np.int64))
+
+
+@pytest.fixture(scope="module")
+def code(tmp_path_factory):
+    """A small loop's machine code, made in a process of its own as a wheel's is."""
+    folder = tmp_path_factory.mktemp("code")
+    (folder / "makes.py").write_text(PACKAGE + """
+import numpy as np
+from collections import namedtuple
+World = namedtuple("World", "run numbers")
+run = np.zeros(1, np.dtype([("count", np.int64), ("step", np.int32)], align=True))
+jitted = compilation.compiled_as_one(advance)
+jitted(tables.borrowed(World(run, np.zeros(4, np.int64))), 1, 0)
+open(sys.argv[1], "wb").write(readying.object_code(jitted))
+""")  # fmt: skip
+    env = os.environ | {"INNERVATE_CACHE": str(folder)}
+    subprocess.run([sys.executable, "makes.py", "code.o"], cwd=folder, env=env, check=True)
+    return (folder / "code.o").read_bytes()
+
+
+@pytest.fixture
+def shipped(tmp_path, monkeypatch, code):
+    """A folder as it comes with a wheel, with `counting`; what is said of it may differ."""
+    folder = tmp_path / "loops"
+    folder.mkdir()
+    monkeypatch.setattr(ready, "FOLDER", folder)
+    monkeypatch.delenv("INNERVATE_READY", raising=False)
+
+    def say(**other):
+        key, packed, digest = readying.packed("counting", counting(), code)
+        (folder / f"{key}.o.z").write_bytes(packed)
+        told = readying.about_of({key: digest}, {"counting"})
+        (folder / ready.ABOUT).write_text(json.dumps({**told, **other}))
+        ready.about.cache_clear()
+        return folder
+
+    yield say
+    ready.about.cache_clear()
+
+
+def plain(world, until, budget):
+    for number in range(budget):
+        world.run["count"] += world.run["step"] * until
+        world.numbers[number] = world.run["count"][0]
+
+
+class Compiled:
+    def __init__(self):
+        self.calls = 0
+
+    def __call__(self, world, until, budget):
+        self.calls += 1
+        plain(world, until, budget)
+
+
+def ran(world, name="counting"):
+    """Was it the ready loop that ran? The result is the same anyway."""
+    compiled, expected = Compiled(), type(world)(*(part.copy() for part in world))
+    loop = ready.Loop(name, lambda: compiled)
+    for _ in range(2):
+        loop(world, 5, 3)
+        plain(expected, 5, 3)
+    assert all(map(np.array_equal, world, expected))
+    assert compiled.calls in (0, 2)
+    return not compiled.calls
+
+
+def test_a_loop_that_fits_is_taken(shipped):
+    shipped()
+    assert ready.is_ready("counting")
+    assert ran(counting())
+    assert ran(counting(step=-7, length=9))  # lengths are no part of a form
+
+
+def test_a_loop_of_another_name_or_for_other_tables_is_not(shipped):
+    shipped()
+    assert not ran(counting(), "counting down")
+    assert not ran(counting(), "")
+    other = counting()
+    assert not ran(other._replace(numbers=other.numbers.astype(np.int32)))
+    assert not ran(other._replace(run=other.run.astype([("count", "i8"), ("step", "i8")])))
+    renamed = namedtuple("World", "run others")
+    assert ready.form_of(renamed(*counting())) != ready.form_of(counting())
+
+
+@pytest.mark.parametrize("other", [
+    {"sources": "0" * 20}, {"target": "plan9-mips"}, {"form": ready.FORM + 1},
+    {"features": ["telepathy"]}, {"loops": 1}, {"sources": None},
+])  # fmt: skip
+def test_a_foreign_or_a_stale_loop_is_never_taken(shipped, other):
+    shipped(**other)
+    assert not ran(counting())
+
+
+@pytest.mark.parametrize("harm", [
+    lambda data: data[:-1], lambda data: b"", lambda data: data + b"0",
+    lambda data: data[:40] + b"?" + data[41:],
+])  # fmt: skip
+def test_half_a_file_is_never_taken(shipped, harm):
+    (file,) = shipped().glob("*.o.z")
+    file.write_bytes(harm(file.read_bytes()))
+    assert not ran(counting())
+
+
+def test_one_can_go_without(shipped, monkeypatch):
+    shipped()
+    monkeypatch.setenv("INNERVATE_READY", "0")
+    ready.about.cache_clear()
+    assert not ready.is_ready("counting")
+    assert not ran(counting())
+
+
+def test_tables_that_are_not_contiguous_are_refused(shipped):
+    shipped()
+    with pytest.raises(ValueError, match="contiguous"):
+        ran(counting()._replace(numbers=np.zeros(8, np.int64)[::2]))
+
+
+def test_an_edit_makes_ready_loops_stale_and_moving_does_not(tmp_path):
+    shutil.copytree(
+        ROOT, tmp_path / "innervate", ignore=shutil.ignore_patterns("page", "static", "*.pyc")
+    )
+    copied = tmp_path / "innervate"
+    assert content_hash(copied) == content_hash()  # wherever it is installed
+    os.utime(copied / "sim" / "wheel.py", (0, 0))
+    assert content_hash(copied) == content_hash()
+    with (copied / "sim" / "wheel.py").open("a") as file:
+        file.write("# another\n")
+    assert content_hash(copied) != content_hash()
+
+
+@pytest.mark.slow
+def test_from_a_wheel_the_first_figures_come_at_once_and_nothing_is_compiled(tmp_path):
+    """Loops are made, a wheel built and unpacked elsewhere, and its scenarios run."""
+    env = {key: value for key, value in os.environ.items() if not key.startswith("INNERVATE")}
+    top = ROOT.parents[1]
+    subprocess.run([sys.executable, "-m", "innervate.kernel.readying", tmp_path / "loops"],
+                   env=env, check=True)  # fmt: skip
+    build = [sys.executable, "-m", "build", "--no-isolation", "--wheel", "--outdir", tmp_path]
+    subprocess.run(build, cwd=top, env=env | {"INNERVATE_LOOPS": str(tmp_path / "loops")},
+                   check=True)  # fmt: skip
+    (wheel,) = Path(tmp_path).glob("*.whl")
+    assert "-py3-none-" in wheel.name
+    assert "any" not in wheel.name
+    with zipfile.ZipFile(wheel) as packed:
+        packed.extractall(tmp_path / "site")
+    at = env | {"PYTHONPATH": str(tmp_path / "site"), "INNERVATE_CACHE": str(tmp_path / "cache")}
+    asked = (
+        "import sys, innervate; print(innervate.__file__); run = innervate.run(sys.argv[1]); "
+        "print(run.result.fingerprint, 'numba' in sys.modules)"
+    )
+    for scenario in ("demo", "radio-disaster", "mesh-field", "mesh-team"):
+        said = {}
+        for way in ("1", "0"):
+            done = subprocess.run([sys.executable, "-c", asked, scenario], cwd=tmp_path, text=True,
+                                  env=at | {"INNERVATE_READY": way}, stdout=subprocess.PIPE,
+                                  check=True)  # fmt: skip
+            place, said[way], *_ = done.stdout.splitlines()
+            assert Path(place).is_relative_to(tmp_path)
+        assert said["1"].split()[0] == said["0"].split()[0]
+        assert (said["1"].split()[1], said["0"].split()[1]) == ("False", "True"), scenario
