@@ -71,10 +71,12 @@ def test_what_is_not_compiled_will_be_slow(monkeypatch, tmp_path, capsys):
 @pytest.mark.parametrize(("cache", "says"), [
     ({"writable": False}, "slow     here cannot be written"),
     ({"free_bytes": doctor.SMALL_BYTES - 1}, "slow     here has little room left"),
+    ({"ready": ["skin"]}, "ok       the loops of bundled networks came with the toolkit"),
     ({"compiled": ["ring"]}, "ok       compiled loops in here: ring"),
 ])  # fmt: skip
 def test_a_cache_that_cannot_be_used_is_said(capsys, cache, says):
-    usual = {"folder": "here", "writable": True, "free_bytes": doctor.SMALL_BYTES, "compiled": []}
+    usual = {"folder": "here", "writable": True, "free_bytes": doctor.SMALL_BYTES,
+             "compiled": [], "ready": []}  # fmt: skip
     doctor._tell_cache(usual)
     assert says not in capsys.readouterr().out
     doctor._tell_cache(usual | cache)

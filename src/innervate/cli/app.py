@@ -37,7 +37,8 @@ from innervate.network import first
 
 HELP = """Describe and simulate the networks inside and between robots.
 
-Start with: innervate demo. The first run on a machine compiles for about half a minute."""
+Start with: innervate demo. Where no loops came with the toolkit (see doctor), the first run
+compiles for about half a minute."""
 
 
 app = App(

@@ -80,7 +80,7 @@ def _version(package: str) -> str | None:
 
 def _cache() -> dict[str, Any]:
     """Where compiled loops are kept, with what room, and which are there."""
-    from innervate.kernel import compilation
+    from innervate.kernel import compilation, ready
 
     folder = compilation.cache_root()
     kept = folder / compilation.source_hash()
@@ -90,6 +90,7 @@ def _cache() -> dict[str, Any]:
         "writable": os.access(existing, os.W_OK),
         "free_bytes": shutil.disk_usage(existing).free,
         "compiled": sorted(path.stem for path in kept.glob("*.compiled")),
+        "ready": list(ready.about().get("names", ())),
     }
 
 
@@ -117,8 +118,10 @@ def _tell_cache(cache: dict[str, Any]) -> None:
               "set INNERVATE_CACHE")  # fmt: skip
     elif cache["free_bytes"] < SMALL_BYTES:
         print(f"  slow     {folder} has little room left: loops may be compiled anew")
+    if cache["ready"]:
+        print("  ok       the loops of bundled networks came with the toolkit: nothing to compile")
     if cache["compiled"]:
         print(f"  ok       compiled loops in {folder}: {', '.join(cache['compiled'])}")
-    else:
+    elif not cache["ready"]:
         print(f"  slow     nothing is compiled in {folder} yet: the first run of each kind of "
               "network takes about half a minute")  # fmt: skip

@@ -28,7 +28,7 @@ BUNDLED: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("radio-disaster", ("protocol.mac='dcf'",)),
     ("mesh-field", ()),
     ("mesh-team", ()),
-    ("mesh-leipzig", ("duration_s=20",)),
+    ("mesh-leipzig", ("duration_s=21",)),
 )
 
 
