@@ -109,7 +109,7 @@ def object_code(jitted: Any) -> bytes:
     import llvmlite.binding as llvm
     from numba.core.registry import cpu_target
 
-    (compiled,) = jitted.overloads.values()
+    *_, compiled = jitted.overloads.values()  # of those of several forms the one made last
     module = llvm.parse_bitcode(compiled.library._final_module.as_bitcode())
     for one in (*module.functions, *module.global_variables):
         if not one.is_declaration:
