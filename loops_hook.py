@@ -28,8 +28,7 @@ class Loops(BuildHookInterface):
 
 
 def _platform():
-    """A loop asks for nothing of a C library, so that on Linux any will do."""
+    """A loop asks for nothing of a C library but `memset`: on Linux any that Numba runs with."""
     if sys.platform == "linux":
-        machine = platform.machine()
-        return f"manylinux_2_17_{machine}.musllinux_1_1_{machine}"
+        return f"manylinux_2_17_{platform.machine()}"
     return sysconfig.get_platform().replace("-", "_").replace(".", "_")
