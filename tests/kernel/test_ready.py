@@ -176,7 +176,7 @@ def test_from_a_wheel_the_first_figures_come_at_once_and_nothing_is_compiled(tmp
                    check=True)  # fmt: skip
     (wheel,) = Path(tmp_path).glob("*.whl")
     assert "-py3-none-" in wheel.name
-    assert "any" not in wheel.name
+    assert not str(wheel.name).endswith("-any.whl")
     with zipfile.ZipFile(wheel) as packed:
         packed.extractall(tmp_path / "site")
     at = env | {"PYTHONPATH": str(tmp_path / "site"), "INNERVATE_CACHE": str(tmp_path / "cache")}
