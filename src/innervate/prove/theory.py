@@ -198,11 +198,8 @@ def prove(theory: Theory, tell: Progress | None = None, first_only: bool = False
             continue
         lines.update(_lines(step))
         simple = theory.simple(step) if theory.simple is not None else []
-        if reach:
-            known = {way for one in checked for way in one.reached}
-            checked.append(check(step, theory.tell, simple, known=known))
-        else:
-            checked.append(check(step, theory.tell, simple, first_only, reach=False))
+        known = {way for one in checked for way in one.reached}
+        checked.append(check(step, theory.tell, simple, first_only, reach, known))
         if first_only and checked[-1].refuted:
             ended = "stopped"
             break

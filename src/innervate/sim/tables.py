@@ -169,14 +169,15 @@ def _as_rows(table: Any, count: int) -> Any:
     """The first records of a table as rows of an array, whose fields have 64 bits if plain."""
     if not isinstance(table, list):
         return table[:count]
-    names = table[0].__slots__
-    columns = [np.array([getattr(one, name) for one in table[: count or 1]]) for name in names]
-    kinds = [(name, np.int64, column.shape[1:])
-             for name, column in zip(names, columns, strict=True)]  # fmt: skip
-    rows = np.zeros(count, np.dtype(kinds))
-    for name, column in zip(names, columns, strict=True):
-        rows[name] = column[:count]
-    return rows
+    first = table[0]
+    kinds = [(name, np.int64, np.shape(getattr(first, name))) for name in first.__slots__]
+    return _rows_of(table[:count], np.dtype(kinds))
+
+
+def _rows_of(records: list[Any], kind: np.dtype[Any]) -> Any:
+    """Plain records as rows of an array."""
+    names = kind.names or ()
+    return np.array([tuple(getattr(one, name) for name in names) for one in records], kind)
 
 
 def move_rows(
@@ -193,10 +194,7 @@ def move_rows(
     for name, kept in parts.items():
         count, table = int(get(world.run, 0, name)), getattr(world, name)
         if isinstance(table, list):
-            rows = [
-                tuple(getattr(row, _named(f)[0]) for f in fields[name]) for row in table[:count]
-            ]
-            kept.append(np.array(rows, row_dtype(fields[name], wide)))
+            kept.append(_rows_of(table[:count], row_dtype(fields[name], wide)))
         else:
             kept.append(table[:count].copy())
         put(world.run, 0, **{name: 0})
