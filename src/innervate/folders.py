@@ -154,7 +154,7 @@ def sources(folder: Path, network: Any) -> list[Path]:
             continue
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom):
-                module = (node.module or "").removeprefix(f"{folder.name}.")
+                module = (node.module or "").rpartition(f"{folder.name}.")[2]
                 names = [module] if module else [alias.name for alias in node.names]
                 waiting += [folder / f"{name.replace('.', '/')}.py" for name in names]
     return found
