@@ -161,7 +161,7 @@ def sources(folder: Path, network: Any) -> list[Path]:
 
 
 def _file_of(folder: Path, network: Any, part: str) -> Path:
-    place = network.parts.get(part, part).partition(":")[0].removeprefix(f"{folder.name}.")
+    place = network.parts.get(part, part).partition(":")[0].rpartition(f"{folder.name}.")[2]
     return folder / f"{place.replace('.', '/')}.py"
 
 

@@ -24,7 +24,7 @@ from innervate.networks.babel.protocol.routes import look_at_route, select, take
 from innervate.networks.babel.protocol.updates import fill_route, send_update, trigger
 
 TIMERS = 3
-OUTBOX = 32
+OUTBOX = 34
 
 
 def on_start(node, params, now, cause, out):
