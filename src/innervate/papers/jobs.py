@@ -113,7 +113,7 @@ def parts() -> list[Any]:
 
 
 def jobs() -> dict[str, Job]:
-    """All jobs by name."""
+    """All jobs by their names."""
     return {job.name: job for part in parts() for job in getattr(part, "JOBS", ())}
 
 
@@ -146,7 +146,7 @@ class Compared:
     got: Measured
 
     def cases(self) -> list[Case]:
-        """All cases."""
+        """All cases of the job."""
         return self.job.cases(self.got.quick)
 
     def values(self, case: Case, entry: Entry, name: str) -> list[float]:
@@ -239,7 +239,7 @@ def shown(found: Interval, digits: int) -> str:
 
 
 def interval(found: Interval, digits: int) -> str:
-    """An interval alone."""
+    """An interval without its estimate."""
     return f"{number(found.low, digits)} to {number(found.high, digits)}"
 
 
