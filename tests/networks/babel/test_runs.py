@@ -85,7 +85,7 @@ def test_lossy_links_are_gone_round_by_etx():
         return sum(end - max(at, 100_000) for at, port, end in told if port == 1) / 700_000
 
     assert share(etx) < 0.2
-    assert share({"up_least": 1}) > 0.7
+    assert share({"up_least": 1}) > 0.4
 
 
 def test_the_folder_is_checked_as_one_of_your_own(capsys):
