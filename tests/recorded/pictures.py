@@ -117,7 +117,7 @@ def plain(value: Any) -> str:
 GROUPS: dict[str, Callable[[], Iterator[tuple[str, Drawn]]]] = {
     "skin": scenes.of_skin, "radio": scenes.of_radio, "mesh": scenes.of_mesh,
     "spine": scenes.of_spine,
-    **{f"papers-{system}": partial(of_paper, system) for system in ("skin", "radio", "mesh", "compare")},
+    **{f"papers-{book}": partial(of_paper, book) for book in ("skin", "radio", "mesh", "compare")},
 }  # fmt: skip
 
 
