@@ -225,12 +225,13 @@ def cell(values: list[float], column: Column) -> str:
     if column.show == SHARE:
         hits = sum(value > 0 for value in values)
         return f"{hits} ({interval(wilson(hits, len(values)), 2)})"
+    if not finite:
+        return "never"
     if column.show == MEAN:
-        found = mean_interval(finite) if finite else None
+        found = mean_interval(finite)
     else:
         found = quantile_interval(values, 0.5 if column.show == MEDIAN else TAIL_SHARE)
-    words = shown(found, digits) if found is not None else "never"
-    return f"{words}, never in {never}" if never and found is not None else words
+    return shown(found, digits) + (f", never in {never}" if never else "")
 
 
 def shown(found: Interval, digits: int) -> str:

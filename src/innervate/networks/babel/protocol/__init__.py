@@ -79,8 +79,8 @@ Timers
 
 Frames
 ======
-Their layouts stand beside this folder. Times in them are in units of `TENTH_MS = 100` us. A seqno request
-may go `HOPS_MAX = 64` hops, and data no more.
+Their layouts stand beside this folder. Times in them are in units of `TENTH_MS = 100` us. A seqno
+request may go `HOPS_MAX = 64` hops, and data no more.
 
 Inputs and reports
 ==================
