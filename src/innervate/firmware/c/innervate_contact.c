@@ -113,7 +113,8 @@ static innervate_known_t *make(innervate_contact_t *contact, const innervate_noi
     session->counter = session->highest = session->window = 0;
     innervate_noise_split(noise, is_ours ? session->key_out : session->key_in,
             is_ours ? session->key_in : session->key_out);
-    known->age_ms = known->quiet_ms = 0;
+    known->age_ms = 0;
+    known->quiet_ms = OLD_MS;
     known->who = (uint16_t)((uint32_t)about[0] << 8 | about[1]);
     known->is_made = 1;
     known->is_heard = 0;
@@ -151,7 +152,7 @@ static int32_t first(innervate_contact_t *contact, uint8_t *bytes, int32_t size,
     innervate_noise_t noise;
     uint8_t secret[INNERVATE_KEY];
     uint8_t *point = bytes + 1, *about = point + INNERVATE_KEY;
-    if (is_same(point, contact->answered, INNERVATE_KEY)) {
+    if (contact->answer[0] == SECOND && is_same(point, contact->answered, INNERVATE_KEY)) {
         copy(out, contact->answer, INNERVATE_SAY_MAX);
         return INNERVATE_SAY_MAX;
     }

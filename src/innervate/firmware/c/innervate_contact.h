@@ -20,7 +20,7 @@ extern "C" {
 typedef struct {
     innervate_session_t session;
     uint32_t age_ms;
-    uint32_t quiet_ms; /* since something came in it */
+    uint32_t quiet_ms; /* since something came in it; long, if nothing did */
     uint16_t who; /* the neighbour's number */
     uint8_t is_made; /* 0 = the place is free */
     uint8_t is_heard; /* 1 = something genuine has come in it */
