@@ -231,7 +231,8 @@ ASKED |= {"sealed-skin": (*ASKED["skin"], "-DSEALED", "-DKIND=2"),
 
 
 @pytest.mark.parametrize(("role", "pieces"), [("skin", 30_000), ("mesh", 3000),
-                                              ("radio", 10_000), ("sealed-skin", 3000)])  # fmt: skip
+                                              ("radio", 10_000),
+                                              ("sealed-skin", 3000)])  # fmt: skip
 def test_bytes_at_will_do_no_harm(role, pieces, folders):
     needs("gcc")
     sent, delivered, dropped, _, opened, pretended, broken = fuzzed(folders[role], pieces, role)
