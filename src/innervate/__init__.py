@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from innervate.network import Network as Network
     from innervate.network import NetworkError as NetworkError
     from innervate.network import use as use
+    from innervate.networks.models import Mesh as Mesh
+    from innervate.networks.models import Radio as Radio
+    from innervate.networks.models import Skin as Skin
     from innervate.networks.typed import Answer as Answer
     from innervate.networks.typed import Question as Question
     from innervate.networks.typed import size as size
@@ -45,13 +48,16 @@ _PLACES = {
     "ChannelScenario": "scenario.declared.channel",
     "Comparison": "running.compare",
     "FieldScenario": "scenario.declared.field",
+    "Mesh": "networks.models",
     "Network": "network",
     "NetworkError": "network",
     "Question": "networks.typed",
+    "Radio": "networks.models",
     "Run": "running.run",
     "RunError": "running.errors",
     "Scenario": "scenario",
     "ScenarioError": "scenario",
+    "Skin": "networks.models",
     "Sweep": "sweeping.result",
     "SweepError": "sweeping.errors",
     "check": "scenario.given",

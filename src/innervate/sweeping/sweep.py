@@ -10,6 +10,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal, TypedDict, Unpack
 
+from msgspec import Struct
+
 from innervate import scenario as scenarios
 from innervate.scenario import Scenario, ScenarioError
 from innervate.sweeping import planfile, tables
@@ -181,7 +183,7 @@ def _first(*numbers: int | None) -> int:
 
 def _plan_file(scenario: Source) -> tuple[planfile.PlanFile | None, Source]:
     """The plan file, if it is one, and the scenario that it or the caller names."""
-    if isinstance(scenario, dict | Scenario):
+    if isinstance(scenario, dict | Struct | Scenario):
         return None, scenario
     text, label, folder = scenarios.read(scenario)
     if not planfile.is_plan(text):
