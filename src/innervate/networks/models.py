@@ -8,4 +8,4 @@ from innervate.networks.mesh.scenario.model import MeshScenario as Mesh
 from innervate.networks.radio.scenario.model import RadioScenario as Radio
 from innervate.networks.skin.scenario.model import SkinScenario as Skin
 
-__all__ = ["Mesh", "Radio", "Skin"]
+__all__ = ["Skin", "Radio", "Mesh"]  # noqa: RUF022 - as networks are told of

@@ -9,7 +9,7 @@ from typing import Any
 from msgspec import Struct, structs
 
 from innervate.network import networks
-from innervate.scenario.emit import dump
+from innervate.scenario.emit import dump as as_text
 from innervate.scenario.load import Scenario, from_dict, loads
 from innervate.scenario.load import load as load_file
 
@@ -40,8 +40,20 @@ def load(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) -
         return load_file(scenario, changes, seed)
     if seed is None and not changes:
         return scenario
-    text, source = dump(scenario, whole=False), scenario.source
+    text, source = as_text(scenario, whole=False), scenario.source
     return loads(text, changes, seed, source.path, source.folder)
+
+
+def dump(scenario: Given) -> str:
+    """A scenario as the text of a file, with what was given and without what was left out.
+
+    Args:
+        scenario: as for load().
+
+    Raises:
+        ScenarioError: it is not valid.
+    """
+    return as_text(load(scenario), whole=False)
 
 
 def tables_of(model: Struct) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from typing import Any, Literal, TypedDict, Unpack
 from msgspec import Struct
 
 from innervate import scenario as scenarios
+from innervate.running.showing import Bar
 from innervate.scenario import Scenario, ScenarioError
 from innervate.sweeping import planfile, tables
 from innervate.sweeping.base import PLAN_FILE, Source, base_of
@@ -87,7 +88,8 @@ def sweep(
         dask: address of a Dask scheduler to use instead of this machine.
         retry: run again what failed.
         follow: measures that `progress` wants to see the values of.
-        progress: called now and then with the Scheduler.
+        progress: called now and then with the Scheduler; in a notebook a bar shows how far it is
+            if nothing is given.
 
     Raises:
         SweepError: the plan cannot be kept, or the folder not used; one line.
@@ -110,7 +112,11 @@ def sweep(
                 _describe(plan, folder)
             if retry:
                 jobs.forget_failed()
-            return _run_plan(Scheduler(plan, jobs, made, tuple(follow), progress), jobs, folder)
+            with Bar("preparing the runs") as bar:
+                if progress is None and bar.is_seen:
+                    progress = bar.swept
+                scheduler = Scheduler(plan, jobs, made, tuple(follow), progress)
+                return _run_plan(scheduler, jobs, folder)
 
 
 def _run_plan(scheduler: Scheduler, jobs: Jobs, folder: Path | None) -> Sweep:
