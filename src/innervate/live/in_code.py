@@ -118,7 +118,7 @@ class Nodes:
         self._do(self._network.change(self._cable(a, b), "restore"))
 
     def kill(self, name: str) -> None:
-        """Kill a node's process."""
+        """Kill a node's process, without its noticing."""
         self._do(self._network.end_node(self._known(name), gently=False))
 
     def start(self, name: str) -> None:

@@ -168,13 +168,11 @@ def run(
     """Run a scenario.
 
     Args:
-        scenario: a file, a bundled name ("setup-1"), a model built in code (Skin, Radio, Mesh,
-            CablesScenario, ...), a Scenario, or tables as in a file.
+        scenario: a file, a bundled name, a Skin, Radio, Mesh ..., tables as in a file, a Scenario.
         seed: in place of the scenario's.
         overrides: "a.b=c" texts, or a mapping from dotted keys to values.
         out: folder to write; nothing is written without one (see Run.write).
-        progress: called now and then with (time_us, duration_us); in a notebook a bar shows them
-            if nothing is given.
+        progress: called now and then with (time_us, duration_us); None = a bar in a notebook.
         checks: invariant checkers on.
         received: keep every sample the PC received; None = unless there are very many.
         plain: run uncompiled, slow; for comparison.
@@ -190,11 +188,8 @@ def run(
         folders.check_target(out)
     room = networks()[plan.kind].run
     with Bar() as bar:
-        if progress is None and bar.is_seen:
-            progress = bar.simulated
-        result = room.simulate(
-            plan, plain=plain, checks=checks, received=received, progress=progress
-        )
+        result = room.simulate(plan, plain=plain, checks=checks, received=received,
+                               progress=progress or bar.simulated)  # fmt: skip
     done = Run(made, plan, result, room.summarize(result), checks)
     if out is not None:
         done.write(out)

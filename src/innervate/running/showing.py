@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Callable
 from html import escape
 from importlib import import_module
 from types import TracebackType
@@ -40,11 +41,6 @@ class Bar:
         if self._handle is not None:
             self._handle.update({"text/plain": "", "text/html": ""}, raw=True)
 
-    @property
-    def is_seen(self) -> bool:
-        """True in a notebook."""
-        return self._handle is not None
-
     def show(self, what: str, done: float, total: float) -> None:
         """So far `done` of `total`, 0 = nobody knows of how much."""
         now_s = time.monotonic()
@@ -52,9 +48,15 @@ class Bar:
             self._last_s = now_s
             self._handle.update(_html(what, done, total))
 
-    def simulated(self, now_us: int, duration_us: int) -> None:
-        """A run's progress: simulated time so far."""
-        self.show(f"simulated {now_us / 1e6:.2f} of {duration_us / 1e6:g} s", now_us, duration_us)
+    @property
+    def simulated(self) -> Callable[[int, int], None] | None:
+        """What a run tells how far it is; None where nobody sees it."""
+
+        def told(now_us: int, duration_us: int) -> None:
+            what = f"simulated {now_us / 1e6:.2f} of {duration_us / 1e6:g} s"
+            self.show(what, now_us, duration_us)
+
+        return None if self._handle is None else told
 
     def swept(self, scheduler: Any) -> None:
         """A sweep's progress: runs so far."""

@@ -88,8 +88,7 @@ def sweep(
         dask: address of a Dask scheduler to use instead of this machine.
         retry: run again what failed.
         follow: measures that `progress` wants to see the values of.
-        progress: called now and then with the Scheduler; in a notebook a bar shows how far it is
-            if nothing is given.
+        progress: called now and then with the Scheduler; None = a bar in a notebook.
 
     Raises:
         SweepError: the plan cannot be kept, or the folder not used; one line.
@@ -113,9 +112,7 @@ def sweep(
             if retry:
                 jobs.forget_failed()
             with Bar("preparing the runs") as bar:
-                if progress is None and bar.is_seen:
-                    progress = bar.swept
-                scheduler = Scheduler(plan, jobs, made, tuple(follow), progress)
+                scheduler = Scheduler(plan, jobs, made, tuple(follow), progress or bar.swept)
                 return _run_plan(scheduler, jobs, folder)
 
 
