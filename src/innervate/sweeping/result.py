@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from html import escape
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +15,7 @@ from innervate.sweeping.errors import SweepError
 from innervate.sweeping.plan import SweepPlan
 from innervate.trace.provenance import SCHEMA
 from innervate.trace.sources import stamp
+from innervate.trace.tables import arrays, to_pandas
 
 if TYPE_CHECKING:
     import polars
@@ -56,6 +58,19 @@ class Sweep:
     def measures(self) -> list[str]:
         """Columns of the results that are figures."""
         return tables.measures(self.results, self.plan.keys)
+
+    def numpy(self) -> dict[str, Any]:
+        """The results as NumPy arrays by the names of their columns."""
+        return arrays(self.results)
+
+    def pandas(self) -> Any:
+        """The results as a pandas data frame; needs pandas."""
+        return to_pandas(self.results)
+
+    def _repr_html_(self) -> str:
+        """In a notebook: how much there is, and the means of its figures with their intervals."""
+        points = self.points() if self.measures else self.results
+        return f"<p>{escape(repr(self))}</p>{points._repr_html_()}"
 
     @property
     def provenance(self) -> dict[str, Any]:
