@@ -63,14 +63,17 @@ def page(system: str, quick: bool = True) -> str:
     """The page of a paper, with one empty picture for all, as its rows make it."""
     paper = networks()[system].papers
     chosen = experiments(system)
-    claims = {one.name: one.judge(rows(system), quick) for one in chosen}
+    made = output.Made(
+        {one.name: one.judge(rows(system), quick) for one in chosen},
+        {one.name: one.sheets(rows(system), quick) for one in chosen},
+    )
     heading = output.Heading(
         system, paper.TITLE, paper.AUTHORS, quick, "stamp", False, "again", paper.READINGS
     )
     with tempfile.TemporaryDirectory() as folder:
         for one in chosen:
             Path(folder, f"{one.name}.svg").write_text(f'<svg width="{390 + len(one.name)}pt"/>')
-        return output.as_page(Path(folder), heading, chosen, claims, {"innervate": "1"})
+        return output.as_page(Path(folder), heading, chosen, made, {"innervate": "1"})
 
 
 def plans(experiment: Any) -> list[str]:

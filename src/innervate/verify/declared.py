@@ -268,7 +268,13 @@ class Net:
     ) -> State:
         """The state with a node as it is now, its moments relative to its time."""
         for name in self.clocks:
-            setattr(self.node, name, (getattr(self.node, name) - now) & MASK30)
+            at = getattr(self.node, name)
+            own = (
+                [(one - now) & MASK30 for one in at]
+                if isinstance(at, list)
+                else (at - now) & MASK30
+            )
+            setattr(self.node, name, own)
         waits = tuple(sorted((timer, at - now) for timer, at in timers.items()))
         node = Node(values(self.node, self.fields.STATE), waits, tuple(down))
         return state._replace(nodes=with_one(state.nodes, number, node))
