@@ -128,8 +128,8 @@ def choose(node, params, now, out):
             best = k
             least = cost
     cheapest = best
-    if node.parent >= 0 and best != node.parent:
-        if cost_of(node, params, node.parent) < least + params.switch:
+    if best >= 0 and node.parent >= 0:
+        if cost_of(node, params, node.parent) < min(least + params.switch, NO_WAY):
             best = node.parent
     if best >= 0 and is_too_high(node, params, rank_through(node, params, best)):
         best = cheapest
@@ -207,6 +207,8 @@ def hear_dio(node, params, now, k, frame, out):
         migrate(node, params, now, frame.version, out)
     node.nbr_rank[k] = frame.rank
     node.nbr_version[k] = frame.version
+    if node.nbr_fails[k] >= GIVEN_UP or node.nbr_etx[k] > params.link_max:
+        node.nbr_etx[k] = guess(frame.rssi - params.half_dbm)  # it is there: estimated anew
     node.nbr_fails[k] = 0
     asked = k == node.parent and is_newer(frame.dtsn, node.nbr_dtsn[k])
     node.nbr_dtsn[k] = frame.dtsn
