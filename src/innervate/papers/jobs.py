@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from math import inf
-from typing import Any
+from typing import Any, NamedTuple
 
 from innervate.analysis.intervals import (
     Interval,
@@ -170,24 +170,47 @@ class Compared:
             made.append(Sheet(f"{case.title}; {len(case.seeds)} runs each", head, rows))
         return made
 
-    def sooner(
-        self, case: Case, name: str, ours: Entry, other: Entry, words: str, why: str = ""
+    def less(
+        self, where: Mapping[str, Case], name: str, pair: tuple[Entry, Entry], words: Words
     ) -> Claim:
-        """The claim that of the same seeds ours gives less than another, by the median.
+        """The claim that, seed by seed, the first of a pair gives less than the second.
 
-        It holds where the 95 % interval of the median difference lies below 0.
+        It holds if in all cases the 95 % interval of the median difference lies below 0.
+
+        Args:
+            where: cases by a word for each.
+            name: of what is measured.
+            pair: ours, the other.
+            words: what is claimed, and why it does not hold where it does not.
         """
-        pairs = zip(self.values(case, ours, name), self.values(case, other, name), strict=True)
-        differences = [a - b if a != b else 0.0 for a, b in pairs]
-        between = median_interval(differences)
-        holds = between.high < 0
-        wins = sum(one < 0 for one in differences)
-        losses = sum(one > 0 for one in differences)
-        said = (
-            f"difference {shown(between, 1)}, less in {wins} and more in {losses} of "
-            f"{len(differences)} runs of equal seed"
-        )
-        return Claim(self.job.name, words, said, verdict(holds), "" if holds else why)
+        holds, said = True, []
+        for word, case in where.items():
+            found = [self.values(case, entry, name) for entry in pair]
+            differences = [a - b if a != b else 0.0 for a, b in zip(*found, strict=True)]
+            between = median_interval(differences)
+            holds = holds and between.high < 0
+            fewer, more = (sum(map(is_so, differences)) for is_so in (_below_0, _above_0))
+            said.append(f"{word}: {shown(between, words.digits)}, less in {fewer} and more in "
+                        f"{more} of {len(differences)}")  # fmt: skip
+        why = "" if holds else words.why
+        measured = f"median difference {'; '.join(said)}"
+        return Claim(self.job.name, words.claim, measured, verdict(holds), why)
+
+
+class Words(NamedTuple):
+    """What a claim says; why, where it does not hold; digits of its differences."""
+
+    claim: str
+    why: str = ""
+    digits: int = 1
+
+
+def _below_0(value: float) -> bool:
+    return value < 0
+
+
+def _above_0(value: float) -> bool:
+    return value > 0
 
 
 def cell(values: list[float], column: Column) -> str:

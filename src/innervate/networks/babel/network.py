@@ -14,4 +14,5 @@ NETWORK = Network(
     frames="frames",
     invariants="invariants",
     measures="measures:measures",
+    comparison="comparison",
 )
