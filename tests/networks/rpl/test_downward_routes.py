@@ -125,8 +125,23 @@ def test_a_changed_parent_is_told_of_the_whole_sub_dodag():
     before = one.node.path_seq
     one.hear(**dio(2, 60))
     assert parent_of(one) == 2
-    assert [(t, p) for t, p, _ in told_to_parent(one)] == [(5, before + 1), (7, 241), (20, 241)]
+    told = told_to_parent(one)
+    assert [(t, p) for t, p, life in told if life] == [(5, before + 1), (7, 241), (20, 241)]
+    assert [frame.to for frame in of(one.sent, c.DAO)] == [2, 1]
+
+
+def test_a_parent_that_was_left_is_told_so():
+    """9.8: "When a node removes a node from its DAO parent set, it SHOULD send a No-Path DAO message
+    to that removed DAO parent to invalidate the existing route." """
+    one = storing()
+    one.hear(**dao(7, 7, 20))
+    told_to_parent(one)
+    one.hear(**dio(2, 60))
+    assert [t for t, _, life in told_to_parent(one) if not life] == [5, 7, 20]
+    one.hear(**dio(2, c.INFINITE))
+    assert [t for t, _, life in told_to_parent(one) if not life] == [5, 7, 20], "a detached one, too"
     assert {frame.to for frame in of(one.sent, c.DAO)} == {2}
+    assert told_to_parent(one) == []
 
 
 def test_a_dao_that_is_not_acknowledged_is_sent_again():

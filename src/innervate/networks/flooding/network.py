@@ -14,4 +14,5 @@ NETWORK = Network(
     fields="fields",
     frames="frames",
     invariants="invariants",
+    comparison="comparison",
 )

@@ -38,6 +38,16 @@ def announce_all(node, params, now, out):
     announce(node, params, now, out)
 
 
+def leave(node, params, now, old, out):
+    """A parent is one no more: it is to hear that nothing is reached by us [9.8]."""
+    node.old = old if params.storing else NOBODY
+    for target in range(NODES):
+        there = node.via[target] >= 0 or target == node.number
+        node.left[target] = 1 if there and params.storing else 0
+    if params.storing:
+        schedule(node, params, now, out)
+
+
 def take_dao(node, params, now, frame, out):
     """Storing mode: a child says whom it reaches; what changes our own says so, too [9.8]."""
     changed = 0
@@ -95,37 +105,65 @@ def grow_older(node, params, now, out):
 
 
 def pick(node, params):
-    """Storing mode: what the next DAO says, of what is owed; the number of its targets."""
+    """Storing mode: what the next DAO to our parent says, of what is owed; how many targets."""
     mark = 0
     count = 0
     for target in range(NODES):
         owed = node.owed[target]
         if owed and count < TARGETS and (mark == 0 or owed == mark):
             mark = owed
-            node.dao_target[count] = target
-            own = target == node.number
-            node.dao_path[count] = node.path_seq if own else node.path[target]
+            write(node, count, target)
             count += 1
-    for i in range(count, TARGETS):
-        node.dao_target[i] = NOBODY
-        node.dao_path[i] = 0
+    blank_behind(node, count)
     node.dao_life = 0 if mark == GONE else min(LIFE * params.refresh, 255)
     return count
 
 
+def pick_left(node):
+    """Storing mode: what the next DAO to the parent that we left says; how many targets."""
+    count = 0
+    for target in range(NODES):
+        if node.left[target] and count < TARGETS:
+            write(node, count, target)
+            count += 1
+    blank_behind(node, count)
+    node.dao_life = 0
+    return count
+
+
+def write(node, place, target):
+    """The DAO names a target."""
+    node.dao_target[place] = target
+    node.dao_path[place] = path_of(node, target)
+
+
+def path_of(node, target):
+    """The Path Sequence of a target."""
+    return node.path_seq if target == node.number else node.path[target]
+
+
+def blank_behind(node, count):
+    """The DAO names no more."""
+    for i in range(count, TARGETS):
+        node.dao_target[i] = NOBODY
+        node.dao_path[i] = 0
+
+
 def told(node):
-    """Our parent has the DAO: what it said is owed no more; 1 if something else is."""
+    """Our parent has the DAO: what it said is owed no more."""
     mark = HERE if node.dao_life else GONE
     for i in range(TARGETS):
         target = node.dao_target[i]
         if target < NODES and node.owed[target] == mark:
-            own = target == node.number
-            if node.dao_path[i] == (node.path_seq if own else node.path[target]):
+            if node.dao_path[i] == path_of(node, target):
                 node.owed[target] = 0
-    for target in range(NODES):
-        if node.owed[target]:
-            return 1
-    return 0
+
+
+def told_left(node):
+    """The parent that we left has the DAO."""
+    for i in range(TARGETS):
+        if node.dao_target[i] < NODES:
+            node.left[node.dao_target[i]] = 0
 
 
 def take_report(node, target, parent, path):

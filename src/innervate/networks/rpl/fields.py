@@ -49,6 +49,8 @@ STATE = (
     ("path", NODES, 0, 255, "number", "Path Sequence of that"),
     ("age", NODES, 0, 255, "times", "that DAOs should have come since"),
     ("owed", NODES, 0, 2, "mark", "1 our parent is to hear of it, 2 that it is gone"),
+    ("left", NODES, 0, 1, "mark", "a parent that we left is to hear that it is gone"),
+    ("old", 0, 0, 255, "node", "that parent; 255 = none"),
     ("path_seq", 0, 0, 255, "number", "our own"),
     ("dao_armed", 0, 0, 1, "flag", "the timer DelayDAO is set"),
     ("dao_wait", 0, 0, 15, "times", "non-storing: that our DAO was sent, and not acknowledged"),

@@ -14,5 +14,6 @@ NETWORK = Network(
     fields="fields",
     frames="frames",
     invariants="invariants",
+    comparison="comparison",
     shows="shows:SHOWS",
 )

@@ -7,13 +7,14 @@ from .constants import (
     ETX_ONE,
     INFINITE,
     NEIGHBOURS,
+    NOBODY,
     NONE,
     REPORT_DETACHED,
     REPORT_PARENT,
     REPORT_VERSION,
 )
 from .counters import dag_rank, following, is_newer
-from .downward import announce, announce_all
+from .downward import announce, announce_all, leave
 from .trickle import begin_interval, note_consistent, reset_trickle
 
 COST_MAX = 32768  # MAX_PATH_COST
@@ -144,6 +145,10 @@ def follow(node, params, now, k, out):
     before = node.rank
     node.rank = rank_through(node, params, k)
     if k != node.parent:
+        if node.parent >= 0 and node.nbr_fails[node.parent] < GIVEN_UP:
+            leave(node, params, now, node.nbr[node.parent], out)
+        elif node.old == node.nbr[k]:
+            node.old = NOBODY
         node.parent = k
         node.lonely = 0
         node.hold = 0
@@ -165,6 +170,8 @@ def detach(node, params, now, out):
     for k in range(NEIGHBOURS):
         if node.nbr_rank[k] >= node.rank:
             node.nbr_rank[k] = INFINITE
+    if node.nbr_fails[node.parent] < GIVEN_UP:
+        leave(node, params, now, node.nbr[node.parent], out)
     node.floor = node.rank
     node.hold = params.hold
     node.lonely = 0

@@ -8,9 +8,8 @@ writes whole ways into packets. What packets carry of ranks finds loops.
 Read counters.py, trickle.py, parents.py, downward.py, sending.py, this. Left out: several
 instances and DODAGs, several roots, floating DODAGs (MRHOF recommends none), options (all nodes
 have the configuration in their parameters), multicast, security, DAO-ACKs in storing mode (hops
-acknowledge), No-Path DAOs to a parent that was left (what it still holds is found out by 'F' or by
-age), probing of links that are not used, messages to a neighbour past its parent. A packet that a
-parent does not take goes to the next parent, which is more than the RFC asks for.
+acknowledge), probing of links that are not used, messages to a neighbour past its parent. A packet
+that a parent does not take goes to the next parent, which is more than the RFC asks for.
 """
 
 from innervate.dialect.access import ALL
@@ -64,6 +63,7 @@ OUTBOX = 40
 
 MESSAGE = 1  # inputs: to item.dest
 ALARM = 2  # to the root
+RARELY = 63  # ticks: at last between two solicitations
 
 
 def on_start(node, params, now, cause, out):
@@ -75,6 +75,7 @@ def on_start(node, params, now, cause, out):
     for i in range(NODES):
         node.via[i] = NONE
         node.owed[i] = 0
+        node.left[i] = 0
     begin(node)
     node.dsn = draw(node, 256)
     if node.number == params.root:
@@ -102,6 +103,7 @@ def begin(node):
     node.under = IDLE
     node.waiting = 0
     node.to = NOBODY
+    node.old = NOBODY
     node.q_count = 0
     node.rounds = 0
     node.dio_due = 0
@@ -156,7 +158,7 @@ def on_timer(node, params, now, timer, out):
         tick(node, params, now, out)
     else:
         node.dao_armed = 0
-        send_dao(node, params, now, out)
+        delay_over(node, params, now, out)
     go(node, params, now, out)
 
 
@@ -188,7 +190,8 @@ def tick(node, params, now, out):
         node.floor = INFINITE
         choose(node, params, now, out)
     if node.rank == INFINITE:
-        node.dis_due = 1
+        if node.lonely & (node.lonely - 1) & RARELY == 0:  # less and less often
+            node.dis_due = 1
         if node.lonely >= params.patience:
             flush(node, out)
 
@@ -201,7 +204,7 @@ def flush(node, out):
         node.rounds = 0
 
 
-def send_dao(node, params, now, out):
+def delay_over(node, params, now, out):
     """DelayDAO is over. To the root the DAO goes as a packet, again until it is acknowledged."""
     if params.storing:
         node.dao_due = 1

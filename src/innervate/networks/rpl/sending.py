@@ -34,7 +34,7 @@ from .constants import (
     TARGETS,
 )
 from .counters import dag_rank, following
-from .downward import forget, forget_child, lay_route, pick, schedule, told
+from .downward import forget, forget_child, lay_route, pick, pick_left, schedule, told, told_left
 from .packets import clean, drop_first, fill, new_place
 from .parents import GIVEN_UP, choose, learn_etx, note_failure, place_of
 from .trickle import reset_trickle
@@ -54,10 +54,20 @@ def go(node, params, now, out):
         node.dis_due = 0
         node.under = A_DIS
         blank(node, DIS, ALL, out)
-    elif node.dao_due and node.parent >= 0 and pick(node, params):
-        begin(node, params, A_DAO, node.nbr[node.parent], out)
-    else:
+    elif not node.dao_due or not send_dao(node, params, out):
+        node.dao_due = 0
         go_on(node, params, now, out)
+
+
+def send_dao(node, params, out):
+    """Send what our parent is to hear, then what one that we left is; false if that is all."""
+    if node.parent >= 0 and pick(node, params):
+        begin(node, params, A_DAO, node.nbr[node.parent], out)
+        return True
+    if node.old != NOBODY and pick_left(node):
+        begin(node, params, A_DAO, node.old, out)
+        return True
+    return False
 
 
 def go_on(node, params, now, out):
@@ -201,7 +211,9 @@ def missed(node, params, now, out):
     if k >= 0:
         note_failure(node, params, k)
         gone = node.nbr_fails[k] >= GIVEN_UP
-    if node.under == A_DAO:
+    if node.under == A_DAO and node.to == node.old:
+        node.old = NOBODY
+    elif node.under == A_DAO:
         node.dao_due = 0
         schedule(node, params, now, out)
     else:
@@ -257,10 +269,12 @@ def acked(node, params, now, frame, out):
     if k >= 0:
         learn_etx(node, k, node.tries + 1)
         node.nbr_fails[k] = 0
-    if node.under == A_DAO:
-        node.dao_due = told(node)
-    else:
+    if node.under == A_PACKET:
         drop_first(node)
+    elif node.to == node.old:
+        told_left(node)
+    else:
+        told(node)
     node.under = IDLE
     node.to = NOBODY
     choose(node, params, now, out)
