@@ -103,9 +103,9 @@ def world_of(given: Given, seed: int) -> World:
 def figures(world: World, came_us: list[int], airtime_us: int) -> dict[str, float | None]:
     """What an entry's run gave, by name.
 
-    Of every part the share that came, in percent, of the messages whose ends were joined by good
-    links of live nodes; the latencies of all of them, ms; airtime of all nodes together, in percent
-    of the time.
+    Of every part, by its name, the share that came, in percent, of the messages whose ends were
+    joined by good links of live nodes, and what is left of 100 as "..._lost"; the latencies of all
+    of them, ms; airtime of all nodes together, in percent of the time.
 
     Args:
         world: the world.
@@ -120,9 +120,10 @@ def figures(world: World, came_us: list[int], airtime_us: int) -> dict[str, floa
             parts.setdefault(one.part, []).append(came != NEVER)
         if counts and came != NEVER:
             late.append((came - one.at_us) / 1e3)
-    found: dict[str, float | None] = {
-        name: 100 * sum(came) / len(came) for name, came in parts.items()
-    }
+    found: dict[str, float | None] = {}
+    for name, whole in parts.items():
+        found[name] = 100 * sum(whole) / len(whole)
+        found[f"{name}_lost"] = 100 - 100 * sum(whole) / len(whole)
     for name, share in (("p50_ms", 50), ("p99_ms", 99)):
         found[name] = float(np.percentile(late, share, method="nearest")) if late else None
     found["airtime"] = 100 * airtime_us / (world.duration_us - world.since_us)

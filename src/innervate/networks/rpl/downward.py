@@ -82,6 +82,15 @@ def forget(node, target):
     return 1
 
 
+def forget_all(node):
+    """A new version of the DODAG: who hangs on whom is told anew."""
+    for target in range(NODES):
+        node.via[target] = NONE
+        node.owed[target] = 0
+        node.left[target] = 0
+    node.old = NOBODY
+
+
 def forget_child(node, params, now, child, out):
     """Storing mode: nothing is reached by this child any more [9.8]."""
     changed = 0

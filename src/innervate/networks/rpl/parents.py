@@ -14,7 +14,7 @@ from .constants import (
     REPORT_VERSION,
 )
 from .counters import dag_rank, following, is_newer
-from .downward import announce, announce_all, leave
+from .downward import announce, announce_all, forget_all, leave
 from .trickle import begin_interval, note_consistent, reset_trickle
 
 COST_MAX = 32768  # MAX_PATH_COST
@@ -191,6 +191,7 @@ def migrate(node, params, now, version, out):
     node.floor = INFINITE
     node.parent = NONE
     node.hold = 0
+    forget_all(node)
     report(out, REPORT_VERSION, version, 0)
     if first:
         begin_interval(node, params, now, out)
