@@ -23,6 +23,7 @@ from innervate.analysis.parents import (
     settled_us,
     time_without_us,
 )  # fmt: skip
+from innervate.papers.errors import PapersError
 from innervate.trace.streams import Stream, stream
 
 Given = Mapping[str, Any]
@@ -30,6 +31,7 @@ SINK = "pc"
 FRAME_BITS = 240  # on the wire, with framing and gap, whatever stands in it
 CALM = 5  # periods that everybody has a way: then the outage is over
 NEAR = 2  # hops from the sink: whose death is looked at
+DRAWS = 1000  # until harm is found that leaves the others joined
 CUTS = {"none": 0, "cut": 1, "four cuts": 4, "death": 0}
 
 
@@ -72,11 +74,12 @@ def drawn(given: Given, seed: int) -> Harm:
     own = [place for place, cable in enumerate(made.cables) if 0 in (cable[0], cable[2])]
     if given["harm"] == "none":
         return Harm(at)
-    while True:
+    for _ in range(DRAWS):
         harm = _one(given["harm"], made, own, draw, at)
         ways = Ways(len(made.names), 0, made.cables).play((), [harm])
         if ways.steps[-1][1] == len(made.names) - 1 - len(harm.nodes):
             return harm
+    raise PapersError(f"no {given['harm']} leaves all others joined with the sink by cables")
 
 
 def _one(what: str, made: Wiring, own: list[int], draw: Stream, at: int) -> Harm:

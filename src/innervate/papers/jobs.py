@@ -113,7 +113,7 @@ def parts() -> list[Any]:
 
 
 def jobs() -> dict[str, Job]:
-    """All jobs by name."""
+    """All jobs by their names."""
     return {job.name: job for part in parts() for job in getattr(part, "JOBS", ())}
 
 
@@ -146,7 +146,7 @@ class Compared:
     got: Measured
 
     def cases(self) -> list[Case]:
-        """All cases."""
+        """All cases of the job."""
         return self.job.cases(self.got.quick)
 
     def values(self, case: Case, entry: Entry, name: str) -> list[float]:
@@ -225,12 +225,13 @@ def cell(values: list[float], column: Column) -> str:
     if column.show == SHARE:
         hits = sum(value > 0 for value in values)
         return f"{hits} ({interval(wilson(hits, len(values)), 2)})"
+    if not finite:
+        return "never"
     if column.show == MEAN:
-        found = mean_interval(finite) if finite else None
+        found = mean_interval(finite)
     else:
         found = quantile_interval(values, 0.5 if column.show == MEDIAN else TAIL_SHARE)
-    words = shown(found, digits) if found is not None else "never"
-    return f"{words}, never in {never}" if never and found is not None else words
+    return shown(found, digits) + (f", never in {never}" if never else "")
 
 
 def shown(found: Interval, digits: int) -> str:
@@ -239,7 +240,7 @@ def shown(found: Interval, digits: int) -> str:
 
 
 def interval(found: Interval, digits: int) -> str:
-    """An interval alone."""
+    """An interval without its estimate."""
     return f"{number(found.low, digits)} to {number(found.high, digits)}"
 
 

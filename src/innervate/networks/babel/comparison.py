@@ -60,7 +60,7 @@ def measure(given: Given, seed: int, **protocol: int) -> dict[str, Any]:
 
 
 def warm_up() -> None:
-    """Compile the loop."""
+    """Compile the loop that all entries run on."""
     simulate(scenario.plan(scenario.from_dict({"kind": "babel", "duration_s": 0.01})))
 
 
@@ -76,7 +76,7 @@ def etx(given: Given, seed: int) -> dict[str, Any]:
 
 
 def entry(name: str, what: str, run: Any) -> Entry:
-    """An entry of Babel."""
+    """An entry that is Babel, in some setting."""
     return Entry(JOB, name, f"RFC 8966 over cables; {what}", run, warm_up, 0.2)
 
 

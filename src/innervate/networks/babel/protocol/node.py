@@ -64,7 +64,7 @@ def on_frame(node, params, now, port, frame, out):
 
 
 def on_timer(node, params, now, timer, out):
-    """A timer is due."""
+    """A timer of ours is due."""
     if timer == TICK:
         tick(node, params, now, out)
     elif timer == SOON:

@@ -22,7 +22,7 @@ from innervate.networks.babel.protocol.updates import trigger
 
 
 def take(node, params, now, port, frame, out):
-    """An update [3.5.3]."""
+    """An update comes in on a port [3.5.3]."""
     if node.number == params.pc or node.neighbour[port] == NONE:
         return
     feasible = is_feasible(node, frame.seq, frame.metric)

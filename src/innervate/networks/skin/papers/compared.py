@@ -77,7 +77,7 @@ def cases(quick: bool) -> list[Case]:
 
 
 def case(setup: str, loss: float, harm: str, quick: bool) -> Case:
-    """One of them."""
+    """One setting, as a case."""
     settle = CALM_SETTLE if harm == "none" else SETTLE
     given = {"cables": cables(setup), "beacon_us": BEACON_US, "k": K, "loss": loss, "harm": harm,
              "settle": settle, "watch": WATCH}  # fmt: skip
@@ -119,7 +119,7 @@ def measure(given: Given, seed: int, **protocol: Any) -> dict[str, Any]:
 
 
 def entry(name: str, what: str, **protocol: Any) -> Entry:
-    """An entry of the skin."""
+    """An entry that is the skin, in some setting."""
     return Entry(JOB, name, what, partial(measure, **protocol), warm_up, 0.2)
 
 
