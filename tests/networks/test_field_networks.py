@@ -98,7 +98,10 @@ def test_rpl_repairs_itself_round_a_death(storing):
 
 def test_a_root_that_is_revived_is_found_again():
     inputs = [{"at_s": 3.0, "every_s": 0.5, "node": 4, "kind": 2}]
-    event = [{"at_s": 4.0, "action": "kill", "node": 0}, {"at_s": 8.0, "action": "revive", "node": 0}]
+    event = [
+        {"at_s": 4.0, "action": "kill", "node": 0},
+        {"at_s": 8.0, "action": "revive", "node": 0},
+    ]
     run = in_line("rpl", inputs, event=event, duration_s=16.0)
     times = run.result.rows["deliveries"]["time"]
     assert not ((times > 4_000_000) & (times < 8_000_000)).any()

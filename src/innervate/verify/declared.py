@@ -14,10 +14,10 @@ meanwhile is left open.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import Any
 
 from innervate.dialect import plain
 from innervate.dialect.access import ALL
@@ -29,6 +29,7 @@ from innervate.network import Network
 from innervate.topology import PORTS, Graph, TopologyError, free_graph
 from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent, lines_of
 from innervate.verify.errors import VerifyError
+from innervate.verify.states import Budget, Node, State, Step
 from innervate.verify.tally import Tally
 from innervate.verify.values import ahead, place_of, put, values, with_one
 
@@ -43,42 +44,6 @@ GRAPHS = {
     "ring": "n0.E-n1.W n1.E-n2.W n2.E-n0.W",
 }
 STUCK = "nothing can happen any more: no timer is set, no frame is on its way"
-
-
-@dataclass(frozen=True, slots=True)
-class Budget:
-    """How often what may happen: lost frames, nodes that lose their memory, inputs."""
-
-    loss: int = 1
-    restart: int = 1
-    input: int = 1
-
-
-class Node(NamedTuple):
-    """A node: its state's values, its timers as (timer, us from its time on), frames handed down.
-
-    Frames are handed down, and leave later, where the protocol is told when they do (`on_sent`).
-    """
-
-    values: tuple[Any, ...]
-    timers: tuple[tuple[int, int], ...]
-    down: tuple[tuple[Any, ...], ...] = ()
-
-
-class State(NamedTuple):
-    """A network: its nodes, the frames on their way by end, and what may still go wrong."""
-
-    nodes: tuple[Node, ...]
-    ways: tuple[tuple[tuple[Any, ...], ...], ...]
-    left: tuple[int, ...]
-
-
-class Step(NamedTuple):
-    """A successor: what happened, the state after it, what it broke ("" nothing)."""
-
-    words: str
-    state: State
-    broken: str
 
 
 class Net:

@@ -139,7 +139,9 @@ def test_a_parent_that_was_left_is_told_so():
     one.hear(**dio(2, 60))
     assert [t for t, _, life in told_to_parent(one) if not life] == [5, 7, 20]
     one.hear(**dio(2, c.INFINITE))
-    assert [t for t, _, life in told_to_parent(one) if not life] == [5, 7, 20], "a detached one, too"
+    assert [t for t, _, life in told_to_parent(one) if not life] == [5, 7, 20], (
+        "a detached one, too"
+    )
     assert {frame.to for frame in of(one.sent, c.DAO)} == {2}
     assert told_to_parent(one) == []
 
@@ -434,4 +436,3 @@ def test_of_many_neighbours_the_farthest_is_forgotten():
     assert 90 in known
     assert 1 in known
     assert 20 + c.NEIGHBOURS - 2 not in known
-

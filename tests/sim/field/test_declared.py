@@ -189,12 +189,15 @@ def telling(alone, capsys):
     capsys.readouterr()
     network.change("protocol.py", "import deliver, send,", "import deliver, report, send,")
     path = network.folder / "protocol.py"
-    path.write_text(path.read_text() + '''
+    path.write_text(
+        path.read_text()
+        + '''
 
 def on_sent(node, params, now, ok, out):
     """A frame of ours has left, or not."""
     report(out, 7, ok, node.hops)
-''')
+'''
+    )
     return network
 
 
@@ -229,7 +232,9 @@ def test_what_becomes_of_a_frame_is_explored(telling):
 
 
 def test_on_sent_is_written_as_it_is_called(telling, capsys):
-    telling.change("protocol.py", "def on_sent(node, params, now, ok, out)", "def on_sent(node, ok)")
+    telling.change(
+        "protocol.py", "def on_sent(node, params, now, ok, out)", "def on_sent(node, ok)"
+    )
     assert main(["run", str(telling.scenario)]) == 2
     assert "on_sent takes 2 arguments" in capsys.readouterr().err
 

@@ -182,22 +182,48 @@ def judge(compared: Compared) -> Iterator[Claim]:
     def less(where: dict[str, Case], name: str, other: str, claim: str, why: str) -> Claim:
         return compared.less(where, name, (ours, who[other]), Words(claim, why))
 
-    yield less(eight, f"{FIRST}_lost", "the document", "fewer first messages are lost than by the "
-               "document's own rules", "")
-    yield less(eight, f"{FIRST}_lost", "RPL, storing", "fewer first messages are lost than by RPL",
-               "")
-    yield less(root, f"{PEERS}_lost", "RPL, storing", "fewer messages among others are lost while "
-               "the root is off than by RPL", "")
+    yield less(
+        eight,
+        f"{FIRST}_lost",
+        "the document",
+        "fewer first messages are lost than by the document's own rules",
+        "",
+    )
+    yield less(
+        eight, f"{FIRST}_lost", "RPL, storing", "fewer first messages are lost than by RPL", ""
+    )
+    yield less(
+        root,
+        f"{PEERS}_lost",
+        "RPL, storing",
+        "fewer messages among others are lost while the root is off than by RPL",
+        "",
+    )
     yield less(none, "airtime", "flooding, 7 hops", "less airtime than flooding", "")
-    yield less(eight, "airtime", "flooding, 7 hops", "less airtime than flooding after deaths",
-               "a message that meets a dead node is sent three times in vain, searches for a way, and "
-               "is sent again from its origin if no acknowledgement comes back")
-    yield less(none, "airtime", "RPL, storing", "less airtime than RPL",
-               "discovery finds all links, every node has a table for all others, and messages are "
-               "acknowledged from end to end; RPL knows a tree and acknowledges hops alone")
-    yield less(eight, "p99_ms", "flooding, 7 hops", "99 % come sooner than by flooding",
-               "who is dead is found out by three transmissions without an answer, hop by hop; a "
-               "flood needs not know")
+    yield less(
+        eight,
+        "airtime",
+        "flooding, 7 hops",
+        "less airtime than flooding after deaths",
+        "a message that meets a dead node is sent three times in vain, searches for a way, "
+        "and is sent again from its origin if no acknowledgement comes back",
+    )
+    yield less(
+        none,
+        "airtime",
+        "RPL, storing",
+        "less airtime than RPL",
+        "discovery finds all links, every node has a table for all others, and messages are "
+        "acknowledged from end to end; RPL knows a tree and acknowledges hops alone",
+    )
+    yield less(
+        eight,
+        "p99_ms",
+        "flooding, 7 hops",
+        "99 % come sooner than by flooding",
+        "who is dead is found out by three transmissions without an answer, hop by hop; a "
+        "flood needs not know",
+    )
 
 
 SEARCH: Options = ()
