@@ -1,4 +1,4 @@
-"""What exploring any network that declares its protocol goes through: states, and what made them."""
+"""States of any network that declares its protocol, as they are explored, and what made them."""
 
 from __future__ import annotations
 
