@@ -126,7 +126,7 @@ static void step(void)
 }
 #else
 #ifdef SEALED
-static innervate_contact_t peer[ROLE_PORTS_MAX]; /* who holds the key at the far ends, numbers 2.. */
+static innervate_contact_t peer[ROLE_PORTS_MAX]; /* the far ends, numbers 2.. */
 static uint8_t heard[ROLE_PORTS_MAX][256], answer[ROLE_PORTS_MAX][INNERVATE_SAY_MAX];
 static int32_t count_heard[ROLE_PORTS_MAX], count_answer[ROLE_PORTS_MAX];
 

@@ -151,11 +151,18 @@ def files_of(library: Library, network: Network, sealed: bool = False) -> dict[s
     texts |= {f"{name}_wire.h": wire.header(), f"{name}_wire.c": wire.source()}
     having = _sections(library, sealed)
     texts |= {file: shipped(file, "", having) for file in (*BESIDE, *BARE)}
-    if not driver:
-        return texts
-    if sealed:
-        texts |= {file: shipped(file) for file in (*SEAL, *EXAMPLE)}
-    for file in (*DRIVER, *MAINS["sealed" if sealed else driver]):
+    if driver:
+        texts |= _driven(library, network, "sealed" if sealed else driver, having)
+    return texts
+
+
+def _driven(
+    library: Library, network: Network, main: str, having: frozenset[str]
+) -> dict[str, str]:
+    """A driver, what seals for it, an example of a board, and what build systems ask for."""
+    name = library.prefix
+    texts = {file: shipped(file) for file in (*SEAL, *EXAMPLE) if main == "sealed"}
+    for file in (*DRIVER, *MAINS[main]):
         text = _told(library, shipped(file, "", having), network.key_kind)
         texts[file.replace("role", name)] = renamed(text, name)
     if library.role.hooks:
@@ -163,8 +170,7 @@ def files_of(library: Library, network: Network, sealed: bool = False) -> dict[s
         for end in ("h", "c"):
             text = (resources.files(package) / f"{stem}.{end}").read_text(encoding="utf-8")
             texts[f"{name}_links.{end}"] = renamed(text, name)
-    sketch = driver == "node" and not sealed
-    ports = [file for file in PORTS if sketch or not file.endswith(".ino")]
+    ports = [file for file in PORTS if main == "node" or not file.endswith(".ino")]
     for file in ports:
         texts[file.replace("role", name)] = shipped(f"ports/{file}", name, having)
     return texts
