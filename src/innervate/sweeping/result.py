@@ -21,6 +21,13 @@ if TYPE_CHECKING:
     import polars
 
 LEVEL = 0.95
+# What is shown if nobody says: of these, those that the runs have.
+SHOWN = (
+    "recoveries.routed_ms", "cut_off.most", "data.loss_ratio",
+    "throughput", "delay_slots.p50",
+    "delivery_ratio", "latency_ms.p50",
+)  # fmt: skip
+SHOWN_MAX = 3
 
 
 @dataclass(eq=False, repr=False)
@@ -69,8 +76,13 @@ class Sweep:
 
     def _repr_html_(self) -> str:
         """In a notebook: how much there is, and the means of its figures with their intervals."""
-        points = self.points() if self.measures else self.results
+        points = self.points(self.to_show()) if self.measures else self.results
         return f"<p>{escape(repr(self))}</p>{points._repr_html_()}"
+
+    def to_show(self, wanted: Sequence[str] = ()) -> list[str]:
+        """The measures that somebody sees first: those wanted that there are, or a few."""
+        there = self.measures
+        return [one for one in wanted or SHOWN if one in there][:SHOWN_MAX] or there[:SHOWN_MAX]
 
     @property
     def provenance(self) -> dict[str, Any]:
