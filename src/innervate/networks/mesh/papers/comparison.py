@@ -193,8 +193,8 @@ CLAIMS = (
           "needs not know"),
     Fewer("0 dead", "airtime", FLOOD, "less airtime than flooding, nobody dies"),
     Fewer("8 dead", "airtime", FLOOD, "less airtime than flooding, 8 of 30 die",
-          "a message that meets a dead node is sent three times in vain, searches for a way, and is "
-          "sent again from its origin if no acknowledgement comes back"),
+          "a message that meets a dead node is sent three times in vain, searches for a way, and "
+          "is sent again from its origin if no acknowledgement comes back"),
     Fewer("0 dead", "airtime", TREE, "less airtime than RPL",
           "discovery finds all links, every node has a table for all others, and messages are "
           "acknowledged from end to end; RPL knows a tree, and acknowledges hops alone"),
