@@ -15,7 +15,7 @@ from innervate.networks.mesh.scenario.plan import MeshFault, Offer
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import in_field
 from innervate.papers.experiment import Claim
-from innervate.papers.in_field import KILL, NEVER, REVIVE, Sent, World
+from innervate.papers.in_field import NEVER, Sent, World
 from innervate.papers.jobs import (
     MEAN,
     MEDIAN,
@@ -28,6 +28,7 @@ from innervate.papers.jobs import (
     Words,
     entries,
 )
+from innervate.scenario.actions.field import KILL, REVIVE
 from innervate.trace.streams import stream
 
 HERE = f"{__name__}:world"
