@@ -33,20 +33,21 @@ class Ways:
     _far: dict[tuple[int, int], int] = field(default_factory=dict)
     _hop: list[int] = field(default_factory=list)
     _port: list[int] = field(default_factory=list)
+    _children: list[set[int]] = field(default_factory=list)
+    _routed: list[bool] = field(default_factory=list)
     _dead: set[int] = field(default_factory=set)
     _joined: set[int] = field(default_factory=set)
+    _without: int = 0
 
     def __post_init__(self) -> None:
         for a, port_a, b, port_b in self.cables:
             self._far[a, port_a], self._far[b, port_b] = b, a
-        self._hop = [NOWHERE] * self.nodes
         self._port = [NOWHERE] * self.nodes
-        self._joined = self._reached()
+        self._settle(0)
 
     def play(self, changes: Iterable[Change], harm: Iterable[Harm] = ()) -> Ways:
         """Play changes and harm in order of time; of one moment harm comes first."""
         waiting = sorted(harm, key=lambda one: one.at_us)
-        self._note(0)
         for at, node, port in changes:
             while waiting and waiting[0].at_us <= at:
                 self._suffer(waiting.pop(0))
@@ -57,9 +58,13 @@ class Ways:
 
     def _change(self, at: int, node: int, port: int) -> None:
         self._port[node] = port
-        self._hop[node] = self._far.get((node, port), NOWHERE)
-        if self._comes_back(node):
+        self._children[self._hop[node]].discard(node)
+        hop = self._hop[node] = self._far.get((node, port), NOWHERE)
+        self._children[hop].add(node)
+        is_loop = self._comes_back(node)
+        if is_loop:
             self.loops.append(at)
+        self._spread(node, hop == self.sink or (not is_loop and hop >= 0 and self._routed[hop]))
         self._note(at)
 
     def _comes_back(self, start: int) -> bool:
@@ -72,6 +77,16 @@ class Ways:
             node = self._hop[node]
         return False  # a loop that others closed
 
+    def _spread(self, start: int, routed: bool) -> None:
+        """A node and all whose ways lead through it have a way, or none."""
+        waiting = [start]
+        while waiting:
+            node = waiting.pop()
+            if self._routed[node] != routed:
+                self._routed[node] = routed
+                self._without += (-1 if routed else 1) * (node in self._joined)
+                waiting += self._children[node]
+
     def _suffer(self, harm: Harm) -> None:
         for place in harm.cables:
             a, port_a, b, port_b = self.cables[place]
@@ -81,9 +96,18 @@ class Ways:
         for key, other in list(self._far.items()):
             if key[0] in self._dead or other in self._dead:
                 del self._far[key]
+        self._settle(harm.at_us)
+
+    def _settle(self, at: int) -> None:
+        """Work everything out anew."""
         self._hop = [self._far.get((n, self._port[n]), NOWHERE) for n in range(self.nodes)]
+        self._children = [set() for _ in range(self.nodes + 1)]  # the last: of nowhere
+        for node, hop in enumerate(self._hop):
+            self._children[hop].add(node)
+        self._routed = [root != NOWHERE for root in self.roots()]
         self._joined = self._reached()
-        self._note(harm.at_us)
+        self._without = sum(not self._routed[node] for node in self._joined)
+        self._note(at)
 
     def _reached(self) -> set[int]:
         """Nodes that live cables join with the sink."""
@@ -118,10 +142,8 @@ class Ways:
         return root
 
     def _note(self, at: int) -> None:
-        root = self.roots()
-        count = sum(root[node] == NOWHERE for node in self._joined)
-        if not self.steps or self.steps[-1][1] != count:
-            self.steps.append((at, count))
+        if not self.steps or self.steps[-1][1] != self._without:
+            self.steps.append((at, self._without))
 
 
 @dataclass(frozen=True, slots=True)

@@ -124,11 +124,12 @@ def measured(
     made = wiring(given)
     changes = list(changes)
     end = end_us(given, harm)
-    before = Ways(len(made.names), 0, made.cables)
-    before.play(change for change in changes if change[0] < harm.at_us)
-    ways = Ways(len(made.names), 0, made.cables).play(changes, [harm])
+    ways = Ways(len(made.names), 0, made.cables)
+    ways.play(change for change in changes if change[0] < harm.at_us)
+    share = _largest_share(ways)
+    ways.play((change for change in changes if change[0] >= harm.at_us), [harm])
     calm = CALM * given["beacon_us"]
-    start = settled_us(before.steps, 0, harm.at_us, calm)
+    start = settled_us(ways.steps, 0, harm.at_us, calm)
     routed = settled_us(ways.steps, harm.at_us, end, calm)
     found = [at for at in downs if at > harm.at_us]
     return {
@@ -139,7 +140,7 @@ def measured(
         "without_s": time_without_us(ways.steps, harm.at_us, end) / 1e6,
         "loops": len(ways.loops),
         "bits_per_s": sent * FRAME_BITS / len(made.cables) / (end / 1e6),
-        "largest_share": _largest_share(before),
+        "largest_share": share,
     }
 
 

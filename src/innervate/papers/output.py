@@ -83,7 +83,7 @@ class Made:
     sheets: Mapping[str, Sequence[Sheet]] = field(default_factory=dict)
 
     def tables(self, name: str) -> Sequence[Sheet]:
-        """Those of one experiment."""
+        """The tables of one experiment."""
         return self.sheets.get(name, ())
 
 
