@@ -59,7 +59,7 @@ from .sending import acked, acknowledge, go, missed, new_message, sent
 from .trickle import begin_interval, interval_point, reset_trickle
 
 TIMERS = 4
-OUTBOX = 40
+OUTBOX = 48
 
 MESSAGE = 1  # inputs: to item.dest
 ALARM = 2  # to the root
