@@ -154,14 +154,14 @@ def sources(folder: Path, network: Any) -> list[Path]:
             continue
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom):
-                module = (node.module or "").removeprefix(f"{folder.name}.")
+                module = (node.module or "").rpartition(f"{folder.name}.")[2]
                 names = [module] if module else [alias.name for alias in node.names]
                 waiting += [folder / f"{name.replace('.', '/')}.py" for name in names]
     return found
 
 
 def _file_of(folder: Path, network: Any, part: str) -> Path:
-    place = network.parts.get(part, part).partition(":")[0].removeprefix(f"{folder.name}.")
+    place = network.parts.get(part, part).partition(":")[0].rpartition(f"{folder.name}.")[2]
     return folder / f"{place.replace('.', '/')}.py"
 
 

@@ -263,13 +263,16 @@ def of_folder(folder: Path) -> Network:
 
 
 def read(folder: Path) -> Network:
-    """The network of a folder, however it is written.
+    """The network of a folder, however it is written; one that is installed as it is known.
 
     Raises:
         NetworkError: it is none.
     """
     if not folder.is_dir():
         raise NetworkError(f"{folder}: no such folder; name one with a network.py")
+    for network in _installed():
+        if network.package and _is_home(network, folder.resolve()):
+            return network
     if not (folder / folders.NETWORK_FILE).is_file():
         raise NetworkError(f"{folder} holds no network.py")
     if not folder.resolve().name.isidentifier():
@@ -283,6 +286,13 @@ def read(folder: Path) -> Network:
                            f"{folder.name!r}; give both one name")  # fmt: skip
     found.folder = folder.resolve()
     return found
+
+
+def _is_home(network: Network, folder: Path) -> bool:
+    """True if the package of an installed network is that folder."""
+    return network.name == folder.name and any(
+        Path(place).resolve() == folder for place in import_module(network.package).__path__
+    )
 
 
 def _taken(network: Network, other: Network) -> NetworkError:

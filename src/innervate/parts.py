@@ -63,6 +63,8 @@ PARTS = {
     "shows": "dict of str to (unit, (node, params) -> number): what pages colour nodes by, too",
     "happenings": "dict of str to (node, value) -> (kind, item) for on_input: own [[event]]s",
     "papers": "module: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up",
+    "comparison": "module: JOBS, what protocols are compared at; ENTRIES, what of it does which "
+    "job (papers/jobs.py)",
 }
 DEFAULTS = {
     "model": "innervate.scenario.declared.cables:CablesScenario",

@@ -22,8 +22,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from innervate.network import networks
-from innervate.papers import output
+from innervate.papers import book, output
 from innervate.papers.experiment import Point
 from innervate.plot import style
 from tests.recorded import record, scenes
@@ -40,7 +39,7 @@ rows = cache(record.rows)
 
 def experiments(system: str) -> list[Any]:
     """All figures of a paper."""
-    paper = networks()[system].papers
+    paper = book.book_of(system)
     return [paper.experiment(name) for name in paper.FIGURES]
 
 
@@ -61,16 +60,19 @@ def drawn(experiment: Any, system: str) -> Any:
 
 def page(system: str, quick: bool = True) -> str:
     """The page of a paper, with one empty picture for all, as its rows make it."""
-    paper = networks()[system].papers
+    paper = book.book_of(system)
     chosen = experiments(system)
-    claims = {one.name: one.judge(rows(system), quick) for one in chosen}
+    made = output.Made(
+        {one.name: one.judge(rows(system), quick) for one in chosen},
+        {one.name: one.sheets(rows(system), quick) for one in chosen},
+    )
     heading = output.Heading(
         system, paper.TITLE, paper.AUTHORS, quick, "stamp", False, "again", paper.READINGS
     )
     with tempfile.TemporaryDirectory() as folder:
         for one in chosen:
             Path(folder, f"{one.name}.svg").write_text(f'<svg width="{390 + len(one.name)}pt"/>')
-        return output.as_page(Path(folder), heading, chosen, claims, {"innervate": "1"})
+        return output.as_page(Path(folder), heading, chosen, made, {"innervate": "1"})
 
 
 def plans(experiment: Any) -> list[str]:
@@ -115,7 +117,7 @@ def plain(value: Any) -> str:
 GROUPS: dict[str, Callable[[], Iterator[tuple[str, Drawn]]]] = {
     "skin": scenes.of_skin, "radio": scenes.of_radio, "mesh": scenes.of_mesh,
     "spine": scenes.of_spine,
-    **{f"papers-{system}": partial(of_paper, system) for system in ("skin", "radio", "mesh")},
+    **{f"papers-{book}": partial(of_paper, book) for book in ("skin", "radio", "mesh", "compare")},
 }  # fmt: skip
 
 

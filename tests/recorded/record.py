@@ -162,7 +162,7 @@ def _runs(check: bool) -> list[str]:
 def _papers(check: bool) -> list[str]:
     lost = []
     TABLES.mkdir(exist_ok=True)
-    for system in book.papers():
+    for system in book.books():
         print(f"papers {system}", flush=True)
         kept = TABLES / f"{system}.csv"
         with tempfile.TemporaryDirectory() as folder:

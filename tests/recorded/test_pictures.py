@@ -22,7 +22,7 @@ def test_pictures_are_as_recorded(group):
     assert names == list(kept)
 
 
-@pytest.mark.parametrize("system", book.papers())
+@pytest.mark.parametrize("system", book.books())
 def test_claims_on_kept_rows_are_as_recorded(system):
     table = (record.TABLES / f"{system}.csv").read_text(encoding="utf-8")
     rows = [

@@ -7,13 +7,14 @@ import random
 
 import pytest
 
-from innervate.network import networks
 from innervate.papers import book
 from innervate.papers.store import Store, stamp
 from tests.recorded import record
 
 SOURCES = record.sources()
-FIGURES = [(name, figure) for name in book.papers() for figure in networks()[name].papers.FIGURES]
+# What compares runs loops that no other test wants.
+FIGURES = [pytest.param(name, figure, marks=[pytest.mark.slow] * (name == book.COMPARE))
+           for name in book.books() for figure in book.book_of(name).FIGURES]  # fmt: skip
 QUICK = ("line", "loop-three", "setup-4", "demo", "radio-disaster", "mesh-field")
 
 
@@ -65,13 +66,13 @@ def test_a_plain_run_is_as_recorded(name):
 
 def points(system, figure):
     """A figure's pieces of work in its small size, those with the cheapest seeds first."""
-    found = networks()[system].papers.experiment(figure).points(True)
+    found = book.book_of(system).experiment(figure).points(True)
     return sorted(found, key=lambda point: (record.seed_cost_s(point), point.key))
 
 
-@pytest.mark.parametrize("system", book.papers())
+@pytest.mark.parametrize("system", book.books())
 def test_every_piece_of_a_papers_work_is_recorded(system):
-    figures = networks()[system].papers.FIGURES
+    figures = book.book_of(system).FIGURES
     wanted = {point.key for figure in figures for point in points(system, figure)}
     assert set(record.rows(system)) == wanted
 
@@ -87,7 +88,7 @@ def test_what_is_run_again_of_a_figure_is_as_recorded(system, figure):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("system", book.papers())
+@pytest.mark.parametrize("system", book.books())
 def test_a_papers_table_and_rows_are_as_recorded(system, tmp_path):
     kept = (record.TABLES / f"{system}.csv").read_text(encoding="utf-8")
     found = record.table(system, tmp_path)

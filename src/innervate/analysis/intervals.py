@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
-from math import atan, cos, pi, sin, sqrt
+from math import atan, comb, cos, pi, sin, sqrt
 from statistics import NormalDist
 from typing import NamedTuple
 
@@ -48,6 +48,8 @@ def quantile(values: Sequence[float], share: float) -> float:
     place = share * (len(ordered) - 1)
     below = int(place)
     above = min(below + 1, len(ordered) - 1)
+    if place == below or ordered[below] == ordered[above]:  # both may be infinite
+        return ordered[below]
     return ordered[below] + (place - below) * (ordered[above] - ordered[below])
 
 
@@ -106,3 +108,26 @@ def _t_share(t: float, freedom: int) -> float:
     if odd:
         return 0.5 + (angle + sin(angle) * total) / pi
     return 0.5 + sin(angle) * total / 2
+
+
+def quantile_interval(values: Sequence[float], share: float, level: float = 0.95) -> Interval:
+    """A quantile and its interval between two of the values, whatever they are spread like.
+
+    The bounds are those values of which as many are too far down (up) with at most half the
+    chance that is left. Where there are too few values for that, they are the least and greatest.
+
+    Raises:
+        ValueError: no values, or a share outside 0..1.
+    """
+    ordered, count = sorted(values), len(values)
+    middle = quantile(ordered, share)
+    chances = [comb(count, i) * share**i * (1 - share) ** (count - i) for i in range(count + 1)]
+    rest = (1 - level) / 2
+    low = max((r for r in range(1, count + 1) if sum(chances[:r]) <= rest), default=1)
+    high = min((r for r in range(1, count + 1) if sum(chances[r:]) <= rest), default=count)
+    return Interval(middle, ordered[low - 1], ordered[high - 1])
+
+
+def median_interval(values: Sequence[float], level: float = 0.95) -> Interval:
+    """The median and its interval, whatever the values are spread like."""
+    return quantile_interval(values, 0.5, level)

@@ -152,6 +152,7 @@ def papers(
     only: Annotated[list[str] | None, Parameter(negative="")] = None,
     quick: Annotated[bool, Parameter(negative="")] = False,
     redraw: Annotated[bool, Parameter(negative="")] = False,
+    page: Path | None = None,
     out: Path = Path("papers"),
 ) -> int:
     """Draw and tabulate the published figures, each claim beside what was measured.
@@ -159,19 +160,23 @@ def papers(
     Parameters
     ----------
     paper
-        Which paper: skin (if left out), radio or mesh.
+        Which paper: skin (if left out), radio or mesh; or compare: networks beside others.
     only
-        A figure by its name, like fig8a of the skin or fig12 of the radio; may be given again.
+        A figure by its name, like fig8a of the skin, fig12 of the radio or skin of compare; may be
+        given again.
     quick
         Few seeds and settings: in about a minute.
     redraw
         Use kept results even if the sources have changed since.
+    page
+        Of compare: a page of Markdown whose tables are made anew between its marks.
     out
         Folder for pictures, tables and kept results.
     """
     from innervate.cli import papers as command
 
-    return command.papers(paper or first(), only or [], quick, redraw, out)
+    how = {"quick": quick, "only": only or [], "redraw": redraw}
+    return command.papers(paper or first(), out, page, how)
 
 
 @app.command
@@ -261,6 +266,7 @@ def firmware(
     out: Path = Path("lib"),
     nodes: int | None = None,
     prefix: str = "",
+    sealed: Annotated[bool, Parameter(negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
     """Write a node's protocol as C99 for a microcontroller: one .c and one .h.
@@ -277,12 +283,15 @@ def firmware(
         How many a network of this kind has at most, where arrays depend on it.
     prefix
         In front of all names; the network's name if left out.
+    sealed
+        With a driver that shakes hands and seals, with a network's key, as live nodes do.
     json
         Print what was written as JSON and nothing else.
     """
     from innervate.cli import firmware as command
 
-    return command.firmware(network, list(settings), command.Wanted(out, nodes, prefix), json)
+    wanted = command.Wanted(out, nodes, prefix, sealed)
+    return command.firmware(network, list(settings), wanted, json)
 
 
 app.command(scenarios)

@@ -104,7 +104,7 @@ def _look_further(
                          f"write OUTBOX = {most}")  # fmt: skip
     from innervate.running.exploring import explore
 
-    (case,) = explore(folder, graph="pair", states=5_000)
+    (case,) = explore(network, graph="pair", states=5_000)
     said["explored"], said["broken"] = case.record, case.record["broken"]
     lines += case.lines
     if with_tests:

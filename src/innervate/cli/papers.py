@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -11,8 +12,15 @@ from innervate.cli import errors
 from innervate.cli.progress import Display
 
 
-def papers(system: str, only: list[str], quick: bool, redraw: bool, out: Path) -> int:
-    """Draw and tabulate a paper's figures; say how many claims hold."""
+def papers(system: str, out: Path, page: Path | None, how: Mapping[str, Any]) -> int:
+    """Draw and tabulate a paper's figures; say how many claims hold.
+
+    Args:
+        system: which.
+        out: folder for everything.
+        page: of Markdown, whose tables are made anew.
+        how: quick, only, redraw of `innervate.papers.main`.
+    """
     room: Any = import_module("innervate.papers")
     with Display() as display:
         display.begin(f"papers {system}: figures and table into {out}", line=True)
@@ -22,15 +30,17 @@ def papers(system: str, only: list[str], quick: bool, redraw: bool, out: Path) -
             display.show(what, step.done, step.total, step.left_s)
 
         try:
-            page = room.main(system, out, quick=quick, only=only, progress=tell, redraw=redraw)
+            made = room.main(system, out, progress=tell, **how)
         except KeyboardInterrupt:
             errors.say(
                 "interrupted; what was done is kept, and the same command goes on from there"
             )
             return errors.INTERRUPTED
-    for line in verdict_lines(page.with_suffix(".csv")):
+    if page is not None:
+        import_module("innervate.papers.book").into_page(page, system, out, how["only"])
+    for line in verdict_lines(made.with_suffix(".csv")):
         print(line)
-    print(f"Look at them in a browser: {page}")
+    print(f"Look at them in a browser: {made}")
     return 0
 
 

@@ -19,6 +19,7 @@ HANDLERS = {
 ON_AIR = {
     "on_carrier": "(state, params, now, cd, voc, out)",
 }
+MAY = {"on_sent": "(state, params, now, ok, out)"}  # that a protocol need not have
 
 
 class Finding:
@@ -51,7 +52,9 @@ def of_source(path, known, home, handlers):
         return [Finding(path, 1, f"cannot be read: {error}")]
     found = [Finding(path, one.line, one.what) for one in broken_rules(text, known, home)]
     there = {function.name: function for function in functions_of(tree)}
-    for name, arguments in handlers.items():
+    for name, arguments in (handlers | MAY if handlers else {}).items():
+        if name not in there and name in MAY:
+            continue
         if name not in there:
             found.append(Finding(path, 1, f"has no {name}; add def {name}{arguments}"))
         elif len(there[name].args.args) != arguments.count(",") + 1:

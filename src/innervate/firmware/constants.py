@@ -7,6 +7,7 @@ import inspect
 from collections.abc import Iterable
 from functools import cache
 from importlib import import_module
+from importlib.util import resolve_name
 
 from innervate.dialect.source import Function
 from innervate.firmware.statements import comments_of
@@ -53,5 +54,6 @@ def _notes(module: str) -> tuple[dict[str, str], dict[str, str]]:
                 if isinstance(target, ast.Name):
                     notes[target.id] = "" if alone else note
         elif isinstance(node, ast.ImportFrom) and node.module is not None:
-            homes |= {alias.name: node.module for alias in node.names}
+            home = resolve_name("." * node.level + node.module, source.__package__)
+            homes |= {alias.name: home for alias in node.names}
     return notes, homes

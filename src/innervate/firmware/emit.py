@@ -20,7 +20,7 @@ from innervate.firmware.statements import Statements, comment, declaration, wrap
 from innervate.live.board import Role
 
 ABI = 2  # counts changes of what stands in headers and how it is called
-HANDLERS = ("on_start", "on_frame", "on_timer", "on_input", "on_carrier")
+HANDLERS = ("on_start", "on_frame", "on_timer", "on_input", "on_carrier", "on_sent")
 MEANINGS = {
     "state": "What a node keeps.",
     "gate": "What a node has besides that leads, or may have to.",

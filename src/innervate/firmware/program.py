@@ -23,6 +23,7 @@ GIVEN = {
     "on_timer": ("int",),
     "on_input": ("int", "item"),
     "on_carrier": ("int", "int"),
+    "on_sent": ("int",),
 }
 OUT = ("count", "limit", "overflow")
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from innervate.dialect.access import ALL
+from innervate.dialect.outbox import URGENT
 from innervate.live.build import links_of, sealer_of, state_of
 from innervate.live.declared import DeclaredFile, DeclaredNode, DeclaredStack
 from innervate.live.deployment import Deployment, Pairs, Table
@@ -42,7 +43,9 @@ class FieldStack(DeclaredStack):
 
     def on_sent(self, now: int) -> None:
         """Our own frame has ended, at once; the channel is free, as ever."""
-        if hasattr(self._do, "on_carrier"):
+        if hasattr(self._do, "on_sent"):
+            self._do.on_sent(self.node, self.params, now, 1, self.out)
+        elif hasattr(self._do, "on_carrier"):
             self._do.on_carrier(self.node, self.params, now, 0, 0, self.out)
 
 
@@ -54,7 +57,7 @@ class FieldNode(DeclaredNode):
 
     def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
         super()._transmit(port, frame, attempt, flags)
-        self._unended += 1
+        self._unended += not flags & URGENT
 
     def _settled(self) -> None:
         super()._settled()

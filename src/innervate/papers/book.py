@@ -18,11 +18,12 @@ from typing import Any
 from innervate.network import networks
 from innervate.papers import output
 from innervate.papers.errors import PapersError
-from innervate.papers.experiment import Claim, Experiment, Point
+from innervate.papers.experiment import Claim, Experiment, Point, Sheet
 from innervate.papers.store import Store, stamp
 from innervate.plot import style
 
 RESULTS = "results.jsonl"
+COMPARE = "compare"  # the book of comparisons, which is no network's
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +56,7 @@ def main(
     """Draw and tabulate the figures of a paper.
 
     Args:
-        system: which network's papers, one of `papers()`.
+        system: one of `books()`: which network's papers, or "compare".
         out: folder for the figures, tables and kept results.
         quick: few seeds and settings, in under a minute.
         only: names of figures ("fig8a"); empty = all.
@@ -70,10 +71,7 @@ def main(
         PapersError: no such paper or figure, or the folder cannot be used.
         KeyboardInterrupt: it was interrupted; what was done is kept.
     """
-    known = papers()
-    if system not in known:
-        raise PapersError(f'there is no paper "{system}"; choose from: {", ".join(known)}')
-    paper = networks()[system].papers
+    paper = book_of(system)
     names = _chosen(paper, only)
     experiments = [paper.experiment(name) for name in names]
     folder = Path(out)
@@ -88,7 +86,22 @@ def main(
     heading = output.Heading(
         system, paper.TITLE, paper.AUTHORS, quick, mark, redraw, command, paper.READINGS
     )
-    return output.write(folder, heading, experiments, book.claims, time.perf_counter() - started)
+    wall_s = time.perf_counter() - started
+    made = output.Made(book.claims, book.sheets)
+    return output.write(folder, heading, experiments, made, wall_s)
+
+
+def into_page(page: Path, system: str, folder: Path, only: Iterable[str] = ()) -> None:
+    """Put the tables that `main` left in a folder into a page of Markdown, between its marks.
+
+    Raises:
+        PapersError: the book has no tables, there is no such page, or it has no marks for one.
+    """
+    for name in _chosen(book_of(system), only):
+        tables = folder / f"{system}-{name}.md"
+        if not tables.exists():
+            raise PapersError(f"papers {system} has no tables for a page; leave out --page")
+        output.insert(page, f"{system}-{name}", tables.read_text(encoding="utf-8"))
 
 
 def _command(system: str, quick: bool, only: Sequence[str]) -> str:
@@ -99,6 +112,27 @@ def _command(system: str, quick: bool, only: Sequence[str]) -> str:
 def papers() -> list[str]:
     """Networks whose papers can be redrawn."""
     return [name for name, network in networks().items() if network.has("papers")]
+
+
+def books() -> list[str]:
+    """All that `main` takes: those papers, and the comparison."""
+    return [*papers(), COMPARE]
+
+
+def book_of(system: str) -> Any:
+    """What a book is made of: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up.
+
+    Raises:
+        PapersError: there is none of this name.
+    """
+    known = books()
+    if system not in known:
+        raise PapersError(f'there is no paper "{system}"; choose from: {", ".join(known)}')
+    if system == COMPARE:
+        from innervate.papers import compare  # asks all networks what they compare
+
+        return compare
+    return networks()[system].papers
 
 
 def _chosen(paper: ModuleType, only: Iterable[str]) -> list[str]:
@@ -137,6 +171,7 @@ class _Book:
         self.progress = progress
         self.warm_up = warm_up
         self.claims: dict[str, list[Claim]] = {}
+        self.sheets: dict[str, list[Sheet]] = {}
         self._started = time.perf_counter()
         self._spent = self._whole = 0.0
         self._done = self._total = 0
@@ -191,6 +226,7 @@ class _Book:
             results = self.store.values
             style.save(experiment.draw(results, self.quick), self.folder, experiment.name)
             self.claims[experiment.name] = experiment.judge(results, self.quick)
+            self.sheets[experiment.name] = experiment.sheets(results, self.quick)
 
     def _say(self, what: str) -> None:
         left = None

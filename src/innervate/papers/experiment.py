@@ -106,11 +106,21 @@ Claims = Iterator[Claim]
 
 
 @dataclass(frozen=True, slots=True)
+class Sheet:
+    """A table for people: its title, its head, its rows, all of them text."""
+
+    title: str
+    head: tuple[str, ...]
+    rows: Sequence[tuple[str, ...]]
+
+
+@dataclass(frozen=True, slots=True)
 class Experiment:
     """A figure: its points, its drawing, its rows of the table.
 
-    All three take `quick`: fewer seeds and settings, the same code. As a module it is TITLE,
-    CAPTION, `points(quick)`, and `draw` and `judge`, which take what was measured.
+    All take `quick`: fewer seeds and settings, the same code. As a module it is TITLE,
+    CAPTION, `points(quick)`, and `draw` and `judge`, which take what was measured. Tables of its
+    own (`sheets`) has only what compares.
     """
 
     name: str
@@ -119,6 +129,7 @@ class Experiment:
     points: Callable[[bool], list[Point]]
     draw: Callable[[Results, bool], Figure]
     judge: Callable[[Results, bool], list[Claim]]
+    sheets: Callable[[Results, bool], list[Sheet]] = lambda results, quick: []
 
     @classmethod
     def of(cls, module: ModuleType) -> Experiment:

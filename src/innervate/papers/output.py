@@ -13,7 +13,8 @@ from importlib import metadata
 from pathlib import Path
 
 import innervate
-from innervate.papers.experiment import FAILS, HOLDS, Claim, Experiment
+from innervate.papers.errors import PapersError
+from innervate.papers.experiment import FAILS, HOLDS, Claim, Experiment, Sheet
 from innervate.plot import page
 from innervate.plot.svg import clean
 from innervate.trace.provenance import checkout
@@ -74,22 +75,71 @@ class Heading:
     readings: Mapping[str, str] = field(default_factory=dict)
 
 
+@dataclass(frozen=True, slots=True)
+class Made:
+    """What came of experiments, by their names."""
+
+    claims: Mapping[str, Sequence[Claim]]
+    sheets: Mapping[str, Sequence[Sheet]] = field(default_factory=dict)
+
+    def tables(self, name: str) -> Sequence[Sheet]:
+        """The tables of one experiment."""
+        return self.sheets.get(name, ())
+
+
 def write(
-    folder: Path,
-    heading: Heading,
-    experiments: Sequence[Experiment],
-    claims: Mapping[str, Sequence[Claim]],
-    wall_s: float,
+    folder: Path, heading: Heading, experiments: Sequence[Experiment], made: Made, wall_s: float
 ) -> Path:
     """Write papers-<system>.csv, .md and .html; the path of the page."""
     name = f"papers-{heading.system}"
-    rows = [claim for experiment in experiments for claim in claims[experiment.name]]
+    rows = [claim for experiment in experiments for claim in made.claims[experiment.name]]
     origin = provenance(heading, wall_s)
     _put(folder / f"{name}.csv", as_csv(rows))
     _put(folder / f"{name}.md", as_markdown(heading, rows, origin))
+    for one in experiments:
+        if made.tables(one.name):
+            _put(folder / f"{heading.system}-{one.name}.md", as_tables(heading, one, made, origin))
     path = folder / f"{name}.html"
-    _put(path, as_page(folder, heading, experiments, claims, origin))
+    _put(path, as_page(folder, heading, experiments, made, origin))
     return path
+
+
+def as_tables(heading: Heading, one: Experiment, made: Made, origin: Mapping[str, str]) -> str:
+    """The tables of an experiment and its claims as Markdown, for a page of the documentation."""
+    kept = ("seeds", "settings", "with")
+    claims = [
+        (row.claim, row.measurement, row.verdict, row.reason) for row in made.claims[one.name]
+    ]
+    sheets = [
+        *made.tables(one.name),
+        Sheet("What is claimed", ("claim", "measured", "verdict", "why"), claims),
+    ]
+    said = "; ".join(f"{key}: {origin[key]}" for key in kept)
+    return "\n".join([f"`{heading.command}`; {said}.", "", *map(_table_of, sheets)])
+
+
+def _table_of(sheet: Sheet) -> str:
+    lines = [f"**{_cell(sheet.title)}**", "", f"| {' | '.join(sheet.head)} |"]
+    lines.append("|" + "---|" * len(sheet.head))
+    return "\n".join([*lines, *(f"| {' | '.join(map(_cell, row))} |" for row in sheet.rows), ""])
+
+
+def insert(page: Path, name: str, text: str) -> None:
+    """Put a text between a page's marks of this name.
+
+    Raises:
+        PapersError: there is no such page, or it has no such marks.
+    """
+    first, last = f"<!-- {name}: made by innervate papers -->", f"<!-- end of {name} -->"
+    try:
+        old = page.read_text(encoding="utf-8")
+    except OSError as error:
+        raise PapersError(f"{page}: {error.strerror or error}; name another page") from None
+    before, found, rest = old.partition(first)
+    _, end, after = rest.partition(last)
+    if not found or not end:
+        raise PapersError(f"{page} has no place for {name}; add {first} and {last}")
+    _put(page, f"{before}{first}\n{text}\n{end}{after}")
 
 
 def provenance(heading: Heading, wall_s: float) -> dict[str, str]:
@@ -153,11 +203,11 @@ def as_page(
     folder: Path,
     heading: Heading,
     experiments: Sequence[Experiment],
-    claims: Mapping[str, Sequence[Claim]],
+    made: Made,
     origin: Mapping[str, str],
 ) -> str:
     """One self-contained page: every figure with its claims, all of it in one file."""
-    sections = [(experiment, claims[experiment.name]) for experiment in experiments]
+    sections = [(experiment, made.claims[experiment.name]) for experiment in experiments]
     rows = [row for _, some in sections for row in some]
     parts = [
         _LAYOUT,
@@ -169,6 +219,9 @@ def as_page(
     ]
     for experiment, some in sections:
         inside = _figure(folder, experiment) + _table(some, heading.readings)
+        for sheet in made.tables(experiment.name):
+            cells = [[clean(text) for text in row] for row in sheet.rows]
+            inside += page.element("h3", sheet.title) + page.table(sheet.head, cells)
         inside += _simulated(experiment, heading.quick)
         parts.append(_anchored(experiment.name, page.section(experiment.title, inside)))
     parts.append(_anchored("readings", page.section("Readings", _readings(rows, heading))))

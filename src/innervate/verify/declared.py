@@ -14,21 +14,22 @@ meanwhile is left open.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import Any
 
 from innervate.dialect import plain
 from innervate.dialect.access import ALL
 from innervate.dialect.arith import MASK30
-from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
+from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.folders import MEDIA_ON_AIR, invariants_of
 from innervate.kernel.clock import wall_s
 from innervate.network import Network
 from innervate.topology import PORTS, Graph, TopologyError, free_graph
 from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent, lines_of
 from innervate.verify.errors import VerifyError
+from innervate.verify.states import Budget, Node, State, Step
 from innervate.verify.tally import Tally
 from innervate.verify.values import ahead, place_of, put, values, with_one
 
@@ -43,38 +44,6 @@ GRAPHS = {
     "ring": "n0.E-n1.W n1.E-n2.W n2.E-n0.W",
 }
 STUCK = "nothing can happen any more: no timer is set, no frame is on its way"
-
-
-@dataclass(frozen=True, slots=True)
-class Budget:
-    """How often what may happen: lost frames, nodes that lose their memory, inputs."""
-
-    loss: int = 1
-    restart: int = 1
-    input: int = 1
-
-
-class Node(NamedTuple):
-    """A node: the values of its state, and its timers as (timer, us from its time on)."""
-
-    values: tuple[Any, ...]
-    timers: tuple[tuple[int, int], ...]
-
-
-class State(NamedTuple):
-    """A network: its nodes, the frames on their way by end, and what may still go wrong."""
-
-    nodes: tuple[Node, ...]
-    ways: tuple[tuple[tuple[Any, ...], ...], ...]
-    left: tuple[int, ...]
-
-
-class Step(NamedTuple):
-    """A successor: what happened, the state after it, what it broke ("" nothing)."""
-
-    words: str
-    state: State
-    broken: str
 
 
 class Net:
@@ -92,6 +61,7 @@ class Net:
         self.do, self.fields, self.graph = protocol, fields, graph
         self.on_air = hasattr(protocol, "on_carrier")
         self.has_carrier = self.on_air
+        self.is_told = hasattr(protocol, "on_sent")  # when its frames have left
         self.is_addressed = False  # a frame's field `to` says who is given it
         self.own: dict[str, Any] = {}  # what must hold of a node, by what it says
         self.of_all: dict[str, Any] = {}  # and of all nodes together
@@ -139,9 +109,13 @@ class Net:
         for number, node in enumerate(state.nodes):
             if node.timers:
                 yield self.fire(state, number)
+            if node.down:
+                yield self.leave(state, number, 1)
+                if loss:
+                    yield self.leave(state._replace(left=(loss - 1, restart, given)), number, 0)
             if restart:
                 lost = state._replace(left=(loss, restart - 1, given))
-                lost = lost._replace(nodes=with_one(lost.nodes, number, node._replace(timers=())))
+                lost = lost._replace(nodes=with_one(lost.nodes, number, Node(node.values, ())))
                 after, broken = self.call(lost, number, 0, self.do.on_start, MEMORY_LOST)
                 yield Step(f"{self.graph.label(number)} loses its memory", after, broken)
             if given:
@@ -211,6 +185,18 @@ class Net:
         after, broken = self.call(waiting, number, max(wait, 0), self.do.on_timer, timer)
         return Step(f"Timer {timer} of {self.graph.label(number)} fires", after, broken)
 
+    def leave(self, state: State, number: int, ok: int) -> Step:
+        """A frame that a node handed down goes out, or the channel stayed busy; it is told."""
+        first, *rest = state.nodes[number].down
+        node = state.nodes[number]._replace(down=tuple(rest))
+        ways = list(state.ways)
+        for end in self.ends_of(number, 0) if ok else ():
+            ways[end] = (*ways[end], first)
+        gone = state._replace(nodes=with_one(state.nodes, number, node), ways=tuple(ways))
+        after, broken = self.call(gone, number, 0, self.do.on_sent, ok)
+        what = "goes out" if ok else "finds the channel busy and is given up"
+        return Step(f"A frame of {self.graph.label(number)} {what}", after, broken)
+
     def call(
         self, state: State, number: int, now: int, handler: Any, *what: Any
     ) -> tuple[State, str]:
@@ -223,7 +209,7 @@ class Net:
         except (ArithmeticError, AttributeError, IndexError, TypeError, ValueError) as error:
             return state, f"a handler cannot go on: {place_of(error)}{type(error).__name__}"
         broken = self.broken(now)
-        timers, ways = dict(node.timers), list(state.ways)
+        timers, ways, down = dict(node.timers), list(state.ways), list(node.down)
         for act, frame in zip(out.action[: out.count[0]], out.frame, strict=False):
             if act.kind == SET_TIMER:
                 timers[act.a] = ahead(act.b)
@@ -232,21 +218,31 @@ class Net:
                 if not 0 <= act.a < PORTS:
                     broken = broken or "a frame is sent on a port that no node has"
                     continue
+                sent = values(frame, self.fields.FRAME, {"made_at"})
+                if self.is_told and not act.c & URGENT:
+                    down.append(sent)
+                    continue
                 for end in self.ends_of(number, act.a):
-                    ways[end] = (*ways[end], values(frame, self.fields.FRAME, {"made_at"}))
+                    ways[end] = (*ways[end], sent)
             elif act.kind not in (DELIVER, REPORT):
                 broken = broken or "the outbox holds what is no action"
-        return self.kept(state, number, now, timers, ways), broken
+        return self.kept(state, number, now, timers, down)._replace(ways=tuple(ways)), broken
 
     def kept(
-        self, state: State, number: int, now: int, timers: dict[int, int], ways: list[Any]
+        self, state: State, number: int, now: int, timers: dict[int, int], down: list[Any]
     ) -> State:
         """The state with a node as it is now, its moments relative to its time."""
         for name in self.clocks:
-            setattr(self.node, name, (getattr(self.node, name) - now) & MASK30)
+            at = getattr(self.node, name)
+            own = (
+                [(one - now) & MASK30 for one in at]
+                if isinstance(at, list)
+                else (at - now) & MASK30
+            )
+            setattr(self.node, name, own)
         waits = tuple(sorted((timer, at - now) for timer, at in timers.items()))
-        node = Node(values(self.node, self.fields.STATE), waits)
-        return state._replace(nodes=with_one(state.nodes, number, node), ways=tuple(ways))
+        node = Node(values(self.node, self.fields.STATE), waits, tuple(down))
+        return state._replace(nodes=with_one(state.nodes, number, node))
 
     def broken_of_all(self, state: State) -> str:
         """What is broken of all nodes together."""
@@ -285,13 +281,14 @@ def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tupl
             steps = list(net.steps(state))
             tally.expanded += 1
             tally.generated += len(steps)
-            if not any(state.ways) and not any(node.timers for node in state.nodes):
+            if not any(state.ways) and not any(node.timers or node.down for node in state.nodes):
                 return replace(tally, ended="broken"), _story(before, state, STUCK, "")
             for step in steps:
                 if broken := step.broken or (net.of_all and net.broken_of_all(step.state)):
                     told = _story(before, state, broken, step.words)
                     return replace(tally, ended="broken"), told
-                if max(map(len, step.state.ways)) > IN_FLIGHT:
+                down = (node.down for node in step.state.nodes)
+                if max(map(len, (*step.state.ways, *down))) > IN_FLIGHT:
                     tally.left_out += 1
                 elif step.state not in before:
                     before[step.state] = (state, step.words)

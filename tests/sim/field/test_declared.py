@@ -182,6 +182,63 @@ def test_over_goes_with_a_field_and_a_medium_access_that_there_is(alone, capsys)
     assert not (alone / "flood").exists()
 
 
+@pytest.fixture
+def telling(alone, capsys):
+    """A network above CSMA that reports what became of its frames."""
+    network = made(alone / "flood", "field", "csma")
+    capsys.readouterr()
+    network.change("protocol.py", "import deliver, send,", "import deliver, report, send,")
+    path = network.folder / "protocol.py"
+    path.write_text(
+        path.read_text()
+        + '''
+
+def on_sent(node, params, now, ok, out):
+    """A frame of ours has left, or not."""
+    report(out, 7, ok, node.hops)
+'''
+    )
+    return network
+
+
+def told_of(run):
+    rows = run.result.rows["rows"]
+    return [(int(row["node"]), int(row["a"])) for row in rows if row["code"] == 7]
+
+
+def test_a_protocol_above_csma_is_told_that_its_frames_have_left(telling):
+    assert told_of(in_line(telling)) == [(0, 1), (1, 1), (2, 1)]
+    jammed = {"at_s": 0.05, "action": "jam", "node": 1, "noise_dbm": -60}
+    assert told_of(in_line(telling, event=[jammed])) == [(0, 1)], "1 hears nothing"
+    jammed |= {"node": 0}
+    assert told_of(in_line(telling, event=[jammed])) == [(0, 0)], "the channel stays busy"
+
+
+def test_an_urgent_frame_waits_for_nothing_and_nobody_is_told(telling):
+    telling.change("protocol.py", "send(out, 0, 0, 0)", "send(out, 0, 0, 1)")
+    jammed = {"at_s": 0.05, "action": "jam", "node": 0, "noise_dbm": -60}
+    run = in_line(telling, event=[jammed])
+    assert told_of(run) == []
+    assert sorted(run.result.rows["deliveries"]["node"].tolist()) == [1, 2]
+
+
+def test_what_becomes_of_a_frame_is_explored(telling):
+    telling.change("protocol.py", "report(out, 7, ok, node.hops)", "node.hops += 16 * (1 - ok)")
+    (case,) = innervate.explore(telling.folder, graph="pair", budget="restart=0")
+    assert case.is_broken
+    assert "n0 finds the channel busy and is given up" in " ".join(case.story.sentences)
+    (case,) = innervate.explore(telling.folder, graph="pair", budget="restart=0,loss=0")
+    assert not case.is_broken
+
+
+def test_on_sent_is_written_as_it_is_called(telling, capsys):
+    telling.change(
+        "protocol.py", "def on_sent(node, params, now, ok, out)", "def on_sent(node, ok)"
+    )
+    assert main(["run", str(telling.scenario)]) == 2
+    assert "on_sent takes 2 arguments" in capsys.readouterr().err
+
+
 def test_a_page_shows_it_where_it_lies_and_cuts_its_links(bare):
     plan = scenarios.plan(scenarios.load(bare.scenario))
     from innervate.web.engine import Engine

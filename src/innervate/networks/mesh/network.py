@@ -44,6 +44,7 @@ NETWORK = Network(
     live_words="live.words",
     live_view="view.live:MeshLiveView",
     papers="papers",
+    comparison="papers.comparison",
     verify="verify.command",
     prove="prove.theories",
     boards="board:ROLES",

@@ -47,6 +47,7 @@ NETWORK = Network(
     live_view="view.live:SkinLiveView",
     recovery="export.recovery",
     papers="papers",
+    comparison="papers.compared",
     verify="verify.command",
     prove="prove.theories",
     boards="board:ROLES",

@@ -1,9 +1,9 @@
 """A network over a field that only declares its protocol: its functions, its records, its runs.
 
 Of its `Network` it takes `protocol` (on_start, on_frame, its port 0, on_timer, on_input, TIMERS;
-and on_carrier unless it is `over` a medium access), `fields` and `frames`. Of a frame's fields the
-medium knows `to` (only that node is given it, ALL = every one), `rssi` (how loud it came in, dBm)
-and `made_at` (when its content was handed in), each where it is declared.
+and on_carrier, or, `over` a medium access, on_sent, if it has one), `fields` and `frames`. Of a
+frame's fields the medium knows `to` (only that node is given it, ALL = every one), `rssi` (how loud
+it came in, dBm) and `made_at` (when its content was handed in), each where it is declared.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from typing import Any, ClassVar
 
 from innervate.dialect import arith, outbox, rng
 from innervate.dialect.access import ALL
+from innervate.dialect.outbox import URGENT
 from innervate.folders import invariants_of
 from innervate.kernel import compilation, tables
 from innervate.network import Network, access_of, networks
@@ -99,7 +100,7 @@ def _entries(protocol: ModuleType, names: set[str]) -> tuple[Callable[..., Any],
     def on_input(world, node, now, kind):  # type: ignore[no-untyped-def]
         given(world.stations[node], world.params[0], now, kind, world.item[0], world.out)
 
-    def tell_end(world, do, node, time):  # type: ignore[no-untyped-def]
+    def tell_end(world, do, node, time, ok):  # type: ignore[no-untyped-def]
         pass
 
     def note_carriers(world, do, time):  # type: ignore[no-untyped-def]
@@ -107,6 +108,8 @@ def _entries(protocol: ModuleType, names: set[str]) -> tuple[Callable[..., Any],
 
     on_own_frame.__name__ = "on_frame"
     made = (on_start, on_own_frame if "to" in names else on_frame, on_timer, on_input)
+    if hasattr(protocol, "on_sent"):
+        return (*made, *_of_sent(protocol.on_sent), note_carriers)
     if not hasattr(protocol, "on_carrier"):
         return (*made, tell_end, note_carriers)
     carrier, tell_changes, tell_carrier = (
@@ -116,7 +119,7 @@ def _entries(protocol: ModuleType, names: set[str]) -> tuple[Callable[..., Any],
     def on_carrier(world, node, now, cd, voc):  # type: ignore[no-untyped-def]
         carrier(world.stations[node], world.params[0], now, cd, voc, world.out)
 
-    def tell_own_end(world, do, node, time):  # type: ignore[no-untyped-def]
+    def tell_own_end(world, do, node, time, ok):  # type: ignore[no-untyped-def]
         tell_carrier(world, do, node, time)
 
     def note_changes(world, do, time):  # type: ignore[no-untyped-def]
@@ -124,6 +127,19 @@ def _entries(protocol: ModuleType, names: set[str]) -> tuple[Callable[..., Any],
 
     tell_own_end.__name__, note_changes.__name__ = "tell_end", "note_carriers"
     return (*made, on_carrier, tell_own_end, note_changes)
+
+
+def _of_sent(sent: Callable[..., Any]) -> tuple[Callable[..., Any], ...]:
+    """A protocol above a medium access is told what became of its frames."""
+    tell_gone = listening.tell_gone
+
+    def on_sent(world, node, now, ok):  # type: ignore[no-untyped-def]
+        sent(world.stations[node], world.params[0], now, ok, world.out)
+
+    def tell_end(world, do, node, time, ok):  # type: ignore[no-untyped-def]
+        tell_gone(world, do, node, time, ok)
+
+    return on_sent, tell_end
 
 
 def _mac(network: Network) -> tuple[Callable[..., Any], ...]:
@@ -179,8 +195,8 @@ def _noted(copy: Any, kind_of: Any, names: set[str]) -> tuple[Callable[..., Any]
 
     def hand_down(world, do, node, frame, act, time):  # type: ignore[no-untyped-def]
         radio = world.radios[node]
-        act.b, act.c = min(max(act.b, 0), access.ATTEMPT_MAX), 0
-        if radio.held != medium.NONE or radio.waiting > 0:
+        act.b, act.c = min(max(act.b, 0), access.ATTEMPT_MAX), act.c & URGENT
+        if not act.c and (radio.held != medium.NONE or radio.waiting > 0):
             listening.put_off(world, do, node, frame, act)
             return do.digest(frame)
         return access.hand_down(world, do, node, frame, act, time)

@@ -11,6 +11,7 @@ from innervate.sim.field.states import ALIVE, ON_AIR
 from innervate.sim.status import BROKEN, DONE, POOL_FULL, ROWS_FULL
 
 ON_CARRIER = 4  # in trails
+ON_SENT = 5
 SENT = 0
 ARRIVED = 1
 COLLIDED = 2
@@ -130,7 +131,7 @@ def tell_sent(world, do, node, time, ok):
     """A node's frame has left the air, or the medium access has given it up."""
     if not ok:
         lose_all(world, node, BUSY)
-    do.tell_end(world, do, node, time)
+    do.tell_end(world, do, node, time, ok)
     next_one(world, do, node, time)
 
 
@@ -159,6 +160,12 @@ def tell_carrier(world, do, node, time):
     radio.told = cd
     do.on_carrier(world, node, (time + radio.offset) & MASK30, cd, 0)
     calls.finish(world, do, node, time, ON_CARRIER, cd)
+
+
+def tell_gone(world, do, node, time, ok):
+    """Tell a node that its frame has left the air, or (`ok` 0) was given up."""
+    do.on_sent(world, node, (time + world.radios[node].offset) & MASK30, ok)
+    calls.finish(world, do, node, time, ON_SENT, ok)
 
 
 def tell_changes(world, do, time):

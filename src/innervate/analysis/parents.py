@@ -1,0 +1,185 @@
+"""Who has a way to the sink over time, told from changes of next hops alone, whoever wrote them.
+
+Nodes are numbers, the sink one of them; a cable is (node, port, node, port). For networks over
+cables whose nodes have one next hop each: what is compared has one definition.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+Cable = tuple[int, int, int, int]
+Change = tuple[int, int, int]  # when (us), who, its port from then on; -1 none
+NOWHERE = -1
+
+
+@dataclass(slots=True)
+class Ways:
+    """A network whose next hops change and whose cables and nodes go down.
+
+    Attributes:
+        sink: the node that all want to reach.
+        steps: (when, how many nodes that are joined with the sink have no way to it), a step
+            function; only where it changes.
+        loops: when next hops closed a loop.
+    """
+
+    nodes: int
+    sink: int
+    cables: Sequence[Cable]
+    steps: list[tuple[int, int]] = field(default_factory=list)
+    loops: list[int] = field(default_factory=list)
+    _far: dict[tuple[int, int], int] = field(default_factory=dict)
+    _hop: list[int] = field(default_factory=list)
+    _port: list[int] = field(default_factory=list)
+    _children: list[set[int]] = field(default_factory=list)
+    _routed: list[bool] = field(default_factory=list)
+    _dead: set[int] = field(default_factory=set)
+    _joined: set[int] = field(default_factory=set)
+    _without: int = 0
+
+    def __post_init__(self) -> None:
+        for a, port_a, b, port_b in self.cables:
+            self._far[a, port_a], self._far[b, port_b] = b, a
+        self._port = [NOWHERE] * self.nodes
+        self._settle(0)
+
+    def play(self, changes: Iterable[Change], harm: Iterable[Harm] = ()) -> Ways:
+        """Play changes and harm in order of time; of one moment harm comes first."""
+        waiting = sorted(harm, key=lambda one: one.at_us)
+        for at, node, port in changes:
+            while waiting and waiting[0].at_us <= at:
+                self._suffer(waiting.pop(0))
+            self._change(at, node, port)
+        for one in waiting:
+            self._suffer(one)
+        return self
+
+    def _change(self, at: int, node: int, port: int) -> None:
+        self._port[node] = port
+        self._children[self._hop[node]].discard(node)
+        hop = self._hop[node] = self._far.get((node, port), NOWHERE)
+        self._children[hop].add(node)
+        is_loop = self._comes_back(node)
+        if is_loop:
+            self.loops.append(at)
+        self._spread(node, hop == self.sink or (not is_loop and hop >= 0 and self._routed[hop]))
+        self._note(at)
+
+    def _comes_back(self, start: int) -> bool:
+        node = self._hop[start]
+        for _ in range(self.nodes):
+            if node in (NOWHERE, self.sink):
+                return False
+            if node == start:
+                return True
+            node = self._hop[node]
+        return False  # a loop that others closed
+
+    def _spread(self, start: int, routed: bool) -> None:
+        """A node and all whose ways lead through it have a way, or none."""
+        waiting = [start]
+        while waiting:
+            node = waiting.pop()
+            if self._routed[node] != routed:
+                self._routed[node] = routed
+                self._without += (-1 if routed else 1) * (node in self._joined)
+                waiting += self._children[node]
+
+    def _suffer(self, harm: Harm) -> None:
+        for place in harm.cables:
+            a, port_a, b, port_b = self.cables[place]
+            self._far.pop((a, port_a), None)
+            self._far.pop((b, port_b), None)
+        self._dead |= set(harm.nodes)
+        for key, other in list(self._far.items()):
+            if key[0] in self._dead or other in self._dead:
+                del self._far[key]
+        self._settle(harm.at_us)
+
+    def _settle(self, at: int) -> None:
+        """Work everything out anew."""
+        self._hop = [self._far.get((n, self._port[n]), NOWHERE) for n in range(self.nodes)]
+        self._children = [set() for _ in range(self.nodes + 1)]  # the last: of nowhere
+        for node, hop in enumerate(self._hop):
+            self._children[hop].add(node)
+        self._routed = [root != NOWHERE for root in self.roots()]
+        self._joined = self._reached()
+        self._without = sum(not self._routed[node] for node in self._joined)
+        self._note(at)
+
+    def _reached(self) -> set[int]:
+        """Nodes that live cables join with the sink."""
+        beside: dict[int, list[int]] = {}
+        for (node, _), other in self._far.items():
+            beside.setdefault(node, []).append(other)
+        found, waiting = {self.sink}, [self.sink]
+        while waiting:
+            fresh = [one for one in beside.get(waiting.pop(), ()) if one not in found]
+            found.update(fresh)
+            waiting += fresh
+        return found - {self.sink}
+
+    def roots(self) -> list[int]:
+        """The last node before the sink of every node's way; NOWHERE without one."""
+        root = [NOWHERE] * self.nodes
+        known = [False] * self.nodes
+        for start in range(self.nodes):
+            way: list[int] = []
+            node = start
+            while node not in (NOWHERE, self.sink) and not known[node] and len(way) <= self.nodes:
+                known[node] = True
+                way.append(node)
+                node = self._hop[node]
+            end = NOWHERE
+            if node == self.sink and way:
+                end = way[-1]
+            elif node not in (NOWHERE, self.sink) and known[node]:
+                end = root[node]
+            for one in way:
+                root[one] = end
+        return root
+
+    def _note(self, at: int) -> None:
+        if not self.steps or self.steps[-1][1] != self._without:
+            self.steps.append((at, self._without))
+
+
+@dataclass(frozen=True, slots=True)
+class Harm:
+    """What goes down at a moment: places in the list of cables, nodes."""
+
+    at_us: int
+    cables: tuple[int, ...] = ()
+    nodes: tuple[int, ...] = ()
+
+
+def settled_us(steps: Sequence[tuple[int, int]], start: int, end: int, calm_us: int) -> int | None:
+    """The first moment from `start` on from which nobody is without a way for so long; None never.
+
+    At the end of what is looked at, less will do.
+    """
+    inside = _between(steps, start, end)
+    after = [*(at for at, _ in inside[1:]), end]
+    for (at, count), till in zip(inside, after, strict=True):
+        if count == 0 and (till - at >= calm_us or till == end):
+            return at
+    return None
+
+
+def most_without(steps: Sequence[tuple[int, int]], start: int, end: int) -> int:
+    """The greatest number without a way between two moments, both included."""
+    return max((count for _, count in _between(steps, start, end)), default=0)
+
+
+def time_without_us(steps: Sequence[tuple[int, int]], start: int, end: int) -> int:
+    """Time without a way, added up over all nodes, us."""
+    inside = _between(steps, start, end)
+    after = [*(at for at, _ in inside[1:]), end]
+    return sum(count * (till - at) for (at, count), till in zip(inside, after, strict=True))
+
+
+def _between(steps: Sequence[tuple[int, int]], start: int, end: int) -> list[tuple[int, int]]:
+    before = [count for at, count in steps if at <= start][-1:]
+    return [*((start, count) for count in before), *(s for s in steps if start < s[0] < end)]

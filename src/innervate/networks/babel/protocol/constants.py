@@ -1,0 +1,19 @@
+"""Names and numbers that all parts of Babel share."""
+
+PORTS = 4
+NONE = -1
+INFINITY = 65535
+HELLO = 1
+UPDATE = 2
+ROUTE_REQUEST = 3
+SEQNO_REQUEST = 4
+DATA = 5
+TICK = 0  # our Hellos
+LOOK = 1  # something may have expired
+SOON = 2  # a triggered update
+TENTH_MS = 100
+HOPS_MAX = 64
+TRIES = 3
+REPORT_ROUTE = 1  # a port of the route selected from now on, b its neighbour; -1 none
+REPORT_DROP = 2  # data without a route, or that went too far
+REPORT_LINK = 3  # a port, b 1 up, 0 down

@@ -1,0 +1,18 @@
+"""What the toolkit is told of managed flooding."""
+
+from innervate import Network
+
+NETWORK = Network(
+    "flooding",
+    __package__,
+    medium="field",
+    over="csma",
+    rank=20,
+    link_type=160,
+    key_kind=20,
+    protocol="protocol",
+    fields="fields",
+    frames="frames",
+    invariants="invariants",
+    comparison="comparison",
+)

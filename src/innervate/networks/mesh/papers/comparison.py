@@ -1,0 +1,260 @@
+"""The mesh's job beside other protocols: messages between any two, deaths, alarms, a dead root."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+from innervate.networks.mesh.analysis.messages import NEVER as LOST
+from innervate.networks.mesh.analysis.messages import messages
+from innervate.networks.mesh.papers import testbed as beds
+from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options
+from innervate.networks.mesh.protocol.constants import END_TO_END, MONITOR, PRIORITY
+from innervate.networks.mesh.scenario.plan import MeshFault, Offer
+from innervate.networks.mesh.sim.simulate import simulate
+from innervate.papers import in_field
+from innervate.papers.experiment import Claim
+from innervate.papers.in_field import KILL, NEVER, REVIVE, Sent, World
+from innervate.papers.jobs import (
+    MEAN,
+    MEDIAN,
+    Case,
+    Column,
+    Compared,
+    Entry,
+    Given,
+    Job,
+    Words,
+    entries,
+)
+from innervate.trace.streams import stream
+
+HERE = f"{__name__}:world"
+GATEWAY = beds.GATEWAY
+FIRST, LATER, PEERS, ALARMS, AFTER = "first", "later", "peers", "alarms", "after"
+BEGIN_US = 20_000_000  # all protocols know their ways
+GAP_US = 100_000  # from message to message of all nodes
+END_US = 3_000_000
+OUTAGE_US = 40_000_000
+STANDBY = 1
+
+
+def plan_of(given: Given, seed: int, protocol: Options = (), more: Options = ()) -> Any:
+    """The mesh of a case, in which nobody sends and nobody dies."""
+    seconds = (BEGIN_US + _lasts_us(given) + END_US) / 1e6
+    bed = MeshTestbed(nodes=given["nodes"], protocol=protocol, duration_s=seconds, more=more)
+    return bed.plan(seed)
+
+
+def _lasts_us(given: Given) -> int:
+    if given.get("root"):
+        return 2 * OUTAGE_US
+    return int(given["rounds"]) * int(given["nodes"]) * GAP_US
+
+
+def world(given: Given, seed: int) -> World:
+    """Who hears whom, who dies and who sends, in a case."""
+    plan = plan_of(given, seed)
+    radio = plan.radio
+    air = {"byte_ns": radio.byte_ns, "phy_bytes": radio.phy_bytes,
+           "turnaround_us": radio.turnaround_us, "capture_db": radio.capture_cdb / 100,
+           "sense_db": (radio.rssi50_cdb - radio.sense_cdb) / 100}  # fmt: skip
+    made = World(plan.nodes, radio.rssi_cdb, radio.prob_q15, plan.good, air, GATEWAY, BEGIN_US,
+                 plan.duration_us)  # fmt: skip
+    if given.get("root"):
+        made.faults = [(BEGIN_US, KILL, GATEWAY), (BEGIN_US + OUTAGE_US, REVIVE, GATEWAY)]
+        made.sent = _through_an_outage(made, seed)
+    else:
+        gone = beds.dying(plan, given["dead"])
+        made.faults = [(BEGIN_US, KILL, node) for node in gone]
+        made.sent = _rounds(made, seed, gone, given)
+    return made
+
+
+def _rounds(made: World, seed: int, gone: list[int], given: Given) -> list[Sent]:
+    """In each round every live node writes to another one, always the same; or raises an alarm."""
+    draw = stream(seed, "papers/senders")
+    alive = [node for node in range(made.nodes) if node not in gone]
+    left = list(alive)
+    order = [left.pop(draw.draw(len(left))) for _ in alive]
+    to = {node: [one for one in alive if one != node][draw.draw(len(alive) - 1)] for node in order}
+    span = made.nodes * GAP_US
+    if given.get("alarms"):
+        order.remove(GATEWAY)
+        to = dict.fromkeys(order, in_field.MONITOR)
+    return [Sent(BEGIN_US + k * span + i * GAP_US + 1, node, to[node], LATER if k else FIRST)
+            for k in range(given["rounds"]) for i, node in enumerate(order)]  # fmt: skip
+
+
+def _through_an_outage(made: World, seed: int) -> list[Sent]:
+    """By turns a message to another node, and an alarm, of a node that is drawn."""
+    draw = stream(seed, "papers/senders")
+    found = []
+    for at in range(BEGIN_US, made.duration_us - END_US, GAP_US):
+        source = 1 + draw.draw(made.nodes - 1)
+        other = 1 + draw.draw(made.nodes - 2)
+        other += other >= source
+        is_out = at < BEGIN_US + OUTAGE_US
+        if (at // GAP_US) % 2:
+            found.append(Sent(at + 1, source, in_field.MONITOR, ALARMS if is_out else AFTER))
+        else:
+            found.append(Sent(at + 1, source, other, PEERS if is_out else "peers after"))
+    return found
+
+
+def measure(protocol: Options, more: Options, given: Given, seed: int) -> dict[str, Any]:
+    """One run of a mesh."""
+    made = world(given, seed)
+    plan = plan_of(given, seed, protocol, more)
+    assert plan.radio.rssi_cdb == made.rssi_cdb
+    flags = END_TO_END if plan.params["reliable"] else 0
+    plan.faults = [MeshFault(at, action, node, 0, 0, i)
+                   for i, (at, action, node) in enumerate(made.faults)]  # fmt: skip
+    plan.offers = [_offer(one, flags) for one in made.sent]
+    result = simulate(plan, checks=False)
+    found = messages(result)
+    came = [NEVER if at == LOST else at for at in found.delivered_us.tolist()]
+    assert found.offered_us.tolist() == [one.at_us for one in made.sent]
+    sent = result.sent[result.sent["time"] >= made.since_us]
+    return in_field.figures(made, came, int((sent["end"] - sent["time"]).sum()))
+
+
+def _offer(one: Sent, flags: int) -> Offer:
+    if one.dest == in_field.MONITOR:
+        return Offer(one.at_us, one.source, MONITOR, flags | PRIORITY, beds.BYTES, 0)
+    return Offer(one.at_us, one.source, one.dest, flags, beds.BYTES, 0)
+
+
+def warm_up() -> None:
+    """Compile the loop of up to 32 nodes; the others are when they are first wanted."""
+    simulate(MeshTestbed(duration_s=0.001).plan(1), checks=False)
+
+
+def cases(quick: bool) -> list[Case]:
+    """Deaths, sizes, alarms, a dead root."""
+    few = range(1, 4 if quick else 31)
+    made = [_case(f"{dead} dead", f"30 nodes, {dead} dead", few, MESSAGES, nodes=30, dead=dead)
+            for dead in ((0, 8) if quick else (0, 4, 8))]  # fmt: skip
+    made += [_case(f"{n} nodes", f"{n} nodes, nobody dies", seeds, MESSAGES, nodes=n, dead=0)
+             for n, seeds in (((10, few),) if quick else SIZES)]  # fmt: skip
+    made.append(_case("alarms", "alarms of all, 30 nodes, 8 dead", few, RAISED, nodes=30, dead=8,
+                      rounds=1, alarms=1))  # fmt: skip
+    made.append(_case("root", "30 nodes, the root off for 40 s, then 37 s more", few, OUTAGE,
+                      nodes=30, root=1))  # fmt: skip
+    return made
+
+
+def _case(name: str, title: str, seeds: range, columns: tuple[Column, ...], **given: Any) -> Case:
+    return Case(name, title, {"world": HERE, "rounds": 2, **given}, seeds, columns)
+
+
+TIMES = (
+    Column("latency, half within (ms)", "p50_ms", MEDIAN),
+    Column("99 % within (ms)", "p99_ms", MEDIAN),
+    Column("airtime of all (% of the time)", "airtime", MEAN),
+)
+MESSAGES = (
+    Column("first messages delivered (%)", FIRST, MEAN),
+    Column("second ones (%)", LATER, MEAN),
+    *TIMES,
+)
+RAISED = (Column("alarms at the monitor (%)", FIRST, MEAN), *TIMES)
+OUTAGE = (
+    Column("others' messages meanwhile (%)", PEERS, MEAN),
+    Column("alarms meanwhile (%)", ALARMS, MEAN),
+    Column("others' messages afterwards (%)", "peers after", MEAN),
+    Column("alarms afterwards (%)", AFTER, MEAN),
+    TIMES[-1],
+)
+SIZES = ((10, range(1, 31)), (100, range(1, 31)), (254, range(1, 6)))
+GRAPH_NODES = 145  # that a flooded graph has room for
+
+
+def judge(compared: Compared) -> Iterator[Claim]:
+    """What is better here, and what is not."""
+    by_name = {case.name: case for case in compared.cases()}
+    who = {entry.name: entry for entry in entries("mesh")}
+    ours, none = who["mesh"], {"nobody dies": by_name["0 dead"]}
+    eight = {"8 of 30 dead": by_name["8 dead"]}
+    root = {"the root is off": by_name["root"]}
+
+    def less(where: dict[str, Case], name: str, other: str, claim: str, why: str) -> Claim:
+        return compared.less(where, name, (ours, who[other]), Words(claim, why))
+
+    yield less(
+        eight,
+        f"{FIRST}_lost",
+        "the document",
+        "fewer first messages are lost than by the document's own rules",
+        "",
+    )
+    yield less(
+        eight, f"{FIRST}_lost", "RPL, storing", "fewer first messages are lost than by RPL", ""
+    )
+    yield less(
+        root,
+        f"{PEERS}_lost",
+        "RPL, storing",
+        "fewer messages among others are lost while the root is off than by RPL",
+        "",
+    )
+    yield less(none, "airtime", "flooding, 7 hops", "less airtime than flooding", "")
+    yield less(
+        eight,
+        "airtime",
+        "flooding, 7 hops",
+        "less airtime than flooding after deaths",
+        "a message that meets a dead node is sent three times in vain, searches for a way, "
+        "and is sent again from its origin if no acknowledgement comes back",
+    )
+    yield less(
+        none,
+        "airtime",
+        "RPL, storing",
+        "less airtime than RPL",
+        "discovery finds all links, every node has a table for all others, and messages are "
+        "acknowledged from end to end; RPL knows a tree and acknowledges hops alone",
+    )
+    yield less(
+        eight,
+        "p99_ms",
+        "flooding, 7 hops",
+        "99 % come sooner than by flooding",
+        "who is dead is found out by three transmissions without an answer, hop by hop; a "
+        "flood needs not know",
+    )
+
+
+SEARCH: Options = ()
+GRAPH: Options = (("failover", "graph"),)
+STOOD_BY: Options = (("standby", [STANDBY]),)
+
+
+def _fits(given: Given) -> bool:
+    return bool(given["nodes"] <= GRAPH_NODES)
+
+
+def _has_outage(given: Given) -> bool:
+    return "root" in given
+
+
+JOBS = (
+    Job("mesh", "Messages over several hops",
+        "Nodes anywhere in a square, a mean of 8 good links each, 250 kbit/s; 20 s after "
+        "they were switched on nodes die that nobody knows of, and then every live node writes 16 "
+        "bytes to another, ten messages a second altogether, twice.",
+        cases, judge, ("p99_ms", "99 % within (ms)")),
+)  # fmt: skip
+ENTRIES = (
+    Entry("mesh", "mesh", "this mesh as it is set: tables, then search along the path trace; "
+          "messages are acknowledged from end to end; an alarm is such a message with priority",
+          partial(measure, SEARCH, ()), warm_up, 0.3),
+    Entry("mesh", "mesh, graph", 'the same with failover = "graph": every node has the whole graph',
+          partial(measure, GRAPH, ()), warm_up, 0.3, _fits),
+    Entry("mesh", "mesh, standby", "the first with node 1 standing by for the gateway",
+          partial(measure, SEARCH, STOOD_BY), warm_up, 0.3, _has_outage),
+    Entry("mesh", "the document", "the mesh's document to the letter: one transmission, a random "
+          "neighbour for the next packet, nothing from end to end",
+          partial(measure, LITERAL, ()), warm_up, 0.3),
+)  # fmt: skip

@@ -1,0 +1,39 @@
+"""RPL at the jobs of other networks."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+from innervate.papers.in_field import run_declared, world_of
+from innervate.papers.jobs import Entry, Given
+
+INPUTS: dict[bool, Any] = {False: (1, {}), True: (2, {})}
+
+
+def measure(storing: int, given: Given, seed: int) -> dict[str, Any]:
+    """One run in storing or non-storing mode."""
+    world = world_of(given, seed)
+    return run_declared("rpl", {"storing": storing, "root": world.gateway}, INPUTS, world)
+
+
+def warm_up() -> None:
+    """Compile the loop."""
+    from innervate.network import networks
+    from innervate.scenario import from_dict
+    from innervate.scenario import plan as plan_of
+
+    small = plan_of(from_dict({"kind": "rpl", "nodes": 2, "duration_s": 0.001}))
+    networks()["rpl"].simulation(small, checks=False, tap=True).finish()
+
+
+WHAT = (
+    "RPL, {mode} mode, MRHOF on ETX, Imin 64 ms, Imax 16 s, k 10, four transmissions a hop, a "
+    "packet that is not acknowledged is given to the next parent; no acknowledgements from end to "
+    "end; an alarm is a packet to the root"
+)
+ENTRIES = (
+    Entry("mesh", "RPL, storing", WHAT.format(mode="storing"), partial(measure, 1), warm_up, 0.4),
+    Entry("mesh", "RPL, non-storing", WHAT.format(mode="non-storing"), partial(measure, 0), warm_up,
+          0.5),
+)  # fmt: skip

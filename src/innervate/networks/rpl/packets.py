@@ -1,0 +1,129 @@
+"""Packets that wait to be sent: a ring."""
+
+from .constants import BODY, DAO_ACK, DAO_UP, DATA, NEAR, NOBODY, NONE, QUEUE, ROUTE, TARGETS
+
+
+def new_place(node):
+    """A place behind all packets, blank; -1 if there is none."""
+    if node.q_count == QUEUE:
+        return NONE
+    i = (node.q_first + node.q_count) % QUEUE
+    node.q_count += 1
+    node.q_kind[i] = DATA
+    node.q_origin[i] = node.number
+    node.q_dest[i] = node.number
+    node.q_from[i] = NOBODY
+    node.q_hops[i] = 0
+    node.q_down[i] = 0
+    node.q_error[i] = 0
+    node.q_back[i] = 0
+    node.q_info[i] = 0
+    node.q_path[i] = 0
+    node.q_length[i] = 0
+    node.q_next[i] = 0
+    node.q_made[i] = 0
+    for j in range(ROUTE):
+        node.q_route[i * ROUTE + j] = 0
+    for j in range(BODY):
+        node.q_body[i * BODY + j] = 0
+    return i
+
+
+def drop_first(node):
+    """The first packet is done with."""
+    node.q_first = (node.q_first + 1) % QUEUE
+    node.q_count -= 1
+    node.rounds = 0
+
+
+def base_of(kind):
+    """A kind of frame without what a source route adds."""
+    if kind >= DAO_ACK and kind < DAO_ACK + 3:
+        return DAO_ACK
+    return DATA if kind >= DATA and kind < DATA + 3 else kind
+
+
+def keep(node, i, frame):
+    """Write a frame that was received into a place."""
+    node.q_kind[i] = base_of(frame.kind)
+    node.q_origin[i] = frame.origin
+    node.q_dest[i] = frame.dest
+    node.q_from[i] = frame.src
+    node.q_hops[i] = frame.hops - 1
+    node.q_down[i] = frame.down
+    node.q_error[i] = frame.error
+    node.q_made[i] = frame.made_at
+    if frame.kind > DAO_ACK + 2:
+        node.q_info[i] = frame.info
+    if frame.kind == DAO_UP or node.q_kind[i] == DAO_ACK:
+        node.q_path[i] = frame.path
+    if frame.kind != node.q_kind[i]:
+        node.q_length[i] = frame.length
+        node.q_next[i] = frame.next
+        for j in range(min(frame.length, NEAR)):
+            node.q_route[i * ROUTE + j] = frame.near[j]
+        for j in range(NEAR, frame.length):
+            node.q_route[i * ROUTE + j] = frame.far[j - NEAR]
+    if node.q_kind[i] == DATA:
+        for j in range(BODY):
+            node.q_body[i * BODY + j] = frame.body[j]
+
+
+def clean(frame):
+    """A frame of which nothing is said yet."""
+    frame.kind = 0
+    frame.to = 0
+    frame.src = 0
+    frame.dsn = 0
+    frame.version = 0
+    frame.rank = 0
+    frame.dtsn = 0
+    frame.mop = 0
+    frame.life = 0
+    frame.origin = 0
+    frame.dest = 0
+    frame.hops = 0
+    frame.down = 0
+    frame.error = 0
+    frame.back = 0
+    frame.sender_rank = 0
+    frame.info = 0
+    frame.path = 0
+    frame.length = 0
+    frame.next = 0
+    frame.rssi = 0
+    frame.made_at = 0
+    for i in range(TARGETS):
+        frame.targets[i] = 0
+        frame.paths[i] = 0
+    for i in range(NEAR):
+        frame.near[i] = 0
+    for i in range(ROUTE - NEAR):
+        frame.far[i] = 0
+    for i in range(BODY):
+        frame.body[i] = 0
+
+
+def fill(node, i, frame):
+    """Make a frame of the packet in a place; whoever sends it adds the hop's fields."""
+    length = node.q_length[i]
+    frame.kind = node.q_kind[i]
+    if length > 0:
+        frame.kind += 1 if length <= NEAR else 2
+    frame.origin = node.q_origin[i]
+    frame.dest = node.q_dest[i]
+    frame.hops = node.q_hops[i]
+    frame.down = node.q_down[i]
+    frame.error = node.q_error[i]
+    frame.back = node.q_back[i]
+    frame.info = node.q_info[i]
+    frame.path = node.q_path[i]
+    frame.made_at = node.q_made[i]
+    frame.length = length
+    frame.next = node.q_next[i]
+    for j in range(NEAR):
+        frame.near[j] = node.q_route[i * ROUTE + j]
+    for j in range(NEAR, ROUTE):
+        frame.far[j - NEAR] = node.q_route[i * ROUTE + j]
+    for j in range(BODY):
+        frame.body[j] = node.q_body[i * BODY + j]

@@ -1,0 +1,147 @@
+"""The skin's job, and the skin at it: cells that want to reach the PC while cables fail."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from innervate import scenario
+from innervate.networks.skin.analysis.rows import broken_changes, parent_changes
+from innervate.networks.skin.papers import warm_up
+from innervate.networks.skin.papers.common import plan_of, seeds_of
+from innervate.networks.skin.papers.compared_claims import judge
+from innervate.networks.skin.sim.simulate import simulate
+from innervate.papers import cabled
+from innervate.papers.jobs import (
+    MEDIAN,
+    MOST,
+    TAIL,
+    TOTAL,
+    Case,
+    Column,
+    Entry,
+    Given,
+    Job,
+)  # fmt: skip
+from innervate.sim.cables.wires import BLOCKS, SENT
+
+JOB = "skin"
+SETUPS = {"setup-1": "99 cells, 2 ports", "setup-7": "204 cells, 3 ports"}
+LOSSES = (0.0, 0.05)
+HARMS = {"none": "nothing fails", "cut": "a cable of the PC is cut",
+         "four cuts": "four cables are cut", "death": "a cell two hops away dies"}  # fmt: skip
+BEACON_US, K = 4_000, 5
+SETTLE, WATCH = 100, 200
+CALM_SETTLE = 1_000  # periods until the load is balanced
+STATIC_WATCH = 700  # its dead time of 2 s, and what comes before and after
+RECOVERY = (
+    Column("found (ms)", "detected_ms", MEDIAN),
+    Column("all have a way (ms)", "routed_ms", MEDIAN),
+    Column("90 % (ms)", "routed_ms", TAIL),
+    Column("cells without, most", "without", MEDIAN, 0),
+    Column("cell seconds without", "without_s", MEDIAN, 2),
+    Column("loops, all runs", "loops", TOTAL, 0),
+)
+CALM = (
+    Column("start-up (ms)", "start_ms", MEDIAN),
+    Column("90 % (ms)", "start_ms", TAIL),
+    Column("control bit/s a cable", "bits_per_s", MEDIAN, 0),
+    Column("busiest port's share", "largest_share", MEDIAN, 2),
+    Column("cell seconds without, later", "without_s", MEDIAN, 2),
+    Column("loops, all runs", "loops", TOTAL, 0),
+    Column("cells without later, most of all", "without", MOST, 0),
+)
+
+
+def cables(setup: str) -> list[list[str]]:
+    """The cables of a bundled skin, its cells called c0, c1, ..."""
+    graph = plan_of(setup).graph
+
+    def end(one: int) -> str:
+        node = graph.node_of(one)
+        return f"{'pc' if node == graph.sink else f'c{node}'}.{graph.port_of(one)}"
+
+    return [[end(a), end(b)] for a, b in graph.links()]
+
+
+def cases(quick: bool) -> list[Case]:
+    """Every setup, with and without loss, everything that can happen."""
+    return [
+        case(setup, loss, harm, quick)
+        for setup in list(SETUPS)[: 1 if quick else None]
+        for loss in LOSSES
+        for harm in HARMS
+    ]
+
+
+def case(setup: str, loss: float, harm: str, quick: bool) -> Case:
+    """One setting, as a case."""
+    settle = CALM_SETTLE if harm == "none" else SETTLE
+    given = {"cables": cables(setup), "beacon_us": BEACON_US, "k": K, "loss": loss, "harm": harm,
+             "settle": settle, "watch": WATCH}  # fmt: skip
+    said = f"{SETUPS[setup]}, {100 * loss:g} % of all frames are lost: {HARMS[harm]}"
+    name = f"{setup}, loss {loss:g}, {harm}, {BEACON_US} us, k={K}, {settle} + {WATCH} periods"
+    columns = CALM if harm == "none" else RECOVERY
+    return Case(name, said, given, seeds_of(3 if quick else 60), columns)
+
+
+def measure(given: Given, seed: int, **protocol: Any) -> dict[str, Any]:
+    """One run of a case under a rule."""
+    if protocol.get("rule") == "static":
+        given = {**given, "watch": STATIC_WATCH}
+    harm, made = cabled.drawn(given, seed), cabled.wiring(given)
+    at_s, names = harm.at_us / 1e6, made.names
+    cuts = [made.cables[place] for place in harm.cables]
+    events = [{"at_s": at_s, "action": "cut", "link": [names[a], names[b]]} if a and b else
+              {"at_s": at_s, "action": "cut", "interface": p if a == 0 else q}
+              for a, p, b, q in cuts]  # fmt: skip
+    events += [{"at_s": at_s, "action": "kill", "node": names[node]} for node in harm.nodes]
+    tables = {
+        "kind": "skin",
+        "duration_s": cabled.end_us(given, harm) / 1e6,
+        "link": [{"a": a, "b": b} for a, b in given["cables"]],
+        "protocol": {"beacon_hz": 1e6 / given["beacon_us"], "k": given["k"], **protocol},
+        "timing": {"loss": given["loss"]},
+        "event": events,
+    }
+    result = simulate(scenario.plan(scenario.from_dict(tables, seed=seed)), checks=False)
+    number = made.number
+    whose = [*(number[name] for name in result.plan.graph.names), 0]
+    changes = parent_changes(result)
+    told = zip(changes.time_us.tolist(), changes.cell.tolist(), changes.new.tolist(), strict=True)
+    broken = broken_changes(result)
+    downs = broken.time_us[np.flatnonzero(broken.broken == 1)].tolist()
+    sent = sum(int(result.counters[SENT + block]) for block in BLOCKS)
+    moved = [(at, whose[cell], port) for at, cell, port in told]
+    return cabled.measured(given, harm, moved, downs, sent)
+
+
+def entry(name: str, what: str, **protocol: Any) -> Entry:
+    """An entry that is the skin, in some setting."""
+    return Entry(JOB, name, what, partial(measure, **protocol), warm_up, 0.2)
+
+
+ENTRIES = (
+    entry("skin, feasible", f"rule feasible, wave updates, k = {K} (the default)", rule="feasible"),
+    entry("skin, feasible, k = 2", "the same with k = 2", rule="feasible", k=2),
+    entry("skin, feasible, periodic", "rule feasible, beacons at their period only",
+          rule="feasible", updates="periodic"),
+    entry("skin, strict", f"rule strict, wave updates, k = {K}", rule="strict"),
+    entry("static trees", "the paper's static tree, set up anew after a failure, dead for 2 s",
+          rule="static"),
+)  # fmt: skip
+
+
+JOBS = (
+    Job(
+        JOB,
+        "Cells that want to reach the PC while cables fail",
+        "Until all cells have a way again, from the failure on; a dot a run, the median and its "
+        f"95 % interval. A beacon every {BEACON_US / 1e3:g} ms for all, the same failures.",
+        cases,
+        judge,
+        ("routed_ms", "all have a way (ms)"),
+    ),
+)

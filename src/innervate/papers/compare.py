@@ -1,0 +1,98 @@
+"""The comparison as a book: a figure, tables and claims for every job that a network sets."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from innervate.analysis.intervals import median_interval
+from innervate.papers import drawing
+from innervate.papers.experiment import Claim, Experiment, Measured, Point, Results, Sheet
+from innervate.papers.jobs import Case, Compared, Job, doing, entries, jobs, points
+from innervate.plot import style
+
+TITLE = "The networks beside protocols of the field"
+AUTHORS = "Equal links, faults and seeds"
+READINGS: dict[str, str] = {}
+COLUMNS = 3  # panels in a row
+
+
+def __getattr__(name: str) -> Any:
+    """FIGURES: the jobs, which networks set."""
+    if name == "FIGURES":
+        return tuple(jobs())
+    raise AttributeError(name)
+
+
+def warm_up() -> None:
+    """Compile what the entries run, each once."""
+    for once in dict.fromkeys(entry.warm_up for job in jobs() for entry in entries(job)):
+        once()
+
+
+def experiment(name: str) -> Experiment:
+    """A job as figure, tables and claims."""
+    job = jobs()[name]
+
+    def of(results: Results, quick: bool) -> Compared:
+        return Compared(job, Measured(results, quick))
+
+    def wanted(quick: bool) -> list[Point]:
+        return points(job, quick)
+
+    def judge(results: Results, quick: bool) -> list[Claim]:
+        return list(job.judge(of(results, quick)))
+
+    def sheets(results: Results, quick: bool) -> list[Sheet]:
+        return [_legend(job), *of(results, quick).sheets()]
+
+    def draw(results: Results, quick: bool) -> Figure:
+        return picture(of(results, quick))
+
+    return Experiment(name, job.title, job.caption, wanted, draw, judge, sheets)
+
+
+def _legend(job: Job) -> Sheet:
+    rows = [(entry.name, entry.what) for entry in entries(job.name)]
+    return Sheet("Who is compared", ("", "what it is"), rows)
+
+
+def picture(compared: Compared) -> Figure:
+    """Every run as a dot, medians and their intervals, a panel a case."""
+    name, axis = compared.job.drawn
+    cases = [case for case in compared.cases() if name in {one.name for one in case.columns}]
+    rows = -(-len(cases) // COLUMNS)
+    most = max(len(doing(compared.job, case)) for case in cases)
+    height = rows * (0.55 + 0.17 * most) + 0.4
+    figure, axes = style.panels(style.WIDE_IN, height, rows, COLUMNS, sharex=True)
+    for place, case in enumerate(cases):
+        _panel(axes[place], compared, case, name)
+        first = cases[place - place % COLUMNS]
+        if place % COLUMNS and doing(compared.job, case) == doing(compared.job, first):
+            axes[place].set_yticklabels([])
+    for ax in axes[len(cases) :]:
+        ax.set_axis_off()
+    for ax in axes[COLUMNS * (rows - 1) :]:
+        ax.set_xlabel(axis)
+    return figure
+
+
+def _panel(ax: Axes, compared: Compared, case: Case, name: str) -> None:
+    rng = np.random.default_rng(1)
+    who = doing(compared.job, case)
+    for place, entry in enumerate(who):
+        values = compared.values(case, entry, name)
+        colour = style.SERIES[place % len(style.SERIES)]
+        finite = np.array([value for value in values if np.isfinite(value)])
+        at = place + rng.uniform(-0.22, 0.22, len(finite))
+        ax.plot(finite, at, ".", color=colour, ms=2, mew=0, alpha=0.5)
+        found = median_interval(values)
+        if np.isfinite(found.value):
+            ax.plot([found.low, found.high], [place, place], color=style.INK, lw=1.6)
+            ax.plot([found.value], [place], "|", color=style.INK, ms=7, mew=1.4)
+    ax.set_xscale("symlog", linthresh=1.0)
+    drawing.rows(ax, [entry.name for entry in who])
+    ax.set_title(case.title)

@@ -1,0 +1,249 @@
+"""A comparison: one job, several protocols that do it, the same links, faults and seeds for all.
+
+A network's part `comparison` is a module with JOBS, the jobs that it sets, and ENTRIES, what of it
+does which job. An entry knows a job by its name and by what its cases give it, plain numbers and
+texts; so no network knows another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from math import inf
+from typing import Any, NamedTuple
+
+from innervate.analysis.intervals import (
+    Interval,
+    mean_interval,
+    median_interval,
+    quantile_interval,
+    wilson,
+)  # fmt: skip
+from innervate.network import networks
+from innervate.papers.experiment import Claim, Measured, Point, Sheet, verdict
+
+MEDIAN, TAIL, MEAN, TOTAL, SHARE, MOST = "median", "tail", "mean", "total", "share", "most"
+TAIL_SHARE = 0.9
+Given = Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column of a job's tables.
+
+    Attributes:
+        head: with its unit.
+        name: of the number in what entries measure; None there = it never happened.
+        show: of all runs: MEDIAN, TAIL (90 % are no greater), MEAN, each with its 95 % interval;
+            TOTAL, MOST; SHARE: how many are above 0, with Wilson's interval.
+        digits: behind the point.
+    """
+
+    head: str
+    name: str
+    show: str = MEDIAN
+    digits: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """One setting of a job, a table of its own.
+
+    Attributes:
+        name: says all that decides its runs but the entry and the seed.
+        title: of its table.
+        given: what entries are given: plain numbers, texts, lists, dicts.
+        seeds: of its runs, the same for every entry.
+        columns: of its table.
+    """
+
+    name: str
+    title: str
+    given: Given
+    seeds: range
+    columns: tuple[Column, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A protocol, as it is set, that does a job.
+
+    Attributes:
+        job: which.
+        name: a few words, as the tables call it.
+        what: a sentence: which protocol, which settings.
+        measure: (what a case gives, seed) -> numbers by the columns' names; None = never happened.
+        warm_up: compiles what it runs.
+        cost_s: about how long a run takes.
+        does: (what a case gives) -> True if it can be measured there.
+    """
+
+    job: str
+    name: str
+    what: str
+    measure: Callable[[Given, int], dict[str, Any]]
+    warm_up: Callable[[], None]
+    cost_s: float = 0.2
+    does: Callable[[Given], bool] = field(default=lambda given: True)
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """What all have to do.
+
+    Attributes:
+        name: "skin"; what `--only` takes.
+        title, caption: of its figure.
+        cases: (quick) -> all cases, in order.
+        judge: what is claimed of it: (compared) -> claims.
+        drawn: column name that the figure shows, of all cases that have it, and its axis in words.
+    """
+
+    name: str
+    title: str
+    caption: str
+    cases: Callable[[bool], list[Case]]
+    judge: Callable[[Compared], Iterator[Claim]]
+    drawn: tuple[str, str]
+
+
+def parts() -> list[Any]:
+    """The parts `comparison` of all networks that have one, in the networks' order."""
+    return [one.comparison for one in networks().values() if one.has("comparison")]
+
+
+def jobs() -> dict[str, Job]:
+    """All jobs by their names."""
+    return {job.name: job for part in parts() for job in getattr(part, "JOBS", ())}
+
+
+def entries(job: str) -> list[Entry]:
+    """All that do a job."""
+    return [one for part in parts() for one in getattr(part, "ENTRIES", ()) if one.job == job]
+
+
+def point(case: Case, entry: Entry) -> Point:
+    """The runs of an entry in a case."""
+    what = f"{entry.job}, {case.name}: {entry.name}"
+    return Point.each(what, entry.cost_s, case.seeds, entry.measure, case.given)
+
+
+def points(job: Job, quick: bool) -> list[Point]:
+    """All runs of a job."""
+    return [point(case, entry) for case in job.cases(quick) for entry in doing(job, case)]
+
+
+def doing(job: Job, case: Case) -> list[Entry]:
+    """All entries that can be measured in a case."""
+    return [entry for entry in entries(job.name) if entry.does(case.given)]
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """What the runs of a job gave."""
+
+    job: Job
+    got: Measured
+
+    def cases(self) -> list[Case]:
+        """All cases of the job."""
+        return self.job.cases(self.got.quick)
+
+    def values(self, case: Case, entry: Entry, name: str) -> list[float]:
+        """What every seed gave; what never happened is infinite."""
+        found = self.got[point(case, entry)].get(name)
+        return [] if found is None else [inf if one is None else float(one) for one in found]
+
+    def cell(self, case: Case, entry: Entry, column: Column) -> str:
+        """A cell of a table."""
+        return cell(self.values(case, entry, column.name), column)
+
+    def sheets(self) -> list[Sheet]:
+        """The tables: one a case, a row an entry."""
+        made = []
+        for case in self.cases():
+            rows = [
+                (entry.name, *(self.cell(case, entry, column) for column in case.columns))
+                for entry in doing(self.job, case)
+            ]
+            head = ("", *(column.head for column in case.columns))
+            made.append(Sheet(f"{case.title}; {len(case.seeds)} runs each", head, rows))
+        return made
+
+    def less(
+        self, where: Mapping[str, Case], name: str, pair: tuple[Entry, Entry], words: Words
+    ) -> Claim:
+        """The claim that, seed by seed, the first of a pair gives less than the second.
+
+        It holds if in all cases the 95 % interval of the median difference lies below 0.
+
+        Args:
+            where: cases by a word for each.
+            name: of what is measured.
+            pair: ours, the other.
+            words: what is claimed, and why it does not hold where it does not.
+        """
+        holds, said = True, []
+        for word, case in where.items():
+            found = [self.values(case, entry, name) for entry in pair]
+            differences = [a - b if a != b else 0.0 for a, b in zip(*found, strict=True)]
+            between = median_interval(differences)
+            holds = holds and between.high < 0
+            fewer, more = (sum(map(is_so, differences)) for is_so in (_below_0, _above_0))
+            said.append(f"{word}: {shown(between, words.digits)}, less in {fewer} and more in "
+                        f"{more} of {len(differences)}")  # fmt: skip
+        why = "" if holds else words.why
+        measured = f"median difference {'; '.join(said)}"
+        return Claim(self.job.name, words.claim, measured, verdict(holds), why)
+
+
+class Words(NamedTuple):
+    """What a claim says; why, where it does not hold; digits of its differences."""
+
+    claim: str
+    why: str = ""
+    digits: int = 1
+
+
+def _below_0(value: float) -> bool:
+    return value < 0
+
+
+def _above_0(value: float) -> bool:
+    return value > 0
+
+
+def cell(values: list[float], column: Column) -> str:
+    """What all runs of a case gave of one column, in words."""
+    if not values:
+        return "-"
+    never = sum(value == inf for value in values)
+    finite = [value for value in values if value < inf]
+    digits = column.digits
+    if column.show in (TOTAL, MOST):
+        return f"{(sum if column.show == TOTAL else max)(values):.{digits}f}"
+    if column.show == SHARE:
+        hits = sum(value > 0 for value in values)
+        return f"{hits} ({interval(wilson(hits, len(values)), 2)})"
+    if not finite:
+        return "never"
+    if column.show == MEAN:
+        found = mean_interval(finite)
+    else:
+        found = quantile_interval(values, 0.5 if column.show == MEDIAN else TAIL_SHARE)
+    return shown(found, digits) + (f", never in {never}" if never else "")
+
+
+def shown(found: Interval, digits: int) -> str:
+    """An estimate with its interval: "12.0 (11.2 to 12.9)"."""
+    return f"{number(found.value, digits)} ({interval(found, digits)})"
+
+
+def interval(found: Interval, digits: int) -> str:
+    """An interval without its estimate."""
+    return f"{number(found.low, digits)} to {number(found.high, digits)}"
+
+
+def number(value: float, digits: int) -> str:
+    """A number, or that it never happened."""
+    return "never" if value == inf else f"{value:.{digits}f}"
