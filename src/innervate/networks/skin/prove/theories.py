@@ -75,7 +75,10 @@ NOT_EXPLORED = {
     ("tick", "if cell.countdown <= 0:", False): BALANCING,
     ("tick", "if may_balance and cell.parent != before:", True): BALANCING,
     ("on_frame", "frame.kind == BEACON", False): "the explorer's frames are beacons",
+    ("on_frame", "if frame.kind == DATA:", True): "the explorer's frames are beacons",
+    ("on_frame", "if frame.kind != BEACON:", True): "the explorer's frames are beacons",
     ("on_timer", "if is_news(cell, params):", True): "of news that are none",
+    ("select", "if cell.size[p] < cell.size[lightest]:", True): "sizes decide nothing",
     ("tick", "if not silent:", False): "triggered updates only",
 }
 
