@@ -106,7 +106,7 @@ def test_a_mesh_counterexample_is_told_written_and_1(sh):
 @pytest.mark.parametrize(
     ("words", "line"),
     [
-        (("car",), 'verify explores skin, radio or mesh, not "car"'),
+        (("car",), 'verify explores skin, radio, mesh, babel, flooding or rpl, not "car"'),
         (("mesh", "--rule", "guess"), "--rule is a failover for a mesh, search"),
         (("mesh", "--graph", "0-1 2-3"), "a mesh joins the nodes 0, 1, ... by links"),
         (("mesh", "--budget", "cuts=1"), "the names are deaths, revivals, frames, acks, ticks"),
