@@ -62,7 +62,7 @@ class Twice(Bare):
         self.unsent: frozenset[str] = frozenset()  # fields of beacons without a route
 
     def played(self, handler: str, *told: Any) -> tuple[tuple[Store, Machine], ...]:
-        """What both runs of a handler leave and send."""
+        """A handler is run from both states."""
         given = {"port": self.port, "frame": self.cell.frame}
         args = [given.get(one, one) for one in told]
         return tuple(self.run(store, handler, *args) for store in (self.stage.store, self.store))
