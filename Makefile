@@ -17,6 +17,10 @@ BIN := .venv/bin
 # The environment is made again when pyproject.toml says something else, and only then.
 STAMP := .venv/stamp-$(shell cksum < pyproject.toml | cut -d ' ' -f 1)
 WORKERS ?= 2
+
+# Hundreds of processes are started by tests: each would translate the sources anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
 # What many tests run is compiled before they start, where it is not compiled yet.

@@ -11,6 +11,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from msgspec import structs
+
+from innervate.networks import models
 from innervate.networks.mesh import frames as mesh
 from innervate.networks.mesh import payloads as mesh_payloads
 from innervate.networks.mesh import tables as mesh_tables
@@ -25,6 +28,7 @@ from innervate.networks.skin import frames as skin
 from innervate.networks.skin.papers import readings as skin_readings
 from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.networks.skin.tables import TABLES
+from innervate.scenario.keys import Table
 from innervate.trace import tables
 from innervate.wire import layout
 
@@ -115,8 +119,23 @@ def mesh_frames() -> str:
     )
 
 
+def model_table() -> str:
+    """The classes that scenarios are built of in code, each with its keys, as Markdown."""
+    rows = ["| class | what it is | keys |", "|---|---|---|"]
+    for name in models.__all__:
+        model = getattr(models, name)
+        inner = {f"{name}.{called}": table for called, table in vars(model).items()
+                 if isinstance(table, type) and issubclass(table, Table)}  # fmt: skip
+        for called, table in {name: model, **inner}.items():
+            says = _cell(str(table.__doc__).splitlines()[0].partition("; its tables")[0])
+            keys = ", ".join(f"`{field.name}`" for field in structs.fields(table))
+            rows.append(f"| `{called}` | {says} | {keys} |")
+    return "\n".join(rows)
+
+
 # (page, name of the part, how it is made)
 PARTS = (
+    ("api.md", "models", model_table),
     ("skin.md", "parameters", lambda: field_table(skin_fields.PARAMS)),
     ("skin.md", "frame", lambda: field_table(skin_fields.FRAME)),
     ("skin.md", "cell", lambda: field_table(skin_fields.CELL)),

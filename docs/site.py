@@ -5,6 +5,7 @@ A hook of MkDocs; `make docs` runs it.
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -45,9 +46,36 @@ def on_files(files: Any, config: Any) -> Any:
         made[f"examples/{path.name}"] = path.read_text(encoding="utf-8")
     listed = "".join(f"- [{path.name}]({path.name})\n" for path in examples)
     made["examples/index.md"] = f"# Examples\n\n{listed}"
+    for path in sorted((ROOT / "examples" / "notebooks").glob("*.ipynb")):
+        text = path.read_text(encoding="utf-8")
+        made[f"notebooks/{path.name}"] = text
+        made[f"notebooks/{path.stem}.md"] = notebook_page(path.name, json.loads(text)["cells"])
     for name, text in made.items():
         files.append(File.generated(config, name, content=text))
     return files
+
+
+def notebook_page(name: str, cells: list[Any]) -> str:
+    """A notebook as a page: its cells and what they gave."""
+    parts = []
+    for cell in cells:
+        text = "".join(cell["source"])
+        parts.append(text if cell["cell_type"] == "markdown" else f"```python\n{text}\n```")
+        parts += [_shown(output) for output in cell.get("outputs", ())]
+    title, *rest = parts
+    return "\n\n".join([title, f"[{name}]({name}) is this page to run.", *rest])
+
+
+def _shown(output: Any) -> str:
+    """What a cell gave: a picture, HTML as it stands, or text."""
+    data = output.get("data", {})
+    if "image/png" in data:
+        return f'<img alt="a figure" src="data:image/png;base64,{data["image/png"].strip()}">'
+    if "text/html" in data:
+        lines = "".join(data["text/html"]).splitlines()
+        return f'<div style="overflow-x:auto">{"".join(lines)}</div>'
+    text = "".join(output.get("text", data.get("text/plain", "")))
+    return f"```text\n{text.rstrip()}\n```"
 
 
 def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
@@ -58,5 +86,6 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
         markdown.replace("](../../docs/", "](../../")
         .replace("](../boards/", "](boards/")
         .replace("](../examples)", "](examples/index.md)")
+        .replace("](../examples/notebooks/", "](notebooks/")
         .replace("](../examples/", "](examples/")
     )

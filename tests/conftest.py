@@ -1,5 +1,6 @@
 """What every test may rely on: INNERVATE_NO_SKIP, and the marks for what a machine may lack."""
 
+import gc
 import os
 import shutil
 import subprocess
@@ -16,6 +17,15 @@ NEEDS = {
     "needs_netns": "network namespaces",
     "needs_gpu": "an NVIDIA GPU",
 }
+
+
+# What was collected stays: to look through it for what is in use took a fifteenth of all time.
+gc.set_threshold(20_000, 20, 20)
+
+
+def pytest_collection_finish():
+    gc.collect()
+    gc.freeze()
 
 
 def pytest_addoption(parser):

@@ -13,7 +13,9 @@ import pytest
 import innervate
 
 ROOT = Path(__file__).parents[1]
-FUNCTIONS = ("check", "compare", "load", "load_sweep", "run", "size", "sweep")
+FUNCTIONS = (
+    "check", "compare", "dump", "live_up", "load", "load_sweep", "run", "size", "sweep",
+)  # fmt: skip
 USER_SCRIPT = '''
 """What somebody may write who has only the documentation."""
 
@@ -38,6 +40,24 @@ def main() -> None:
     done.compare("protocol.k", 2, 3, "recoveries.routed_ms")
     asked = innervate.Question("robot.urdf", "*", ports=(1, 2))
     print(innervate.size(asked, repeat=2).needed[250.0], innervate.__version__)
+
+
+def in_code() -> None:
+    skin = innervate.Skin(
+        patch=[innervate.Skin.Patch(columns=4, rows=3)],
+        interface=[innervate.Skin.Interface(row=0, column=0)],
+        protocol=innervate.Skin.Protocol(k=3),
+        event=[innervate.Skin.Event(at_s=2.0, action="cut", interface=0)],
+    )
+    team = innervate.Radio(stations=5, traffic=innervate.Radio.Traffic(kind="saturated"))
+    field = innervate.Mesh(nodes=9, flow=[innervate.Mesh.Flow(from_=1, to="gateway", every_s=1.0)])
+    text: str = "".join(innervate.dump(one) for one in (skin, team, field))
+    print(text, innervate.run(skin).numpy("routes")["cell"].max())
+    done: innervate.Sweep = innervate.sweep(skin, vary={"protocol.k": [2, 3]}, workers=1)
+    cases: list[innervate.Case] = innervate.explore("skin", graph="triangle", states=100)
+    with innervate.live_up(skin, cables="pty") as nodes:
+        nodes.cut(*nodes.cables[0])
+        print(done.pandas(), cases[0].is_broken, nodes.status()[nodes.names[0]])
 '''
 MISTAKES = {
     "innervate.rnu('a.toml')": 'Module has no attribute "rnu"',
@@ -47,6 +67,10 @@ MISTAKES = {
     "innervate.compare('a')": "Missing positional argument",
     "innervate.run('a.toml').skin['cels']": 'has no key "cels"',
     "innervate.run('a.toml').mesh['nodes'] + 'x'": "Unsupported operand types",
+    "innervate.Skin.Patch(colums=3, rows=2)": 'Unexpected keyword argument "colums"',
+    "innervate.Radio(stations='ten')": 'incompatible type "str"',
+    "innervate.explore('skin', grahp='x')": 'Unexpected keyword argument "grahp"',
+    "innervate.live_up('line', cables='tcp')": "incompatible type",
 }
 
 

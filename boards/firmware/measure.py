@@ -14,6 +14,7 @@ from pathlib import Path
 
 from boards.firmware import qemu
 from boards.firmware.__main__ import emulate
+from boards.firmware.native import run
 from boards.firmware.native import write as write_bare
 from boards.firmware.stack import COUNTED, chain, worst
 from boards.roles import roles
@@ -24,6 +25,7 @@ CALLS = 20_000
 LOOP_HZ = 250
 # Whole images: the example, and how many UARTs it has, each with how many bytes that wait.
 WHOLE = {"skin": ("small", 4, 16), "radio": ("modem", 2, 64), "mesh": ("small", 2, 64)}
+SEALED = {f"sealed {name}": WHOLE[name] for name in ("skin", "mesh")}
 
 
 def sizes(path: Path) -> tuple[int, int, int]:
@@ -62,9 +64,10 @@ def _size_of(prefix: str, folder: Path) -> str:
 
 def whole(name: str, folder: Path, out: Path) -> tuple[int, int, int]:
     """Flash, static RAM and worst stack of the image of a whole node; its library lies there."""
-    main, uarts, ring = WHOLE[name]
-    options = (*tools.CORTEX_M0, f"-DBOARD_UARTS={uarts}", f"-DBOARD_RING={ring}", COUNTED)
-    image = tools.image(folder, name, out, main, options)
+    main, uarts, ring = (WHOLE | SEALED)[name]
+    options = (*tools.CORTEX_M0, f"-DBOARD_UARTS={uarts}", f"-DBOARD_RING={ring}", COUNTED,
+               "-DKEY=1")  # fmt: skip
+    image = tools.image(folder, name.removeprefix("sealed "), out, main, options)
     text, data, bss = sizes(image)
     return text + data, data + bss, worst(image)
 
@@ -73,10 +76,26 @@ def whole_row(name: str) -> str:
     """A row for the image of a whole node."""
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
-        library.write(library.made_of(name, []), folder)
+        bare = name.removeprefix("sealed ")
+        library.write(library.made_of(bare, [], sealed=name in SEALED), folder)
         flash, ram, stack = whole(name, folder, folder)
-    what = f"{WHOLE[name][1]} UARTs, coder, driver, port layer, vectors"
+    what = f"{(WHOLE | SEALED)[name][1]} UARTs, coder, driver, port layer, vectors"
     return f"| {name}, {what} | {flash:,} | {ram:,} | {stack:,} | {ram + stack:,} |"
+
+
+def handshake() -> list[int]:
+    """Instructions of a question, its answer, what the answer takes, a frame closed and opened."""
+    with tempfile.TemporaryDirectory() as made:
+        folder, target = Path(made), qemu.TARGETS["cortex-m3"]
+        library.write(library.made_of("skin", [], sealed=True), folder)
+        sources = [*folder.glob("innervate_*.c"), *folder.glob("crypto/*.c"),
+                   qemu.HERE / "handshake.c", qemu.HERE / "target.c"]  # fmt: skip
+        image = folder / "handshake.elf"
+        compiled = qemu.bare(target, folder / "handshake.ld")
+        run([*compiled, "-I", folder, *sources, "-lgcc", "-o", image])
+        said = qemu.played(target, image, folder, counted=True).split()
+    assert said[-1] == "ok", said
+    return [int(word, 16) * qemu.TICK_INSTRUCTIONS for word in said[:-1]]
 
 
 def instructions(name: str) -> str:
@@ -96,12 +115,15 @@ def main() -> None:
         for name in names:
             print(protocol_row(name, Path(folder)), flush=True)
     print("\n| image | flash | static RAM | worst stack | RAM |\n|---|---:|---:|---:|---:|")
-    for name in WHOLE:
+    for name in WHOLE | SEALED:
         print(whole_row(name), flush=True)
     print(f"\n| protocol | {' | '.join(f'`{what}`' for what in qemu.WHAT)} |")
     print("|---|" + "---:|" * len(qemu.WHAT))
     for name in names:
         print(instructions(name), flush=True)
+    print("\n| to ask | to answer | to take the answer | a frame closed | opened |")
+    print("|" + "---:|" * 5)
+    print(f"| {' | '.join(f'{count:,}' for count in handshake())} |")
 
 
 if __name__ == "__main__":

@@ -84,7 +84,9 @@ class Result(NamedTuple):
     ticks: dict[str, int]
 
 
-def _compile(library: Library, folder: Path, command: list[str], beside: str, made: Path) -> None:
+def _compile(
+    library: Library, folder: Path, command: list[str | Path], beside: str, made: Path
+) -> None:
     source = write(library, folder)
     text = (HERE / "check.c").read_text()
     text = re.sub(r"\brole(?=[_.])", library.prefix, text)
@@ -130,6 +132,24 @@ def on_host(library: Library, folder: Path, script: Path) -> Result:
     return _result(done.stdout)
 
 
+def bare(target: Target, ld: Path) -> list[str | Path]:
+    """How a bare image for a target is compiled; its linker script is written to a path."""
+    text = (HERE / "target.ld").read_text()
+    ld.write_text(text.replace("ORIGIN_", target.origin).replace("STACK_", target.stack))
+    return [target.compiler, *target.options, "-std=gnu99", "-Os", "-ffreestanding", "-nostdlib",
+            "-nostartfiles", "-T", ld, "-Wl,--no-warn-rwx-segments"]  # fmt: skip
+
+
+def played(target: Target, image: Path, folder: Path, counted: bool) -> str:
+    """What an image says, with a folder's files at hand; `counted`: see `on_target`."""
+    words = [*target.emulator, "-display", "none", "-monitor", "none", "-serial", "none",
+             "-kernel", str(image), "-semihosting-config", "enable=on,target=native"]  # fmt: skip
+    if counted:
+        words += ["-icount", "shift=0"]
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
+    return done.stderr or done.stdout
+
+
 def on_target(
     library: Library, folder: Path, script: Path, name: str, counted: bool = False
 ) -> Result:
@@ -144,17 +164,7 @@ def on_target(
             find(tool)
         except Exception as missing:
             raise BoardMissing(str(missing)) from missing
-    ld = folder / f"{name}.ld"
-    text = (HERE / "target.ld").read_text()
-    ld.write_text(text.replace("ORIGIN_", target.origin).replace("STACK_", target.stack))
     made = folder / f"{name}.elf"
-    command = [target.compiler, *target.options, "-std=gnu99", "-Os", "-ffreestanding", "-nostdlib",
-               "-nostartfiles", "-T", str(ld), "-Wl,--no-warn-rwx-segments"]  # fmt: skip
-    _compile(library, folder, command, "target.c", made)
-    words = [*target.emulator, "-display", "none", "-monitor", "none", "-serial", "none",
-             "-kernel", str(made), "-semihosting-config", "enable=on,target=native"]  # fmt: skip
-    if counted:
-        words += ["-icount", "shift=0"]
+    _compile(library, folder, bare(target, folder / f"{name}.ld"), "target.c", made)
     assert script.name == "script"
-    done = subprocess.run(words, cwd=script.parent, capture_output=True, text=True, check=False)
-    return _result(done.stderr or done.stdout)
+    return _result(played(target, made, script.parent, counted))

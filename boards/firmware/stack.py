@@ -12,13 +12,15 @@ EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
 COUNTED = "-fcallgraph-info=su"  # has a compiler write beside its output who calls whom
 INDIRECT = "__indirect_call"
 LIBGCC = 8  # of its functions, which call nothing
+# What is called by a pointer: the port layer, and the example's algorithms.
+POINTED = ("port_", "innervate_example_", "board_random")
 INTERRUPT = 32  # bytes that a Cortex-M puts there by itself
 
 
 def worst(image: Path) -> int:
     """Bytes of stack from `main` on, with an interrupt on top; it was compiled with COUNTED.
 
-    What is called by a pointer is taken for the deepest of the functions of the port layer.
+    What is called by a pointer is taken for the deepest of all functions that are (POINTED).
 
     Raises:
         BoardFailed: a function's stack is not known, or something calls itself.
@@ -41,13 +43,13 @@ def chain(text: str, begin: str) -> int:
     calls: dict[str, list[str]] = {}
     for caller, called in EDGE.findall(text):
         calls.setdefault(_bare(caller), []).append(_bare(called))
-    ports = [name for name in sizes if name.startswith("port_")]
+    pointed = [name for name in sizes if name.startswith(POINTED)]
 
     def depth(name: str, above: tuple[str, ...]) -> int:
         if name in above:
             raise BoardFailed(f"{name} calls itself")
         if name == INDIRECT:
-            return max(depth(port, above) for port in ports)
+            return max(depth(called, above) for called in pointed)
         if name not in sizes:
             if name.startswith("__"):
                 return LIBGCC

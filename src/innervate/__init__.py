@@ -12,9 +12,15 @@ from __future__ import annotations
 
 TYPE_CHECKING = False  # `typing` would be the slowest part of this import
 if TYPE_CHECKING:
+    from innervate.live.errors import LiveError as LiveError
+    from innervate.live.in_code import Nodes as Nodes
+    from innervate.live.in_code import live_up as live_up
     from innervate.network import Network as Network
     from innervate.network import NetworkError as NetworkError
     from innervate.network import use as use
+    from innervate.networks.models import Mesh as Mesh
+    from innervate.networks.models import Radio as Radio
+    from innervate.networks.models import Skin as Skin
     from innervate.networks.typed import Answer as Answer
     from innervate.networks.typed import Question as Question
     from innervate.networks.typed import size as size
@@ -30,11 +36,14 @@ if TYPE_CHECKING:
     from innervate.scenario.declared.channel import ChannelScenario as ChannelScenario
     from innervate.scenario.declared.field import FieldScenario as FieldScenario
     from innervate.scenario.given import check as check
+    from innervate.scenario.given import dump as dump
     from innervate.scenario.given import load as load
     from innervate.sweeping.errors import SweepError as SweepError
     from innervate.sweeping.loading import load_sweep as load_sweep
     from innervate.sweeping.result import Sweep as Sweep
     from innervate.sweeping.sweep import sweep as sweep
+    from innervate.verify.cases import Case as Case
+    from innervate.verify.errors import VerifyError as VerifyError
 
 __version__ = "0.1.0"
 
@@ -42,21 +51,30 @@ __version__ = "0.1.0"
 _PLACES = {
     "Answer": "networks.typed",
     "CablesScenario": "scenario.declared.cables",
+    "Case": "verify.cases",
     "ChannelScenario": "scenario.declared.channel",
     "Comparison": "running.compare",
     "FieldScenario": "scenario.declared.field",
+    "LiveError": "live.errors",
+    "Mesh": "networks.models",
     "Network": "network",
     "NetworkError": "network",
+    "Nodes": "live.in_code",
     "Question": "networks.typed",
+    "Radio": "networks.models",
     "Run": "running.run",
     "RunError": "running.errors",
     "Scenario": "scenario",
     "ScenarioError": "scenario",
+    "Skin": "networks.models",
     "Sweep": "sweeping.result",
     "SweepError": "sweeping.errors",
+    "VerifyError": "verify.errors",
     "check": "scenario.given",
     "compare": "running.compare",
+    "dump": "scenario.given",
     "explore": "running.exploring",
+    "live_up": "live.in_code",
     "load": "scenario.given",
     "load_sweep": "sweeping.loading",
     "run": "running.run",

@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import signal
 import socket
 import subprocess
@@ -11,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from docs.patch import scenario
 from innervate.live import status
 from tests.browser.servers import WAIT_MS, click, expect, serving
 
@@ -98,6 +100,35 @@ def test_serial_cables_are_drawn_and_cut(look, short, monkeypatch):
         expect(page.locator("#selected-facts")).to_contain_text("came")
 
 
+def test_boards_of_the_quick_start_heal_on_the_page(look, short, monkeypatch):
+    for tool in ("arm-none-eabi-gcc", "qemu-system-arm"):
+        if shutil.which(tool) is None:
+            pytest.skip(f"{tool} is not installed")
+    with up(scenario(), short, monkeypatch, "--firmware") as here, serving("live") as address:
+        page = look(address)
+        well = "Every cell has a way to the PC."
+        expect(page.locator("#log")).to_contain_text("link c0 - pc.0 cut", timeout=3 * WAIT_MS)
+        expect(page.locator("#headline")).to_have_text(well)
+        assert status.ask_one(here / "c0.sock", {"do": "status"})["dist"] == 4  # the long way round
+        click(page, "c0 - pc.0")
+        expect(page.locator("#selected-facts")).to_have_text("link, up")
+        board = pid_of("c4.toml", here)
+        os.kill(board, signal.SIGKILL)
+        expect(page.locator("#log")).to_contain_text("c4 does not answer any more")
+        expect(page.locator("#level")).to_have_text("! degraded")
+        expect(page.locator("#headline")).to_contain_text("1 of 6 cells")
+        node = subprocess.Popen(
+            [sys.executable, "-m", "innervate.cli", "live", "node", "c4.toml", "--firmware",
+             image_of(here)], cwd=here, stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+        try:
+            expect(page.locator("#headline")).to_have_text(well, timeout=3 * WAIT_MS)
+            expect(page.locator("#unconnected output")).to_have_text("0")
+        finally:
+            node.terminate()
+            node.wait(timeout=20)
+
+
 def test_a_node_is_killed_and_started_and_the_page_finds_its_server_again(look, short, monkeypatch):
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
@@ -169,6 +200,12 @@ def test_a_network_that_only_declares_itself_is_drawn_by_its_fields(look, short,
             re.compile(r"lap \d+ number, passed \d+ tokens, made_at 0 us")
         )
         expect(page.locator("#unconnected .more")).to_have_text("of 4 nodes")
+
+
+def image_of(folder):
+    """What the boards of a patch run: as the process of one of them was told."""
+    words = Path(f"/proc/{pid_of('c0.toml', folder)}/cmdline").read_text().split("\0")
+    return words[words.index("--firmware") + 1]
 
 
 def pid_of(file, folder):

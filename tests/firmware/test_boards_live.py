@@ -44,11 +44,11 @@ def image(tmp_path, role, main, settings, *more):
 
 
 @contextlib.contextmanager
-def board(made, devices):
+def board(made, devices, *more):
     """An emulated board with its first UARTs on these serial ports."""
     words = [word for device in devices for word in ("-serial", device)]
     command = ["qemu-system-arm", "-M", "mps2-an385", "-display", "none", "-monitor", "none",
-               "-kernel", made, *words]  # fmt: skip
+               "-kernel", made, *words, *more]  # fmt: skip
     process = subprocess.Popen(command, stdin=subprocess.DEVNULL)
     try:
         yield process

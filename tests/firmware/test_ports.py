@@ -88,9 +88,48 @@ MODULE = {"name", "build"}
 BUILD = {"cmake", "kconfig"}
 
 
-@pytest.mark.parametrize("role", ["skin", "mesh", "radio"])
-def test_every_port_names_files_that_are_there(role, tmp_path):
-    library.write(library.made_of(role, []), tmp_path)
+# Of Zephyr what a module's CMakeLists.txt calls, as its cmake/modules/extensions.cmake has it.
+ZEPHYR = """cmake_minimum_required(VERSION 3.20)
+project(user LANGUAGES C)
+add_library(zephyr_interface INTERFACE)
+macro(zephyr_library)
+  set(ZEPHYR_CURRENT_LIBRARY made)
+  add_library(made STATIC "")
+  target_link_libraries(made PUBLIC zephyr_interface)
+endmacro()
+function(zephyr_library_sources source)
+  target_sources(${ZEPHYR_CURRENT_LIBRARY} PRIVATE ${source} ${ARGN})
+endfunction()
+function(zephyr_include_directories)
+  foreach(arg ${ARGV})
+    target_include_directories(zephyr_interface INTERFACE ${CMAKE_CURRENT_SOURCE_DIR}/${arg})
+  endforeach()
+endfunction()
+add_subdirectory(${MODULE}/zephyr module)
+add_executable(user main.c)
+target_link_libraries(user PRIVATE made)
+"""
+
+
+def test_a_zephyr_module_compiles_with_what_it_calls_of_zephyr(made, tmp_path):
+    for tool in ("cmake", "gcc", "make"):
+        if shutil.which(tool) is None:
+            pytest.skip(f"{tool} is not installed")
+    skin, folder = made
+    (tmp_path / "CMakeLists.txt").write_text(ZEPHYR)
+    (tmp_path / "main.c").write_text(MAIN)
+    run(["cmake", "-S", tmp_path, "-B", tmp_path / "built", f"-DMODULE={folder}",
+         "-DCONFIG_INNERVATE_SKIN=y"])  # fmt: skip
+    run(["cmake", "--build", tmp_path / "built"])
+    assert run([tmp_path / "built/user"]).split() == ["7", "20000", skin.digest()]
+
+
+@pytest.mark.parametrize(
+    ("role", "sealed"),
+    [("skin", False), ("mesh", False), ("radio", False), ("skin", True), ("mesh", True)],
+)
+def test_every_port_names_files_that_are_there(role, sealed, tmp_path):
+    library.write(library.made_of(role, [], sealed=sealed), tmp_path)
     folder, own = tmp_path, {path.name for path in tmp_path.glob("*.c")}
     platformio = json.loads((folder / "library.json").read_text())
     assert platformio["name"] == f"innervate_{role}"

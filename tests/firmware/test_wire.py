@@ -27,6 +27,7 @@ from innervate.networks.skin.live.items import Frame
 from innervate.wire import cobs, crc
 
 HERE = Path(__file__).parent
+SEALED = ("sealed-skin", "sealed-mesh")
 SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g")
 
 
@@ -51,9 +52,10 @@ def folder(files, tmp_path_factory):
 @pytest.fixture(scope="module")
 def folders(folder, tmp_path_factory):
     found = {"skin": folder}
-    for role in ("mesh", "radio"):
+    for role in ("mesh", "radio", *SEALED):
         found[role] = tmp_path_factory.mktemp(role)
-        library.write(library.made_of(role, []), found[role])
+        made = library.made_of(role.removeprefix("sealed-"), [], sealed=role in SEALED)
+        library.write(made, found[role])
     return found
 
 
@@ -214,8 +216,9 @@ def test_lines_are_stuffed_as_pythons_are(native):
 
 def fuzzed(folder, pieces, role="skin", *more):
     (folder / "fuzz").mkdir(exist_ok=True)
-    (folder / "fuzz/fuzz.c").write_text(library.renamed((HERE / "fuzz.c").read_text(), role))
-    sources = [*sorted(folder.glob("*.c")), folder / "fuzz/fuzz.c"]
+    name = role.removeprefix("sealed-")
+    (folder / "fuzz/fuzz.c").write_text(library.renamed((HERE / "fuzz.c").read_text(), name))
+    sources = [*sorted(folder.glob("*.c")), *folder.glob("crypto/*.c"), folder / "fuzz/fuzz.c"]
     run(["gcc", "-std=c99", *SANITIZERS, *ASKED[role], "-I", folder, *sources,
          "-o", folder / "fuzz/fuzz"])  # fmt: skip
     return [int(word) for word in run([folder / "fuzz/fuzz", str(pieces), *more]).split()]
@@ -223,23 +226,30 @@ def fuzzed(folder, pieces, role="skin", *more):
 
 ASKED = {"skin": ("-DSKIN", "-DKINDS=4"), "mesh": ("-DMESH", "-DKINDS=13"),
          "radio": ("-DAIR", "-DKINDS=4")}  # fmt: skip
+ASKED |= {"sealed-skin": (*ASKED["skin"], "-DSEALED", "-DKIND=2"),
+          "sealed-mesh": (*ASKED["mesh"], "-DSEALED", "-DKIND=1")}  # fmt: skip
 
 
 @pytest.mark.parametrize(("role", "pieces"), [("skin", 30_000), ("mesh", 3000),
-                                              ("radio", 10_000)])  # fmt: skip
+                                              ("radio", 10_000),
+                                              ("sealed-skin", 3000)])  # fmt: skip
 def test_bytes_at_will_do_no_harm(role, pieces, folders):
     needs("gcc")
-    sent, delivered, dropped, _, broken = fuzzed(folders[role], pieces, role)
+    sent, delivered, dropped, _, opened, pretended, broken = fuzzed(folders[role], pieces, role)
     assert min(sent, delivered, dropped) > 40
+    assert (opened > 40) == (role in SEALED)
+    assert not pretended
     assert not broken
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("more", [("skin",), ("mesh",), ("mesh", "leads"), ("radio",)])
+@pytest.mark.parametrize("more", [("skin",), ("mesh",), ("mesh", "leads"), ("radio",),
+                                  ("sealed-skin",), ("sealed-mesh",)])  # fmt: skip
 def test_a_hundred_thousand_pieces_do_no_harm(more, folders):
     needs("gcc")
-    sent, delivered, *_, broken = fuzzed(folders[more[0]], 100_000, *more)
+    sent, delivered, *_, pretended, broken = fuzzed(folders[more[0]], 100_000, *more)
     assert min(sent, delivered) > 100
+    assert not pretended
     assert not broken
 
 
@@ -247,27 +257,29 @@ def test_a_driver_that_reads_too_far_is_found(folder, tmp_path):
     needs("gcc")
     for path in folder.glob("*.[ch]"):
         text = path.read_text()
-        (tmp_path / path.name).write_text(text.replace("count > SKIN_SIZE_MAX + 1 ? -1 : ", ""))
+        (tmp_path / path.name).write_text(text.replace("count > SKIN_PIECE_MAX + 1 ? -1 : ", ""))
         (tmp_path / path.name).write_text(
-            text.replace("line->heard < SKIN_SIZE_MAX + 2", "line->heard < 255")
+            text.replace("line->heard < SKIN_PIECE_MAX + 2", "line->heard < 255")
         )
     with pytest.raises(BoardFailed, match=r"out of bounds|overflow"):
         fuzzed(tmp_path, 20_000)
 
 
-@pytest.mark.parametrize("role", ["skin", "mesh", "radio"])
+@pytest.mark.parametrize("role", ["skin", "mesh", "radio", *SEALED])
 def test_compilers_and_cppcheck_have_nothing_to_say(role, folders):
     needs("gcc", "clang", "cppcheck", "arm-none-eabi-gcc")
     folder = folders[role]
-    beside = sorted(folder.glob("*.c"))
+    beside = [*sorted(folder.glob("*.c")), *sorted(folder.glob("crypto/*.c"))]
+    if role in SEALED:  # the protocol is that which was looked at
+        beside.remove(folder / f"{role.removeprefix('sealed-')}.c")
     for compiler in (["gcc", "-std=c99", "-pedantic"], ["clang", "-std=c99", "-pedantic"],
                      ["g++", "-x", "c++"]):  # fmt: skip
         run([*compiler, *WARNINGS, "-fsyntax-only", "-I", folder, *beside])
     board = sorted((folder / "bare").glob("*.c"))
     run(["arm-none-eabi-gcc", *tools.CORTEX_M3, "-std=gnu99", "-ffreestanding", *WARNINGS,
-         "-fsyntax-only", "-I", folder, *board])  # fmt: skip
+         "-DKEY=1,2,3", "-fsyntax-only", "-I", folder, *board])  # fmt: skip
     run(["cppcheck", "-q", "--enable=warning,performance,portability", "--error-exitcode=1",
-         "-I", folder, *beside, *board])  # fmt: skip
+         "-DKEY=1", "-I", folder, *beside, *board])  # fmt: skip
 
 
 @pytest.mark.parametrize("role", measure.WHOLE)

@@ -148,3 +148,15 @@ def test_running_needs_neither_polars_nor_matplotlib():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("name", ["line", "radio-disaster"])
+def test_tables_for_numpy_and_pandas(name):
+    done = run(name, overrides={"duration_s": 2.5})
+    for name, table in done.tables.items():
+        whole = table.collect()
+        arrays, frame = done.numpy(name), done.pandas(name)
+        assert list(arrays) == list(frame.columns) == whole.columns
+        assert all(len(column) == whole.height == len(frame) for column in arrays.values())
+    with pytest.raises(RunError, match="there is no table 'roots'; there are "):
+        done.numpy("roots")

@@ -266,6 +266,7 @@ def firmware(
     out: Path = Path("lib"),
     nodes: int | None = None,
     prefix: str = "",
+    sealed: Annotated[bool, Parameter(negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
     """Write a node's protocol as C99 for a microcontroller: one .c and one .h.
@@ -282,12 +283,15 @@ def firmware(
         How many a network of this kind has at most, where arrays depend on it.
     prefix
         In front of all names; the network's name if left out.
+    sealed
+        With a driver that shakes hands and seals, with a network's key, as live nodes do.
     json
         Print what was written as JSON and nothing else.
     """
     from innervate.cli import firmware as command
 
-    return command.firmware(network, list(settings), command.Wanted(out, nodes, prefix), json)
+    wanted = command.Wanted(out, nodes, prefix, sealed)
+    return command.firmware(network, list(settings), wanted, json)
 
 
 app.command(scenarios)

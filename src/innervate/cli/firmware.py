@@ -21,11 +21,12 @@ class Wanted(NamedTuple):
     out: Path
     nodes: int | None
     prefix: str
+    sealed: bool
 
 
 def firmware(network: str, settings: list[str], wanted: Wanted, as_json: bool) -> int:
     """Write the library of a network's node."""
-    files = library.made_of(network, settings, wanted.nodes, wanted.prefix)
+    files = library.made_of(network, settings, wanted.nodes, wanted.prefix, wanted.sealed)
     lines, made = library.write(files, wanted.out), files.library
     if as_json:
         said = {"out": str(wanted.out), "source": made.digest(), "abi": emit.ABI, "lines": lines}

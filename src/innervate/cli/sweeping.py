@@ -13,13 +13,6 @@ if TYPE_CHECKING:
     from innervate.cli.options import SweepOptions
     from innervate.sweeping import Sweep, SweepPlan
 
-# What is shown if nobody says: of these, those that the runs have.
-SHOWN = (
-    "recoveries.routed_ms", "cut_off.most", "data.loss_ratio",
-    "throughput", "delay_slots.p50",
-    "delivery_ratio", "latency_ms.p50",
-)  # fmt: skip
-SHOWN_MAX = 3
 POINTS_MAX = 40
 REASONS_MAX = 5
 
@@ -27,6 +20,7 @@ REASONS_MAX = 5
 def sweep(file: str, options: SweepOptions) -> int:
     """Run a sweep behind a live table; say what came of it."""
     from innervate import sweeping as room
+    from innervate.sweeping.result import SHOWN
 
     plan: SweepPlan = room.make_plan(file, **options.planned)
     folder = options.out or Path("sweeps") / (plan.name or "sweep")
@@ -71,11 +65,10 @@ def draw_plots(done: Sweep, folder: Path) -> list[Path]:
 
 def result_lines(done: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
     """The means of every point in columns, and what failed."""
-    there = done.measures
-    shown = [m for m in wanted or SHOWN if m in there][:SHOWN_MAX] or there[:SHOWN_MAX]
+    shown = done.to_show(wanted)
     heads = [*done.plan.keys, "runs", *shown]
     rows = [heads]
-    table = done.points(shown) if shown else done.points(there[:1])
+    table = done.points(shown)
     figures = {(row["point"], row["measure"]): row for row in table.iter_rows(named=True)}
     counts = dict(done.results.group_by("point").len().iter_rows())
     for point in done.plan.points[:POINTS_MAX]:

@@ -16,9 +16,17 @@ from innervate.live.parameters import check_parameters
 from innervate.network import Network, networks, use
 
 BESIDE = ("innervate_wire.h", "innervate_wire.c", "innervate_port.h")
-SEAL = ("innervate_seal.h", "innervate_seal.c")
+SEAL = tuple(
+    f"innervate_{name}" for name in
+    ("crypto.h", "seal.h", "seal.c", "noise.h", "noise.c", "contact.h", "contact.c")
+)  # fmt: skip
+# What a maker has, or takes from here.
+EXAMPLE = tuple(f"crypto/innervate_example{end}" for end in
+                (".h", "_cipher.c", "_curve.c", "_hash.c"))  # fmt: skip
+SEAL_BYTES = 25  # a sealed frame is longer by so many
 DRIVER = ("role_node.h", "role_node.c")
-MAINS = {"node": ("bare/role_main.c", "bare/role_small.c"), "station": ("bare/role_modem.c",)}
+MAINS = {"node": ("bare/role_main.c", "bare/role_small.c"), "sealed": ("bare/role_small.c",),
+         "station": ("bare/role_modem.c",)}  # fmt: skip
 BARE = ("bare/start.c", "bare/board.h", "bare/board_mps2.c", "bare/link.ld")
 # For build systems: CMake, Zephyr, PlatformIO, Arduino.
 PORTS = (
@@ -102,8 +110,10 @@ class Files(NamedTuple):
     texts: dict[str, str]
 
 
-def made_of(name: str, settings: list[str], nodes: int | None = None, prefix: str = "") -> Files:
-    """The library that a command line asks for.
+def made_of(
+    name: str, settings: list[str], nodes: int | None = None, prefix: str = "", sealed: bool = False
+) -> Files:
+    """The library that a command line asks for; `sealed`: its driver seals, as live nodes do.
 
     Raises:
         FirmwareError, LiveError, NetworkError: see role_of, parameters_of and Library.
@@ -112,60 +122,77 @@ def made_of(name: str, settings: list[str], nodes: int | None = None, prefix: st
         raise FirmwareError(f"--prefix {prefix}: begin with a letter; small letters, digits, _")
     network, role = role_of(name, nodes)
     library = Library(role, parameters_of(network, role, settings), prefix)
-    return Files(library, files_of(library, network))
+    return Files(library, files_of(library, network, sealed))
 
 
-def files_of(library: Library, network: Network) -> dict[str, str]:
-    """Texts by path: the protocol, and where its frames are plain, coder and driver."""
+def files_of(library: Library, network: Network, sealed: bool = False) -> dict[str, str]:
+    """Texts by path: the protocol, and where its frames are plain, coder and driver.
+
+    Raises:
+        FirmwareError: its frames are too long for a line, or it has no lines to seal on.
+    """
     name = library.prefix
     header = f"{name}.h"
     texts = {header: library.header(), f"{name}.c": library.source(header)}
     coded = coded_of(library.role, network)
+    driver = library.role.driver if network.medium == CABLES or library.role.coded else ""
+    if sealed and (coded is None or driver != "node"):
+        raise FirmwareError(f"{library.role.name}: --sealed is for nodes that speak on lines")
     if coded is None:
         return texts
     most = _part(coded.payload_max)(library.params) if coded.payload_max else 0
-    if coded.size_max + most > FRAME_MAX:
+    carried = FRAME_MAX - SEAL_BYTES * sealed
+    if coded.size_max + most > carried:
         raise FirmwareError(
             f"{library.role.name}: frames of up to {coded.size_max + most} bytes; lines carry "
-            f"{FRAME_MAX}: choose parameters with shorter ones"
+            f"{carried}: choose parameters with shorter ones"
         )
     wire = Wire(library, coded, most)
     texts |= {f"{name}_wire.h": wire.header(), f"{name}_wire.c": wire.source()}
-    texts |= {file: shipped(file) for file in (*BESIDE, *SEAL, *BARE)}
-    driver = library.role.driver if network.medium == CABLES or library.role.coded else ""
-    if not driver:
-        return texts
-    having = _sections(library)
-    for file in (*DRIVER, *MAINS[driver]):
-        text = _told(library, shipped(file, "", having))
+    having = _sections(library, sealed)
+    texts |= {file: shipped(file, "", having) for file in (*BESIDE, *BARE)}
+    if driver:
+        texts |= _driven(library, network, "sealed" if sealed else driver, having)
+    return texts
+
+
+def _driven(
+    library: Library, network: Network, main: str, having: frozenset[str]
+) -> dict[str, str]:
+    """A driver, what seals for it, an example of a board, and what build systems ask for."""
+    name = library.prefix
+    texts = {file: shipped(file) for file in (*SEAL, *EXAMPLE) if main == "sealed"}
+    for file in (*DRIVER, *MAINS[main]):
+        text = _told(library, shipped(file, "", having), network.key_kind)
         texts[file.replace("role", name)] = renamed(text, name)
     if library.role.hooks:
         package, _, stem = library.role.hooks.partition(":")
         for end in ("h", "c"):
             text = (resources.files(package) / f"{stem}.{end}").read_text(encoding="utf-8")
             texts[f"{name}_links.{end}"] = renamed(text, name)
-    ports = [file for file in PORTS if driver == "node" or not file.endswith(".ino")]
+    ports = [file for file in PORTS if main == "node" or not file.endswith(".ino")]
     for file in ports:
         texts[file.replace("role", name)] = shipped(f"ports/{file}", name, having)
     return texts
 
 
-def _sections(library: Library) -> frozenset[str]:
+def _sections(library: Library, sealed: bool) -> frozenset[str]:
     """The parts of the driver that a role has: see `shipped`."""
     role = library.role
-    found = {"lines" if role.driver == "node" else "air"}
+    found = {"lines" if role.driver == "node" else "air", "sealed" if sealed else "clear"}
     if role.driver == "node":
         found.add("hooks" if role.hooks else "ports")
     return frozenset(found | ({"gate"} if role.has_gate else set()))
 
 
-def _told(library: Library, text: str) -> str:
+def _told(library: Library, text: str, key_kind: int) -> str:
     """A driver's text with what it calls differently from role to role."""
     role, params = library.role, library.params
     air = role.driver == "station"
     words = {
         "/*gate*/": "node->gate, " if role.has_gate else "",
         "HAS_GATE": "gate != 0" if role.has_gate else "0",
+        "KEY_KIND": str(key_kind),
         "INNERVATE_PORT *": "innervate_air_t *" if air else "innervate_port_t *",
     }
     if air:

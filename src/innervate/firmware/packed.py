@@ -34,10 +34,8 @@ class Packed:
         values: list[Any] = []
         for name, code in self.arrays:
             value = getattr(record, name)
-            if code == "B":
-                value = bytes(value)
-            elif code:
-                value = array(code, [int(item) for item in value]).tobytes()
+            if code:
+                value = array(code, value).tobytes()
             values.append(value)
         return self.struct.pack(*values)
 

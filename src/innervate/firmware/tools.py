@@ -56,7 +56,7 @@ SMALL = ("-std=c99", "-Os", "-ffunction-sections", "-fdata-sections", "-ffreesta
 def sources(folder: Path, prefix: str, main: str) -> list[Path]:
     """What an image is made from; `main` is one of the examples."""
     board = [folder / f"bare/{name}.c" for name in ("start", "board_mps2", f"{prefix}_{main}")]
-    return [*sorted(folder.glob("*.c")), *board]
+    return [*sorted(folder.glob("*.c")), *sorted(folder.glob("crypto/*.c")), *board]
 
 
 def image(

@@ -37,13 +37,7 @@ class Way(NamedTuple):
 
 async def run(plan: Any, way: Way, scenario: str, for_s: float, as_json: bool) -> int:
     """Bring a scenario up and keep it until Ctrl-C, SIGTERM or the time is over; 0."""
-    own = way.folder is None
-    folder = Path(tempfile.mkdtemp(prefix="innervate-")) if way.folder is None else way.folder
-    folder = folder.absolute()
-    keys = {"use": 1, "secret.1": secrets.token_hex(32)} if way.sealed == "key" else None
-    network = Processes(plan, folder, way.cables, keys, way.images)
-    if way.sealed == "identities":
-        network.keys = _identities(network)
+    network = prepared(plan, way)
     player = _player(network, as_json)
     ending = asyncio.Event()
     loop = asyncio.get_running_loop()
@@ -51,16 +45,39 @@ async def run(plan: Any, way: Way, scenario: str, for_s: float, as_json: bool) -
         loop.add_signal_handler(number, ending.set)
     began = time.monotonic()
     try:
-        await network.up()
-        # For whoever draws a map of the nodes.
-        (folder / "scenario.toml").write_text(scenario, encoding="utf-8")
+        await up(network, scenario)
         _announce(network, time.monotonic() - began, as_json)
         await _until(ending, asyncio.create_task(player.play()), for_s)
     finally:
-        await network.down()
-        if own and os.path.isdir(folder):
-            shutil.rmtree(folder, ignore_errors=True)
+        await down(network, way)
     return 0
+
+
+def prepared(plan: Any, way: Way) -> Processes:
+    """The processes to be of a plan, in their folder, with the keys that are wanted."""
+    folder = Path(tempfile.mkdtemp(prefix="innervate-")) if way.folder is None else way.folder
+    keys = {"use": 1, "secret.1": secrets.token_hex(32)} if way.sealed == "key" else None
+    network = Processes(plan, folder.absolute(), way.cables, keys, way.images)
+    if way.sealed == "identities":
+        network.keys = _identities(network)
+    return network
+
+
+async def up(network: Processes, scenario: str) -> None:
+    """Bring them up; the scenario's text lies beside for whoever draws a map of the nodes.
+
+    Raises:
+        LiveError: a node does not come up.
+    """
+    await network.up()
+    (network.folder / "scenario.toml").write_text(scenario, encoding="utf-8")
+
+
+async def down(network: Processes, way: Way) -> None:
+    """End them, and remove a folder that was made for them."""
+    await network.down()
+    if way.folder is None and os.path.isdir(network.folder):
+        shutil.rmtree(network.folder, ignore_errors=True)
 
 
 def _identities(network: Processes) -> dict[str, Any]:

@@ -6,6 +6,7 @@ Series differ by marker or dash as well as by colour.
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -20,7 +21,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 COLUMN_IN = 3.5  # one column of a two-column page
 WIDE_IN = 7.16  # both
-DPI = 300
+DPI, SCREEN_DPI = 300, 130
 
 # Hues of Okabe and Ito.
 BLACK = "#000000"
@@ -91,10 +92,20 @@ def house() -> Iterator[None]:
         yield
 
 
+class Shown(Figure):
+    """A figure that a notebook shows; without pyplot it would be a line of text there."""
+
+    def _repr_png_(self) -> bytes:
+        packed = io.BytesIO()
+        with house():
+            self.savefig(packed, format="png", dpi=SCREEN_DPI, metadata={"Software": None})
+        return packed.getvalue()
+
+
 def figure(width_in: float, height_in: float) -> Figure:
     """An empty figure whose parts are laid out so that no labels overlap."""
     engine = ConstrainedLayoutEngine(w_pad=0.03, h_pad=0.03)
-    made = Figure(figsize=(width_in, height_in), layout=engine)
+    made = Shown(figsize=(width_in, height_in), layout=engine)
     FigureCanvasAgg(made)
     return made
 

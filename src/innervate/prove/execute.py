@@ -72,6 +72,7 @@ class Machine(Expressions):
     Attributes:
         demands: what must hold for the handlers to be sound.
         facts: what is known of draws.
+        draws: (what is drawn, out of how many, where) at each place that draws.
         ways: for every (function, line, taken) of an `if`, where it is taken so.
     """
 
@@ -81,7 +82,7 @@ class Machine(Expressions):
         self.out = out
         self.demands: list[Demand] = []
         self.facts: list[Term] = []
-        self.draws: list[tuple[Term, Term]] = []
+        self.draws: list[tuple[Term, Term, Term]] = []
         self.ways: dict[tuple[str, int, bool], list[Term]] = {}
 
     def run(self, name: str, args: list[Any], store: Store, under: Term) -> tuple[Store, Any]:
@@ -321,5 +322,5 @@ class Machine(Expressions):
         drawn = self.terms.fresh("drawn", 0, max(many.high - 1, 0))
         under = self.terms.all(call.under, state.path, least)
         self.facts.append(self.terms.implies(under, self.terms.less(drawn, many)))
-        self.draws.append((drawn, many))
+        self.draws.append((drawn, many, under))
         return drawn

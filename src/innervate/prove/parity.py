@@ -190,7 +190,7 @@ class Twin:
         made = [formulas.of(term) for term in self.wanted]
         self.widths = [one.size() if z3.is_bv(one) else 0 for one in made]
         draws = {str(drawn.args[0]): formulas.of(many)
-                 for drawn, many in step.machine.draws if drawn.op == "var"}  # fmt: skip
+                 for drawn, many, _ in step.machine.draws if drawn.op == "var"}  # fmt: skip
         self.formula = compiled(made, draws)
 
     def _places(self) -> list[Key]:

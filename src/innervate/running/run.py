@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 from innervate import scenario as scenarios
 from innervate.network import networks
 from innervate.running import folder as folders
+from innervate.running.errors import RunError
+from innervate.running.showing import Bar
 from innervate.scenario import Scenario
 from innervate.scenario.given import Changes, Given, load
 from innervate.trace import tables
@@ -71,6 +73,27 @@ class Run(Summaries):
             for table in room.tables_of(self.result)
         }
 
+    def numpy(self, table: str) -> dict[str, Any]:
+        """A table as NumPy arrays by the names of its columns.
+
+        Raises:
+            RunError: no table of that name.
+        """
+        return tables.arrays(self._table(table).collect())
+
+    def pandas(self, table: str) -> Any:
+        """A table as a pandas data frame; needs pandas.
+
+        Raises:
+            RunError: no table of that name.
+        """
+        return tables.to_pandas(self._table(table).collect())
+
+    def _table(self, name: str) -> polars.LazyFrame:
+        if name not in self.tables:
+            raise RunError(f"there is no table {name[:40]!r}; there are {', '.join(self.tables)}")
+        return self.tables[name]
+
     @cached_property
     def provenance(self) -> dict[str, Any]:
         """Version, commit, seeds, package versions, fingerprint."""
@@ -108,8 +131,8 @@ class Run(Summaries):
         return page
 
     def write(self, folder: str | os.PathLike[str] | None = None, report: bool = True) -> Path:
-        """Write the run folder, whole or not at all; the default is runs/<name>-<seed>,
-        or runs/<name>-<seed>-2, ... where a run of other settings is.
+        """Write the run folder, whole or not at all; the default is `runs/NAME-SEED`,
+        or `runs/NAME-SEED-2`, ... where a run of other settings is.
 
         Raises:
             RunError: the folder holds something else or cannot be written.
@@ -145,11 +168,11 @@ def run(
     """Run a scenario.
 
     Args:
-        scenario: a file, a bundled name ("setup-1"), a Scenario, or tables as in a file.
+        scenario: a file, a bundled name, a Skin, Radio, Mesh ..., tables as in a file, a Scenario.
         seed: in place of the scenario's.
         overrides: "a.b=c" texts, or a mapping from dotted keys to values.
         out: folder to write; nothing is written without one (see Run.write).
-        progress: called now and then with (time_us, duration_us).
+        progress: called now and then with (time_us, duration_us); None = a bar in a notebook.
         checks: invariant checkers on.
         received: keep every sample the PC received; None = unless there are very many.
         plain: run uncompiled, slow; for comparison.
@@ -164,7 +187,9 @@ def run(
     if out is not None:
         folders.check_target(out)
     room = networks()[plan.kind].run
-    result = room.simulate(plan, plain=plain, checks=checks, received=received, progress=progress)
+    with Bar() as bar:
+        result = room.simulate(plan, plain=plain, checks=checks, received=received,
+                               progress=progress or bar.simulated)  # fmt: skip
     done = Run(made, plan, result, room.summarize(result), checks)
     if out is not None:
         done.write(out)

@@ -64,4 +64,8 @@ def json_schema() -> dict[str, Any]:
     schemas, parts = msgspec.json.schema_components(
         dict.fromkeys(network.model for network in networks().values())
     )
+    for network in networks().values():
+        table = parts[network.model.__name__]  # code says the kind by its class, a file by the key
+        table["properties"]["kind"].pop("default", None)
+        table["required"] = list(dict.fromkeys(["kind", *table.get("required", ())]))
     return {"anyOf": list(schemas), "$defs": parts}

@@ -6,10 +6,10 @@ import os
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from msgspec import Struct, to_builtins
+from msgspec import Struct, structs
 
 from innervate.network import networks
-from innervate.scenario.emit import dump
+from innervate.scenario.emit import dump as as_text
 from innervate.scenario.load import Scenario, from_dict, loads
 from innervate.scenario.load import load as load_file
 
@@ -22,7 +22,7 @@ def load(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) -
 
     Args:
         scenario: a file, a bundled name ("setup-1"), tables as in a file, a model of them built in
-            code (like CablesScenario), or a Scenario.
+            code (Skin, Radio, Mesh, CablesScenario, ...), or a Scenario.
         seed: in place of the scenario's, 0 .. 2^63-1.
         overrides: "a.b=c" texts, or a mapping from dotted keys to values.
 
@@ -33,15 +33,43 @@ def load(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) -
         list(overrides.items()) if isinstance(overrides, Mapping) else list(overrides)
     )
     if isinstance(scenario, Struct):
-        return from_dict(to_builtins(scenario), changes, seed)
+        return from_dict(tables_of(scenario), changes, seed)
     if isinstance(scenario, dict):
         return from_dict(scenario, changes, seed)
     if not isinstance(scenario, Scenario):
         return load_file(scenario, changes, seed)
     if seed is None and not changes:
         return scenario
-    text, source = dump(scenario, whole=False), scenario.source
+    text, source = as_text(scenario, whole=False), scenario.source
     return loads(text, changes, seed, source.path, source.folder)
+
+
+def dump(scenario: Given) -> str:
+    """A scenario as the text of a file, with what was given and without what was left out.
+
+    Args:
+        scenario: as for load().
+
+    Raises:
+        ScenarioError: it is not valid.
+    """
+    return as_text(load(scenario), whole=False)
+
+
+def tables_of(model: Struct) -> dict[str, Any]:
+    """The tables of a model built in code, as a file has them: what was left out is not there."""
+    tables: dict[str, Any] = _plain(model)
+    return {"kind": getattr(model, "kind", None), **tables}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Struct):
+        return {field.encode_name: _plain(given) for field in structs.fields(value)
+                if (given := getattr(value, field.name)) is not field.default
+                and not (given == [] and field.default_factory is list)}  # fmt: skip
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    return value
 
 
 def check(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) -> str:

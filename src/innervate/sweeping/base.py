@@ -14,11 +14,11 @@ from typing import Any
 import msgspec
 
 from innervate import scenario as scenarios
-from innervate.scenario import Scenario, ScenarioError, inline
+from innervate.scenario import Scenario, ScenarioError, given, inline
 from innervate.scenario.overrides import parse_value
 
 Settings = tuple[tuple[str, Any], ...]
-Source = str | os.PathLike[str] | Scenario | dict[str, Any]
+Source = given.Given
 PLAN_FILE = "sweep.toml"
 
 
@@ -80,8 +80,8 @@ def base_of(source: Source, changes: Iterable[str] | Mapping[str, Any]) -> Base:
     Raises:
         ScenarioError: no such file, or unreadable, or a change that is no key=value.
     """
-    if isinstance(source, dict):
-        source = scenarios.from_dict(source)
+    if isinstance(source, dict | msgspec.Struct):
+        source = given.load(source)
     if isinstance(source, Scenario):
         text, label = scenarios.dump(source, whole=False), "scenario.toml"
         folder = source.source.folder

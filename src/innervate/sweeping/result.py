@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from html import escape
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,11 +15,19 @@ from innervate.sweeping.errors import SweepError
 from innervate.sweeping.plan import SweepPlan
 from innervate.trace.provenance import SCHEMA
 from innervate.trace.sources import stamp
+from innervate.trace.tables import arrays, to_pandas
 
 if TYPE_CHECKING:
     import polars
 
 LEVEL = 0.95
+# What is shown if nobody says: of these, those that the runs have.
+SHOWN = (
+    "recoveries.routed_ms", "cut_off.most", "data.loss_ratio",
+    "throughput", "delay_slots.p50",
+    "delivery_ratio", "latency_ms.p50",
+)  # fmt: skip
+SHOWN_MAX = 3
 
 
 @dataclass(eq=False, repr=False)
@@ -56,6 +65,24 @@ class Sweep:
     def measures(self) -> list[str]:
         """Columns of the results that are figures."""
         return tables.measures(self.results, self.plan.keys)
+
+    def numpy(self) -> dict[str, Any]:
+        """The results as NumPy arrays by the names of their columns."""
+        return arrays(self.results)
+
+    def pandas(self) -> Any:
+        """The results as a pandas data frame; needs pandas."""
+        return to_pandas(self.results)
+
+    def _repr_html_(self) -> str:
+        """In a notebook: how much there is, and the means of its figures with their intervals."""
+        points = self.points(self.to_show()) if self.measures else self.results
+        return f"<p>{escape(repr(self))}</p>{points._repr_html_()}"
+
+    def to_show(self, wanted: Sequence[str] = ()) -> list[str]:
+        """The measures that somebody sees first: those wanted that there are, or a few."""
+        there = self.measures
+        return [one for one in wanted or SHOWN if one in there][:SHOWN_MAX] or there[:SHOWN_MAX]
 
     @property
     def provenance(self) -> dict[str, Any]:
@@ -124,23 +151,23 @@ class Sweep:
         self._check(measure)
         if key not in self.plan.keys:
             raise SweepError(f"{key} is not varied; {', '.join(self.plan.keys)} are")
-        sides: list[dict[str, Any]] = [{}, {}]
-        for point in self.plan.points:
-            for side, value in zip(sides, (one, other), strict=True):
-                if point.columns[key] == value:
-                    side[point.stream] = point
-        for side, value in zip(sides, (one, other), strict=True):
-            if not side:
-                raise SweepError(f"no point has {key}={value}")
-        common = [stream for stream in sides[0] if stream in sides[1]]
+        ones, others = (self._variant(key, value) for value in (one, other))
+        common = [stream for stream in ones if stream in others]
         if not common:
             raise SweepError(f"{key} is not paired; sweep with paired={key!r} (--paired {key})")
         rows = []
         for stream in common:
-            a, b = (side[stream] for side in sides)
+            a, b = ones[stream], others[stream]
             rest = {k: v for k, v in a.columns.items() if k != key}
             rows.append(rest | self._pairs(a.index, b.index, measure, level))
         return tables.frame(rows)
+
+    def _variant(self, key: str, value: Any) -> dict[Any, Any]:
+        """The points that have this value, by the stream of their seeds."""
+        found = {p.stream: p for p in self.plan.points if p.columns[key] == value}
+        if not found:
+            raise SweepError(f"no point has {key}={value}")
+        return found
 
     def plot(self, x: str, y: str, by: str = "", kind: str = "band", title: str = "") -> Any:
         """A matplotlib figure: means of `y` over `x` with bands, a line for each value of `by`.

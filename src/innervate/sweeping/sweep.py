@@ -10,7 +10,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal, TypedDict, Unpack
 
+from msgspec import Struct
+
 from innervate import scenario as scenarios
+from innervate.running.showing import Bar
 from innervate.scenario import Scenario, ScenarioError
 from innervate.sweeping import planfile, tables
 from innervate.sweeping.base import PLAN_FILE, Source, base_of
@@ -85,7 +88,7 @@ def sweep(
         dask: address of a Dask scheduler to use instead of this machine.
         retry: run again what failed.
         follow: measures that `progress` wants to see the values of.
-        progress: called now and then with the Scheduler.
+        progress: called now and then with the Scheduler; None = a bar in a notebook.
 
     Raises:
         SweepError: the plan cannot be kept, or the folder not used; one line.
@@ -108,7 +111,9 @@ def sweep(
                 _describe(plan, folder)
             if retry:
                 jobs.forget_failed()
-            return _run_plan(Scheduler(plan, jobs, made, tuple(follow), progress), jobs, folder)
+            with Bar("preparing the runs") as bar:
+                scheduler = Scheduler(plan, jobs, made, tuple(follow), progress or bar.swept)
+                return _run_plan(scheduler, jobs, folder)
 
 
 def _run_plan(scheduler: Scheduler, jobs: Jobs, folder: Path | None) -> Sweep:
@@ -181,7 +186,7 @@ def _first(*numbers: int | None) -> int:
 
 def _plan_file(scenario: Source) -> tuple[planfile.PlanFile | None, Source]:
     """The plan file, if it is one, and the scenario that it or the caller names."""
-    if isinstance(scenario, dict | Scenario):
+    if isinstance(scenario, dict | Struct | Scenario):
         return None, scenario
     text, label, folder = scenarios.read(scenario)
     if not planfile.is_plan(text):

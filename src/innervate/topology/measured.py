@@ -130,7 +130,13 @@ def from_json(text: str, types: Iterable[str] = ()) -> Measured:
     nodes, links = tables.get("nodes"), tables.get("links")
     if not isinstance(nodes, list) or not isinstance(links, list):
         raise TopologyError('lacks the lists "nodes" and "links"', "file")
-    wanted = list(types)
+    number, degrees = _numbered(nodes)
+    found = _joined(links, number, list(types))
+    return Measured([str(name) for name in number], found, _metres(degrees, found))
+
+
+def _numbered(nodes: list[Any]) -> tuple[dict[Any, int], list[tuple[float, float] | None]]:
+    """Each name's number, and where it lies; a name that is there twice is one node."""
     number: dict[Any, int] = {}
     degrees: list[tuple[float, float] | None] = []
     for i, node in enumerate(nodes):
@@ -143,6 +149,13 @@ def from_json(text: str, types: Iterable[str] = ()) -> Measured:
             degrees.append(place)
         elif degrees[number[name]] is None:  # links tell nodes by their ids: it is the same one
             degrees[number[name]] = place
+    return number, degrees
+
+
+def _joined(
+    links: list[Any], number: dict[Any, int], wanted: list[str]
+) -> dict[tuple[int, int], Quality]:
+    """The links of the wanted types (all if none are named), with their qualities."""
     found: dict[tuple[int, int], Quality] = {}
     others: dict[str, None] = {}
     for i, link in enumerate(links):
@@ -157,7 +170,7 @@ def from_json(text: str, types: Iterable[str] = ()) -> Measured:
     if others and not found:
         there = ", ".join(list(others)[:4])
         raise TopologyError(f"no link is of type {' or '.join(wanted)}; there is {there}", "types")
-    return Measured([str(name) for name in number], found, _metres(degrees, found))
+    return found
 
 
 def _known(number: dict[Any, int], link: dict[str, Any], i: int, side: str) -> int:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -54,6 +55,17 @@ def frame(table: Table, columns: Mapping[str, Any]) -> polars.DataFrame:
         for column in table.columns
     ]
     return polars.DataFrame(series)
+
+
+def arrays(frame: polars.DataFrame) -> dict[str, Any]:
+    """A frame as NumPy arrays by the names of its columns; where values may lack, as floats."""
+    return {series.name: series.to_numpy() for series in frame}
+
+
+def to_pandas(frame: polars.DataFrame) -> Any:
+    """A frame as one of pandas, which has to be installed; pyarrow need not be."""
+    pandas: Any = import_module("pandas")
+    return pandas.DataFrame(arrays(frame))
 
 
 def write(table: Table, columns: Mapping[str, Any], folder: Path) -> Path:

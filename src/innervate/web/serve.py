@@ -56,33 +56,41 @@ async def serving(
         source.close()
         raise
     with sock:
-        config = uvicorn.Config(
-            application(hub, guard, report),
-            log_level="critical",
-            access_log=False,
-            lifespan="off",
-            server_header=False,
-            ws=WebSocketsSansIOProtocol,
-            ws_max_size=MESSAGE_MAX,
-            ws_per_message_deflate=False,
-            timeout_graceful_shutdown=LINGER_S,
-        )
-        server, ready = _Server(config), asyncio.Event()
+        server, ready = _Server(_config(hub, guard, report)), asyncio.Event()
         server.ready = ready.set
         hub.start()
         running = asyncio.create_task(server.serve(sockets=[sock]))
         running.add_done_callback(lambda _task: ready.set())
         try:
             await ready.wait()
-            shown = socket.gethostname() if host in ANYWHERE else host
-            shown = f"[{shown}]" if ":" in shown else shown
-            yield Served(f"http://{shown}:{sock.getsockname()[1]}/?token={guard.token}", hub)
+            yield Served(_address(host, sock.getsockname()[1], guard.token), hub)
         finally:
             hub.say_end("the server was stopped")
             await asyncio.sleep(GOODBYE_S if hub.pages else 0)
             server.should_exit = True
             await running
             hub.stop()
+
+
+def _config(hub: Hub, guard: Guard, report: Path | None) -> uvicorn.Config:
+    return uvicorn.Config(
+        application(hub, guard, report),
+        log_level="critical",
+        access_log=False,
+        lifespan="off",
+        server_header=False,
+        ws=WebSocketsSansIOProtocol,
+        ws_max_size=MESSAGE_MAX,
+        ws_per_message_deflate=False,
+        timeout_graceful_shutdown=LINGER_S,
+    )
+
+
+def _address(host: str, port: int, token: str) -> str:
+    """Where a browser finds the page."""
+    shown = socket.gethostname() if host in ANYWHERE else host
+    shown = f"[{shown}]" if ":" in shown else shown
+    return f"http://{shown}:{port}/?token={token}"
 
 
 async def serve(

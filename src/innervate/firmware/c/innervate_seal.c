@@ -1,46 +1,43 @@
 /* Sealed frames of a session (innervate/wire/seal.py, innervate/live/session.py). */
 #include "innervate_seal.h"
 
-#define FRAME 0xC3
-#define COUNTERS (0xFFFFFFFFU - 1000U)
 #define WINDOW 32U
 
-static void put_word(uint8_t *bytes, uint32_t word)
+void innervate_put_word(uint8_t *bytes, uint32_t word)
 {
     for (int32_t i = 0; i < 4; i++) {
         bytes[i] = (uint8_t)(word >> (24 - 8 * i) & 255U);
     }
 }
 
-static uint32_t get_word(const uint8_t *bytes)
+uint32_t innervate_get_word(const uint8_t *bytes)
 {
     return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
 }
 
-/* Four zeros and the counter in 8 bytes, its lowest first. */
-static void make_nonce(uint8_t *nonce, uint32_t counter)
+/* Four zeros and the counter in 8 bytes, as Noise has it: for ChaCha its lowest first. */
+void innervate_nonce(const innervate_crypto_t *crypto, uint8_t *nonce, uint32_t counter)
 {
     for (int32_t i = 0; i < 12; i++) {
         nonce[i] = 0;
     }
     for (int32_t i = 0; i < 4; i++) {
-        nonce[4 + i] = (uint8_t)(counter >> (8 * i) & 255U);
+        nonce[crypto->is_aes ? 11 - i : 4 + i] = (uint8_t)(counter >> (8 * i) & 255U);
     }
 }
 
-int32_t innervate_close(innervate_session_t *session, uint8_t *frame, int32_t count)
+int32_t innervate_close(innervate_session_t *session, uint8_t kind, uint8_t *frame, int32_t count)
 {
-    uint8_t nonce[12];
-    uint8_t *data = frame + INNERVATE_SEAL_HEAD;
-    if (session->counter >= COUNTERS) {
+    innervate_lock_t lock = {session->key_out, {0}, frame, INNERVATE_SEAL_HEAD};
+    if (session->counter >= INNERVATE_COUNTERS) {
         return 0;
     }
-    frame[0] = FRAME;
-    put_word(frame + 1, session->far);
-    put_word(frame + 5, session->counter);
-    make_nonce(nonce, session->counter);
+    frame[0] = kind;
+    innervate_put_word(frame + 1, session->far);
+    innervate_put_word(frame + 5, session->counter);
+    innervate_nonce(session->crypto, lock.nonce, session->counter);
     session->counter++;
-    session->cipher->close(session->key_out, nonce, frame, data, count, data + count);
+    session->crypto->close(&lock, frame + INNERVATE_SEAL_HEAD, count);
     return count + INNERVATE_SEAL_MORE;
 }
 
@@ -67,20 +64,25 @@ static void take(innervate_session_t *session, uint32_t counter)
 
 int32_t innervate_open(innervate_session_t *session, uint8_t *frame, int32_t size)
 {
-    uint8_t nonce[12];
+    innervate_lock_t lock = {session->key_in, {0}, frame, INNERVATE_SEAL_HEAD};
     const int32_t count = size - INNERVATE_SEAL_MORE;
-    uint8_t *data = frame + INNERVATE_SEAL_HEAD;
-    if (count < 0 || frame[0] != FRAME || get_word(frame + 1) != session->own) {
+    if (count < 0 || (frame[0] != INNERVATE_FRAME && frame[0] != INNERVATE_CONTROL) ||
+            innervate_get_word(frame + 1) != session->own) {
         return -1;
     }
-    const uint32_t counter = get_word(frame + 5);
-    if (counter >= COUNTERS || !is_new(session, counter)) {
+    const uint32_t counter = innervate_get_word(frame + 5);
+    if (counter >= INNERVATE_COUNTERS || !is_new(session, counter)) {
         return -1;
     }
-    make_nonce(nonce, counter);
-    if (!session->cipher->open(session->key_in, nonce, frame, data, count, data + count)) {
+    innervate_nonce(session->crypto, lock.nonce, counter);
+    if (!session->crypto->open(&lock, frame + INNERVATE_SEAL_HEAD, count)) {
         return -1;
     }
     take(session, counter);
     return count;
+}
+
+int32_t innervate_is_worn(const innervate_session_t *session)
+{
+    return session->counter > INNERVATE_COUNTERS / 2U;
 }

@@ -15,6 +15,13 @@ static int32_t role_node_now(const role_node_t *node)
 }
 
 /*+ lines */
+/*+ clear */
+#define MORE 3 /* bytes that a frame takes of the queue beside its own */
+/*- */
+/*+ sealed */
+#define MORE (3 + INNERVATE_SEAL_MORE) /* bytes that a frame takes of the queue beside its own */
+/*- */
+
 /* Bytes of what stands at `at` in the queue: a port, a frame, a zero. */
 static int32_t role_length(const role_node_t *node, int32_t at)
 {
@@ -60,7 +67,12 @@ static int32_t role_drop(role_node_t *node, int32_t at, int32_t port)
 /* Queues a frame: urgent ones behind what is on the wire, FLUSH drops what waits for the port. */
 static void role_queue(role_node_t *node, int32_t port, const role_frame_t *frame, int32_t flags)
 {
-    const int32_t count = role_size(frame) + 3;
+/*+ sealed */
+    if (!innervate_contact_is_up(&node->contact[port])) {
+        return; /* nobody is there yet */
+    }
+/*- */
+    const int32_t count = role_size(frame) + MORE;
     int32_t at = role_find(node, 0, port);
     if (node->line[port].begun) {
         at = role_find(node, at + role_length(node, at), port);
@@ -81,8 +93,14 @@ static void role_queue(role_node_t *node, int32_t port, const role_frame_t *fram
         node->queue[i - 1 + count] = node->queue[i - 1];
     }
     node->queue[at] = (uint8_t)(port + 1);
-    innervate_stuff(node->queue + at + 2, role_encode(frame, node->queue + at + 2),
-            node->queue + at + 1);
+    uint8_t *const piece = node->queue + at + 2;
+/*+ clear */
+    innervate_stuff(piece, role_encode(frame, piece), piece - 1);
+/*- */
+/*+ sealed */
+    innervate_stuff(piece, innervate_contact_close(&node->contact[port], piece,
+            role_encode(frame, piece + INNERVATE_SEAL_HEAD)), piece - 1);
+/*- */
     node->waiting = (uint16_t)(node->waiting + count);
 }
 
@@ -106,6 +124,19 @@ static void role_pump(role_node_t *node, int32_t port)
     }
 }
 
+/*+ sealed */
+/* Says something below the protocol, behind all that waits. */
+static void role_say(role_node_t *node, int32_t port, const uint8_t *bytes, int32_t count)
+{
+    if (count > 0 && node->waiting + count + 3 <= ROLE_QUEUE) {
+        node->queue[node->waiting] = (uint8_t)(port + 1);
+        innervate_stuff(bytes, count, node->queue + node->waiting + 1);
+        node->waiting = (uint16_t)(node->waiting + count + 3);
+        role_pump(node, port);
+    }
+}
+
+/*- */
 /*- */
 /*+ air */
 /* Hands the radio a frame, with the packets in it. */
@@ -169,6 +200,10 @@ void role_node_start(role_node_t *node, const role_params_t *params, const INNER
 /*+ gate */
     role_gate_t *const gate = node->gate;
 /*- */
+/*+ sealed */
+    const innervate_keys_t *const keys = node->keys;
+    uint8_t life[INNERVATE_LIFE];
+/*- */
     for (uint32_t i = 0; i < sizeof *node; i++) {
         bytes[i] = 0;
     }
@@ -190,6 +225,13 @@ void role_node_start(role_node_t *node, const role_params_t *params, const INNER
 /*+ hooks */
     role_links_begin(&node->state, HAS_GATE);
 /*- */
+/*+ sealed */
+    node->keys = keys;
+    keys->crypto->random(life, INNERVATE_LIFE);
+    for (int32_t line = 0; line < ROLE_PORTS_MAX; line++) {
+        innervate_contact_begin(&node->contact[line], keys, KEY_KIND, number, life);
+    }
+/*- */
     role_clear(&node->out);
     role_on_start(&node->state, /*gate*/params, role_node_now(node), cause, &node->out);
     role_drain(node);
@@ -199,12 +241,28 @@ void role_node_start(role_node_t *node, const role_params_t *params, const INNER
 /* A piece of a line between two zeros. */
 static void role_piece(role_node_t *node, int32_t port, uint8_t *bytes, int32_t count)
 {
-    const int32_t size = count > ROLE_SIZE_MAX + 1 ? -1 : innervate_unstuff(bytes, count);
+    int32_t size = count > ROLE_PIECE_MAX + 1 ? -1 : innervate_unstuff(bytes, count);
+/*+ sealed */
+    uint8_t out[INNERVATE_SAY_MAX];
+    int32_t said, who = 0;
+    size = innervate_contact_take(&node->contact[port], bytes, size, out, &said, &who);
+    role_say(node, port, out, said);
+    if (size == 0) {
+        return;
+    }
+    bytes += INNERVATE_SEAL_HEAD;
+/*- */
     if (size < 0 || role_decode(bytes, size, &node->frame) != ROLE_OK) {
         node->dropped++;
         return;
     }
 /*+ hooks */
+/*+ sealed */
+    if (!role_links_is_from(&node->frame, who)) {
+        node->dropped++;
+        return;
+    }
+/*- */
     role_links_heard(&node->links, port, &node->frame);
 /*- */
     const int32_t now = role_node_now(node);
@@ -217,7 +275,7 @@ void role_node_bytes(role_node_t *node, int32_t port, const uint8_t *bytes, int3
     role_line_t *line = &node->line[port];
     for (int32_t i = 0; i < count && !node->broken; i++) {
         if (bytes[i] != 0) {
-            if (line->heard < ROLE_SIZE_MAX + 2) {
+            if (line->heard < ROLE_PIECE_MAX + 2) {
                 line->in[line->heard++] = bytes[i];
             }
         } else if (line->heard > 0) {
@@ -262,6 +320,12 @@ void role_node_poll(role_node_t *node)
     int32_t soonest = HALF30;
 /*+ lines */
     for (int32_t port = 0; port < ROLE_PORTS_MAX; port++) {
+/*+ sealed */
+        uint8_t out[INNERVATE_SAY_MAX];
+        innervate_contact_t *const contact = &node->contact[port];
+        role_say(node, port, out, innervate_contact_beat(contact, role_node_now(node), out));
+        soonest = 1000 * contact->wait_ms < soonest ? 1000 * contact->wait_ms : soonest;
+/*- */
         role_pump(node, port);
     }
 /*- */

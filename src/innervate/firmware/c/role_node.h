@@ -19,6 +19,9 @@
 #ifndef ROLE_NODE_H
 #define ROLE_NODE_H
 
+/*+ sealed */
+#include "innervate_contact.h"
+/*- */
 #include "innervate_port.h"
 #include "innervate_wire.h"
 #include "role.h"
@@ -35,15 +38,24 @@ extern "C" {
 #ifndef ROLE_PORTS_MAX
 #define ROLE_PORTS_MAX 4 /* serial lines */
 #endif
+/*+ clear */
+#define ROLE_SENT_MAX ROLE_SIZE_MAX /* bytes of a frame on a line, */
+#define ROLE_PIECE_MAX ROLE_SIZE_MAX /* and of all that can come in */
+/*- */
+/*+ sealed */
+#define ROLE_SENT_MAX (ROLE_SIZE_MAX + INNERVATE_SEAL_MORE) /* bytes of a frame on a line, */
+#define ROLE_PIECE_MAX \
+    (ROLE_SENT_MAX > INNERVATE_HELLO_MAX ? ROLE_SENT_MAX : INNERVATE_HELLO_MAX) /* and of all */
+/*- */
 #ifndef ROLE_QUEUE
-#define ROLE_QUEUE (8 * ROLE_SIZE_MAX + 3) /* bytes that wait for lines at most */
+#define ROLE_QUEUE (8 * ROLE_SENT_MAX + 3) /* bytes that wait for lines at most */
 #endif
 
 /** One end of a cable. */
 typedef struct {
     uint8_t heard; /* bytes in `in`; more than fit = too long, wait for the zero */
     uint8_t begun; /* 1 = the first frame that waits for it is on the wire */
-    uint8_t in[ROLE_SIZE_MAX + 2]; /* of the frame that comes in */
+    uint8_t in[ROLE_PIECE_MAX + 2]; /* of the frame that comes in */
 } role_line_t;
 
 /*- */
@@ -81,6 +93,10 @@ typedef struct {
 /*- */
 /*+ hooks */
     role_links_t links;
+/*- */
+/*+ sealed */
+    const innervate_keys_t *keys; /* set it before the start */
+    innervate_contact_t contact[ROLE_PORTS_MAX];
 /*- */
 /*+ gate */
     role_gate_t *gate; /* set it before the start; 0 = this node never leads */

@@ -16,6 +16,11 @@ void role_links_heard(role_links_t *links, int32_t port, role_frame_t *frame)
     }
 }
 
+int32_t role_links_is_from(const role_frame_t *frame, int32_t who)
+{
+    return frame->link_src == who;
+}
+
 int32_t role_links_leaves(const role_links_t *links, int32_t port, const role_frame_t *frame,
         int32_t attempt)
 {

@@ -23,6 +23,9 @@ void role_links_begin(role_state_t *state, int32_t leads);
 /** A frame came in on a line. */
 void role_links_heard(role_links_t *links, int32_t port, role_frame_t *frame);
 
+/** 1 if a frame is from whom it says: `who` has sealed it. */
+int32_t role_links_is_from(const role_frame_t *frame, int32_t who);
+
 /** 1 if a frame leaves by a line: where its receiver was heard last; by all if that is not known,
  * if it is for all, or if it was sent in vain before. */
 int32_t role_links_leaves(const role_links_t *links, int32_t port, const role_frame_t *frame,

@@ -23,6 +23,12 @@ int32_t board_send(int32_t uart, const uint8_t *bytes, int32_t count);
 /** Takes what a UART has received; returns how many bytes, `room` at most. */
 int32_t board_receive(int32_t uart, uint8_t *bytes, int32_t room);
 
+/*+ sealed */
+/** Random bytes: an emulated board asks its host for them (QEMU: -semihosting). Yours has a
+ * generator in hardware, or none: then it must not seal. */
+void board_random(uint8_t *bytes, int32_t count);
+
+/*- */
 /** Sleeps until something comes in, at most so long. */
 void board_sleep(int32_t us);
 

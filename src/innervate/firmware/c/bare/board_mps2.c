@@ -61,6 +61,33 @@ int32_t board_receive(int32_t uart, uint8_t *bytes, int32_t room)
     return count;
 }
 
+/*+ sealed */
+#define OPEN 1 /* what a host is asked */
+#define READ 6
+
+static int32_t ask_host(int32_t what, const void *words)
+{
+    register int32_t r0 __asm__("r0") = what;
+    register const void *r1 __asm__("r1") = words;
+    __asm volatile("bkpt 0xAB" : "+r"(r0) : "r"(r1) : "memory");
+    return r0;
+}
+
+void board_random(uint8_t *bytes, int32_t count)
+{
+    static const char name[] = "/dev/urandom";
+    static int32_t file = -1;
+    if (file < 0) {
+        const uintptr_t open[3] = {(uintptr_t)name, 1, sizeof name - 1};
+        file = ask_host(OPEN, open);
+    }
+    const uintptr_t read[3] = {(uintptr_t)file, (uintptr_t)bytes, (uintptr_t)count};
+    while (file < 0 || ask_host(READ, read) != 0) {
+        /* without chance nothing is sealed */
+    }
+}
+
+/*- */
 void board_interrupt(void)
 {
     for (int32_t i = 0; i < BOARD_UARTS; i++) {

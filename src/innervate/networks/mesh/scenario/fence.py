@@ -162,12 +162,6 @@ def parameters(
               for ring in rings]  # fmt: skip
     if unit > 1:
         _check_rings(source, scaled)
-    px, py, after = ([0] * POINTS for _ in range(3))
-    at = 0
-    for ring in scaled:
-        for i, (x, y) in enumerate(ring):
-            px[at + i], py[at + i], after[at + i] = x, y, at + (i + 1) % len(ring)
-        at += len(ring)
     return {
         "watch": int(fence.watch and robots > 0),
         "lost": fence.lost_beacons,
@@ -176,12 +170,20 @@ def parameters(
         "clear_margin": round(100 * fence.clear_m / unit),
         "predict_ms": round(1000 * fence.predict_s),
         "unit_cm": unit,
-        "points": at,
-        "px": px,
-        "py": py,
-        "after": after,
+        **_corners(scaled),
         "fence": fence.number,
     }
+
+
+def _corners(rings: list[list[tuple[int, int]]]) -> dict[str, Any]:
+    """All rings' corners in one table, each with the place of the next one."""
+    px, py, after = ([0] * POINTS for _ in range(3))
+    at = 0
+    for ring in rings:
+        for i, (x, y) in enumerate(ring):
+            px[at + i], py[at + i], after[at + i] = x, y, at + (i + 1) % len(ring)
+        at += len(ring)
+    return {"points": at, "px": px, "py": py, "after": after}
 
 
 def _unit_cm(source: Source, fence: FenceTable, points: list[Point]) -> int:

@@ -15,7 +15,7 @@ from innervate.networks.radio.scenario.model import MACS
 from innervate.scenario import keys
 from innervate.scenario.actions.field import ACTIONS
 
-Node = Annotated[int | str, Meta(description='a node by number from 0, or by name, like "n3"')]
+NodeId = Annotated[int | str, Meta(description='a node by number from 0, or by name, like "n3"')]
 Metres = Annotated[
     float, Meta(ge=-100_000, le=100_000, description="a number of metres within +-100000")
 ]
@@ -59,8 +59,8 @@ class NodeTable(keys.Table, frozen=True, kw_only=True):
 class LinkedTable(keys.Table, frozen=True, kw_only=True):
     """[[link]]: two nodes that hear each other, and nobody else."""
 
-    a: Node
-    b: Node
+    a: NodeId
+    b: NodeId
     quality: Annotated[
         float | tuple[float, float],
         Meta(description="a share of received frames, 0 to 1, or two: [a to b, b to a]"),
@@ -149,7 +149,7 @@ class FenceTable(keys.Table, frozen=True, kw_only=True):
 class RobotTable(keys.Table, frozen=True, kw_only=True):
     """[[robot]]: a node that moves."""
 
-    node: Node
+    node: NodeId
     waypoints: Annotated[
         list[Point], Meta(max_length=10_000, description="a list of points [x, y] in metres")
     ] = []
@@ -181,17 +181,28 @@ class MeshEventTable(keys.Table, frozen=True, kw_only=True):
 
 
 class MeshScenario(keys.Table, frozen=True, kw_only=True):
-    """A scenario of kind "mesh"."""
+    """A scenario of kind "mesh"; its tables are built as Mesh.Node, Mesh.Flow and so on."""
 
-    kind: Literal["mesh"]
+    Node = NodeTable
+    Link = LinkedTable
+    Placement = PlacementTable
+    Import = ImportTable
+    Radio = MeshRadioTable
+    Protocol = MeshProtocolTable
+    Flow = FlowTable
+    Fence = FenceTable
+    Robot = RobotTable
+    Event = MeshEventTable
+
+    kind: Literal["mesh"] = "mesh"
     schema: keys.Schema = keys.SCHEMA
     name: keys.Name = ""
     duration_s: Annotated[float, keys.above_0("seconds", limit=100_000)] = 60.0
     seed: keys.Seed = 1
     # Its range is checked in rules.py, where the reason is known.
     nodes: Annotated[int | None, Meta(description="a whole number of nodes, 1 to 254")] = None
-    gateway: Node | None = None
-    standby: Annotated[list[Node], Meta(description="a list of nodes, in order of rank")] = []
+    gateway: NodeId | None = None
+    standby: Annotated[list[NodeId], Meta(description="a list of nodes, in order of rank")] = []
     monitor: Annotated[int | str, Meta(description='a node, or "gateway"')] = "gateway"
     placement: PlacementTable = PlacementTable()
     import_: ImportTable | None = field(name="import", default=None)

@@ -87,9 +87,14 @@ class RadioEventTable(keys.Table, frozen=True, kw_only=True):
 
 
 class RadioScenario(keys.Table, frozen=True, kw_only=True):
-    """A scenario of kind "radio"."""
+    """A scenario of kind "radio"; its tables are built as Radio.Traffic, Radio.Event and so on."""
 
-    kind: Literal["radio"]
+    Traffic = TrafficTable
+    Channel = ChannelTable
+    Protocol = MediumAccessTable
+    Event = RadioEventTable
+
+    kind: Literal["radio"] = "radio"
     schema: keys.Schema = keys.SCHEMA
     name: keys.Name = ""
     duration_s: Annotated[float, keys.above_0("seconds", limit=100_000)] = 60.0

@@ -1,9 +1,10 @@
 """What the explorer forgets of a port changes no future: two runs of a handler side by side.
 
 A port is *dead* if it said "no route" or "you are my parent", or, and is not the parent's, a route
-that the rule refuses. It stays so until it says something else, since what is refused stays refused
-(F, T4). So in both runs a dead port may be taken for one that cannot be had, wherever the handler
-asks; that it is so at each of these places is a goal, too.
+that the rule refuses, or if its cable does not work. It stays so until it says something else,
+since what is refused stays refused (F, T4), or until it works again. So in both runs a dead port
+may be taken for one that cannot be had, wherever the handler asks; that it is so at each of these
+places is a goal, too.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from innervate.networks.skin.protocol import fields
 from innervate.networks.skin.protocol.constants import (
     INFINITY,
     NONE,
+    ONE,
     PERIODIC,
     PORTS,
     RULE_FEASIBLE,
@@ -26,7 +28,7 @@ from innervate.networks.skin.protocol.constants import (
 )
 from innervate.networks.skin.prove.feasible import ENTRY
 from innervate.networks.skin.prove.neighbours import ROOM
-from innervate.networks.skin.prove.reductions import STORED, Pair
+from innervate.networks.skin.prove.reductions import STORED, Bare
 from innervate.prove.execute import Call, Demand, Machine
 from innervate.prove.records import Array, Outbox, State, Store
 from innervate.prove.steps import Goal, Step
@@ -35,8 +37,9 @@ from innervate.prove.theory import source
 
 LOADS = frozenset({"load", "size", "own_load"})
 SAYS = frozenset({"dist", "sq", "child", "load", "size"})
-SAID, REFUSED = "is_usable", "is_allowed"  # why a port is dead: the question that says so
-WORDS = {SAID: "says that it cannot be had", REFUSED: "says what the rule refuses"}
+SAID, REFUSED, BROKEN = "says that it cannot be had", "says what the rule refuses", "does not work"
+PORT = 0  # ports are alike (mirror.py), so that one stands for all, and for all others the next
+QUESTIONS = {SAID: "is_usable", REFUSED: "is_allowed", BROKEN: "is_usable"}
 
 
 class Asked(Machine):
@@ -46,10 +49,12 @@ class Asked(Machine):
         functions, terms: as of every machine.
         question: a function of cell, parameters and port.
         port: that.
+        event: that is run; of the same in two runs the same is drawn.
     """
 
-    def __init__(self, functions: Any, terms: Terms, question: str, port: int) -> None:
+    def __init__(self, functions: Any, terms: Terms, question: str, port: int, event: str) -> None:
         super().__init__(functions, terms, Outbox(fields.FRAME, ROOM))
+        self.event = event
         self.question = question
         self.port = terms.number(port)
 
@@ -82,22 +87,23 @@ class Asked(Machine):
     def draw(self, many: Term, state: State, call: Call) -> Term:
         """The same draw of both runs returns the same number."""
         t = self.terms
-        drawn = t.unknown(f"draw {len(self.draws)}", 0, PORTS - 1)
+        drawn = t.unknown(f"{self.event}: draw {len(self.draws)}", 0, PORTS - 1)
         under = t.all(call.under, state.path, t.at_most(t.number(1), many))
         self.facts.append(t.implies(under, t.less(drawn, many)))
-        self.draws.append((drawn, many))
+        self.draws.append((drawn, many, under))
         return drawn
 
 
-def steps(rule: int, change: Change | None = None) -> tuple[Callable[[], Step], ...]:
-    """That what a dead port said decides nothing, under a rule."""
+def steps(
+    rule: int, change: Change | None = None, refuses: bool = True
+) -> tuple[Callable[[], Step], ...]:
+    """That what a dead port said decides nothing, under a rule that may refuse for good."""
     known = source(ENTRY, change)
     return tuple(
-        partial(_dead, known, rule, p, parent, why)
-        for p in range(PORTS)
-        for parent in (NONE, *range(PORTS))
-        for why in (SAID, REFUSED)
-        if parent != p or why == SAID
+        partial(_dead, known, rule, PORT, parent, why)
+        for parent in (NONE, PORT, PORT + 1)
+        for why in (SAID, REFUSED, BROKEN)
+        if (refuses or why != REFUSED) and (parent != PORT or why == SAID)
     )
 
 
@@ -109,18 +115,16 @@ class Runs:
         rule: that it is under.
         p: the port that is dead.
         parent: the cell's.
-        why: SAID or REFUSED.
+        why: SAID, REFUSED or BROKEN.
     """
 
     def __init__(self, known: dict[str, Any], rule: int, p: int, parent: int, why: str) -> None:
-        self.pair = Pair(known, rule)
+        self.pair = Bare(known, rule)
         self.known, self.rule, self.p, self.why = known, rule, p, why
         self.t, self.stage, self.cell = self.pair.t, self.pair.stage, self.pair.cell
         self.stage.fix(self.cell.cell, "parent", parent)
-        self.stage.fix(self.cell.params, "balance_periods", 0)
         if parent == p:  # only until the next tick
             self.stage.fix(self.cell.params, "updates", PERIODIC)
-        self.pair.facts = []
         if parent != NONE:
             self.stage.fix(self.cell.cell, "wait", 0)  # I2
         self.goals: list[Term] = []
@@ -130,6 +134,8 @@ class Runs:
         t, view = self.t, self.pair.view(self.stage.store)
         if self.why == SAID:
             return t.any(view.is_(dist, INFINITY), view.is_(child, 1))
+        if self.why == BROKEN:
+            return t.negated(view.works(self.p))
         asked = "nearer_than_fd" if self.rule == RULE_FEASIBLE else "later"
         known = view.fd_known if self.rule == RULE_FEASIBLE else view.sq_known
         args = [self.cell.cell, sq, dist] if self.rule == RULE_FEASIBLE else [sq, view.sq_own]
@@ -138,34 +144,37 @@ class Runs:
         return t.all(view.is_(known, 1), t.negated(t.as_truth(better)))
 
     def forgotten(self, store: Store) -> Store:
-        """The same where the port has said "no route"."""
+        """The same where the port has said "no route"; of one that is broken, any penalty of it."""
         words = {"dist": INFINITY, "sq": 0, "child": 0, "load": 0, "size": 0}
-        return {**store, **{(self.cell.cell, name, self.p): self.t.number(value)
-                            for name, value in words.items()}}  # fmt: skip
+        found = dict(store)
+        for name, value in words.items():
+            found[self.cell.cell, name, self.p] = self.t.number(value)
+        if self.why == BROKEN:
+            found[self.cell.cell, "pf", self.p] = self.t.unknown("other penalty", ONE, 2 * ONE)
+        return found
 
     def run(self, store: Store, handler: str, *told: Any) -> tuple[Store, Asked]:
         """The values after a handler, where the question is answered."""
-        machine = Asked(self.known, self.t, self.why, self.p)
-        args = [self.t.number(one) if isinstance(one, int) else one for one in told]
-        given = [self.cell.cell, self.cell.params, self.pair.clock, *args, machine.out]
-        after, _ = machine.run(handler, given, store, self.t.true)
-        self.pair.machines.append(machine)
+        event = " ".join([handler, *(str(one) for one in told if isinstance(one, int))])
+        machine = Asked(self.known, self.t, QUESTIONS[self.why], self.p, event)
+        after, _ = self.pair.play(machine, store, handler, *told)
         self.goals += [self.t.implies(one.guard, one.holds) for one in machine.demands
-                       if one.where == self.why]  # fmt: skip
+                       if one.where == machine.question]  # fmt: skip
         return after, machine
 
     def compare(self, a: tuple[Store, Asked], b: tuple[Store, Asked]) -> None:
         """Both runs leave the same, but for the port's words and for loads, and send the same."""
-        t, pair = self.t, self.pair
+        pair = self.pair
         self.goals += [
             pair.same_state(a[0], b[0], self.may_differ).holds,
             pair.same_sent(a[1], b[1], (a[0], b[0]), LOADS).holds,
-            *(t.same(x[1], y[1]) for x, y in zip(a[1].draws, b[1].draws, strict=True)),
+            pair.same_drawn(a[1], b[1]).holds,
         ]
 
     def may_differ(self, field: str, index: int | None) -> Term:
         """What is forgotten may differ: the port's words, and loads."""
-        return self.t.truth_of(field in LOADS or (field in STORED and index == self.p))
+        words = {*STORED, "pf"} if self.why == BROKEN else STORED
+        return self.t.truth_of(field in LOADS or (field in words and index == self.p))
 
 
 def _dead(known: dict[str, Any], rule: int, p: int, parent: int, why: str) -> Step:
@@ -180,6 +189,9 @@ def _dead(known: dict[str, Any], rule: int, p: int, parent: int, why: str) -> St
     two.compare(*ticks)
     if why == REFUSED:
         two.goals = [t.any(forgets, one) for one in two.goals]
+    if why == BROKEN:
+        works = t.any(*(pair.view(after).works(p) for after, _ in ticks))
+        two.goals = [t.any(works, one) for one in two.goals]
     if p != parent:
         two.compare(*(two.run(store, "on_timer", SOON)
                       for store in (before, two.forgotten(before))))  # fmt: skip
@@ -190,7 +202,7 @@ def _dead(known: dict[str, Any], rule: int, p: int, parent: int, why: str) -> St
     two.goals = [t.implies(now, one) for one in two.goals]
     if p != parent:
         two.goals.append(_hears(two))
-    words = f"a port {WORDS[why]}: {p}, the parent's {parent if parent >= 0 else 'none'}"
+    words = f"a port {why}: {p}, the parent's {parent if parent >= 0 else 'none'}"
     return pair.step(words, [Goal("it may be forgotten", t.all(*two.goals))])
 
 

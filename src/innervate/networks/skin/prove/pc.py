@@ -9,11 +9,11 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from innervate.dialect.arith import MASK16
+from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.source import Change
 from innervate.networks.skin.protocol import fields
 from innervate.networks.skin.protocol.constants import BEACON, COMMAND, DATA, GIVE, TICK, TIMERS
-from innervate.prove.records import Record
+from innervate.prove.records import Record, Store, name_of
 from innervate.prove.steps import Goal, Stage, Step, own_goals, sent
 from innervate.prove.terms import Term
 from innervate.prove.theory import source
@@ -33,6 +33,47 @@ def steps(change: Change | None = None) -> tuple[Callable[[], Step], ...]:
     found.append(partial(_play, known, "the PC is given a command", "on_input", [GIVE, "frame"]))
     found.append(partial(_play, known, "the PC is given something else", "on_input", [0, "frame"]))
     return tuple(found)
+
+
+def unread(change: Change | None = None) -> tuple[Callable[[], Step], ...]:
+    """What the explorer leaves out of a PC, and of beacons on their way to it."""
+    known = source(ENTRY, change)
+    return partial(_known_before, known), partial(_heard_alike, known)
+
+
+def _known_before(known: dict[str, Any]) -> Step:
+    """A number that it knows, or of a cell that never had one."""
+    step = _play(known, "the PC hears what it knows", "on_frame", ["port", "frame"], BEACON)
+    t, said, mine = step.terms, step.was("frame", "sq"), step.was("own", "sq")
+    _, newer = step.machine.run("later", [said, mine], step.before, t.true)
+    old = t.all(t.same(step.was("own", "sq_known"), t.number(1)), t.negated(t.as_truth(newer)))
+    step.facts.append(t.any(old, t.same(step.was("frame", "load"), t.number(0))))
+    step.goals = [Goal("it notes no more than a port's load", _same(step, step.before))]
+    return step
+
+
+def _heard_alike(known: dict[str, Any]) -> Step:
+    """Of a beacon it reads the number, and whether the load is 0, at whatever port."""
+    step = _play(known, "the PC hears a number", "on_frame", ["port", "frame"], BEACON)
+    t, frame = step.terms, step.records["frame"]
+    other = dict(step.before)
+    for key, low, high in frame.places():
+        if key[1] not in ("kind", "sq"):
+            other[key] = t.unknown(f"{name_of(key)}'", low, high)
+    none = [t.same(store[frame, "load", None], t.number(0)) for store in (step.before, other)]
+    port = t.unknown("port'", 0, PORTS - 1)
+    step.facts += [t.same(*none), t.less(port, step.was("own", "ports"))]
+    given = [step.records["pc"], step.records["params"], t.unknown("now'", 0, MASK30), port, frame]
+    after, _ = step.machine.run("on_frame", [*given, step.machine.out], other, t.true)
+    step.goals = [Goal("the same comes of it, and nothing is sent", _same(step, after))]
+    return step
+
+
+def _same(step: Step, store: Store) -> Term:
+    """It knows the same as it would in other values, and sends nothing."""
+    t, own = step.terms, step.records["own"]
+    alike = [t.same(step.after[key], store[key]) for key, _, _ in own.places()]
+    return t.all(*alike, *(t.negated(action.guard) for action in step.machine.out.actions))
 
 
 def _play(known: dict[str, Any], name: str, handler: str, told: list[Any], kind: int = 0) -> Step:

@@ -29,12 +29,15 @@ from innervate.networks.skin.prove.neighbours import ROOM, Cell, View
 from innervate.prove.execute import Machine
 from innervate.prove.records import Outbox, Store, name_of
 from innervate.prove.steps import Goal, Stage, Step
-from innervate.prove.terms import Term
+from innervate.prove.terms import Term, Terms
 from innervate.prove.theory import source
 
 LOADS = frozenset({"load", "size", "own_load"})
 STORED = frozenset({"dist", "sq", "load", "size", "child", "heard"})
+HANDLERS = {"a beacon": ("on_frame", "port", "frame"), "a period": ("on_timer", TICK),
+            "the timer for news": ("on_timer", SOON)}  # fmt: skip
 NOT_DRAWN = frozenset({"rng", "choice", "asked"})
+SAID = ("kind", "dist", "sq", "load", "size", "parent")
 
 
 def steps(rule: int, change: Change | None = None) -> tuple[Callable[[], Step], ...]:
@@ -48,8 +51,8 @@ def steps(rule: int, change: Change | None = None) -> tuple[Callable[[], Step], 
     )
 
 
-class Pair:
-    """A cell that can be run twice, with the same draws.
+class Bare:
+    """A cell in any state, without balancing, that can be run twice.
 
     Args:
         known: functions of the protocol.
@@ -65,11 +68,8 @@ class Pair:
         self.port = self.t.unknown("port", 0, PORTS - 1)
         self.clock = self.stage.clock()
         self.machines: list[Machine] = []
-        view = self.view(self.stage.store)
-        if rule == RULE_FEASIBLE:
-            self.facts = [*feasible.facts(self.cell), feasible.said_by(self.cell, self.port)]
-        else:
-            self.facts = [*strict.facts(view), strict.said_by(self.cell, self.port)]
+        self.facts: list[Term] = []
+        self.stage.fix(self.cell.params, "balance_periods", 0)
 
     def view(self, store: Store) -> View:
         """The cell with these values."""
@@ -77,7 +77,11 @@ class Pair:
 
     def run(self, store: Store, handler: str, *told: Any) -> tuple[Store, Machine]:
         """The values after a handler, and the machine that ran it."""
-        machine = Machine(self.known, self.t, Outbox(fields.FRAME, ROOM))
+        return self.play(Machine(self.known, self.t, Outbox(fields.FRAME, ROOM)), store, handler,
+                         *told)  # fmt: skip
+
+    def play(self, machine: Any, store: Store, handler: str, *told: Any) -> tuple[Store, Any]:
+        """The same by a machine of one's own."""
         cell = self.cell
         args = [self.t.number(one) if isinstance(one, int) else one for one in told]
         given = [cell.cell, cell.params, self.clock, *args, machine.out]
@@ -94,13 +98,23 @@ class Pair:
         return self.run(store, "on_timer", TICK)
 
     def step(self, name: str, goals: list[Goal], more: Iterable[Term] = ()) -> Step:
-        """The runs as a step with goals; corresponding draws have the same outcome."""
+        """The runs as a step with goals."""
         first, *others = self.machines
-        same = [self.t.same(a[0], b[0]) for other in others
-                for a, b in zip(first.draws, other.draws, strict=False)]  # fmt: skip
         facts = [fact for machine in self.machines for fact in machine.facts]
         return Step(name, first, self.stage.records, self.stage.store, self.stage.store,
-                    [*self.facts, *more, *facts, *same], goals, others=others)  # fmt: skip
+                    [*self.facts, *more, *facts], goals, others=others)  # fmt: skip
+
+    def drawn_alike(self, a: Machine, b: Machine) -> list[Term]:
+        """What two runs draw at the same place is the same."""
+        return [self.t.same(x[0], y[0]) for x, y in zip(a.draws, b.draws, strict=True)]
+
+    def same_drawn(self, a: Machine, b: Machine) -> Goal:
+        """At each place both draw, out of as many, or neither does."""
+        t = self.t
+        pairs = [(one[1:], other[1:]) for one, other in zip(a.draws, b.draws, strict=True)]
+        parts = [t.all(t.same(here, there), t.implies(here, t.same(many, others)))
+                 for (many, here), (others, there) in pairs]  # fmt: skip
+        return Goal("as much is drawn", t.all(*parts))
 
     def same_state(self, a: Store, b: Store, but: Callable[[str, int | None], Term]) -> Goal:
         """All fields of the cell are equal, but where they need not be."""
@@ -121,15 +135,22 @@ class Pair:
             if one.kind == SEND:
                 pairs = zip(one.frame.places(), other.frame.places(), strict=True)
                 alike += [t.same(stores[0][x], stores[1][y]) for (x, _, _), (y, _, _) in pairs
-                          if x[1] in ("kind", "dist", "sq", "load", "size", "parent")
-                          and x[1] not in but]  # fmt: skip
+                          if x[1] in SAID and x[1] not in but]  # fmt: skip
             parts.append(t.implies(one.guard, t.all(*alike)))
         return Goal("the same is sent", t.all(*parts))
 
 
+def kept(bare: Bare, rule: int) -> list[Term]:
+    """A rule's invariants of the cell's first state, and what it may be told on the port."""
+    if rule == RULE_FEASIBLE:
+        return [*feasible.facts(bare.cell), feasible.said_by(bare.cell, bare.port)]
+    view = bare.view(bare.stage.store)
+    return [*strict.facts(view), strict.said_by(bare.cell, bare.port)]
+
+
 def _stored(known: dict[str, Any], rule: int) -> Step:
     """With periodic updates a beacon is stored, and that is all."""
-    pair = Pair(known, rule)
+    pair = Bare(known, rule)
     t, cell = pair.t, pair.cell
     pair.stage.fix(cell.params, "updates", PERIODIC)
     after, machine = pair.hear(pair.stage.store)
@@ -146,7 +167,7 @@ def _stored(known: dict[str, Any], rule: int) -> Step:
 
 def _no_news(known: dict[str, Any], rule: int) -> Step:
     """The timer for news that are none any more changes nothing but itself."""
-    pair = Pair(known, rule)
+    pair = Bare(known, rule)
     t = pair.t
     view = pair.view(pair.stage.store)
     after, machine = pair.run(pair.stage.store, "on_timer", SOON)
@@ -164,7 +185,7 @@ def _no_news(known: dict[str, Any], rule: int) -> Step:
 
 def _loads(known: dict[str, Any], rule: int, hears: bool) -> Step:
     """Without balancing no load and no size decides anything."""
-    pair = Pair(known, rule)
+    pair = Bare(known, rule)
     t, cell = pair.t, pair.cell
     before = pair.stage.store
     other = {
@@ -175,9 +196,16 @@ def _loads(known: dict[str, Any], rule: int, hears: bool) -> Step:
     run = pair.hear if hears else pair.tick
     (a, first), (b, second) = run(before), run(other)
     goals = [pair.same_state(a, b, lambda field, _: t.truth_of(field in LOADS)),
-             pair.same_sent(first, second, (a, b), {"load", "size"})]  # fmt: skip
-    view = pair.view(before)
+             pair.same_sent(first, second, (a, b), {"load", "size"}),
+             Goal("load 0 is the same", _none(t, (a, first), (b, second))),
+             pair.same_drawn(first, second)]  # fmt: skip
     what = "a beacon" if hears else "a period"
-    return pair.step(
-        f"{what} with other loads", goals, [view.is_(view.param("balance_periods"), 0)]
-    )
+    return pair.step(f"{what} with other loads", goals, pair.drawn_alike(first, second))
+
+
+def _none(t: Terms, one: tuple[Store, Machine], other: tuple[Store, Machine]) -> Term:
+    """Beacons say load 0 in both runs, or in neither."""
+    none = [[t.same(store[action.frame, "load", None], t.number(0))
+             for action in machine.out.actions if action.kind == SEND]
+            for store, machine in (one, other)]  # fmt: skip
+    return t.all(*(t.same(a, b) for a, b in zip(*none, strict=True)))

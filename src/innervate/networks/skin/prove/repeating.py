@@ -2,7 +2,6 @@
 
 That is so because a cell's choice is up to date between any two events (K1 .. K4), which every
 handler that the explorer calls keeps; so there is nothing that hearing the same again could bring.
-Balancing is off, as it is where states are explored.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from innervate.networks.skin.protocol.constants import (
 )  # fmt: skip
 from innervate.networks.skin.prove.feasible import ENTRY
 from innervate.networks.skin.prove.neighbours import ROOM
-from innervate.networks.skin.prove.reductions import Pair
+from innervate.networks.skin.prove.reductions import Bare, kept
 from innervate.prove.execute import Machine
 from innervate.prove.records import Outbox, Store
 from innervate.prove.steps import Goal, Step
@@ -43,20 +42,20 @@ def steps(rule: int, change: Change | None = None) -> tuple[Callable[[], Step], 
     known = source(ENTRY, change)
     return (
         *(partial(_kept, known, rule, name) for name in EVENTS),
-        *(partial(_repeated, known, rule, port) for port in range(PORTS)),
+        partial(_repeated, known, rule),
     )
 
 
-def _pair(known: dict[str, Any], rule: int) -> Pair:
-    pair = Pair(known, rule)
-    for name, value in (("balance_periods", 0), ("updates", TRIGGERED)):
-        any_ = pair.view(pair.stage.store).param(name)  # what the facts speak of
-        pair.facts.append(pair.t.same(any_, pair.t.number(value)))
-        pair.stage.fix(pair.cell.params, name, value)
+def _pair(known: dict[str, Any], rule: int) -> Bare:
+    pair = Bare(known, rule)
+    pair.facts = kept(pair, rule)
+    any_ = pair.view(pair.stage.store).param("updates")  # what the facts speak of
+    pair.facts.append(pair.t.same(any_, pair.t.number(TRIGGERED)))
+    pair.stage.fix(pair.cell.params, "updates", TRIGGERED)
     return pair
 
 
-def up_to_date(pair: Pair, store: Store) -> list[Goal]:
+def up_to_date(pair: Bare, store: Store) -> list[Goal]:
     """What holds of a cell's choice between any two events."""
     t, view, cell = pair.t, pair.view(store), pair.cell
 
@@ -95,8 +94,9 @@ def _kept(known: dict[str, Any], rule: int, name: str) -> Step:
     return pair.step(name, up_to_date(pair, after), facts)
 
 
-def _repeated(known: dict[str, Any], rule: int, port: int) -> Step:
+def _repeated(known: dict[str, Any], rule: int) -> Step:
     """A beacon says what was heard last."""
+    port = 0  # ports are alike (mirror.py)
     pair = _pair(known, rule)
     before, cell = pair.stage.store, pair.cell
     pair.port = pair.t.number(port)
@@ -108,4 +108,4 @@ def _repeated(known: dict[str, Any], rule: int, port: int) -> Step:
     unread = {"heard"} if rule == RULE_FEASIBLE else {"heard", "fd_known", "fd_sq", "fd_dist"}
     same = pair.same_state(before, after, lambda field, _: pair.t.truth_of(field in unread))
     goals = [same, Goal("nothing is sent", quiet)]
-    return pair.step(f"port {port} hears again what it heard last", goals, facts)
+    return pair.step("a port hears again what it heard last", goals, facts)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -14,12 +15,14 @@ from innervate.networks.skin.protocol.constants import (
 from innervate.networks.skin.prove import (
     feasible,
     forgetting,
+    mirror,
     pc,
     reductions,
     repeating,
     stories,
     strict,
     system,
+    unread,
 )
 from innervate.networks.skin.prove.faults import EXPLORERS
 from innervate.networks.skin.prove.faults import FAULTS as MUTANTS
@@ -95,19 +98,28 @@ def theories(_network: Any, change: Change | None = None) -> list[Theory]:
     ]  # fmt: skip
 
 
-def resting(rule: int, change: Change | None = None) -> list[Theory]:
-    """What a reduced search under `feasible` or `strict` rests on, of the source at hand."""
+def resting(rule: int, change: Change | None = None, refuses: bool = True) -> list[Theory]:
+    """What a reduced search under a rule rests on, of the source at hand.
+
+    Args:
+        rule: that is explored.
+        change: a mistake to plant.
+        refuses: what the rule refuses it refuses for good, so that this is forgotten, too.
+    """
     own = feasible.steps if rule == RULE_FEASIBLE else strict.steps
-    claim = "What the explorer forgets of a state decides nothing."
-    parts = (
-        ("the rule", own),
+    parts: list[tuple[str, Callable[..., Any]]] = [
         ("what is only stored, news, loads", partial(reductions.steps, rule)),
-        ("what dead ports said", partial(forgetting.steps, rule)),
-        ("beacons that repeat the last", partial(repeating.steps, rule)),
-    )
+        ("what dead ports said", partial(forgetting.steps, rule, refuses=refuses)),
+        ("what is not read", partial(unread.steps, rule, refuses=refuses)),
+        ("ports are alike", partial(mirror.steps, rule)),
+    ]
+    if refuses:
+        more = ("beacons that repeat the last", partial(repeating.steps, rule))
+        parts = [("the rule", own), *parts[:2], more, *parts[2:]]
     unreachable = UNREACHABLE if rule == RULE_FEASIBLE else UNREACHABLE_STRICT
-    return [Theory(name, claim, (), steps(change=change),
-                   unreachable if own is steps else unreachable | NOT_EXPLORED)
+    return [Theory(name, "What the explorer forgets of a state decides nothing.", (),
+                   steps(change=change),
+                   unreachable if steps is own else unreachable | NOT_EXPLORED)
             for name, steps in parts]  # fmt: skip
 
 

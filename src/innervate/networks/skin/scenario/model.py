@@ -195,9 +195,23 @@ class ScriptTable(keys.Table, frozen=True, kw_only=True):
 
 
 class SkinScenario(keys.Table, frozen=True, kw_only=True):
-    """A scenario of kind "skin"."""
+    """A scenario of kind "skin"; its tables are built as Skin.Patch, Skin.Event and so on."""
 
-    kind: Literal["skin"]
+    Patch = PatchTable
+    Cell = CellTable
+    Interface = InterfaceTable
+    Cable = CableTable
+    Link = LinkTable
+    Body = BodyTable
+    Protocol = ProtocolTable
+    Timing = TimingTable
+    Data = DataTable
+    Touch = TouchTable
+    Event = EventTable
+    Command = CommandTable
+    Script = ScriptTable
+
+    kind: Literal["skin"] = "skin"
     schema: keys.Schema = keys.SCHEMA
     name: keys.Name = ""
     duration_s: Annotated[float, keys.above_0("seconds", limit=1_000_000)] = 4.0

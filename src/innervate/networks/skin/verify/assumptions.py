@@ -1,9 +1,10 @@
 """What the reductions rest on, shown of the protocol itself before they are used.
 
-They forget routes that the rule refuses (reduction.py), and so could hide a mistake in the rule. So
-its lemmas are proved first, of the very source at hand and for all numbers (networks/skin/prove).
-Without the solver they are taken on trust, but for this: a cell without a route is told of every
-such route there can be in small numbers, in a frame and before a tick, and must not take it.
+They forget what decides nothing (reduction.py), and routes that the rule refuses, and so could hide
+a mistake in the protocol. So lemmas are proved first, of the very source at hand and for all
+numbers (networks/skin/prove). Without the solver they are taken on trust, but for this: a cell
+without a route is told of every refused route there can be in small numbers, in a frame and before
+a tick, and must not take it.
 """
 
 from __future__ import annotations
@@ -15,7 +16,14 @@ from pathlib import Path
 from typing import Any
 
 from innervate.dialect.source import Change
-from innervate.networks.skin.protocol.constants import INFINITY, NONE, RULE_FEASIBLE, RULE_STRICT
+from innervate.networks.skin.protocol.constants import (
+    INFINITY,
+    NONE,
+    RULE_FEASIBLE,
+    RULE_PAPER,
+    RULE_PAPER_LAX,
+    RULE_STRICT,
+)
 from innervate.networks.skin.verify import check as skin_check
 from innervate.networks.skin.verify import graphs
 from innervate.networks.skin.verify import row as skin_row
@@ -24,12 +32,16 @@ from innervate.networks.skin.verify import world as w
 from innervate.prove.errors import can_prove
 from innervate.verify.twin import Twin
 
-RULES = {"feasible": RULE_FEASIBLE, "strict": RULE_STRICT}
+RULES = {"feasible": RULE_FEASIBLE, "strict": RULE_STRICT, "paper": RULE_PAPER,
+         "paper-lax": RULE_PAPER_LAX}  # fmt: skip
+REFUSING = ("feasible", "strict")
 ON_TRUST = "taken on trust, since z3 is missing (pip install 'innervate[prove]'): "
-TRUSTED = "all that reductions forget, but that the rule refuses it in small numbers"
-PROVED = "the rule, stored beacons, news, loads, dead ports, repeated beacons"
-ARGUED = "covering states, mirror images, dead cables, time without a route, fields never read"
-ALL = "all that is forgotten, as this rule takes routes that it refused"
+TRUSTED = "all that reductions forget"
+TRUSTED_RULE = f"{TRUSTED}, but that the rule refuses it in small numbers"
+PROVED = ("stored beacons, news, loads, dead and broken ports, time without a route, fields never "
+          "read, mirror images")  # fmt: skip
+PROVED_RULE = f"the rule, repeated beacons, {PROVED}"
+ARGUED = "that who may do less finds no more (budgets are the explorer's own)"
 PAGE = "docs/verify.md"
 NUMBERS, HOPS = range(4), range(6)
 
@@ -41,20 +53,21 @@ def broken(model: system.SkinModel, bound: Any = None) -> str:
         model: what is to be explored.
         bound: the system of a copy of the protocol; None the real one.
     """
-    if not is_asked(model):
-        return ""
+    refuses = is_asked(model)
     if bound is not None:
-        return _try(model.rule, model.updates, bound)
-    return _tried(model.rule, model.updates) or refuted(model.rule)
+        return _try(model.rule, model.updates, bound) if refuses else ""
+    tried = _tried(model.rule, model.updates) if refuses else ""
+    return tried or refuted(model.rule, refuses=refuses)
 
 
 def grounds(model: system.SkinModel) -> dict[str, str]:
     """What a reduced search rests on: what is proved, argued, taken on trust; {} if it is none."""
     if not model.lean:
         return {}
-    if not is_asked(model):
-        return {"argued": ALL, "page": PAGE}
-    how = {"proved": PROVED} if can_prove() else {"trusted": TRUSTED}
+    refuses = is_asked(model)
+    how = {"trusted": TRUSTED_RULE if refuses else TRUSTED}
+    if can_prove():
+        how = {"proved": PROVED_RULE if refuses else PROVED}
     return how | {"argued": ARGUED, "page": PAGE}
 
 
@@ -67,43 +80,45 @@ def told(model: system.SkinModel) -> str:
 
 
 def is_asked(model: system.SkinModel) -> bool:
-    """True if the reductions rest on the rule: it refuses a route for good."""
-    return model.rule in RULES and not (model.rule == "strict" and bool(model.budget.restart))
+    """True if the reductions rest on the rule, too: it refuses a route for good."""
+    return model.rule in REFUSING and not (model.rule == "strict" and bool(model.budget.restart))
 
 
 @functools.cache
-def refuted(rule: str, change: Change | None = None) -> str:
+def refuted(rule: str, change: Change | None = None, refuses: bool = True) -> str:
     """The first lemma under the reductions that does not hold; "" if all do, or none was tried.
 
     Args:
         rule: what is explored.
         change: a mistake to plant, as in the dialect's `source.functions`.
+        refuses: what the rule refuses is forgotten, too.
     """
-    if not can_prove() or rule not in RULES:
+    if not can_prove():
         return ""
     if change is not None:
-        return _refuted(rule, change)
-    from innervate.networks.skin.prove.feasible import ENTRY
+        return _refuted(rule, change, refuses)
+    from innervate.networks.skin.prove import feasible, pc
     from innervate.prove import kept
     from innervate.prove.theory import source
 
     found: list[str] = []
 
     def attempt() -> bool:
-        found.append(_refuted(rule, None))
+        found.append(_refuted(rule, None, refuses))
         return not found[0]
 
     home = Path(__file__).resolve().parent.parent
     folders = home / "protocol", home / "prove"
-    held = kept.holds(f"skin, reduced, {rule}", source(ENTRY, None), folders, attempt)
+    known = {**source(pc.ENTRY, None), **source(feasible.ENTRY, None)}
+    held = kept.holds(f"skin, reduced, {rule}, {refuses}", known, folders, attempt)
     return "" if held else found[0]
 
 
-def _refuted(rule: str, change: Change | None) -> str:
+def _refuted(rule: str, change: Change | None, refuses: bool) -> str:
     from innervate.networks.skin.prove.theories import resting
     from innervate.prove.theory import prove
 
-    for theory in resting(RULES[rule], change):
+    for theory in resting(RULES[rule], change, refuses):
         for one in prove(theory, first_only=True).checked:
             if one.refuted:
                 return f"refuted: {one.refuted[0].goal} ({one.name})"

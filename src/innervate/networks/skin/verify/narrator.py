@@ -69,11 +69,27 @@ class Narrator:
 
     def _tick(self, found: Twin, node: int, event: Event) -> str:
         """A node ticks, after what it takes in."""
-        variant = event.variant
-        heard: list[str] = []
-        breaks = 0
         is_cell = node < self.graph.cells
-        factor = 1
+        heard, breaks = self._taken_in(found, node, event.variant)
+        listens = self.real.world.work[self.real.lay.pc_at + w.PC_LISTEN]
+        if is_cell:
+            self._step(w.TICK, node, breaks, event.choice, event.asked)
+        else:
+            self._step(w.PC_TICK, 0, 0, 0, 1)
+        self.steps.append(f"tick {self.graph.label(node)}")
+        if is_cell:
+            words = ", ".join([*heard, "ticks"])
+            return f"{self.name(node)} {words} and says {self._says(node)}"
+        if listens:
+            return f"the PC {', '.join([*heard, 'has listened for a period'])}"
+        own = self.real.world.work[self.real.lay.pc_at + w.PC_SQ]
+        return f"the PC sends its beacon with number {own}"
+
+    def _taken_in(self, found: Twin, node: int, variant: int) -> tuple[list[str], int]:
+        """What a node takes in before its tick, in words; which of its ends break then, coded."""
+        heard: list[str] = []
+        breaks, factor = 0, 1
+        is_cell = node < self.graph.cells
         for end in self.graph.ends_of(node):
             if self.graph.peer[end] < 0:
                 continue
@@ -96,19 +112,7 @@ class Narrator:
             elif found.model.merges and chosen:
                 heard.append(self._hear(found, way, chosen))
             factor *= 1 + real_can
-        listens = self.real.world.work[self.real.lay.pc_at + w.PC_LISTEN]
-        if is_cell:
-            self._step(w.TICK, node, breaks, event.choice, event.asked)
-        else:
-            self._step(w.PC_TICK, 0, 0, 0, 1)
-        self.steps.append(f"tick {self.graph.label(node)}")
-        if is_cell:
-            words = ", ".join([*heard, "ticks"])
-            return f"{self.name(node)} {words} and says {self._says(node)}"
-        if listens:
-            return f"the PC {', '.join([*heard, 'has listened for a period'])}"
-        own = self.real.world.work[self.real.lay.pc_at + w.PC_SQ]
-        return f"the PC sends its beacon with number {own}"
+        return heard, breaks
 
     def _hear(self, found: Twin, way: int, count: int) -> str:
         """Frames are taken in: as many as it takes to come to the one the search took."""
