@@ -44,7 +44,8 @@ class Installed:
         self.added = self.megabytes() - before
 
     def megabytes(self):
-        done = subprocess.run(["du", "-sm", self.folder], capture_output=True, text=True, check=True)
+        words = ["du", "-sm", self.folder]
+        done = subprocess.run(words, capture_output=True, text=True, check=True)
         return int(done.stdout.split()[0])
 
     def __call__(self, *words):
