@@ -114,8 +114,9 @@ def as_tables(heading: Heading, one: Experiment, made: Made, origin: Mapping[str
         *made.tables(one.name),
         Sheet("What is claimed", ("claim", "measured", "verdict", "why"), claims),
     ]
-    said = "; ".join(f"{key}: {origin[key]}" for key in kept)
-    return "\n".join([f"`{heading.command}`; {said}.", "", *map(_table_of, sheets)])
+    said = [f"`{heading.command}`;", *(f"{key}: {origin[key]};" for key in kept)]
+    said[-1] = said[-1].removesuffix(";") + "."
+    return "\n".join([*said, "", *map(_table_of, sheets)])
 
 
 def _table_of(sheet: Sheet) -> str:
