@@ -44,9 +44,7 @@ class Installed:
         self.added = self.megabytes() - before
 
     def megabytes(self):
-        words = ["du", "-sm", self.folder]
-        done = subprocess.run(words, capture_output=True, text=True, check=True)
-        return int(done.stdout.split()[0])
+        return int(subprocess.check_output(["du", "-sm", self.folder], text=True).split()[0])
 
     def __call__(self, *words):
         cache = {"INNERVATE_CACHE": str(self.folder / "cache")}
