@@ -10,7 +10,7 @@ import innervate
 from innervate import folders
 from innervate.cli import main
 from innervate.network import networks, read
-from innervate.networks.rpl import constants as c
+from innervate.networks.rpl.protocol import constants as c
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "field"
 HOME = Path(innervate.__file__).parent / "networks"

@@ -3,7 +3,7 @@
 import pytest
 
 from innervate.network import networks
-from innervate.networks.flooding import protocol as p
+from innervate.networks.flooding.protocol import node as p
 from tests.networks.one import One
 
 FLOODING = networks()["flooding"]

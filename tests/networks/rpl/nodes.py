@@ -2,7 +2,7 @@
 
 from innervate.dialect.access import ALL
 from innervate.network import networks
-from innervate.networks.rpl import constants as c
+from innervate.networks.rpl.protocol import constants as c
 from tests.networks.one import One
 
 RPL = networks()["rpl"]

@@ -1,7 +1,7 @@
 """Downward routes of RFC 6550, sections 9 and 11.2.2.3, sentence by sentence."""
 
-from innervate.networks.rpl import constants as c
-from innervate.networks.rpl.downward import LIFE
+from innervate.networks.rpl.protocol import constants as c
+from innervate.networks.rpl.protocol.downward import LIFE
 from tests.networks.rpl.nodes import (
     ROOT,
     ack,

@@ -2,8 +2,8 @@
 
 import pytest
 
-from innervate.networks.rpl import constants as c
-from innervate.networks.rpl.downward import DAO_TRIES
+from innervate.networks.rpl.protocol import constants as c
+from innervate.networks.rpl.protocol.downward import DAO_TRIES
 from tests.networks.rpl.nodes import (
     ROOT,
     ack,

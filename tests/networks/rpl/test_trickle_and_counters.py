@@ -2,8 +2,8 @@
 
 import pytest
 
-from innervate.networks.rpl import constants as c
-from innervate.networks.rpl.counters import dag_rank, first, following, is_newer
+from innervate.networks.rpl.protocol import constants as c
+from innervate.networks.rpl.protocol.counters import dag_rank, first, following, is_newer
 from tests.networks.rpl.nodes import RPL, attached, dio, node
 
 MS = 1000

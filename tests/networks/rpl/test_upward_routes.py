@@ -2,7 +2,7 @@
 
 import pytest
 
-from innervate.networks.rpl import constants as c
+from innervate.networks.rpl.protocol import constants as c
 from tests.networks.rpl.nodes import (
     STEP,
     VERSION,
