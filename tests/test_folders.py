@@ -52,6 +52,20 @@ def test_by_the_option_and_by_the_environment(own, capsys, monkeypatch, alone):
     assert "no such folder" in said(capsys, "check", "one.toml", "--network", "nowhere")
 
 
+def test_an_edit_to_the_same_length_within_a_second_is_read(own, monkeypatch):
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    second = 1_700_000_000_000_000_000
+
+    def outbox(at_ns):
+        os.utime(own.folder / "protocol.py", ns=(at_ns, at_ns))
+        innervate.check(own.scenario)
+        return networks()["gossip"].protocol.OUTBOX
+
+    assert outbox(second) == 8
+    own.change("protocol.py", "OUTBOX = 8", "OUTBOX = 9")
+    assert outbox(second + 1) == 9
+
+
 def test_an_edited_protocol_is_read_again(own):
     def values():
         return {node.value for node in innervate.run(own.scenario, plain=True).result.world.cells}

@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 import importlib.util
 import linecache
+import shutil
 import sys
 import traceback
 from importlib import import_module, invalidate_caches
@@ -43,6 +44,9 @@ def load(folder: Path) -> Any:
     folder = folder.resolve()
     name, stamp = folder.name, _stamp(folder)
     if _home(name) != folder or _stamps.get(name, stamp) != stamp:
+        if name in _stamps:
+            # Python tells a file from its translation by whole seconds and its length.
+            shutil.rmtree(folder / "__pycache__", ignore_errors=True)
         _forget(folder)
         _begin(folder)
     _stamps[name] = stamp
