@@ -20,7 +20,7 @@ SOURCES, PICTURE = ROOT / "src", ROOT / "docs/images/house.svg"
 SPINE, HOME = "innervate", "innervate.networks"
 WIDTH, FLOOR = 1.7, 1.0  # of a room with its gap, of a floor
 WALL, LIGHT, DARK = "#52606d", "#e8eef4", "#1f2933"
-TINTS = ("#dcefe3", "#fdeedb", "#e6e3f6")
+TINTS = ("#dcefe3", "#fdeedb", "#e6e3f6", "#f9e2e2", "#e3f0f7", "#f3f0da")
 
 
 def rooms(home: str) -> list[str]:
@@ -90,7 +90,7 @@ def house(
 def draw() -> Path:
     """The spine, and beside it every network with the same plan inside."""
     graph = grimp.build_graph(SPINE, exclude_type_checking_imports=True, cache_dir=None)
-    figure, ax = plt.subplots(figsize=(15, 6))
+    figure, ax = plt.subplots(figsize=(22, 6))
     spine = imports(graph, SPINE, [room for room in rooms(SPINE) if room != "networks"])
     right = house(ax, spine, floors(spine), SPINE, 0.0, LIGHT)
     ax.text(right / 2, -0.6, "the spine: names no network", ha="center", size=9, color=DARK)
