@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from keyword import kwlist
 from pathlib import Path
 from typing import Any
 
@@ -33,8 +34,8 @@ def make(target: Path | None, on: str, over: str = "") -> int:
     if not (name.isidentifier() and name.isascii() and name == name.lower()):
         raise UserError(f"{name[:60]!r} is no name; use small letters, digits and _, "
                         "like a Python module")  # fmt: skip
-    taken = name in networks() or name in sys.stdlib_module_names or WORD.lower() == name
-    if taken or _is_module(name):
+    words = {*networks(), *sys.stdlib_module_names, *kwlist, WORD.lower()}
+    if name in words or _is_module(name):
         raise UserError(f"the name {name!r} is taken; choose another")
     if target.exists():
         raise UserError(f"{target} is there already; choose another name or move it away")
