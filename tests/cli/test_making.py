@@ -1,11 +1,14 @@
 """`innervate new network` and `check-protocol`."""
 
 import json
+import os
 
 import pytest
 
 from innervate.cli import main
 from innervate.folders import CHANNEL_OWN
+from innervate.network import networks
+from innervate.running import run
 from tests.own import alone, own
 
 __all__ = ["alone", "own"]
@@ -103,3 +106,16 @@ def test_a_word_of_python_is_no_name_of_a_network(alone, capsys):
     assert main(["new", "network", "import"]) == 2
     assert "the name 'import' is taken" in capsys.readouterr().err
     assert not (alone / "import").exists()
+
+
+def test_runs_of_a_folder_that_nothing_has_named_yet_are_compared(own, capsys):
+    run(own.scenario, plain=True, out=own.folder / "one")
+    networks.cache_clear()
+    os.environ["INNERVATE_NETWORKS"] = ""
+    assert main(["compare", "gossip/one", "gossip/one"]) == 0
+    assert "the same, event by event" in capsys.readouterr().out
+    own.folder.rename("other")
+    networks.cache_clear()
+    os.environ["INNERVATE_NETWORKS"] = ""
+    assert main(["compare", "other/one", "other/one"]) == 2
+    assert "no network here is called 'gossip'; name its folder" in capsys.readouterr().err
