@@ -134,6 +134,13 @@ def blamed(error: BaseException, folder: Path) -> str:
     return f"{shown(Path(last.filename))}:{last.lineno}: {_words(error)}{where}"
 
 
+def line_of(folder: Path, text: str) -> str:
+    """Where a text stands first in a folder's `network.py`: "ring/network.py:5"."""
+    path = folder / NETWORK_FILE
+    lines = path.read_text(encoding="utf-8").splitlines()
+    return f"{shown(path)}:{next((n for n, line in enumerate(lines, 1) if text in line), 1)}"
+
+
 def shown(path: Path) -> str:
     """A path as it is said: relative to the working folder where it lies below it."""
     here = Path.cwd()

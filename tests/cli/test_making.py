@@ -7,7 +7,7 @@ import pytest
 
 from innervate.cli import main
 from innervate.folders import CHANNEL_OWN
-from innervate.network import networks
+from innervate.network import NetworkError, networks
 from innervate.running import run
 from tests.own import alone, own
 
@@ -119,3 +119,18 @@ def test_runs_of_a_folder_that_nothing_has_named_yet_are_compared(own, capsys):
     os.environ["INNERVATE_NETWORKS"] = ""
     assert main(["compare", "other/one", "other/one"]) == 2
     assert "no network here is called 'gossip'; name its folder" in capsys.readouterr().err
+
+
+def test_a_measure_that_is_not_there_or_fails_is_told_with_its_line(own, capsys):
+    own.change("network.py", '    invariants="invariants",\n',
+               '    invariants="invariants",\n    measures="more:measures",\n')  # fmt: skip
+    at = f"gossip/network.py:{own.line('network.py', 'more:measures')}: measures: "
+    assert main(["check-protocol", "gossip", "--no-tests"]) == 2
+    assert at + "No module named 'gossip.more'" in capsys.readouterr().err
+    more = own.folder / "more.py"
+    more.write_text('"""More."""\n')
+    assert main(["check-protocol", "gossip", "--no-tests"]) == 2
+    assert at + "module 'gossip.more' has no attribute 'measures'" in capsys.readouterr().err
+    more.write_text("def measures(nodes, reports, deliveries, plan):\n    return {'a': 1 // 0}\n")
+    with pytest.raises(NetworkError, match=r"^gossip/more.py:2: ZeroDivisionError: .*, in measure"):
+        run(own.scenario, plain=True)

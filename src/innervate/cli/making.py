@@ -92,7 +92,10 @@ def check_protocol(folder: Path, as_json: bool, with_tests: bool) -> int:
 def _look_further(
     folder: Path, network: Network, with_tests: bool, said: dict[str, Any], lines: list[str]
 ) -> None:
-    """The outbox, every order of events on two nodes, and what no test reaches."""
+    """Its parts, the outbox, every order of events on two nodes, and what no test reaches."""
+    for part, place in network.parts.items():
+        if place.startswith(f"{network.package}."):
+            getattr(network, part)
     room = getattr(network.protocol, "OUTBOX", 16)
     said["outbox"] = {}
     for handler, (most, where) in folders.actions_of(folder.resolve(), network).items():
