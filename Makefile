@@ -18,7 +18,7 @@ BIN := .venv/bin
 STAMP := .venv/stamp-$(shell cksum < pyproject.toml | cut -d ' ' -f 1)
 WORKERS ?= 2
 
-# Hundreds of processes are started by tests: each would translate the sources anew.
+# Tests start hundreds of processes: to translate the sources anew takes up to a second in each.
 unexport PYTHONDONTWRITEBYTECODE
 
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal

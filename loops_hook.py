@@ -1,9 +1,12 @@
-"""What the wheel is built with: ready loops from the folder INNERVATE_LOOPS, if it is set.
+"""What the wheel is built with: the pages of the documentation, and ready loops if there are some.
+
+Pages are for `innervate docs`. Loops are taken from the folder INNERVATE_LOOPS, if it is set.
 
 `python -m innervate.kernel.readying FOLDER` fills that folder; the wheel is then one for this
 system and processor, for every Python. Without, it is for any system, and compiles.
 """
 
+import glob
 import os
 import platform
 import sys
@@ -13,12 +16,17 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 
 class Loops(BuildHookInterface):
-    """Puts ready loops into the wheel, and says in its name where they run."""
+    """Puts pages and ready loops into the wheel, and says in its name where these run."""
 
     def initialize(self, version, build_data):
         """Before a wheel is built; an editable one has none: its sources are yet to change."""
         folder = os.environ.get("INNERVATE_LOOPS")
-        if not folder or version == "editable":
+        if version == "editable":
+            return
+        for page in glob.glob(os.path.join(self.root, "docs", "*.md")):
+            name = os.path.basename(page)
+            build_data["force_include"][page] = f"innervate/cli/pages/{name}"
+        if not folder:
             return
         if not os.path.isfile(os.path.join(folder, "about.json")):
             raise FileNotFoundError(f"INNERVATE_LOOPS: no ready loops in {folder}")

@@ -19,13 +19,21 @@ NEEDS = {
 }
 
 
-# What was collected stays: to look through it for what is in use took a fifteenth of all time.
+# What a worker has gathered stays to its end, and is not looked through again for what is in use:
+# that took a fifteenth of all time, and of livesim's runs at the end of a long day half.
 gc.set_threshold(20_000, 20, 20)
 
 
 def pytest_collection_finish():
     gc.collect()
     gc.freeze()
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item, nextitem):
+    if nextitem is None or nextitem.path != item.path:
+        gc.collect()
+        gc.freeze()
 
 
 def pytest_addoption(parser):

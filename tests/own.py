@@ -1,6 +1,7 @@
 """A network of one's own for tests: written by `innervate new network`, and changed."""
 
 import shutil
+import sys
 from importlib import import_module
 
 import pytest
@@ -35,6 +36,9 @@ def alone(monkeypatch, tmp_path):
     """The working folder is an empty one, and no other folders are known."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("INNERVATE_NETWORKS", "")
+    # Of a file that is edited within a second, to the same length, Python finds the older one.
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
     networks.cache_clear()
     yield tmp_path
     for name in list(folders._stamps):

@@ -86,7 +86,7 @@ NAMES = {
     "spine": "The spine names",
     "networks": "A network's rooms",
     "apart": "Networks do not",
-    "skin-radio": "Skin and radio",
+    "skin-radio": "Skin, radio and",
     "mesh-skin": "A mesh does not",
     "numba": "Numba stays",
     "matplotlib": "matplotlib is",

@@ -46,7 +46,7 @@ def test_planted_mistakes_are_refuted(sh):
 
 def test_an_unknown_network_is_named(sh):
     assert sh("prove", "bus") == 2
-    assert sh.err == 'innervate: prove knows skin, radio or mesh, not "bus"\n'
+    assert sh.err == 'innervate: prove knows skin, radio, mesh, babel, flooding or rpl, not "bus"\n'
 
 
 def test_without_the_solver_it_says_what_to_install():

@@ -71,3 +71,19 @@ def test_a_broken_link_fails(tmp_path):
 def test_the_citation_names_this_version():
     text = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     assert re.search(r"^version: (.*)$", text, re.MULTILINE)[1] == innervate.__version__
+
+
+def test_the_paper_cites_what_its_list_has():
+    text, given = ((ROOT / "paper" / name).read_text("utf-8") for name in ("paper.md", "paper.bib"))
+    cited = re.findall(r"@(\w+)", text)
+    assert set(cited) == set(re.findall(r"^@\w+\{(\w+),$", given, re.MULTILINE))
+    (title,) = re.findall(r"^title: '(.*)'$", text, re.MULTILINE)
+    assert title in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", ["skin", "team", "field", "sweep", "own"])
+def test_notebooks_are_pages_with_what_their_cells_gave(site, name):
+    said = (site / "notebooks" / f"{name}.html").read_text(encoding="utf-8")
+    assert f'href="{name}.ipynb"' in said
+    assert (site / "notebooks" / f"{name}.ipynb").is_file()
+    assert ("data:image/png" if name != "own" else "innervate-run") in said

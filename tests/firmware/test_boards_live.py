@@ -4,6 +4,7 @@ import asyncio
 import contextlib
 import shutil
 import subprocess
+import sys
 
 import pytest
 
@@ -119,7 +120,53 @@ def test_a_mesh_board_leads(tmp_path):
         asyncio.run(go(cables))
 
 
-def test_a_radio_board_takes_part_in_a_team(tmp_path):
+@contextlib.asynccontextmanager
+async def inside(device, where):
+    """A modem for the board, in this program."""
+    modem = Modem(SerialLink(device, BAUD), MediumRadio(BOARD, where))
+    await modem.start()
+    yield
+    modem.stop()
+    assert modem.unsound == 0
+
+
+@contextlib.asynccontextmanager
+async def by_command(device, where):
+    """`innervate live modem` for it."""
+    command = [sys.executable, "-m", "innervate.cli", "live", "modem", device,
+               f"{where[0]}:{where[1]}", "--number", str(BOARD)]  # fmt: skip
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    try:
+        said = await asyncio.to_thread(process.stdout.readline)
+        assert f"is station {BOARD} of" in said
+        yield
+    finally:
+        process.terminate()
+        process.wait()
+        process.stdout.close()
+
+
+async def spoken(team, user, heard):
+    """The stations and the board's user send, and all is heard."""
+    for node in team:
+        await node.start()
+    receipts = [node.send_packet(b"from %d" % node.stack.station.number) for node in team]
+    await until(lambda: all(r.state == DELIVERED for r in receipts), FIRST_S)
+    user.path.send(b"from the board")
+    wanted = {(name, BOARD, b"from the board") for name in ("s0", "s2")}
+    await until(lambda: wanted <= set(heard), FIRST_S)
+    more = [team[0].send_packet(b"again %d" % k) for k in range(3)]
+    for k in range(3):
+        user.path.send(b"board %d" % k)
+    await until(lambda: all(r.state == DELIVERED for r in more), FIRST_S)
+    wanted = {("s2", BOARD, b"board %d" % k) for k in range(3)}
+    await until(lambda: wanted <= set(heard), FIRST_S)
+    for node in team:
+        await node.stop()
+
+
+@pytest.mark.parametrize("modem", [inside, pytest.param(by_command, marks=pytest.mark.slow)])
+def test_a_radio_board_takes_part_in_a_team(modem, tmp_path):
     timing = {key: SLOW[key] for key in RADIO}
     made = image(tmp_path, "radio", "modem", timing)
 
@@ -133,30 +180,13 @@ def test_a_radio_board_takes_part_in_a_team(tmp_path):
             node.receive_packets(
                 lambda source, payload, n=node: heard.append((n.name, source, payload))
             )
-        modem = Modem(SerialLink(cables.devices[0], BAUD), MediumRadio(BOARD, where))
         user = SerialLink(cables.devices[3], BAUD)
         with board(made, cables.devices[1:3]):
-            await modem.start()
-            await user.open(lambda _path, data: told.append(data))
-            for node in team:
-                await node.start()
-            receipts = [node.send_packet(b"from %d" % node.stack.station.number) for node in team]
-            await until(lambda: all(r.state == DELIVERED for r in receipts), FIRST_S)
-            user.path.send(b"from the board")
-            wanted = {(name, BOARD, b"from the board") for name in ("s0", "s2")}
-            await until(lambda: wanted <= set(heard), FIRST_S)
-            more = [team[0].send_packet(b"again %d" % k) for k in range(3)]
-            for k in range(3):
-                user.path.send(b"board %d" % k)
-            await until(lambda: all(r.state == DELIVERED for r in more), FIRST_S)
-            await until(lambda: {("s2", BOARD, b"board %d" % k) for k in range(3)} <= set(heard),
-                        FIRST_S)  # fmt: skip
-            for node in team:
-                await node.stop()
-            user.close()
-            modem.stop()
+            async with modem(cables.devices[0], where):
+                await user.open(lambda _path, data: told.append(data))
+                await spoken(team, user, heard)
+                user.close()
         medium.close()
-        assert modem.unsound == 0
         assert {b"\0\0from 0", b"\2\0from 2", *(b"\0\0again %d" % k for k in range(3))} <= set(told)
         assert {station for *_, station, _ in medium.log} == {0, BOARD, 2}
 

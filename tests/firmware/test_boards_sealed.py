@@ -95,6 +95,7 @@ def test_a_board_with_another_key_is_no_neighbour(tmp_path):
         asyncio.run(go(cables))
 
 
+@pytest.mark.slow
 def test_a_sealed_cell_takes_its_place_in_a_sealed_patch(tmp_path):
     """PC - board - cell in Python - PC: after a cut all that is felt goes by the board."""
     made = image(tmp_path, "skin", PARAMS)

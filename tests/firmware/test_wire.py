@@ -265,7 +265,8 @@ def test_a_driver_that_reads_too_far_is_found(folder, tmp_path):
         fuzzed(tmp_path, 20_000)
 
 
-@pytest.mark.parametrize("role", ["skin", "mesh", "radio", *SEALED])
+@pytest.mark.parametrize("role", ["skin", "mesh", "radio", SEALED[0],
+                                  pytest.param(SEALED[1], marks=pytest.mark.slow)])  # fmt: skip
 def test_compilers_and_cppcheck_have_nothing_to_say(role, folders):
     needs("gcc", "clang", "cppcheck", "arm-none-eabi-gcc")
     folder = folders[role]

@@ -178,6 +178,53 @@ def test_the_first_loop_of_a_process_may_make_arrays(tmp_path):
     assert (done.returncode, done.stdout.split()) == (0, ["4950.0", "0"]), done.stderr
 
 
+BOUND = """
+from innervate.kernel.compilation import told
+from innervate.networks.radio.sim import simulate, stacks
+from innervate.sim.channel import loop
+
+made = simulate.registered(stacks.PROTOCOLS["csma-cd-r/practical"], simulate.traffic)
+print(told(loop.bind(made)))
+"""
+
+
+def test_a_loop_is_known_by_the_same_words_whether_its_sources_were_translated_before(tmp_path):
+    """By Numba's own key it is not: who edited a file waited for the compiler twice."""
+    env = {name: os.environ[name] for name in os.environ if name != "PYTHONDONTWRITEBYTECODE"}
+    env |= {"PYTHONPYCACHEPREFIX": str(tmp_path)}
+    at_first, again = (
+        subprocess.run([sys.executable, "-c", BOUND], env=env, capture_output=True, text=True)
+        for _ in range(2)
+    )
+    assert list(tmp_path.rglob("loop.*.pyc"))
+    assert "practical" in at_first.stdout, at_first.stderr
+    assert at_first.stdout == again.stdout
+
+
+def test_loops_that_are_bound_otherwise_are_told_apart():
+    def bound_to(value):
+        def called(world):
+            return world + value
+
+        return compilation.bound("a stack", [called])
+
+    def written(number):
+        made = {}
+        exec(f"def called(world):\n    return world + {number}\n", made)
+        return compilation.bound("a stack", [made["called"]])
+
+    def around(do):
+        return lambda world: do.called(world)
+
+    tables = np.arange(2000), np.arange(2000)
+    tables[1][1000] = 0
+    others = [around(bound_to(value)) for value in (1, 2, None, (1, 2), arith, *tables)]
+    others += [around(written(number)) for number in (1, 2)]
+    told = [repr(compilation.told(one)) for one in others]
+    assert len(set(told)) == len(told)
+    assert repr(compilation.told(around(bound_to(1)))) == told[0]
+
+
 @pytest.mark.parametrize("collects", [True, False])
 def test_while_a_loop_is_compiled_nothing_is_collected_and_then_as_before(collects):
     before = gc.isenabled()

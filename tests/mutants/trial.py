@@ -138,6 +138,7 @@ class Watch:
 
         from innervate.kernel import compilation
 
+        gc.unfreeze()  # see tests/conftest.py
         found = compilation._registered | {
             one.py_func for one in gc.get_objects() if isinstance(one, Dispatcher)
         }

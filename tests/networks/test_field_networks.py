@@ -10,9 +10,9 @@ import innervate
 from innervate import folders
 from innervate.cli import main
 from innervate.network import networks, read
-from innervate.networks.rpl import constants as c
+from innervate.networks.rpl.protocol import constants as c
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[2] / "examples" / "field"
 HOME = Path(innervate.__file__).parent / "networks"
 NAMES = ("flooding", "rpl")
 LINE = [{"nodes": [k, k + 1], "quality": 1.0} for k in range(4)]
@@ -144,3 +144,10 @@ def test_it_comes_up_between_processes(name, capsys):
     changes = [word for text in ("nodes=9", "event=[]", "input=[]") for word in ("--set", text)]
     assert main(["live", "up", str(EXAMPLES / f"{name}.toml"), "--for", "1", *changes]) == 0
     assert "9 nodes and" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_example_runs(name):
+    run = ran(name, duration_s=9.0, event=[])
+    messages = run.summary["messages"]
+    assert messages["delivered"] >= messages["sent"] >= 8

@@ -6,19 +6,21 @@ import pytest
 
 from innervate.network import networks
 from innervate.networks.skin.protocol.constants import RULE_FEASIBLE, RULE_STRICT
+from innervate.networks.skin.prove.neighbours import ANY_RULE
 from innervate.networks.skin.prove.theories import resting
 from innervate.prove.errors import ProveError
 from innervate.prove.theory import prove, source
 
 LEMMAS = ("mesh, delivery", "mesh, passing on", "mesh, hops", "radio, the queue of a station",
           "radio, turns", "what is only stored, news, loads", "what dead ports said",
-          "beacons that repeat the last")  # fmt: skip
+          "what is not read", "ports are alike", "what the rule refuses",
+          "beacons that repeat the last", "what the rule does not read")  # fmt: skip
 
 
 def theories():
     nets = [networks()[name] for name in ("mesh", "radio")]
     found = [one for net in nets for one in net.prove.theories(net)]
-    return {one.name: one for one in (*found, *resting(RULE_FEASIBLE))}
+    return {one.name: one for one in (*found, *resting(ANY_RULE), *resting(RULE_FEASIBLE))}
 
 
 def assuming(theory, more):
@@ -58,7 +60,7 @@ def test_an_assumption_that_closes_a_branch_is_told():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rule", [RULE_FEASIBLE, RULE_STRICT])
+@pytest.mark.parametrize("rule", [ANY_RULE, RULE_FEASIBLE, RULE_STRICT])
 def test_no_branch_is_left_out_of_what_reductions_rest_on(rule):
     for theory in resting(rule):
         outcome = prove(theory)

@@ -92,22 +92,28 @@ def plans(experiment: Any) -> list[str]:
 
 def call(point: Point) -> tuple[str, str]:
     """The name of what a point calls, and with what."""
-    work: Any = point.work
-    arguments: list[Any] = []
-    while isinstance(work, partial):
-        arguments = [*work.args, *work.keywords.items(), *arguments]
-        work = work.func
+    work, arguments = opened(point.work, [])
     if work.__name__ == "columns":
-        work, *arguments = arguments
+        work, arguments = opened(arguments[0], arguments[1:])
     own = getattr(work, "__self__", None)
     words = ", ".join(map(plain, arguments if own is None else [own, *arguments]))
     return f"{work.__module__.rpartition('.')[2]}.{work.__qualname__}", words
+
+
+def opened(work: Any, arguments: list[Any]) -> tuple[Any, list[Any]]:
+    """A function, and what it is called with, out of the partial ones round it."""
+    while isinstance(work, partial):
+        arguments = [*work.args, *work.keywords.items(), *arguments]
+        work = work.func
+    return work, arguments
 
 
 def plain(value: Any) -> str:
     """A value in words that are the same in every process."""
     if isinstance(value, tuple | list):
         return f"({', '.join(map(plain, value))})"
+    if isinstance(value, dict):  # what a case of a comparison gives: all its cables
+        return f"{', '.join(value)} #{digest(repr(value))}"
     if callable(value):
         return str(getattr(value, "__qualname__", type(value).__name__))
     text = re.sub(r"<function (\S+) at 0x\w+>", r"\1", repr(value))

@@ -64,7 +64,7 @@ def _links_robot(scenario: Scenario) -> bool:
     return scenario.model.body is not None
 
 
-SKINS = [name for name in bundled() if not name.startswith(("radio", "mesh"))]
+SKINS = [name for name in bundled() if not name.startswith(("radio", "mesh", "babel"))]
 
 
 @pytest.mark.parametrize("name", sorted(bundled()))

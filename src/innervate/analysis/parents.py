@@ -99,7 +99,7 @@ class Ways:
         self._settle(harm.at_us)
 
     def _settle(self, at: int) -> None:
-        """Work everything out anew."""
+        """Work out anew who has a way, from next hops and cables."""
         self._hop = [self._far.get((n, self._port[n]), NOWHERE) for n in range(self.nodes)]
         self._children = [set() for _ in range(self.nodes + 1)]  # the last: of nowhere
         for node, hop in enumerate(self._hop):

@@ -11,12 +11,13 @@ from typing import Annotated, Any
 from cyclopts import App, Parameter
 
 import innervate
-from innervate.cli import errors
+from innervate.cli import errors, examples
 from innervate.cli.export_app import export, fit
 from innervate.cli.files_app import (
     check,
     check_protocol,
     compare,
+    docs,
     doctor,
     new,
     scenarios,
@@ -123,7 +124,7 @@ def sweep(
     Parameters
     ----------
     file
-        A scenario file, the name of a bundled one, or a plan file (see docs/sweeps.md).
+        A scenario file, the name of a bundled one, or a plan file (see: innervate docs sweeps).
     """
     from innervate.cli import sweeping as command
 
@@ -299,12 +300,14 @@ app.command(new)
 app.command(check)
 app.command(check_protocol)
 app.command(schema)
+app.command(docs)
 app.command(doctor)
 app.command(compare)
 app.command(export)
 app.command(fit)
 app.command(live_app)
 app.register_install_completion_command()
+examples.add_to(app)
 
 
 def main(tokens: Sequence[str] | None = None) -> int:
@@ -341,7 +344,7 @@ def _with_networks(tokens: list[str]) -> list[str]:
             continue
         _, _, given = one.partition("=")
         if not given and not tokens:
-            raise errors.UserError("--network needs a folder; see docs/own-network.md")
+            raise errors.UserError("--network needs a folder; see: innervate docs own-network")
         if not given:
             given, *tokens = tokens
         use(Path(given))

@@ -20,12 +20,12 @@ EXTRAS = {
     "plot": "papers and Run.plot",
     "web": "watch",
     "live": "live nodes with a key or an identity",
-    "sweep": "sweeps on a Dask cluster",
+    "sweep": "sweeps on a Dask cluster (not in innervate[all])",
     "export": "export --mcap",
     "prove": "prove, and verify's reductions proved rather than trusted",
     "body": "cells on a robot's description, size",
-    "topohub": "published graphs for a mesh",
-    "rerun": "export --rerun (large, so not in innervate[all])",
+    "topohub": "published graphs for a mesh (not in innervate[all])",
+    "rerun": "export --rerun (large; not in innervate[all])",
 }
 # Programs by what they are for.
 PROGRAMS = {

@@ -16,7 +16,7 @@ def export(
     *,
     options: Annotated[ExportOptions, Parameter(name="*")] = EXPORT_DEFAULTS,
 ) -> int:
-    """Write a run or a scenario as files for other tools (see docs/export.md).
+    """Write a run or a scenario as files for other tools.
 
     Parameters
     ----------

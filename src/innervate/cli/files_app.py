@@ -1,4 +1,4 @@
-"""`innervate scenarios`, `new`, `check`, `schema`, `compare` and `doctor`: their options."""
+"""`scenarios`, `new`, `check`, `schema`, `compare`, `docs` and `doctor`: their options."""
 
 from __future__ import annotations
 
@@ -37,6 +37,19 @@ def schema(*, out: Path | None = None) -> int:
     from innervate.cli import files as command
 
     return command.schema(out)
+
+
+def docs(page: str = "", /) -> int:
+    """Print a page of the documentation, or the list of them.
+
+    Parameters
+    ----------
+    page
+        Its name, as the list has it.
+    """
+    from innervate.cli import pages as command
+
+    return command.show(page)
 
 
 def doctor(*, json: Json = False) -> int:

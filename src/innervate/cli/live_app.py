@@ -26,9 +26,9 @@ def live_node(file: Path, /, *, firmware: Path | None = None) -> int:
     Parameters
     ----------
     file
-        A node file (see docs/live.md).
+        A node file (see: innervate docs live).
     firmware
-        What runs its protocol, on an emulated board: an image (see docs/firmware.md).
+        What runs its protocol, on an emulated board: an image (see: innervate docs firmware).
     """
     from innervate.live.main import run as command
 

@@ -20,7 +20,6 @@ from innervate.firmware.statements import Statements, comment, declaration, wrap
 from innervate.live.board import Role
 
 ABI = 2  # counts changes of what stands in headers and how it is called
-HANDLERS = ("on_start", "on_frame", "on_timer", "on_input", "on_carrier", "on_sent")
 MEANINGS = {
     "state": "What a node keeps.",
     "gate": "What a node has besides that leads, or may have to.",
@@ -175,7 +174,7 @@ class Library:
             arguments.append(declaration(text, local(name)))
         returns = {"none": "void", "int": "int32_t"}.get(made.returns.what)
         returns = returns or self.types[made.returns]
-        static = "" if made.function.name in HANDLERS else "static "
+        static = "" if made in self.program.handlers else "static "
         text = declaration(f"{static}{returns}", f"{self.prefix}_{made.name}")
         return "\n".join(wrapped(f"{text}({', '.join(arguments)})"))
 
@@ -184,7 +183,7 @@ class Library:
             return f"const {self.prefix}_frame_t *"
         text = self.types[kind]
         constant = kind.is_pointer and name not in made.changed and kind.what != "out"
-        if made.function.name in HANDLERS and kind.what in ("state", "gate"):
+        if made in self.program.handlers and kind.what in ("state", "gate"):
             constant = False
         return f"const {text}" if constant else text
 

@@ -35,7 +35,7 @@ def images(plan: Any, folder: Path, in_python: list[str]) -> dict[str, Path]:
     if roles[-1].hooks:
         raise FirmwareError(
             f"{plan.kind}: --firmware brings up nodes whose ports are cables; a board of this kind "
-            "takes its place among live nodes on serial lines (docs/firmware.md)"
+            "takes its place among live nodes on serial lines (innervate docs firmware)"
         )
     find("qemu-system-arm")
     library = Library(roles[-1], plan.params)

@@ -92,7 +92,9 @@ class Program:
             _leave_out(function.node, role.noted)
         self.made: dict[tuple[str, tuple[Type, ...]], Made] = {}
         self._open: list[tuple[str, tuple[Type, ...]]] = []
-        self.handlers = [self._handler(name) for name in GIVEN if name in self.sources]
+        # Handlers stand in the role's own module; what it calls may have such a name, too.
+        own = {name for name, one in self.sources.items() if one.module == role.entry}
+        self.handlers = [self._handler(name) for name in GIVEN if name in own]
         if not self.handlers:
             raise FirmwareError(f"{role.entry}: none of {', '.join(GIVEN)} stands in it")
         self._name_twins()

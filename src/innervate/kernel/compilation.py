@@ -218,6 +218,7 @@ def _compiled(function: Callable[..., Any], way: Callable[[str], Any]) -> Callab
     folder = open_cache()
     numba.config.SLP_VECTORIZE = 1  # a tenth faster: frames are copied in whole words
     jitted = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+    _know_by_words(jitted)
     compile_or_load = jitted.compile
     bound_to = [cell.cell_contents for cell in function.__closure__ or ()]
     name = [function.__module__, function.__qualname__]
@@ -230,6 +231,51 @@ def _compiled(function: Callable[..., Any], way: Callable[[str], Any]) -> Callab
 
     jitted.compile = compile_once
     return jitted
+
+
+def _know_by_words(jitted: Any) -> None:
+    """Have Numba find a function in its cache by what it is bound to, in words.
+
+    Numba's own key is a pickle, which is another where a module was read from its source than where
+    it was translated before: who edited a file had its loops compiled twice.
+    """
+    kept: Any = getattr(jitted, "_cache", None)
+    if not hasattr(kept, "_index_key"):
+        return  # a Numba that has changed keeps its own way
+    words = hashlib.sha256(repr(told(jitted.py_func)).encode()).hexdigest()
+    kept._index_key = lambda signature, codegen: (signature, codegen.magic_tuple(), words)
+
+
+def told(thing: Any, above: tuple[Any, ...] = ()) -> Any:
+    """What compiled code is made of or bound to, in words that are the same in every process.
+
+    Args:
+        thing: a function, a module, or a value.
+        above: what it is part of.
+
+    What lies in files is known by the cache folder's name; what is written out as a program runs,
+    and what is bound, is told here.
+    """
+    from numba.core.serialize import dumps
+
+    if any(thing is one for one in above):
+        return "itself"
+    inside = (*above, thing)
+    if inspect.ismodule(thing):
+        if getattr(thing, "__file__", thing.__spec__) is not None:
+            return thing.__name__
+        named = sorted((name, one) for name, one in vars(thing).items() if name[:2] != "__")
+        return thing.__name__, [(name, told(one, inside)) for name, one in named]
+    if inspect.isfunction(thing):
+        cells = [told(cell.cell_contents, inside) for cell in thing.__closure__ or ()]
+        return thing.__module__, thing.__qualname__, told(thing.__code__, inside), cells
+    if inspect.iscode(thing):
+        return thing.co_firstlineno, thing.co_code.hex(), thing.co_names, told(thing.co_consts)
+    if isinstance(thing, tuple):
+        return [told(one, inside) for one in thing]
+    if thing is None or isinstance(thing, str | int | float):
+        return thing
+    return hashlib.sha256(dumps(thing)).hexdigest()
 
 
 @contextlib.contextmanager

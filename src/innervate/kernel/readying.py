@@ -29,6 +29,7 @@ BUNDLED: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("mesh-field", ()),
     ("mesh-team", ()),
     ("mesh-leipzig", ("duration_s=21",)),
+    ("babel-patch", ()),
 )
 
 

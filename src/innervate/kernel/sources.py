@@ -6,8 +6,7 @@ import hashlib
 from collections.abc import Iterable
 from pathlib import Path
 
-# What of the sources ends up in compiled code: rooms, and of every network these parts, or, where
-# its protocol is a file as in a folder of one's own, all of it.
+# What of the sources ends up in compiled code: rooms, and of every network these parts.
 SOURCE_ROOMS = ("dialect", "kernel", "sim", "verify")
 PARTS = ("protocol", "sim", "verify", "baselines", "slotted", "invariants.py")
 NAME_LENGTH = 20  # of a hash
@@ -17,12 +16,8 @@ ROOT = Path(__file__).resolve().parent.parent
 def homes(root: Path) -> list[Path]:
     """Folders and files that compiled code can come from."""
     networks = [path for path in (root / "networks").iterdir() if path.is_dir()]
-    inside = [network / part for network in networks for part in _parts_of(network)]
+    inside = [network / part for network in networks for part in PARTS]
     return [root / room for room in SOURCE_ROOMS] + inside
-
-
-def _parts_of(network: Path) -> tuple[str, ...]:
-    return ("",) if (network / "protocol.py").is_file() else PARTS
 
 
 def source_files(root: Path = ROOT) -> list[Path]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ TITLE = "The networks beside protocols of the field"
 AUTHORS = "Equal links, faults and seeds"
 READINGS: dict[str, str] = {}
 COLUMNS = 3  # panels in a row
+TITLE_LETTERS = 34  # in a line of a panel's title
 
 
 def __getattr__(name: str) -> Any:
@@ -66,7 +68,7 @@ def picture(compared: Compared) -> Figure:
     cases = [case for case in compared.cases() if name in {one.name for one in case.columns}]
     rows = -(-len(cases) // COLUMNS)
     most = max(len(doing(compared.job, case)) for case in cases)
-    height = rows * (0.55 + 0.17 * most) + 0.4
+    height = rows * (0.75 + 0.17 * most) + 0.4
     figure, axes = style.panels(style.WIDE_IN, height, rows, COLUMNS, sharex=True)
     for place, case in enumerate(cases):
         _panel(axes[place], compared, case, name)
@@ -95,4 +97,5 @@ def _panel(ax: Axes, compared: Compared, case: Case, name: str) -> None:
             ax.plot([found.value], [place], "|", color=style.INK, ms=7, mew=1.4)
     ax.set_xscale("symlog", linthresh=1.0)
     drawing.rows(ax, [entry.name for entry in who])
-    ax.set_title(case.title)
+    ax.xaxis.set_major_formatter("{x:g}")
+    ax.set_title(fill(case.title, TITLE_LETTERS), fontsize=7)

@@ -19,7 +19,7 @@ from innervate.network import networks
 from innervate.papers.jobs import Given
 from innervate.scenario import from_dict
 from innervate.scenario import plan as plan_of
-from innervate.scenario.actions.field import KILL, REVIVE
+from innervate.scenario.actions.field import KILL
 from innervate.scenario.cables import Input
 from innervate.scenario.declared.field import Fault, Heard, sizes_of
 from innervate.topology import placement
@@ -179,6 +179,12 @@ def run_declared(
     return figures(world, _came(world, rows), spent)
 
 
+def warm_up(kind: str) -> None:
+    """Compile the loop of a network that only declares its protocol."""
+    small = plan_of(from_dict({"kind": kind, "nodes": 2, "duration_s": 0.001}))
+    networks()[kind].simulation(small, checks=False, tap=True).finish()
+
+
 def plan_in(kind: str, protocol: Mapping[str, int], world: World) -> Any:
     """The plan of such a network in a world, without messages."""
     air = world.air
@@ -205,7 +211,3 @@ def _came(world: World, rows: Any) -> list[int]:
         if node == world.receiver(world.sent[i]) and came[i] == NEVER:
             came[i] = time
     return came
-
-
-__all__ = ["KILL", "MONITOR", "NEVER", "REVIVE", "Sent", "World", "figures", "plan_in",
-           "run_declared", "world_of"]  # fmt: skip

@@ -190,8 +190,9 @@ class Compared:
             between = median_interval(differences)
             holds = holds and between.high < 0
             fewer, more = (sum(map(is_so, differences)) for is_so in (_below_0, _above_0))
-            said.append(f"{word}: {shown(between, words.digits)}, less in {fewer} and more in "
-                        f"{more} of {len(differences)}")  # fmt: skip
+            counts = f"less in {fewer} and more in {more} of {len(differences)}"
+            label = f"{word}: " if word else ""
+            said.append(f"{label}{shown(between, words.digits)}, {counts}")
         why = "" if holds else words.why
         measured = f"median difference {'; '.join(said)}"
         return Claim(self.job.name, words.claim, measured, verdict(holds), why)

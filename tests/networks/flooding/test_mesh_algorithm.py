@@ -3,7 +3,7 @@
 import pytest
 
 from innervate.network import networks
-from innervate.networks.flooding import protocol as p
+from innervate.networks.flooding.protocol import node as p
 from tests.networks.one import One
 
 FLOODING = networks()["flooding"]
@@ -39,7 +39,7 @@ def test_the_hop_limit_is_decremented(node):
 
 
 def test_a_hop_limit_of_zero_is_not_rebroadcast(node):
-    """Overview: "When a radio receives a packet with a hop limit of zero, it will not rebroadcast" """
+    """Overview: "a packet with a hop limit of zero, it will not rebroadcast the message" """
     node.hear(**packet(hops=0))
     assert PLACE not in node.timers
     assert len(node.delivered) == 1

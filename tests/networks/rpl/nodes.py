@@ -2,7 +2,7 @@
 
 from innervate.dialect.access import ALL
 from innervate.network import networks
-from innervate.networks.rpl import constants as c
+from innervate.networks.rpl.protocol import constants as c
 from tests.networks.one import One
 
 RPL = networks()["rpl"]
@@ -71,3 +71,30 @@ def dao(src, *targets, path=241, life=180, number=1):
 
 def parent_of(one):
     return one.node.nbr[one.node.parent] if one.node.parent >= 0 else None
+
+
+def told_to_parent(one):
+    """DAOs that go out now: (target, Path Sequence, life) of each that is named."""
+    one.sent.clear()
+    if one.node.dao_armed:
+        one.fire(c.DAO_DELAY)
+    settle(one)
+    return [(target, path, frame.life) for frame in one.sent if frame.kind == c.DAO
+            for target, path in zip(frame.targets, frame.paths, strict=True)
+            if target != c.NOBODY]  # fmt: skip
+
+
+def storing(**params):
+    """A node in storing mode whose parent knows of it."""
+    one = attached(**params)
+    told_to_parent(one)
+    one.sent.clear()
+    return one
+
+
+def of(frames, kind):
+    return [frame for frame in frames if frame.kind == kind]
+
+
+def packets(one):
+    return [f for f in one.sent if c.DATA <= f.kind < c.DATA + 3]

@@ -2,8 +2,8 @@
 
 import pytest
 
-from innervate.networks.rpl import constants as c
-from innervate.networks.rpl.counters import dag_rank, first, following, is_newer
+from innervate.networks.rpl.protocol import constants as c
+from innervate.networks.rpl.protocol.counters import dag_rank, first, following, is_newer
 from tests.networks.rpl.nodes import RPL, attached, dio, node
 
 MS = 1000
@@ -56,7 +56,8 @@ def test_imin_is_two_to_the_dio_interval_min_ms():
 
 
 def test_it_transmits_if_the_counter_is_below_k():
-    """6206, 4.2: "transmits if and only if the counter c is less than the redundancy constant k" """
+    """6206, 4.2: "transmits if and only if the counter c is less than the redundancy constant
+    k" """
     for heard, expected in ((1, 1), (2, 0), (3, 0)):
         one = attached(dio_k=2)
         one.fire(c.TRICKLE)  # t
@@ -151,8 +152,8 @@ def test_counters_go_straight_up_and_then_round():
 
 
 def test_counters_are_compared_across_the_restart():
-    """6550, 7.2: "21 is greater than SEQUENCE_WINDOW (16); thus, 240 is greater than 5", "11 is less
-    than SEQUENCE_WINDOW (16); thus, 250 is less than 5" """
+    """6550, 7.2: "21 is greater than SEQUENCE_WINDOW (16); thus, 240 is greater than 5", "11 is
+    less than SEQUENCE_WINDOW (16); thus, 250 is less than 5" """
     assert is_newer(240, 5)
     assert not is_newer(5, 240)
     assert is_newer(5, 250)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from innervate.networks.rpl import constants as c
+from innervate.networks.rpl.protocol import constants as c
 from tests.networks.rpl.nodes import (
     STEP,
     VERSION,
@@ -43,8 +43,8 @@ def test_rank_is_greater_than_the_parents():
 
 
 def test_mrhof_adds_the_etx_of_the_link_to_the_rank():
-    """6719, 3.5: "It locally computes the ETX of links to its neighbors and adds this value to their
-    advertised Rank", "assign Rank equal to ETX * 128" """
+    """6719, 3.5: "It locally computes the ETX of links to its neighbors and adds this value to
+    their advertised Rank", "assign Rank equal to ETX * 128" """
     assert joined(dio(1, 256)).node.rank == 256 + 128
     assert joined(dio(1, 256, rssi=HIDDEN)).node.rank == 256 + 165
     assert joined(dio(1, 300)).node.rank == 300 + 128
@@ -77,8 +77,7 @@ def test_bad_links_are_left_out():
 
 
 def test_etx_is_learnt_from_acknowledgements():
-    """13: "Layer 2 triggers derived from events such as association states and L2
-    acknowledgements" """
+    """13: "derived from events such as association states and L2 acknowledgements" """
     one = attached()
     one.give(2)
     one.told()
@@ -216,7 +215,8 @@ def test_only_the_root_makes_versions():
 
 
 def test_a_root_that_has_forgotten_goes_beyond_what_others_know():
-    """18: global repair "by incrementing DODAGVersionNumber" """
+    """3.2.2: "A DODAG root institutes a global repair operation by incrementing the
+    DODAGVersionNumber." """
     root = node(0)
     root.start(cause=1)
     root.hear(**dio(3, 256))

@@ -192,6 +192,9 @@ static int32_t second(innervate_contact_t *contact, uint8_t *bytes, int32_t size
         return -1;
     }
     contact->has_asked = 0;
+    for (int32_t i = 0; i < INNERVATE_KEY; i++) {
+        contact->secret[i] = 0; /* nobody who takes the board later shall have it */
+    }
     innervate_known_t *known = make(contact, &noise, about, contact->index, 1);
     use(contact, known);
     return say_control(known, ALIVE, out);

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
-from innervate.papers.in_field import run_declared, world_of
+from innervate.papers.in_field import run_declared, warm_up, world_of
 from innervate.papers.jobs import Entry, Given
 
 EVERYBODY = 255
 INPUTS = {False: (1, {}), True: (1, {"dest": EVERYBODY})}  # an alarm is for all
-WARM = {"world": "", "nodes": 0}
 
 
 def measure(given: Given, seed: int) -> dict[str, Any]:
@@ -22,20 +22,11 @@ def measure_three(given: Given, seed: int) -> dict[str, Any]:
     return run_declared("flooding", {"hops": 3}, INPUTS, world_of(given, seed))
 
 
-def warm_up() -> None:
-    """Compile the loop."""
-    from innervate.network import networks
-    from innervate.scenario import from_dict
-    from innervate.scenario import plan as plan_of
-
-    small = plan_of(from_dict({"kind": "flooding", "nodes": 2, "duration_s": 0.001}))
-    networks()["flooding"].simulation(small, checks=False, tap=True).finish()
-
-
+WARM_UP = partial(warm_up, "flooding")
 ENTRIES = (
     Entry("mesh", "flooding, 7 hops",
           "managed flooding as Meshtastic's, hop limit 7, direct messages and alarms acknowledged "
-          "and sent again up to three times; an alarm is a broadcast", measure, warm_up, 0.4),
-    Entry("mesh", "flooding, 3 hops", "the same with the usual hop limit", measure_three, warm_up,
+          "and sent again up to three times; an alarm is a broadcast", measure, WARM_UP, 0.4),
+    Entry("mesh", "flooding, 3 hops", "the same with the usual hop limit", measure_three, WARM_UP,
           0.3),
 )  # fmt: skip

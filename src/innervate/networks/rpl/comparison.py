@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from innervate.papers.in_field import run_declared, world_of
+from innervate.papers.in_field import run_declared, warm_up, world_of
 from innervate.papers.jobs import Entry, Given
 
 INPUTS: dict[bool, Any] = {False: (1, {}), True: (2, {})}
@@ -17,23 +17,14 @@ def measure(storing: int, given: Given, seed: int) -> dict[str, Any]:
     return run_declared("rpl", {"storing": storing, "root": world.gateway}, INPUTS, world)
 
 
-def warm_up() -> None:
-    """Compile the loop."""
-    from innervate.network import networks
-    from innervate.scenario import from_dict
-    from innervate.scenario import plan as plan_of
-
-    small = plan_of(from_dict({"kind": "rpl", "nodes": 2, "duration_s": 0.001}))
-    networks()["rpl"].simulation(small, checks=False, tap=True).finish()
-
-
+WARM_UP = partial(warm_up, "rpl")
 WHAT = (
     "RPL, {mode} mode, MRHOF on ETX, Imin 64 ms, Imax 16 s, k 10, four transmissions a hop, a "
     "packet that is not acknowledged is given to the next parent; no acknowledgements from end to "
     "end; an alarm is a packet to the root"
 )
 ENTRIES = (
-    Entry("mesh", "RPL, storing", WHAT.format(mode="storing"), partial(measure, 1), warm_up, 0.4),
-    Entry("mesh", "RPL, non-storing", WHAT.format(mode="non-storing"), partial(measure, 0), warm_up,
+    Entry("mesh", "RPL, storing", WHAT.format(mode="storing"), partial(measure, 1), WARM_UP, 0.4),
+    Entry("mesh", "RPL, non-storing", WHAT.format(mode="non-storing"), partial(measure, 0), WARM_UP,
           0.5),
 )  # fmt: skip

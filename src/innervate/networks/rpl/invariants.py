@@ -1,6 +1,6 @@
 """What must hold of RPL, whatever happens."""
 
-from .constants import INFINITE
+from innervate.networks.rpl.protocol.constants import INFINITE
 
 
 def node_is_above_its_parent(node, params, now):

@@ -11,8 +11,8 @@ from innervate.papers.jobs import Case, Compared, Words, entries
 OURS, FAST, STRICT = "skin, feasible", "skin, feasible, k = 2", "skin, strict"
 STATIC, RFC, SAME, ETX = "static trees", "Babel, 2 of 3", "Babel, 1 of k", "Babel, ETX"
 SLOW_TO_FIND = (
-    "a port is broken after k = 5 missing beacons, and Babel's link is down after two of three: "
-    "what remains after the cut is found is compared in the next line"
+    "a port is broken after k = 5 missing beacons, and Babel's link is down when two of three are "
+    "missing; the next two lines compare what is left when both find a failure as soon"
 )
 NOTHING_TO_DO = (
     "where another port is at hand both take it at once, and finding out is all there is"
@@ -22,7 +22,7 @@ WAVES = (
     "every new sequence number goes out as a wave at once, and comes a little before the period; "
     "periodic updates send no more than Babel"
 )
-NO_TIES = "cells have as many ways through one port as the wiring gives them; ties are few here"
+NO_TIES = "the wiring of this skin leaves few cells that have ports of two subnetworks as near"
 
 
 def judge(compared: Compared) -> Iterator[Claim]:

@@ -27,7 +27,7 @@ from innervate.networks.skin.protocol.constants import (
     TICK,
 )
 from innervate.networks.skin.prove.feasible import ENTRY
-from innervate.networks.skin.prove.neighbours import ROOM
+from innervate.networks.skin.prove.neighbours import ANY_RULE, ROOM
 from innervate.networks.skin.prove.reductions import STORED, Bare
 from innervate.prove.execute import Call, Demand, Machine
 from innervate.prove.records import Array, Outbox, State, Store
@@ -94,16 +94,14 @@ class Asked(Machine):
         return drawn
 
 
-def steps(
-    rule: int, change: Change | None = None, refuses: bool = True
-) -> tuple[Callable[[], Step], ...]:
-    """That what a dead port said decides nothing, under a rule that may refuse for good."""
+def steps(rule: int, change: Change | None = None) -> tuple[Callable[[], Step], ...]:
+    """That what a dead port said decides nothing: under any rule, or what one refuses for good."""
     known = source(ENTRY, change)
     return tuple(
         partial(_dead, known, rule, PORT, parent, why)
         for parent in (NONE, PORT, PORT + 1)
-        for why in (SAID, REFUSED, BROKEN)
-        if (refuses or why != REFUSED) and (parent != PORT or why == SAID)
+        for why in ((SAID, BROKEN) if rule == ANY_RULE else (REFUSED,))
+        if parent != PORT or why == SAID
     )
 
 

@@ -52,7 +52,7 @@ class First(Machine):
     def call(
         self, function: Function, args: list[Any], store: Store, under: Term
     ) -> tuple[Store, Any]:
-        """Follow a call."""
+        """Follow a call, but not a choice unless that is wanted; what is drawn is noted."""
         if function.name == CHOICE and not self.whole:
             found = {key: self.terms.fresh(name_of(key), low, high)
                      for key, low, high in args[0].places() if key[1] in CHOSEN}  # fmt: skip

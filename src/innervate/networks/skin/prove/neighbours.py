@@ -19,6 +19,7 @@ from innervate.prove.steps import Goal, Stage
 from innervate.prove.terms import Term, Terms
 
 ROOM = 12  # a cell's outbox
+ANY_RULE = -1
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,7 +221,8 @@ class Cell:
         self.cell = stage.record("cell", fields.CELL)
         self.params = stage.record("params", fields.PARAMS)
         self.frame = stage.record("frame", fields.FRAME)
-        stage.fix(self.params, "rule", rule)
+        if rule != ANY_RULE:
+            stage.fix(self.params, "rule", rule)
         self.ghosts = ghosts(stage)
         for record, name, length in NUMBERS:
             for index in range(length) if length else (None,):

@@ -11,6 +11,7 @@ from innervate.networks.skin.protocol.constants import (
     INFINITY,
     RULE_FEASIBLE,
     RULE_PAPER_LAX,
+    RULE_STRICT,
 )  # fmt: skip
 from innervate.networks.skin.prove import (
     feasible,
@@ -26,6 +27,7 @@ from innervate.networks.skin.prove import (
 )
 from innervate.networks.skin.prove.faults import EXPLORERS
 from innervate.networks.skin.prove.faults import FAULTS as MUTANTS
+from innervate.networks.skin.prove.neighbours import ANY_RULE
 from innervate.networks.skin.prove.words import tell
 from innervate.prove.errors import ProveError
 from innervate.prove.steps import Step
@@ -73,7 +75,10 @@ NOT_EXPLORED = {
     ("tick", "if cell.countdown <= 0:", False): BALANCING,
     ("tick", "if may_balance and cell.parent != before:", True): BALANCING,
     ("on_frame", "frame.kind == BEACON", False): "the explorer's frames are beacons",
+    ("on_frame", "if frame.kind == DATA:", True): "the explorer's frames are beacons",
+    ("on_frame", "if frame.kind != BEACON:", True): "the explorer's frames are beacons",
     ("on_timer", "if is_news(cell, params):", True): "of news that are none",
+    ("select", "if cell.size[p] < cell.size[lightest]:", True): "sizes decide nothing",
     ("tick", "if not silent:", False): "triggered updates only",
 }
 
@@ -98,25 +103,29 @@ def theories(_network: Any, change: Change | None = None) -> list[Theory]:
     ]  # fmt: skip
 
 
-def resting(rule: int, change: Change | None = None, refuses: bool = True) -> list[Theory]:
-    """What a reduced search under a rule rests on, of the source at hand.
+def resting(rule: int, change: Change | None = None) -> list[Theory]:
+    """What a reduced search rests on, of the source at hand.
 
     Args:
-        rule: that is explored.
+        rule: ANY_RULE: what is so under all; else what more there is under one that refuses for
+            good, so that what it refuses is forgotten, too.
         change: a mistake to plant.
-        refuses: what the rule refuses it refuses for good, so that this is forgotten, too.
     """
     own = feasible.steps if rule == RULE_FEASIBLE else strict.steps
     parts: list[tuple[str, Callable[..., Any]]] = [
-        ("what is only stored, news, loads", partial(reductions.steps, rule)),
-        ("what dead ports said", partial(forgetting.steps, rule, refuses=refuses)),
-        ("what is not read", partial(unread.steps, rule, refuses=refuses)),
-        ("ports are alike", partial(mirror.steps, rule)),
+        ("the rule", own),
+        ("what the rule refuses", partial(forgetting.steps, rule)),
+        ("beacons that repeat the last", partial(repeating.steps, rule)),
+        ("what the rule does not read", partial(unread.steps, rule)),
     ]
-    if refuses:
-        more = ("beacons that repeat the last", partial(repeating.steps, rule))
-        parts = [("the rule", own), *parts[:2], more, *parts[2:]]
-    unreachable = UNREACHABLE if rule == RULE_FEASIBLE else UNREACHABLE_STRICT
+    if rule == ANY_RULE:
+        parts = [
+            ("what is only stored, news, loads", partial(reductions.steps, rule)),
+            ("what dead ports said", partial(forgetting.steps, rule)),
+            ("what is not read", partial(unread.steps, rule)),
+            ("ports are alike", partial(mirror.steps, rule)),
+        ]
+    unreachable = UNREACHABLE_STRICT if rule == RULE_STRICT else UNREACHABLE
     return [Theory(name, "What the explorer forgets of a state decides nothing.", (),
                    steps(change=change),
                    unreachable if steps is own else unreachable | NOT_EXPLORED)

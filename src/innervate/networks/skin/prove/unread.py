@@ -18,12 +18,13 @@ from innervate.networks.skin.protocol.constants import (
     NONE,
     PERIODIC,
     RULE_FEASIBLE,
+    RULE_STRICT,
     TRIGGERED,
     WAVE,
 )
 from innervate.networks.skin.prove import pc
 from innervate.networks.skin.prove.feasible import ENTRY
-from innervate.networks.skin.prove.neighbours import View
+from innervate.networks.skin.prove.neighbours import ANY_RULE, View
 from innervate.networks.skin.prove.reductions import HANDLERS, SAID, Bare, kept
 from innervate.networks.skin.prove.repeating import up_to_date
 from innervate.prove.execute import Machine
@@ -61,7 +62,7 @@ class Twice(Bare):
         self.unsent: frozenset[str] = frozenset()  # fields of beacons without a route
 
     def played(self, handler: str, *told: Any) -> tuple[tuple[Store, Machine], ...]:
-        """Both runs."""
+        """A handler is run from both states."""
         given = {"port": self.port, "frame": self.cell.frame}
         args = [given.get(one, one) for one in told]
         return tuple(self.run(store, handler, *args) for store in (self.stage.store, self.store))
@@ -76,7 +77,7 @@ class Twice(Bare):
         }[self.until]
 
         def says(field: str, index: int | None) -> Term:
-            if field in DISTANCE and self.rule != RULE_FEASIBLE:
+            if field in DISTANCE and self.rule == RULE_STRICT:
                 return self.t.true
             if field not in self.names or index not in (None, self.dead):
                 return no
@@ -103,16 +104,16 @@ class Twice(Bare):
 Make = Callable[[dict[str, Any], int], Twice]
 
 
-def steps(
-    rule: int, change: Change | None = None, refuses: bool = True
-) -> tuple[Callable[[], Step], ...]:
-    """All of it, under a rule; and more if it is one whose invariants hold."""
+def steps(rule: int, change: Change | None = None) -> tuple[Callable[[], Step], ...]:
+    """Under any rule; or what more there is under one whose invariants hold."""
     known = source(ENTRY, change)
-    makes: list[Make] = [_time, _fields, *([_number] if rule == RULE_FEASIBLE else [])]
-    kinds = (PERIODIC, TRIGGERED) if refuses else (PERIODIC,)
-    makes += [partial(_penalty, how) for how in kinds]
+    makes: list[Make] = [partial(_penalty, TRIGGERED)]
+    if rule == RULE_FEASIBLE:
+        makes += [_fields, _number]
+    if rule == ANY_RULE:
+        makes = [_time, _fields, partial(_penalty, PERIODIC)]
     return (
-        *pc.unread(change),
+        *(pc.unread(change) if rule == ANY_RULE else ()),
         *(partial(_same, make, known, rule, name) for make in makes for name in HANDLERS),
     )
 
@@ -153,6 +154,8 @@ def _fields(known: dict[str, Any], rule: int) -> Twice:
         twice.facts.append(view.is_(view.fd_known, 0))
         twice.store[twice.cell.cell, "fd_known", None] = view.fd_known
         twice.until = NO_DISTANCE
+    else:
+        twice.facts.append(view.t.negated(view.is_(view.param("rule"), RULE_FEASIBLE)))
     return twice
 
 

@@ -20,8 +20,6 @@ from innervate.networks.skin.protocol.constants import (
     INFINITY,
     NONE,
     RULE_FEASIBLE,
-    RULE_PAPER,
-    RULE_PAPER_LAX,
     RULE_STRICT,
 )
 from innervate.networks.skin.verify import check as skin_check
@@ -32,9 +30,7 @@ from innervate.networks.skin.verify import world as w
 from innervate.prove.errors import can_prove
 from innervate.verify.twin import Twin
 
-RULES = {"feasible": RULE_FEASIBLE, "strict": RULE_STRICT, "paper": RULE_PAPER,
-         "paper-lax": RULE_PAPER_LAX}  # fmt: skip
-REFUSING = ("feasible", "strict")
+RULES = {"feasible": RULE_FEASIBLE, "strict": RULE_STRICT}
 ON_TRUST = "taken on trust, since z3 is missing (pip install 'innervate[prove]'): "
 TRUSTED = "all that reductions forget"
 TRUSTED_RULE = f"{TRUSTED}, but that the rule refuses it in small numbers"
@@ -57,7 +53,7 @@ def broken(model: system.SkinModel, bound: Any = None) -> str:
     if bound is not None:
         return _try(model.rule, model.updates, bound) if refuses else ""
     tried = _tried(model.rule, model.updates) if refuses else ""
-    return tried or refuted(model.rule, refuses=refuses)
+    return tried or refuted("") or (refuted(model.rule) if refuses else "")
 
 
 def grounds(model: system.SkinModel) -> dict[str, str]:
@@ -81,22 +77,21 @@ def told(model: system.SkinModel) -> str:
 
 def is_asked(model: system.SkinModel) -> bool:
     """True if the reductions rest on the rule, too: it refuses a route for good."""
-    return model.rule in REFUSING and not (model.rule == "strict" and bool(model.budget.restart))
+    return model.rule in RULES and not (model.rule == "strict" and bool(model.budget.restart))
 
 
 @functools.cache
-def refuted(rule: str, change: Change | None = None, refuses: bool = True) -> str:
+def refuted(rule: str, change: Change | None = None) -> str:
     """The first lemma under the reductions that does not hold; "" if all do, or none was tried.
 
     Args:
-        rule: what is explored.
+        rule: that refuses for good; "" for what is so under any.
         change: a mistake to plant, as in the dialect's `source.functions`.
-        refuses: what the rule refuses is forgotten, too.
     """
     if not can_prove():
         return ""
     if change is not None:
-        return _refuted(rule, change, refuses)
+        return _refuted(rule, change)
     from innervate.networks.skin.prove import feasible, pc
     from innervate.prove import kept
     from innervate.prove.theory import source
@@ -104,21 +99,22 @@ def refuted(rule: str, change: Change | None = None, refuses: bool = True) -> st
     found: list[str] = []
 
     def attempt() -> bool:
-        found.append(_refuted(rule, None, refuses))
+        found.append(_refuted(rule, None))
         return not found[0]
 
     home = Path(__file__).resolve().parent.parent
     folders = home / "protocol", home / "prove"
     known = {**source(pc.ENTRY, None), **source(feasible.ENTRY, None)}
-    held = kept.holds(f"skin, reduced, {rule}, {refuses}", known, folders, attempt)
+    held = kept.holds(f"skin, reduced, {rule}", known, folders, attempt)
     return "" if held else found[0]
 
 
-def _refuted(rule: str, change: Change | None, refuses: bool) -> str:
+def _refuted(rule: str, change: Change | None) -> str:
+    from innervate.networks.skin.prove.neighbours import ANY_RULE
     from innervate.networks.skin.prove.theories import resting
     from innervate.prove.theory import prove
 
-    for theory in resting(RULES[rule], change, refuses):
+    for theory in resting(RULES.get(rule, ANY_RULE), change):
         for one in prove(theory, first_only=True).checked:
             if one.refuted:
                 return f"refuted: {one.refuted[0].goal} ({one.name})"

@@ -1,15 +1,4 @@
-"""Managed flooding, after Meshtastic's "Mesh Broadcast Algorithm".
-
-A node that hears a packet for the first time delivers it if it is for it or for all, waits, the
-shorter the fainter it came in, and passes it on with one hop less, unless it hears meanwhile that
-another did. Who made a packet takes hearing it again for an acknowledgement; without one it sends
-it again, three times at most. Who a packet is for answers with an acknowledgement, which is flooded
-alike.
-
-Left out: roles (all nodes are clients), next-hop routing of direct messages (since 2.6), channels
-and encryption, windows that grow with the use of the channel, a negative acknowledgement as a
-packet. A packet that went down to CSMA is not taken back.
-"""
+"""A node of managed flooding: what it does when something happens."""
 
 from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.outbox import deliver, report, send, set_timer
@@ -20,7 +9,7 @@ ACK = 2
 MESSAGE = 1  # inputs: for item.dest, 255 = for all
 EVERYBODY = 255
 
-SEEN = 64  # as in fields.py
+SEEN = 64  # as in protocol.fields
 PLACES = 8
 OWN = 4
 BODY = 8

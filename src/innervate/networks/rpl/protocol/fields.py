@@ -1,6 +1,6 @@
 """What nodes and frames of RPL hold."""
 
-from .constants import (
+from innervate.networks.rpl.protocol.constants import (
     BODY,
     ETX_MOST,
     INFINITE,

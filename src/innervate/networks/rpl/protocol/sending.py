@@ -7,8 +7,7 @@ is acknowledged, a few times; then the link looks worse, and another way is look
 from innervate.dialect.access import ALL
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import URGENT, report, send, set_timer
-
-from .constants import (
+from innervate.networks.rpl.protocol.constants import (
     A_DAO,
     A_DIO,
     A_DIS,
@@ -33,11 +32,26 @@ from .constants import (
     ROUTE_ERROR,
     TARGETS,
 )
-from .counters import dag_rank, following
-from .downward import forget, forget_child, lay_route, pick, pick_left, schedule, told, told_left
-from .packets import clean, drop_first, fill, new_place
-from .parents import GIVEN_UP, choose, learn_etx, note_failure, place_of
-from .trickle import reset_trickle
+from innervate.networks.rpl.protocol.counters import dag_rank, following
+from innervate.networks.rpl.protocol.downward import (
+    forget,
+    forget_child,
+    lay_route,
+    pick,
+    pick_left,
+    schedule,
+    told,
+    told_left,
+)
+from innervate.networks.rpl.protocol.packets import clean, drop_first, fill, new_place
+from innervate.networks.rpl.protocol.parents import (
+    GIVEN_UP,
+    choose,
+    learn_etx,
+    note_failure,
+    place_of,
+)
+from innervate.networks.rpl.protocol.trickle import reset_trickle
 
 STAY = -2  # no next hop now: there may be one later
 

@@ -1,23 +1,10 @@
-"""RPL: routes to a root, and from it, over links that lose frames.
-
-RFC 6550 with Trickle (RFC 6206) and the objective function MRHOF (RFC 6719) on ETX. Every node
-says in DIOs how far it is from the root, its rank; who has a lower rank can be a parent. DAOs tell
-the way down: in storing mode to every ancestor, in non-storing mode to the root alone, which then
-writes whole ways into packets. What packets carry of ranks finds loops.
-
-Read counters.py, trickle.py, parents.py, downward.py, sending.py, this. Left out: several
-instances and DODAGs, several roots, floating DODAGs (MRHOF recommends none), options (all nodes
-have the configuration in their parameters), multicast, security, DAO-ACKs in storing mode (hops
-acknowledge), probing of links that are not used, messages to a neighbour past its parent. A packet
-that a parent does not take goes to the next parent, which is more than the RFC asks for.
-"""
+"""A node of RPL: what it does when something happens."""
 
 from innervate.dialect.access import ALL
 from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.outbox import deliver, report, set_timer
 from innervate.dialect.rng import draw
-
-from .constants import (
+from innervate.networks.rpl.protocol.constants import (
     ACK,
     ACK_WAIT,
     BODY,
@@ -42,8 +29,8 @@ from .constants import (
     TICK,
     TRICKLE,
 )
-from .counters import dag_rank, first, following
-from .downward import (
+from innervate.networks.rpl.protocol.counters import dag_rank, first, following
+from innervate.networks.rpl.protocol.downward import (
     AGAIN,
     DAO_TRIES,
     announce,
@@ -53,13 +40,20 @@ from .downward import (
     take_dao,
     take_report,
 )
-from .packets import base_of, clean, keep, new_place
-from .parents import choose, hear_dio, meet, new_version
-from .sending import acked, acknowledge, go, missed, new_message, sent
-from .trickle import begin_interval, interval_point, reset_trickle
+from innervate.networks.rpl.protocol.packets import base_of, clean, keep, new_place
+from innervate.networks.rpl.protocol.parents import choose, hear_dio, meet, new_version
+from innervate.networks.rpl.protocol.sending import (
+    acked,
+    acknowledge,
+    go,
+    missed,
+    new_message,
+    sent,
+)
+from innervate.networks.rpl.protocol.trickle import begin_interval, interval_point, reset_trickle
 
 TIMERS = 4
-OUTBOX = 40
+OUTBOX = 50
 
 MESSAGE = 1  # inputs: to item.dest
 ALARM = 2  # to the root

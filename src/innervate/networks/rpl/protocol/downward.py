@@ -3,9 +3,8 @@
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import set_timer
 from innervate.dialect.rng import draw
-
-from .constants import DAO_DELAY, NOBODY, NODES, NONE, ROUTE, TARGETS
-from .counters import following, is_newer
+from innervate.networks.rpl.protocol.constants import DAO_DELAY, NOBODY, NODES, NONE, ROUTE, TARGETS
+from innervate.networks.rpl.protocol.counters import following, is_newer
 
 LIFE = 3  # times that a DAO may be missed
 HERE = 1

@@ -3,8 +3,7 @@
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import set_timer
 from innervate.dialect.rng import draw
-
-from .constants import TRICKLE
+from innervate.networks.rpl.protocol.constants import TRICKLE
 
 MS = 1000
 LONGEST = 19  # bits of an interval, ms: half of what clocks tell apart

@@ -1,6 +1,6 @@
 """Sequence counters [RFC 6550, 7.2] and ranks [RFC 6550, 3.5.1]."""
 
-from .constants import INITIAL, WINDOW
+from innervate.networks.rpl.protocol.constants import INITIAL, WINDOW
 
 CIRCULAR = 128
 

@@ -1,8 +1,7 @@
 """Neighbours, the preferred parent, our rank: RFC 6550, 8.2, with MRHOF (RFC 6719) on ETX."""
 
 from innervate.dialect.outbox import report
-
-from .constants import (
+from innervate.networks.rpl.protocol.constants import (
     ETX_MOST,
     ETX_ONE,
     INFINITE,
@@ -13,9 +12,9 @@ from .constants import (
     REPORT_PARENT,
     REPORT_VERSION,
 )
-from .counters import dag_rank, following, is_newer
-from .downward import announce, announce_all, forget_all, leave
-from .trickle import begin_interval, note_consistent, reset_trickle
+from innervate.networks.rpl.protocol.counters import dag_rank, following, is_newer
+from innervate.networks.rpl.protocol.downward import announce, announce_all, forget_all, leave
+from innervate.networks.rpl.protocol.trickle import begin_interval, note_consistent, reset_trickle
 
 COST_MAX = 32768  # MAX_PATH_COST
 NO_WAY = 1 << 20

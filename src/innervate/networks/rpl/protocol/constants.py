@@ -1,4 +1,4 @@
-"""Numbers that the files of RPL share; sizes as in fields.py."""
+"""Numbers that the files of RPL share; sizes as in protocol.fields."""
 
 NODES = 254
 NEIGHBOURS = 24

@@ -1,6 +1,17 @@
 """Packets that wait to be sent: a ring."""
 
-from .constants import BODY, DAO_ACK, DAO_UP, DATA, NEAR, NOBODY, NONE, QUEUE, ROUTE, TARGETS
+from innervate.networks.rpl.protocol.constants import (
+    BODY,
+    DAO_ACK,
+    DAO_UP,
+    DATA,
+    NEAR,
+    NOBODY,
+    NONE,
+    QUEUE,
+    ROUTE,
+    TARGETS,
+)
 
 
 def new_place(node):

@@ -1,0 +1,89 @@
+"""One world for all that do a job over a field, and what is counted of it."""
+
+from functools import partial
+
+import pytest
+
+from innervate.network import networks
+from innervate.networks.mesh.papers import comparison as mesh
+from innervate.papers import in_field
+from innervate.papers.in_field import MONITOR, NEVER, Sent, World, figures, run_declared
+from innervate.papers.jobs import entries, jobs
+from innervate.scenario.actions.field import KILL, REVIVE
+from innervate.sim.field.declared import simulation
+
+AIR = {"byte_ns": 32_000, "phy_bytes": 6, "turnaround_us": 192, "sense_db": 3, "capture_db": 6}
+SECOND = 1_000_000
+
+
+def line(count, faults=(), sent=(), seconds=8):
+    """Nodes in a row that hear their neighbours; node 0 is the gateway."""
+    good = [(k, k + 1) for k in range(count - 1)]
+    rssi, prob = [-16_000] * count**2, [0] * count**2
+    for a, b in (*good, *((b, a) for a, b in good)):
+        rssi[a * count + b], prob[a * count + b] = -8_000, 32_768
+    return World(count, rssi, prob, good, AIR, 0, 4 * SECOND, seconds * SECOND, list(faults),
+                 list(sent))  # fmt: skip
+
+
+def test_what_counts_are_messages_whose_ends_are_joined():
+    faults = [(5 * SECOND, KILL, 1), (7 * SECOND, REVIVE, 1)]
+    sent = [Sent(at * SECOND, 3, dest, "all") for at, dest in
+            ((4, 0), (6, 0), (6, 2), (7, 0), (6, 1))]  # fmt: skip
+    world = line(4, faults, sent)
+    assert in_field._counted(world) == [True, False, True, True, False]
+    found = figures(world, [4 * SECOND + 5_000, NEVER, NEVER, 7 * SECOND + 9_000, NEVER], 80_000)
+    assert found["all"] == pytest.approx(200 / 3)
+    assert found["all_lost"] == pytest.approx(100 / 3)
+    assert (found["p50_ms"], found["p99_ms"]) == (5.0, 9.0)
+    assert found["airtime"] == 2.0, "of the four seconds from since_us on"
+
+
+def test_an_alarm_counts_though_nobody_is_there_to_hear_it():
+    world = line(3, [(5 * SECOND, KILL, 0)], [Sent(6 * SECOND, 2, MONITOR, "alarms")])
+    assert figures(world, [NEVER], 0) | {"airtime": 0} == {
+        "alarms": 0.0, "alarms_lost": 100.0, "p50_ms": None, "p99_ms": None, "airtime": 0,
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "params"), [("flooding", {"hops": 7}), ("rpl", {})])
+def test_declared_networks_do_the_job(monkeypatch, kind, params):
+    network = networks()[kind]
+    monkeypatch.setattr(network, "simulation", partial(simulation, plain=True))
+    pairs = ((3, 0), (0, 3), (1, 2), (2, 0), (0, 1))
+    sent = [Sent(4 * SECOND + k * 100_000 + 1, a, b, "all") for k, (a, b) in enumerate(pairs)]
+    sent.append(Sent(5 * SECOND, 3, MONITOR, "alarms"))
+    found = run_declared(kind, params, network.comparison.INPUTS, line(4, sent=sent))
+    assert (found["all"], found["alarms"]) == (100.0, 100.0)
+    assert 0 < found["p50_ms"] < found["p99_ms"] < 500
+    assert 0 < found["airtime"] < 20
+
+
+def test_the_mesh_and_the_others_are_given_one_world():
+    given = {"world": mesh.HERE, "nodes": 12, "rounds": 2, "dead": 2}
+    one, other = in_field.world_of(given, 3), in_field.world_of(given, 3)
+    assert one == other
+    assert one != in_field.world_of(given, 4)
+    plan = in_field.plan_in("flooding", {}, one)
+    assert plan.heard.rssi_cdb == mesh.plan_of(given, 3).radio.rssi_cdb
+    assert [fault.node for fault in plan.faults] == [node for _, _, node in one.faults]
+    assert len(one.sent) == 2 * (12 - 2)
+    dead = {node for _, _, node in one.faults}
+    assert not dead & {node for each in one.sent for node in (each.source, each.dest)}
+
+
+def test_more_deaths_are_the_same_and_others():
+    fewer, more = ({node for _, _, node in in_field.world_of(
+        {"world": mesh.HERE, "nodes": 12, "rounds": 1, "dead": dead}, 1).faults}
+        for dead in (2, 4))  # fmt: skip
+    assert fewer < more
+
+
+def test_every_case_has_who_does_it_and_every_claim_its_case():
+    job = jobs()["mesh"]
+    names = {entry.name for entry in entries("mesh")}
+    assert {"mesh", "flooding, 7 hops", "RPL, storing", "RPL, non-storing"} <= names
+    for quick in (True, False):
+        cases = {case.name: case for case in job.cases(quick)}
+        assert {claim.case for claim in mesh.CLAIMS} <= set(cases)
+        assert {claim.other for claim in mesh.CLAIMS} <= names
