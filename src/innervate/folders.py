@@ -22,6 +22,7 @@ from innervate.dialect.checker import functions_of
 
 NETWORK_FILE = "network.py"
 MEDIA_ON_AIR = ("channel", "field")
+CHANNEL_OWN = ("slot_us", "ta_us", "oracle", "full_duplex", "period_us", "per_turn")  # its words
 
 _stamps: dict[str, tuple[tuple[str, int, int], ...]] = {}  # of the files of what is loaded, by name
 
@@ -137,6 +138,13 @@ def blamed(error: BaseException, folder: Path) -> str:
     return f"{shown(Path(last.filename))}:{last.lineno}: {_words(error)}{where}"
 
 
+def line_of(folder: Path, text: str) -> str:
+    """Where a text stands first in a folder's `network.py`: "ring/network.py:5"."""
+    path = folder / NETWORK_FILE
+    lines = path.read_text(encoding="utf-8").splitlines()
+    return f"{shown(path)}:{next((n for n, line in enumerate(lines, 1) if text in line), 1)}"
+
+
 def shown(path: Path) -> str:
     """A path as it is said: relative to the working folder where it lies below it."""
     here = Path.cwd()
@@ -182,7 +190,9 @@ def findings(folder: Path, network: Any) -> list[checks.Finding]:
     if not files:
         found = [checks.Finding(_file_of(folder, network, "protocol"), 1, "there is no such file")]
     if network.has("invariants"):
-        found += checks.of_source(_file_of(folder, network, "invariants"), known, folder.name, {})
+        path = _file_of(folder, network, "invariants")
+        wrong = checks.of_source(path, known, folder.name, {})
+        found += wrong or checks.of_rules(path)
     found += [] if found else _of_declared(folder, network, files)
     for one in found:
         one.path = shown(Path(one.path))
@@ -196,13 +206,30 @@ def _of_declared(folder: Path, network: Any, files: list[Path]) -> list[checks.F
     except Exception as error:
         path = _file_of(folder, network, "fields")
         raise NetworkError(blamed(error, folder) or f"{shown(path)}:1: {_words(error)}") from None
-    found: list[checks.Finding] = checks.of_fields(_file_of(folder, network, "fields"), tables)
+    place = _file_of(folder, network, "fields")
+    found: list[checks.Finding] = checks.of_fields(place, tables)
+    found += [] if found else _of_values(place, network, files)
     if not found and network.has("frames") and not hasattr(network.frames, "encode"):
         frames, path = network.frames, _file_of(folder, network, "frames")
         found += checks.of_layouts(path, frames.LAYOUTS, frames.KIND_BITS, fields.FRAME)
         kinds = {kind for kind, _name, _fields in frames.LAYOUTS}
         for source in files:
             found += checks.of_kinds(source, kinds)
+    return found
+
+
+def _of_values(place: Path, network: Any, files: list[Path]) -> list[checks.Finding]:
+    """What values and names there are that the declarations have no room for."""
+    fields = network.fields
+    usual = [(name, getattr(fields, name, {})) for name in ("DEFAULTS", "EXPLORED")]
+    found: list[checks.Finding] = checks.of_usual(place, usual, fields.PARAMS)
+    if network.medium == "channel":
+        found += checks.of_taken(place, fields.PARAMS, CHANNEL_OWN)
+    declared = {
+        field[0] for name in ("STATE", "FRAME", "PARAMS") for field in getattr(fields, name)
+    }
+    for source in files:
+        found += checks.of_uses(source, declared, network.protocol.TIMERS)
     return found
 
 

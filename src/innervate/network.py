@@ -78,13 +78,26 @@ class Network:
         if place is None:
             raise AttributeError(f"network {self.__dict__.get('name')} has no part {part!r}")
         module, _, name = place.partition(":")
-        found: Any = import_module(module)
-        if name:
-            found = getattr(found, name)
+        try:
+            found: Any = import_module(module)
+            if name:
+                found = getattr(found, name)
+        except (ImportError, AttributeError) as error:
+            if self.folder is None:
+                raise
+            raise self._missing(part, error) from None
         if part in MADE and callable(found):
             found = found(self)
         self.__dict__[part] = found
         return found
+
+    def _missing(self, part: str, error: Exception) -> NetworkError:
+        """A part of a folder that is not where its `network.py` says."""
+        assert self.folder is not None
+        words = folders.blamed(error, self.folder)
+        place = self.parts[part].removeprefix(f"{self.package}.")
+        where = folders.line_of(self.folder, f'"{place}"')
+        return NetworkError(words or f"{where}: {part}: {error}")
 
     def has(self, part: str) -> bool:
         """True if there is such a part, its own or the default."""
@@ -298,10 +311,7 @@ def _is_home(network: Network, folder: Path) -> bool:
 def _taken(network: Network, other: Network) -> NetworkError:
     where = network.package
     if network.folder is not None:
-        path = network.folder / folders.NETWORK_FILE
-        lines = path.read_text(encoding="utf-8").splitlines()
-        line = next((n for n, text in enumerate(lines, 1) if "Network(" in text), 1)
-        where = f"{folders.shown(path)}:{line}"
+        where = folders.line_of(network.folder, "Network(")
     return NetworkError(f"{where}: the name {network.name!r} is taken by {other.package}; "
                         "give the network and its folder another")  # fmt: skip
 

@@ -1,8 +1,14 @@
 """`innervate new network` and `check-protocol`."""
 
 import json
+import os
+
+import pytest
 
 from innervate.cli import main
+from innervate.folders import CHANNEL_OWN
+from innervate.network import NetworkError, networks
+from innervate.running import run
 from tests.own import alone, own
 
 __all__ = ["alone", "own"]
@@ -53,3 +59,78 @@ def test_every_mistake_is_told_at_once(own, capsys):
     first, second = said.splitlines()
     assert first.startswith(f"gossip/protocol.py:{own.line('protocol.py', '1.5')}: a float")
     assert "declare a field with a length" in second
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "told"),
+    [
+        ("protocol.py", "node.version == 0:", "node.versoin == 0:",
+         'versoin is no field that fields.py declares; did you mean "version"?'),
+        ("protocol.py", "BEAT = 0", "BEAT = 1", "sets timer 1, and TIMERS = 1; write TIMERS = 2"),
+        ("protocol.py", "deliver(out, NEWS)", "deliver(out, kind=NEWS)",
+         "a keyword argument; give it by its place"),
+        ("fields.py", '"beat_us": 10_000', '"beat_us": 10',
+         "DEFAULTS: beat_us must be 1000 to 1000000 us, not 10"),
+        ("fields.py", '"beat_us": 10_000', '"beet_us": 10_000',
+         "DEFAULTS: beet_us is no parameter of PARAMS"),
+        ("invariants.py", "node_says_nothing_it_has_not_heard(node, params, now)",
+         "node_says_nothing_it_has_not_heard(node, params)",
+         "node_says_nothing_it_has_not_heard takes 2 arguments; it is "
+         "node_says_nothing_it_has_not_heard(node, params, now)"),
+    ],
+)  # fmt: skip
+def test_a_mistake_is_one_line_with_its_place(own, capsys, file, old, new, told):
+    own.change(file, old, new)
+    at = {own.line(file, new)}
+    if "timer" in told:
+        at = {n for n, text in enumerate((own.folder / file).read_text().splitlines(), 1)
+              if "set_timer(out" in text}  # fmt: skip
+    code, said = checked(capsys, "--no-tests")
+    assert code == 2
+    assert set(said.splitlines()) == {f"gossip/{file}:{line}: {told}" for line in at}
+    assert len(said.splitlines()) == len(at)
+
+
+def test_a_parameter_that_has_a_name_of_the_channel_is_refused(alone, capsys):
+    main(["new", "network", "talk", "--on", "channel"])
+    path = alone / "talk" / "fields.py"
+    for name in CHANNEL_OWN:
+        path.write_text(path.read_text().replace('"length_slots"', f'"{name}"'))
+        capsys.readouterr()
+        assert main(["check-protocol", "talk", "--no-tests"]) == 2
+        assert f"PARAMS: {name} is a word of the medium's own" in capsys.readouterr().out
+        path.write_text(path.read_text().replace(f'"{name}"', '"length_slots"'))
+
+
+def test_a_word_of_python_is_no_name_of_a_network(alone, capsys):
+    assert main(["new", "network", "import"]) == 2
+    assert "the name 'import' is taken" in capsys.readouterr().err
+    assert not (alone / "import").exists()
+
+
+def test_runs_of_a_folder_that_nothing_has_named_yet_are_compared(own, capsys):
+    run(own.scenario, plain=True, out=own.folder / "one")
+    networks.cache_clear()
+    os.environ["INNERVATE_NETWORKS"] = ""
+    assert main(["compare", "gossip/one", "gossip/one"]) == 0
+    assert "the same, event by event" in capsys.readouterr().out
+    own.folder.rename("other")
+    networks.cache_clear()
+    os.environ["INNERVATE_NETWORKS"] = ""
+    assert main(["compare", "other/one", "other/one"]) == 2
+    assert "no network here is called 'gossip'; name its folder" in capsys.readouterr().err
+
+
+def test_a_measure_that_is_not_there_or_fails_is_told_with_its_line(own, capsys):
+    own.change("network.py", '    invariants="invariants",\n',
+               '    invariants="invariants",\n    measures="more:measures",\n')  # fmt: skip
+    at = f"gossip/network.py:{own.line('network.py', 'more:measures')}: measures: "
+    assert main(["check-protocol", "gossip", "--no-tests"]) == 2
+    assert at + "No module named 'gossip.more'" in capsys.readouterr().err
+    more = own.folder / "more.py"
+    more.write_text('"""More."""\n')
+    assert main(["check-protocol", "gossip", "--no-tests"]) == 2
+    assert at + "module 'gossip.more' has no attribute 'measures'" in capsys.readouterr().err
+    more.write_text("def measures(nodes, reports, deliveries, plan):\n    return {'a': 1 // 0}\n")
+    with pytest.raises(NetworkError, match=r"^gossip/more.py:2: ZeroDivisionError: .*, in measure"):
+        run(own.scenario, plain=True)

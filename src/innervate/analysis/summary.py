@@ -12,7 +12,8 @@ import numpy as np
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline
 from innervate.analysis.summary_common import Common, Percentiles, measured
-from innervate.network import networks
+from innervate.folders import blamed
+from innervate.network import NetworkError, networks
 from innervate.sim.counts import Counts
 
 
@@ -115,7 +116,13 @@ def _measures(result: Any) -> Reports:
         return {}
     nodes = states_of(result.world)
     rows, deliveries = (result.rows.get(name, ()) for name in ("rows", "deliveries"))
-    found = network.measures(nodes, rows, deliveries, result.plan)
+    try:
+        found = network.measures(nodes, rows, deliveries, result.plan)
+    except Exception as error:
+        words = network.folder and blamed(error, network.folder)
+        if not words:
+            raise
+        raise NetworkError(words) from None
     return {"measures": {name: _plain(value) for name, value in found.items()}}
 
 

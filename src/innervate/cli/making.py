@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from keyword import kwlist
 from pathlib import Path
 from typing import Any
 
@@ -33,8 +34,8 @@ def make(target: Path | None, on: str, over: str = "") -> int:
     if not (name.isidentifier() and name.isascii() and name == name.lower()):
         raise UserError(f"{name[:60]!r} is no name; use small letters, digits and _, "
                         "like a Python module")  # fmt: skip
-    taken = name in networks() or name in sys.stdlib_module_names or WORD.lower() == name
-    if taken or _is_module(name):
+    words = {*networks(), *sys.stdlib_module_names, *kwlist, WORD.lower()}
+    if name in words or _is_module(name):
         raise UserError(f"the name {name!r} is taken; choose another")
     if target.exists():
         raise UserError(f"{target} is there already; choose another name or move it away")
@@ -91,7 +92,10 @@ def check_protocol(folder: Path, as_json: bool, with_tests: bool) -> int:
 def _look_further(
     folder: Path, network: Network, with_tests: bool, said: dict[str, Any], lines: list[str]
 ) -> None:
-    """The outbox, every order of events on two nodes, and what no test reaches."""
+    """Its parts, the outbox, every order of events on two nodes, and what no test reaches."""
+    for part, place in network.parts.items():
+        if place.startswith(f"{network.package}."):
+            getattr(network, part)
     room = getattr(network.protocol, "OUTBOX", 16)
     said["outbox"] = {}
     for handler, (most, where) in folders.actions_of(folder.resolve(), network).items():

@@ -12,7 +12,7 @@ BUILTINS = {"abs", "max", "min", "range"}
 PLAIN = (
     *(ast.Module, ast.Expr, ast.alias, ast.arguments, ast.arg, ast.Load, ast.Store),
     *(ast.Assign, ast.AugAssign, ast.If, ast.While, ast.Return, ast.Pass, ast.Break, ast.Continue),
-    *(ast.Name, ast.Attribute, ast.Subscript, ast.IfExp),
+    *(ast.Name, ast.Attribute, ast.Subscript, ast.IfExp, ast.keyword),  # check_Call: keywords
     *(ast.Compare, ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE),
     *(ast.BoolOp, ast.And, ast.Or, ast.UnaryOp, ast.Not, ast.USub, ast.UAdd, ast.Invert),
     *(ast.BinOp, ast.Add, ast.Sub, ast.Mult, ast.FloorDiv, ast.Mod),

@@ -4,10 +4,12 @@ Nothing is run here but what declares: each finding names a file, a line, and wh
 """
 
 import ast
+from difflib import get_close_matches
 
 from innervate.dialect.checker import broken_rules, functions_of
 
 MOST = (1 << 30) - 1
+OUTBOX = {"action", "count", "frame", "limit", "overflow"}  # what an outbox has
 NOTED = {"kind", "made_at", "rssi"}  # fields of a frame that no layout has to name
 FIELD = "a field is (name, length, low, high, unit, meaning)"
 HANDLERS = {
@@ -19,6 +21,7 @@ HANDLERS = {
 ON_AIR = {
     "on_carrier": "(state, params, now, cd, voc, out)",
 }
+RULES = {"node_": "(node, params, now)", "network_": "(nodes, count, params)"}
 MAY = {"on_sent": "(state, params, now, ok, out)"}  # that a protocol need not have
 
 
@@ -62,6 +65,18 @@ def of_source(path, known, home, handlers):
             found.append(Finding(path, there[name].lineno, what))
     if handlers and "TIMERS" not in constants_of(tree):
         found.append(Finding(path, 1, "has no TIMERS; add TIMERS = 1, how many timers a node has"))
+    return found
+
+
+def of_rules(path):
+    """Invariants that do not take what they are given."""
+    found = []
+    for function in functions_of(ast.parse(path.read_text(encoding="utf-8"))):
+        for prefix, arguments in RULES.items():
+            given = len(function.args.args)
+            if function.name.startswith(prefix) and given != arguments.count(",") + 1:
+                what = f"{function.name} takes {given} arguments; it is {function.name}{arguments}"
+                found.append(Finding(path, function.lineno, what))
     return found
 
 
@@ -118,6 +133,38 @@ def of_fields(path, declared):
             if wrong:
                 found.append(Finding(path, line, f"{table}: {name} {wrong}"))
     return found
+
+
+def of_usual(path, tables, params):
+    """What is wrong with values for parameters that are left out.
+
+    Args:
+        path: the file they stand in.
+        tables: (name, {parameter: value}) of DEFAULTS and EXPLORED.
+        params: the declared parameters.
+    """
+    ranges, lines = {field[0]: field[2:5] for field in params}, _lines_of(path)
+    found = []
+    for table, values in tables:
+        for name, value in values.items():
+            line = lines.get((table, ""), 1)
+            if name not in ranges:
+                found.append(Finding(path, line, f"{table}: {name} is no parameter of PARAMS"))
+                continue
+            low, high, unit = ranges[name]
+            each = value if isinstance(value, (list, tuple)) else [value]
+            if not all(isinstance(one, int) and low <= one <= high for one in each):
+                what = f"{table}: {name} must be {low} to {high} {unit}, not {value}"
+                found.append(Finding(path, line, what))
+    return found
+
+
+def of_taken(path, params, taken):
+    """Parameters that have a name of the medium's own, and would take its value's place."""
+    lines = _lines_of(path)
+    return [Finding(path, lines.get(("PARAMS", name), 1),
+                    f"PARAMS: {name} is a word of the medium's own; choose another name")
+            for name, *_ in params if name in taken]  # fmt: skip
 
 
 def _wrong_with(field):
@@ -219,6 +266,34 @@ def of_kinds(path, kinds):
                 what = f"a frame of kind {value} is sent, and has no layout; add one to LAYOUTS"
                 found.append(Finding(path, part.lineno, what))
     return found
+
+
+def of_uses(path, declared, timers):
+    """Fields that are not declared, and timers that a node does not have.
+
+    Args:
+        path: a file of the protocol.
+        declared: names of all declared fields.
+        timers: how many timers a node has.
+    """
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    constants, found = constants_of(tree), []
+    modules = {alias.asname or alias.name for node in ast.walk(tree)
+               if isinstance(node, (ast.Import, ast.ImportFrom))
+               for alias in node.names}  # fmt: skip
+    for part in ast.walk(tree):
+        if isinstance(part, ast.Attribute) and part.attr not in declared | OUTBOX:
+            if not (isinstance(part.value, ast.Name) and part.value.id in modules):
+                near = "".join(f'; did you mean "{one}"?'
+                               for one in get_close_matches(part.attr, declared, 1))  # fmt: skip
+                what = f"{part.attr} is no field that fields.py declares{near}"
+                found.append(Finding(path, part.lineno, what))
+        is_set = isinstance(part, ast.Call) and getattr(part.func, "id", "") == "set_timer"
+        timer = _number(part.args[1], constants) if is_set and len(part.args) > 1 else None
+        if timer is not None and not 0 <= timer < timers:
+            what = f"sets timer {timer}, and TIMERS = {timers}; write TIMERS = {timer + 1}"
+            found.append(Finding(path, part.lineno, what))
+    return list({str(one): one for one in found}.values())
 
 
 def _called(node):

@@ -10,7 +10,7 @@ from typing import Any
 
 from innervate import scenario as scenarios
 from innervate.analysis.headline import HeadlineEntry
-from innervate.network import networks
+from innervate.network import known, networks
 from innervate.running import folder as folders
 from innervate.running.errors import RunError
 from innervate.running.run import Run
@@ -128,6 +128,7 @@ class _Recorded:
         except (OSError, ValueError):
             raise RunError(f"{path} is damaged; run the scenario again") from None
         self._folder = folder
+        known(self.summary["kind"], folder)
 
     @property
     def fingerprint(self) -> Any:

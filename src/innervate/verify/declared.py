@@ -267,6 +267,11 @@ class Net:
         return ""
 
 
+def is_still(state: State) -> bool:
+    """True if nothing happens any more by itself."""
+    return not any(state.ways) and not any(node.timers or node.down for node in state.nodes)
+
+
 def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tuple[Tally, Story]:
     """All states breadth first, up to `limit`; the story has no title if nothing is broken."""
     started, tally = wall_s(), Tally(states=1)
@@ -275,13 +280,14 @@ def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tupl
         return replace(tally, ended="broken"), Story(first.broken, [f"{first.words}."])
     before: dict[State, tuple[State, str] | None] = {first.state: None}
     level = [first.state]
+    waits = bool(net.given) and is_still(first.state)  # for its user: so it does from the start
     while level:
         fresh: list[State] = []
         for state in level:
             steps = list(net.steps(state))
             tally.expanded += 1
             tally.generated += len(steps)
-            if not any(state.ways) and not any(node.timers or node.down for node in state.nodes):
+            if not waits and is_still(state):
                 return replace(tally, ended="broken"), _story(before, state, STUCK, "")
             for step in steps:
                 if broken := step.broken or (net.of_all and net.broken_of_all(step.state)):

@@ -61,6 +61,18 @@ def test_a_ring_that_ends_for_ever_is_found():
     assert not explored("loss=0,restart=0", states=300, protocol=wrong).is_broken
 
 
+def quiet(node, params, now, cause, out):
+    """A start that sets no timer."""
+
+
+def test_who_waits_for_its_user_from_the_start_may_be_still():
+    waits = changed(protocol, on_start=quiet)
+    asked = changed(fields, GIVEN=((1, {}),))
+    assert not explored("input=1", states=300, protocol=waits, fields=asked).is_broken
+    case = explored("input=1", states=300, protocol=waits)  # and nobody ever asks
+    assert case.story.title == declared.STUCK
+
+
 @pytest.mark.parametrize(
     ("action", "title"),
     [

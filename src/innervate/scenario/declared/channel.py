@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 
 from msgspec import Meta
 
+from innervate.folders import CHANNEL_OWN
 from innervate.network import networks
 from innervate.scenario.actions.channel import ACTIONS, FADE, GARBLE, WORDS
 from innervate.scenario.cables import LOSS_ONE, Input
@@ -171,8 +172,7 @@ def plan(scenario: Any) -> ChannelPlan:
     delays = [[0 if a == b else air.delay_us for b in range(count)] for a in range(count)]
     for a, b in model.hidden:
         delays[a][b] = delays[b][a] = -1
-    medium = {"slot_us": air.slot_us, "ta_us": air.turnaround_us, "oracle": 0, "full_duplex": 0,
-              "period_us": 0, "per_turn": 1}  # fmt: skip
+    medium = dict(zip(CHANNEL_OWN, (air.slot_us, air.turnaround_us, 0, 0, 0, 1), strict=True))
     faults = [Fault(round(1e6 * event.at_s), WORDS[event.action], event.node, place)
               for place, event in enumerate(model.event) if event.action in DONE]  # fmt: skip
     return ChannelPlan(
