@@ -1,5 +1,6 @@
 import re
 import sys
+from dataclasses import replace
 from types import ModuleType
 
 import pytest
@@ -58,6 +59,19 @@ def test_everything_is_written(toy, tmp_path):
     pictures = {f"{name}.{kind}" for name in "ab" for kind in ("png", "svg")}
     tables = {f"papers-toy.{kind}" for kind in ("csv", "md", "html")}
     assert made == pictures | tables | {book.RESULTS}
+
+
+def test_a_figure_that_compiles_by_itself_has_nothing_else_compiled(toy, monkeypatch, tmp_path):
+    module, said = sys.modules["toy_papers"], []
+    module.warm_up = lambda: said.append("all")
+    made = {"a": None, "b": lambda: said.append("b")}
+    monkeypatch.setattr(
+        module, "experiment", lambda name: replace(toy.experiment(name), warm_up=made[name])
+    )
+    main("toy", tmp_path, only=["b"])
+    assert said == ["b"]
+    main("toy", tmp_path / "all")
+    assert said == ["b", "all", "b"]
 
 
 def test_the_page_stands_alone(toy, tmp_path):

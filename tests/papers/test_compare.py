@@ -140,3 +140,15 @@ def test_tables_go_between_the_marks_of_a_page(tmp_path):
         book.output.insert(tmp_path / "none.md", "compare-toy", "new")
     with pytest.raises(PapersError, match="leave out --page"):
         book.into_page(page, "mesh", tmp_path)
+
+
+def test_a_job_compiles_what_its_own_entries_run_each_once(monkeypatch):
+    said = []
+    one, other = (lambda: said.append("one")), (lambda: said.append("other"))
+    doing = {"skin": [("a", one), ("b", one), ("c", other)], "mesh": [("d", pytest.fail)]}
+    made = {name: [Entry(name, who, "", measured, up) for who, up in found]
+            for name, found in doing.items()}  # fmt: skip
+    monkeypatch.setattr(compare, "entries", made.__getitem__)
+    compare.experiment("skin").warm_up()
+    compare.warm_up()
+    assert said == ["one", "other"]

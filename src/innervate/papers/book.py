@@ -190,7 +190,8 @@ class _Book:
         if missing:
             self._say("compiling the simulation, unless it is compiled")
             # Compiled before threads want it at the same time.
-            self.warm_up()
+            for warm_up in dict.fromkeys(one.warm_up or self.warm_up for one in experiments):
+                warm_up()
             self._started = time.perf_counter()
         workers = _cores()
         with ThreadPoolExecutor(workers) as pool:

@@ -30,9 +30,7 @@ def __getattr__(name: str) -> Any:
 
 
 def warm_up() -> None:
-    """Compile what the entries run, each once."""
-    for once in dict.fromkeys(entry.warm_up for job in jobs() for entry in entries(job)):
-        once()
+    """Nothing: every job compiles what its entries run."""
 
 
 def experiment(name: str) -> Experiment:
@@ -54,7 +52,11 @@ def experiment(name: str) -> Experiment:
     def draw(results: Results, quick: bool) -> Figure:
         return picture(of(results, quick))
 
-    return Experiment(name, job.title, job.caption, wanted, draw, judge, sheets)
+    def compiled() -> None:
+        for once in dict.fromkeys(entry.warm_up for entry in entries(name)):
+            once()
+
+    return Experiment(name, job.title, job.caption, wanted, draw, judge, sheets, compiled)
 
 
 def _legend(job: Job) -> Sheet:

@@ -119,8 +119,8 @@ class Experiment:
     """A figure: its points, its drawing, its rows of the table.
 
     All take `quick`: fewer seeds and settings, the same code. As a module it is TITLE,
-    CAPTION, `points(quick)`, and `draw` and `judge`, which take what was measured. Tables of its
-    own (`sheets`) has only what compares.
+    CAPTION, `points(quick)`, and `draw` and `judge`, which take what was measured. Only what
+    compares has tables of its own (`sheets`), and compiles what it runs by itself (`warm_up`).
     """
 
     name: str
@@ -130,6 +130,7 @@ class Experiment:
     draw: Callable[[Results, bool], Figure]
     judge: Callable[[Results, bool], list[Claim]]
     sheets: Callable[[Results, bool], list[Sheet]] = lambda results, quick: []
+    warm_up: Callable[[], None] | None = None
 
     @classmethod
     def of(cls, module: ModuleType) -> Experiment:
