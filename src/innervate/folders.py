@@ -203,6 +203,8 @@ def _of_declared(folder: Path, network: Any, files: list[Path]) -> list[checks.F
     try:
         fields = network.fields
         tables = [(name, getattr(fields, name)) for name in ("STATE", "FRAME", "PARAMS")]
+    except NetworkError:
+        raise
     except Exception as error:
         path = _file_of(folder, network, "fields")
         raise NetworkError(blamed(error, folder) or f"{shown(path)}:1: {_words(error)}") from None
@@ -225,9 +227,7 @@ def _of_values(place: Path, network: Any, files: list[Path]) -> list[checks.Find
     found: list[checks.Finding] = checks.of_usual(place, usual, fields.PARAMS)
     if network.medium == "channel":
         found += checks.of_taken(place, fields.PARAMS, CHANNEL_OWN)
-    declared = {
-        field[0] for name in ("STATE", "FRAME", "PARAMS") for field in getattr(fields, name)
-    }
+    declared = {field[0] for field in (*fields.STATE, *fields.FRAME, *fields.PARAMS)}
     for source in files:
         found += checks.of_uses(source, declared, network.protocol.TIMERS)
     return found

@@ -13,7 +13,9 @@ from tests.own import alone, own
 __all__ = ["alone", "own"]
 TAKE = "    node.value = frame.value\n"
 BROKEN = {
-    "no such field": (TAKE, "    node.valu = frame.value\n", "node.valu =", "has no attribute"),
+    "no such field": (TAKE, "    node.valu = frame.value\n", "node.valu =",
+                      'did you mean "value"?'),
+    "another's": (TAKE, "    node.value = frame.beat_us\n", "frame.beat", "has no attribute"),
     "out of range": (TAKE, "    node.value = frame.value * 100\n", "* 100",
                      "value is 700, declared 0 to 255. invariant broken at 0.1"),
     "division": (TAKE, "    node.value = frame.value // (node.number - node.number)\n", "//",
