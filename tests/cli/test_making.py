@@ -25,6 +25,7 @@ def test_what_no_test_reaches_is_named(own, capsys):
     code, said = checked(capsys, "--json")
     assert code == 0
     told = json.loads(said)
+    assert told["faults"] == []
     assert set(told["unreached"]) == {
         "on_start", "on_frame", "on_timer", "on_input", "is_newer", "tell", "fill",
     }  # fmt: skip
@@ -36,6 +37,8 @@ def test_what_no_test_reaches_is_named(own, capsys):
     code, said = checked(capsys)
     assert code == 1
     assert "gossip: FAILED" in said
+    assert "values and frames fit" not in said
+    assert "but: its tests fail (see above)" in said.splitlines()[-1]
 
 
 def test_an_outbox_that_is_too_small_and_loops_that_are_not_counted(own, capsys):
@@ -48,6 +51,10 @@ def test_an_outbox_that_is_too_small_and_loops_that_are_not_counted(own, capsys)
     at = own.line("protocol.py", "range(node.number)")
     assert f"gossip/protocol.py:{at}: on_frame: how many actions it may put is not seen" in said
     assert "So: an outbox overflowed" in said
+    assert said.splitlines()[-1].startswith(
+        "gossip: the dialect is kept, but: the outbox is too small, some order of events "
+        "breaks it (see above); at most 5 actions a call of 4"
+    )
     assert code == 1
 
 

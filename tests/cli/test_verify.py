@@ -30,7 +30,7 @@ def test_the_command_says_what_is_proved_argued_and_trusted(sh, monkeypatch):
     monkeypatch.undo()
     assert sh(*words) == 0
     (line,) = [line for line in sh.out.splitlines() if "argued" in line]
-    assert re.search(r"proved: the rule, .*; argued: that who may do less", line)
+    assert re.search(r"proved: the rule, .*; argued: that no more is forgotten than this", line)
     assert "trust" not in sh.out
     assert sh(*words, "--json") == 0
     assert set(json.loads(sh.out)[0]["reductions"]) == {"proved", "argued", "page"}

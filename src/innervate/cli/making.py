@@ -86,7 +86,7 @@ def check_protocol(folder: Path, as_json: bool, with_tests: bool) -> int:
     else:
         for line in lines:
             print(line)
-    return 2 if found else 1 if said.get("broken") or said.get("tests_failed") else 0
+    return 2 if found else 1 if said["faults"] else 0
 
 
 def _look_further(
@@ -116,13 +116,24 @@ def _look_further(
         lines += [f"{place}: no test reaches {what}" for what, place in said["unreached"].items()]
         if said["tests_failed"]:
             lines.append(said["tests_failed"])
+    lines.append(f"{network.name}: {_conclusion(said, room, case.record['states'])}")
+
+
+def _conclusion(said: dict[str, Any], room: int, states: int) -> str:
+    """What holds and, before it, what does not, which is noted under `faults`."""
     most = max((n for n in said["outbox"].values() if n is not None), default=0)
+    shown = {"the outbox is too small": most > room,
+             "some order of events breaks it": said["broken"],
+             "its tests fail": said.get("tests_failed")}  # fmt: skip
+    said["faults"] = [fault for fault, is_there in shown.items() if is_there]
     reached = ""
-    if with_tests:
+    if "reached" in said:
         reached = f", {said['reached']} of {said['functions']} functions reached by tests"
-    lines.append(f"{network.name}: the dialect is kept, values and frames fit, at most {most} "
-                 f"actions a call of {room}, {case.record['states']:,} states explored"
-                 f"{reached}")  # fmt: skip
+    fits = "values and frames fit,"
+    if said["faults"]:
+        fits = f"but: {', '.join(said['faults'])} (see above);"
+    return (f"the dialect is kept, {fits} at most {most} actions a call of {room}, "
+            f"{states:,} states explored{reached}")  # fmt: skip
 
 
 def _tested(folder: Path, network: Network) -> dict[str, Any]:

@@ -37,7 +37,8 @@ TRUSTED_RULE = f"{TRUSTED}, but that the rule refuses it in small numbers"
 PROVED = ("stored beacons, news, loads, dead and broken ports, time without a route, fields never "
           "read, mirror images")  # fmt: skip
 PROVED_RULE = f"the rule, repeated beacons, {PROVED}"
-ARGUED = "that who may do less finds no more (budgets are the explorer's own)"
+ARGUED = ("that no more is forgotten than this, and that who may do less finds no more "
+          "(budgets are the explorer's own)")  # fmt: skip
 PAGE = "docs/verify.md"
 NUMBERS, HOPS = range(4), range(6)
 
