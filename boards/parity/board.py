@@ -55,8 +55,7 @@ def open_transcript():
     state, params, out = player
     read_record(params, layouts.PARAMS, read)
     handlers = (node.on_start, node.on_frame, node.on_timer, node.on_input)
-    if hasattr(node, "on_carrier"):
-        handlers += (node.on_carrier,)
+    handlers += (getattr(node, "on_carrier", None), getattr(node, "on_sent", None))
     who = (state, None, params) if layouts.HAS_GATE else (state, params)
     frame = records.Frame()
     item = records.Item() if hasattr(records, "Item") else frame

@@ -21,7 +21,9 @@ from innervate.sim.driver import Simulation
 
 HERE = Path(__file__).resolve().parent
 # Handlers in order of their number, and how many arguments stand between clock and outbox.
-HANDLERS = {"on_start": 1, "on_frame": 2, "on_timer": 1, "on_input": 2, "on_carrier": 2}
+HANDLERS = {
+    "on_start": 1, "on_frame": 2, "on_timer": 1, "on_input": 2, "on_carrier": 2, "on_sent": 1,
+}  # fmt: skip
 
 
 @dataclass

@@ -10,7 +10,8 @@ FRAME = 1
 TIMER = 2
 INPUT = 3
 CARRIER = 4
-END = 5
+SENT = 5
+END = 6
 
 SEND = 1
 DELIVER = 3
@@ -87,7 +88,8 @@ def read_record(record, fields, read):
 class Player:
     """A node that is played calls.
 
-    handlers are the five functions; who is what they are given first: state first, params last.
+    handlers are the six functions, None for what a protocol has not; who is what they are given
+    first: state first, params last.
     layouts has NAMES of the state's fields, what a received frame (HEARD) and an input (GIVEN)
     consist of, and by KINDS what of a frame is sent. frame and item are what they are read into.
     """
@@ -124,7 +126,7 @@ class Player:
             port = read()
             read_record(self.frame, self.layouts.HEARD, read)
             return port, self.frame
-        if handler == TIMER:
+        if handler in (TIMER, SENT):
             return (read(),)
         if handler == INPUT:
             kind = read()

@@ -17,6 +17,9 @@ CALLS = {
     "csma": 300,
     "radio": 300,
     "mesh": 120,
+    "babel": 200,
+    "flooding": 100,
+    "rpl": 100,
 }  # a minute of a mesh takes ten seconds
 MICROBIT_CALLS = 12
 ROLES = roles()

@@ -27,6 +27,7 @@ SECTIONS = (
     "What holds, and under what assumption",
 )
 EVENTS = ("mode", "kind", "timer")
+FEW = {"flooding": 0}  # one handler for all its frames
 # Handlers call these beside what they hand an event on to.
 HELPERS = {
     "arm",
@@ -171,7 +172,7 @@ def test_every_event_stands_in_a_row_with_what_handles_it(name):
     rows = rows_of(page_of(name))
     missing = [pair for pair in dispatched(name) if not any(set(pair) <= row for row in rows)]
     assert sorted(missing) == []
-    assert len(dispatched(name)) > 5
+    assert len(dispatched(name)) > FEW.get(name, 5)
 
 
 def needed(make):

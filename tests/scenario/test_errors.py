@@ -16,7 +16,8 @@ WRONG = [
     ("4.0", "nan", "2: duration_s must be a finite number, not nan"),
     ("4.0", "true", "2: duration_s must be a number of seconds > 0, not true"),
     ('kind = "skin"', "", ' the scenario has no kind; add kind = "skin"'),
-    ('"skin"', '"skim"', '1: kind must be "skin", "radio" or "mesh", not "skim"'),
+    ('"skin"', '"skim"', '1: kind must be "skin", "radio", "mesh", "babel", "flooding" or "rpl", '
+     'not "skim"'),
     ("rows = 3\n", "", '4: [[patch]] 0 lacks "rows"; give it a whole number from 1'),
     ("rows = 3", "rows = 3.5", "6: patch.0.rows must be a whole number from 1, not 3.5"),
     ("rows = 3", "rows = 9000000", "6: patch.0.rows must be at most 4000000, not 9000000"),

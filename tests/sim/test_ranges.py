@@ -280,6 +280,7 @@ def test_every_checker_of_ranges_has_a_row():
     others = {
         "networks.mesh.sim.orders",
         "live.declared",
+        "dialect.folder",
         "scenario.declared.shared",
         "running.blaming",
     }

@@ -188,6 +188,14 @@ def test_a_node_without_a_parent_solicits():
     assert (frame.kind, frame.to) == (c.DIS, 65535)
 
 
+def test_it_solicits_ever_more_rarely_and_for_ever():
+    one, asked = node(), []
+    for number in range(1, 600):
+        asked += [number] if any(frame.kind == c.DIS for frame in one.fire(c.TICK)) else []
+        settle(one)
+    assert asked == [1, 2, 4, 8, 16, 32, *range(64, 600, 64)]
+
+
 def test_a_newer_version_is_joined_at_once():
     """8.2.2.4: "MAY, at any time after hearing the next DODAGVersionNumber advertised from suitable
     DODAG parents, choose to migrate"; 8.2.2.1: "can safely add a parent of any Rank" """

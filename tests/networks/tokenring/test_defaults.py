@@ -36,6 +36,7 @@ TOLD = {"model", "check", "plan", "protocol", "fields", "frames"}
 OWN = {
     "received_image", "demo", "sizing", "measured_template", "capture", "dissector",
     "fit", "log", "rerun_parts", "recovery", "counterexample", "random", "papers", "event",
+    "comparison",
     "boards", "invariants", "measures", "shows", "happenings",
 }  # fmt: skip
 CUT = """

@@ -139,8 +139,8 @@ A hop for which there is no room gets no ack, so that another is tried.
 |            |                                 | `enqueue`                        |                |
 | WAITS      | `TX`, or the one before has     | `kick`, `send_all`: by rank,     | DOWN           |
 |            | gone                            | then age                         |                |
-| DOWN       | `SENT`                          | `on_sent`, `settle`; broadcasts: | UNACKED        |
-|            |                                 | next copy or done                |                |
+| DOWN       | `SENT`                          | `take_sent`, `settle`;           | UNACKED        |
+|            |                                 | broadcasts: next copy or done    |                |
 | UNACKED    | `ACK`                           | `on_hop_ack`, `take_ack`         | FREE           |
 | UNACKED    | it is heard going on            | `drop_overheard`                 | FREE           |
 | UNACKED    | `ACK_WAIT`                      | `on_ack_timeout`: again, up to   | WAITS          |

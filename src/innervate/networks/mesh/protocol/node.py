@@ -66,10 +66,10 @@ from innervate.networks.mesh.protocol.queue import (
     has_room,
     kick,
     make_room,
-    on_sent,
     send_all,
     take_ack,
     take_over,
+    take_sent,
     tell_hop,
 )
 from innervate.networks.mesh.protocol.relay import flood_data, rank_of, relay
@@ -268,7 +268,7 @@ def on_input(node, gate, params, now, kind, item, out):
     HANDED_UP: the user has a message that waited for its turn.
     """
     if kind == SENT:
-        on_sent(node, params, now, item.ok, out)
+        take_sent(node, params, now, item.ok, out)
     elif kind == MESSAGE:
         on_message(node, params, now, item, out)
     elif kind == SAMPLE:

@@ -276,7 +276,7 @@ def attempt(node, params, i):
     return tries
 
 
-def on_sent(node, params, now, sent, out):
+def take_sent(node, params, now, sent, out):
     """The layer below says that the frame has left."""
     if node.busy >= 0 and node.q_state[node.busy] == DOWN:
         settle(node, params, now, sent, out)

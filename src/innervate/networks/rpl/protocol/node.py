@@ -57,7 +57,8 @@ OUTBOX = 50
 
 MESSAGE = 1  # inputs: to item.dest
 ALARM = 2  # to the root
-RARELY = 63  # ticks: at last between two solicitations
+RARELY = 63  # ticks: at last one more between two solicitations
+LONELY_MAX = 255  # ticks that are counted
 
 
 def on_start(node, params, now, cause, out):
@@ -178,13 +179,13 @@ def tick(node, params, now, out):
         if refresh:
             announce(node, params, now, out)
         return
-    node.lonely = min(node.lonely + 1, 255)
+    node.lonely = node.lonely + 1 if node.lonely < LONELY_MAX else LONELY_MAX - RARELY
     node.hold = max(node.hold - 1, 0)
     if node.hold == 0:
         node.floor = INFINITE
         choose(node, params, now, out)
     if node.rank == INFINITE:
-        if node.lonely & (node.lonely - 1) & RARELY == 0:  # less and less often
+        if (node.lonely & (node.lonely - 1)) == 0 or (node.lonely & RARELY) == 0:  # ever rarer
             node.dis_due = 1
         if node.lonely >= params.patience:
             flush(node, out)
