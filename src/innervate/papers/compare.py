@@ -79,8 +79,9 @@ def picture(compared: Compared) -> Figure:
             axes[place].set_yticklabels([])
     for ax in axes[len(cases) :]:
         ax.set_axis_off()
-    for ax in axes[COLUMNS * (rows - 1) :]:
+    for ax in axes[max(len(cases) - COLUMNS, 0) : len(cases)]:  # the lowest of each column
         ax.set_xlabel(axis)
+        ax.tick_params(labelbottom=True)
     return figure
 
 
