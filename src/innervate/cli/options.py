@@ -346,7 +346,7 @@ class VerifyOptions:
     seed
         With --random the first network's number, with --walks the walks'.
     count
-        With --random end after so many networks.
+        With --random end after so many networks, with --mutants after so many mutants.
     reduce
         Forget what of a state can no longer matter, and leave out states that others cover.
     plain
