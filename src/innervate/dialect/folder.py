@@ -63,7 +63,9 @@ def of_source(path, known, home, handlers):
         elif len(there[name].args.args) != arguments.count(",") + 1:
             what = f"{name} takes {len(there[name].args.args)} arguments; it is {name}{arguments}"
             found.append(Finding(path, there[name].lineno, what))
-    if handlers and "TIMERS" not in constants_of(tree):
+    named = {name for node in tree.body if isinstance(node, ast.Assign)
+             for target in node.targets for name, _ in _pairs(target, node.value)}  # fmt: skip
+    if handlers and "TIMERS" not in named:
         found.append(Finding(path, 1, "has no TIMERS; add TIMERS = 1, how many timers a node has"))
     return found
 
