@@ -19,6 +19,7 @@ from innervate.papers.in_field import NEVER, Sent, World
 from innervate.papers.jobs import (
     MEAN,
     MEDIAN,
+    PERCENT,
     Case,
     Column,
     Compared,
@@ -38,6 +39,7 @@ BEGIN_US = 20_000_000  # all protocols know their ways
 GAP_US = 100_000  # from message to message of all nodes
 END_US = 3_000_000
 OUTAGE_US = 40_000_000
+SOON_US = 1
 STANDBY = 1
 
 
@@ -64,12 +66,17 @@ def world(given: Given, seed: int) -> World:
     made = World(plan.nodes, radio.rssi_cdb, radio.prob_q15, plan.good, air, GATEWAY, BEGIN_US,
                  plan.duration_us)  # fmt: skip
     if given.get("root"):
-        made.faults = [(BEGIN_US, KILL, GATEWAY), (BEGIN_US + OUTAGE_US, REVIVE, GATEWAY)]
+        back_us = BEGIN_US + OUTAGE_US
+        made.faults = [(BEGIN_US, KILL, GATEWAY), (back_us, REVIVE, GATEWAY)]
         made.sent = _through_an_outage(made, seed)
+        made.standby = STANDBY
+        made.again = {PEERS: (BEGIN_US, back_us), ALARMS: (BEGIN_US, back_us),
+                      AFTER: (back_us, plan.duration_us)}  # fmt: skip
     else:
         gone = beds.dying(plan, given["dead"])
-        made.faults = [(BEGIN_US, KILL, node) for node in gone]
-        made.sent = _rounds(made, seed, gone, given)
+        since_us = SOON_US if given.get("known") else BEGIN_US
+        made.faults = [(since_us, KILL, node) for node in gone]
+        made.sent = [] if given.get("silent") else _rounds(made, seed, gone, given)
     return made
 
 
@@ -93,7 +100,7 @@ def _through_an_outage(made: World, seed: int) -> list[Sent]:
     draw = stream(seed, "papers/senders")
     found = []
     for at in range(BEGIN_US, made.duration_us - END_US, GAP_US):
-        source = 1 + draw.draw(made.nodes - 1)
+        source = 1 + STANDBY + draw.draw(made.nodes - 1 - STANDBY)
         other = 1 + draw.draw(made.nodes - 2)
         other += other >= source
         is_out = at < BEGIN_US + OUTAGE_US
@@ -114,9 +121,11 @@ def measure(protocol: Options, more: Options, given: Given, seed: int) -> dict[s
                    for i, (at, action, node) in enumerate(made.faults)]  # fmt: skip
     plan.offers = [_offer(one, flags) for one in made.sent]
     result = simulate(plan, checks=False)
-    found = messages(result)
-    came = [NEVER if at == LOST else at for at in found.delivered_us.tolist()]
-    assert found.offered_us.tolist() == [one.at_us for one in made.sent]
+    came = []
+    if made.sent:
+        found = messages(result)
+        came = [NEVER if at == LOST else at for at in found.delivered_us.tolist()]
+        assert found.offered_us.tolist() == [one.at_us for one in made.sent]
     sent = result.sent[result.sent["time"] >= made.since_us]
     return in_field.figures(made, came, int((sent["end"] - sent["time"]).sum()))
 
@@ -135,15 +144,24 @@ def warm_up() -> None:
 def cases(quick: bool) -> list[Case]:
     """Deaths, sizes, alarms, a dead root."""
     few = range(1, 4 if quick else 31)
-    made = [_case(f"{dead} dead", f"30 nodes, {dead} dead", few, MESSAGES, nodes=30, dead=dead)
-            for dead in ((0, 8) if quick else (0, 4, 8))]  # fmt: skip
-    made += [_case(f"{n} nodes", f"{n} nodes, nobody dies", seeds, MESSAGES, nodes=n, dead=0)
-             for n, seeds in (((10, few),) if quick else SIZES)]  # fmt: skip
+    made = [_messages(nodes, dead, few if quick else range(1, seeds + 1))
+            for nodes, dead, seeds in (QUICK if quick else SIZES)]  # fmt: skip
+    if not quick:
+        made += [
+            _case("known", "30 nodes, 8 dead since they were switched on", few, MESSAGES, nodes=30,
+                  dead=8, known=1),
+            _case("silent", "30 nodes, nobody writes", few, TIMES[-1:], nodes=30, dead=0, silent=1),
+        ]  # fmt: skip
     made.append(_case("alarms", "alarms of all, 30 nodes, 8 dead", few, RAISED, nodes=30, dead=8,
                       rounds=1, alarms=1))  # fmt: skip
     made.append(_case("root", "30 nodes, the root off for 40 s, then 37 s more", few, OUTAGE,
                       nodes=30, root=1))  # fmt: skip
     return made
+
+
+def _messages(nodes: int, dead: int, seeds: range) -> Case:
+    title = f"{nodes} nodes, {f'{dead} dead' if dead else 'nobody dies'}"
+    return _case(title, title, seeds, MESSAGES, nodes=nodes, dead=dead)
 
 
 def _case(name: str, title: str, seeds: range, columns: tuple[Column, ...], **given: Any) -> Case:
@@ -156,19 +174,27 @@ TIMES = (
     Column("airtime of all (% of the time)", "airtime", MEAN),
 )
 MESSAGES = (
-    Column("first messages delivered (%)", FIRST, MEAN),
-    Column("second ones (%)", LATER, MEAN),
+    Column("first messages delivered (%)", FIRST, PERCENT),
+    Column("second ones (%)", LATER, PERCENT),
     *TIMES,
 )
-RAISED = (Column("alarms at the monitor (%)", FIRST, MEAN), *TIMES)
+RAISED = (Column("alarms at the monitor (%)", FIRST, PERCENT), *TIMES)
 OUTAGE = (
-    Column("others' messages meanwhile (%)", PEERS, MEAN),
-    Column("alarms meanwhile (%)", ALARMS, MEAN),
-    Column("others' messages afterwards (%)", "peers after", MEAN),
-    Column("alarms afterwards (%)", AFTER, MEAN),
+    Column("others' messages meanwhile (%)", PEERS, PERCENT),
+    Column("again after (s)", f"{PEERS}_again_s", MEDIAN),
+    Column("alarms meanwhile (%)", ALARMS, PERCENT),
+    Column("alarms again after (s)", f"{ALARMS}_again_s", MEDIAN),
+    Column("others' messages afterwards (%)", "peers after", PERCENT),
+    Column("alarms afterwards (%)", AFTER, PERCENT),
+    Column("again, from its return (s)", f"{AFTER}_again_s", MEDIAN),
     TIMES[-1],
 )
-SIZES = ((10, range(1, 31)), (100, range(1, 31)), (254, range(1, 6)))
+# Nodes, dead, seeds.
+SIZES = (
+    (30, 0, 30), (30, 4, 30), (30, 8, 30), (10, 0, 30), (10, 4, 30), (100, 0, 10), (100, 8, 10),
+    (254, 0, 3), (254, 8, 3),
+)  # fmt: skip
+QUICK = ((30, 0, 3), (30, 8, 3), (10, 0, 3))
 GRAPH_NODES = 145  # that a flooded graph has room for
 
 
@@ -183,20 +209,21 @@ class Fewer(NamedTuple):
 
 
 FLOOD, TREE = "flooding, 7 hops", "RPL, storing"
+CALM, DEAD = "30 nodes, nobody dies", "30 nodes, 8 dead"
 CLAIMS = (
-    Fewer("8 dead", f"{FIRST}_lost", "the document",
+    Fewer(DEAD, f"{FIRST}_lost", "the document",
           "fewer first messages are lost than by the document's own rules"),
-    Fewer("8 dead", f"{FIRST}_lost", TREE, "fewer first messages are lost than by RPL"),
-    Fewer("8 dead", f"{FIRST}_lost", FLOOD, "fewer first messages are lost than by flooding",
+    Fewer(DEAD, f"{FIRST}_lost", TREE, "fewer first messages are lost than by RPL"),
+    Fewer(DEAD, f"{FIRST}_lost", FLOOD, "fewer first messages are lost than by flooding",
           "a flood goes round the dead without knowing of them: neither loses more than a few"),
-    Fewer("8 dead", "p99_ms", FLOOD, "99 % come sooner than by flooding",
+    Fewer(DEAD, "p99_ms", FLOOD, "99 % come sooner than by flooding",
           "who is dead is found out by three transmissions without an answer, hop by hop; a flood "
           "needs not know"),
-    Fewer("0 dead", "airtime", FLOOD, "less airtime than flooding, nobody dies"),
-    Fewer("8 dead", "airtime", FLOOD, "less airtime than flooding, 8 of 30 die",
+    Fewer(CALM, "airtime", FLOOD, "less airtime than flooding, nobody dies"),
+    Fewer(DEAD, "airtime", FLOOD, "less airtime than flooding, 8 of 30 die",
           "a message that meets a dead node is sent three times in vain, searches for a way, and "
           "is sent again from its origin if no acknowledgement comes back"),
-    Fewer("0 dead", "airtime", TREE, "less airtime than RPL",
+    Fewer(CALM, "airtime", TREE, "less airtime than RPL",
           "discovery finds all links, every node has a table for all others, and messages are "
           "acknowledged from end to end; RPL knows a tree, and acknowledges hops alone"),
     Fewer("root", f"{PEERS}_lost", TREE,
@@ -220,6 +247,7 @@ def judge(compared: Compared) -> Iterator[Claim]:
 SEARCH: Options = ()
 GRAPH: Options = (("failover", "graph"),)
 STOOD_BY: Options = (("standby", [STANDBY]),)
+HOPS: Options = (("reliable", False),)
 
 
 def _fits(given: Given) -> bool:
@@ -228,6 +256,10 @@ def _fits(given: Given) -> bool:
 
 def _has_outage(given: Given) -> bool:
     return "root" in given
+
+
+def _shows_why(given: Given) -> bool:
+    return given["nodes"] == 30 and not {"root", "alarms", "silent"} & set(given)
 
 
 JOBS = (
@@ -245,6 +277,8 @@ ENTRIES = (
           partial(measure, GRAPH, ()), warm_up, 0.3, _fits),
     Entry("mesh", "mesh, standby", "the first with node 1 standing by for the gateway",
           partial(measure, SEARCH, STOOD_BY), warm_up, 0.3, _has_outage),
+    Entry("mesh", "mesh, hops only", "the first without acknowledgements from end to end",
+          partial(measure, HOPS, ()), warm_up, 0.3, _shows_why),
     Entry("mesh", "the document", "the mesh's document to the letter: one transmission, a random "
           "neighbour for the next packet, nothing from end to end",
           partial(measure, LITERAL, ()), warm_up, 0.3),
