@@ -146,10 +146,11 @@ Frames
 DATA and DAO_ACK are one more with a source route of up to `NEAR = 4` hops behind the first, two
 more with one of up to `ROUTE = 16`. All packets have origin, destination, hops left, the flags 'O'
 (`down`), 'R' (`error`), 'F' (`back`) and the rank of who sent them [11.2]: 0 says that it is their
-origin. A Path Lifetime, `life`, counts ticks from when a Path Sequence is first seen [6.7.8]: 0 is a
+origin. The layouts stand beside this folder.
+
+A Path Lifetime, `life`, counts ticks from when a Path Sequence is first seen [6.7.8]: 0 is a
 No-Path, `FOR_EVER = 255` has no end. Whoever passes a target on says how long its own word is good,
-`LIFE` times `refresh`, and sends a No-Path when its own way ends. The layouts stand beside this
-folder.
+`LIFE` times `refresh`, and sends a No-Path when its own way ends.
 
 Inputs and reports
 ==================
