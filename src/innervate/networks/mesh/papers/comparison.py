@@ -37,6 +37,7 @@ GATEWAY = beds.GATEWAY
 FIRST, LATER, PEERS, ALARMS, AFTER = "first", "later", "peers", "alarms", "after"
 BEGIN_US = 20_000_000  # all protocols know their ways
 GAP_US = 100_000  # from message to message of all nodes
+SELDOM_US = 2_000_000
 END_US = 3_000_000
 OUTAGE_US = 40_000_000
 SOON_US = 1
@@ -53,7 +54,7 @@ def plan_of(given: Given, seed: int, protocol: Options = (), more: Options = ())
 def _lasts_us(given: Given) -> int:
     if given.get("root"):
         return 2 * OUTAGE_US
-    return int(given["rounds"]) * int(given["nodes"]) * GAP_US
+    return int(given["rounds"]) * int(given["nodes"]) * int(given.get("gap_us", GAP_US))
 
 
 def world(given: Given, seed: int) -> World:
@@ -87,11 +88,12 @@ def _rounds(made: World, seed: int, gone: list[int], given: Given) -> list[Sent]
     left = list(alive)
     order = [left.pop(draw.draw(len(left))) for _ in alive]
     to = {node: [one for one in alive if one != node][draw.draw(len(alive) - 1)] for node in order}
-    span = made.nodes * GAP_US
+    gap_us = given.get("gap_us", GAP_US)
+    span = made.nodes * gap_us
     if given.get("alarms"):
         order.remove(GATEWAY)
         to = dict.fromkeys(order, in_field.MONITOR)
-    return [Sent(BEGIN_US + k * span + i * GAP_US + 1, node, to[node], LATER if k else FIRST)
+    return [Sent(BEGIN_US + k * span + i * gap_us + 1, node, to[node], LATER if k else FIRST)
             for k in range(given["rounds"]) for i, node in enumerate(order)]  # fmt: skip
 
 
@@ -143,7 +145,7 @@ def warm_up() -> None:
 
 def cases(quick: bool) -> list[Case]:
     """Deaths, sizes, alarms, a dead root."""
-    few = range(1, 4 if quick else 31)
+    few = range(1, 4 if quick else 61)
     made = [_messages(nodes, dead, few if quick else range(1, seeds + 1))
             for nodes, dead, seeds in (QUICK if quick else SIZES)]  # fmt: skip
     if not quick:
@@ -151,6 +153,8 @@ def cases(quick: bool) -> list[Case]:
             _case("known", "30 nodes, 8 dead since they were switched on", few, MESSAGES, nodes=30,
                   dead=8, known=1),
             _case("silent", "30 nodes, nobody writes", few, TIMES[-1:], nodes=30, dead=0, silent=1),
+            _case("seldom", "254 nodes, nobody dies, a message every 2 s", range(1, 4),
+                  (MESSAGES[0], *TIMES), nodes=254, dead=0, rounds=1, gap_us=SELDOM_US),
         ]  # fmt: skip
     made.append(_case("alarms", "alarms of all, 30 nodes, 8 dead", few, RAISED, nodes=30, dead=8,
                       rounds=1, alarms=1))  # fmt: skip
@@ -191,8 +195,8 @@ OUTAGE = (
 )
 # Nodes, dead, seeds.
 SIZES = (
-    (30, 0, 30), (30, 4, 30), (30, 8, 30), (10, 0, 30), (10, 4, 30), (100, 0, 10), (100, 8, 10),
-    (254, 0, 3), (254, 8, 3),
+    (30, 0, 60), (30, 4, 60), (30, 8, 60), (10, 0, 60), (10, 4, 60), (100, 0, 20), (100, 8, 20),
+    (254, 0, 5), (254, 8, 5),
 )  # fmt: skip
 QUICK = ((30, 0, 3), (30, 8, 3), (10, 0, 3))
 GRAPH_NODES = 145  # that a flooded graph has room for
