@@ -86,6 +86,7 @@ def run(
     out: Path | None = None,
     json: Annotated[bool, Parameter(negative="")] = False,
     report: bool = True,
+    plain: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
     """Run a scenario; writes a folder with summary, tables, provenance and report.
 
@@ -103,10 +104,13 @@ def run(
         Print the summary as JSON and nothing else.
     report
         Write report.html as well.
+    plain
+        Uncompiled, event by event, hundreds of times slower: the same run, for debugging. In a
+        network of your own print(...) and breakpoint() may be called then.
     """
     from innervate.cli import running as command
 
-    return command.run(file, set_ or [], seed, out, json, report)
+    return command.run(file, set_ or [], seed, out, json, report, plain)
 
 
 @app.command

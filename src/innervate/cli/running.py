@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from innervate.cli import errors
 from innervate.cli.progress import Progress, is_compiled
+from innervate.folders import for_plain
 from innervate.network import networks
 
 if TYPE_CHECKING:
@@ -21,9 +22,10 @@ def run(
     out: Path | None,
     as_json: bool,
     report: bool,
+    plain: bool = False,
 ) -> int:
     """Run a scenario, write its folder, say what came of it."""
-    done = simulate(file, sets, seed, out, as_json)
+    done = simulate(file, sets, seed, out, as_json, plain)
     folder = done.write(out, report=report)
     if as_json:
         print(json.dumps(done.summary, indent=2, allow_nan=False))
@@ -35,12 +37,18 @@ def run(
 
 
 def simulate(
-    file: str, sets: list[str], seed: int | None, out: Path | None, quiet: bool = False
+    file: str,
+    sets: list[str],
+    seed: int | None,
+    out: Path | None,
+    quiet: bool = False,
+    plain: bool = False,
 ) -> Run:
     """Run a scenario behind a progress display; what is wrong with it is found out before."""
     from innervate import scenario as scenarios
 
-    loaded = scenarios.load(file, sets, seed)
+    with for_plain(plain):
+        loaded = scenarios.load(file, sets, seed)
     plan = scenarios.plan(loaded)  # the simulator takes a second to load: mistakes first
     from innervate import running as room
     from innervate.running import folder as folders
@@ -51,5 +59,7 @@ def simulate(
         if out != taken:
             errors.say(f"{taken} holds a run of other settings, which is kept; writing {out}")
     folders.check_target(out)
+    if plain:  # without a display, which would write over a debugger's lines
+        return room.run(loaded, progress=lambda now_us, duration_us: None, plain=True)
     with Progress(is_compiled(plan), quiet) as progress:
         return room.run(loaded, progress=progress)

@@ -26,12 +26,15 @@ MAY = {"on_sent": "(state, params, now, ok, out)"}  # that a protocol need not h
 
 
 class Finding:
-    """One thing that is wrong: `path`, `line` from 1, `text`; as a string in one line."""
+    """One thing that is wrong: `path`, `line` from 1, `text`; as a string in one line.
 
-    __slots__ = ("line", "path", "text")
+    `in_plain`: in plain runs it is not.
+    """
 
-    def __init__(self, path, line, text):
-        self.path, self.line, self.text = str(path), line, text
+    __slots__ = ("in_plain", "line", "path", "text")
+
+    def __init__(self, path, line, text, in_plain=False):
+        self.path, self.line, self.text, self.in_plain = str(path), line, text, in_plain
 
     def __str__(self):
         return f"{self.path}:{self.line}: {self.text}"
@@ -53,7 +56,8 @@ def of_source(path, known, home, handlers):
         return [Finding(path, error.lineno or 1, f"is no Python: {error.msg}")]
     except (OSError, UnicodeDecodeError) as error:
         return [Finding(path, 1, f"cannot be read: {error}")]
-    found = [Finding(path, one.line, one.what) for one in broken_rules(text, known, home)]
+    found = [Finding(path, one.line, one.what, one.in_plain)
+             for one in broken_rules(text, known, home)]  # fmt: skip
     there = {function.name: function for function in functions_of(tree)}
     for name, arguments in (handlers | MAY if handlers else {}).items():
         if name not in there and name in MAY:

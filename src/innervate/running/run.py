@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from innervate import scenario as scenarios
+from innervate.folders import for_plain
 from innervate.network import networks
 from innervate.running import folder as folders
 from innervate.running.errors import RunError
@@ -175,14 +176,16 @@ def run(
         progress: called now and then with (time_us, duration_us); None = a bar in a notebook.
         checks: invariant checkers on.
         received: keep every sample the PC received; None = unless there are very many.
-        plain: run uncompiled, slow; for comparison.
+        plain: run uncompiled, event by event: for debugging, where `print` and `breakpoint` in a
+            folder's protocol are called; hundreds of times slower.
 
     Raises:
         ScenarioError: the scenario is not valid.
         RunError: `out` cannot be written; found out before the simulation.
         InvariantBroken: a checker found what must not happen, as frames that went nowhere.
     """
-    made = load(scenario, seed=seed, overrides=overrides)
+    with for_plain(plain):
+        made = load(scenario, seed=seed, overrides=overrides)
     plan = scenarios.plan(made)
     if out is not None:
         folders.check_target(out)
