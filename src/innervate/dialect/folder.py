@@ -67,9 +67,7 @@ def of_source(path, known, home, handlers):
         elif len(there[name].args.args) != arguments.count(",") + 1:
             what = f"{name} takes {len(there[name].args.args)} arguments; it is {name}{arguments}"
             found.append(Finding(path, there[name].lineno, what))
-    named = {name for node in tree.body if isinstance(node, ast.Assign)
-             for target in node.targets for name, _ in _pairs(target, node.value)}  # fmt: skip
-    if handlers and "TIMERS" not in named:
+    if handlers and "TIMERS" not in dict(_assigned(tree)):
         found.append(Finding(path, 1, "has no TIMERS; add TIMERS = 1, how many timers a node has"))
     return found
 
@@ -89,13 +87,14 @@ def of_rules(path):
 def constants_of(tree):
     """Whole numbers that a file names, with the names it has for them."""
     found = {}
-    for node in tree.body:
-        if not isinstance(node, ast.Assign):
-            continue
-        for target in node.targets:
-            values = _pairs(target, node.value)
-            found.update({name: _number(value, found) for name, value in values})
+    for name, value in _assigned(tree):
+        found[name] = _number(value, found)
     return {name: value for name, value in found.items() if value is not None}
+
+
+def _assigned(tree):
+    return [pair for node in tree.body if isinstance(node, ast.Assign)
+            for target in node.targets for pair in _pairs(target, node.value)]  # fmt: skip
 
 
 def _pairs(target, value):
