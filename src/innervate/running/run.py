@@ -176,8 +176,7 @@ def run(
         progress: called now and then with (time_us, duration_us); None = a bar in a notebook.
         checks: invariant checkers on.
         received: keep every sample the PC received; None = unless there are very many.
-        plain: run uncompiled, event by event: for debugging, where `print` and `breakpoint` in a
-            folder's protocol are called; hundreds of times slower.
+        plain: run uncompiled, slow; a protocol may call `print` and `breakpoint`.
 
     Raises:
         ScenarioError: the scenario is not valid.
@@ -185,8 +184,7 @@ def run(
         InvariantBroken: a checker found what must not happen, as frames that went nowhere.
     """
     with for_plain(plain):
-        made = load(scenario, seed=seed, overrides=overrides)
-    plan = scenarios.plan(made)
+        plan = scenarios.plan(made := load(scenario, seed=seed, overrides=overrides))
     if out is not None:
         folders.check_target(out)
     room = networks()[plan.kind].run
