@@ -26,9 +26,11 @@ from innervate.cli.files_app import (
 from innervate.cli.live_app import live_app
 from innervate.cli.options import (
     PAGE_DEFAULTS,
+    RUN_DEFAULTS,
     SWEEP_DEFAULTS,
     VERIFY_DEFAULTS,
     PageOptions,
+    RunOptions,
     SizeOptions,
     SweepOptions,
     VerifyOptions,
@@ -85,8 +87,7 @@ def run(
     seed: Seed = None,
     out: Path | None = None,
     json: Annotated[bool, Parameter(negative="")] = False,
-    report: bool = True,
-    plain: Annotated[bool, Parameter(negative="")] = False,
+    how: Annotated[RunOptions, Parameter(name="*")] = RUN_DEFAULTS,
 ) -> int:
     """Run a scenario; writes a folder with summary, tables, provenance and report.
 
@@ -102,15 +103,10 @@ def run(
         Folder to write; runs/NAME-SEED if left out.
     json
         Print the summary as JSON and nothing else.
-    report
-        Write report.html as well.
-    plain
-        Uncompiled, event by event, hundreds of times slower: the same run, for debugging. In a
-        network of your own print(...) and breakpoint() may be called then.
     """
     from innervate.cli import running as command
 
-    return command.run(file, set_ or [], seed, out, json, report, plain)
+    return command.run(file, set_ or [], seed, out, json, how)
 
 
 @app.command

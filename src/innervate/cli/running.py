@@ -12,6 +12,7 @@ from innervate.folders import for_plain
 from innervate.network import networks
 
 if TYPE_CHECKING:
+    from innervate.cli.options import RunOptions
     from innervate.running import Run
 
 
@@ -21,18 +22,17 @@ def run(
     seed: int | None,
     out: Path | None,
     as_json: bool,
-    report: bool,
-    plain: bool = False,
+    how: RunOptions,
 ) -> int:
     """Run a scenario, write its folder, say what came of it."""
-    done = simulate(file, sets, seed, out, as_json, plain)
-    folder = done.write(out, report=report)
+    done = simulate(file, sets, seed, out, as_json, how.plain)
+    folder = done.write(out, report=how.report)
     if as_json:
         print(json.dumps(done.summary, indent=2, allow_nan=False))
     else:
         for line in networks()[done.plan.kind].summary_lines(done):
             print(line)
-        print(f"Written: {folder / 'report.html' if report else folder}")
+        print(f"Written: {folder / 'report.html' if how.report else folder}")
     return errors.INTERRUPTED if done.interrupted else 0
 
 
