@@ -135,6 +135,13 @@ def test_a_frame_that_has_no_layout(own, capsys):
     assert f"gossip/protocol.py:{at}: a frame of kind 2 is sent, and has no layout" in line
 
 
+def test_a_frame_that_has_no_layout_and_is_filled_elsewhere(own, capsys):
+    own.change("protocol.py", "    frame.kind = NEWS\n", "    frame.kind = NEWS + 2\n")
+    at = own.line("protocol.py", "NEWS + 2")
+    line = said(capsys, "run", own.scenario)
+    assert f"gossip/protocol.py:{at}: a frame of kind 3 is sent, and has no layout" in line
+
+
 def test_a_name_that_is_taken(alone, own, capsys):
     for name in ("skin", "json", "numpy"):
         assert f"the name '{name}' is taken" in said(capsys, "new", "network", name)

@@ -234,8 +234,7 @@ def _of_declared(folder: Path, network: Any, files: list[Path]) -> list[checks.F
         frames, path = network.frames, _file_of(folder, network, "frames")
         found += checks.of_layouts(path, frames.LAYOUTS, frames.KIND_BITS, fields.FRAME)
         kinds = {kind for kind, _name, _fields in frames.LAYOUTS}
-        for source in files:
-            found += checks.of_kinds(source, kinds)
+        found += checks.of_kinds(files, kinds)
     return found
 
 

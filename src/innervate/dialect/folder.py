@@ -248,29 +248,50 @@ def _wrong_layout(declared, field, many, bits, is_signed):
     return ""
 
 
-def of_kinds(path, kinds):
+def of_kinds(paths, kinds):
     """Frames that a protocol sends of a kind that has no layout.
 
     Args:
-        path: a file of the protocol.
+        paths: the files of the protocol.
         kinds: the numbers of those that have one.
     """
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    constants, found = constants_of(tree), []
-    for function in functions_of(tree):
-        sent = {part.targets[0].id for part in ast.walk(function)
-                if isinstance(part, ast.Assign) and isinstance(part.targets[0], ast.Name)
-                and "send" in _called(part.value)}  # fmt: skip
+    constants, functions = {}, []
+    for path in paths:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        constants |= constants_of(tree)
+        functions += [(path, function) for function in functions_of(tree)]
+    sent, found = _sent_names([function for _, function in functions]), []
+    for path, function in functions:
+        handed = [one.arg for one in function.args.args]
         for part in ast.walk(function):
             target = part.targets[0] if isinstance(part, ast.Assign) else None
             if not (isinstance(target, ast.Attribute) and target.attr == "kind"):
                 continue
-            value = _number(part.value, constants)
-            of_sent = isinstance(target.value, ast.Name) and target.value.id in sent
-            if of_sent and value is not None and value not in kinds:
+            value, frame = _number(part.value, constants), getattr(target.value, "id", "")
+            is_blank = value == 0 and frame in handed  # whoever handed it on says more
+            if frame in sent[function.name] and value not in {None, *kinds} and not is_blank:
                 what = f"a frame of kind {value} is sent, and has no layout; add one to LAYOUTS"
                 found.append(Finding(path, part.lineno, what))
     return found
+
+
+def _sent_names(functions):
+    """By function, what it calls frames that are sent: its own, and those that it is handed."""
+    sent = {
+        function.name: {part.targets[0].id for part in ast.walk(function)
+                        if isinstance(part, ast.Assign) and isinstance(part.targets[0], ast.Name)
+                        and "send" in _called(part.value)}
+        for function in functions
+    }  # fmt: skip
+    arguments = {function.name: [one.arg for one in function.args.args] for function in functions}
+    calls = [(function.name, call) for function in functions for call in ast.walk(function)
+             if getattr(getattr(call, "func", None), "id", "") in arguments]  # fmt: skip
+    for _ in functions:  # as far as a frame can be handed on
+        for name, call in calls:
+            for argument, given in zip(arguments[call.func.id], call.args, strict=False):
+                if getattr(given, "id", "") in sent[name] or "send" in _called(given):
+                    sent[call.func.id].add(argument)
+    return sent
 
 
 def of_uses(path, declared, timers):
