@@ -75,7 +75,8 @@ def test_a_claim_holds_where_every_seed_says_so(compared):
      (jobs.PERCENT, [97, 99], "98.0 (85.3 to 100.0)"),
      (jobs.MOST, [1, 3], "3.0"),
      (jobs.SHARE, [0, 1, 2, 0], "2 (0.15 to 0.85)"), (jobs.MEDIAN, [], "-"),
-     (jobs.MEDIAN, [inf, inf], "never"), (jobs.MEAN, [inf, inf], "never")],
+     (jobs.MEDIAN, [inf, inf], "never"), (jobs.MEDIAN, [1, inf, inf], "never in 2 of 3"),
+     (jobs.MEAN, [inf, inf], "never")],
 )  # fmt: skip
 def test_cells(show, values, said):
     assert jobs.cell(values, Column("x", "x", show)) == said

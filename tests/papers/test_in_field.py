@@ -99,5 +99,6 @@ def test_every_case_has_who_does_it_and_every_claim_its_case():
     assert {"mesh", "flooding, 7 hops", "RPL, storing", "RPL, non-storing"} <= names
     for quick in (True, False):
         cases = {case.name: case for case in job.cases(quick)}
-        assert {claim.case for claim in mesh.CLAIMS} <= set(cases)
+        left = {claim.case for claim in mesh.CLAIMS} - set(cases)
+        assert left == ({mesh.MANY, mesh.MOST} if quick else set())
         assert {claim.other for claim in mesh.CLAIMS} <= names

@@ -238,6 +238,8 @@ def cell(values: list[float], column: Column) -> str:
         return f"{hits} ({interval(wilson(hits, len(values)), 2)})"
     if not finite:
         return "never"
+    if 2 * never > len(values) and column.show == MEDIAN:
+        return f"never in {never} of {len(values)}"
     if column.show in (MEAN, PERCENT):
         found = mean_interval(finite)
         if column.show == PERCENT:
@@ -258,5 +260,7 @@ def interval(found: Interval, digits: int) -> str:
 
 
 def number(value: float, digits: int) -> str:
-    """A number, or that it never happened."""
+    """A number, or that it never happened; in differences also that it never did by the other."""
+    if value == -inf:
+        return "never by the other"
     return "never" if value == inf else f"{value:.{digits}f}"
