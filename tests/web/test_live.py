@@ -108,7 +108,7 @@ def test_a_node_that_stops_is_seen_and_comes_back():
                 await page.until(lambda: page.state.get("node_up") == [1, 1, 1, 1])
                 aside = paths[2].with_suffix(".aside")
                 paths[2].rename(aside)
-                source._poller._lines[2].drop()
+                source._poller._lines[2].sock.shutdown(socket.SHUT_RDWR)
                 await page.until(lambda: page.state["node_up"] == [1, 1, 0, 1])
                 assert page.state["link_up"][1:3] != [1, 1]
                 await page.until(lambda: "n2 does not answer any more" in page.text())
