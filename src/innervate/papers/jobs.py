@@ -250,7 +250,9 @@ def cell(values: list[float], column: Column) -> str:
 
 
 def shown(found: Interval, digits: int) -> str:
-    """An estimate with its interval: "12.0 (11.2 to 12.9)"."""
+    """An estimate with its interval: "12.0 (11.2 to 12.9)"; "never" needs none."""
+    if abs(found.value) == inf and found.low == found.high:
+        return number(found.value, digits)
     return f"{number(found.value, digits)} ({interval(found, digits)})"
 
 

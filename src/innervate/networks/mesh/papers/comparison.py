@@ -37,7 +37,6 @@ GATEWAY = beds.GATEWAY
 FIRST, LATER, PEERS, ALARMS, AFTER = "first", "later", "peers", "alarms", "after"
 BEGIN_US = 20_000_000  # all protocols know their ways
 GAP_US = 100_000  # from message to message of all nodes
-SELDOM_US = 2_000_000
 END_US = 3_000_000
 OUTAGE_US = 40_000_000
 SOON_US = 1
@@ -54,7 +53,7 @@ def plan_of(given: Given, seed: int, protocol: Options = (), more: Options = ())
 def _lasts_us(given: Given) -> int:
     if given.get("root"):
         return 2 * OUTAGE_US
-    return int(given["rounds"]) * int(given["nodes"]) * int(given.get("gap_us", GAP_US))
+    return int(given["rounds"]) * int(given["nodes"]) * GAP_US
 
 
 def world(given: Given, seed: int) -> World:
@@ -88,12 +87,11 @@ def _rounds(made: World, seed: int, gone: list[int], given: Given) -> list[Sent]
     left = list(alive)
     order = [left.pop(draw.draw(len(left))) for _ in alive]
     to = {node: [one for one in alive if one != node][draw.draw(len(alive) - 1)] for node in order}
-    gap_us = given.get("gap_us", GAP_US)
-    span = made.nodes * gap_us
+    span = made.nodes * GAP_US
     if given.get("alarms"):
         order.remove(GATEWAY)
         to = dict.fromkeys(order, in_field.MONITOR)
-    return [Sent(BEGIN_US + k * span + i * gap_us + 1, node, to[node], LATER if k else FIRST)
+    return [Sent(BEGIN_US + k * span + i * GAP_US + 1, node, to[node], LATER if k else FIRST)
             for k in range(given["rounds"]) for i, node in enumerate(order)]  # fmt: skip
 
 
@@ -153,8 +151,6 @@ def cases(quick: bool) -> list[Case]:
             _case("known", "30 nodes, 8 dead since they were switched on", few, MESSAGES, nodes=30,
                   dead=8, known=1),
             _case("silent", "30 nodes, nobody writes", few, TIMES[-1:], nodes=30, dead=0, silent=1),
-            _case("seldom", "254 nodes, nobody dies, a message every 2 s", range(1, 4),
-                  (MESSAGES[0], *TIMES), nodes=254, dead=0, rounds=1, gap_us=SELDOM_US),
         ]  # fmt: skip
     made.append(_case("alarms", "alarms of all, 30 nodes, 8 dead", few, RAISED, nodes=30, dead=8,
                       rounds=1, alarms=1))  # fmt: skip
@@ -223,13 +219,13 @@ CLAIMS = (
     Fewer(DEAD, f"{FIRST}_lost", FLOOD, "fewer first messages are lost than by flooding",
           "a flood goes round the dead without knowing of them: in most runs neither loses any"),
     Fewer(DEAD, "p99_ms", FLOOD, "99 % come sooner than by flooding",
-          "measured: the same eight dead since they were switched on cost the mesh a third to a "
-          "quarter of that; who is dead is found out by three transmissions without an answer, "
-          "hop by hop, and a flood needs not know"),
+          "measured: with the same eight dead since they were switched on it is less than a third "
+          "of that; who is dead is found out by three transmissions without an answer, hop by hop, "
+          "and a flood needs not know"),
     Fewer(CALM, "airtime", FLOOD, "less airtime than flooding, nobody dies"),
     Fewer(DEAD, "airtime", FLOOD, "less airtime than flooding, 8 of 30 die",
-          "measured: with the same eight dead since they were switched on it is half of a flood's; "
-          "a message that meets a dead node is sent three times in vain, and searches for a way"),
+          "measured: with the same eight dead since they were switched on it is less than half of "
+          "a flood's; a message that meets a dead node is sent in vain, and searches for a way"),
     Fewer(CALM, "airtime", TREE, "less airtime than RPL",
           "measured: without acknowledgements from end to end, which RPL has not, it is as RPL's; "
           "and while nobody writes the mesh's tables take more than RPL's tree"),
@@ -252,7 +248,9 @@ CLAIMS = (
           "each hop is acknowledged, and then the whole way; the answer to a flood is one flood"),
     Fewer(MOST, f"{FIRST}_lost", FLOOD,
           "fewer first messages are lost than by flooding, 254 nodes",
-          "measured: it is the load; see the table of a message every 2 s"),
+          "more nodes than the mesh is for at 250 kbit/s, about 150; measured, nobody dead: 120 s "
+          "of rest before (58 % come in one run) and a twentieth of the messages (55 to 71 % in "
+          "three runs) do not mend it"),
 )  # fmt: skip
 
 
