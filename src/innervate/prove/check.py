@@ -116,17 +116,17 @@ def reached(step: Step, question: Question, known: Iterable[Way] = ()) -> tuple[
     missed = {way for way, guard in open_.items() if guard is terms.false}
     for way in missed:
         del open_[way]
+    ways, guards = list(open_), list(open_.values())
+    can_be = question.one_by_one(guards)
     found: set[Way] = set()
-    while open_:  # one at a time: a way's formula is a small part of all of them
-        way, guard = open_.popitem()
-        if question.values(guard) is None:
-            missed.add(way)
+    for k in reversed(range(len(ways))):  # who comes so far has taken others on the way
+        if ways[k] in found:
             continue
-        also = question.which(list(open_.values()))
-        taken = {other for other, holds in zip(open_, also, strict=True) if holds}
-        found |= {way} | taken
-        for other in taken:
-            del open_[other]
+        if can_be(k):
+            taken = question.which(guards)
+            found |= {way for way, holds in zip(ways, taken, strict=True) if holds}
+        else:
+            missed.add(ways[k])
     return found, missed
 
 

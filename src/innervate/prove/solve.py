@@ -170,22 +170,40 @@ class Question:
         Raises:
             ProveError: the solver could not say.
         """
-        made = [self.formulas.of(term) for term in (*self.facts, *wanted)]
-        solver = z3.SolverFor("QF_BV")
-        solver.set("timeout", self.limit_ms)
-        solver.add(*made, *self.formulas.ranges())
-        answer = solver.check()
-        if answer == z3.unsat:
+        if not self._ask(self._solver(*map(self.formulas.of, wanted))):
             return None
-        if answer != z3.sat:
-            raise ProveError(f"the solver could not say: {solver.reason_unknown()}")
-        model = solver.model()
-        self.model = model
         self.values_found = {
-            name: _signed(model.eval(made, model_completion=True))
+            name: _signed(self.model.eval(made, model_completion=True))
             for name, (_, made) in self.formulas.unknowns.items()
         }
         return self.values_found
+
+    def one_by_one(self, terms: list[Term]) -> Callable[[int], bool]:
+        """Tells of any of these truths whether it can be.
+
+        The solver is given all of them at once and keeps what it learns of one for the next.
+        """
+        solver = self._solver(*(self._if_asked(k, term) for k, term in enumerate(terms)))
+        return lambda k: self._ask(solver, z3.Bool(f"asked {k}"))
+
+    def _if_asked(self, k: int, term: Term) -> Any:
+        return z3.Implies(z3.Bool(f"asked {k}"), self.formulas.of(term))
+
+    def _solver(self, *wanted: Any) -> Any:
+        known = [self.formulas.of(term) for term in self.facts]
+        solver = z3.SolverFor("QF_BV")
+        solver.set("timeout", self.limit_ms)
+        solver.add(*known, *wanted, *self.formulas.ranges())
+        return solver
+
+    def _ask(self, solver: Any, *assumed: Any) -> bool:
+        answer = solver.check(*assumed)
+        if answer == z3.unsat:
+            return False
+        if answer != z3.sat:
+            raise ProveError(f"the solver could not say: {solver.reason_unknown()}")
+        self.model = solver.model()
+        return True
 
     def holds(self, term: Term) -> bool:
         """If a truth holds for the values that were found last."""
