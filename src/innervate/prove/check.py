@@ -98,14 +98,15 @@ def _all_refuted(
 ) -> Iterator[Refuted]:
     """All goals that do not hold, with values that refute them, as simple as they can be had."""
     for goal in step.goals:
-        wanted = [step.terms.negated(goal.holds)]
-        if question.values(*wanted) is None:
+        can_be = question.together([step.terms.negated(goal.holds), *simple])
+        if not can_be(0):
             continue
-        for wish in simple:
-            if question.holds(wish) or question.values(*wanted, wish) is not None:
-                wanted.append(wish)
-        values = question.values(*wanted)
-        assert values is not None
+        wanted = [0]
+        for place, wish in enumerate(simple, 1):
+            if question.holds(wish) or can_be(*wanted, place):
+                wanted.append(place)
+        can_be(*wanted)
+        values = question.found()
         yield Refuted(goal.name, values, tell(step, question, goal.name) if tell else [])
 
 
@@ -117,7 +118,7 @@ def reached(step: Step, question: Question, known: Iterable[Way] = ()) -> tuple[
     for way in missed:
         del open_[way]
     ways, guards = list(open_), list(open_.values())
-    can_be = question.one_by_one(guards)
+    can_be = question.together(guards)
     found: set[Way] = set()
     for k in reversed(range(len(ways))):  # who comes so far has taken others on the way
         if ways[k] in found:

@@ -172,19 +172,23 @@ class Question:
         """
         if not self._ask(self._solver(*map(self.formulas.of, wanted))):
             return None
+        return self.found()
+
+    def found(self) -> dict[str, int]:
+        """Values of all unknowns in what was found last."""
         self.values_found = {
             name: _signed(self.model.eval(made, model_completion=True))
             for name, (_, made) in self.formulas.unknowns.items()
         }
         return self.values_found
 
-    def one_by_one(self, terms: list[Term]) -> Callable[[int], bool]:
-        """Tells of any of these truths whether it can be.
+    def together(self, terms: list[Term]) -> Callable[..., bool]:
+        """Tells of some of these truths, by their places, whether they can be so at once.
 
-        The solver is given all of them at once and keeps what it learns of one for the next.
+        The solver is given all of them and keeps what it learns of some for the next.
         """
         solver = self._solver(*(self._if_asked(k, term) for k, term in enumerate(terms)))
-        return lambda k: self._ask(solver, z3.Bool(f"asked {k}"))
+        return lambda *places: self._ask(solver, *(z3.Bool(f"asked {k}") for k in places))
 
     def _if_asked(self, k: int, term: Term) -> Any:
         return z3.Implies(z3.Bool(f"asked {k}"), self.formulas.of(term))
