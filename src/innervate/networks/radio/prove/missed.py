@@ -10,6 +10,7 @@ from functools import partial
 
 from innervate.networks.radio.protocol import fields
 from innervate.networks.radio.protocol.constants import NONE
+from innervate.networks.radio.prove import turns
 from innervate.networks.radio.prove.reports import ROOM, STATION, Ending, Report, apart, hear
 from innervate.prove.records import Outbox
 from innervate.prove.solve import Question
@@ -25,7 +26,7 @@ def theories(known: Source) -> list[Theory]:
     return [
         Theory("radio, a data frame missed", "Behind a report two stations have places of their "
                "own, whatever either had heard of the round before.", (),
-               (partial(_both, known),), is_example=True),
+               (partial(_both, known),), turns.UNREACHABLE),
         Theory("radio, a report missed", "The same if one of them missed the report.", (),
                (partial(_one, known),), refuted_by=MISSED, is_example=True, tell=tell),
     ]  # fmt: skip
