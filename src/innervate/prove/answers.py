@@ -28,6 +28,7 @@ class Answers(Machine):
         super().__init__(functions, terms, out)
         self.asked = {name: frozenset(self.read(functions[name])) for name in asked}
         self.given: list[tuple[str, list[Any], Store, Term]] = []
+        self.ranges: dict[tuple[Any, ...], Term] = {}
 
     def read(self, function: Function) -> Iterator[str]:
         """Names of the fields that a function may read."""
@@ -43,27 +44,32 @@ class Answers(Machine):
         """Follow a call; of one that is asked, the answer."""
         if function.name not in self.asked:
             return super().call(function, args, store, under)
-        range_ = self.range_of(function, args, store, under)
+        read = {key: value for key, value in store.items() if key[1] in self.asked[function.name]}
+        range_ = self.range_of(function, args, store, read)
         answer = self.terms.fresh(function.name, range_.low, range_.high)
         for name, told, before, other in self.given:
-            if name == function.name and self.is_kept(name, before, store):
+            if name == function.name and before == read:
                 same = self.terms.same(answer, other)
                 self.facts.append(self.terms.implies(self.is_same(args, told), same))
-        self.given.append((function.name, args, store, answer))
+        self.given.append((function.name, args, read, answer))
         return store, answer
 
-    def range_of(self, function: Function, args: list[Any], store: Store, under: Term) -> Term:
-        """What a function answers, for the range of that; it is seen to change nothing."""
-        inner = Machine(self.functions, self.terms, Outbox((), 0))
-        after, found = inner.call(function, args, store, under)
-        if any(after[key] is not value for key, value in store.items()) or inner.draws:
-            raise ProveError(f"{function.name} does more than to look something up")
-        return self.terms.as_number(found)
+    def range_of(self, function: Function, args: list[Any], store: Store, read: Store) -> Term:
+        """What a function answers to any arguments of these ranges, for the range of that.
 
-    def is_kept(self, name: str, before: Store, store: Store) -> bool:
-        """Nothing that a function reads has changed."""
-        return all(value is before.get(key) for key, value in store.items()
-                   if key[1] in self.asked[name])  # fmt: skip
+        It is seen to change nothing.
+        """
+        t = self.terms
+        any_ = [t.unknown(f"{one.low} to {one.high}", one.low, one.high)
+                if isinstance(one, Term) else one for one in args]  # fmt: skip
+        seen = (function.name, *any_, *read.values())
+        if seen not in self.ranges:
+            inner = Machine(self.functions, t, Outbox((), 0))
+            after, found = inner.call(function, any_, store, t.true)
+            if any(after[key] is not value for key, value in store.items()) or inner.draws:
+                raise ProveError(f"{function.name} does more than to look something up")
+            self.ranges[seen] = t.as_number(found)
+        return self.ranges[seen]
 
     def is_same(self, args: list[Any], told: list[Any]) -> Term:
         """It is asked the same."""

@@ -82,8 +82,7 @@ def check(
         raise ProveError(f"{step.name}: no state is as assumed, so all would hold")
     if reach:
         found.reached, found.missed = reached(step, question, known)
-    terms = step.terms
-    if question.values(terms.any(*(terms.negated(goal.holds) for goal in step.goals))) is not None:
+    if _is_refuted(step, question):
         if first_only:
             bad = next(goal for goal in step.goals if not question.holds(goal.holds))
             found.refuted = [Refuted(bad.name, question.values_found)]
@@ -91,6 +90,13 @@ def check(
             found.refuted = list(_all_refuted(step, question, tell, tuple(simple)))
     found.wall_s = wall_s() - begun
     return found
+
+
+def _is_refuted(step: Step, question: Question) -> bool:
+    """Some goal does not hold."""
+    wrong = [step.terms.negated(goal.holds) for goal in step.goals]
+    asked = wrong if step.singly else [step.terms.any(*wrong)]
+    return any(question.values(one) is not None for one in asked)
 
 
 def _all_refuted(
