@@ -240,7 +240,7 @@ def write(files: Files, folder: Path) -> dict[str, int]:
     """
     named = f"{files.library.prefix}.h"
     if folder.exists() and not (folder / named).exists() and any(folder.iterdir()):
-        raise FirmwareError(f"{folder}: not empty, and what is there is no {named}; name another folder")
+        raise FirmwareError(f"{folder}: not empty, and holds no {named}; name another folder")
     for name, text in files.texts.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
