@@ -1,6 +1,7 @@
 """Running nodes on a page: asked over their sockets, cut by their drivers."""
 
 import asyncio
+import re
 import socket
 import tempfile
 import threading
@@ -219,6 +220,20 @@ def test_where_nobody_is_left_nothing_has_recovered(monkeypatch, told, left, nob
     kept = [text for text in said if "kept its way" in text]
     assert kept == ([] if nobody else ["every node that answers kept its way, as they say"])
     assert (source.fields()["headline"]["level"] == "degraded") != nobody
+
+
+def test_who_had_no_way_while_the_pc_was_gone_has_not_kept_it(monkeypatch):
+    """It answers again when everybody has found it already."""
+    cells = {i: LINE[i] for i in (0, 1)}
+    answers = [LINE, cells, cells, cells, LINE]
+    monkeypatch.setattr(Poller, "ask_all", lambda self, request: dict(answers.pop(0)))
+    source = Live([Path("a"), Path("b"), Path("c")])
+    while answers:
+        source._poll()
+        source._look()
+    said = [one.what["text"] for one in source.history.after("log", 0, source.history.newest, 99)]
+    assert re.fullmatch("every node has a way again after .* ms, as they say", said[-1])
+    assert source.fields()["recovery"]["recovered_ms"] > 0
 
 
 def with_processes(plan, cables, do):
