@@ -1,6 +1,7 @@
 """What every test may rely on: INNERVATE_NO_SKIP, and the marks for what a machine may lack."""
 
 import gc
+import logging
 import os
 import shutil
 import signal
@@ -105,6 +106,27 @@ def pytest_collection_modifyitems(items):
     for item in items:
         if REAL_TIME & set(item.path.relative_to(HERE).parts):
             item.add_marker(pytest.mark.flaky(reruns=1))
+
+
+@pytest.fixture(autouse=True)
+def said_by_loops():
+    """What fails in a callback of an event loop, nobody waits for: it fails the test."""
+    said = Said()
+    logging.getLogger("asyncio").addHandler(said)
+    yield said.records
+    logging.getLogger("asyncio").removeHandler(said)
+    assert not said.records, "\n".join(map(said.format, said.records))
+
+
+class Said(logging.Handler):
+    """Keeps what an event loop says of errors."""
+
+    def __init__(self):
+        super().__init__(logging.ERROR)
+        self.records = []
+
+    def emit(self, record):
+        self.records.append(record)
 
 
 @pytest.hookimpl(wrapper=True)

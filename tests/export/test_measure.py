@@ -1,5 +1,8 @@
 """Measuring captures that do not say what was lost, and captures that are damaged."""
 
+import tomllib
+from collections import deque
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -7,7 +10,9 @@ from hypothesis import strategies as st
 from innervate.dialect import plain
 from innervate.export import fitting, links, measure, pcapng
 from innervate.export.errors import ExportError
+from innervate.export.measured import Way
 from innervate.networks.mesh import frames as mesh
+from innervate.networks.mesh.export.fit import Mesh
 from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.skin import frames as skin
@@ -123,6 +128,73 @@ def test_each_way_of_a_cable_is_measured_by_itself(tmp_path):
                (0, 6 * MS, sample(7), IN)]  # fmt: skip
     assert ways_of(tmp_path, *packets) == {
         HERE: (1, 0, [2000.0]), THERE: (1, 0, [4000.0])}  # fmt: skip
+
+
+@pytest.mark.parametrize(("comment", "lost", "delays"), [
+    ("innervate, live from two nodes", 1, [3000.0]),  # what was before it on its path is lost
+    ("innervate skin x, seed 1, simulated", 0, [3000.0, 8000.0]),  # ... unless its loss is told
+])  # fmt: skip
+def test_a_path_keeps_the_order_of_frames(tmp_path, comment, lost, delays):
+    packets = [(0, MS, sample(1), OUT), (0, 2 * MS, sample(2), OUT), (0, 3 * MS, sample(3), OUT),
+               (1, 5 * MS, sample(2), IN), (1, 9 * MS, sample(1), IN)]  # fmt: skip
+    assert ways_of(tmp_path, *packets, comment=comment) == {HERE: (2, lost, delays)}
+
+
+def test_a_capture_is_as_long_as_from_its_first_packet_to_its_last(tmp_path):
+    packets = [(0, 5 * S, sample(1), OUT), (1, 5 * S + MS, sample(1), IN),
+               (0, 7 * S, sample(2), OUT)]  # fmt: skip
+    blocks = moments(*packets)
+    found = measured(tmp_path, blocks)
+    assert (found.seconds, found.packets, found.notes) == (2.0, 3, [])
+    assert list(found.ways[HERE].sizes) == [len(sample(1))]
+    found = measured(tmp_path, [*blocks, blocks[-1][:-5]])
+    assert (found.seconds, found.packets) == (2.0, 3)
+    assert found.notes == ["the capture ends in the middle of a block"]
+
+
+def mesh_of(*ways, seconds=30.0):
+    """A measured mesh; a way is (from, to, share of 100 frames that came in, delay in us)."""
+    found = Mesh("mesh", seconds=seconds)
+    for a, b, got, *delay_us in ways:
+        found.ways[a, b] = Way(got, 100 - got, deque(delay_us), deque([20] * len(delay_us)))
+    return found
+
+
+@pytest.mark.parametrize(("seconds", "duration"), [(0.5, 2.0), (2.0, 2.0), (2.0625, 2.062),
+                                                   (60.0, 60.0), (60.5, 60.0)])  # fmt: skip
+def test_a_scenario_lasts_as_long_as_its_capture_within_bounds(seconds, duration):
+    text = fitting.scenario_of(mesh_of((0, 1, 100), (1, 0, 100), seconds=seconds), "some")
+    assert tomllib.loads(text)["duration_s"] == duration
+
+
+BOTH = "links, each way: {} captured, {} simulated, {} in both"
+CHECKED = [
+    ([(0, 1, 90), (1, 0, 50)], True, [BOTH.format(2, 2, 2),
+                                      "quality: apart by 0.1000 on average, 0.2000 at most"]),
+    ([(0, 1, 90), (1, 0, 70), (2, 0, 10)], False, [
+        BOTH.format(2, 3, 2), "  simulated only: n2 to n0",
+        "quality: apart by 0.0000 on average, 0.0000 at most"]),
+    ([(0, 1, 90), (1, 0, 70), (2, 0, 9)], True, [
+        BOTH.format(2, 3, 2), "quality: apart by 0.0000 on average, 0.0000 at most"]),
+    ([(0, 1, 90), (1, 0, 0)], False, [
+        BOTH.format(2, 1, 1), "  captured only: n1 to n0",
+        "quality: apart by 0.0000 on average, 0.0000 at most"]),
+    ([(2, 0, 90)], False, [
+        BOTH.format(2, 1, 0), "  captured only: n0 to n1, n1 to n0", "  simulated only: n2 to n0"]),
+    ([(0, 1, 90, 7.0), (1, 0, 70, 9.0)], True, [
+        BOTH.format(2, 2, 2), "quality: apart by 0.0000 on average, 0.0000 at most",
+        "delay, simulated: 7 to 9 us, median 8 us"]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("again", "same", "said"), CHECKED)
+def test_what_is_said_of_a_fitted_scenario(monkeypatch, again, same, said):
+    """Captured: n0 to n1 90 %, back 70 %. What its simulation gives is put in its place."""
+    found = mesh_of((0, 1, 90), (1, 0, 70))
+    text = fitting.scenario_of(mesh_of((0, 1, 90), (1, 0, 70), (2, 0, 90), (0, 2, 90)), "some")
+    monkeypatch.setattr(fitting.capture, "write", lambda plan, path: None)
+    monkeypatch.setattr(fitting, "measure", lambda path: mesh_of(*again))
+    assert fitting.check(text, found) == (said, same)
 
 
 NEVER_SENT = ["queue full", "port found broken", "switched off"]

@@ -29,8 +29,8 @@ class Wire(Path):
                 asyncio.get_running_loop().call_soon(other.hear, one)
 
     def hear(self, data):
-        """What comes in; frames that are taken are kept with who sent them."""
-        opened = self.sealer.open(self, data)
+        """What comes in once somebody is there; frames taken are kept with who sent them."""
+        opened = self.sealer and self.sealer.open(self, data)
         if opened is not None:
             self.sealer.take(opened)
             self.got.append((opened.sender, opened.frame))

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from math import inf
+from types import SimpleNamespace
 
 import pytest
 
@@ -76,10 +77,32 @@ def test_a_claim_holds_where_every_seed_says_so(compared):
      (jobs.MOST, [1, 3], "3.0"),
      (jobs.SHARE, [0, 1, 2, 0], "2 (0.15 to 0.85)"), (jobs.MEDIAN, [], "-"),
      (jobs.MEDIAN, [inf, inf], "never"), (jobs.MEDIAN, [1, inf, inf], "never in 2 of 3"),
-     (jobs.MEAN, [inf, inf], "never")],
+     (jobs.MEAN, [inf, inf], "never"),
+     (jobs.TOTAL, [1, 3, 2], "6.0"), (jobs.MEAN, [1, 3, inf], "2.0 (-10.7 to 14.7), never in 1"),
+     (jobs.SHARE, [0, inf, inf, 0], "2 (0.15 to 0.85)"), (jobs.SHARE, [1, 1], "2 (0.34 to 1.00)"),
+     (jobs.MEDIAN, [1, 2, inf], "2.0 (1.0 to never), never in 1"),
+     (jobs.TAIL, list(range(51)), "45.0 (40.0 to 50.0)")],
 )  # fmt: skip
 def test_cells(show, values, said):
     assert jobs.cell(values, Column("x", "x", show)) == said
+
+
+def test_a_claim_holds_only_if_it_does_in_all_cases(monkeypatch):
+    """The last case alone decides nothing; what never happens with either is no difference."""
+    given = {"a": ([inf, *range(11)], [inf, *range(1, 12)]), "b": ([1] * 12, [1] * 12),
+             "c": ([1] * 12, [2] * 12)}  # fmt: skip
+    monkeypatch.setattr(jobs.Compared, "_by_seed",
+                        lambda self, case, side, name: dict(enumerate(given[case][side])))  # fmt: skip
+    made = jobs.Compared(SimpleNamespace(name="toy"), None)
+
+    def verdict(*cases):
+        return made.less(dict(zip(cases, cases, strict=True)), "ms", (0, 1), Words("less"))
+
+    assert [verdict(case).verdict for case in "abc"] == [HOLDS, FAILS, HOLDS]
+    assert (verdict("b", "c").verdict, verdict("a", "c").verdict) == (FAILS, HOLDS)
+    assert verdict("a").measurement == (
+        "median difference a: -1.0 (-1.0 to -1.0), less in 11 and more in 0 of 12"
+    )
 
 
 def test_all_networks_bring_what_they_have():
@@ -124,6 +147,29 @@ def test_what_is_measured():
         "loops": 1, "largest_share": 0.75,
         "bits_per_s": 1000 * 240 / 5 / (cabled.end_us(given, harm) / 1e6),
     }  # fmt: skip
+
+
+def test_what_happens_at_the_moment_of_the_harm_comes_after_it():
+    given = {**GIVEN, "harm": "cut"}
+    harm = next(h for h in harms("cut") if h.cables == (0,))
+    up = [(3_000, 1, 0), (4_000, 2, 0), (5_000, 3, 1), (6_000, 4, 0)]
+    at_once = [(harm.at_us, 1, 1), (harm.at_us, 2, 1)]
+
+    def found(changes, downs=()):
+        return cabled.measured(given, harm, [*up, *changes], downs, 0)
+
+    # No one downstream is without a way for a moment; the largest share is of before it.
+    mended = found(at_once)
+    assert (mended["routed_ms"], mended["without_s"], mended["largest_share"]) == (0.0, 0.0, 0.75)
+    assert found([])["routed_ms"] is None
+    assert found([])["without"] == 3
+    seen = found(at_once, [harm.at_us, harm.at_us + 900, harm.at_us + 400, 50])
+    assert seen["detected_ms"] == 0.4
+    assert found(at_once, [harm.at_us])["detected_ms"] is None
+    late = cabled.measured(given, harm, [(harm.at_us - 1, *rest) for _, *rest in up], [], 0)
+    assert late["start_ms"] == (harm.at_us - 1) / 1e3  # up to the end less calm will do
+    never = cabled.measured(given, harm, up[:3], [], 0)
+    assert (never["start_ms"], never["largest_share"]) == (None, pytest.approx(2 / 3))
 
 
 # Pages.

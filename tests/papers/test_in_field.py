@@ -2,6 +2,7 @@
 
 from functools import partial
 
+import numpy as np
 import pytest
 
 from innervate.network import networks
@@ -58,6 +59,91 @@ def test_messages_come_again_when_ten_in_a_row_come():
     late = [*came[:9], *[31 * SECOND] * 5]
     assert figures(world, late, 0)["alarms_again_s"] is None, "when the gateway was back"
     assert world.receivers(sent[0]) == (0, 1)
+
+
+def test_whose_ends_are_joined_at_the_moment_of_a_message():
+    """Node 1 is off from 5 s up to 7 s; from 2 a good link leads to it, and nobody is there."""
+    world = line(4, [(5 * SECOND, KILL, 1), (7 * SECOND, REVIVE, 1)])
+    apart = [{0}, {2, 3}]
+    whole = [{0, 1, 2, 3}]
+    times = (0, 5 * SECOND - 1, 5 * SECOND, 7 * SECOND - 1, 7 * SECOND)
+    for at, parts in zip(times, (whole, whole, apart, apart, whole), strict=True):
+        assert world.on_at(at) == set().union(*parts)
+        found = [part for part in world.joined(at) if part]
+        assert sorted(map(sorted, found)) == sorted(map(sorted, parts)), at
+    world.sent = [Sent(at, 3, 0, "all") for at in times]
+    assert in_field._counted(world) == [True, True, False, False, True]
+
+
+def test_who_is_off_sends_nothing_and_only_a_monitor_is_asked_for_in_vain():
+    world = line(3, [(5 * SECOND, KILL, 0), (6 * SECOND, KILL, 2)])
+    world.sent = [Sent(at * SECOND, 2, dest, "all")
+                  for at in (4, 5, 6) for dest in (MONITOR, 0, 1)]  # fmt: skip
+    assert in_field._counted(world) == [True] * 3 + [True, False, True] + [False] * 3
+
+
+def test_figures_are_of_what_counts_alone():
+    """Late messages of who was not joined, or that never came, are in no latency."""
+    world = line(3, [(6 * SECOND, KILL, 1)])
+    world.sent = [Sent(4 * SECOND + k, 2, 0, "all") for k in range(100)]
+    world.sent += [Sent(6 * SECOND, 2, 0, "all"), Sent(6 * SECOND + 1, 2, 1, "other"),
+                   Sent(6 * SECOND + 2, 2, MONITOR, "alarms")]  # fmt: skip
+    came = [one.at_us + 1_000 * (k + 1) for k, one in enumerate(world.sent)]
+    came[99] = NEVER
+    world.sent[-1] = Sent(5 * SECOND, 0, 2, "alarms")
+    came[-1] = 5 * SECOND + 500
+    assert figures(world, came, 4 * SECOND // 8) == {
+        "all": pytest.approx(99.0), "all_lost": pytest.approx(1.0), "alarms": 100.0,
+        "alarms_lost": 0.0, "p50_ms": 50.0, "p99_ms": 98.0, "airtime": 12.5,
+    }  # fmt: skip
+
+
+def test_of_copies_and_of_what_others_got_only_the_first_at_its_recipient_counts():
+    world = line(4, sent=[Sent(4 * SECOND, 3, 0, "all"), Sent(5 * SECOND, 0, 3, "all"),
+                          Sent(6 * SECOND, 2, MONITOR, "alarms")])  # fmt: skip
+    rows = np.array(
+        [(4 * SECOND + 10, 1, 10), (4 * SECOND + 30, 0, 30), (4 * SECOND + 70, 0, 70),
+         (6 * SECOND + 5, 3, 5), (6 * SECOND + 9, 0, 9), (5 * SECOND + 8, 0, 8)],
+        [(name, np.int64) for name in ("time", "node", "latency")],
+    )  # fmt: skip
+    assert in_field._came(world, rows) == [4 * SECOND + 30, NEVER, 6 * SECOND + 9]
+    world.sent.append(Sent(4 * SECOND, 1, 2, "all"))
+    with pytest.raises(AssertionError, match="two messages at one time"):
+        in_field._came(world, rows)
+
+
+def test_airtime_is_of_all_bytes_that_began_from_a_moment_on(monkeypatch):
+    """Two messages one hop far, and their acknowledgements, as often as frames say they left."""
+    network, left = networks()["flooding"], []
+
+    def tapped(plan, **how):
+        running = simulation(plan, plain=True, **how)
+        finish = running.finish
+
+        def watched(progress, tap):
+            def both(rows, frames, until_us):
+                out = rows["out"] == 1
+                left.extend(zip(rows["time"][out].tolist(), frames["kind"][out], strict=True))
+                tap(rows, frames, until_us)
+
+            return finish(progress, both)
+
+        running.finish = watched
+        return running
+
+    monkeypatch.setattr(network, "simulation", tapped)
+    monkeypatch.setattr(in_field, "figures", lambda world, came, airtime_us: airtime_us)
+    world = line(2, sent=[Sent(3 * SECOND, 0, 1, "all"), Sent(5 * SECOND, 1, 0, "all")])
+    sizes = in_field.sizes_of(network.frames)
+    for since_us in (0, 5 * SECOND + 192):
+        left.clear()
+        world.since_us = since_us
+        spent = run_declared("flooding", {"hops": 2}, network.comparison.INPUTS, world)
+        cost = [(AIR["phy_bytes"] + sizes[int(kind)]) * AIR["byte_ns"] // 1000
+                for at, kind in left if at >= since_us]  # fmt: skip
+        assert spent == sum(cost) > 0
+        assert len(cost) == (len(left) if since_us == 0 else len(left) // 2)
+    assert since_us in [at for at, _ in left], "no frame begins at just that moment"
 
 
 @pytest.mark.parametrize(("kind", "params"), [("flooding", {"hops": 7}), ("rpl", {})])

@@ -140,6 +140,11 @@ def test_numbers_of_offers_come_round_after_65536():
     assert found.state[picked].tolist() == [LOST, LOST, UNASKED, UNASKED, LOST, IN_FLIGHT]
 
 
+def test_what_is_given_up_at_the_moment_it_was_offered_is_lost():
+    rows = [accepted(END_US - 9), (END_US - 9, 1, REPORT_EXPIRED, 0, NO_ROUTE)]
+    assert states(rows, [offer(END_US - 9)]) == [LOST]
+
+
 def test_what_was_given_up_before_the_first_offer_is_nobodys():
     early = (5 * S, 1, REPORT_EXPIRED, 0, NO_ACK)
     late = END_US - 10

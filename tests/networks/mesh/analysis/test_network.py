@@ -149,3 +149,37 @@ def test_the_ground_changes_at_the_moment_of_a_fault_and_of_a_start():
     assert ground.near_at(6 * S) == [[]] * 5
     assert [ground.hops(0, 2, at) for at in (5 * S - 1, 5 * S)] == [2, -1]
     assert ground.hops(2, 2, 5 * S) == 0
+
+
+def test_the_first_round_is_collected_once_and_by_what_was_heard():
+    rows = [(S, 0, REPORT_ROUND, 1, 1), (4 * S, 0, REPORT_GRAPH, 4, 1), (9 * S, 0, REPORT_GRAPH)]
+    frames = [
+        sent(2 * S, 3 * S, 1, RESPONSE, seq=1),
+        sent(3 * S, 4 * S, 2, RESPONSE, seq=1, receivers=0),
+        sent(4 * S, 5 * S, 3, RESPONSE, seq=1),
+    ]
+    result = made(rows, frames, rounds=[(4 * S, 0, 1, 3, 4, 3)])
+    found = network.discovery(result, network.acked_kinds(result.sent))
+    assert (found["complete_s"], found["responses_s"]) == (3.0, 2.0)
+    assert found["recall"] == result.rounds["both"][0] / result.rounds["good"][0] > 0
+    never = made(rows[:1], frames)  # then the last that came at all counts
+    assert network.discovery(never, network.acked_kinds(never.sent))["responses_s"] == 4.0
+
+
+def test_tables_that_come_at_the_very_moment_count_and_each_node_once():
+    round_ = [(S, 0, REPORT_ROUND, 1, 1)]
+    assert network.tables(made([*round_, *tabled(1, 2, 3, 4, at=S - 1_000)]), S)[0] == 4
+    assert network.tables(made([*round_, *tabled(1, 2, 3, 4, at=S - 1_001)]), S)[0] == 3
+    alone = made(round_, absent=[0, 1, 1, 1, 1])
+    assert network.tables(alone, S) == (0, None)
+    rows = [(S, 0, REPORT_GATEWAY, 0, 1), *tabled(1, 2, 3, 4, at=S - 1_000),
+            *tabled(1, 2, 3, 4, at=9 * S), (20 * S, 1, REPORT_GATEWAY, 1, 2),
+            *tabled(0, 2, 3, 4, at=21 * S, epoch=2), (30 * S, 2, REPORT_GATEWAY, 2, 3),
+            *tabled(0, 3, 4, at=31 * S, epoch=3)]  # fmt: skip
+    dies = [fault(25 * S, KILL, 1)]
+    led = network.gateways(made(rows, faults=dies))
+    assert [one["tables_s"] for one in led] == [
+        pytest.approx(0.003), pytest.approx(1.004), pytest.approx(1.004)
+    ]  # fmt: skip
+    # The second to lead dies: from there until the third has served all.
+    assert network.takeover_s(made(rows, faults=dies), led) == pytest.approx(5 + 1.004)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from innervate.dialect.arith import MASK16, later
 from innervate.live.receipts import DELIVERED, EXPIRED
-from innervate.networks.mesh.live.order import Message, Order, Orderly
+from innervate.networks.mesh.live.order import ANEW, Message, Order, Orderly
 from innervate.networks.mesh.protocol import queue as mesh_queue
 from innervate.networks.mesh.protocol.constants import DATA
 from tests.live import time_by_hand
@@ -145,6 +145,59 @@ def test_one_without_another_before_it_is_late_all_the_same_unless_it_is_of_anot
     assert handed_up(order, (990, 990), (1000, 1000)) == [[], []]
     assert (order.late, order.is_up(990)) == (2, False)
     assert handed_up(order, (500, 500)) == [[500]]
+
+
+@pytest.mark.parametrize(("behind", "anew"), [(ANEW - 1, False), (ANEW, True)])
+def test_how_far_behind_a_number_is_of_another_life(behind, anew):
+    seq = (200 - behind) & MASK16
+    assert handed_up(Order(200, WAIT), (seq, seq)) == [[seq] * anew]
+
+
+def test_of_several_that_follow_one_the_first_sent_goes_first_whichever_came_first():
+    assert handed_up(Order(10, WAIT), (15, 13), (14, 13), (13, 10)) == [[], [], [13, 14, 15]]
+    order = Order(65_530, WAIT)
+    assert handed_up(order, (2, 65_533), (65_534, 65_533), (65_533, 65_530)) == [
+        [], [], [65_533, 65_534, 2]]  # fmt: skip
+
+
+def test_each_waits_from_its_own_arrival():
+    order = Order(10, WAIT)
+    order.take(20, 19, b"a", now=0)
+    order.take(30, 29, b"b", now=400)
+    assert order.due() == WAIT
+    assert (order.release(WAIT - 1), order.release(WAIT)) == ([], [b"a"])
+    assert (order.release(WAIT + 399), order.release(WAIT + 400)) == ([], [b"b"])
+
+
+def test_who_sent_is_told_what_was_handed_up_and_of_copies_only_if_it_was():
+    async def main():
+        orderly, up = Orderly(WAIT), []
+        orderly.on_up = lambda sender, seq: up.append((sender, seq))
+        told = {}
+
+        def came(what, seq, before, again=False):
+            up.clear()
+            (orderly.again if again else orderly.take)(Message(3, seq, before, b"x"))
+            told[what] = [number for _, number in up]
+
+        came("nobody listens", 16, 15)
+        came("nobody listens, again", 16, 15, again=True)
+        listening(orderly)
+        came("waits", 19, 18)
+        came("waits, again", 19, 18, again=True)
+        came("sets free", 18, 16)
+        came("sets free, again", 18, 16, again=True)
+        came("freed, again", 19, 18, again=True)
+        came("too late", 17, 16)
+        came("too late, again", 17, 16, again=True)
+        orderly.stop()
+        return told
+
+    assert asyncio.run(main()) == {
+        "nobody listens": [16], "nobody listens, again": [16],
+        "waits": [], "waits, again": [], "sets free": [18, 19],
+        "sets free, again": [18], "freed, again": [19], "too late": [], "too late, again": [],
+    }  # fmt: skip
 
 
 def listening(orderly):

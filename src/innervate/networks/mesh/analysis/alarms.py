@@ -21,6 +21,9 @@ from innervate.networks.mesh.protocol.constants import ALARM, CROSS, FLOOD, PRED
 # A place is rounded along each axis, by half a cm and by half a unit: at most so far away.
 ROUNDED_UNITS = 2**0.5
 
+# End of the stay before, from when this one can be seen, out and back, from when the next can be.
+Spans = tuple[int, int, tuple[int, int], int]
+
 
 class Crossing(NamedTuple):
     """A robot leaves the fence.
@@ -69,10 +72,11 @@ def all_crossings(result: Any) -> list[Crossing]:
         told = alarms[result.delivered["body0"][alarms] == walk.node]
         raised = rows[(rows["b"] == walk.node) & (rows["a"] == CROSS)]
         episodes = _episodes(plan, edges, walk, result.ended_us)
-        for i, (out_us, back_us) in enumerate(episodes):
-            before = episodes[i - 1][1] if i else 0
-            until = episodes[i + 1][0] if i + 1 < len(episodes) else result.ended_us
-            spans = (before, out_us, back_us, until)
+        befores = [0, *(back_us for _, back_us in episodes)]
+        seen = [_seen_from(plan, edges, walk, before, out_us)
+                for before, (out_us, _) in zip(befores, episodes, strict=False)]  # fmt: skip
+        untils = [*seen[1:], result.ended_us]
+        for spans in zip(befores, seen, episodes, untils, strict=False):
             found.append(_crossing(result, edges, walk, spans, raised, told))
     return sorted(found, key=lambda crossing: (crossing.crossed_us, crossing.robot))
 
@@ -107,12 +111,10 @@ def _well_inside(
 
 
 def _crossing(
-    result: Any, edges: list[Edge], walk: Any, spans: tuple[int, int, int, int], raised: Any,
-    told: Any,
-) -> Crossing:  # fmt: skip
-    """One crossing; `spans`: end of the stay before, out, back, begin of the next stay."""
-    before, out_us, back_us, until = spans
-    from_us = _seen_from(result.plan, edges, walk, before, out_us)
+    result: Any, edges: list[Edge], walk: Any, spans: Spans, raised: Any, told: Any
+) -> Crossing:
+    """One crossing, and what was raised and told of it."""
+    before, from_us, (out_us, back_us), until = spans
     first = raised[(raised["time"] >= from_us) & (raised["time"] < until)][:1]
     rows = result.delivered
     times, kinds = rows["time"][told], rows["body3"][told]
