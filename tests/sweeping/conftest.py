@@ -1,4 +1,5 @@
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -39,7 +40,13 @@ def environment():
     return {**os.environ, "PYTHONPATH": path}
 
 
-def start(*tokens, cwd, module="innervate.cli", **options):
+def start(*tokens, cwd, module="innervate.cli", preexec_fn=lambda: None, **options):
+    """A command as a terminal starts it: where tests run in the background, Ctrl-C is ignored."""
+
+    def begin():
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        preexec_fn()
+
     return subprocess.Popen(
         [sys.executable, "-m", module, *map(str, tokens)],
         cwd=cwd,
@@ -47,6 +54,7 @@ def start(*tokens, cwd, module="innervate.cli", **options):
         stdout=options.pop("stdout", subprocess.PIPE),
         stderr=subprocess.PIPE,
         text=True,
+        preexec_fn=begin,
         **options,
     )
 
