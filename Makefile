@@ -31,7 +31,7 @@ COMPILE = $(BIN)/python -m tests.loops $(WORKERS)
 PAGE := src/innervate/web/page
 MODULES := $(PAGE)/node_modules/.package-lock.json
 
-.PHONY: help env demo test full mutants lint bench papers boards parity docs dist page page-check clean
+.PHONY: help env demo test full mutants lint bench papers boards parity docs dist wheel-check page page-check clean
 
 help:
 	@sed -n '2,/^$$/s/^# \{0,1\}//p' Makefile
@@ -100,8 +100,10 @@ docs: $(STAMP)
 	@echo "Written: site/. To read it with its search: $(BIN)/python -m http.server -d site"
 
 # Without a network: what builds the wheel is in .venv already. The wheel has loops for this system
-# and processor, compiled in some minutes; LOOPS=no leaves them out, and it is for any.
+# and processor, compiled in some minutes; LOOPS=no leaves them out, and it is for any. ADDRESS is
+# where the project lies on the web, as https://HOST/OWNER/NAME; without it nothing links there.
 LOOPS = yes
+dist: export INNERVATE_ADDRESS = $(ADDRESS)
 dist: docs
 	@$(BIN)/python -m build --no-isolation --sdist
 ifeq ($(LOOPS),no)
@@ -110,6 +112,10 @@ else
 	@$(BIN)/python -m innervate.kernel.readying build/loops
 	@INNERVATE_LOOPS=build/loops $(BIN)/python -m build --no-isolation --wheel
 endif
+
+# Source archive and wheel, built, installed in environments of their own and tried there.
+wheel-check: $(STAMP)
+	@$(BIN)/python -m pytest -q tests/test_wheel.py -k "not all"
 
 $(MODULES): $(PAGE)/package-lock.json
 	@command -v npm >/dev/null || { echo "npm is missing (Debian, Ubuntu: apt install npm)" >&2; exit 1; }

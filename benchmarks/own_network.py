@@ -1,6 +1,6 @@
 """The same protocols built in and loaded from a copied folder, taken in turns in one process.
 
-`python -m benchmarks.own_network`: ratios of simulated time per wall time, folder to built in.
+`python -m benchmarks.own_network`: ratios of simulated time per processor time, folder to built in.
 """
 
 import os
@@ -8,6 +8,7 @@ import re
 import shutil
 import statistics
 import tempfile
+import time
 from pathlib import Path
 
 import innervate
@@ -16,27 +17,36 @@ from innervate.network import networks, use
 
 ROUNDS = 7
 ROOT = Path(__file__).resolve().parents[1]
-SKIN = ROOT / "src/innervate/networks/skin"
+NETWORKS = ROOT / "src/innervate/networks"
+FLOODING = ROOT / "examples/field/flooding.toml"
 RING = ROOT / "tests/networks/tokenring"
 CASES = {
     "token ring": {"kind": "tokenring", "nodes": 64, "duration_s": 150.0, "hold_us": 20,
                    "lost_us": 10_000_000},
     "skin": ("setup-5", ["duration_s=20", "event=[]"]),
+    "flooding, over a field": ["nodes=100", "duration_s=300", "event=[]"],
 }  # fmt: skip
 
 
-def copied_skin(folder):
-    """The skin's folder under another name, which is all that is changed in it."""
-    shutil.copytree(SKIN, folder, ignore=shutil.ignore_patterns("__pycache__"))
+def copied(name, folder):
+    """A network's folder under another name, which is all that is changed in it."""
+    shutil.copytree(NETWORKS / name, folder, ignore=shutil.ignore_patterns("__pycache__"))
     for path in folder.rglob("*.py"):
-        text = path.read_text().replace("innervate.networks.skin", folder.name)
-        text = re.sub(r'Literal\["skin"\]', f'Literal["{folder.name}"]', text)
+        text = path.read_text().replace(f"innervate.networks.{name}", folder.name)
+        text = re.sub(rf'Literal\["{name}"\]', f'Literal["{folder.name}"]', text)
         text = text.replace(
-            '    "skin",\n    __package__', f'    "{folder.name}",\n    __package__'
+            f'    "{name}",\n    __package__', f'    "{folder.name}",\n    __package__'
         )
-        text = re.sub(r'kind="skin"', f'kind="{folder.name}"', text)
+        text = re.sub(rf'kind="{name}"', f'kind="{folder.name}"', text)
         path.write_text(text)
     return folder
+
+
+def spent(simulate, *given, **kept):
+    """Processor seconds of a run, and its fingerprint."""
+    begun = time.process_time()
+    result = simulate(*given, **kept)
+    return time.process_time() - begun, result.fingerprint
 
 
 def rings(place):
@@ -54,8 +64,7 @@ def rings(place):
         known["tokenring"] = network
         tables = CASES["token ring"]
         scenario = innervate.Scenario(network.model(**tables))
-        result = network.run.simulate(network.plan(scenario), checks=False)
-        return result.wall_s, result.fingerprint
+        return spent(network.run.simulate, network.plan(scenario), checks=False)
 
     return (lambda: run(installed)), (lambda: run(from_folder))
 
@@ -63,17 +72,29 @@ def rings(place):
 def skins(place):
     """Runs of the skin: ours, and a copied folder."""
     name, changes = CASES["skin"]
-    use(copied_skin(place / "bodily"))
+    use(copied("skin", place / "bodily"))
 
     def run(kind):
         text = innervate.scenario.bundled()[name].read_text()
         scenario = innervate.scenario.loads(text.replace('"skin"', f'"{kind}"'), changes)
         made = networks()[kind]
-        result = made.run.simulate(made.plan(scenario), checks=False, plain=False,
-                                   received=False, progress=None)  # fmt: skip
-        return result.wall_s, result.fingerprint
+        return spent(made.run.simulate, made.plan(scenario), checks=False, plain=False,
+                     received=False, progress=None)  # fmt: skip
 
     return (lambda: run("skin")), (lambda: run("bodily"))
+
+
+def floods(place):
+    """Runs of managed flooding over a field: ours, and a copied folder."""
+    use(copied("flooding", place / "flooded"))
+
+    def run(kind):
+        text = FLOODING.read_text().replace('"flooding"', f'"{kind}"')
+        scenario = innervate.scenario.loads(text, CASES["flooding, over a field"])
+        made = networks()[kind]
+        return spent(made.run.simulate, made.plan(scenario), checks=False)
+
+    return (lambda: run("flooding")), (lambda: run("flooded"))
 
 
 def measured(built_in, own):
@@ -92,8 +113,8 @@ def measure():
     before = os.environ.get("INNERVATE_NETWORKS", "")
     try:
         with tempfile.TemporaryDirectory() as place:
-            return {"token ring": measured(*rings(Path(place))),
-                    "skin": measured(*skins(Path(place)))}  # fmt: skip
+            runs = zip(CASES, (rings, skins, floods), strict=True)
+            return {name: measured(*made(Path(place))) for name, made in runs}
     finally:
         os.environ["INNERVATE_NETWORKS"] = before
         networks.cache_clear()

@@ -3,6 +3,7 @@
 import gc
 import os
 import shutil
+import signal
 import subprocess
 from functools import cache
 from pathlib import Path
@@ -22,6 +23,12 @@ NEEDS = {
 # What a worker has gathered stays to its end, and is not looked through again for what is in use:
 # that took a fifteenth of all time, and of livesim's runs at the end of a long day half.
 gc.set_threshold(20_000, 20, 20)
+
+
+def pytest_configure():
+    # Who was started in the background by a script ignores Ctrl-C, and so would all that it starts.
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_collection_finish():

@@ -111,6 +111,8 @@ BROKEN = {
     "import that fails": ("fields.py", "STATE = (", "import nothing_of_that\nSTATE = (",
                           "import nothing_of_that", "ModuleNotFoundError"),
     "part": ("network.py", 'fields="fields"', 'feilds="fields"', "Network(", "no part 'feilds'"),
+    "no such field to rule": ("invariants.py", "node.value == 0", "node.valeu == 0", "valeu",
+                              'valeu is no field that fields.py declares; did you mean "value"?'),
     "invariant": ("invariants.py", "    return 1\n", "    return 1.0\n", "1.0", "a float"),
 }  # fmt: skip
 del BROKEN["no layout"]
@@ -131,6 +133,13 @@ def test_a_frame_that_has_no_layout(own, capsys):
     at = own.line("protocol.py", "hello.kind")
     line = said(capsys, "run", own.scenario)
     assert f"gossip/protocol.py:{at}: a frame of kind 2 is sent, and has no layout" in line
+
+
+def test_a_frame_that_has_no_layout_and_is_filled_elsewhere(own, capsys):
+    own.change("protocol.py", "    frame.kind = NEWS\n", "    frame.kind = NEWS + 2\n")
+    at = own.line("protocol.py", "NEWS + 2")
+    line = said(capsys, "run", own.scenario)
+    assert f"gossip/protocol.py:{at}: a frame of kind 3 is sent, and has no layout" in line
 
 
 def test_a_name_that_is_taken(alone, own, capsys):
@@ -175,3 +184,19 @@ def test_an_installed_package_is_found_by_its_entry_point(alone, tmp_path_factor
     done = subprocess.run(check, capture_output=True, text=True, check=False, env=env)
     assert done.returncode == 0, done.stderr
     assert "nodes" in done.stdout
+
+
+def test_a_plain_run_may_print_and_others_may_not(own, capsys):
+    """What is compiled prints nothing; a plain run is the same with it and without."""
+    run = ["run", str(own.scenario), "--plain", "--no-report", "--out"]
+    assert main([*run, "runs/one"]) == 0
+    capsys.readouterr()
+    old = "    node.value = item.value\n"
+    own.change("protocol.py", old, old + '    print(f"{node.number} is given {item.value}", now)\n')
+    assert main([*run, "runs/two"]) == 0
+    assert "0 is given 7 " in capsys.readouterr().out
+    at = own.line("protocol.py", "print(")
+    line = said(capsys, "run", own.scenario)
+    assert line == (f"innervate: gossip/protocol.py:{at}: calls print; it may stay for plain runs: "
+                    "run --plain")  # fmt: skip
+    assert main(["compare", "runs/one", "runs/two"]) == 0

@@ -23,11 +23,15 @@ def test_the_readme_says_what_each_takes():
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory):
-    """The wheel for any system; its loops are another test's (tests/kernel/test_ready.py)."""
+    """The wheel for any system, from what is in the source archive and nothing else.
+
+    Its loops are another test's (tests/kernel/test_ready.py).
+    """
     folder = tmp_path_factory.mktemp("dist")
-    build = [sys.executable, "-m", "build", "--no-isolation", "--wheel", "--outdir", folder]
+    build = [sys.executable, "-m", "build", "--no-isolation", "--outdir", folder]
     subprocess.run(build, cwd=ROOT, env=ALONE, check=True)
     (made,) = folder.glob("*.whl")
+    assert len(list(folder.glob("*.tar.gz"))) == 1
     return made
 
 
@@ -52,7 +56,7 @@ class Installed:
                               capture_output=True, text=True, check=False)  # fmt: skip
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # `make wheel-check`, which CI runs beside the tests, runs all but the last
 @pytest.mark.parametrize("extra", ["", "[sim]", "[all]"])
 def test_it_takes_what_the_readme_says_and_runs(wheel, tmp_path, extra):
     env = Installed(tmp_path, wheel, extra)
@@ -64,7 +68,7 @@ def test_it_takes_what_the_readme_says_and_runs(wheel, tmp_path, extra):
     assert checked.stdout.startswith("line: a skin scenario"), checked.stderr
     doctor = env("doctor")
     assert doctor.returncode == (0 if extra else 1)
-    ran = env("run", "line")
+    ran = env("run", "line", *([] if extra == "[all]" else ["--plain"]))
     if extra:
         assert "Every cell has a way to the PC" in ran.stdout, ran.stderr
         assert (tmp_path / "runs/line-1/report.html").is_file()

@@ -12,6 +12,7 @@ is not installed.
 from __future__ import annotations
 
 import argparse
+import io
 import sys
 import tempfile
 import time
@@ -19,9 +20,11 @@ from pathlib import Path
 
 from boards.errors import BoardFailed, BoardMissing
 from boards.firmware import qemu
-from boards.firmware.drawn import Drawn
+from boards.firmware.drawn import Drawn, lives
 from boards.firmware.native import Native
+from boards.firmware.play import Player
 from boards.firmware.replayed import Heard, Shadow
+from boards.firmware.script import Script
 from boards.parity.record import HERE
 from boards.roles import kind_of, roles
 from innervate import scenario
@@ -29,6 +32,7 @@ from innervate.firmware.emit import Library
 from innervate.live.board import Role
 
 CALLS = 1_000_000
+MORE = 100_000  # lives of a seed, at most
 
 
 def replay(native: Native, calls: int, seed: int) -> tuple[int, Heard]:
@@ -41,7 +45,11 @@ def replay(native: Native, calls: int, seed: int) -> tuple[int, Heard]:
     while done < calls:
         shadow = Shadow(native, calls - done)
         shadow.heard = heard
+        if native.script:
+            native.script.begin()
         shadow.run(scenario.plan(_scenario(native.library.role, seed)))
+        if native.script:
+            native.script.say()
         if not shadow.calls:
             raise BoardFailed(f"{native.library.role.name}: a simulation made no call")
         done, seed = done + shadow.calls, seed + 1
@@ -61,14 +69,21 @@ def compare(role: Role, calls: int, seed: int, sanitized: bool) -> tuple[int, in
         BoardMissing, BoardFailed: no compiler; they disagree.
     """
     with tempfile.TemporaryDirectory() as folder:
-        return _both(Native(Library(role, {}), Path(folder), sanitized), calls, seed)
+        native = Native(Library(role, {}), Path(folder), sanitized)
+        replayed, heard = replay(native, calls // 2, seed)
+        player, file = Player(native.library, native), io.BytesIO()
+        draw(native.library, heard, seed, Script(file), calls - replayed)
+        for _ in player.play(file.getvalue()):
+            pass
+    return replayed, player.calls
 
 
-def _both(native: Native, calls: int, seed: int) -> tuple[int, int]:
-    replayed, heard = replay(native, calls // 2, seed)
-    drawn = Drawn(native, heard, seed)
-    drawn.run(calls - replayed)
-    return replayed, drawn.calls
+def draw(library: Library, heard: Heard, seed: int, script: Script, calls: int) -> None:
+    """Write down so many drawn calls, and what they are made of."""
+    Drawn(library, heard, seed).keep(script)
+    script.begin()
+    lives(script, 1 + seed * MORE, calls)
+    script.say()
 
 
 def emulate(role: Role, calls: int, seed: int, counted: bool = False) -> dict[str, qemu.Result]:
@@ -80,19 +95,26 @@ def emulate(role: Role, calls: int, seed: int, counted: bool = False) -> dict[st
         BoardMissing, BoardFailed: something is not installed; they disagree.
     """
     with tempfile.TemporaryDirectory() as name:
-        folder, script = Path(name), Path(name, "script")
+        folder, path = Path(name), Path(name, "script")
         native = Native(Library(role, {}), folder)
-        with script.open("wb") as file:
-            native.script = qemu.Script(file)
-            _both(native, calls, seed)
+        with path.open("wb") as file:
+            native.script = Script(file)
+            replayed, heard = replay(native, calls // 2, seed)
+            draw(native.library, heard, seed, native.script, calls - replayed)
             native.script.end()
-        here = qemu.on_host(native.library, folder, script)
-        found = {"here": here}
+        wanted = list(Player(native.library).play(path.read_bytes()))
+        found = {"here": qemu.on_host(native.library, folder, path)}
         for target in qemu.TARGETS:
-            found[target] = there = qemu.on_target(native.library, folder, script, target, counted)
-            if (there.mark, there.calls) != (here.mark, here.calls):
-                raise BoardFailed(f"{target}: hash {there.mark:08x}, here {here.mark:08x}")
+            found[target] = qemu.on_target(native.library, folder, path, target, counted)
+        for where, there in found.items():
+            if there.marks != wanted:
+                raise BoardFailed(f"{where}: hashes {shown(there.marks)}, Python {shown(wanted)}")
         return found
+
+
+def shown(marks: list[int]) -> str:
+    """Hashes as one reads them."""
+    return " ".join(f"{mark:08x}" for mark in marks)
 
 
 def main(arguments: list[str]) -> int:
@@ -112,8 +134,8 @@ def main(arguments: list[str]) -> int:
         try:
             if asked.emulated:
                 found = emulate(known[name], asked.calls, asked.seed)
-                print(f"{name}: {asked.calls} calls, 0x{found['here'].mark:08x} here, on "
-                      f"{', '.join(qemu.TARGETS)} ({time.monotonic() - begun:.0f} s)",
+                print(f"{name}: {asked.calls} calls, {shown(found['here'].marks[-1:])} in Python, "
+                      f"here, on {', '.join(qemu.TARGETS)} ({time.monotonic() - begun:.0f} s)",
                       flush=True)  # fmt: skip
                 continue
             counts = compare(known[name], asked.calls, asked.seed, not asked.plain)

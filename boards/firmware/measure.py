@@ -16,6 +16,7 @@ from boards.firmware import qemu
 from boards.firmware.__main__ import emulate
 from boards.firmware.native import run
 from boards.firmware.native import write as write_bare
+from boards.firmware.script import WHAT
 from boards.firmware.stack import COUNTED, chain, worst
 from boards.roles import roles
 from innervate.firmware import library, tools
@@ -26,6 +27,9 @@ LOOP_HZ = 250
 # Whole images: the example, and how many UARTs it has, each with how many bytes that wait.
 WHOLE = {"skin": ("small", 4, 16), "radio": ("modem", 2, 64), "mesh": ("small", 2, 64)}
 SEALED = {f"sealed {name}": WHOLE[name] for name in ("skin", "mesh")}
+LEADING = "leading "  # a gateway, or a standby
+OF_MESH = {f"{LEADING}mesh": WHOLE["mesh"]}
+IMAGES = WHOLE | OF_MESH | SEALED
 
 
 def sizes(path: Path) -> tuple[int, int, int]:
@@ -64,10 +68,10 @@ def _size_of(prefix: str, folder: Path) -> str:
 
 def whole(name: str, folder: Path, out: Path) -> tuple[int, int, int]:
     """Flash, static RAM and worst stack of the image of a whole node; its library lies there."""
-    main, uarts, ring = (WHOLE | SEALED)[name]
-    options = (*tools.CORTEX_M0, f"-DBOARD_UARTS={uarts}", f"-DBOARD_RING={ring}", COUNTED,
-               "-DKEY=1")  # fmt: skip
-    image = tools.image(folder, name.removeprefix("sealed "), out, main, options)
+    main, uarts, ring = IMAGES[name]
+    options = [*tools.CORTEX_M0, f"-DBOARD_UARTS={uarts}", f"-DBOARD_RING={ring}", COUNTED,
+               "-DKEY=1", *(["-DLEADS"] if name.startswith(LEADING) else [])]  # fmt: skip
+    image = tools.image(folder, name.split()[-1], out, main, options)
     text, data, bss = sizes(image)
     return text + data, data + bss, worst(image)
 
@@ -76,10 +80,9 @@ def whole_row(name: str) -> str:
     """A row for the image of a whole node."""
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
-        bare = name.removeprefix("sealed ")
-        library.write(library.made_of(bare, [], sealed=name in SEALED), folder)
+        library.write(library.made_of(name.split()[-1], [], sealed=name in SEALED), folder)
         flash, ram, stack = whole(name, folder, folder)
-    what = f"{(WHOLE | SEALED)[name][1]} UARTs, coder, driver, port layer, vectors"
+    what = f"{IMAGES[name][1]} UARTs, coder, driver, port layer, vectors"
     return f"| {name}, {what} | {flash:,} | {ram:,} | {stack:,} | {ram + stack:,} |"
 
 
@@ -103,7 +106,7 @@ def instructions(name: str) -> str:
     found = emulate(roles()[name], CALLS, 1, counted=True)["cortex-m3"]
     per = {what: found.ticks[what] * qemu.TICK_INSTRUCTIONS / count
            for what, count in found.calls.items() if count}  # fmt: skip
-    cells = [f"{per[what]:,.0f}" if what in per else "" for what in qemu.WHAT]
+    cells = [f"{per[what]:,.0f}" if what in per else "" for what in WHAT]
     return f"| {name} | {' | '.join(cells)} |"
 
 
@@ -115,10 +118,10 @@ def main() -> None:
         for name in names:
             print(protocol_row(name, Path(folder)), flush=True)
     print("\n| image | flash | static RAM | worst stack | RAM |\n|---|---:|---:|---:|---:|")
-    for name in WHOLE | SEALED:
+    for name in IMAGES:
         print(whole_row(name), flush=True)
-    print(f"\n| protocol | {' | '.join(f'`{what}`' for what in qemu.WHAT)} |")
-    print("|---|" + "---:|" * len(qemu.WHAT))
+    print(f"\n| protocol | {' | '.join(f'`{what}`' for what in WHAT)} |")
+    print("|---|" + "---:|" * len(WHAT))
     for name in names:
         print(instructions(name), flush=True)
     print("\n| to ask | to answer | to take the answer | a frame closed | opened |")

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import re
-import struct
 import subprocess
 from pathlib import Path
-from typing import Any, BinaryIO, NamedTuple
+from typing import NamedTuple
 
 from boards.errors import BoardFailed, BoardMissing
+from boards.firmware.marks import fold_in_c
 from boards.firmware.native import run, write
+from boards.firmware.script import KEPT_MOST, WHAT
 from innervate.firmware.emit import Library
 from innervate.firmware.tools import find
 
 HERE = Path(__file__).resolve().parent
-WHAT = ("on_start", "on_frame", "on_timer", "on_input", "on_carrier")
-END, STATE, PARAMS, GATE = 5, 6, 7, 8
-ROW = struct.Struct("<BBxxiii")
-SLOTS = 16
 TICK_INSTRUCTIONS = 40  # of the board's timer at 25 MHz, where an instruction counts as 1 ns
 
 
@@ -43,43 +40,10 @@ TARGETS = {
 }  # fmt: skip
 
 
-class Script:
-    """Calls as check.c reads them.
-
-    Args:
-        file: to write to.
-    """
-
-    def __init__(self, file: BinaryIO) -> None:
-        self.file = file
-        self.params = b""
-        self.calls = 0
-
-    def sync(self, slot: int, state: bytes, gate: bytes | None) -> None:
-        """A node's records, as its driver has set them."""
-        self.file.write(ROW.pack(STATE, slot, 0, 0, 0) + state)
-        if gate is not None:
-            self.file.write(ROW.pack(GATE, slot, 0, 0, 0) + gate)
-
-    def call(self, slot: int, name: str, params: bytes, now: int, given: tuple[Any, ...]) -> None:
-        """A call of a node."""
-        if params != self.params:
-            self.params = params
-            self.file.write(ROW.pack(PARAMS, 0, 0, 0, 0) + params)
-        a, b = given[0], given[1] if len(given) > 1 and isinstance(given[1], int) else 0
-        record = given[1] if len(given) > 1 and isinstance(given[1], bytes) else b""
-        self.file.write(ROW.pack(WHAT.index(name), slot, now, a, b) + record)
-        self.calls += 1
-
-    def end(self) -> None:
-        """Nothing more comes."""
-        self.file.write(ROW.pack(END, 0, 0, 0, 0))
-
-
 class Result(NamedTuple):
-    """What a script gave: a hash, and by handler how many calls and ticks."""
+    """What a script gave: hashes, and by handler how many calls and ticks."""
 
-    mark: int
+    marks: list[int]
     calls: dict[str, int]
     ticks: dict[str, int]
 
@@ -88,35 +52,26 @@ def _compile(
     library: Library, folder: Path, command: list[str | Path], beside: str, made: Path
 ) -> None:
     source = write(library, folder)
-    text = (HERE / "check.c").read_text()
+    text = (HERE / "check.c").read_text().replace("FOLD_FRAME", fold_in_c(library.role))
     text = re.sub(r"\brole(?=[_.])", library.prefix, text)
+    text = re.sub(r"\bROLE(?=_)", library.prefix.upper(), text)
     (folder / "check.c").write_text(text)
     flags = [flag for flag, there in (
         ("-DHAS_FRAME", "frame" in library.records), ("-DHAS_GATE", "gate" in library.records),
         ("-DHAS_CARRIER", any(m.name == "on_carrier" for m in library.program.handlers)),
     ) if there]  # fmt: skip
-    run(
-        [
-            *command,
-            *flags,
-            "-I",
-            folder,
-            source,
-            folder / "check.c",
-            HERE / beside,
-            "-o",
-            made,
-            "-lgcc",
-        ]
-    )
+    flags += [f"-DKEPT_{what.upper()}={count}" for what, count in KEPT_MOST.items()]
+    run([*command, *flags, f"-DTIMERS={max(1, library.role.timers)}", "-I", folder, source,
+         folder / "check.c", HERE / beside, "-o", made, "-lgcc"])  # fmt: skip
 
 
 def _result(said: str) -> Result:
     numbers = [int(word, 16) for word in said.split()]
-    if len(numbers) != 1 + 2 * len(WHAT):
+    counts = numbers[-2 * len(WHAT) :]
+    if len(counts) != 2 * len(WHAT):
         raise BoardFailed(f"the check said {said[:200]!r}")
-    calls = dict(zip(WHAT, numbers[1::2], strict=True))
-    return Result(numbers[0], calls, dict(zip(WHAT, numbers[2::2], strict=True)))
+    calls = dict(zip(WHAT, counts[::2], strict=True))
+    return Result(numbers[: -len(counts)], calls, dict(zip(WHAT, counts[1::2], strict=True)))
 
 
 def on_host(library: Library, folder: Path, script: Path) -> Result:
@@ -126,7 +81,7 @@ def on_host(library: Library, folder: Path, script: Path) -> Result:
         BoardMissing, BoardFailed: no compiler, or it does not get through.
     """
     made = folder / "check"
-    _compile(library, folder, ["gcc", "-std=c99", "-O1"], "host.c", made)
+    _compile(library, folder, ["gcc", "-std=c99", "-O2"], "host.c", made)
     with script.open("rb") as file:
         done = subprocess.run([made], stdin=file, capture_output=True, text=True, check=True)
     return _result(done.stdout)

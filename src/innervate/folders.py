@@ -11,6 +11,9 @@ import linecache
 import shutil
 import sys
 import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from importlib import import_module, invalidate_caches
 from pathlib import Path
 from types import ModuleType
@@ -24,11 +27,27 @@ NETWORK_FILE = "network.py"
 MEDIA_ON_AIR = ("channel", "field")
 CHANNEL_OWN = ("slot_us", "ta_us", "oracle", "full_duplex", "period_us", "per_turn")  # its words
 
+_in_plain: ContextVar[bool] = ContextVar("_in_plain", default=False)
 _stamps: dict[str, tuple[tuple[str, int, int], ...]] = {}  # of the files of what is loaded, by name
 
 
 class NetworkError(Exception):
     """A network that was named cannot be loaded, or is not as it must be; one line."""
+
+
+@contextmanager
+def for_plain(is_plain: bool) -> Iterator[None]:
+    """Networks that are loaded meanwhile are to run plain: what a person debugs with may stay."""
+    token = _in_plain.set(is_plain)
+    try:
+        yield
+    finally:
+        _in_plain.reset(token)
+
+
+def refused(found: list[checks.Finding]) -> list[checks.Finding]:
+    """Those findings for which a network is not loaded."""
+    return [one for one in found if not (one.in_plain and _in_plain.get())]
 
 
 def is_one(folder: Path) -> bool:
@@ -210,25 +229,25 @@ def _of_declared(folder: Path, network: Any, files: list[Path]) -> list[checks.F
         raise NetworkError(blamed(error, folder) or f"{shown(path)}:1: {_words(error)}") from None
     place = _file_of(folder, network, "fields")
     found: list[checks.Finding] = checks.of_fields(place, tables)
-    found += [] if found else _of_values(place, network, files)
+    found += [] if found else _of_values(folder, network, files)
     if not found and network.has("frames") and not hasattr(network.frames, "encode"):
         frames, path = network.frames, _file_of(folder, network, "frames")
         found += checks.of_layouts(path, frames.LAYOUTS, frames.KIND_BITS, fields.FRAME)
         kinds = {kind for kind, _name, _fields in frames.LAYOUTS}
-        for source in files:
-            found += checks.of_kinds(source, kinds)
+        found += checks.of_kinds(files, kinds)
     return found
 
 
-def _of_values(place: Path, network: Any, files: list[Path]) -> list[checks.Finding]:
+def _of_values(folder: Path, network: Any, files: list[Path]) -> list[checks.Finding]:
     """What values and names there are that the declarations have no room for."""
-    fields = network.fields
+    fields, place = network.fields, _file_of(folder, network, "fields")
     usual = [(name, getattr(fields, name, {})) for name in ("DEFAULTS", "EXPLORED")]
     found: list[checks.Finding] = checks.of_usual(place, usual, fields.PARAMS)
     if network.medium == "channel":
         found += checks.of_taken(place, fields.PARAMS, CHANNEL_OWN)
     declared = {field[0] for field in (*fields.STATE, *fields.FRAME, *fields.PARAMS)}
-    for source in files:
+    rules = [_file_of(folder, network, "invariants")] if network.has("invariants") else []
+    for source in [*files, *rules]:
         found += checks.of_uses(source, declared, network.protocol.TIMERS)
     return found
 

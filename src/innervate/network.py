@@ -41,9 +41,11 @@ class Network:
 
     Attributes:
         folder: that it was loaded from, if it is not installed.
+        in_plain: what is wrong with it for other than plain runs.
     """
 
     folder: Path | None = None
+    in_plain: str = ""
 
     def __init__(
         self, name: str, package: str, rank: int = 100, link_type: int = 162, key_kind: int = 255,
@@ -270,8 +272,10 @@ def of_folder(folder: Path) -> Network:
         NetworkError: it is none, or the first thing that is wrong with it.
     """
     network = read(folder)
-    for one in folders.findings(folder.resolve(), network) if network.has("protocol") else []:
+    found = folders.findings(folder.resolve(), network) if network.has("protocol") else []
+    for one in folders.refused(found):
         raise NetworkError(str(one))
+    network.in_plain = "".join(map(str, found[:1]))
     return network
 
 

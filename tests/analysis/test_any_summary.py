@@ -12,13 +12,13 @@ from innervate.sim.counts import Counts
 
 def counts(lost=0, dropped=0, **more):
     """Of three nodes that are well, unless something is said."""
-    given = {"nodes": 3, "sent": 10, "arrived": 9, "offered": 4, "delivered": 3} | more
+    given = {"nodes": 3, "sent": 10, "arrived": 9, "offered": 4, "delivered": 4} | more
     return Counts(**given, lost_by={"noise": lost, "cut": 0}, dropped_by={"no_way": dropped})
 
 
 CASES = [
     (counts(), 0, NO_DATA, "Nothing has happened yet."),
-    (counts(), 1, OK, "3 of 4 messages are delivered, none is lost."),
+    (counts(), 1, OK, "All 4 messages are delivered, none of 10 frames is lost."),
     (counts(offered=0, delivered=0), 1, OK, "None of 10 frames is lost."),
     (counts(off=(0, 1, 2)), 1, DOWN, "All 3 nodes are off."),
     (counts(off=(0, 2)), 1, DEGRADED, "2 of 3 nodes are off."),
@@ -26,13 +26,19 @@ CASES = [
     (counts(lost=1), 1, DEGRADED, "1 of 10 frames is lost."),
     (counts(lost=2, arrived=1), 1, DEGRADED, "2 of 10 frames are lost."),
     (counts(lost=2, arrived=0), 1, DOWN, "None of 10 frames arrived."),
-    (counts(arrived=0), 1, OK, "3 of 4 messages are delivered, none is lost."),
+    (counts(arrived=0), 1, OK, "All 4 messages are delivered, none of 10 frames is lost."),
+    (counts(delivered=5), 1, OK, "4 messages are delivered 5 times, none of 10 frames is lost."),
+    (counts(delivered=3), 1, DEGRADED, "1 of 4 messages is not delivered."),
+    (counts(delivered=1), 1, DEGRADED, "3 of 4 messages are not delivered."),
+    (counts(delivered=2, dropped=1), 1, DEGRADED,
+     "1 of 4 messages is given up, 1 of 4 messages is not delivered."),
+    (counts(delivered=3, dropped=1), 1, DEGRADED, "1 of 4 messages is given up."),
     (counts(dropped=1), 1, DEGRADED, "1 of 4 messages is given up."),
     (counts(dropped=1, delivered=0), 1, DOWN, "None of 4 messages was delivered."),
-    (counts(delivered=0), 1, OK, "0 of 4 messages are delivered, none is lost."),
+    (counts(delivered=0), 1, DEGRADED, "4 of 4 messages are not delivered."),
     (counts(dropped=2, lost=3, off=(1,)), 1, DEGRADED,
      "2 of 4 messages are given up, 1 of 3 nodes is off, 3 of 10 frames are lost."),
-    (counts(nodes=0), 1, OK, "3 of 4 messages are delivered, none is lost."),
+    (counts(nodes=0), 1, OK, "All 4 messages are delivered, none of 10 frames is lost."),
     (counts(sent=12_345, lost=1_000), 1, DEGRADED, "1,000 of 12,345 frames are lost."),
 ]  # fmt: skip
 
@@ -42,6 +48,16 @@ def test_a_headline_names_the_worst_that_there_is(counted, handled, level, text)
     found = headline(counted, handled)
     assert found[:2] == (level, text)
     assert found.nodes == (counted.off if level in (DEGRADED, DOWN) else ())
+
+
+def test_while_a_run_goes_on_what_is_not_delivered_is_under_way():
+    some, none = counts(delivered=3), counts(delivered=4)
+    assert headline(some, 1, goes_on=True)[:2] == (
+        OK, "1 of 4 messages is under way, none of 10 frames is lost."
+    )  # fmt: skip
+    assert headline(none, 1, goes_on=True) == headline(none, 1)
+    lost = counts(delivered=3, lost=1)
+    assert headline(lost, 1, goes_on=True)[:2] == (DEGRADED, "1 of 10 frames is lost.")
 
 
 def test_who_is_silent_is_counted():
@@ -90,7 +106,7 @@ def test_a_summary_says_what_was_counted():
     assert (made["nodes"], made["off"]) == (3, 1)
     assert made["frames"] == {"sent": 12, "arrived": 9, "lost": 1, "in_flight": 2,
                               "lost_by": {"noise": 1, "cut": 0}}  # fmt: skip
-    assert made["messages"] == {"sent": 4, "delivered": 3, "dropped_by": {"no_way": 0},
+    assert made["messages"] == {"sent": 4, "delivered": 4, "dropped_by": {"no_way": 0},
                                 "latency_ms": {"p50": 2.0, "p99": 2.0, "max": 2.0}}  # fmt: skip
     assert made["reports"] == {"2": 1, "4": 2}
     assert made["headline"]["level"] == DEGRADED

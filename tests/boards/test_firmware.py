@@ -10,7 +10,7 @@ from boards.firmware.native import SANITIZED, Native, compiler, run
 from boards.roles import roles
 from innervate.firmware.emit import Library
 
-CALLS = {"skin": 6000, "csma": 3000, "radio": 3000, "mesh": 1200}
+CALLS = {"skin": 2000, "csma": 1000, "radio": 1000, "mesh": 600}  # the rest: test_million.py
 
 
 @pytest.fixture(autouse=True)
@@ -26,31 +26,13 @@ def test_c_does_call_by_call_what_python_does(name):
     assert replayed + drawn == CALLS[name]
 
 
-@pytest.mark.parametrize("name", ["skin", "radio"])
-def test_emulated_processors_do_what_this_one_does(name):
-    for tool in ("arm-none-eabi-gcc", "riscv64-unknown-elf-gcc", "qemu-system-arm",
-                 "qemu-system-riscv32"):  # fmt: skip
-        if shutil.which(tool) is None:
-            pytest.skip(f"{tool} is not installed")
-    found = parity.emulate(roles()[name], 600, 3)
-    assert set(found) == {"here", "cortex-m0", "cortex-m3", "risc-v"}
-    assert {one.mark for one in found.values()} == {found["here"].mark}
-    assert sum(found["risc-v"].calls.values()) == 600
-
-
 def test_another_hash_is_found(monkeypatch):
     play = parity.qemu.on_host
-    monkeypatch.setattr(parity.qemu, "on_host", lambda *given: play(*given)._replace(mark=7))
+    monkeypatch.setattr(parity.qemu, "on_host", lambda *given: play(*given)._replace(marks=[7, 8]))
     if shutil.which("qemu-system-arm") is None or shutil.which("arm-none-eabi-gcc") is None:
         pytest.skip("arm-none-eabi-gcc or qemu-system-arm is not installed")
-    with pytest.raises(BoardFailed, match="cortex-m0: hash"):
+    with pytest.raises(BoardFailed, match="here: hashes 00000007 00000008, Python "):
         parity.emulate(roles()["csma"], 50, 1)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", CALLS)
-def test_a_hundred_thousand_calls_on_emulated_processors(name):
-    assert len(parity.emulate(roles()[name], 100_000, 2)) == 4
 
 
 @pytest.mark.slow

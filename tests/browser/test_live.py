@@ -7,14 +7,18 @@ import signal
 import socket
 import subprocess
 import sys
+import tomllib
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import pytest
 
 from docs.patch import scenario
+from innervate import scenario as scenarios
 from innervate.live import status
+from innervate.networks.skin.sim.simulate import simulation
 from tests.browser.servers import WAIT_MS, click, expect, serving
+from tests.firmware.test_patch_of_twelve import hops
 
 pytestmark = pytest.mark.slow
 RING = Path(__file__).parents[1] / "networks" / "tokenring"
@@ -112,21 +116,45 @@ def test_boards_of_the_quick_start_heal_on_the_page(look, short, monkeypatch):
         assert status.ask_one(here / "c0.sock", {"do": "status"})["dist"] == 4  # the long way round
         click(page, "c0 - pc.0")
         expect(page.locator("#selected-facts")).to_have_text("link, up")
-        board = pid_of("c4.toml", here)
-        os.kill(board, signal.SIGKILL)
+        os.kill(pid_of("c4.toml", here), signal.SIGKILL)
         expect(page.locator("#log")).to_contain_text("c4 does not answer any more")
         expect(page.locator("#level")).to_have_text("! degraded")
         expect(page.locator("#headline")).to_contain_text("1 of 6 cells")
-        node = subprocess.Popen(
-            [sys.executable, "-m", "innervate.cli", "live", "node", "c4.toml", "--firmware",
-             image_of(here)], cwd=here, stderr=subprocess.DEVNULL,
-        )  # fmt: skip
-        try:
+        with node(here, "c4.toml", "--firmware", image_of(here)):
             expect(page.locator("#headline")).to_have_text(well, timeout=3 * WAIT_MS)
             expect(page.locator("#unconnected output")).to_have_text("0")
-        finally:
-            node.terminate()
-            node.wait(timeout=20)
+            os.kill(pid_of("pc.toml", here), signal.SIGKILL)
+            expect(page.locator("#log")).to_contain_text("pc does not answer any more")
+            expect(page.locator("#headline")).to_contain_text("no cell has a way to it")
+            with node(here, "pc.toml"):
+                expect(page.locator("#headline")).to_have_text(well, timeout=3 * WAIT_MS)
+                expect(page.locator("#unconnected output")).to_have_text("0")
+                assert [dist_of(here, number) for number in range(6)] == pc_restarted()
+
+
+@contextmanager
+def node(here, *words):
+    """One node of a network that is started again."""
+    command = [sys.executable, "-m", "innervate.cli", "live", "node", *words]
+    process = subprocess.Popen(command, cwd=here, stderr=subprocess.DEVNULL)
+    try:
+        yield
+    finally:
+        process.terminate()
+        process.wait(timeout=20)
+
+
+def dist_of(here, number):
+    """How far a cell is from the PC."""
+    return status.ask_one(here / f"c{number}.sock", {"do": "status"})["dist"]
+
+
+def pc_restarted():
+    """The same of all cells in a simulation of this patch whose PC restarts."""
+    given = {**tomllib.loads(scenario()), "event": [{"at_s": 5, "action": "restart", "pc": True}]}
+    running = simulation(scenarios.plan(scenarios.from_dict(given)), plain=True)
+    running.advance(20_000_000, 1 << 30)
+    return hops(running)
 
 
 def test_a_node_is_killed_and_started_and_the_page_finds_its_server_again(look, short, monkeypatch):
@@ -142,24 +170,18 @@ def test_a_node_is_killed_and_started_and_the_page_finds_its_server_again(look, 
             expect(page.locator("#selected-facts")).to_contain_text("does not answer")
             expect(page.locator("#selected-do button", has_text="Let back")).to_have_count(0)
         expect(page.locator("#lost")).to_contain_text("lost. Trying again")
-        again = [sys.executable, "-m", "innervate.cli", "live", "node", "n3.toml"]
-        node = subprocess.Popen(again, cwd=here, stderr=subprocess.DEVNULL)
-        try:
-            with serving("live", port=port):
-                expect(page.locator("#connection")).to_have_text("connected")
-                expect(page.locator("#selected-facts")).not_to_contain_text("does not answer")
-                well = "All 5 nodes have a way to the gateway."  # else it is n3 that recovers
-                expect(page.locator("#headline")).to_have_text(well, timeout=3 * WAIT_MS)
-                click(page, "n2 - n4")
-                expect(page.locator("#unconnected output")).to_have_text("1")
-                expect(page.locator("#recovery .more")).to_contain_text("n2 - n4")
-                expect(page.locator("#recovery .more")).to_contain_text("1 cut off")
-                click(page, "n2 - n4")
-                expect(page.locator("#headline")).to_have_text(well, timeout=3 * WAIT_MS)
-                expect(page.locator("#unconnected output")).to_have_text("0")
-        finally:
-            node.terminate()
-            node.wait(timeout=20)
+        with node(here, "n3.toml"), serving("live", port=port):
+            expect(page.locator("#connection")).to_have_text("connected")
+            expect(page.locator("#selected-facts")).not_to_contain_text("does not answer")
+            well = "All 5 nodes have a way to the gateway."  # else it is n3 that recovers
+            expect(page.locator("#headline")).to_have_text(well, timeout=3 * WAIT_MS)
+            click(page, "n2 - n4")
+            expect(page.locator("#unconnected output")).to_have_text("1")
+            expect(page.locator("#recovery .more")).to_contain_text("n2 - n4")
+            expect(page.locator("#recovery .more")).to_contain_text("1 cut off")
+            click(page, "n2 - n4")
+            expect(page.locator("#headline")).to_have_text(well, timeout=3 * WAIT_MS)
+            expect(page.locator("#unconnected output")).to_have_text("0")
 
 
 def test_what_was_not_clicked_is_seen_and_that_nobody_answers_is_said(look, short, monkeypatch):

@@ -23,6 +23,8 @@ def test_a_mutant_that_is_missed_is_1(monkeypatch, capsys, by, code):
     assert said == [f"m{i}: {f'{one} (line)' if one else 'NOT CAUGHT'}" for i, one in enumerate(by)]
     assert verifying._mutants("skin", True) == code
     assert [one["by"] for one in json.loads(capsys.readouterr().out)] == list(by)
+    assert verifying._mutants("skin", False, count=1) == (0 if by[0] else 1)
+    assert capsys.readouterr().out.splitlines() == said[:1]
 
 
 def failed(*reasons):

@@ -29,7 +29,6 @@ ROOT = HERE.parents[1]
 GIVEN = tomllib.loads((HERE / "blocks.toml").read_text(encoding="utf-8"))
 IN_PYTHON = GIVEN["elsewhere"].pop("python")
 OWN_TEST = {"docs/api.md", "docs/tutorial.md", "docs/own-network.md"}
-SLOW = {"docs/live.md"}  # a dozen processes
 BLOCK = re.compile(r"^```(console|python)\n(.*?)^```", re.DOTALL | re.MULTILINE)
 TEXTS = {
     str(path.relative_to(ROOT)): path.read_text(encoding="utf-8")
@@ -69,11 +68,11 @@ def is_left_out(page, language, text):
     return told("elsewhere", page, text) is not None
 
 
-def played(page, capfd, slow=False):
-    """Run what is to be run of a page, but what is slow; or that alone."""
+def played(page, capfd):
+    """Run what is to be run of a page."""
     names = {"__name__": "page", "__file__": page}
     for language, text, said in steps(page):
-        if is_left_out(page, language, text) or (told("slow", page, text) is not None) != slow:
+        if is_left_out(page, language, text):
             continue
         if language == "python":
             for old, new in GIVEN["python"].items():
@@ -88,7 +87,7 @@ def played(page, capfd, slow=False):
 
 def carry_out(page, command, said, capfd):
     """Run a command, smaller where blocks.toml says so; what the page shows of it is said."""
-    more = told("words", page, command) or told("slow", page, command) or ""
+    more = told("words", page, command) or ""
     words = with_words(shlex.split(command), shlex.split(more))
     assert words[0] == "innervate", f"{command}: say in blocks.toml who runs it"
     code = main(words[1:])
@@ -164,19 +163,11 @@ BEFORE = {
 }
 
 
-@pytest.mark.parametrize(
-    "page", [pytest.param(page, marks=[pytest.mark.slow] * (page in SLOW)) for page in PAGES]
-)
+@pytest.mark.parametrize("page", PAGES)
 def test_every_block_of_the_page(page, alone, monkeypatch, capfd):
     shutil.copytree(ROOT / "examples", "examples")
     with BEFORE.get(page, nothing)(monkeypatch):
         played(page, capfd)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("page", PAGES)
-def test_slow_blocks_of_the_page(page, alone, capfd):
-    played(page, capfd, slow=True)
 
 
 def test_what_is_left_out_is_on_a_page_and_run_where_it_says():

@@ -38,8 +38,8 @@ def compared(monkeypatch):
     job = Job("toy", "T", "C", lambda quick: [case], lambda all_: iter(()), ("ms", "ms"))
     monkeypatch.setattr(jobs, "entries", lambda name: [quick, slow])
     ms = {quick: [1.0 * n for n in range(10)], slow: [3.0 + n for n in range(9)] + [None]}
-    values = {jobs.point(case, one).key: {"ms": ms[one], "loops": [0] * 9 + [2]}
-              for one in (quick, slow)}  # fmt: skip
+    values = {run.key: {"ms": late, "loops": 2 * (late == ms[one][-1])} for one in (quick, slow)
+              for run, late in zip(jobs.runs(case, one), ms[one], strict=True)}  # fmt: skip
     return Compared(job, Measured(values, True))
 
 
@@ -71,9 +71,12 @@ def test_a_claim_holds_where_every_seed_says_so(compared):
 
 @pytest.mark.parametrize(
     ("show", "values", "said"),
-    [(jobs.MEAN, [1, 3], "2.0 (-10.7 to 14.7)"), (jobs.MOST, [1, 3], "3.0"),
+    [(jobs.MEAN, [1, 3], "2.0 (-10.7 to 14.7)"), (jobs.PERCENT, [1, 3], "2.0 (0.0 to 14.7)"),
+     (jobs.PERCENT, [97, 99], "98.0 (85.3 to 100.0)"),
+     (jobs.MOST, [1, 3], "3.0"),
      (jobs.SHARE, [0, 1, 2, 0], "2 (0.15 to 0.85)"), (jobs.MEDIAN, [], "-"),
-     (jobs.MEDIAN, [inf, inf], "never"), (jobs.MEAN, [inf, inf], "never")],
+     (jobs.MEDIAN, [inf, inf], "never"), (jobs.MEDIAN, [1, inf, inf], "never in 2 of 3"),
+     (jobs.MEAN, [inf, inf], "never")],
 )  # fmt: skip
 def test_cells(show, values, said):
     assert jobs.cell(values, Column("x", "x", show)) == said

@@ -1,6 +1,7 @@
 """Running nodes on a page: asked over their sockets, cut by their drivers."""
 
 import asyncio
+import re
 import socket
 import tempfile
 import threading
@@ -108,7 +109,7 @@ def test_a_node_that_stops_is_seen_and_comes_back():
                 await page.until(lambda: page.state.get("node_up") == [1, 1, 1, 1])
                 aside = paths[2].with_suffix(".aside")
                 paths[2].rename(aside)
-                source._poller._lines[2].drop()
+                source._poller._lines[2].sock.shutdown(socket.SHUT_RDWR)
                 await page.until(lambda: page.state["node_up"] == [1, 1, 0, 1])
                 assert page.state["link_up"][1:3] != [1, 1]
                 await page.until(lambda: "n2 does not answer any more" in page.text())
@@ -219,6 +220,20 @@ def test_where_nobody_is_left_nothing_has_recovered(monkeypatch, told, left, nob
     kept = [text for text in said if "kept its way" in text]
     assert kept == ([] if nobody else ["every node that answers kept its way, as they say"])
     assert (source.fields()["headline"]["level"] == "degraded") != nobody
+
+
+def test_who_had_no_way_while_the_pc_was_gone_has_not_kept_it(monkeypatch):
+    """It answers again when everybody has found it already."""
+    cells = {i: LINE[i] for i in (0, 1)}
+    answers = [LINE, cells, cells, cells, LINE]
+    monkeypatch.setattr(Poller, "ask_all", lambda self, request: dict(answers.pop(0)))
+    source = Live([Path("a"), Path("b"), Path("c")])
+    while answers:
+        source._poll()
+        source._look()
+    said = [one.what["text"] for one in source.history.after("log", 0, source.history.newest, 99)]
+    assert re.fullmatch("every node has a way again after .* ms, as they say", said[-1])
+    assert source.fields()["recovery"]["recovered_ms"] > 0
 
 
 def with_processes(plan, cables, do):

@@ -164,15 +164,18 @@ def latency_ms(deliveries: Any) -> Percentiles:
     return {"p50": float(half), "p99": float(nearly), "max": float(most)}
 
 
-def headline(counts: Counts, handled: int) -> Headline:
+def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
     """The state of any network, from what its medium counted.
 
-    degraded: frames or messages were lost, or a node is off. down: all nodes are off, or frames
-    were sent and none arrived. no data: nothing has happened yet.
+    degraded: frames were lost, messages were given up or not delivered, or a node is off. down: all
+    nodes are off, or frames were sent and none arrived. no data: nothing has happened yet.
+    A message may be for many: where more are delivered than were given, nobody knows of whom some
+    are missing.
 
     Args:
         counts: of the medium.
         handled: handler calls.
+        goes_on: messages that are not delivered may still come.
     """
     if not handled:
         return Headline(NO_DATA, "Nothing has happened yet.")
@@ -184,18 +187,28 @@ def headline(counts: Counts, handled: int) -> Headline:
         return Headline(DOWN, f"None of {counts.sent:,} frames arrived.", off)
     if dropped and not counts.delivered:
         return Headline(DOWN, f"None of {counts.offered:,} messages was delivered.", off)
+    missing = max(counts.offered - counts.delivered - dropped, 0)
     wrong = [
         _part(dropped, counts.offered, "message", "given up"),
+        _part(0 if goes_on else missing, counts.offered, "message", "not delivered"),
         _part(len(off), nodes, "node", "off"),
         _part(lost, counts.sent, "frame", "lost"),
     ]
     said = ", ".join(filter(None, wrong))
     if said:
         return Headline(DEGRADED, f"{said}.", off)
+    return Headline(OK, _well(counts, missing))
+
+
+def _well(counts: Counts, missing: int) -> str:
+    kept = f"none of {counts.sent:,} frames is lost."
+    if counts.delivered > counts.offered > 0:
+        return f"{counts.offered:,} messages are delivered {counts.delivered:,} times, {kept}"
+    if missing:
+        return f"{_part(missing, counts.offered, 'message', 'under way')}, {kept}"
     if counts.offered:
-        return Headline(OK, f"{counts.delivered:,} of {counts.offered:,} messages are delivered, "
-                            "none is lost.")  # fmt: skip
-    return Headline(OK, f"None of {counts.sent:,} frames is lost.")
+        return f"All {counts.offered:,} messages are delivered, {kept}"
+    return kept.capitalize()
 
 
 def _part(count: int, total: int, what: str, how: str) -> str:

@@ -26,9 +26,11 @@ from innervate.cli.files_app import (
 from innervate.cli.live_app import live_app
 from innervate.cli.options import (
     PAGE_DEFAULTS,
+    RUN_DEFAULTS,
     SWEEP_DEFAULTS,
     VERIFY_DEFAULTS,
     PageOptions,
+    RunOptions,
     SizeOptions,
     SweepOptions,
     VerifyOptions,
@@ -85,7 +87,7 @@ def run(
     seed: Seed = None,
     out: Path | None = None,
     json: Annotated[bool, Parameter(negative="")] = False,
-    report: bool = True,
+    how: Annotated[RunOptions, Parameter(name="*")] = RUN_DEFAULTS,
 ) -> int:
     """Run a scenario; writes a folder with summary, tables, provenance and report.
 
@@ -101,12 +103,10 @@ def run(
         Folder to write; runs/NAME-SEED if left out.
     json
         Print the summary as JSON and nothing else.
-    report
-        Write report.html as well.
     """
     from innervate.cli import running as command
 
-    return command.run(file, set_ or [], seed, out, json, report)
+    return command.run(file, set_ or [], seed, out, json, how)
 
 
 @app.command

@@ -35,6 +35,26 @@ OWN_DEFAULTS = OwnOptions()
 
 
 @dataclass(frozen=True)
+class RunOptions:
+    """How a scenario runs.
+
+    Parameters
+    ----------
+    report
+        Write report.html as well.
+    plain
+        Uncompiled, event by event, slow: the same run, for debugging. A network of your own may
+        call print(...) and breakpoint() then.
+    """
+
+    report: bool = True
+    plain: Flag = False
+
+
+RUN_DEFAULTS = RunOptions()
+
+
+@dataclass(frozen=True)
 class SweepOptions:
     """What is varied, how often it runs, and where.
 
@@ -346,7 +366,7 @@ class VerifyOptions:
     seed
         With --random the first network's number, with --walks the walks'.
     count
-        With --random end after so many networks.
+        With --random end after so many networks, with --mutants after so many mutants.
     reduce
         Forget what of a state can no longer matter, and leave out states that others cover.
     plain

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 from innervate.cli import errors
 from innervate.cli.progress import Progress, is_compiled
+from innervate.folders import for_plain
 from innervate.network import networks
 
 if TYPE_CHECKING:
+    from innervate.cli.options import RunOptions
     from innervate.running import Run
 
 
@@ -20,27 +22,33 @@ def run(
     seed: int | None,
     out: Path | None,
     as_json: bool,
-    report: bool,
+    how: RunOptions,
 ) -> int:
     """Run a scenario, write its folder, say what came of it."""
-    done = simulate(file, sets, seed, out, as_json)
-    folder = done.write(out, report=report)
+    done = simulate(file, sets, seed, out, as_json, how.plain)
+    folder = done.write(out, report=how.report)
     if as_json:
         print(json.dumps(done.summary, indent=2, allow_nan=False))
     else:
         for line in networks()[done.plan.kind].summary_lines(done):
             print(line)
-        print(f"Written: {folder / 'report.html' if report else folder}")
+        print(f"Written: {folder / 'report.html' if how.report else folder}")
     return errors.INTERRUPTED if done.interrupted else 0
 
 
 def simulate(
-    file: str, sets: list[str], seed: int | None, out: Path | None, quiet: bool = False
+    file: str,
+    sets: list[str],
+    seed: int | None,
+    out: Path | None,
+    quiet: bool = False,
+    plain: bool = False,
 ) -> Run:
     """Run a scenario behind a progress display; what is wrong with it is found out before."""
     from innervate import scenario as scenarios
 
-    loaded = scenarios.load(file, sets, seed)
+    with for_plain(plain):
+        loaded = scenarios.load(file, sets, seed)
     plan = scenarios.plan(loaded)  # the simulator takes a second to load: mistakes first
     from innervate import running as room
     from innervate.running import folder as folders
@@ -51,5 +59,7 @@ def simulate(
         if out != taken:
             errors.say(f"{taken} holds a run of other settings, which is kept; writing {out}")
     folders.check_target(out)
+    if plain:  # without a display, which would write over a debugger's lines
+        return room.run(loaded, progress=lambda now_us, duration_us: None, plain=True)
     with Progress(is_compiled(plan), quiet) as progress:
         return room.run(loaded, progress=progress)

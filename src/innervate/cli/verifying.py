@@ -26,7 +26,7 @@ def verify(system: str, options: VerifyOptions, as_json: bool, out: Path | None)
     if options.random:
         return _random(options.seed, options.count, as_json, out)
     if options.mutants:
-        return _mutants(network.name, as_json)
+        return _mutants(network.name, as_json, options.count)
     return _explore(network, options, as_json, out)
 
 
@@ -104,11 +104,11 @@ def _hunts(system: str) -> list[tuple[Any, Any]]:
     return [(mutant, room.hunt) for room in rooms for mutant in room.MUTANTS]
 
 
-def _mutants(system: str, as_json: bool) -> int:
+def _mutants(system: str, as_json: bool, count: int = 0) -> int:
     """Try the explorer on copies of the protocol with a mistake in each; 1 if one is missed."""
     from innervate.kernel.stop import Stop
 
-    caught, hunts = [], _hunts(system)
+    caught, hunts = [], _hunts(system)[: count or None]
     with Stop() as stop, Display(as_json) as display:
         for number, (mutant, hunt) in enumerate(hunts):
             display.show(mutant.name, number, len(hunts), None)

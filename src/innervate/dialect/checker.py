@@ -7,6 +7,7 @@ import ast
 
 PACKAGE = "innervate.dialect"
 BUILTINS = {"abs", "max", "min", "range"}
+DEBUGGING = {"breakpoint", "print"}  # may be called in plain runs
 
 # Every kind of syntax that the dialect has; whatever is not here is refused by its name.
 PLAIN = (
@@ -55,12 +56,15 @@ INSTEAD = {
 
 
 class Broken(str):
-    """A rule that is broken, as "line: what"; `line` and `what` apart, too."""
+    """A rule that is broken, as "line: what"; `line` and `what` apart, too.
 
-    def __new__(cls, line, what):
+    `in_plain`: for plain runs it is none.
+    """
+
+    def __new__(cls, line, what, in_plain=False):
         """A rule broken at a line."""
         made = super().__new__(cls, f"{line}: {what}")
-        made.line, made.what = line, what
+        made.line, made.what, made.in_plain = line, what, in_plain
         return made
 
 
@@ -141,7 +145,7 @@ class Checker:
         """Everything that the source breaks."""
         if ast.get_docstring(self.tree) is None:
             self.complain(self.tree, "no module docstring; begin the file with one line of it")
-        for node in ast.walk(self.tree):
+        for node in self.walk(self.tree):
             special = getattr(self, "check_" + type(node).__name__, None)
             if special:
                 special(node)
@@ -153,6 +157,17 @@ class Checker:
             self.check_top(node)
         self.check_recursion()
         return self.broken
+
+    def walk(self, node):
+        """All nodes but those inside calls that a person debugs with, which are noted."""
+        waiting = [node]
+        for one in waiting:
+            if isinstance(one, ast.Call) and getattr(one.func, "id", "") in DEBUGGING - self.known:
+                what = f"calls {one.func.id}; it may stay for plain runs: run --plain"
+                self.broken.append(Broken(one.lineno, what, in_plain=True))
+            else:
+                waiting += ast.iter_child_nodes(one)
+                yield one
 
     def check_top(self, node):
         """A statement at the top of the file."""

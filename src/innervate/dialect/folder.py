@@ -26,12 +26,15 @@ MAY = {"on_sent": "(state, params, now, ok, out)"}  # that a protocol need not h
 
 
 class Finding:
-    """One thing that is wrong: `path`, `line` from 1, `text`; as a string in one line."""
+    """One thing that is wrong: `path`, `line` from 1, `text`; as a string in one line.
 
-    __slots__ = ("line", "path", "text")
+    `in_plain`: in plain runs it is not.
+    """
 
-    def __init__(self, path, line, text):
-        self.path, self.line, self.text = str(path), line, text
+    __slots__ = ("in_plain", "line", "path", "text")
+
+    def __init__(self, path, line, text, in_plain=False):
+        self.path, self.line, self.text, self.in_plain = str(path), line, text, in_plain
 
     def __str__(self):
         return f"{self.path}:{self.line}: {self.text}"
@@ -53,7 +56,8 @@ def of_source(path, known, home, handlers):
         return [Finding(path, error.lineno or 1, f"is no Python: {error.msg}")]
     except (OSError, UnicodeDecodeError) as error:
         return [Finding(path, 1, f"cannot be read: {error}")]
-    found = [Finding(path, one.line, one.what) for one in broken_rules(text, known, home)]
+    found = [Finding(path, one.line, one.what, one.in_plain)
+             for one in broken_rules(text, known, home)]  # fmt: skip
     there = {function.name: function for function in functions_of(tree)}
     for name, arguments in (handlers | MAY if handlers else {}).items():
         if name not in there and name in MAY:
@@ -63,7 +67,7 @@ def of_source(path, known, home, handlers):
         elif len(there[name].args.args) != arguments.count(",") + 1:
             what = f"{name} takes {len(there[name].args.args)} arguments; it is {name}{arguments}"
             found.append(Finding(path, there[name].lineno, what))
-    if handlers and "TIMERS" not in constants_of(tree):
+    if handlers and "TIMERS" not in dict(_assigned(tree)):
         found.append(Finding(path, 1, "has no TIMERS; add TIMERS = 1, how many timers a node has"))
     return found
 
@@ -83,13 +87,14 @@ def of_rules(path):
 def constants_of(tree):
     """Whole numbers that a file names, with the names it has for them."""
     found = {}
-    for node in tree.body:
-        if not isinstance(node, ast.Assign):
-            continue
-        for target in node.targets:
-            values = _pairs(target, node.value)
-            found.update({name: _number(value, found) for name, value in values})
+    for name, value in _assigned(tree):
+        found[name] = _number(value, found)
     return {name: value for name, value in found.items() if value is not None}
+
+
+def _assigned(tree):
+    return [pair for node in tree.body if isinstance(node, ast.Assign)
+            for target in node.targets for pair in _pairs(target, node.value)]  # fmt: skip
 
 
 def _pairs(target, value):
@@ -243,29 +248,50 @@ def _wrong_layout(declared, field, many, bits, is_signed):
     return ""
 
 
-def of_kinds(path, kinds):
+def of_kinds(paths, kinds):
     """Frames that a protocol sends of a kind that has no layout.
 
     Args:
-        path: a file of the protocol.
+        paths: the files of the protocol.
         kinds: the numbers of those that have one.
     """
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    constants, found = constants_of(tree), []
-    for function in functions_of(tree):
-        sent = {part.targets[0].id for part in ast.walk(function)
-                if isinstance(part, ast.Assign) and isinstance(part.targets[0], ast.Name)
-                and "send" in _called(part.value)}  # fmt: skip
+    constants, functions = {}, []
+    for path in paths:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        constants |= constants_of(tree)
+        functions += [(path, function) for function in functions_of(tree)]
+    sent, found = _sent_names([function for _, function in functions]), []
+    for path, function in functions:
+        handed = [one.arg for one in function.args.args]
         for part in ast.walk(function):
             target = part.targets[0] if isinstance(part, ast.Assign) else None
             if not (isinstance(target, ast.Attribute) and target.attr == "kind"):
                 continue
-            value = _number(part.value, constants)
-            of_sent = isinstance(target.value, ast.Name) and target.value.id in sent
-            if of_sent and value is not None and value not in kinds:
+            value, frame = _number(part.value, constants), getattr(target.value, "id", "")
+            is_blank = value == 0 and frame in handed  # whoever handed it on says more
+            if frame in sent[function.name] and value not in {None, *kinds} and not is_blank:
                 what = f"a frame of kind {value} is sent, and has no layout; add one to LAYOUTS"
                 found.append(Finding(path, part.lineno, what))
     return found
+
+
+def _sent_names(functions):
+    """By function, what it calls frames that are sent: its own, and those that it is handed."""
+    sent = {
+        function.name: {part.targets[0].id for part in ast.walk(function)
+                        if isinstance(part, ast.Assign) and isinstance(part.targets[0], ast.Name)
+                        and "send" in _called(part.value)}
+        for function in functions
+    }  # fmt: skip
+    arguments = {function.name: [one.arg for one in function.args.args] for function in functions}
+    calls = [(function.name, call) for function in functions for call in ast.walk(function)
+             if getattr(getattr(call, "func", None), "id", "") in arguments]  # fmt: skip
+    for _ in functions:  # as far as a frame can be handed on
+        for name, call in calls:
+            for argument, given in zip(arguments[call.func.id], call.args, strict=False):
+                if getattr(given, "id", "") in sent[name] or "send" in _called(given):
+                    sent[call.func.id].add(argument)
+    return sent
 
 
 def of_uses(path, declared, timers):

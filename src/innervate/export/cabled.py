@@ -93,7 +93,10 @@ def graph(plan: Any) -> Graph:
     """Nodes, with their places if they have any, and cables; a plan without cables has none."""
     if not hasattr(plan, "graph"):
         pairs: list[Any] = [(f"node {a}", f"node {b}", {}) for a, b in getattr(plan, "good", ())]
-        return Graph(False, [(f"node {i}", {"number": i}) for i in range(plan.nodes)], pairs)
+        found: list[Any] = [(f"node {i}", {"number": i}) for i in range(plan.nodes)]
+        for (_, about), (x, y) in zip(found, getattr(plan, "positions_cm", ()), strict=False):
+            about.update(x_m=x / 100, y_m=y / 100)
+        return Graph(False, found, pairs)
     made = plan.graph
     has_places = bool(made.patches or made.positions)
     places = cell_places(made) if has_places else [()] * made.cells

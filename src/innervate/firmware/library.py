@@ -75,7 +75,10 @@ def _own(network: Network) -> Role:
     missing = [part for part in ("protocol", "fields", "frames") if not network.has(part)]
     if missing:
         lacks = " and ".join(f"`{part}`" for part in missing)
-        raise FirmwareError(f"network {network.name} declares no {lacks}: C needs all three")
+        raise FirmwareError(
+            f"network {network.name} declares no {lacks}: "
+            "C is made from `protocol`, `fields` and `frames`"
+        )
     raise FirmwareError(
         f"network {network.name} has a coder of its own, `frames.encode`: give it `boards`"
     )
@@ -237,7 +240,7 @@ def write(files: Files, folder: Path) -> dict[str, int]:
     """
     named = f"{files.library.prefix}.h"
     if folder.exists() and not (folder / named).exists() and any(folder.iterdir()):
-        raise FirmwareError(f"{folder}: not empty and not made by this command; name another")
+        raise FirmwareError(f"{folder}: not empty, and holds no {named}; name another folder")
     for name, text in files.texts.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -25,6 +25,7 @@ from innervate.scenario.declared.field import Fault, Heard, sizes_of
 from innervate.topology import placement
 
 NEVER = -1
+IN_A_ROW = 10  # messages that come, one after the other: then they come again
 MONITOR = -1  # the recipient of an alarm: whoever is to know
 
 
@@ -56,10 +57,13 @@ class World:
         good: links (a < b) that are good both ways.
         air: of the radio: byte_ns, phy_bytes, turnaround_us, sense_db, capture_db.
         gateway: who is asked for, the root.
+        standby: who takes an alarm in its place, where a protocol can ask it to.
         since_us: from here on airtime counts.
         duration_us: of the run.
         faults: (when, us, KILL or REVIVE, node), in order of time.
         sent: messages, in order of time.
+        again: of what parts it is asked when their messages come again: (from when, us, and
+            until when they must have come).
     """
 
     nodes: int
@@ -72,6 +76,8 @@ class World:
     duration_us: int
     faults: list[tuple[int, int, int]] = field(default_factory=list)
     sent: list[Sent] = field(default_factory=list)
+    standby: int = NEVER
+    again: dict[str, tuple[int, int]] = field(default_factory=dict)
 
     def on_at(self, at_us: int) -> set[int]:
         """Who is switched on at a time."""
@@ -88,9 +94,9 @@ class World:
         parts = placement.components(placement.neighbours(self.nodes, links))
         return [on.intersection(part) for part in parts]
 
-    def receiver(self, one: Sent) -> int:
-        """Who a message is for, by number."""
-        return self.gateway if one.dest == MONITOR else one.dest
+    def receivers(self, one: Sent) -> tuple[int, ...]:
+        """Who a message is for, by number: one of them."""
+        return (self.gateway, self.standby) if one.dest == MONITOR else (one.dest,)
 
 
 def world_of(given: Given, seed: int) -> World:
@@ -105,7 +111,8 @@ def figures(world: World, came_us: list[int], airtime_us: int) -> dict[str, floa
 
     Of every part, by its name, the share that came, in percent, of the messages whose ends were
     joined by good links of live nodes, and what is left of 100 as "..._lost"; the latencies of all
-    of them, ms; airtime of all nodes together, in percent of the time.
+    of them, ms; airtime of all nodes together, in percent of the time; "..._again_s", when messages
+    of a part come again: IN_A_ROW of them come, and the first of those is there, None if never.
 
     Args:
         world: the world.
@@ -127,7 +134,20 @@ def figures(world: World, came_us: list[int], airtime_us: int) -> dict[str, floa
     for name, share in (("p50_ms", 50), ("p99_ms", 99)):
         found[name] = float(np.percentile(late, share, method="nearest")) if late else None
     found["airtime"] = 100 * airtime_us / (world.duration_us - world.since_us)
+    for name, span in world.again.items():
+        of_part = [came for one, came, counts in zip(world.sent, came_us, counted, strict=True)
+                   if counts and one.part == name]  # fmt: skip
+        found[f"{name}_again_s"] = _again_s(of_part, *span)
     return found
+
+
+def _again_s(came_us: list[int], since_us: int, until_us: int) -> float | None:
+    row: list[int] = []
+    for came in came_us:
+        row = [*row, came] if NEVER < came < until_us else []
+        if len(row) == IN_A_ROW:
+            return (min(row) - since_us) / 1e6
+    return None
 
 
 def _counted(world: World) -> list[bool]:
@@ -137,7 +157,7 @@ def _counted(world: World) -> list[bool]:
     found = []
     for one in world.sent:
         period = sum(at <= one.at_us for at in times) - 1
-        ends = {one.source, world.receiver(one)}
+        ends = {one.source, world.receivers(one)[0]}
         on = world.on_at(one.at_us)
         # Who asks for a monitor that has died asks in vain, and that counts.
         gone = one.dest == MONITOR and world.gateway not in on
@@ -208,6 +228,6 @@ def _came(world: World, rows: Any) -> list[int]:
     for time, node, latency in zip(rows["time"].tolist(), rows["node"].tolist(),
                                    rows["latency"].tolist(), strict=True):  # fmt: skip
         i = place[(time - latency) & MASK30]
-        if node == world.receiver(world.sent[i]) and came[i] == NEVER:
+        if node in world.receivers(world.sent[i]) and came[i] == NEVER:
             came[i] = time
     return came

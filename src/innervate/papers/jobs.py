@@ -23,6 +23,7 @@ from innervate.network import networks
 from innervate.papers.experiment import Claim, Measured, Point, Sheet, verdict
 
 MEDIAN, TAIL, MEAN, TOTAL, SHARE, MOST = "median", "tail", "mean", "total", "share", "most"
+PERCENT = "percent"
 TAIL_SHARE = 0.9
 Given = Mapping[str, Any]
 
@@ -34,7 +35,8 @@ class Column:
     Attributes:
         head: with its unit.
         name: of the number in what entries measure; None there = it never happened.
-        show: of all runs: MEDIAN, TAIL (90 % are no greater), MEAN, each with its 95 % interval;
+        show: of all runs: MEDIAN, TAIL (90 % are no greater), MEAN, PERCENT (a mean of 0 to 100),
+            each with its 95 % interval;
             TOTAL, MOST; SHARE: how many are above 0, with Wilson's interval.
         digits: behind the point.
     """
@@ -122,15 +124,18 @@ def entries(job: str) -> list[Entry]:
     return [one for part in parts() for one in getattr(part, "ENTRIES", ()) if one.job == job]
 
 
-def point(case: Case, entry: Entry) -> Point:
-    """The runs of an entry in a case."""
+def runs(case: Case, entry: Entry) -> list[Point]:
+    """The runs of an entry in a case, a point a seed: what is done stays where seeds are added."""
     what = f"{entry.job}, {case.name}: {entry.name}"
-    return Point.each(what, entry.cost_s, case.seeds, entry.measure, case.given)
+    return [Point.of(f"{what}, seed {seed}", entry.cost_s, entry.measure, case.given, seed)
+            for seed in case.seeds]  # fmt: skip
 
 
 def points(job: Job, quick: bool) -> list[Point]:
     """All runs of a job."""
-    return [point(case, entry) for case in job.cases(quick) for entry in doing(job, case)]
+    return [
+        one for case in job.cases(quick) for entry in doing(job, case) for one in runs(case, entry)
+    ]
 
 
 def doing(job: Job, case: Case) -> list[Entry]:
@@ -150,9 +155,13 @@ class Compared:
         return self.job.cases(self.got.quick)
 
     def values(self, case: Case, entry: Entry, name: str) -> list[float]:
-        """What every seed gave; what never happened is infinite."""
-        found = self.got[point(case, entry)].get(name)
-        return [] if found is None else [inf if one is None else float(one) for one in found]
+        """What every seed gave that gives it; what never happened is infinite."""
+        return list(self._by_seed(case, entry, name).values())
+
+    def _by_seed(self, case: Case, entry: Entry, name: str) -> dict[int, float]:
+        found = zip(case.seeds, (self.got[run] for run in runs(case, entry)), strict=True)
+        return {seed: inf if one[name] is None else float(one[name])
+                for seed, one in found if name in one}  # fmt: skip
 
     def cell(self, case: Case, entry: Entry, column: Column) -> str:
         """A cell of a table."""
@@ -185,8 +194,9 @@ class Compared:
         """
         holds, said = True, []
         for word, case in where.items():
-            found = [self.values(case, entry, name) for entry in pair]
-            differences = [a - b if a != b else 0.0 for a, b in zip(*found, strict=True)]
+            ours, its = (self._by_seed(case, entry, name) for entry in pair)
+            both = [(ours[seed], its[seed]) for seed in ours if seed in its]
+            differences = [a - b if a != b else 0.0 for a, b in both]
             between = median_interval(differences)
             holds = holds and between.high < 0
             fewer, more = (sum(map(is_so, differences)) for is_so in (_below_0, _above_0))
@@ -228,15 +238,21 @@ def cell(values: list[float], column: Column) -> str:
         return f"{hits} ({interval(wilson(hits, len(values)), 2)})"
     if not finite:
         return "never"
-    if column.show == MEAN:
+    if 2 * never > len(values) and column.show == MEDIAN:
+        return f"never in {never} of {len(values)}"
+    if column.show in (MEAN, PERCENT):
         found = mean_interval(finite)
+        if column.show == PERCENT:
+            found = Interval(found.value, max(found.low, 0.0), min(found.high, 100.0))
     else:
         found = quantile_interval(values, 0.5 if column.show == MEDIAN else TAIL_SHARE)
     return shown(found, digits) + (f", never in {never}" if never else "")
 
 
 def shown(found: Interval, digits: int) -> str:
-    """An estimate with its interval: "12.0 (11.2 to 12.9)"."""
+    """An estimate with its interval: "12.0 (11.2 to 12.9)"; "never" needs none."""
+    if abs(found.value) == inf and found.low == found.high:
+        return number(found.value, digits)
     return f"{number(found.value, digits)} ({interval(found, digits)})"
 
 
@@ -246,5 +262,7 @@ def interval(found: Interval, digits: int) -> str:
 
 
 def number(value: float, digits: int) -> str:
-    """A number, or that it never happened."""
+    """A number, or that it never happened; in differences also that it never did by the other."""
+    if value == -inf:
+        return "never by the other"
     return "never" if value == inf else f"{value:.{digits}f}"

@@ -306,6 +306,7 @@ def _simulated(experiment: Experiment, quick: bool) -> str:
     """The scenarios of a figure: what each set of runs differs by, and its seeds."""
     keys = [point.key for point in experiment.points(quick)]
     head = f"What was simulated: {len(keys)} sets of runs, by their settings"
+    keys = list(dict.fromkeys(re.sub(r", seed \d+$", ", a run a seed", key) for key in keys))
     return page.details(head, page.element("pre", "\n".join(keys)))
 
 

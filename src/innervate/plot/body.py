@@ -20,6 +20,7 @@ SIDE = 420.0
 DRAWN_MAX = 400  # nodes of a graph that is drawn
 NAMED_MAX = 60
 CHARTS_MAX = 8
+UNTOLD = ("number", "rng", "choice", "asked")  # a table's first column; a generator's own
 
 Places = dict[str, tuple[float, float]]
 
@@ -73,7 +74,10 @@ def graph(plan: Any) -> str:
         drawing.circle((x, y), 5, "relay")
         if len(places) <= NAMED_MAX:
             drawing.text((x, y - 9), name, "small", "middle")
-    text = f"{number_of(len(made.nodes), 'node')}, {number_of(len(made.edges), 'link')}."
+    links = number_of(len(made.edges), "link")
+    if networks()[plan.kind].medium == "channel":
+        links = "on one channel"
+    text = f"{number_of(len(made.nodes), 'node')}, {links}."
     return section("The network", pictures([figure(drawing, "", text)], "two"))
 
 
@@ -138,7 +142,7 @@ def _nodes(result: Any) -> str:
     declares = network.has("fields") and hasattr(network.fields, "STATE")
     if cells is None or not declares or len(nodes) > NAMED_MAX:
         return ""
-    shown = [field for field in network.fields.STATE if not field[1] and field[0] != "number"]
+    shown = [field for field in network.fields.STATE if not field[1] and field[0] not in UNTOLD]
     rows = [
         (escape(name), *(str(int(get(cells, node, field[0]))) for field in shown))
         for node, (name, _about) in enumerate(nodes)

@@ -29,11 +29,10 @@ def traffic_lines(summary: Mapping[str, Any]) -> list[str]:
     ]
     if messages["sent"] or messages["delivered"]:
         # A protocol that hands up what no user gave (a token, say) delivers without being sent.
-        given = f"{messages['sent']:,} sent, " if messages["sent"] else ""
-        lines.append(
-            f"Messages: {given}{messages['delivered']:,} delivered"
-            f"{_reasons(messages['dropped_by'])}"
-        )
+        sent, came = messages["sent"], messages["delivered"]
+        given = f"{sent:,} sent, " if sent else ""
+        told = f"delivered {came:,} times" if came > sent > 0 else f"{came:,} delivered"
+        lines.append(f"Messages: {given}{told}{_reasons(messages['dropped_by'])}")
     latency = messages["latency_ms"]
     if latency["p50"] is not None:
         shown = [ms_words(latency[name]) for name in ("p50", "p99", "max")]

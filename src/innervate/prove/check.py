@@ -82,8 +82,7 @@ def check(
         raise ProveError(f"{step.name}: no state is as assumed, so all would hold")
     if reach:
         found.reached, found.missed = reached(step, question, known)
-    terms = step.terms
-    if question.values(terms.any(*(terms.negated(goal.holds) for goal in step.goals))) is not None:
+    if _is_refuted(step, question):
         if first_only:
             bad = next(goal for goal in step.goals if not question.holds(goal.holds))
             found.refuted = [Refuted(bad.name, question.values_found)]
@@ -93,19 +92,27 @@ def check(
     return found
 
 
+def _is_refuted(step: Step, question: Question) -> bool:
+    """Some goal does not hold."""
+    wrong = [step.terms.negated(goal.holds) for goal in step.goals]
+    asked = wrong if step.singly else [step.terms.any(*wrong)]
+    return any(question.values(one) is not None for one in asked)
+
+
 def _all_refuted(
     step: Step, question: Question, tell: Teller | None, simple: tuple[Term, ...]
 ) -> Iterator[Refuted]:
     """All goals that do not hold, with values that refute them, as simple as they can be had."""
     for goal in step.goals:
-        wanted = [step.terms.negated(goal.holds)]
-        if question.values(*wanted) is None:
+        can_be = question.together([step.terms.negated(goal.holds), *simple])
+        if not can_be(0):
             continue
-        for wish in simple:
-            if question.holds(wish) or question.values(*wanted, wish) is not None:
-                wanted.append(wish)
-        values = question.values(*wanted)
-        assert values is not None
+        wanted = [0]
+        for place, wish in enumerate(simple, 1):
+            if question.holds(wish) or can_be(*wanted, place):
+                wanted.append(place)
+        can_be(*wanted)
+        values = question.found()
         yield Refuted(goal.name, values, tell(step, question, goal.name) if tell else [])
 
 
@@ -116,17 +123,17 @@ def reached(step: Step, question: Question, known: Iterable[Way] = ()) -> tuple[
     missed = {way for way, guard in open_.items() if guard is terms.false}
     for way in missed:
         del open_[way]
+    ways, guards = list(open_), list(open_.values())
+    can_be = question.together(guards)
     found: set[Way] = set()
-    while open_:  # one at a time: a way's formula is a small part of all of them
-        way, guard = open_.popitem()
-        if question.values(guard) is None:
-            missed.add(way)
+    for k in reversed(range(len(ways))):  # who comes so far has taken others on the way
+        if ways[k] in found:
             continue
-        also = question.which(list(open_.values()))
-        taken = {other for other, holds in zip(open_, also, strict=True) if holds}
-        found |= {way} | taken
-        for other in taken:
-            del open_[other]
+        if can_be(k):
+            taken = question.which(guards)
+            found |= {way for way, holds in zip(ways, taken, strict=True) if holds}
+        else:
+            missed.add(ways[k])
     return found, missed
 
 

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 import z3
+from z3 import z3core as core
 
 from innervate.prove.errors import ProveError
 from innervate.prove.terms import Term
@@ -20,12 +21,18 @@ def width_of(low: int, high: int) -> int:
 
 
 class Formulas:
-    """Terms as z3's formulas; each is made once."""
+    """Terms as z3's formulas; each is made once.
+
+    They are made by z3's own calls: its Python operators ask each operand for its sort again, which
+    took longer than solving.
+    """
 
     def __init__(self) -> None:
         self._made: dict[int, Any] = {}
         self._kept: list[Term] = []
         self.unknowns: dict[str, tuple[Term, Any]] = {}
+        self._context = z3.main_ctx()
+        self._ref = self._context.ref()
 
     def of(self, term: Term) -> Any:
         """The formula of a term: a Bool of a truth, else a bit vector of its width, signed."""
@@ -45,45 +52,50 @@ class Formulas:
             waiting.pop()
         return made[id(term)]
 
-    def wide(self, term: Term, width: int) -> Any:
-        """A number's formula with so many bits at least as it needs."""
-        made = self.of(term)
-        more = width - made.size()
-        return z3.SignExt(more, made) if more > 0 else made
-
     def _make(self, term: Term) -> Any:
         op, args = term.op, term.args
         if term.is_truth:
-            return self._truth(op, args)
+            return z3.BoolRef(self._truth(op, args), self._context)
         width = width_of(term.low, term.high)
         if op == "const":
             return z3.BitVecVal(term.low, width)
         if op == "var":
             return self._unknown(term, width)
         if op == "pick":
-            return self._pick(args, width)
+            if_, a, b = (one for one in args if isinstance(one, Term))
+            x, y = self._as_wide(a, width), self._as_wide(b, width)
+            return self._bits(core.Z3_mk_ite(self._ref, self.of(if_).ast, x.ast, y.ast))
+        a, b = (one for one in args if isinstance(one, Term))
         if op == "wrap":
-            return self._wrap(args, width)
-        a, b = args
-        assert isinstance(a, Term)
-        assert isinstance(b, Term)
-        most = max(width, width_of(a.low, a.high), width_of(b.low, b.high))
-        x, y = self.wide(a, most), self.wide(b, most)
-        return _cut(OPERATIONS[op](x, y), width)
+            sum_ = self._both(core.Z3_mk_bvadd, self._as_wide(a, width), self._as_wide(b, width))
+            return self._both(core.Z3_mk_bvand, sum_, z3.BitVecVal(args[2], width))
+        most = max(width, *(width_of(one.low, one.high) for one in (a, b)))
+        x, y = self._as_wide(a, most), self._as_wide(b, most)
+        return self._cut(self._applied(op, x, y), most, width)
 
-    def _pick(self, args: tuple[object, ...], width: int) -> Any:
-        if_, a, b = args
-        assert isinstance(if_, Term)
-        assert isinstance(a, Term)
-        assert isinstance(b, Term)
-        x, y = _cut(self.wide(a, width), width), _cut(self.wide(b, width), width)
-        return z3.If(self.of(if_), x, y)
+    def _bits(self, made: Any) -> Any:
+        return z3.BitVecRef(made, self._context)
 
-    def _wrap(self, args: tuple[object, ...], width: int) -> Any:
-        base, ahead, mask = args
-        assert isinstance(base, Term)
-        assert isinstance(ahead, Term)
-        return _cut(self.wide(base, width), width) + _cut(self.wide(ahead, width), width) & mask
+    def _both(self, make: Callable[..., Any], x: Any, y: Any) -> Any:
+        return self._bits(make(self._ref, x.ast, y.ast))
+
+    def _as_wide(self, term: Term, width: int) -> Any:
+        """A number's formula with so many bits; higher ones are cut off."""
+        made, own = self.of(term), width_of(term.low, term.high)
+        if own < width:
+            return self._bits(core.Z3_mk_sign_ext(self._ref, width - own, made.ast))
+        return self._cut(made, own, width)
+
+    def _cut(self, x: Any, own: int, width: int) -> Any:
+        if own <= width:
+            return x
+        return self._bits(core.Z3_mk_extract(self._ref, width - 1, 0, x.ast))
+
+    def _applied(self, op: str, x: Any, y: Any) -> Any:
+        if op != "div":
+            return self._both(OPERATIONS[op], x, y)
+        quotient = x / y  # rounded down, of any dividend by one that is at least 1
+        return z3.If(z3.SRem(x, y) < 0, quotient - 1, quotient)
 
     def _unknown(self, term: Term, width: int) -> Any:
         name = str(term.args[0])
@@ -96,18 +108,20 @@ class Formulas:
 
     def _truth(self, op: str, args: tuple[object, ...]) -> Any:
         if op == "const":
-            return z3.BoolVal(bool(args[0]))
-        made = [self.of(a) for a in args if isinstance(a, Term)]
+            return z3.BoolVal(bool(args[0])).ast
+        terms = [one for one in args if isinstance(one, Term)]
         if op in ("eq", "lt"):
-            width = max(one.size() for one in made)
-            x, y = (z3.SignExt(width - one.size(), one) if one.size() < width else one
-                    for one in made)  # fmt: skip
-            return x == y if op == "eq" else x < y
+            width = max(width_of(one.low, one.high) for one in terms)
+            x, y = (self._as_wide(one, width) for one in terms)
+            compare = core.Z3_mk_eq if op == "eq" else core.Z3_mk_bvslt
+            return compare(self._ref, x.ast, y.ast)
+        made = [self.of(one).ast for one in terms]
         if op == "not":
-            return z3.Not(made[0])
+            return core.Z3_mk_not(self._ref, made[0])
         if op == "pick":
-            return z3.If(*made)
-        return z3.And(*made) if op == "all" else z3.Or(*made)
+            return core.Z3_mk_ite(self._ref, *made)
+        join = core.Z3_mk_and if op == "all" else core.Z3_mk_or
+        return join(self._ref, len(made), (z3.Ast * len(made))(*made))
 
     def ranges(self) -> list[Any]:
         """That every unknown lies in its range, where its width does not say so."""
@@ -121,27 +135,16 @@ class Formulas:
         return found
 
 
-def _cut(x: Any, width: int) -> Any:
-    return z3.Extract(width - 1, 0, x) if x.size() > width else x
-
-
-def _div(x: Any, y: Any) -> Any:
-    """Rounded down, of any dividend by one that is at least 1."""
-    quotient = x / y
-    return z3.If(z3.SRem(x, y) < 0, quotient - 1, quotient)
-
-
-OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
-    "add": lambda x, y: x + y,
-    "sub": lambda x, y: x - y,
-    "mul": lambda x, y: x * y,
-    "div": _div,
-    "mod": lambda x, y: x % y,  # of the divisor's sign, as Python's
-    "and": lambda x, y: x & y,
-    "or": lambda x, y: x | y,
-    "xor": lambda x, y: x ^ y,
-    "shl": lambda x, y: x << y,
-    "shr": lambda x, y: x >> y,
+OPERATIONS: dict[str, Callable[..., Any]] = {
+    "add": core.Z3_mk_bvadd,
+    "sub": core.Z3_mk_bvsub,
+    "mul": core.Z3_mk_bvmul,
+    "mod": core.Z3_mk_bvsmod,  # of the divisor's sign, as Python's
+    "and": core.Z3_mk_bvand,
+    "or": core.Z3_mk_bvor,
+    "xor": core.Z3_mk_bvxor,
+    "shl": core.Z3_mk_bvshl,
+    "shr": core.Z3_mk_bvashr,
 }
 
 
@@ -167,22 +170,44 @@ class Question:
         Raises:
             ProveError: the solver could not say.
         """
-        made = [self.formulas.of(term) for term in (*self.facts, *wanted)]
-        solver = z3.SolverFor("QF_BV")
-        solver.set("timeout", self.limit_ms)
-        solver.add(*made, *self.formulas.ranges())
-        answer = solver.check()
-        if answer == z3.unsat:
+        if not self._ask(self._solver(*map(self.formulas.of, wanted))):
             return None
-        if answer != z3.sat:
-            raise ProveError(f"the solver could not say: {solver.reason_unknown()}")
-        model = solver.model()
-        self.model = model
+        return self.found()
+
+    def found(self) -> dict[str, int]:
+        """Values of all unknowns in what was found last."""
         self.values_found = {
-            name: _signed(model.eval(made, model_completion=True))
+            name: _signed(self.model.eval(made, model_completion=True))
             for name, (_, made) in self.formulas.unknowns.items()
         }
         return self.values_found
+
+    def together(self, terms: list[Term]) -> Callable[..., bool]:
+        """Tells of some of these truths, by their places, whether they can be so at once.
+
+        The solver is given all of them and keeps what it learns of some for the next.
+        """
+        solver = self._solver(*(self._if_asked(k, term) for k, term in enumerate(terms)))
+        return lambda *places: self._ask(solver, *(z3.Bool(f"asked {k}") for k in places))
+
+    def _if_asked(self, k: int, term: Term) -> Any:
+        return z3.Implies(z3.Bool(f"asked {k}"), self.formulas.of(term))
+
+    def _solver(self, *wanted: Any) -> Any:
+        known = [self.formulas.of(term) for term in self.facts]
+        solver = z3.SolverFor("QF_BV")
+        solver.set("timeout", self.limit_ms)
+        solver.add(*known, *wanted, *self.formulas.ranges())
+        return solver
+
+    def _ask(self, solver: Any, *assumed: Any) -> bool:
+        answer = solver.check(*assumed)
+        if answer == z3.unsat:
+            return False
+        if answer != z3.sat:
+            raise ProveError(f"the solver could not say: {solver.reason_unknown()}")
+        self.model = solver.model()
+        return True
 
     def holds(self, term: Term) -> bool:
         """If a truth holds for the values that were found last."""

@@ -39,6 +39,7 @@ class Step:
         goals: what has to hold; those of any protocol come by themselves.
         result: what the function returned.
         others: machines that have a part in it, too.
+        singly: goals are asked one by one: where each takes long, all at once take longer.
     """
 
     name: str
@@ -50,6 +51,7 @@ class Step:
     goals: list[Goal] = field(default_factory=list)
     result: Any = None
     others: Sequence[Machine] = ()
+    singly: bool = False
 
     def all_ways(self) -> dict[tuple[str, int, bool], list[Term]]:
         """Where every way of a branch is taken, whichever of its machines comes there."""

@@ -18,11 +18,15 @@ class Term:
         args: terms; the value of a const, the name of a var.
         low, high: its range.
         is_truth: it is a truth.
+        made: how many were made before it, so that the same formula comes out every time.
     """
 
-    __slots__ = ("args", "high", "is_truth", "low", "op")
+    __slots__ = ("args", "high", "is_truth", "low", "made", "op")
 
-    def __init__(self, op: str, args: tuple[object, ...], low: int, high: int, truth: bool) -> None:
+    def __init__(
+        self, op: str, args: tuple[object, ...], low: int, high: int, truth: bool, made: int
+    ) -> None:
+        self.made = made
         self.op = op
         self.args = args
         self.low = low
@@ -56,7 +60,7 @@ class Terms:
         key = (op, truth, low, high, *(id(a) if isinstance(a, Term) else a for a in args))
         found = self._made.get(key)
         if found is None:
-            found = self._made[key] = Term(op, args, low, high, truth)
+            found = self._made[key] = Term(op, args, low, high, truth, len(self._made))
         return found
 
     # -- leaves
@@ -145,7 +149,7 @@ class Terms:
             return self.same(_ahead(a), _ahead(b))
         if a.high < b.low or b.high < a.low:
             return self.false
-        if b.op != "const" and (a.op == "const" or id(a) > id(b)):
+        if b.op != "const" and (a.op == "const" or a.made > b.made):
             a, b = b, a
         if a.op == "pick" and b.op == "const" and _is_leafy(a):
             if_, x, y = _terms(a)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import sys
+from bdb import BdbQuit
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -147,6 +148,8 @@ def blaming(network: Network, watch: Watched | None = None) -> Iterator[None]:
         if watch is None:
             raise
         raise folders.NetworkError(watch.words(str(error))) from None
+    except BdbQuit:  # a person has left the debugger
+        raise KeyboardInterrupt from None
     except Exception as error:
         assert network.folder is not None
         words = folders.blamed(error, network.folder) or _compiling(error, network.folder)

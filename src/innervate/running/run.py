@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from innervate import scenario as scenarios
+from innervate.folders import for_plain
 from innervate.network import networks
 from innervate.running import folder as folders
 from innervate.running.errors import RunError
@@ -175,15 +176,15 @@ def run(
         progress: called now and then with (time_us, duration_us); None = a bar in a notebook.
         checks: invariant checkers on.
         received: keep every sample the PC received; None = unless there are very many.
-        plain: run uncompiled, slow; for comparison.
+        plain: run uncompiled, slow; a protocol may call `print` and `breakpoint`.
 
     Raises:
         ScenarioError: the scenario is not valid.
         RunError: `out` cannot be written; found out before the simulation.
         InvariantBroken: a checker found what must not happen, as frames that went nowhere.
     """
-    made = load(scenario, seed=seed, overrides=overrides)
-    plan = scenarios.plan(made)
+    with for_plain(plain):
+        plan = scenarios.plan(made := load(scenario, seed=seed, overrides=overrides))
     if out is not None:
         folders.check_target(out)
     room = networks()[plan.kind].run

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate import folders
 from innervate.analysis.summary import summarize
 from innervate.network import networks
 from innervate.running import blaming
@@ -105,6 +106,8 @@ def simulate(
         running = simulation(plan, plain=plain, **kept)
         return _result(plan, running, running.finish(progress, tap))
     if not plain:
+        if network.in_plain:
+            raise folders.NetworkError(network.in_plain)
         blaming.try_plain(network, plan, checks=checks)
     running = simulation(plan, plain=plain, **kept)
     watch = blaming.Watched(running, network) if plain else None

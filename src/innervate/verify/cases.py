@@ -76,6 +76,8 @@ def verdict(done: list[Case]) -> str:
     part = sum(not case.is_complete and not case.is_broken for case in done)
     if broken:
         return f"{broken} of {len(done)} broken."
+    if len(done) == 1:
+        return f"Nothing broken in one exploration, {'only in part' if part else 'completely'}."
     sampled = f"; {part} of them only in part" if part else ", all completely"
     return f"Nothing broken in {len(done)} explorations{sampled}."
 

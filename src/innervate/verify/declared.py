@@ -31,7 +31,8 @@ from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent
 from innervate.verify.errors import VerifyError
 from innervate.verify.states import Budget, Node, State, Step
 from innervate.verify.tally import Tally
-from innervate.verify.values import ahead, place_of, put, values, with_one
+from innervate.verify.telling import ERRORS, story_of, where
+from innervate.verify.values import ahead, put, values, with_one
 
 OUTBOX = 16
 IN_FLIGHT = 3  # most frames on a cable per direction; states with more are left out, and counted
@@ -206,8 +207,8 @@ class Net:
         out.count[0] = out.overflow[0] = 0
         try:
             handler(self.node, self.params, now, *what, out)
-        except (ArithmeticError, AttributeError, IndexError, TypeError, ValueError) as error:
-            return state, f"a handler cannot go on: {place_of(error)}{type(error).__name__}"
+        except ERRORS as error:
+            return state, f"a handler cannot go on: {where(error)}"
         broken = self.broken(now)
         timers, ways, down = dict(node.timers), list(state.ways), list(node.down)
         for act, frame in zip(out.action[: out.count[0]], out.frame, strict=False):
@@ -248,10 +249,7 @@ class Net:
         """What is broken of all nodes together."""
         for node, at in zip(self.all, state.nodes, strict=True):
             put(node, self.fields.STATE, at.values)
-        for title, holds in self.of_all.items():
-            if not holds(self.all, len(self.all), self.params):
-                return title
-        return ""
+        return _first_broken(self.of_all, self.all, len(self.all), self.params)
 
     def broken(self, now: int) -> str:
         """What the last handler broke."""
@@ -261,10 +259,18 @@ class Net:
             value = getattr(self.node, name)
             if not all(low <= one <= high for one in (value if length else [value])):
                 return f"{name} is out of its declared range"
-        for title, holds in self.own.items():
-            if not holds(self.node, self.params, now):
+        return _first_broken(self.own, self.node, self.params, now)
+
+
+def _first_broken(rules: dict[str, Any], *given: Any) -> str:
+    """What the first rule says that does not hold, or where it cannot be looked at."""
+    for title, holds in rules.items():
+        try:
+            if not holds(*given):
                 return title
-        return ""
+        except ERRORS as error:
+            return f"an invariant cannot be looked at: {where(error)}"
+    return ""
 
 
 def is_still(state: State) -> bool:
@@ -288,10 +294,10 @@ def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tupl
             tally.expanded += 1
             tally.generated += len(steps)
             if not waits and is_still(state):
-                return replace(tally, ended="broken"), _story(before, state, STUCK, "")
+                return replace(tally, ended="broken"), story_of(net, before, state, STUCK)
             for step in steps:
                 if broken := step.broken or (net.of_all and net.broken_of_all(step.state)):
-                    told = _story(before, state, broken, step.words)
+                    told = story_of(net, before, state, broken, step)
                     return replace(tally, ended="broken"), told
                 down = (node.down for node in step.state.nodes)
                 if max(map(len, (*step.state.ways, *down))) > IN_FLIGHT:
@@ -308,14 +314,6 @@ def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tupl
         level = fresh
         tally.depth += bool(fresh)
     return replace(tally, ended="complete"), Story("")
-
-
-def _story(before: Any, state: State, title: str, last: str) -> Story:
-    sentences = [last] if last else []
-    while before[state] is not None:
-        state, words = before[state]
-        sentences.append(words)
-    return Story(title, [f"{text}." for text in reversed(sentences)])
 
 
 MUTANTS: tuple[Any, ...] = ()

@@ -2,18 +2,10 @@
 
 from __future__ import annotations
 
-import traceback
-from pathlib import Path
 from typing import Any
 
 from innervate.dialect.arith import HALF30 as HALF
 from innervate.dialect.arith import MASK30
-
-
-def place_of(error: BaseException) -> str:
-    """Where in a file an error came by last: "protocol.py:12: "."""
-    last = traceback.extract_tb(error.__traceback__)[-1]
-    return f"{Path(last.filename).name}:{last.lineno}: "
 
 
 def values(record: Any, declared: Any, left_out: Any = ()) -> tuple[Any, ...]:

@@ -42,7 +42,7 @@ class ChannelView(DeclaredView):
             for i, turn in enumerate(turns)
         ]  # fmt: skip
         return {"nodes": nodes, "links": [], "ports": 0, "fence": None, "series": self.series,
-                "fields": self.shown}  # fmt: skip
+                "fields": self.shown, "ways": False}  # fmt: skip
 
     def arrays(self, flights: bool) -> dict[str, Any]:
         """The state's fields for nodes."""
@@ -50,7 +50,7 @@ class ChannelView(DeclaredView):
         return {
             "node_up": on.astype(np.int64),
             "link_up": np.zeros(0, np.int64),
-            "unconnected": 0,
+            "unconnected": int(np.count_nonzero(~on)),
             "apart": 0,
             "fields": self.coloured(states),
             "flights": [],

@@ -101,7 +101,8 @@ class DeclaredView(View):
     def headline(self) -> Headline:
         """Is all well, and if not, what is wrong: as in a run's summary."""
         handled = int(self.engine.world.run["handled"][0])
-        return headline(self.engine.running.counts(), handled)
+        goes_on = self.engine.now_us < self.plan.duration_us
+        return headline(self.engine.running.counts(), handled, goes_on)
 
     def words(self, fault: Any) -> str:
         """What a fault does, as its scenario says it, without the time."""

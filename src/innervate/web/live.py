@@ -270,12 +270,12 @@ class Live(Source):
             return
         at_us = self._now_us()
         recovery.cut_off(state.unconnected - state.lacking)
-        recovery.nobody = not state.left
+        were_none, recovery.nobody = recovery.nobody, not state.left
         after_ms = round((at_us - recovery.at_us) / 1e3, 1)
         if recovery.detected_ms is None and state.lacking:
             recovery.detected_ms = after_ms
         if recovery.recovered_ms is None and not state.lacking and state.left:
-            kept = recovery.detected_ms is None
+            kept = recovery.detected_ms is None and not were_none
             recovery.recovered_ms = 0.0 if kept else after_ms
             how = "kept its way" if kept else f"has a way again after {after_ms:.0f} ms"
             apart = state.unconnected

@@ -84,6 +84,11 @@ def told_to_parent(one):
             if target != c.NOBODY]  # fmt: skip
 
 
+def ticks(one, count):
+    for _ in range(count):
+        one.fire(c.TICK)
+
+
 def storing(**params):
     """A node in storing mode whose parent knows of it."""
     one = attached(**params)

@@ -1,7 +1,7 @@
 """Downward routes of RFC 6550, sections 9 and 11.2.2.3, sentence by sentence."""
 
 from innervate.networks.rpl.protocol import constants as c
-from innervate.networks.rpl.protocol.downward import LIFE
+from innervate.networks.rpl.protocol.downward import FOR_EVER, LIFE
 from tests.networks.rpl.nodes import (
     ROOT,
     ack,
@@ -16,6 +16,7 @@ from tests.networks.rpl.nodes import (
     parent_of,
     settle,
     storing,
+    ticks,
     told_to_parent,
 )
 
@@ -209,13 +210,50 @@ def test_a_child_that_does_not_answer_is_forgotten():
 
 def test_routes_that_are_not_refreshed_end():
     """17: "RemoveTimer": "Expiry may trigger No-Path advertisements" """
-    one = storing(refresh=1)
-    one.hear(**dao(7, 20))
-    for _ in range(LIFE):
-        one.fire(c.TICK)
+    one = storing()
+    one.hear(**dao(7, 20, life=5))
+    one.hear(**dao(8, 21, life=FOR_EVER))
+    told_to_parent(one)
+    ticks(one, 4)
     assert one.node.via[20] == 7
-    one.fire(c.TICK)
-    assert one.node.via[20] == c.NONE
+    ticks(one, 1)
+    assert (one.node.via[20], one.node.via[21]) == (c.NONE, 8)
+    assert [(target, life) for target, _, life in told_to_parent(one)] == [(20, 0)]
+
+
+def test_a_path_lifetime_begins_with_its_path_sequence():
+    """6.7.8: "The period starts when a new Path Sequence is seen." """
+    one = storing()
+    for number in range(1, 5):
+        one.hear(**dao(7, 20, life=5, number=number))
+        ticks(one, 1)
+    one.hear(**dao(7, 21, path=242, life=5, number=5))
+    ticks(one, 1)
+    assert (one.node.via[20], one.node.via[21]) == (c.NONE, 7)
+    one.hear(**dao(7, 20, path=242, life=5, number=6))
+    ticks(one, 4)
+    assert (one.node.via[20], one.node.via[21]) == (7, c.NONE)
+
+
+def test_who_restarts_is_old_until_its_ways_have_ended():
+    """7.2: both "greater than or equal to 128", 241 is less than 245; a limit of the counters."""
+    one = storing()
+    one.hear(**dao(7, 7, path=245, life=5))
+    one.hear(**dao(8, 7, path=241, life=5, number=1))
+    assert one.node.via[7] == 7
+    ticks(one, 5)
+    one.hear(**dao(8, 7, path=242, life=5, number=2))
+    assert one.node.via[7] == 8
+
+
+def test_packets_that_nobody_takes_are_told_of_one_by_one():
+    one = node(patience=1)
+    for dest in (7, 8):
+        one.give(1, dest=dest)
+    assert one.node.q_count == 2
+    ticks(one, 2)
+    assert one.reports[-2:] == [(c.REPORT_NO_ROUTE, 7, 1), (c.REPORT_NO_ROUTE, 8, 0)]
+    assert one.node.q_count == 0
 
 
 def test_own_routes_are_refreshed():

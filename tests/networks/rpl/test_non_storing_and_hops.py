@@ -3,7 +3,7 @@
 import pytest
 
 from innervate.networks.rpl.protocol import constants as c
-from innervate.networks.rpl.protocol.downward import DAO_TRIES
+from innervate.networks.rpl.protocol.downward import DAO_TRIES, LIFE
 from tests.networks.rpl.nodes import (
     ROOT,
     ack,
@@ -16,6 +16,7 @@ from tests.networks.rpl.nodes import (
     packets,
     settle,
     storing,
+    ticks,
 )
 
 
@@ -49,6 +50,18 @@ def test_on_the_way_a_dao_is_a_packet():
     one.hear(**(up(9, 8) | {"src": 7}))
     assert (one.sent[-1].kind, one.sent[-1].to, one.sent[-1].info) == (c.DAO_UP, 1, 8)
     assert one.node.via[9] == c.NONE
+
+
+def test_a_root_in_non_storing_mode_forgets_as_well():
+    """6.7.6: "Default Lifetime": "the lifetime that is used as default for all RPL routes" """
+    root = node(ROOT, storing=0, refresh=2)
+    root.hear(**up(7, ROOT))
+    ticks(root, 3)
+    root.hear(**up(7, ROOT, number=2))  # the same Path Sequence: sent again, not anew
+    ticks(root, LIFE * 2 - 4)
+    assert root.node.via[7] == ROOT
+    ticks(root, 1)
+    assert root.node.via[7] == c.NONE
 
 
 def test_a_dao_is_repeated_until_the_root_acknowledges_it():
@@ -181,7 +194,7 @@ def test_packets_wait_for_a_parent_for_a_while():
         one.fire(c.TICK)
         one.told()
     assert one.node.q_count == 0
-    assert one.reports == [(c.REPORT_NO_ROUTE, ROOT, 1)]
+    assert one.reports == [(c.REPORT_NO_ROUTE, ROOT, 0)]
     late = node()
     late.give(2)
     late.hear(**dio(1, 256))

@@ -133,3 +133,5 @@ def test_nothing_is_said_to_be_sent_that_nobody_gave():
     ]  # fmt: skip
     told = traffic_lines({"frames": frames, "messages": messages | {"sent": 5}})
     assert told[1] == "Messages: 5 sent, 3 delivered"
+    told = traffic_lines({"frames": frames, "messages": messages | {"sent": 2}})
+    assert told[1] == "Messages: 2 sent, delivered 3 times"  # one of them was for several

@@ -41,8 +41,8 @@ def test_a_value_out_of_its_range_is_found_on_the_shortest_way():
     case = explored("loss=0,restart=0", fields=changed(fields, STATE=state))
     assert case.story.title == "passed is out of its declared range"
     assert case.story.sentences == [
-        "Timer 1 of n0 fires.", "Timer 1 of n0 fires.", "Timer 1 of n0 fires.",
-    ]  # fmt: skip
+        f"Timer 1 of n0 fires: lap {n} to {n + 1}, passed {n} to {n + 1}." for n in range(3)
+    ]
     assert case.lines[-1] == "    So: passed is out of its declared range"
 
 
@@ -100,3 +100,29 @@ def test_mistakes_are_told():
         explored("cut=1")
     with pytest.raises(VerifyError, match="--graph"):
         explored(graph="n0-")
+
+
+def test_an_error_in_a_handler_names_file_line_and_field():
+    def on_frame(node, params, now, port, frame, out):
+        node.lap = frame.lab
+
+    line = on_frame.__code__.co_firstlineno + 1
+    case = explored("", protocol=changed(protocol, on_frame=on_frame))
+    assert case.story.title == (
+        "a handler cannot go on: tests/networks/tokenring/test_verify.py:"
+        f"{line}: lab is no field that fields.py declares"
+    )
+
+
+def test_an_error_in_an_invariant_names_file_line_and_field():
+    def node_is_well(node, params, now):
+        """a node is ill"""
+        return node.temperature < 37
+
+    rules = SimpleNamespace(node_is_well=node_is_well)
+    network = SimpleNamespace(name="tokenring", medium="cables", protocol=protocol, fields=fields,
+                              invariants=rules, has=lambda part: part == "invariants")  # fmt: skip
+    (explore,) = declared.explorations(network, VerifyOptions(graph="pair", states=10))
+    case = explore(lambda what, part, of: False)
+    line = node_is_well.__code__.co_firstlineno + 2
+    assert f"test_verify.py:{line}: temperature is no field" in case.lines[0] + case.lines[-1]

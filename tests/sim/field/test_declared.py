@@ -252,6 +252,7 @@ def test_a_page_shows_it_where_it_lies_and_cuts_its_links(bare):
     fault = view.make(10, 0, view.cut(0, False))
     assert (fault.node, fault.other) == plan.good[0]
     arrays = view.arrays(False)
+    assert (scene["ways"], arrays["unconnected"]) == (False, 0), "who is off, as nobody has a way"
     assert arrays["link_up"].tolist() == [1] * 42
     assert set(arrays["fields"]) >= {"seq", "value"}
 
@@ -263,6 +264,7 @@ def test_its_captures_and_its_graph(bare, plain, tmp_path):
     assert out.stat().st_size > 1_000
     graph = networks()["flood"].graph(scenarios.plan(scenarios.load(bare.scenario)))
     assert len(graph.edges) == 42
+    assert graph.nodes[5] == ("node 5", {"number": 5, "x_m": 20.0, "y_m": 20.0})
 
 
 @pytest.mark.slow  # compiles a protocol that no other test runs

@@ -1,7 +1,6 @@
 """What must hold of managed flooding, whatever happens."""
 
-PLACES = 8
-OWN = 4
+from innervate.networks.flooding.protocol.sizes import OWN, PLACES
 
 
 def node_passes_on_what_may_still_go(node, params, now):

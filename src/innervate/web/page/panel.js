@@ -60,11 +60,11 @@ export function showNumbers(network) {
       show("recovery", "–", `${recovery.cause}: ${who} affected`, "");
     } else show("recovery", shown, more, look);
   }
-  const isRadio = network.kind === "radio"; // there everybody hears everybody
-  const label = isRadio ? offWord(network) : "without a way";
+  const isOnAir = network.kind === "radio" || network.scene.ways === false; // who hears has no way
+  const label = isOnAir ? offWord(network) : "without a way";
   $("unconnected").querySelector(".label").textContent = label;
-  $("since").querySelector(".label").textContent = `since the last ${isRadio ? "failure" : "cut"}`;
-  $("recovery").hidden = isRadio;
+  $("since").querySelector(".label").textContent = `since the last ${isOnAir ? "failure" : "cut"}`;
+  $("recovery").hidden = isOnAir;
   const all = network.nodes.filter((node) => node.role !== "sink" && node.role !== "port").length;
   const of = `of ${plural(all, WORDS[network.kind] ?? "node")}`;
   const off = apart ? `; ${apart === unconnected ? "cut off" : `${apart} of them cut off`}` : "";

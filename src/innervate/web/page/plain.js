@@ -44,7 +44,7 @@ export class PlainView extends MeshView {
     const found = this.colour === "" ? [[disc(colours.d[5]), "node"]]
       : [[disc(colours.h[0]), `${this.colour}: least`], [disc(colours.h[7]), "most"]];
     found.push([disc(colours.faint, 0), offWord(this.network)], affectedSample);
-    found.push([(context) => {
+    if (this.network.links.length) found.push([(context) => {
       stroke(context, colours.alarm, 2, new Path2D("M1 8h24"), [4, 3]);
     }, "cut"]);
     return found;

@@ -1,5 +1,7 @@
 """The rule itself is tried before a reduced search forgets what the rule refuses."""
 
+from dataclasses import replace
+
 import pytest
 
 from innervate.networks.skin.protocol.constants import RULE_FEASIBLE
@@ -96,9 +98,15 @@ FORGETTING = {
 }  # fmt: skip
 
 
+# Steps of a lemma before those that a mistake breaks: they hold, which takes long to see.
+BEFORE = {"ports are alike": 4, "beacons that repeat the last": 4}
+
+
 @pytest.mark.parametrize("name", FORGETTING)
 def test_a_mistake_in_what_is_forgotten_is_refuted_by_its_own_lemma(name):
     lemma = {"what broken ports said": "what dead ports said", "the PC": "what is not read"}
     of = FORGETTING[name]
     known = {one.name: one for rule in (ANY_RULE, RULE_FEASIBLE) for one in resting(rule, of)}
-    assert prove(known[lemma.get(name, name)], first_only=True).is_refuted
+    whole = known[lemma.get(name, name)]
+    own = replace(whole, steps=whole.steps[BEFORE.get(name, 0) :])
+    assert prove(own, first_only=True).is_refuted

@@ -20,7 +20,7 @@ def hear(node, params, now, port, frame, out):
         ahead = 0
     if ahead < 17:
         node.history[port] = (node.history[port] << ahead) & MASK16
-    else:
+    elif ahead > 65519:
         node.history[port] = node.history[port] >> (65536 - ahead)  # "undo history"
     node.history[port] = ((node.history[port] << 1) | 1) & MASK16
     node.neighbour[port] = frame.source

@@ -15,7 +15,7 @@ alike.
 and encryption, windows that grow with the use of the channel, a negative acknowledgement as a
 packet. A packet that went down to CSMA is not taken back.
 
-`node.py` has the functions, `fields.py` what nodes and frames hold.
+`node.py` has the functions, `fields.py` what nodes and frames hold, `sizes.py` how many.
 
 States
 ======

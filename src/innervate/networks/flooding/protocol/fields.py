@@ -1,9 +1,7 @@
 """What nodes and frames of managed flooding hold."""
 
-SEEN = 64  # packets that a node remembers
-PLACES = 8  # packets that wait to be passed on
-OWN = 4  # own packets that wait for an acknowledgement
-BODY = 8  # numbers that a user says: 16 bytes
+from innervate.networks.flooding.protocol.sizes import BODY, OWN, PLACES, SEEN
+
 CLOCK = 1073741823
 
 STATE = (

@@ -3,18 +3,15 @@
 from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.outbox import deliver, report, send, set_timer
 from innervate.dialect.rng import draw
+from innervate.networks.flooding.protocol.sizes import BODY, OWN, PLACES, SEEN
 
 PACKET = 1  # kinds of frame
 ACK = 2
 MESSAGE = 1  # inputs: for item.dest, 255 = for all
 EVERYBODY = 255
 
-SEEN = 64  # as in protocol.fields
-PLACES = 8
-OWN = 4
-BODY = 8
-FORGET = 12  # timers: one for each of PLACES, one for each of OWN, and this one
-TIMERS = 13
+FORGET = PLACES + OWN  # timers: one for each of those, and this one
+TIMERS = FORGET + 1
 OUTBOX = 12
 ANSWER_MORE = 2  # hops that an answer may go besides those that the question went
 

@@ -14,6 +14,7 @@ from typing import Any
 from innervate.networks.mesh.protocol import fields
 from innervate.networks.mesh.protocol.constants import NOBODY, PARITY, PATH_MAX, SEARCH
 from innervate.networks.mesh.protocol.fields import FORWARDED, SKIPS
+from innervate.prove.answers import Answers
 from innervate.prove.records import Record, Store
 from innervate.prove.solve import Question
 from innervate.prove.steps import Goal, Stage, Step
@@ -21,6 +22,7 @@ from innervate.prove.terms import Term
 from innervate.prove.theory import Theory
 
 SIZE = 2  # neighbours and recipients that stand for all
+LOOKED_UP = ("was_at", "is_skipped", "giver")  # whatever they answer
 CLAIM = "No copy of a packet goes forward to a node that had it, or that failed for it."
 KEPT = (
     f"Failures: the {SKIPS} that a node noted last, of all packets.",
@@ -86,9 +88,11 @@ class Router:
 def _chosen(known: dict[str, Any]) -> Step:
     """Whom a search asks next."""
     router = Router(known)
-    t, before, zero = router.t, router.stage.store, router.t.number(0)
+    stage = router.stage
+    stage.machine = Answers(known, router.t, stage.out, LOOKED_UP)
+    t, before, zero = router.t, stage.store, router.t.number(0)
     args = [router.node, router.params, zero]
-    after, who = router.stage.machine.run("choose_by_search", args, dict(before), t.true)
+    after, who = stage.machine.run("choose_by_search", args, dict(before), t.true)
     is_one = t.negated(t.same(who, t.number(NOBODY)))
     came = t.same(who, router.ask(before, "giver", zero))
     back = t.any(came, t.same(who, before[router.node, "q_from", 0]))
@@ -98,7 +102,7 @@ def _chosen(known: dict[str, Any]) -> Step:
         Goal("P2 nobody is asked who failed for it",
              t.implies(is_one, t.negated(router.has_failed(before, who)))),
     ]  # fmt: skip
-    return router.step("the next hop is chosen", after, router.stage.machine.facts, goals)
+    return router.step("the next hop is chosen", after, stage.machine.facts, goals)
 
 
 def _entered(known: dict[str, Any]) -> Step:

@@ -144,7 +144,7 @@ class Window:
     def step(self, name: str, after: Store, facts: list[Term], goals: list[Goal]) -> Step:
         """What was run as a step; fields stay in range and indices in arrays, too."""
         machine, stage = self.stage.machine, self.stage
-        step = Step(name, machine, stage.records, stage.store, after, facts)
+        step = Step(name, machine, stage.records, stage.store, after, facts, singly=True)
         step.goals = [*own_goals(step, ("node",), 0, 0), *goals]
         return step
 

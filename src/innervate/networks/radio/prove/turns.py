@@ -8,13 +8,12 @@ frame, and how windows and openings end, is not proved.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from copy import copy
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import SEND
-from innervate.dialect.source import Function
 from innervate.networks.radio.protocol import fields
 from innervate.networks.radio.protocol.constants import (
     NONE,
@@ -23,23 +22,18 @@ from innervate.networks.radio.protocol.constants import (
     WINDOWS,
 )
 from innervate.networks.radio.protocol.modes import TURN
-from innervate.prove.execute import Machine
-from innervate.prove.records import Outbox, Record, Store
+from innervate.networks.radio.prove.reports import ROOM, STATION, Ending, Report, apart
+from innervate.prove.records import Outbox, Record
 from innervate.prove.steps import Goal, Stage, Step
-from innervate.prove.terms import Term, Terms
 from innervate.prove.theory import Source
 
-STATION = (*fields.STATION, *fields.PRACTICAL)
-ROOM = 16
 PLANNED = ("dmin_us", "dmax_us", "ta_us", "minislot_us", "dead_us")
-MINISLOTS = 8  # of a report's 32: those behind them are counted alike
 CLAIM = (
     "Of two stations that heard the same frames one takes a turn, alone on it. NOT proved: "
     "stations that missed a frame, who joins, and how openings and windows end."
 )
 ASSUMED = (
     "Both heard every frame since the round began, and have places of their own in it.",
-    f"Of a report's minislots the first {MINISLOTS} are tried; those behind are counted alike.",
     "A minislot of which a report says that one CR-R was in it was used by one station.",
     "Delays lie between dmin_us and dmax_us, or what is believed since.",
     "dead_us is 2 ta_us + 3 dmax_us + minislot_us or more, as plans make it.",
@@ -58,18 +52,6 @@ UNREACHABLE = {
     ("prove", "if count:", False): "it is asked where packets wait for their proof",
     ("schedule", "if after(station.at, now):", False): "what is waited for is always to come",
 }
-
-
-class Ending(Machine):
-    """Leaves out what follows the report: what comes of that is a step of its own."""
-
-    def call(
-        self, function: Function, args: list[Any], store: Store, under: Term
-    ) -> tuple[Store, Any]:
-        """Follow a call, but of the handler's last."""
-        if function.name in ("enter_window", "enter_turn"):
-            return store, self.terms.number(0)
-        return super().call(function, args, store, under)
 
 
 def steps(known: Source) -> tuple[Callable[[], Step], ...]:
@@ -95,57 +77,22 @@ def _stage(known: dict[str, Any], *names: str) -> tuple[Stage, list[Record], Rec
     return stage, stations, stage.record("params", fields.PARAMS)
 
 
-def short(function: Function) -> Function:
-    """A function as it is where reports have few minislots."""
-    made = copy(function)
-    if "MINISLOTS" in made.constants:
-        made.constants = made.constants | {"MINISLOTS": MINISLOTS}
-    return made
-
-
-def apart(terms: Terms, store: Store, a: Record, b: Record) -> Term:
-    """Two stations have no place in common."""
-    mine, other = store[a, "pos", None], store[b, "pos", None]
-    return terms.any(terms.same(mine, terms.number(NONE)), terms.negated(terms.same(mine, other)))
-
-
-def used_by_one(
-    terms: Terms, store: Store, frame: Record, stations: Sequence[Record]
-) -> list[Term]:
-    """A minislot that a report calls good was used by one of the stations at most."""
-    found = []
-    for i in range(MINISLOTS):
-        bits = terms.shr(store[frame, "good", i >> 4], terms.number(i & 15))
-        good = terms.as_truth(terms.bits_and(bits, terms.number(1)))
-        here = [terms.same(store[one, "slot", None], terms.number(i)) for one in stations]
-        found.append(terms.negated(terms.all(good, *here)))
-    return found
-
-
 def _reported(known: Source) -> Step:
     """Both hear the report of a window, which gives out places."""
-    stage, (a, b), params = _stage(known, "a", "b")
-    t, frame = stage.terms, stage.record("frame", fields.FRAME)
-    before = dict(stage.store)
-    after, facts = dict(before), []
-    known = Source({name: short(one) for name, one in known.items()}, known.changed)
-    machines = []
-    for one in (a, b):
-        machine = Ending(known, t, Outbox(fields.FRAME, ROOM))
-        given = [one, params, t.unknown(f"{one.name}.now", 0, (1 << 30) - 1), frame, machine.out]
-        after, _ = machine.run("hear_report", given, after, t.true)
-        facts += machine.facts
-        machines.append(machine)
-    facts += used_by_one(t, before, frame, (a, b))
-    live = t.all(*(t.same(after[a, "live", k], after[b, "live", k]) for k in range(POSITIONS)))
+    stage, (a, b), _ = _stage(known, "a", "b")
+    stage.record("frame", fields.FRAME)
+    report, t = Report(known, stage, True), stage.terms
+    cur = t.same(report.after[a, "cur", None], report.after[b, "cur", None])
     goals = [
-        Goal("R1 they have places of their own", apart(t, after, a, b)),
-        Goal("R2 they have the same record of the round", live),
-        Goal("R3 they go on with the same place",
-             t.same(after[a, "cur", None], after[b, "cur", None])),
+        report.each(),
+        report.own("R1 they have places of their own"),
+        Goal("R2 they have the same record of the round",
+             t.implies(report.ends, report.same_round(report.after))),
+        Goal("R3 they go on with the same place", t.implies(report.ends, cur)),
     ]  # fmt: skip
-    return Step("two stations hear a report", machine, stage.records, before, after,
-                [apart(t, before, a, b), *facts], goals, others=machines[:-1])  # fmt: skip
+    first, *others = report.machines
+    return Step("two stations hear a report", first, stage.records, report.before, report.after,
+                report.facts(), goals, others=others)  # fmt: skip
 
 
 def _named(known: dict[str, Any]) -> Step:
@@ -159,7 +106,7 @@ def _named(known: dict[str, Any]) -> Step:
     after = dict(before)
     for one in (a, b):
         machine = Ending(known, t, Outbox(fields.FRAME, ROOM))
-        given = [one, params, t.unknown(f"{one.name}.now", 0, (1 << 30) - 1), frame, machine.out]
+        given = [one, params, t.unknown(f"{one.name}.now", 0, MASK30), frame, machine.out]
         after, _ = machine.run("hear_data", given, after, t.true)
         kept = t.any(*(t.same(after[one, "pos", None], value)
                        for value in (before[one, "pos", None], t.number(NONE))))  # fmt: skip

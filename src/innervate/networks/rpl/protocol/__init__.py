@@ -136,7 +136,7 @@ Frames
 |--------------------|---------------------|-----------------------------------------------------|
 | `DIO = 1`          | all in reach        | version, rank, DTSN, mode                           |
 | `DIS = 2`          | all in reach        | that DIOs are wanted                                |
-| `DAO = 3`          | a parent, storing   | targets and Path Sequences; `life` 0 is a No-Path   |
+| `DAO = 3`          | a parent, storing   | targets, Path Sequences, for how long (`life`)      |
 | `ACK = 4`          | the hop before      | the number of its frame; sent URGENT                |
 | `DATA = 5`         | a hop               | what users say                                      |
 | `DAO_ACK = 8`      | a hop, non-storing  | the Path Sequence, from the root                    |
@@ -146,7 +146,11 @@ Frames
 DATA and DAO_ACK are one more with a source route of up to `NEAR = 4` hops behind the first, two
 more with one of up to `ROUTE = 16`. All packets have origin, destination, hops left, the flags 'O'
 (`down`), 'R' (`error`), 'F' (`back`) and the rank of who sent them [11.2]: 0 says that it is their
-origin. Of `life` only is read whether it is 0. The layouts stand beside this folder.
+origin. The layouts stand beside this folder.
+
+A Path Lifetime, `life`, counts ticks from when a Path Sequence is first seen [6.7.8]: 0 is a
+No-Path, `FOR_EVER = 255` has no end. Whoever passes a target on says how long its own word is good,
+`LIFE` times `refresh`, and sends a No-Path when its own way ends.
 
 Inputs and reports
 ==================
@@ -154,7 +158,7 @@ Inputs: `MESSAGE = 1` to somebody, `ALARM = 2` to the root; to ourselves they ar
 
 | report                | meaning                                                                  |
 |-----------------------|--------------------------------------------------------------------------|
-| `REPORT_NO_ROUTE = 1` | a packet for a was dropped: no way; b others wait (`flush`: b in all)    |
+| `REPORT_NO_ROUTE = 1` | a packet for a was dropped: no way; b others wait                        |
 | `REPORT_FULL = 2`     | a packet for a found no place                                            |
 | `REPORT_LOOP = 3`     | a packet of b for a was dropped: its ranks did not fit twice             |
 | `REPORT_DETACHED = 4` | no parent any more; the rank was a                                       |
@@ -169,7 +173,7 @@ Constants and settings
 | `NODES = 254`, `NEIGHBOURS = 24`,    | places: for targets, neighbours, packets                  |
 | `QUEUE = 6`                          |                                                           |
 | `BODY = 8`, `TARGETS = 4`            | numbers of a message, 2 bytes each; targets of a DAO      |
-| `OUTBOX = 50`                        | actions that a call puts out at most                      |
+| `OUTBOX = 55`                        | actions that a call puts out at most                      |
 | `INFINITE = 65535`                   | INFINITE_RANK [17]                                        |
 | `INITIAL = 240`, `WINDOW = 16`,      | sequence counters [7.2]: where they begin,                |
 | `CIRCULAR = 128`                     | SEQUENCE_WINDOW, below it they go round                   |
@@ -178,7 +182,7 @@ Constants and settings
 | `NO_WAY = 1048576`                   | a cost beyond all: no parent                              |
 | `GIVEN_UP = 2`                       | frames without an acknowledgement, then it is lost        |
 | `KEPT = 3`, `OF = 4`                 | 3/4 of an ETX stay, 1/4 is the new sample                 |
-| `LIFE = 3`                           | refreshes without a DAO; at one more the way is forgotten |
+| `LIFE = 3`                           | times from DAO to DAO, then a way is forgotten            |
 | `NONE = -1`, `NOBODY = 255`          | no place, no node                                         |
 | `STAY = -2`                          | no next hop yet                                           |
 | `CLOCK = 1073741823`                 | clocks wrap at 2^30                                       |
@@ -219,5 +223,6 @@ Assumed: frames are whole and nobody lies; any may be lost; nodes die and come b
 - Nothing says that a message arrived, and a hop acknowledges also what finds no place. A message
   may come twice: when only acknowledgements were lost, it is given to somebody again.
 - Who restarts begins counters at 240, newer than any that has gone round, but 0; where the old one
-  had not, DAOs are taken for old until they have counted past it, or the way was forgotten.
+  had not, its DAOs are old by the words of [7.2] until they have counted past it, or for `LIFE`
+  times `refresh`, when the way is forgotten.
 """

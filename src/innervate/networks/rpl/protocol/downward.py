@@ -6,7 +6,8 @@ from innervate.dialect.rng import draw
 from innervate.networks.rpl.protocol.constants import DAO_DELAY, NOBODY, NODES, NONE, ROUTE, TARGETS
 from innervate.networks.rpl.protocol.counters import following, is_newer
 
-LIFE = 3  # times that a DAO may be missed
+LIFE = 3  # times from DAO to DAO for which a way is good
+FOR_EVER = 255
 HERE = 1
 GONE = 2  # what a parent is to hear of a target
 DAO_TRIES = 5
@@ -64,19 +65,29 @@ def learn(node, child, target, path, life):
         return forget(node, target) if node.via[target] == child else 0
     if node.via[target] >= 0 and is_newer(node.path[target], path):
         return 0
-    same = node.via[target] == child and node.path[target] == path
-    node.via[target] = child
-    node.path[target] = path
-    node.age[target] = 0
-    if same:
+    if node.via[target] == child and node.path[target] == path:
         return 0
+    note_way(node, target, child, path, life)
     node.owed[target] = HERE
     return 1
+
+
+def note_way(node, target, via, path, life):
+    """A way is good for so long from when its Path Sequence is first seen [6.7.8]."""
+    node.via[target] = via
+    node.path[target] = path
+    node.life[target] = life
+
+
+def life_of(params):
+    """For how many ticks what we say of ways is good."""
+    return LIFE * params.refresh
 
 
 def forget(node, target):
     """There is no way to a target any more."""
     node.via[target] = NONE
+    node.life[target] = 0
     node.owed[target] = GONE
     return 1
 
@@ -101,12 +112,12 @@ def forget_child(node, params, now, child, out):
 
 
 def grow_older(node, params, now, out):
-    """Another DAO should have come of every target: who was missed too often is forgotten."""
+    """A tick has passed: ways that nobody has told of for too long are forgotten."""
     changed = 0
     for target in range(NODES):
-        if node.via[target] >= 0:
-            node.age[target] = min(node.age[target] + 1, 255)
-            if node.age[target] > LIFE:
+        if node.via[target] >= 0 and node.life[target] != FOR_EVER:
+            node.life[target] -= 1
+            if node.life[target] <= 0:
                 changed += forget(node, target)
     if changed:
         schedule(node, params, now, out)
@@ -123,7 +134,7 @@ def pick(node, params):
             write(node, count, target)
             count += 1
     blank_behind(node, count)
-    node.dao_life = 0 if mark == GONE else min(LIFE * params.refresh, 255)
+    node.dao_life = 0 if mark == GONE else life_of(params)
     return count
 
 
@@ -174,13 +185,14 @@ def told_left(node):
             node.left[node.dao_target[i]] = 0
 
 
-def take_report(node, target, parent, path):
+def take_report(node, params, target, parent, path):
     """Non-storing mode, the root: a node says who its parent is; 0 if that is old news."""
-    if target >= NODES or (node.via[target] >= 0 and is_newer(node.path[target], path)):
+    if target >= NODES or parent >= NODES:
         return 0
-    node.via[target] = parent if parent < NODES else NONE
-    node.path[target] = path
-    node.age[target] = 0
+    if node.via[target] >= 0 and is_newer(node.path[target], path):
+        return 0
+    if node.via[target] != parent or node.path[target] != path:
+        note_way(node, target, parent, path, life_of(params))
     return 1
 
 

@@ -47,7 +47,7 @@ STATE = (
     # Downward routes [RFC 6550, 9].
     ("via", NODES, -1, 253, "node", "storing: the child on the way to it; root else: its parent"),
     ("path", NODES, 0, 255, "number", "Path Sequence of that"),
-    ("age", NODES, 0, 255, "times", "that DAOs should have come since"),
+    ("life", NODES, 0, 255, "ticks", "for which that is good; 255 for ever"),
     ("owed", NODES, 0, 2, "mark", "1 our parent is to hear of it, 2 that it is gone"),
     ("left", NODES, 0, 1, "mark", "a parent that we left is to hear that it is gone"),
     ("old", 0, 0, 255, "node", "that parent; 255 = none"),
@@ -102,7 +102,7 @@ FRAME = (
     ("rank", 0, 0, INFINITE, "rank", "DIO: of its sender"),
     ("dtsn", 0, 0, 255, "number", "DIO: of its sender"),
     ("mop", 0, 0, 7, "mode", "1 non-storing, 2 storing"),
-    ("life", 0, 0, 255, "ticks", "DAO: of its targets; 0 = No-Path"),
+    ("life", 0, 0, 255, "ticks", "DAO: of its targets; 0 = No-Path, 255 for ever"),
     ("targets", TARGETS, 0, 255, "node", "DAO: who can be reached; 255 = none"),
     ("paths", TARGETS, 0, 255, "number", "DAO: their Path Sequences"),
     ("origin", 0, 0, 255, "node", "whose packet it is"),
@@ -140,7 +140,7 @@ PARAMS = (
     ("tick_us", 0, 1000, 100_000_000, "us", "a tick: solicitations, ages"),
     ("hold", 0, 0, 255, "ticks", "from poisoning to looking for a parent further down"),
     ("patience", 0, 1, 255, "ticks", "for which packets wait for a parent"),
-    ("refresh", 0, 1, 65535, "ticks", "from DAO to DAO; routes end after three such times"),
+    ("refresh", 0, 1, 84, "ticks", "from DAO to DAO; routes end after three such times"),
     ("repair", 0, 0, 65535, "ticks", "from version to version; 0 = no global repair"),
     ("hops", 0, 1, 255, "hops", "a packet's hop limit"),
 )

@@ -21,10 +21,10 @@ from innervate.networks.rpl.protocol.constants import (
     NOBODY,
     NODES,
     NONE,
+    QUEUE,
     REPORT_FULL,
     REPORT_HOPS,
     REPORT_LOOP,
-    REPORT_NO_ROUTE,
     ROUTE_ERROR,
     TICK,
     TRICKLE,
@@ -45,6 +45,7 @@ from innervate.networks.rpl.protocol.parents import choose, hear_dio, meet, new_
 from innervate.networks.rpl.protocol.sending import (
     acked,
     acknowledge,
+    give_up,
     go,
     missed,
     new_message,
@@ -53,7 +54,7 @@ from innervate.networks.rpl.protocol.sending import (
 from innervate.networks.rpl.protocol.trickle import begin_interval, interval_point, reset_trickle
 
 TIMERS = 4
-OUTBOX = 50
+OUTBOX = 55
 
 MESSAGE = 1  # inputs: to item.dest
 ALARM = 2  # to the root
@@ -166,17 +167,15 @@ def on_input(node, params, now, kind, item, out):
 
 
 def tick(node, params, now, out):
-    """Routes grow older; the root may begin anew; who has no parent asks for one."""
+    """Ways grow older; the root may begin anew; who has no parent asks for one."""
     node.lived = (node.lived + 1) & MASK16
-    refresh = node.lived % params.refresh == 0
-    if refresh:
-        grow_older(node, params, now, out)
+    grow_older(node, params, now, out)
     if node.number == params.root:
         if params.repair and node.lived % params.repair == 0:
             new_version(node, params, now, following(node.version), out)
         return
     if node.rank != INFINITE:
-        if refresh:
+        if node.lived % params.refresh == 0:
             announce(node, params, now, out)
         return
     node.lonely = node.lonely + 1 if node.lonely < LONELY_MAX else LONELY_MAX - RARELY
@@ -193,10 +192,9 @@ def tick(node, params, now, out):
 
 def flush(node, out):
     """Nobody has come who could take our packets."""
-    if node.q_count > 0 and node.under == IDLE:
-        report(out, REPORT_NO_ROUTE, node.q_dest[node.q_first], node.q_count)
-        node.q_count = 0
-        node.rounds = 0
+    for _i in range(QUEUE):
+        if node.q_count > 0 and node.under == IDLE:
+            give_up(node, out)
 
 
 def delay_over(node, params, now, out):
@@ -264,7 +262,7 @@ def consume(node, params, frame, out):
         if frame.path == node.path_seq:
             node.owed[node.number] = 0
     elif kind == DAO_UP:
-        if take_report(node, frame.origin, frame.info, frame.path):
+        if take_report(node, params, frame.origin, frame.info, frame.path):
             answer(node, params, frame, out)
     elif kind == ROUTE_ERROR:
         if frame.info < NODES and node.via[frame.info] == frame.origin:

@@ -2,7 +2,7 @@
 
 A port is *dead* if it said "no route" or "you are my parent", or, and is not the parent's, a route
 that the rule refuses, or if its cable does not work. It stays so until it says something else,
-since what is refused stays refused (F, T4), or until it works again. So in both runs a dead port
+since what is refused stays refused (F, T3), or until it works again. So in both runs a dead port
 may be taken for one that cannot be had, wherever the handler asks; that it is so at each of these
 places is a goal, too.
 """

@@ -6,7 +6,7 @@ handler that the explorer calls keeps; so there is nothing that hearing the same
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any
 
@@ -55,8 +55,8 @@ def _pair(known: dict[str, Any], rule: int) -> Bare:
     return pair
 
 
-def up_to_date(pair: Bare, store: Store) -> list[Goal]:
-    """What holds of a cell's choice between any two events."""
+def up_to_date(pair: Bare, store: Store, ports: Iterable[int] = range(PORTS)) -> list[Goal]:
+    """What holds of a cell's choice between any two events, as far as these ports go."""
     t, view, cell = pair.t, pair.view(store), pair.cell
 
     def asks(question: str, *args: Any) -> Term:
@@ -66,7 +66,7 @@ def up_to_date(pair: Bare, store: Store) -> list[Goal]:
 
     has, best = view.has_parent(), []
     usable = []
-    for p in range(PORTS):
+    for p in ports:
         can = t.all(asks("is_usable", t.number(p)), asks("is_allowed", t.number(p)))
         farther = t.all(has, t.at_most(view.at("dist", view.parent), view.at("dist", p)))
         best.append(
@@ -91,7 +91,8 @@ def _kept(known: dict[str, Any], rule: int, name: str) -> Step:
     given = {"port": pair.port, "frame": pair.cell.frame, "cause": cause}
     facts = [one.holds for one in up_to_date(pair, before) if handler != "on_start"]
     after, _ = pair.run(before, handler, *(given.get(one, one) for one in told))
-    return pair.step(name, up_to_date(pair, after), facts)
+    ports = range(PORTS if handler == "on_start" else 1)  # to all else ports are alike: mirror.py
+    return pair.step(name, up_to_date(pair, after, ports), facts)
 
 
 def _repeated(known: dict[str, Any], rule: int) -> Step:

@@ -176,13 +176,14 @@ def _number(known: dict[str, Any], rule: int) -> Twice:
 def _penalty(updates: int, known: dict[str, Any], rule: int) -> Twice:
     """The penalty of a port that says "no route", and is heard no more."""
     words = f"the penalty of a port is other, {('periodic', 'triggered')[updates]}"
-    port = 0  # ports are alike (mirror.py)
+    port, other = 0, 1  # ports are alike (mirror.py)
     twice = Twice(known, rule, words, ["pf", "heard"], port)
     t, cell = twice.t, twice.cell.cell
+    twice.port = t.number(other)
     for store in (twice.stage.store, twice.store):
         store[cell, "dist", port], store[cell, "child", port] = t.number(INFINITY), t.number(0)
     view = twice.view(twice.stage.store)
-    twice.facts += [t.negated(view.is_parent(port)), t.negated(view.is_(twice.port, port))]
+    twice.facts.append(t.negated(view.is_parent(port)))
     if updates == TRIGGERED:  # a choice is made anew, which is up to date
         twice.facts += kept(twice, rule)
         twice.facts += [one.holds for one in up_to_date(twice, twice.stage.store)]

@@ -1,0 +1,60 @@
+"""How a declared protocol breaks, in sentences: what happened, and which fields it changed."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from innervate import dialect, folders
+from innervate.verify.cases import Story
+from innervate.verify.states import State, Step
+
+MOST = 6  # changes that a sentence has room for
+DRAWN = {"rng", "choice", "asked"}  # a generator's own
+ERRORS = (ArithmeticError, AttributeError, IndexError, TypeError, ValueError)
+
+Before = Mapping[State, tuple[State, str] | None]
+
+
+def story_of(net: Any, before: Before, state: State, title: str, last: Step | None = None) -> Story:
+    """The way to a state, and what breaks in it, or in the last step from it."""
+    steps = [(last.words, state, last.state)] if last else []
+    while (made := before[state]) is not None:
+        steps.append((made[1], made[0], state))
+        state = made[0]
+    return Story(title, [_sentence(net, *step) for step in reversed(steps)])
+
+
+def _sentence(net: Any, words: str, earlier: State, later: State) -> str:
+    found = []
+    for number, (was, now) in enumerate(zip(earlier.nodes, later.nodes, strict=True)):
+        label = net.graph.label(number)
+        whose = "" if label in words.split() else f"{label} "
+        found += [whose + one for one in _changes(net, was.values, now.values)]
+    if len(found) > MOST:
+        found[MOST:] = [f"{len(found) - MOST} more"]
+    return f"{words}: {', '.join(found)}." if found else f"{words}."
+
+
+def _changes(net: Any, was: tuple[Any, ...], now: tuple[Any, ...]) -> Iterator[str]:
+    """Fields with their values before and after; moments pass by themselves."""
+    for (name, length, *_), a, b in zip(net.fields.STATE, was, now, strict=True):
+        if name in net.clocks or name in DRAWN:
+            continue
+        pairs = zip(a, b, strict=True) if length else [(a, b)]
+        for place, (before, after) in enumerate(pairs):
+            if before != after:
+                yield f"{name}{f'[{place}]' if length else ''} {before} to {after}"
+
+
+def where(error: BaseException) -> str:
+    """An error in a protocol or an invariant: its file and line, and what is wrong."""
+    places = traceback.extract_tb(error.__traceback__)
+    home = Path(dialect.__file__).parent
+    last = [one for one in places if not Path(one.filename).is_relative_to(home)][-1]
+    what = f"{type(error).__name__}: {error}"
+    if isinstance(error, AttributeError) and error.name:
+        what = f"{error.name} is no field that fields.py declares"
+    return f"{folders.shown(Path(last.filename))}:{last.lineno}: {what}"

@@ -1,0 +1,68 @@
+"""Mistakes planted in a copy of the sources are caught by the commands as anybody types them."""
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import innervate
+from innervate.networks.skin.prove.faults import FAULTS
+
+FIVE = FAULTS[:5]  # planted by an independent check: a reduced search on trust finds none of them
+COMMANDS = {"verify": ("verify", "--graph", "triangle"), "prove": ("prove",)}
+SOURCES = Path(innervate.__file__).resolve().parent
+
+
+def planted(fault, home):
+    """A copy of all sources with a mistake in it."""
+    shutil.copytree(SOURCES, home / "innervate", ignore=shutil.ignore_patterns("__pycache__"))
+    protocol = home / "innervate" / "networks" / "skin" / "protocol"
+    (path,) = (path for path in protocol.glob("*.py") if fault.old in path.read_text("utf-8"))
+    path.write_text(path.read_text("utf-8").replace(fault.old, fault.new), "utf-8")
+
+
+def typed(command, home):
+    """Exit code and all that is printed where the sources at hand are those of a folder."""
+    main = "import sys; from innervate.cli import main; sys.exit(main())"
+    env = {**os.environ, "PYTHONPATH": str(home)}
+    done = subprocess.run([sys.executable, "-c", main, *COMMANDS[command]], env=env, text=True,
+                          capture_output=True, cwd=home)  # fmt: skip
+    return done.returncode, done.stdout + done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", FAULTS, ids=lambda one: one.name)
+def test_no_reduced_search_begins_on_a_protocol_that_lemmas_refute(fault, tmp_path):
+    planted(fault, tmp_path)
+    code, told = typed("verify", tmp_path)
+    assert code == 2
+    assert "refuted: " in told
+    assert "nothing broken" not in told
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", FIVE, ids=lambda one: one.name)
+def test_the_proof_of_the_skin_refutes_the_five(fault, tmp_path):
+    planted(fault, tmp_path)
+    code, told = typed("prove", tmp_path)
+    assert code == 1
+    assert "REFUTED" in told
+
+
+if __name__ == "__main__":  # python -m tests.networks.skin.verify.test_planted FOLDER
+    for number, fault in enumerate(FAULTS):
+        home = Path(sys.argv[1]) / str(number)
+        planted(fault, home)
+        for command in ("verify", "prove"):
+            begun, before = time.perf_counter(), os.times().children_user
+            code, told = typed(command, home)
+            hit = next((line for line in told.splitlines() if "refuted: " in line or
+                        "REFUTED" in line), "NOT CAUGHT")  # fmt: skip
+            used = os.times().children_user - before
+            print(f"{number + 1}|{fault.name}|{command}|{code}|{hit.strip()}|{used:.1f}|"
+                  f"{time.perf_counter() - begun:.1f}", flush=True)  # fmt: skip
+        shutil.rmtree(home)
