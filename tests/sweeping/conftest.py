@@ -1,5 +1,4 @@
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -40,13 +39,7 @@ def environment():
     return {**os.environ, "PYTHONPATH": path}
 
 
-def start(*tokens, cwd, module="innervate.cli", preexec_fn=lambda: None, **options):
-    """A command as a terminal starts it: where tests run in the background, Ctrl-C is ignored."""
-
-    def begin():
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-        preexec_fn()
-
+def start(*tokens, cwd, module="innervate.cli", **options):
     return subprocess.Popen(
         [sys.executable, "-m", module, *map(str, tokens)],
         cwd=cwd,
@@ -54,7 +47,6 @@ def start(*tokens, cwd, module="innervate.cli", preexec_fn=lambda: None, **optio
         stdout=options.pop("stdout", subprocess.PIPE),
         stderr=subprocess.PIPE,
         text=True,
-        preexec_fn=begin,
         **options,
     )
 
