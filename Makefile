@@ -21,7 +21,8 @@ WORKERS ?= 2
 # Tests start hundreds of processes: to translate the sources anew takes up to a second in each.
 unexport PYTHONDONTWRITEBYTECODE
 
-PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
+# One worker more than there are processors: tests that wait leave theirs to others.
+PYTEST = $(BIN)/python -m pytest -n $$(( $(WORKERS) + 1 )) --dist worksteal
 
 # What many tests run is compiled before they start, where it is not compiled yet.
 COMPILE = $(BIN)/python -m tests.loops $(WORKERS)

@@ -39,6 +39,8 @@ def alone(monkeypatch, tmp_path):
     # Of a file that is edited within a second, to the same length, Python finds the older one.
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
     monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+    # A folder's own tests want none of what is installed for ours, which takes a second to load.
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
     networks.cache_clear()
     yield tmp_path
     for name in list(folders._stamps):

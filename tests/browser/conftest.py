@@ -2,6 +2,7 @@
 
 import os
 import shutil
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -52,10 +53,24 @@ def look(browser, request):
     assert wrong == []
 
 
-@pytest.fixture
-def skin(tmp_path):
-    """The address of a small skin, slowed down ten times; nobody else changes it."""
-    path = tmp_path / "skin.toml"
+@contextmanager
+def small_skin(folder):
+    """The address of a small skin, slowed down ten times."""
+    path = folder / "skin.toml"
     path.write_text(SKIN)
     with serving(path, "--speed", 0.1) as address:
+        yield address
+
+
+@pytest.fixture(scope="module")
+def skin(tmp_path_factory):
+    """One for all tests of a file, which leave it as they found it; its log has what they did."""
+    with small_skin(tmp_path_factory.mktemp("skin")) as address:
+        yield address
+
+
+@pytest.fixture
+def fresh(tmp_path):
+    """One that nobody else changes or has changed."""
+    with small_skin(tmp_path) as address:
         yield address

@@ -27,8 +27,8 @@ def test_it_shows_the_network_and_asks_nobody_else(look, skin):
     assert all(address.startswith(skin.partition("?")[0]) for address in asked)
 
 
-def test_a_click_cuts_a_cable_and_the_next_heals_it(look, skin):
-    page = look(skin)
+def test_a_click_cuts_a_cable_and_the_next_heals_it(look, fresh):
+    page = look(fresh)
     click(page, CABLE)
     expect(page.locator("#selected-facts")).to_have_text("link, cut")
     expect(page.locator("#recovery")).to_have_class("number done")
@@ -63,8 +63,8 @@ def test_a_command_is_sent_to_the_selected_cell(look, skin):
     expect(page.locator("#log")).not_to_contain_text("not a command")
 
 
-def test_a_click_touches_a_cell_and_the_pc_receives_it(look, skin):
-    page = look(skin)
+def test_a_click_touches_a_cell_and_the_pc_receives_it(look, fresh):
+    page = look(fresh)
     page.locator("#tool").select_option("touch")
     page.locator("#colour").select_option("touch")
     click(page, "p0 r4 c1")
@@ -84,8 +84,8 @@ def test_a_click_touches_a_cell_and_the_pc_receives_it(look, skin):
     expect(page.locator("#selected-facts")).not_to_contain_text("touched")
 
 
-def test_the_state_of_the_network_is_one_line(look, skin):
-    page = look(skin)
+def test_the_state_of_the_network_is_one_line(look, fresh):
+    page = look(fresh)
     level, line = page.locator("#level"), page.locator("#headline")
     expect(level).to_have_text("✓ ok")
     expect(line).to_have_text("Every cell has a way to the PC, and no sample was lost.")
@@ -229,8 +229,8 @@ def test_a_tap_on_what_is_smaller_than_a_finger_only_selects(look, skin):
     expect(page.locator("#selected-facts")).to_contain_text("through port")
 
 
-def test_the_scenario_is_saved_with_what_was_done(look, skin):
-    page = look(skin)
+def test_the_scenario_is_saved_with_what_was_done(look, fresh):
+    page = look(fresh)
     click(page, OTHER)
     expect(page.locator("#selected-facts")).to_have_text("link, cut")
     with page.expect_download() as told:
