@@ -60,7 +60,9 @@ def _origin(model: MeshScenario) -> Iterator[Finding]:
             message = '[import] needs one of the two: file = "freifunk/leipzig" or topohub = "..."'
             yield ("import",), message
         if not table.largest_component and (table.around is not None or table.nodes is not None):
-            message = "import.around and nodes take what holds together; leave largest_component out"
+            message = (
+                "import.around and nodes take what holds together; leave largest_component out"
+            )
             yield ("import", "largest_component"), message
 
 
