@@ -28,8 +28,11 @@ COMMENTS = {  # of the keys of [import], in their order
 TUNED = {"copies": 4, "transmissions": 8, "listen_s": 1.0, "collect_s": 4.0, "e2e_s": 3.0}
 # In large networks, and where a hub has many neighbours that do not hear each other, what they
 # pass on meets at it: they have to take their time, and tables do not get through.
-CROWD_TUNED = {**TUNED, "jitter_s": 1.0, "listen_s": 3.0, "spread_s": 3.0, "collect_s": 9.0,
-               "period_s": 20.0, "tables": False}  # fmt: skip
+CROWD_TUNED = {
+    **TUNED, "transmissions": 5, "jitter_s": 1.0, "listen_s": 3.0, "spread_s": 3.0,
+    "collect_s": 9.0, "period_s": 20.0, "tables": False,
+}  # fmt: skip
+
 
 TEMPLATE = """\
 # A network as it was measured: everybody has something to tell the gateway.
