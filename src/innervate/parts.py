@@ -25,7 +25,8 @@ PARTS = {
     "loop_name": '(plan) -> str: the compiled loop that it runs on; "" = it needs no compiling',
     "demo": "module: SCENARIO, INTRODUCTION, LOOK, NEXT, lines(run): its chapter of `demo`",
     "sizing": "module: Question, parse_ports, size, RECOVERY: what `size` answers",
-    "measured_template": "(name, network, link types, least quality) -> str: of what was measured",
+    "measured_template": "(name, network, dict of what was chosen of it, folder) -> (str, str): a "
+    "scenario of what was measured, and what it takes",
     "capture": "module: LATE_US, refusal, interfaces, numbers, frames, simulate; if absent, any "
     "network of cables with `frames` has one (export/cabled.py)",
     "interface_words": 'dict: what captures call a node, by its role; others are a "node"',

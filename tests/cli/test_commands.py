@@ -108,6 +108,7 @@ def test_new_takes_a_measured_network(sh):
     Path("links.txt").write_text("A B 0.9 0.8\nB C 0.7 0.9\nC D 0.2\n")
     assert sh("new", "mesh", "sub/mine.toml", "--network", "links.txt", "--min-tq", "0.5") == 0
     assert "nodes      3, gateway B" in sh.out
+    assert "Taken: 3 of 4 nodes; links of 0.5 and better hold them together." in sh.out
     text = Path("sub/mine.toml").read_text()
     assert 'file = "../links.txt"' in text
     assert "min_tq = 0.5" in text
@@ -116,11 +117,47 @@ def test_new_takes_a_measured_network(sh):
     assert 'types = ["wifi", "other"]' in sh.out
 
 
+def chain(count, good):
+    return "".join(f"n{i} n{i + 1} {0.9 if i < good else 0.4}\n" for i in range(count - 1))
+
+
+@pytest.mark.parametrize(("count", "good", "chosen", "taken"), [
+    (254, 100, "min_tq = 0.3 ", "254 of 254 nodes; links of 0.3 and better hold them together."),
+    (255, 100, "min_tq = 0.41 ",
+     "101 of 255 nodes; links of 0.41 and better hold them together; those of 0.3 hold 255, too"),
+    (300, 299, 'around = "n1" ', "254 of 300 nodes; links of 0.3 and better hold them together; "
+     "about the best connected one of 300, too many for a mesh."),
+])  # fmt: skip
+def test_new_takes_of_a_measured_network_what_a_mesh_can_have(sh, count, good, chosen, taken):
+    Path("links.txt").write_text(chain(count, good))
+    assert sh("new", "mesh", "mine.toml", "--network", "links.txt") == 0
+    assert f"Taken: {taken}" in sh.out
+    assert f"\n{chosen}" in Path("mine.toml").read_text()
+
+
+def test_new_takes_the_part_about_a_node(sh):
+    Path("links.txt").write_text(chain(300, 299))
+    part = ("--around", "n200", "--nodes", "7")
+    assert sh("new", "mesh", "mine.toml", "--network", "links.txt", *part) == 0
+    assert "Taken: 7 of 300 nodes" in sh.out
+    assert sh("check", "mine.toml", "--set", 'gateway="n203"') == 0
+    assert "at most 6 hops from the gateway" in sh.out
+    assert sh("check", "mine.toml", "--set", 'gateway="n204"') == 2
+
+
 @pytest.mark.parametrize(("words", "what"), [
     (("skin", "n.toml", "--network", "freifunk/ulm"), "--network is for a mesh"),
     (("mesh", "n.toml", "--network", "none.json"), "none.json: cannot be read"),
     (("mesh", "n.toml", "--network", "freifunk/ulm", "--min-tq", "2"), "must be at most 1"),
-    (("mesh", "n.toml", "--min-tq", "0.5"), "choose links of a --network"),
+    (("mesh", "n.toml", "--min-tq", "0.5"), "choose of a --network; name one"),
+    (("mesh", "n.toml", "--around", "x"), "choose of a --network; name one"),
+    (("mesh", "n.toml", "--network", "freifunk/ulm", "--around", "0", "--nodes", "1"), "2 to 254"),
+    (("mesh", "n.toml", "--network", "freifunk/ulm", "--around", "0", "--nodes", "255"),
+     "must be at most 254"),
+    (("mesh", "n.toml", "--network", "freifunk/ulm", "--around", "1000"), 'did you mean "100"'),
+    (("mesh", "n.toml", "--network", "freifunk/ulm", "--around", "me"), "there are 0 to "),
+    (("mesh", "n.toml", "--network", "freifunk/ulm", "--around", "5"),
+     'no link of "5" has a quality of 0.3 or better both ways; lower import.min_tq'),
     (("mesh", "n.toml", "--network", "topohub:nowhere"), "nowhere"),
 ])  # fmt: skip
 def test_new_writes_nothing_of_a_network_that_is_none(sh, words, what):

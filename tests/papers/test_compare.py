@@ -91,8 +91,10 @@ def test_a_claim_holds_only_if_it_does_in_all_cases(monkeypatch):
     """The last case alone decides nothing; what never happens with either is no difference."""
     given = {"a": ([inf, *range(11)], [inf, *range(1, 12)]), "b": ([1] * 12, [1] * 12),
              "c": ([1] * 12, [2] * 12)}  # fmt: skip
-    monkeypatch.setattr(jobs.Compared, "_by_seed",
-                        lambda self, case, side, name: dict(enumerate(given[case][side])))  # fmt: skip
+    by_seed = {case: [dict(enumerate(one)) for one in pair] for case, pair in given.items()}
+    monkeypatch.setattr(
+        jobs.Compared, "_by_seed", lambda self, case, side, name: by_seed[case][side]
+    )
     made = jobs.Compared(SimpleNamespace(name="toy"), None)
 
     def verdict(*cases):

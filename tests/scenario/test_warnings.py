@@ -89,10 +89,6 @@ CASES = [
         for what, rule in (("tables", "search"), ("graph", "graph"))
         for rounds in (f"{grid(20)}[protocol]\nfailover = '{rule}'\ncollect_s = 2.0\n",)
     ),
-    *(
-        ("mesh", "more than 32 neighbours: n0; n0 has 33", star(33, 16) + rest, star(32, 16) + rest)
-        for rest in ("", "[protocol]\ntables = false")
-    ),
     ("mesh", "nobody can cross it", FENCE, FENCE + ROBOT),
     ("mesh", "flow.0 sends nothing", "duration_s = 6\n" + FLOW, "duration_s = 60\n" + FLOW),
 ]  # fmt: skip
@@ -126,7 +122,7 @@ def texts_of(*functions):
 def test_every_warning_has_a_case():
     left = texts_of(
         skin._touch, skin._start_up, skin._load, radio.warnings, mesh.warnings, mesh._thin,
-        mesh._distribution, mesh._crowded,
+        mesh._distribution,
     )  # fmt: skip
     for kind, words, weak, _ in CASES:
         (found,) = (text for text in said(kind, weak) if words in text)

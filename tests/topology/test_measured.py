@@ -112,6 +112,22 @@ def test_no_links_leave_nothing_to_choose() -> None:
     assert measured.Measured(["a"], {}, []).least_for(5, in_one=False) is None
 
 
+def test_around_a_node_hops_come_first_then_the_better_link() -> None:
+    links = {(0, 1): (0.5, 0.9), (0, 2): (0.9, 0.6), (0, 3): (1.0, 0.0), (1, 4): (1.0, 1.0),
+             (2, 5): (1.0, 1.0), (3, 4): (1.0, 1.0), (6, 7): (1.0, 1.0)}  # fmt: skip
+    network = measured.Measured(list("abcdefgh"), links, [(i, 0) for i in range(8)])
+    orders = {most: network.around(0, most).names for most in (2, 3, 4, 9)}
+    assert orders[2] == ["a", "c"], "0.6 at worst, before 0.5"
+    assert orders[3] == ["a", "b", "c"]
+    assert orders[4] == ["a", "b", "c", "e"], "d is no neighbour: nothing arrives from it"
+    assert orders[9] == ["a", "b", "c", "d", "e", "f"], "all that hold together, and no more"
+    part = network.around(0, 4)
+    assert part.links == {(0, 1): (0.5, 0.9), (0, 2): (0.9, 0.6), (1, 3): (1.0, 1.0)}
+    assert part.points == [(0, 0), (1, 0), (2, 0), (4, 0)]
+    assert network.around(7, 2).names == ["g", "h"]
+    assert network.best_connected() == 0
+
+
 WRONG = (
     ("", "holds no links"),
     ("A B C", "line 1 is no link; write"),

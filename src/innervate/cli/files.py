@@ -11,6 +11,7 @@ from typing import Any
 
 from innervate import scenario
 from innervate.cli.errors import UserError
+from innervate.cli.options import MEASURED_DEFAULTS, MeasuredOptions
 from innervate.network import networks
 
 
@@ -41,20 +42,13 @@ def _is_comment(line: str) -> bool:
     return line.startswith("#")
 
 
-def new(
-    kind: str,
-    file: Path | None,
-    network: str | None = None,
-    types: list[str] | None = None,
-    min_tq: float | None = None,
-) -> int:
+def new(kind: str, file: Path | None, measured: MeasuredOptions = MEASURED_DEFAULTS) -> int:
     """Write a commented scenario; never over a file that is there."""
     found = ""
-    if network is not None:
-        text, found = _of_network(kind, file, network, ["wifi"] if types is None else types,
-                           0.3 if min_tq is None else min_tq)  # fmt: skip
-    elif types is not None or min_tq is not None:
-        raise UserError("--types and --min-tq choose links of a --network; name one")
+    if measured.network:
+        text, found = _of_network(kind, file, measured)
+    elif measured.wanted:
+        raise UserError("--types, --min-tq, --around and --nodes choose of a --network; name one")
     else:
         text = scenario.template(kind)
     if file is None:
@@ -74,21 +68,19 @@ def new(
     return 0
 
 
-def _of_network(
-    kind: str, file: Path | None, network: str, types: list[str], min_tq: float
-) -> tuple[str, str]:
+def _of_network(kind: str, file: Path | None, measured: MeasuredOptions) -> tuple[str, str]:
     """The text of a scenario of a measured network, and what it holds."""
     able = [name for name, known in networks().items() if known.has("measured_template")]
     if kind not in able:
         raise UserError(f"--network is for a {' or a '.join(able)}: "
-                        f"innervate new {able[0]} FILE --network {network}")  # fmt: skip
+                        f"innervate new {able[0]} FILE --network {measured.network}")  # fmt: skip
     folder = file.parent if file is not None else Path()
-    given = network
-    if Path(network).is_file():
-        given = Path(os.path.relpath(network, folder)).as_posix()
+    network = measured.network
     name = file.stem if file is not None else Path(network).stem
-    text = networks()[kind].measured_template(name, given, types, min_tq)
-    return text, scenario.summary(scenario.loads(text, folder=str(folder)))
+    if Path(network).is_file():
+        network = Path(os.path.relpath(network, folder)).as_posix()
+    text, taken = networks()[kind].measured_template(name, network, measured.wanted, str(folder))
+    return text, f"{scenario.summary(scenario.loads(text, folder=str(folder)))}\n{taken}"
 
 
 def check(file: str, sets: list[str], seed: int | None, as_json: bool) -> int:

@@ -7,7 +7,12 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from innervate.cli.options import OWN_DEFAULTS, OwnOptions
+from innervate.cli.options import (
+    MEASURED_DEFAULTS,
+    OWN_DEFAULTS,
+    MeasuredOptions,
+    OwnOptions,
+)
 from innervate.cli.seeds import Seed, Sets
 
 Json = Annotated[bool, Parameter(negative="")]
@@ -70,9 +75,7 @@ def new(
     file: Path | None = None,
     /,
     *,
-    network: str | None = None,
-    types: Annotated[list[str] | None, Parameter(consume_multiple=True)] = None,
-    min_tq: float | None = None,
+    measured: Annotated[MeasuredOptions, Parameter(name="*")] = MEASURED_DEFAULTS,
     own: Annotated[OwnOptions, Parameter(name="*")] = OWN_DEFAULTS,
 ) -> int:
     """Write a commented scenario to start from, or a network of one's own.
@@ -83,13 +86,8 @@ def new(
         What it describes: skin, radio or mesh. network: a folder with a network of your own.
     file
         Where to write it; a scenario is printed if left out. Of a network, its folder: NAME.
-    network
-        Of a measured mesh: a JSON file as community meshes publish it, lines "A B 0.9 0.7",
-        freifunk/leipzig, or topohub:NAME.
-    types
-        Types of its links that count; wifi if left out, --empty-types for all.
-    min_tq
-        Worst quality of a link that counts, 0 to 1; 0.3 if left out.
+    measured
+        Which nodes and links of a measured network count.
     own
         What a network of your own is joined by.
     """
@@ -99,7 +97,7 @@ def new(
         return making.make(file, own.on, own.over)
     from innervate.cli import files as command
 
-    return command.new(kind, file, network, types, min_tq)
+    return command.new(kind, file, measured)
 
 
 def check(file: str, /, *, set_: Sets = None, seed: Seed = None, json: Json = False) -> int:

@@ -53,9 +53,35 @@ class Measured:
 
     def largest(self) -> Measured:
         """Its largest part that holds together by links that work both ways."""
+        return self._only(set(components(self._near())[0]), self.links)
+
+    def best_connected(self) -> int:
+        """The node with the most links that work both ways; of several the first."""
+        degrees = [len(near) for near in self._near()]
+        return degrees.index(max(degrees))
+
+    def around(self, start: int, most: int) -> Measured:
+        """At most so many nodes, from `start` on: fewer hops first, then by the better link.
+
+        They hold together by links that work both ways.
+        """
+        near, line = self._near(), {start: None}
+        ring = [start]
+        while ring and len(line) < most:
+            outer = sorted(
+                (-min(self.links[min(node, other), max(node, other)]), other)
+                for node in ring
+                for other in near[node]
+                if other not in line
+            )
+            ring = list(dict.fromkeys(other for _, other in outer))
+            line |= dict.fromkeys(ring)
+        return self._only(set(list(line)[:most]), self.links)
+
+    def _near(self) -> list[list[int]]:
+        """Per node whom links lead to that work both ways."""
         links = [pair for pair, both in self.links.items() if min(both) > 0]
-        part = components(neighbours(len(self.names), links))[0]
-        return self._only(set(part), self.links)
+        return neighbours(len(self.names), links)
 
     def least_for(self, most: int, *, in_one: bool) -> float | None:
         """The least quality, in hundredths, with which `kept` leaves at most so many nodes.

@@ -72,7 +72,7 @@ def node_parameters(nodes: int, changes: dict[str, int], where: str = "") -> dic
             raise LiveError(
                 f"{where}: {name}={wanted[name]} does not fit into {small[name]} places"
             )
-    own = {"width": nodes, "row": fields.words(nodes), "places": min(nodes, fields.NEIGHBOURS)}
+    own = {"width": nodes, "row": fields.words(nodes), "places": fields.places(nodes)}
     return {**mesh_parameters(count, wanted, where), **own}
 
 

@@ -8,7 +8,7 @@ from innervate.live.errors import LiveError
 from innervate.live.parameters import check_parameters
 from innervate.networks.mesh.live.stack import CLASSES
 from innervate.networks.mesh.protocol.constants import LIST, MONITOR, SEARCH, TABLES
-from innervate.networks.mesh.protocol.fields import NEIGHBOURS, PARAMS, POINTS, words
+from innervate.networks.mesh.protocol.fields import PARAMS, POINTS, places, words
 
 IP: dict[str, int] = {
     "mtu": 127, "mode": TABLES, "discovery": LIST, "failover": SEARCH, "avoid_origin": 0,
@@ -59,5 +59,5 @@ def mesh_parameters(nodes: int, changes: dict[str, int], where: str = "") -> dic
     check_parameters(changes, (field for field in PARAMS if field[0] not in OURS), where)
     width = next(size for size in CLASSES if nodes <= size)
     corners = {name: [0] * POINTS for name in ("px", "py", "after")}
-    own = {"nodes": nodes, "width": width, "row": words(width), "places": min(width, NEIGHBOURS)}
+    own = {"nodes": nodes, "width": width, "row": words(width), "places": places(width)}
     return {**IP, **corners, **own, **changes}

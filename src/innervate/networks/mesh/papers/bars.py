@@ -80,7 +80,7 @@ def wire_bytes(nodes: int) -> int:
     acks' times are learned, which is an option for links that are much slower or much faster.
     """
     width = next(size for size in CLASSES if nodes <= size)
-    optional = mesh_fields.links(min(width, mesh_fields.NEIGHBOURS))
+    optional = mesh_fields.links(mesh_fields.places(width))
     left_out = {name for name, *_ in mesh_fields.QUEUED + optional}
     return sum(_bytes(*one[1:4]) for one in mesh_fields.node(width) if one[0] not in left_out)
 

@@ -7,7 +7,8 @@ give the declarations of a class. Columns as in the skin's.
 from innervate.networks.mesh.protocol.constants import BODY, DATA_MAX, PATH_MAX
 
 TIME = 1073741823
-NEIGHBOURS = 32
+NEIGHBOURS = 32  # in a network of up to SMALL nodes; hubs of larger ones hear more than a hundred
+SMALL = 64
 QUEUE = 8
 WAITING = 8
 PLACES_MAX = 64  # of either, where memory is no matter
@@ -58,9 +59,14 @@ ACTION = (
 )
 
 
+def places(n):
+    """How many neighbours a node remembers in a network of up to n nodes; in a large one all."""
+    return min(n, NEIGHBOURS) if n <= SMALL else n
+
+
 def node(n, queue=QUEUE, kept=WAITING):
     """Fields of a node in a network of up to n nodes, that queues and keeps so many packets."""
-    k = min(n, NEIGHBOURS)
+    k = places(n)
     near, far = neighbours(k) + links(k), tables(n) + packets(n, kept)
     return OWN + near + far + WATCH + watched(n) + queued(queue)
 
@@ -255,8 +261,8 @@ def gate(n):
         ("reported", n * n, 0, 65535, "round", "who was heard by whom: the round + 1; 0 never"),
         ("known", n * words(n), 0, 32767, "bits", "adjacency after the newest round"),
         ("dist", n * n, 0, 255, "hops", "from everyone to everyone; 255 none"),
-        ("list", n * NEIGHBOURS, 0, 253, "node", "neighbours of each, in order of number"),
-        ("degree", n, 0, NEIGHBOURS, "nodes", "how many"),
+        ("list", n * places(n), 0, 253, "node", "neighbours of each, in order of number"),
+        ("degree", n, 0, places(n), "nodes", "how many"),
         ("line", n, 0, 253, "node", "scratch: nodes in order of distance"),
         ("far", n, 0, 255, "hops", "scratch: distances without one node"),
         ("next", n, 0, 255, "node", "scratch: a node's table"),
@@ -285,7 +291,7 @@ def gate(n):
 PARAMS = (
     ("nodes", 0, 1, 254, "nodes", "ids are 0 to nodes - 1"),
     ("row", 0, 1, 17, "words", "of an adjacency row in this capacity class"),
-    ("places", 0, 1, 32, "neighbours", "in the neighbour table of this class"),
+    ("places", 0, 1, 254, "neighbours", "in the neighbour table of this class"),
     ("width", 0, 1, 254, "nodes", "the capacity class"),
     ("mtu", 0, 64, 127, "bytes", "a whole frame"),
     ("mode", 0, 0, 2, "mode", "0 tables, 1 whole graph, 2 table-free"),

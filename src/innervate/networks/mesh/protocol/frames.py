@@ -3,11 +3,15 @@
 from innervate.networks.mesh.protocol.constants import (
     ACK,
     ACK_BYTES,
+    ALARM,
     ALL,
     BODY,
     CRC_BYTES,
+    DATA,
+    E2E_ACK,
     HEADER_BYTES,
     PATH_MAX,
+    POSITION,
     SOURCE_ROUTE,
 )
 
@@ -70,7 +74,8 @@ def inner(frame):
 def is_sound(params, frame):
     """1 if the numbers in a received frame go together; what is not is dropped silently [mesh 2].
 
-    Nodes exist, the whole fits the MTU, a source route is as long as it says.
+    Nodes exist, the whole fits the MTU, a source route is as long as it says, and in front of what
+    is routed; a table has its route in itself.
     """
     if frame.kind == ACK:
         return 1
@@ -83,7 +88,14 @@ def is_sound(params, frame):
     for k in range(frame.path_len):
         if frame.path[k] >= params.nodes:
             return 0
-    return not frame.flags & SOURCE_ROUTE or is_route(params, frame)
+    if not frame.flags & SOURCE_ROUTE:
+        return 1
+    return is_routed(frame.kind) and is_route(params, frame)
+
+
+def is_routed(kind):
+    """1 for what one node sends to another by tables, the graph or a source route."""
+    return kind == DATA or kind == E2E_ACK or kind == ALARM or kind == POSITION
 
 
 def is_route(params, frame):

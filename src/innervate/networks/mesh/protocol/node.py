@@ -54,7 +54,7 @@ from innervate.networks.mesh.protocol.duplicates import (
     record_packet,
     retry_unreachable,
 )
-from innervate.networks.mesh.protocol.frames import clear_queue, get16, is_sound
+from innervate.networks.mesh.protocol.frames import clear_queue, get16, is_routed, is_sound
 from innervate.networks.mesh.protocol.gateway import collect, lead, on_response, reset, tick
 from innervate.networks.mesh.protocol.hop import learn_late, learn_trip, widen
 from innervate.networks.mesh.protocol.jobs import on_ack, retry_jobs
@@ -238,7 +238,7 @@ def on_unicast(node, gate, params, now, frame, out):
         take_alarm(node, params, now, frame, out)
     elif kind == POSITION and here:
         on_position(node, params, now, frame, out)
-    elif kind == DATA or kind == E2E_ACK or kind == ALARM or kind == POSITION:
+    elif is_routed(kind):
         if here:
             take(node, params, now, frame, out)
         else:

@@ -1,7 +1,6 @@
 """Routing tables as bytes: groups of recipients with one next hop and alternate [mesh 2]."""
 
 from innervate.networks.mesh.protocol.constants import BODY, CRC_BYTES, HEADER_BYTES
-from innervate.networks.mesh.protocol.fields import NEIGHBOURS
 from innervate.networks.mesh.protocol.frames import add8
 from innervate.networks.mesh.protocol.paths import NONE, hops
 from innervate.networks.mesh.protocol.table import GROUP_BYTES, PART_HEAD
@@ -26,11 +25,11 @@ def pack(node, gate, params, s, room, wanted, i):
     part = 0
     used = 0
     for k in range(gate.degree[s]):
-        main = gate.list[s * NEIGHBOURS + k]
+        main = gate.list[s * params.places + k]
         for side in range(gate.degree[s] + 1):
             alt = NONE
             if side < gate.degree[s]:
-                alt = gate.list[s * NEIGHBOURS + side]
+                alt = gate.list[s * params.places + side]
             count = 0  # of the group that is being written
             start = 0
             for d in range(params.nodes):

@@ -6,7 +6,6 @@ Dijkstra's algorithm over hop counts is a breadth-first search; among equals the
 from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.rng import LOW15
 from innervate.networks.mesh.protocol.constants import LIST, TABLE_FREE
-from innervate.networks.mesh.protocol.fields import NEIGHBOURS
 
 FAR = 255
 NONE = 255
@@ -52,10 +51,10 @@ def build_graph(gate, params, round):
             gate.known[a * params.row + word] = 0
     for a in range(params.nodes):
         for b in range(params.nodes):
-            if a != b and is_link(gate, params, a, b, round) and gate.degree[a] < NEIGHBOURS:
+            if a != b and is_link(gate, params, a, b, round) and gate.degree[a] < params.places:
                 at = a * params.row + b // BITS
                 gate.known[at] = gate.known[at] | 1 << (b % BITS)
-                gate.list[a * NEIGHBOURS + gate.degree[a]] = b
+                gate.list[a * params.places + gate.degree[a]] = b
                 gate.degree[a] = gate.degree[a] + 1
                 if a < b:
                     links = links + 1
@@ -87,7 +86,7 @@ def measure(gate, params, source, without):
         a = gate.line[at]
         at = at + 1
         for k in range(gate.degree[a]):
-            b = gate.list[a * NEIGHBOURS + k]
+            b = gate.list[a * params.places + k]
             if gate.far[b] == FAR and b != without:
                 gate.far[b] = gate.far[a] + 1
                 gate.line[last] = b
@@ -111,13 +110,13 @@ def first_hop(gate, params, s, d, pick):
     """A first hop of a shortest path from s to d: of several the pick-th, from the lowest id on."""
     count = 0
     for k in range(gate.degree[s]):
-        if hops(gate, params, gate.list[s * NEIGHBOURS + k], d) + 1 == hops(gate, params, s, d):
+        if hops(gate, params, gate.list[s * params.places + k], d) + 1 == hops(gate, params, s, d):
             count = count + 1
     if count == 0:
         return NONE
     left = pick % count
     for k in range(gate.degree[s]):
-        who = gate.list[s * NEIGHBOURS + k]
+        who = gate.list[s * params.places + k]
         if hops(gate, params, who, d) + 1 == hops(gate, params, s, d):
             if left == 0:
                 return who
@@ -133,7 +132,7 @@ def alternate_of(gate, params, s, d, main):
     best = NONE
     best_protects = 0
     for k in range(gate.degree[s]):
-        who = gate.list[s * NEIGHBOURS + k]
+        who = gate.list[s * params.places + k]
         far = hops(gate, params, who, d)
         if (
             who != main
@@ -175,7 +174,7 @@ def walk_back(gate, params, s, d, without):
             return at
         best = NONE
         for k in range(gate.degree[at]):
-            who = gate.list[at * NEIGHBOURS + k]
+            who = gate.list[at * params.places + k]
             if (
                 who != without
                 and gate.far[who] + 1 == gate.far[at]
@@ -197,7 +196,7 @@ def make_table(gate, params, s):
             gate.next[d] = first_hop(gate, params, s, d, 0)
             gate.alt[d] = alternate_of(gate, params, s, d, gate.next[d])
     for k in range(gate.degree[s]):
-        fill_around(gate, params, s, gate.list[s * NEIGHBOURS + k])
+        fill_around(gate, params, s, gate.list[s * params.places + k])
 
 
 def mark_table(gate, params, start):

@@ -12,6 +12,7 @@ from innervate.networks.mesh.protocol.constants import (
     ALARM,
     ALARMS,
     ALL,
+    CONTROL,
     DETOURED,
     END_TO_END,
     MESSAGES,
@@ -78,7 +79,7 @@ def is_searching(node, i):
 
 
 def take_place(node, rank, out):
-    """A place for a frame, or -1. An alarm puts out the newest of what is less urgent."""
+    """A place for a frame, or -1. Alarms and control put out the newest of what is less urgent."""
     worst = -1
     for i in range(node.places):
         if node.q_state[i] == FREE:
@@ -89,7 +90,7 @@ def take_place(node, rank, out):
             elif node.q_rank[i] == node.q_rank[worst]:
                 if (node.q_order[i] - node.q_order[worst]) & MASK30 < (MASK30 >> 1):
                     worst = i
-    if rank > ALARMS or worst < 0:
+    if rank > CONTROL or worst < 0:
         return -1
     report(out, REPORT_DROPPED, node.q_origin[worst], node.q_seq[worst])
     node.q_state[worst] = FREE

@@ -86,6 +86,8 @@ class ImportTable(keys.Table, frozen=True, kw_only=True):
     ] = field(default_factory=lambda: ["wifi"])
     min_tq: Quality = 0.3
     largest_component: bool = True
+    around: Annotated[int | str, Meta(description="a node as the file calls it")] | None = None
+    nodes: Annotated[int, keys.whole("nodes", 2, 254)] | None = None
 
 
 class MeshRadioTable(keys.Table, frozen=True, kw_only=True):

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import difflib
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from innervate.networks.mesh.scenario.model import MeshScenario
+from innervate.networks.mesh.scenario.model import ImportTable, MeshScenario
 from innervate.scenario.bundled import FOLDER
-from innervate.scenario.explain import nearest
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source, dotted, shown
 from innervate.topology import measured
@@ -54,10 +54,7 @@ class Nodes:
             raise self.source.error(key, message)
         if given in self._numbers:
             return self._numbers[given]
-        hint = nearest(given, self.names) if len(self.names) <= 12 else ""
-        hint = hint.replace("it knows", "there are") or (
-            f"; there are {self.names[0]} to {self.names[-1]}"
-        )
+        hint = alike(given, self.names)
         raise self.source.error(key, f"{dotted(key)}: there is no node {shown(given)}{hint}")
 
 
@@ -121,24 +118,61 @@ def _end(model: MeshScenario, nodes: Nodes, key: Key, end: int | str) -> int:
 def _imported(model: MeshScenario, source: Source) -> Nodes:
     table = model.import_
     assert table is not None
-    key = "file" if table.file is not None else "topohub"
+    whole = found_at(table, source)
     try:
-        if table.file is not None:
-            found = measured.read(import_path(table.file, source), table.types)
-        else:
-            found = measured.from_topohub(table.topohub or "")
-        whole, found = found, found.kept(table.min_tq)
-        if table.largest_component:
-            found = found.largest()
+        found = whole.kept(table.min_tq)
     except TopologyError as error:
-        raise source.error(("import", error.subject or key), str(error)) from None
+        raise source.error(("import", error.subject or "min_tq"), str(error)) from None
+    if table.around is not None or table.nodes is not None:
+        found = found.around(_middle(table, whole, found, source), table.nodes or NODES_MAX)
+    elif table.largest_component:
+        found = found.largest()
     if len(found.names) > NODES_MAX:
         least = whole.least_for(NODES_MAX, in_one=table.largest_component)
-        remedy = "no import.min_tq leaves so few"
+        remedy = f"import.nodes = {NODES_MAX} takes those around the best connected one"
         if least is not None:
-            remedy = f"import.min_tq = {least:g} leaves few enough"
+            remedy = f"import.min_tq = {least:g} leaves few enough, or {remedy}"
         raise source.error(("import",), f"{too_many(len(found.names))}; {remedy}")
     return Nodes(source, found.names, found.points, dict(found.links))
+
+
+def found_at(table: ImportTable, source: Source) -> measured.Measured:
+    """The whole network that an [import] names.
+
+    Raises:
+        ScenarioError: it cannot be read.
+    """
+    try:
+        if table.file is not None:
+            return measured.read(import_path(table.file, source), table.types)
+        return measured.from_topohub(table.topohub or "")
+    except TopologyError as error:
+        key = error.subject or ("file" if table.file is not None else "topohub")
+        raise source.error(("import", key), str(error)) from None
+
+
+def _middle(
+    table: ImportTable, whole: measured.Measured, found: measured.Measured, source: Source
+) -> int:
+    """The node that import.around names; left out, the best connected one."""
+    if table.around is None:
+        return found.best_connected()
+    name, key = str(table.around), ("import", "around")
+    if name in found.names:
+        return found.names.index(name)
+    if name in whole.names:
+        message = f"no link of {shown(name)} has a quality of {table.min_tq:g} or better both ways"
+        raise source.error(key, f"import.around: {message}; lower import.min_tq, or name another")
+    hint = alike(name, whole.names)
+    raise source.error(key, f"import.around: there is no node {shown(name)}{hint}")
+
+
+def alike(name: str, names: list[str]) -> str:
+    """'; did you mean "n12" or "n21"?': names like it; where there are none, those there are."""
+    close = difflib.get_close_matches(name[:100], names, 3, 0.6)
+    if close:
+        return f"; did you mean {' or '.join(map(shown, close))}?"
+    return f"; there are {', '.join(names) if len(names) <= 12 else f'{names[0]} to {names[-1]}'}"
 
 
 def import_path(name: str, source: Source) -> Path:

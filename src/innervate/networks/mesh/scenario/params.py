@@ -7,11 +7,11 @@ from typing import Any
 
 from innervate.networks.mesh.protocol import constants as w
 from innervate.networks.mesh.protocol.fields import (
-    NEIGHBOURS,
     PARAMS,
     POINTS,
     QUEUE,
     WAITING,
+    places,
     words,
 )
 from innervate.networks.mesh.scenario.plan import CLASSES
@@ -60,6 +60,7 @@ def parameters(
     settings: Any,
     nodes: int,
     *,
+    degree: int = 0,
     standbys: int = 0,
     monitor: int = w.MONITOR,
     min_rssi_dbm: int | None = None,
@@ -70,6 +71,7 @@ def parameters(
         profile: the radio's.
         settings: a MeshProtocolTable; what it leaves out comes from the profile.
         nodes: 1 .. 254.
+        degree: most neighbours of a node, as far as is known.
         standbys: how many are configured.
         monitor: its number, 254 = whoever is gateway.
         min_rssi_dbm: weakest link that is reported; None = 2 dB above the 50 % point.
@@ -77,14 +79,14 @@ def parameters(
     Raises:
         ValueError: a parameter leaves its range; the message is "key:what is wrong".
     """
-    width: int = next(size for size in CLASSES if nodes <= size)
+    width: int = next(size for size in CLASSES if nodes <= size and degree <= places(size))
     chosen = _Chosen(settings, profile.beacon)
     if min_rssi_dbm is None:
         min_rssi_dbm = round((profile.rssi50_cdb + REPORT_CDB) / 100)
     params: dict[str, Any] = {
         "nodes": nodes,
         "row": words(width),
-        "places": min(width, NEIGHBOURS),
+        "places": places(width),
         "width": width,
         "told": int(profile.collisions),
         "hop_frames": 0,

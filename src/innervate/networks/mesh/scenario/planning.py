@@ -138,6 +138,7 @@ def _parameters(
             profile,
             model.protocol,
             count,
+            degree=max(len(near) for near in neighbours(count, network.good)),
             standbys=len(model.standby),
             monitor=monitor,
             min_rssi_dbm=None if weakest is None else round(weakest / 100),

@@ -59,6 +59,11 @@ def _origin(model: MeshScenario) -> Iterator[Finding]:
         if (table.file is None) == (table.topohub is None):
             message = '[import] needs one of the two: file = "freifunk/leipzig" or topohub = "..."'
             yield ("import",), message
+        if not table.largest_component and (table.around is not None or table.nodes is not None):
+            message = (
+                "import.around and nodes take what holds together; leave largest_component out"
+            )
+            yield ("import", "largest_component"), message
 
 
 def _nodes(model: MeshScenario) -> Iterator[Finding]:

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from innervate.scenario.emit import inline
-
-TOPOHUB = "topohub:"
-
 TEMPLATE = """\
 # Robots that pass each other's messages on, and a fence that none may leave unnoticed.
 # Check it with `innervate check FILE`, run it with `innervate run FILE`.
@@ -64,49 +60,3 @@ at_s = 15.0                   # or a range to draw from: [14.0, 16.0]
 action = "kill"               # kill | revive | restart | cut | restore | jam | quiet
 random = 8                    # so many bystanders; or node = 3, or link = ["n1", "n2"] (cut)
 """
-
-MEASURED = """\
-# A network as it was measured: everybody has something to tell the gateway.
-# Check it with `innervate check FILE`, run it with `innervate run FILE`.
-kind = "mesh"
-schema = 1
-name = {name}
-duration_s = 60.0             # simulated time
-seed = 1                      # same seed, same run
-# gateway = "..."             # a node by its name; the best connected one if left out
-
-[import]
-{network}
-types = {types}               # links of JSON files that count; [] = all
-min_tq = {min_tq:g}                  # worse in either direction: as if there were no link
-largest_component = true      # the others have no way to it
-
-[[flow]]                      # messages
-from = "all"                  # a node, "all" or "random"
-to = "gateway"
-every_s = 10.0
-jitter_s = 10.0
-
-# [[event]]
-# at_s = 30.0
-# action = "kill"             # kill | revive | restart | cut | restore | jam | quiet
-# random = 5                  # so many bystanders; or node = "..."
-"""
-
-
-def measured(name: str, network: str, types: list[str], min_tq: float) -> str:
-    """A commented scenario of a network that was measured.
-
-    Args:
-        name: of the scenario.
-        network: a file as the scenario's folder sees it, a bundled one like "freifunk/leipzig", or
-            "topohub:" and a name.
-        types: of links that count; none = all.
-        min_tq: quality of a link that counts, 0 .. 1.
-    """
-    key, value = "file", network
-    if network.startswith(TOPOHUB):
-        key, value = "topohub", network.removeprefix(TOPOHUB)
-    return MEASURED.format(
-        name=inline(name), network=f"{key} = {inline(value)}", types=inline(types), min_tq=min_tq
-    )

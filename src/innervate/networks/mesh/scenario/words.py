@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from innervate.networks.mesh.protocol.constants import MONITOR, PATH_MAX, TABLE_FREE, TABLES
-from innervate.networks.mesh.protocol.fields import NEIGHBOURS
 from innervate.networks.mesh.scenario.events import target_of
 from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.networks.mesh.scenario.nodes import listed
@@ -74,7 +73,7 @@ def warnings(made: MeshPlan) -> list[str]:
     elif max(hops) > SOURCE_ROUTE_MAX and made.params["mtu"] == 64:
         far = [made.names[node] for node, count in enumerate(hops) if count > SOURCE_ROUTE_MAX]
         found.append(f"{listed(far)}: too far for tables at an MTU of 64; set protocol.mtu = 127")
-    found += [*_distribution(made), *_crowded(made, near)]
+    found += _distribution(made)
     if model.fence is not None and not made.walks:
         found.append("a fence but no [[robot]]: nobody can cross it")
     offered = {offer.flow for offer in made.offers}
@@ -105,19 +104,6 @@ def _distribution(made: MeshPlan) -> list[str]:
             f"{limits[profile]} fill a {profile} channel; protocol.tables = false does without"
         )
     return found
-
-
-def _crowded(made: MeshPlan, near: list[list[int]]) -> list[str]:
-    """Who hears more neighbours than a node remembers."""
-    places = min(made.nodes, NEIGHBOURS)
-    heard = {made.names[node]: len(some) for node, some in enumerate(near) if len(some) > places}
-    if not heard:
-        return []
-    most = max(heard, key=lambda name: heard[name])
-    return [
-        f"more than {places} neighbours: {listed([*heard])}; {most} has {heard[most]}. A "
-        f"node remembers {places}, the loudest, and links to the others are not used"
-    ]
 
 
 def _thin(made: MeshPlan, near: list[list[int]], gateway: int) -> list[str]:

@@ -1,0 +1,137 @@
+"""Commented scenarios of networks that were measured (`innervate new mesh --network`)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from innervate.networks.mesh.protocol.fields import NEIGHBOURS
+from innervate.networks.mesh.scenario.nodes import NODES_MAX, Nodes, found_at, nodes_of
+from innervate.networks.mesh.scenario.words import TABLES_MAX
+from innervate.scenario.emit import inline
+from innervate.scenario.load import loads
+from innervate.topology.errors import TopologyError
+from innervate.topology.measured import Measured
+from innervate.topology.placement import neighbours
+
+TOPOHUB = "topohub:"
+MIN_TQ = 0.3
+MIN_TQ_MAX = 0.5  # better links are not left out for the number of nodes
+COMMENTS = {  # of the keys of [import], in their order
+    "types": "links of JSON files that count; [] = all",
+    "min_tq": "worse in either direction: as if there were no link",
+    "around": "those about this node, as the file calls it",
+    "nodes": "so many, the nearest first, by their better links",
+    "largest_component": "the others have no way to it",
+}
+# What suits links that lose much: a hop or a request that is lost is sent again, and there is time
+# for it. Found on community meshes of 36 to 254 nodes (decision 0037).
+TUNED = {"copies": 4, "transmissions": 8, "listen_s": 1.0, "collect_s": 4.0, "e2e_s": 3.0}
+# In large networks, and where a hub has many neighbours that do not hear each other, what they
+# pass on meets at it: they have to take their time, and tables do not get through.
+CROWD_TUNED = {
+    **TUNED, "transmissions": 5, "jitter_s": 1.0, "listen_s": 3.0, "spread_s": 3.0,
+    "collect_s": 9.0, "period_s": 20.0, "tables": False,
+}  # fmt: skip
+
+
+TEMPLATE = """\
+# A network as it was measured: everybody has something to tell the gateway.
+# Check it with `innervate check FILE`, run it with `innervate run FILE`.
+kind = "mesh"
+schema = 1
+name = {name}
+duration_s = 60.0             # simulated time
+seed = 1                      # same seed, same run
+# gateway = "..."             # a node by its name; the best connected one if left out
+
+[import]
+{imported}
+
+[protocol]                    # as suits links that lose much
+{protocol}
+
+[[flow]]                      # messages
+from = "all"                  # a node, "all" or "random"
+to = "gateway"
+start_s = 20.0
+every_s = 10.0
+jitter_s = 10.0
+
+# [[event]]
+# at_s = 30.0
+# action = "kill"             # kill | revive | restart | cut | restore | jam | quiet
+# random = 5                  # so many bystanders; or node = "..."
+"""
+
+
+def measured(name: str, network: str, wanted: dict[str, Any], folder: str) -> tuple[str, str]:
+    """A commented scenario of a network that was measured, and what of it that takes.
+
+    Where nothing is said of its size, what fits is chosen: links of 0.3 and better, better ones
+    if those leave too many nodes, or the nodes about the best connected one.
+
+    Args:
+        name: of the scenario.
+        network: a file as the scenario's folder sees it, a bundled one like "freifunk/leipzig", or
+            "topohub:" and a name.
+        wanted: what was chosen of it: types, min_tq, around, nodes.
+        folder: the scenario's.
+
+    Raises:
+        ScenarioError: it cannot be read, or there is nothing as it was chosen.
+    """
+    wanted = {"types": ["wifi"], **wanted}
+    first = loads(_text(name, network, wanted), folder=folder)
+    whole, why = found_at(first.model.import_, first.source), ""
+    if not {"min_tq", "around", "nodes"} & wanted.keys():
+        fitting, why = _fitting(whole)
+        wanted |= fitting
+    wanted = {"min_tq": MIN_TQ} | wanted
+    bare = loads(_text(name, network, wanted), folder=folder)
+    taken = nodes_of(bare.model, bare.source)
+    text = _text(name, network, wanted, tuned(taken))
+    held = f"links of {wanted['min_tq']:g} and better hold them together"
+    return text, f"Taken: {len(taken.names)} of {len(whole.names)} nodes; {held}{why}."
+
+
+def _fitting(whole: Measured) -> tuple[dict[str, Any], str]:
+    """What to choose of a network so that a mesh can have as many nodes, and why."""
+    try:
+        largest = whole.kept(MIN_TQ).largest()
+    except TopologyError:
+        return {}, ""  # said when the scenario is planned
+    count = len(largest.names)
+    if count <= NODES_MAX:
+        return {}, ""
+    least = whole.least_for(NODES_MAX, in_one=True)
+    if least is not None and least <= MIN_TQ_MAX:
+        return {"min_tq": least}, f"; those of {MIN_TQ:g} hold {count}, too many for a mesh"
+    middle = largest.names[largest.best_connected()]
+    why = f"; about the best connected one of {count}, too many for a mesh"
+    return {"around": middle, "nodes": NODES_MAX}, why
+
+
+def tuned(taken: Nodes) -> dict[str, Any]:
+    """The keys of [protocol] that suit a measured network."""
+    links = [pair for pair, both in taken.links.items() if min(both) > 0]
+    most = max(len(near) for near in neighbours(len(taken.names), links))
+    crowd = len(taken.names) > TABLES_MAX["250k"] or most > NEIGHBOURS
+    return CROWD_TUNED if crowd else TUNED
+
+
+def _text(
+    name: str, network: str, chosen: dict[str, Any], protocol: dict[str, Any] | None = None
+) -> str:
+    key, value = "file", network
+    if network.startswith(TOPOHUB):
+        key, value = "topohub", network.removeprefix(TOPOHUB)
+    if not {"around", "nodes"} & chosen.keys():
+        chosen = chosen | {"largest_component": True}
+    lines = [f"{key} = {inline(value)}"]
+    for key, words in COMMENTS.items():
+        if key in chosen:
+            lines.append(f"{f'{key} = {inline(chosen[key])}':<29} # {words}")
+    settings = [f"{key} = {inline(value)}" for key, value in (protocol or {}).items()]
+    return TEMPLATE.format(
+        name=inline(name), imported="\n".join(lines), protocol="\n".join(settings)
+    )
