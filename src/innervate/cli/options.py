@@ -16,25 +16,6 @@ Numbers = Annotated[list[float] | None, Parameter(negative="")]
 
 
 @dataclass(frozen=True)
-class OwnOptions:
-    """What a network of one's own is joined by.
-
-    Parameters
-    ----------
-    on
-        What a network of your own is joined by: cables (if left out), channel or field.
-    over
-        On a field: the medium access below it, csma; it sends by itself if left out.
-    """
-
-    on: str = "cables"
-    over: str = ""
-
-
-OWN_DEFAULTS = OwnOptions()
-
-
-@dataclass(frozen=True)
 class RunOptions:
     """How a scenario runs.
 
@@ -52,42 +33,6 @@ class RunOptions:
 
 
 RUN_DEFAULTS = RunOptions()
-
-
-@dataclass(frozen=True)
-class MeasuredOptions:
-    """Which nodes and links of a measured network count.
-
-    Parameters
-    ----------
-    network
-        Of a measured mesh: a JSON file as community meshes publish it, lines "A B 0.9 0.7",
-        freifunk/leipzig, or topohub:NAME.
-    types
-        Types of its links that count; wifi if left out, --empty-types for all.
-    min_tq
-        Worst quality of a link that counts, 0 to 1; if left out 0.3, or what leaves few enough.
-    around
-        A node as the file calls it: only those about it, nearest first, by their better links.
-    nodes
-        At most so many of them, 2 to 254; around the best connected node if none is named.
-    """
-
-    network: str | None = None
-    types: Annotated[list[str] | None, Parameter(consume_multiple=True)] = None
-    min_tq: float | None = None
-    around: str | None = None
-    nodes: int | None = None
-
-    @property
-    def wanted(self) -> dict[str, Any]:
-        """What was chosen of the network."""
-        chosen = {"types": self.types, "min_tq": self.min_tq, "around": self.around,
-                  "nodes": self.nodes}  # fmt: skip
-        return {key: value for key, value in chosen.items() if value is not None}
-
-
-MEASURED_DEFAULTS = MeasuredOptions()
 
 
 @dataclass(frozen=True)

@@ -61,18 +61,16 @@ def parameters(
     nodes: int,
     *,
     degree: int = 0,
-    standbys: int = 0,
     monitor: int = w.MONITOR,
     min_rssi_dbm: int | None = None,
 ) -> dict[str, Any]:
-    """The protocol's parameters without a fence.
+    """The protocol's parameters without a fence and standby gateways.
 
     Args:
         profile: the radio's.
         settings: a MeshProtocolTable; what it leaves out comes from the profile.
         nodes: 1 .. 254.
         degree: most neighbours of a node, as far as is known.
-        standbys: how many are configured.
         monitor: its number, 254 = whoever is gateway.
         min_rssi_dbm: weakest link that is reported; None = 2 dB above the 50 % point.
 
@@ -97,7 +95,7 @@ def parameters(
         "min_rssi": chosen.value("min_rssi_dbm", min_rssi_dbm),
         "e2e_us": chosen.micros("e2e_s", profile.e2e),
         "monitor": monitor,
-        "standby": int(standbys > 0),
+        "standby": 0,
         "jobs": chosen.value("table_window", profile.jobs),
         "job_us": chosen.micros("table_retry_s", profile.job),
         "job_tries": chosen.value("table_tries", 3),

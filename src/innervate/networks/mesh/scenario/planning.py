@@ -139,13 +139,13 @@ def _parameters(
             model.protocol,
             count,
             degree=max(len(near) for near in neighbours(count, network.good)),
-            standbys=len(model.standby),
             monitor=monitor,
             min_rssi_dbm=None if weakest is None else round(weakest / 100),
         )
     except ValueError as error:
         key, _, message = str(error).partition(":")
         raise source.error(("protocol", key), message) from None
+    params["standby"] = int(len(model.standby) > 0)
     most = GRAPH_NODES_MAX[params["mtu"]]
     if params["mode"] == WHOLE_GRAPH and count > most:
         raise source.error(
