@@ -79,7 +79,13 @@ def compare(role: Role, calls: int, seed: int, sanitized: bool) -> tuple[int, in
 
 
 def draw(library: Library, heard: Heard, seed: int, script: Script, calls: int) -> None:
-    """Write down so many drawn calls, and what they are made of."""
+    """Write down so many drawn calls, and what they are made of.
+
+    Raises:
+        BoardFailed: nodes were told nothing that calls could be made of.
+    """
+    if not heard.frames and not heard.items:
+        raise BoardFailed("no node was told anything in the simulations: make more calls")
     Drawn(library, heard, seed).keep(script)
     script.begin()
     lives(script, 1 + seed * MORE, calls)
