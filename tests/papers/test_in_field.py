@@ -73,6 +73,10 @@ def test_whose_ends_are_joined_at_the_moment_of_a_message():
         assert sorted(map(sorted, found)) == sorted(map(sorted, parts)), at
     world.sent = [Sent(at, 3, 0, "all") for at in times]
     assert in_field._counted(world) == [True, True, False, False, True]
+    for middle in range(3):  # who is off joins nobody, whatever its number
+        star = line(3, [(0, KILL, middle)])
+        star.good = [(min(middle, k), max(middle, k)) for k in range(3) if k != middle]
+        assert [len(part) for part in star.joined(0) if part] == [1, 1]
 
 
 def test_who_is_off_sends_nothing_and_only_a_monitor_is_asked_for_in_vain():

@@ -122,6 +122,14 @@ def test_groups_are_what_overlaps_without_a_gap(seed):
     assert [sent[row] for row in air.row] == order
 
 
+@pytest.mark.parametrize(("before_us", "faded"), [(0, False), (1, True)])
+def test_a_fade_takes_what_is_decided_after_it(before_us, faded):
+    sent = [(100, 110, 0, CRR), (200, 210, 0, CRR)]
+    faults = [RadioFault(100 - TA - before_us, FADE, 0, 1, 0)]
+    result = made(sent=sent, faults=faults, ta=TA)
+    assert radio_air.air(result).faded.tolist() == [faded, not faded]
+
+
 def test_who_breaks_off_on_a_cable_is_heard_no_longer():
     """Each stop is of the newest transmission of that station then, and makes none longer."""
     sent = [(100, 200, 0, DATA), (150, 260, 1, DATA), (300, 400, 0, DATA), (300, 390, 1, DATA)]
