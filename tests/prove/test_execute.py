@@ -121,3 +121,11 @@ def test_a_step_from_nowhere_proves_nothing():
 
 def test_plain_outboxes_and_those_of_formulas_have_the_same_room():
     assert PlainOutbox(make("F", FIELDS), 4).limit == [stage_of()[0].out.limit]
+
+
+def test_who_may_not_think_long_enough_says_so():
+    stage, _ = stage_of()
+    a, b = (stage.terms.unknown(name, 2, 60_000) for name in "ab")
+    product = stage.terms.same(stage.terms.mul(a, b), stage.number(2_147_117_569))
+    with pytest.raises(ProveError, match="the solver could not say"):
+        Question(Formulas(), [], steps_max=50).values(product)
