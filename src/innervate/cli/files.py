@@ -75,7 +75,7 @@ def _of_network(kind: str, file: Path | None, measured: MeasuredOptions) -> tupl
         raise UserError(f"--network is for a {' or a '.join(able)}: "
                         f"innervate new {able[0]} FILE --network {measured.network}")  # fmt: skip
     folder = file.parent if file is not None else Path()
-    network = measured.network
+    network = measured.network or ""
     name = file.stem if file is not None else Path(network).stem
     if Path(network).is_file():
         network = Path(os.path.relpath(network, folder)).as_posix()
