@@ -11,7 +11,7 @@ from typing import Any
 
 from innervate import scenario
 from innervate.cli.errors import UserError
-from innervate.cli.options import MEASURED_DEFAULTS, MeasuredOptions
+from innervate.cli.measured_options import MEASURED_DEFAULTS, MeasuredOptions
 from innervate.network import networks
 
 

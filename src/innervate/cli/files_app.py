@@ -7,12 +7,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from innervate.cli.options import (
-    MEASURED_DEFAULTS,
-    OWN_DEFAULTS,
-    MeasuredOptions,
-    OwnOptions,
-)
+from innervate.cli.measured_options import MEASURED_DEFAULTS, MeasuredOptions
+from innervate.cli.options import OWN_DEFAULTS, OwnOptions
 from innervate.cli.seeds import Seed, Sets
 
 Json = Annotated[bool, Parameter(negative="")]

@@ -378,12 +378,6 @@ def test_warnings() -> None:
     assert [bool(found) and "star" in found[0] for found in cities.values()] == [True, True, False]
 
 
-@pytest.mark.parametrize(("leaves", "places"), [(31, 32), (32, 32), (33, 254)])
-def test_a_hub_has_a_place_for_each_of_its_neighbours(leaves: int, places: int) -> None:
-    star = "".join(f"[[link]]\na = 'hub'\nb = 'n{i}'\n" for i in range(leaves))
-    assert made(star).params["places"] == places
-
-
 @pytest.mark.parametrize(("better", "remedy"), [
     (100, "import.min_tq = 0.61 leaves few enough"), (270, "import.nodes = 254 takes those around"),
 ])  # fmt: skip

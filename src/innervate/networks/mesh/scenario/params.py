@@ -58,9 +58,8 @@ class _Chosen:
 def parameters(
     profile: Profile,
     settings: Any,
-    nodes: int,
+    size: tuple[int, int],
     *,
-    degree: int = 0,
     standbys: int = 0,
     monitor: int = w.MONITOR,
     min_rssi_dbm: int | None = None,
@@ -70,8 +69,7 @@ def parameters(
     Args:
         profile: the radio's.
         settings: a MeshProtocolTable; what it leaves out comes from the profile.
-        nodes: 1 .. 254.
-        degree: most neighbours of a node, as far as is known.
+        size: nodes, 1 .. 254, and most neighbours of one.
         standbys: how many are configured.
         monitor: its number, 254 = whoever is gateway.
         min_rssi_dbm: weakest link that is reported; None = 2 dB above the 50 % point.
@@ -79,10 +77,10 @@ def parameters(
     Raises:
         ValueError: a parameter leaves its range; the message is "key:what is wrong".
     """
-    width: int = next(size for size in CLASSES if nodes <= size and degree <= places(size))
+    nodes, degree = size
+    width: int = next(n for n in CLASSES if nodes <= n and degree <= places(n))
     chosen = _Chosen(settings, profile.beacon)
-    if min_rssi_dbm is None:
-        min_rssi_dbm = round((profile.rssi50_cdb + REPORT_CDB) / 100)
+    weakest = round((profile.rssi50_cdb + REPORT_CDB) / 100)
     params: dict[str, Any] = {
         "nodes": nodes,
         "row": words(width),
@@ -94,7 +92,7 @@ def parameters(
         "queue": QUEUE,
         "kept": WAITING,
         "suspect_us": chosen.micros("suspect_s", profile.suspect),
-        "min_rssi": chosen.value("min_rssi_dbm", min_rssi_dbm),
+        "min_rssi": chosen.value("min_rssi_dbm", weakest if min_rssi_dbm is None else min_rssi_dbm),
         "e2e_us": chosen.micros("e2e_s", profile.e2e),
         "monitor": monitor,
         "standby": int(standbys > 0),

@@ -137,8 +137,7 @@ def _parameters(
         params = parameters(
             profile,
             model.protocol,
-            count,
-            degree=max(len(near) for near in neighbours(count, network.good)),
+            (count, max(len(near) for near in neighbours(count, network.good))),
             standbys=len(model.standby),
             monitor=monitor,
             min_rssi_dbm=None if weakest is None else round(weakest / 100),
