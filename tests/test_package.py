@@ -154,5 +154,10 @@ def test_unknown_attribute_of_the_package():
         innervate.walk  # noqa: B018
 
 
+def test_the_changelog_has_a_part_for_this_version():
+    parts = re.findall(r"^## (.+)$", (ROOT / "CHANGELOG.md").read_text("utf-8"), re.MULTILINE)
+    assert parts[:2] == ["Unreleased", innervate.__version__]
+
+
 def test_version_is_the_distributions():
     assert version("innervate") == innervate.__version__
