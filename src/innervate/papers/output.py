@@ -7,6 +7,7 @@ import csv
 import io
 import platform
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, field, fields
 from importlib import metadata
@@ -306,7 +307,10 @@ def _simulated(experiment: Experiment, quick: bool) -> str:
     """The scenarios of a figure: what each set of runs differs by, and its seeds."""
     keys = [point.key for point in experiment.points(quick)]
     head = f"What was simulated: {len(keys)} sets of runs, by their settings"
-    keys = list(dict.fromkeys(re.sub(r", seed \d+$", ", a run a seed", key) for key in keys))
+    of_seeds = [re.sub(r", seed \d+$", ", a run a seed", key) for key in keys]
+    times = Counter(of_seeds)
+    keys = [both if times[both] > 1 else key for key, both in zip(keys, of_seeds, strict=True)]
+    keys = list(dict.fromkeys(keys))
     return page.details(head, page.element("pre", "\n".join(keys)))
 
 

@@ -255,6 +255,7 @@ Constants and settings
 | `HEADER_BYTES = 11`, `CRC_BYTES = 2`,          | [mesh 2]; `mtu` 64 or 127                       |
 | `BODY = 114`                                   |                                                 |
 | `NEIGHBOURS = 32`, `QUEUE = 8`, `WAITING = 8`  | memory: 4 KB a node (decision 0015)             |
+| `SMALL = 64`                                   | larger networks keep all that they hear         |
 | `queue`, `kept`, `PLACES_MAX = 64`             | places of both where memory is no matter        |
 | `HOP_FIRST = 4`, `TIMEOUTS = 4`                | frames under way at first; handled in one call  |
 | `GATHERED = 16`, `ACK_MORE_BYTES = 3`,         | acks that go together: of hops, end to end      |
