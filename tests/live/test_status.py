@@ -2,6 +2,7 @@
 
 import asyncio
 import socket
+from contextlib import contextmanager
 
 import pytest
 
@@ -48,6 +49,52 @@ def test_nodes_are_in_order_of_their_numbers(tmp_path, monkeypatch):
         with socket.socket(socket.AF_UNIX) as sock:
             sock.bind(str(tmp_path / f"{name}.sock"))
     assert [found.stem for found in status.sockets()] == ["n0", "n2", "n10", "pc"]
+
+
+@pytest.fixture
+def own(tmp_path, monkeypatch):
+    """A user's own folder for sockets, and no other that is named."""
+    monkeypatch.delenv("INNERVATE_RUN", raising=False)
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "runtime"))
+    return tmp_path / "runtime" / "innervate"
+
+
+@contextmanager
+def running(folder, name):
+    folder.mkdir(parents=True, exist_ok=True)
+    with socket.socket(socket.AF_UNIX) as sock:
+        sock.bind(str(folder / f"{name}.sock"))
+        yield
+    (folder / f"{name}.sock").unlink()
+
+
+def test_what_live_up_started_last_is_found_without_its_folder(own, tmp_path, monkeypatch):
+    first, second = tmp_path / "first", tmp_path / "second"
+    with running(first, "n1"), running(second, "n2"):
+        assert status.sockets() == []
+        older = status.findable(first)
+        older.__enter__()
+        assert [found.stem for found in status.sockets()] == ["n1"]
+        with status.findable(second):
+            assert status.find("n2") == second / "n2.sock"
+            older.__exit__(None, None, None)  # takes no note away but its own
+            assert status.where() == second
+            with running(own, "alone"):
+                assert [found.stem for found in status.sockets()] == ["alone"]
+            monkeypatch.setenv("INNERVATE_RUN", str(first))
+            assert status.where() == first
+            with status.findable(first):
+                monkeypatch.delenv("INNERVATE_RUN")
+                assert status.where() == second, "who named a folder leaves no note"
+        assert status.where() == own
+        assert list(own.iterdir()) == []
+
+
+def test_a_note_of_a_folder_that_is_gone_leads_nowhere(own, tmp_path):
+    (tmp_path / "run").mkdir()
+    with status.findable(tmp_path / "run"):
+        (tmp_path / "run").rmdir()
+        assert status.where() == own
 
 
 def test_a_message_from_standard_input_is_no_option(tmp_path, monkeypatch, capsys):

@@ -29,7 +29,7 @@ def capture(names: list[str], out: Path | None, for_s: float) -> int:
     """Capture until Ctrl-C, until `for_s` seconds are over, or until all nodes are gone."""
     sockets = [status.find(name) for name in names] if names else status.sockets()
     if not sockets:
-        where = f"no node runs here (folder {status.folder()})"
+        where = f"no node runs here (folder {status.where()})"
         raise UserError(f"{where}; start one with: innervate live node FILE")
     if out is None:
         if sys.stdout.isatty():

@@ -42,7 +42,7 @@ def show(names: list[str], as_json: bool) -> int:
     """What nodes say of themselves; 1 if nobody was named and some do not answer."""
     sockets = [status.find(name) for name in names] if names else status.sockets()
     if not sockets:
-        where = f"no node runs here (folder {status.folder()})"
+        where = f"no node runs here (folder {status.where()})"
         raise errors.UserError(f"{where}; start one with: innervate live node FILE")
     told, silent = [], []
     for path in sockets:

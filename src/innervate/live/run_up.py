@@ -15,7 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from innervate.live import play
+from innervate.live import play, status
 from innervate.live.up import Processes
 
 
@@ -46,8 +46,9 @@ async def run(plan: Any, way: Way, scenario: str, for_s: float, as_json: bool) -
     began = time.monotonic()
     try:
         await up(network, scenario)
-        _announce(network, time.monotonic() - began, as_json)
-        await _until(ending, asyncio.create_task(player.play()), for_s)
+        with status.findable(network.folder):
+            _announce(network, time.monotonic() - began, as_json)
+            await _until(ending, asyncio.create_task(player.play()), for_s)
     finally:
         await down(network, way)
     return 0
@@ -137,4 +138,5 @@ def _announce(network: Processes, took_s: float, as_json: bool) -> None:
     count = len(network.names) - len(network.absent)
     what = f"{len(network.links)} cables" if network.links else "their channel"
     print(f"{count} nodes and {what} are up after {took_s:.1f} s; Ctrl-C ends them.")
-    print(f"Look: INNERVATE_RUN={network.folder} innervate live status", flush=True)
+    print("Look: innervate live status, or innervate watch live, in another terminal.")
+    print(f"They are in INNERVATE_RUN={network.folder}", flush=True)

@@ -9,7 +9,7 @@ import socket
 import tempfile
 from collections import Counter
 from collections.abc import Awaitable, Callable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from innervate.live.machine import ANSWER_S, machine
 from innervate.live.machine import answers as answers
 
 LINE_MAX = 65_536
+UP = "up"  # in a user's own folder: a link to where the newest `live up` has its nodes
 FULL = b'{"error": "64 are connected to this node already; end a listen or a capture"}\n'
 BOUNDS = Bounds(most=64, burst=64, full=FULL, limit=LINE_MAX)
 
@@ -40,6 +41,42 @@ def folder() -> Path:
     if runtime:
         return Path(runtime) / "innervate"
     return private.checked(Path(tempfile.gettempdir()) / f"innervate-{os.getuid()}")
+
+
+def where() -> Path:
+    """The folder to look into for running nodes: that of `live up` if none runs in `folder`.
+
+    Raises:
+        LiveError: as `folder`.
+    """
+    here = folder()
+    if os.environ.get("INNERVATE_RUN") or _sockets(here):
+        return here
+    try:
+        there = Path(os.readlink(here / UP))
+    except OSError:
+        return here
+    return there if there.is_dir() else here
+
+
+@contextmanager
+def findable(run: Path) -> Iterator[None]:
+    """Leave a note of where the nodes of a `live up` are, until it ends or a newer one does."""
+    if os.environ.get("INNERVATE_RUN"):
+        yield  # who said where has their own way to find them
+        return
+    here = folder()
+    link = here / UP
+    with suppress(OSError):  # then they are found by their folder alone
+        here.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
+        link.unlink(missing_ok=True)
+        link.symlink_to(run)
+    try:
+        yield
+    finally:
+        with suppress(OSError):
+            if Path(os.readlink(link)) == run:
+                link.unlink()
 
 
 class Writer:
@@ -166,12 +203,15 @@ def find(name: str) -> Path:
         if found.stem == name:
             return found
     names = ", ".join(found.stem for found in sockets()) or "none"
-    raise LiveError(f'no node "{name}" runs here; running: {names} (folder {folder()})')
+    raise LiveError(f'no node "{name}" runs here; running: {names} (folder {where()})')
 
 
 def sockets() -> list[Path]:
     """Sockets of this user's running nodes, by name."""
-    here = folder()
+    return _sockets(where())
+
+
+def _sockets(here: Path) -> list[Path]:
     if not here.is_dir():
         return []
     return sorted((path for path in here.glob("*.sock") if path.is_socket()), key=in_order)

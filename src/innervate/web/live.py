@@ -40,7 +40,7 @@ def find(names: list[str]) -> list[Path]:
         LiveError: one of them is not there.
         WatchError: none is there.
     """
-    here = status.folder()
+    here = status.where()
     found = [status.find(name) for name in names] if names else status.sockets()
     if found and not names:
         found = sorted([*found, *live_known.missing(here, found)], key=status.in_order)

@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -124,12 +125,20 @@ def hear(network):
     assert networks()["tokenring"].live_words.heard(one).startswith("kind 1, lap ")
 
 
-def test_live_up_brings_it_up_from_a_file(tmp_path):
+def test_live_up_brings_it_up_from_a_file_and_its_nodes_are_found(tmp_path, monkeypatch):
     file = tmp_path / "round.toml"
     file.write_text('kind = "tokenring"\nnodes = 3\n')
-    command = [sys.executable, "-m", "innervate.cli", "live", "up", file, "--for", "1", "--json"]
-    done = subprocess.run(command, capture_output=True, text=True, env=dict(os.environ), check=True)
-    assert set(json.loads(done.stdout)["nodes"]) == {"n0", "n1", "n2"}
+    monkeypatch.delenv("INNERVATE_RUN", raising=False)
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    command = [sys.executable, "-m", "innervate.cli", "live", "up", file, "--json"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=dict(os.environ)) as up:
+        told = json.loads(up.stdout.readline())
+        assert set(told["nodes"]) == {"n0", "n1", "n2"}
+        assert status.where() == Path(told["folder"])
+        assert [found.stem for found in status.sockets()] == ["n0", "n1", "n2"]
+        up.terminate()
+    assert up.returncode == 0
+    assert status.sockets() == []
 
 
 @pytest.mark.parametrize(
