@@ -1,6 +1,7 @@
 """What `innervate live status` prints names the broken cable, and what is on either side of it."""
 
 import asyncio
+import os
 import socket
 from contextlib import contextmanager
 
@@ -88,6 +89,19 @@ def test_what_live_up_started_last_is_found_without_its_folder(own, tmp_path, mo
                 assert status.where() == second, "who named a folder leaves no note"
         assert status.where() == own
         assert list(own.iterdir()) == []
+
+
+def test_where_the_own_folder_is_not_ours_nodes_run_all_the_same(tmp_path, monkeypatch):
+    for name in ("INNERVATE_RUN", "XDG_RUNTIME_DIR"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr("tempfile.gettempdir", lambda: str(tmp_path))
+    theirs = tmp_path / f"innervate-{os.getuid()}"
+    theirs.mkdir()
+    theirs.chmod(0o777)
+    with status.findable(tmp_path / "run"):
+        assert list(theirs.iterdir()) == []
+    with pytest.raises(LiveError, match="not ours alone"):
+        status.where()
 
 
 def test_a_note_of_a_folder_that_is_gone_leads_nowhere(own, tmp_path):

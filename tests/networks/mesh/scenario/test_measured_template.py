@@ -57,6 +57,12 @@ def test_a_template_of_a_hub_with_hidden_leaves_delivers(star) -> None:
     assert np.mean(found.state == DELIVERED) >= 0.99
 
 
+@pytest.mark.parametrize(("leaves", "places"), [(31, 32), (32, 32), (33, 254)])
+def test_a_hub_has_a_place_for_each_of_its_neighbours(leaves, places):
+    text = "".join(f"[[link]]\na = 'hub'\nb = 'n{i}'\n" for i in range(leaves))
+    assert scenario.plan(scenario.loads(f'kind = "mesh"\n{text}')).params["places"] == places
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("network", ["leipzig", "bielefeld"])
 def test_templates_of_community_meshes_deliver(network, tmp_path) -> None:
