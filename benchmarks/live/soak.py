@@ -220,7 +220,7 @@ def faults(soak, found):
             yield f"{told['name']}: messages accepted and ended differ: {counted}"
         received = sum(path["counters"].get("received", 0) for path in told["paths"])
         late = counted.get("dropped: after its turn", 0)
-        dropped = sum(n for what, n in counted.items() if what.startswith("dropped")) - late
+        dropped = sum(n for what, n in counted.items() if what.startswith("dropped:")) - late
         of_sessions = counted.get("handshake messages", 0) + counted.get("control frames", 0)
         if received != counted["frames"] + of_sessions + dropped:
             yield f"{told['name']}: {received} frames received, not all accounted for: {counted}"

@@ -1,12 +1,16 @@
 import asyncio
 import errno
 import socket
+import sys
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from innervate.live import udp
 from innervate.live.errors import LiveError
 from innervate.live.machine import Machine
+from innervate.live.only_from import only_from, unread
 from innervate.live.receipts import DELIVERED
 from innervate.live.udp import MulticastLink, UdpLink
 from innervate.networks.mesh.live.node import MeshNode
@@ -41,22 +45,56 @@ def test_a_multicast_group_is_one_channel_for_all():
     assert asyncio.run(main()) == ([DELIVERED, DELIVERED], {0, 2})
 
 
-def test_strangers_are_not_listened_to_but_counted():
-    async def main():
-        port = free_port()
-        link = UdpLink(("127.0.0.1", port), [("127.0.0.1", 9)])
-        node = MeshNode("n0", MeshStack(0, 0, PARAMS, 5), [link])
-        async with node:
-            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
-                for _ in range(7):
-                    sock.sendto(b"\x50" + bytes(8), ("127.0.0.1", port))
-            while link.strangers < 7:
-                await asyncio.sleep(0.005)
-            return node.counters(), node.paths[0].counters["received"]
+async def stranger_to(link):
+    """Counters of a node with that link, and frames received, after seven of a stranger."""
+    node = MeshNode("n0", MeshStack(0, 0, PARAMS, 5), [link])
+    async with node:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+            for _ in range(7):
+                sock.sendto(b"\x50" + bytes(8), link.bind)
+        while sum(n for what, n in node.counters().items() if what.startswith("dropped")) < 7:
+            await asyncio.sleep(0.005)
+        return node.counters(), node.paths[0].counters["received"]
 
-    counters, received = asyncio.run(main())
+
+def test_strangers_are_not_listened_to_but_counted(monkeypatch):
+    monkeypatch.setattr(sys, "platform", "another")
+    link = UdpLink(("127.0.0.1", free_port()), [("127.0.0.1", 9)])
+    counters, received = asyncio.run(stranger_to(link))
     assert counters["dropped: from a stranger"] == 7
     assert received == 0
+
+
+def test_on_linux_the_system_drops_and_counts_them():
+    link = UdpLink(("127.0.0.1", free_port()), [("127.0.0.1", 9)])
+    counters, received = asyncio.run(stranger_to(link))
+    assert counters["dropped by the system: from strangers, or no room"] == 7
+    assert counters["dropped: from a stranger"] == received == 0
+
+
+PLACES = st.tuples(st.sampled_from(["127.0.0.1", "127.0.0.2", "127.9.0.1"]), st.integers(0, 3))
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.lists(PLACES, max_size=254), PLACES)
+def test_the_system_lets_in_exactly_the_neighbours(peers, who):
+    ports = [free_port() for _ in range(4)]
+    peers = [(host, ports[k]) for host, k in peers]
+    with (
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as own,
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as far,
+    ):
+        own.bind(("127.0.0.1", 0))
+        own.setblocking(False)
+        only_from(own, peers)
+        far.bind((who[0], ports[who[1]]))
+        far.sendto(b"x", own.getsockname())
+        try:  # what is sent over loopback is there when sendto returns
+            came = own.recvfrom(9) == (b"x", far.getsockname())
+        except BlockingIOError:
+            came = False
+        assert came == (far.getsockname() in peers)
+        assert unread(own) == (not came)
 
 
 class Flaky(socket.socket):
@@ -94,12 +132,11 @@ async def passes(seconds):
     await asyncio.sleep(seconds)
 
 
-def poke(port, data=b"x"):
-    """A datagram from somebody, so that a socket looks what came; where from."""
+def poke(port, near):
+    """A datagram from a neighbour's port, so that a socket looks what came."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
-        sock.bind(("127.0.0.1", 0))
-        sock.sendto(data, ("127.0.0.1", port))
-        return sock.getsockname()
+        sock.bind(("127.0.0.1", near))
+        sock.sendto(b"x", ("127.0.0.1", port))
 
 
 def test_paths_are_down_while_their_interface_is_and_come_back_by_themselves(flaky):
@@ -110,7 +147,7 @@ def test_paths_are_down_while_their_interface_is_and_come_back_by_themselves(fla
         await link.open(lambda path, data: got.append((path.port, data)))
         assert [path.up for path in link.paths] == [True, True]
         Flaky.away = Flaky.gone = True
-        poke(port)
+        poke(port, near)
         await passes(0.1)
         assert [path.up for path in link.paths] == [False, False]
         link.paths[1].send(b"lost")
@@ -139,11 +176,11 @@ def test_paths_are_down_while_their_interface_is_and_come_back_by_themselves(fla
 
 def test_a_link_that_is_closed_while_its_interface_is_away_stays_closed(flaky):
     async def main():
-        port = free_port()
-        link = UdpLink(("127.0.0.1", port), [("127.0.0.1", 9)])
+        port, near = free_port(), free_port()
+        link = UdpLink(("127.0.0.1", port), [("127.0.0.1", near)])
         await link.open(print)
         Flaky.away = Flaky.gone = True
-        poke(port)
+        poke(port, near)
         await passes(0.1)
         link.close()
         Flaky.away = Flaky.gone = False
@@ -161,17 +198,17 @@ def test_a_link_that_is_closed_while_its_interface_is_away_stays_closed(flaky):
 
 def test_a_neighbour_that_is_not_there_yet_takes_no_path_away(flaky):
     async def main():
-        port = free_port()
-        link = UdpLink(("127.0.0.1", port), [("127.0.0.1", 9)])
-        await link.open(print)
+        port, near = free_port(), free_port()
+        link, got = UdpLink(("127.0.0.1", port), [("127.0.0.1", near)]), []
+        await link.open(lambda path, data: got.append(data))
         Flaky.refused = 1
-        poke(port)
+        poke(port, near)
         await passes(0.1)
-        up, strangers = link.paths[0].up, link.strangers
+        up = link.paths[0].up
         link.close()
-        return up, strangers, Flaky.refused
+        return up, got, Flaky.refused
 
-    assert time_by_hand.run(main()) == (True, 1, 0)
+    assert time_by_hand.run(main()) == (True, [b"x"], 0)
 
 
 def test_who_receives_may_close_the_link():

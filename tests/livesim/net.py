@@ -165,6 +165,9 @@ class Datagrams:
                 raise OSError(errno.EADDRINUSE, "Address already in use")
             members.append(self)
 
+    def getsockopt(self, *_which):
+        raise OSError(errno.ENOPROTOOPT, "Protocol not available")
+
     def send(self, data):
         self.sendto(data, self.target)
 

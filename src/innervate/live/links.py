@@ -66,6 +66,10 @@ class Link:
         """
         raise NotImplementedError
 
+    def unread(self) -> int:
+        """How many frames the system dropped before they were read, where it says so."""
+        return 0
+
     def close(self) -> None:
         """Stop; nothing is received any more."""
         raise NotImplementedError

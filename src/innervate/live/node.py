@@ -204,6 +204,9 @@ class LiveNode:
         strangers = sum(getattr(link, "strangers", 0) for link in self.links)
         if strangers:
             total["dropped: from a stranger"] = strangers
+        unread = sum(link.unread() for link in self.links)
+        if unread:
+            total["dropped by the system: from strangers, or no room"] = unread
         if self.state.failed:
             total["state not written"] = self.state.failed
         return total + self.callers + self.outcomes

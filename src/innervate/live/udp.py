@@ -11,6 +11,7 @@ from contextlib import closing, suppress
 from innervate.live.errors import LiveError
 from innervate.live.links import Link, Path, Receiver
 from innervate.live.machine import machine
+from innervate.live.only_from import only_from, unread
 
 Address = tuple[str, int]
 
@@ -75,6 +76,7 @@ class UdpLink(Link):
             UdpPath(self, peer, first_port + i) for i, peer in enumerate(peers)
         ]
         self.strangers = 0
+        self._unread = 0
         self._by_address = {path.address: path for path in self.paths}
         self._receive: Receiver = _nobody
         self._closed = False
@@ -101,11 +103,16 @@ class UdpLink(Link):
         sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             sock.setblocking(False)
+            only_from(sock, self._by_address)
             sock.bind(self.bind)
         except BaseException:
             sock.close()
             raise
         return sock
+
+    def unread(self) -> int:
+        """How many datagrams the system dropped: strangers', and those that found no room."""
+        return self._unread + (0 if self.socket is None else unread(self.socket))
 
     def close(self) -> None:
         """Close the socket, and do not open it again."""
@@ -118,6 +125,7 @@ class UdpLink(Link):
         if self.socket is not None:
             with suppress(RuntimeError):  # the loop may be closed already
                 asyncio.get_running_loop().remove_reader(self.socket.fileno())
+            self._unread = self.unread()
             self.socket.close()
             self.socket = None
 
