@@ -19,7 +19,7 @@ from innervate.firmware.records import initial, name_of, records_of, struct
 from innervate.firmware.statements import Statements, comment, declaration, wrapped
 from innervate.live.board import Role
 
-ABI = 2  # counts changes of what stands in headers and how it is called
+ABI = 3  # counts changes of what stands in headers and how it is called
 MEANINGS = {
     "state": "What a node keeps.",
     "gate": "What a node has besides that leads, or may have to.",

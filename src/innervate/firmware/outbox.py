@@ -61,7 +61,7 @@ static {p}_frame_t *{p}_frame({p}_out_t *out, int32_t action)
         if (out->newest > 0) {{
             const {p}_frame_t *newest = {p}_frame_at(out, out->newest);
             at = (int32_t)((const uint8_t *)&newest->{last}[newest->{used}] - out->frame.bytes);
-            at = (at + {widest} - 1) & -{widest};
+            at = (at + {spare}) & ~{spare};
         }}
         if (at + (int32_t)sizeof({p}_frame_t) > {P}_FRAME_BYTES) {{
             out->overflow = 1;
@@ -104,19 +104,19 @@ class Outbox:
     Attributes:
         is_behind: its frames lie one behind the other.
         frames: how many there are at most, where they are whole.
-        widest: bytes at a multiple of which a frame begins.
+        bytes: that they have together, where they lie one behind the other.
     """
 
     def __init__(self, prefix: str, role: Role, records: dict[str, dict[str, Field]]) -> None:
         frame = list(records.get("frame", {}).values())
         self.has_frames, self.is_behind = bool(frame), role.frame_bytes > 0
         self.frames = role.frames or role.room
-        self.widest = max((BYTES[field.type] for field in frame), default=1)
         self.bytes = role.frame_bytes
-        self.words = {"p": prefix, "P": prefix.upper(), "widest": str(self.widest)}
+        self.words = {"p": prefix, "P": prefix.upper()}
         if self.is_behind:
-            last = frame[-1].name
-            self.words |= {"last": name_of(last), "used": name_of(role.counted[last])}
+            last, widest = frame[-1].name, max(BYTES[field.type] for field in frame)
+            self.words |= {"last": name_of(last), "used": name_of(role.counted[last]),
+                           "spare": str(widest - 1)}  # fmt: skip
 
     def _text(self, text: str, frames: str = "") -> str:
         return text.format(**self.words, frames=frames)

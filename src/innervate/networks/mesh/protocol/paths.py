@@ -10,17 +10,18 @@ from innervate.networks.mesh.protocol.constants import LIST, TABLE_FREE
 FAR = 255
 NONE = 255
 BITS = 15
+ROUNDS_VALID = 3
 LOW_BITS = 85  # of each of four pairs of bits
 
 
 def note_heard(gate, params, who, by):
-    """`by` heard `who` in this round: that counts for three rounds."""
+    """`by` heard `who` in this round."""
     at = who * params.width + by
-    gate.heard[at >> 2] = gate.heard[at >> 2] | 3 << 2 * (at & 3)
+    gate.heard[at >> 2] = gate.heard[at >> 2] | ROUNDS_VALID << 2 * (at & 3)
 
 
 def is_heard(gate, params, who, by):
-    """1 if `by` heard `who` in one of the last three rounds."""
+    """1 if `by` heard `who` in one of the last rounds."""
     at = who * params.width + by
     return gate.heard[at >> 2] >> 2 * (at & 3) & 3 != 0
 
