@@ -129,7 +129,7 @@ class Emulated:
         self.since = time.monotonic()
 
     def board_runs(self):
-        """The process beside a board answers before that is there: by 0.1 s to half a second."""
+        """The process beside a board answers before that is there: by some 0.1 s."""
         return asked(self.network, self.cells[DEAD])["counters"].get("board started", 0)
 
     async def kill_pc(self):
