@@ -130,7 +130,7 @@ class Outbox:
         return f"#define {self.words['P']}_{name} {many} /* {what} */"
 
     def struct(self) -> str:
-        """The struct."""
+        """The struct that the header declares."""
         frames = self._text(BEHIND if self.is_behind else WHOLE) if self.has_frames else ""
         return self._text(STRUCT, frames)
 
