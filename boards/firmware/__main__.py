@@ -25,8 +25,8 @@ from boards.firmware.native import Native
 from boards.firmware.play import Player
 from boards.firmware.replayed import Heard, Shadow
 from boards.firmware.script import Script
-from boards.parity.record import HERE
-from boards.roles import kind_of, roles
+from boards.parity.record import scenario_of
+from boards.roles import roles
 from innervate import scenario
 from innervate.firmware.emit import Library
 from innervate.live.board import Role
@@ -47,19 +47,13 @@ def replay(native: Native, calls: int, seed: int) -> tuple[int, Heard]:
         shadow.heard = heard
         if native.script:
             native.script.begin()
-        shadow.run(scenario.plan(_scenario(native.library.role, seed)))
+        shadow.run(scenario.plan(scenario_of(native.library.role, seed=seed)))
         if native.script:
             native.script.say()
         if not shadow.calls:
             raise BoardFailed(f"{native.library.role.name}: a simulation made no call")
         done, seed = done + shadow.calls, seed + 1
     return done, heard
-
-
-def _scenario(role: Role, seed: int) -> scenario.Scenario:
-    if role.watched.scenario:
-        return scenario.load(HERE / f"{role.watched.scenario}.toml", seed=seed)
-    return scenario.from_dict({"kind": kind_of(role)}, seed=seed)
 
 
 def compare(role: Role, calls: int, seed: int, sanitized: bool) -> tuple[int, int]:

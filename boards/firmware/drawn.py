@@ -75,8 +75,8 @@ class Drawn:
         draw = self.random
         state = fresh(self.library, draw.randrange(4), draw.randrange(1, SEED_MAX))
         for name in ("rank", "robot"):
-            if hasattr(state, name):
-                setattr(state, name, draw.choice((0, 1) if name == "robot" else (-1, 0, 1)))
+            if field := self.library.records["state"].get(name):
+                setattr(state, name, draw.choice(range(max(field.low, -1), 2)))
         return state
 
     def _params(self) -> Any:

@@ -88,13 +88,16 @@ class _Outbox:
     """Where things stand in an outbox of C."""
 
     def __init__(self, native: Native) -> None:
-        role, frames = native.library.role, native.library.frames
+        role, outbox = native.library.role, native.library.outbox
         self.action = native.records["action"]
         self.frame = native.records.get("frame")
-        head = 2 + (1 + role.room if self.frame else 0)
-        self.frames_at = _aligned(head, native.library.records.get("frame", {}))
         size = self.frame.size if self.frame else 0
-        behind = self.frames_at + frames * size if self.frame else head
+        # Behind count and overflow: by action where its frame lies, in bytes or in frames.
+        self.place, self.step, head = ("<H", 1, 4) if outbox.is_behind else ("B", size, 3)
+        self.places_at = head
+        head += struct.calcsize(self.place) * role.room
+        self.frames_at = _aligned(head, native.library.records.get("frame", {}))
+        behind = self.frames_at + (outbox.bytes or outbox.frames * size) if self.frame else 2
         self.actions_at = _aligned(behind, native.library.records["action"])
         self.size = self.actions_at + role.room * self.action.size + 8
 
@@ -109,9 +112,13 @@ class _Outbox:
 
     def frame_of(self, out: bytes, action: int) -> dict[str, Any] | None:
         """The frame of an action as values by name; None if it has none."""
-        if self.frame is None or out[3 + action] == 0:
+        if self.frame is None:
             return None
-        place = self.frames_at + (out[3 + action] - 1) * self.frame.size
+        at = self.places_at + action * struct.calcsize(self.place)
+        (known,) = struct.unpack_from(self.place, out, at)
+        if known == 0:
+            return None
+        place = self.frames_at + (known - 1) * self.step
         values = self.frame.struct.unpack_from(out, place)
         return {name: list(array(code, value)) if code else value
                 for (name, code), value in zip(self.frame.arrays, values, strict=True)}  # fmt: skip

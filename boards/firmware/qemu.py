@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -74,14 +75,14 @@ def _result(said: str) -> Result:
     return Result(numbers[: -len(counts)], calls, dict(zip(WHAT, counts[1::2], strict=True)))
 
 
-def on_host(library: Library, folder: Path, script: Path) -> Result:
-    """Play a script here.
+def on_host(library: Library, folder: Path, script: Path, checks: Sequence[str] = ()) -> Result:
+    """Play a script here; `checks` are options of the compiler.
 
     Raises:
         BoardMissing, BoardFailed: no compiler, or it does not get through.
     """
     made = folder / "check"
-    _compile(library, folder, ["gcc", "-std=c99", "-O2"], "host.c", made)
+    _compile(library, folder, ["gcc", "-std=c99", "-O2", *checks], "host.c", made)
     with script.open("rb") as file:
         done = subprocess.run([made], stdin=file, capture_output=True, text=True, check=True)
     return _result(done.stdout)

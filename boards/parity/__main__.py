@@ -39,8 +39,7 @@ def compare(role: Role, file: Path | None, quick: bool) -> bool:
     plain = transcript.marks[-1][0]
     compiled, fingerprint = record.compiled_mark(role, file)
     same = (compiled, fingerprint) == (plain, transcript.fingerprint)
-    own = f"{role.watched.scenario}.toml" if role.watched.scenario else "as it is by itself"
-    print(f"{role.name}: {own if file is None else file.name}, node {role.watched.node}")
+    print(f"{role.name}: {record.scenario_of(role, file).name}, node {role.watched.node}")
     print(f"  compiled     0x{compiled:08x} at the end")
     print(f"  plain        0x{plain:08x} after {len(transcript.marks)} calls")
     played = nodejs.play(transcript)

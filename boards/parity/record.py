@@ -195,13 +195,17 @@ def simulation(role: Role, plan: Any, plain: bool) -> Simulation:
     return made
 
 
+def scenario_of(role: Role, file: Path | None = None, **changes: Any) -> scenario.Scenario:
+    """What is watched: a file's scenario, that of the role here, or the network's plainest."""
+    own = HERE / f"{role.watched.scenario or role.name}.toml"
+    if file is None and not own.exists():
+        return scenario.from_dict({"kind": kind_of(role)}, **changes)
+    return scenario.load(file or own, **changes)
+
+
 def plan_of(role: Role, file: Path | None = None) -> Any:
-    """The plan of what is watched: of a file, of the role's own, or of the network's plainest."""
-    if file is None and role.watched.scenario:
-        file = HERE / f"{role.watched.scenario}.toml"
-    if file is None:
-        return scenario.plan(scenario.from_dict({"kind": kind_of(role)}))
-    return scenario.plan(scenario.load(file))
+    """The plan of what is watched."""
+    return scenario.plan(scenario_of(role, file))
 
 
 def record(role: Role, file: Path | None = None) -> Transcript:

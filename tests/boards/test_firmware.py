@@ -1,14 +1,20 @@
 """The protocols' C against their Python: every call both ways, replayed and drawn."""
 
 import shutil
+from importlib import import_module
 
 import pytest
 
 from boards.errors import BoardFailed
 from boards.firmware import __main__ as parity
-from boards.firmware.native import SANITIZED, Native, compiler, run
+from boards.firmware.native import SANITIZED, Native, Twin, compiler, fresh, run
 from boards.roles import roles
+from innervate.dialect import plain
 from innervate.firmware.emit import Library
+from innervate.networks.mesh.board import small_parameters
+from innervate.networks.mesh.protocol.constants import BODY, DATA, MESSAGES, TX
+from innervate.networks.mesh.protocol.fields import GATHERED
+from innervate.networks.mesh.protocol.queue import WAITS
 
 CALLS = {"skin": 2000, "csma": 1000, "radio": 1000, "mesh": 600}  # the rest: test_million.py
 
@@ -73,3 +79,34 @@ def test_a_sum_that_does_not_fit_is_found(tmp_path):
     run([compiler(), *SANITIZED, tmp_path / "sum.c", "-o", tmp_path / "sum"])
     with pytest.raises(BoardFailed, match="signed integer overflow"):
         run([tmp_path / "sum"])
+
+
+def full_mesh_node(library):
+    """A node that owes acks to as many as can be, and has a queue of frames as long as can be."""
+    node = fresh(library, 31, 1)
+    node.places, node.busy, node.ack_at, node.acks = len(node.q_state), -1, -1, GATHERED
+    node.ack_to[:] = range(GATHERED)
+    for i in range(node.places):
+        node.q_state[i], node.q_rank[i], node.q_kind[i] = WAITS, MESSAGES, DATA
+        node.q_link_dst[i], node.q_path_len[i], node.q_length[i] = i, 1, BODY - 1
+    node.neighbour[:] = [255] * len(node.neighbour)
+    return node
+
+
+@pytest.mark.parametrize("lacks", [0, 500])
+def test_the_longest_frames_of_one_call_have_room(lacks, tmp_path):
+    role = roles()["mesh"]
+    role = role._replace(frame_bytes=role.frame_bytes - lacks)
+    library = Library(role, {})
+    node, params = full_mesh_node(library), plain.make("Params", role.params)()
+    for name, value in small_parameters({"gather": 1, "hop_frames": 4}).items():
+        setattr(params, name, value)
+    native = Native(library, tmp_path, sanitized=True)
+    twin, out = Twin(native, node), plain.Outbox(plain.make("Frame", role.frame), role.room)
+    packed = native.records["params"].of(params)
+    import_module(role.entry).on_timer(node, None, params, 0, TX, out)
+    assert sum(act.kind == 1 for act in out.action[: out.count[0]]) == GATHERED + node.places
+    twin.call("on_timer", packed, 0, (TX,))
+    found = twin.compare(out)
+    assert ("overflow 1" in str(found)) == (lacks > 0), found
+    assert lacks or found == []

@@ -10,7 +10,7 @@ import pytest
 
 from boards.errors import BoardFailed
 from boards.firmware import qemu
-from boards.firmware.native import Native
+from boards.firmware.native import SANITIZED, Native
 from boards.firmware.play import Player
 from boards.firmware.script import Script
 from innervate.firmware.emit import Library
@@ -37,10 +37,10 @@ def script_of(name, folder, runs, pieces):
     return marks, sum(run.calls for run in record.runs[:runs]) + pieces * calls.PIECE
 
 
-def all_in_c(name, folder, made=None):
+def all_in_c(name, folder, made=None, checks=()):
     """Play a million calls in C, and compare: what differs, and how many calls there were."""
     wanted, count = script_of(name, folder, None, calls.DRAWN // calls.PIECE)
-    found = qemu.on_host(made or calls.library(name), folder, folder / "script")
+    found = qemu.on_host(made or calls.library(name), folder, folder / "script", checks)
     assert sum(found.calls.values()) == count == 1_000_000
     pairs = zip(wanted, calls.hexadecimal(found.marks), strict=True)
     return [(was, is_now) for was, is_now in pairs if was != is_now]
@@ -55,6 +55,12 @@ def test_the_record_is_of_these_sources(name):
 @pytest.mark.parametrize("name", calls.NAMES)
 def test_c_does_in_a_million_calls_what_python_does(name, tmp_path):
     assert all_in_c(name, tmp_path) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", calls.NAMES)
+def test_no_sum_shift_index_or_address_leaves_its_bounds(name, tmp_path):
+    assert all_in_c(name, tmp_path, checks=(*SANITIZED, "-fsanitize=address")) == []
 
 
 @pytest.mark.parametrize("name", calls.NAMES)

@@ -125,7 +125,12 @@ class Emulated:
 
     async def revive(self):
         await self.network.begin_node(self.cells[DEAD])
+        await until(self.board_runs, FIRST_S)
         self.since = time.monotonic()
+
+    def board_runs(self):
+        """The process beside a board answers before that is there: by some 0.1 s."""
+        return asked(self.network, self.cells[DEAD])["counters"].get("board started", 0)
 
     async def kill_pc(self):
         self.since = time.monotonic()

@@ -283,11 +283,12 @@ def test_compilers_and_cppcheck_have_nothing_to_say(role, folders):
          "-DKEY=1", "-I", folder, *beside, *board])  # fmt: skip
 
 
-@pytest.mark.parametrize("role", measure.WHOLE)
-def test_a_node_is_as_small_as_it_has_to_be(role, folders, tmp_path):
+@pytest.mark.parametrize("image", [*measure.WHOLE, *measure.OF_MESH])
+def test_a_node_is_as_small_as_it_has_to_be(image, folders, tmp_path):
     """With coder, driver, port layer, vectors, and the deepest stack with an interrupt on it."""
     needs("arm-none-eabi-gcc", "arm-none-eabi-size")
-    flash, ram, stack = measure.whole(role, folders[role], tmp_path)
+    role = image.removeprefix(measure.LEADING)
+    flash, ram, stack = measure.whole(image, folders[role], tmp_path)
     flash_kb, ram_kb = {"skin": (6, 1), "radio": (16, 2), "mesh": (32, 12)}[role]
     assert flash <= flash_kb * 1024
     assert ram + stack <= ram_kb * 1024

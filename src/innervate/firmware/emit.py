@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import hashlib
-import textwrap
 from collections.abc import Mapping
 from typing import Any
 
@@ -14,12 +13,13 @@ from innervate.firmware.errors import FirmwareError
 from innervate.firmware.expressions import Expressions, local
 from innervate.firmware.facts import Facts
 from innervate.firmware.helpers import HELPERS, own, public
+from innervate.firmware.outbox import Outbox
 from innervate.firmware.program import Made, Program, Type
 from innervate.firmware.records import initial, name_of, records_of, struct
 from innervate.firmware.statements import Statements, comment, declaration, wrapped
 from innervate.live.board import Role
 
-ABI = 2  # counts changes of what stands in headers and how it is called
+ABI = 3  # counts changes of what stands in headers and how it is called
 MEANINGS = {
     "state": "What a node keeps.",
     "gate": "What a node has besides that leads, or may have to.",
@@ -48,7 +48,7 @@ class Library:
         self.records = records_of(role)
         self.program = Program(role, self.records)
         self.facts = Facts(self.program)
-        self.frames = role.frames or role.room
+        self.outbox = Outbox(self.prefix, role, self.records)
         self.types = self._types()
         names = names_of((made.function for made in self.program.functions()), self.prefix)
         self.constants: dict[str, tuple[int, str]] = {}
@@ -64,7 +64,9 @@ class Library:
         for name in ("SEND", "SET_TIMER", "DELIVER", "REPORT", "URGENT", "FLUSH"):
             always = (int(getattr(outbox, name)), note_of(outbox.__name__, name))
             self.constants.setdefault(f"{self.prefix.upper()}_{name}", always)
-        self.helpers = helpers | {helper for name in helpers for helper in HELPERS[name].needs}
+        self.helpers = helpers | {
+            helper for name in helpers & set(HELPERS) for helper in HELPERS[name].needs
+        }
 
     def _types(self) -> dict[Type, str]:
         """What C calls the types of variables."""
@@ -106,7 +108,7 @@ class Library:
             f"#define {big}_ABI {ABI} /* of this header */",
             f'#define {big}_SOURCE "{self.digest()}" /* hash of functions and declarations */',
             f"#define {big}_OUTBOX {self.role.room} /* actions of one call at most */",
-            f"#define {big}_FRAMES {self.frames} /* frames of one call at most */",
+            self.outbox.size(),
         ]  # fmt: skip
         if self.role.timers:
             top.append(f"#define {big}_TIMERS_MAX {self.role.timers} /* timers */")
@@ -132,21 +134,7 @@ class Library:
             made.append(f"/** Handlers look into no frame. */\ntypedef void {small}_frame_t;\n")
         if "item" not in self.records and "frame" in self.records:
             made.append(f"typedef {small}_frame_t {small}_item_t; /* what its user hands down */\n")
-        frames = ""
-        if "frame" in self.records:
-            frames = textwrap.indent(
-                f"uint8_t frames; /* how many are in use */\n"
-                f"uint8_t place[{small.upper()}_OUTBOX]; /* by action: its frame + 1; 0 none */\n"
-                f"{small}_frame_t frame[{small.upper()}_FRAMES];\n",
-                "    ",
-            )
-        made.append(
-            "/** The outbox: what a handler wants done, in this order. */\ntypedef struct {\n"
-            "    uint8_t count; /* actions */\n"
-            "    uint8_t overflow; /* 1 = one did not fit: a broken invariant, stop */\n"
-            f"{frames}    {small}_action_t action[{small.upper()}_OUTBOX];\n}} {small}_out_t;\n"
-        )
-        return made
+        return [*made, self.outbox.struct()]
 
     def _public(self) -> str:
         lines = [public(self.prefix, self.records)]
@@ -201,11 +189,12 @@ class Library:
         ]  # fmt: skip
         helpers = [HELPERS[name].text.format(p=prefix, P=prefix.upper()) for name in HELPERS
                    if name in self.helpers]  # fmt: skip
+        helpers += [self.outbox.helper()] if "frame" in self.helpers else []
         functions = []
         for made, body in self.bodies.items():
             lines = [*self._comment(made), self._head(made), "{", *body, "}", ""]
             functions.append("\n".join(lines))
-        beginning = [*self._defaults(), own(self.prefix, self.records)]
+        beginning = [*self._defaults(), own(self.prefix, self.records), self.outbox.functions()]
         return "\n".join([*top, *helpers, *beginning, *functions])
 
     def _defaults(self) -> list[str]:

@@ -117,6 +117,7 @@ class Emulated(Engine):
         assert self._begun is not None
         number, seed, cause = self._begun
         self._send(LOOK, b"S" + struct.pack("<HiB", number, seed, cause))
+        self.counters["board started"] += 1
         while True:
             self._send(LOOK, b"?")
             await asyncio.sleep(ASK_S)

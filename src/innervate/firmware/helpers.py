@@ -1,4 +1,4 @@
-"""What a protocol in C needs besides its functions: Python's arithmetic, the outbox's frames."""
+"""What a protocol in C needs besides its functions: Python's arithmetic, how records begin."""
 
 from __future__ import annotations
 
@@ -51,21 +51,6 @@ static int32_t {p}_floor_mod(int32_t a, int32_t b)
 """,
         ("floor_div",),
     ),
-    "frame": Helper("""\
-/* The frame of an action: one of few, given out when it is first asked for. */
-static {p}_frame_t *{p}_frame({p}_out_t *out, int32_t action)
-{{
-    if (out->place[action] == 0) {{
-        if (out->frames >= {P}_FRAMES) {{
-            out->overflow = 1;
-            return &out->frame[{P}_FRAMES - 1];
-        }}
-        out->frames++;
-        out->place[action] = out->frames;
-    }}
-    return &out->frame[out->place[action] - 1];
-}}
-"""),
 }
 
 # Declarations of what no function of the protocol does.
@@ -105,25 +90,6 @@ def own(prefix: str, records: dict[str, dict[str, Field]]) -> str:
     parts = [_zero(prefix), _init(prefix, "state", records["state"])]
     if "gate" in records:
         parts.append(_init(prefix, "gate", records["gate"]))
-    frames = ""
-    if "frame" in records:
-        frames = f"""\
-    out->frames = 0;
-    for (int32_t i = 0; i < {prefix.upper()}_OUTBOX; i++) {{
-        out->place[i] = 0;
-    }}
-"""
-    parts.append(
-        f"void {prefix}_clear({prefix}_out_t *out)\n{{\n    out->count = 0;\n"
-        f"    out->overflow = 0;\n{frames}}}\n"
-    )
-    if "frame" in records:
-        parts.append(f"""\
-const {prefix}_frame_t *{prefix}_frame_of(const {prefix}_out_t *out, int32_t action)
-{{
-    return out->place[action] ? &out->frame[out->place[action] - 1] : 0;
-}}
-""")
     return "\n".join(parts)
 
 

@@ -140,6 +140,8 @@ class Role(NamedTuple):
             the network's plainest scenario.
         action: declaration of what an action of the outbox has.
         frames: frames that one call sends and delivers at most; 0 = as many as it has actions.
+        frame_bytes: bytes that they have together at most, in C, each up to where its last array
+            is in use, the newest whole; 0 = each has a place where it would be whole.
         timers: how many it has.
         nodes: nodes of a network that its arrays hold at most; 0 = they do not depend on it.
         coded: how its frames lie on the wire, where that is more than the network's `LAYOUTS`.
@@ -163,6 +165,7 @@ class Role(NamedTuple):
     parameters: str = ""
     action: Declaration = ACTION
     frames: int = 0
+    frame_bytes: int = 0
     timers: int = 0
     nodes: int = 0
     coded: Coded | None = None

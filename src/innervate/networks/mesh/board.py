@@ -22,7 +22,8 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.wire.layout import REST
 
-FRAMES = 26  # a whole queue, acks to as many as are gathered, what is handed up
+# Acks to as many as are gathered; a whole queue, and what is handed up.
+FRAME_BYTES = fields.GATHERED * 38 + (fields.QUEUE + 2) * 152
 NODES = 32  # the smallest capacity class
 COUNTED = {"path": "path_len", "body": "length"}
 PACKET = (*on_wire(frames.COMMON), *COUNTED.items())
@@ -105,7 +106,7 @@ def node(nodes: int) -> Role:
         {ACK: on_wire(frames.HOP_ACK), **dict.fromkeys(payloads.FIELDS, PACKET)},
         room=32, counted=COUNTED, gate=fields.gate(size), action=fields.ACTION, timers=TIMERS,
         nodes=size, sized=f"{HERE}:node", parameters=f"{HERE}:{OF_CLASS[size]}_parameters",
-        watched=RUN._replace(table="nodes"), coded=CODED, frames=FRAMES,
+        watched=RUN._replace(table="nodes"), coded=CODED, frame_bytes=FRAME_BYTES,
         hooks="innervate.networks.mesh:board_links",
     )  # fmt: skip
 

@@ -33,9 +33,9 @@ def gateway_of(graph, mtu=127):
     for name, value in {**DEFAULTS, "nodes": len(graph), "width": 64, "row": 5, "mtu": mtu}.items():
         setattr(params, name, value)
     for a, b in graph.edges:
-        mesh_paths.note_heard(gate, params, a, b, 1)
-        mesh_paths.note_heard(gate, params, b, a, 1)
-    mesh_paths.build_graph(gate, params, 1)
+        mesh_paths.note_heard(gate, params, a, b)
+        mesh_paths.note_heard(gate, params, b, a)
+    mesh_paths.build_graph(gate, params)
     mesh_paths.measure_all(gate, params)
     return node, gate, params
 
@@ -84,15 +84,23 @@ def test_alternates_are_loop_free_and_protect_the_node_where_one_can(graph):
 
 def test_links_count_both_ways_and_for_three_rounds():
     params, gate = gateway_of(nx.path_graph(3))[2], Gate()
-    mesh_paths.note_heard(gate, params, 0, 1, 65_534)
-    mesh_paths.build_graph(gate, params, 65_534)
-    assert gate.links == 0
-    mesh_paths.note_heard(gate, params, 1, 0, 65_534)
-    for later, links in [(0, 1), (1, 1), (2, 1), (3, 0)]:
-        mesh_paths.build_graph(gate, params, 65_534 + later & 65_535)
-        assert gate.links == links, later
-    mesh_paths.build_graph(gate, params, 65_534)
-    assert gate.links == 0, "what is old is gone for good, even when rounds have gone around"
+    pairs = [(0, 1), (1, 0), (1, 2), (2, 1)]  # of the first four, and in a byte of their own
+    for there, back in (pairs[:2], pairs[2:]):
+        mesh_paths.note_heard(gate, params, *there)
+        mesh_paths.build_graph(gate, params)
+        assert gate.links == 0
+        mesh_paths.begin_round(gate, params)
+        mesh_paths.note_heard(gate, params, *back)
+        for links in (1, 1, 0, 0):  # `there` was heard a round before
+            mesh_paths.build_graph(gate, params)
+            assert gate.links == links
+            mesh_paths.begin_round(gate, params)
+    for pair in pairs:
+        mesh_paths.note_heard(gate, params, *pair)
+    for links in (2, 2, 2, 0):
+        mesh_paths.build_graph(gate, params)
+        assert gate.links == links
+        mesh_paths.begin_round(gate, params)
 
 
 def parts_of(node, gate, params, s, room):

@@ -258,11 +258,12 @@ QUEUED = queued(QUEUE)
 def gate(n):
     """What a gateway, and only a gateway or standby, has besides."""
     return (
-        ("reported", n * n, 0, 65535, "round", "who was heard by whom: the round + 1; 0 never"),
+        ("heard", (n * n + 3) // 4, 0, 255, "rounds", "who was heard by whom, 4 pairs a byte"),
         ("known", n * words(n), 0, 32767, "bits", "adjacency after the newest round"),
         ("dist", n * n, 0, 255, "hops", "from everyone to everyone; 255 none"),
-        ("list", n * places(n), 0, 253, "node", "neighbours of each, in order of number"),
-        ("degree", n, 0, places(n), "nodes", "how many"),
+        ("near", places(n), 0, 253, "node", "scratch: neighbours of a node, in order of number"),
+        ("near_count", 0, 0, places(n), "nodes", "... how many"),
+        ("near_of", 0, 0, 255, "node", "... of whom; 255 nobody"),
         ("line", n, 0, 253, "node", "scratch: nodes in order of distance"),
         ("far", n, 0, 255, "hops", "scratch: distances without one node"),
         ("next", n, 0, 255, "node", "scratch: a node's table"),

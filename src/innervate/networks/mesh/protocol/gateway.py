@@ -17,11 +17,13 @@ from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16
 from innervate.networks.mesh.protocol.jobs import give_jobs, install_own, note_lost_table, pump
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
 from innervate.networks.mesh.protocol.paths import (
+    begin_round,
     build_graph,
     measure_all,
     note_heard,
     note_list,
     note_path,
+    pair_bytes,
     trusts_lists,
 )
 from innervate.networks.mesh.protocol.queue import compose, kick
@@ -33,13 +35,12 @@ JITTER_UNIT_US = 10_000
 
 def reset(gate, params):
     """A gateway that knows nothing."""
-    for k in range(params.width * params.width):
-        gate.reported[k] = 0
+    for k in range(pair_bytes(params)):
+        gate.heard[k] = 0
     for k in range(params.width):
         gate.mark_a[k] = 0
         gate.mark_b[k] = 0
         gate.job[k] = 0
-        gate.degree[k] = 0
     gate.step = IDLE
     gate.wait = 0
     gate.period = params.period
@@ -74,6 +75,7 @@ def start_round(node, gate, params, now, out):
     node.depth = 1
     for k in range(params.places):
         node.round_depth[k] = UNHEARD
+    begin_round(gate, params)
     gate.wait = gate.period
     gate.step = COLLECTING
     report(out, REPORT_ROUND, node.round, node.epoch)
@@ -94,12 +96,11 @@ def on_response(node, gate, params, frame, out):
     """A discovery response has reached us."""
     if frame.length < 4 or frame.body[0] != node.epoch:
         return
-    round = get16(frame, 1)
-    if round != node.round:
+    if get16(frame, 1) != node.round:
         return
     if frame.table_ver == 0:
         note_lost_table(gate, frame.origin)
-    note_path(gate, params, frame, node.number, round)
+    note_path(gate, params, frame, node.number)
     if trusts_lists(params):
         note_list(gate, params, frame, 4, frame.body[3] & 15)
 
@@ -112,8 +113,8 @@ def collect(node, gate, params, now, out):
     for k in range(params.places):
         if node.neighbour[k] != FREE and node.round_depth[k] != UNHEARD and trusts_lists(params):
             if node.round_rssi[k] >= params.min_rssi:
-                note_heard(gate, params, node.neighbour[k], node.number, node.round)
-    mark = build_graph(gate, params, node.round)
+                note_heard(gate, params, node.neighbour[k], node.number)
+    mark = build_graph(gate, params)
     changed = mark != gate.sum_a
     gate.sum_a = mark
     report(out, REPORT_GRAPH, gate.links, changed)

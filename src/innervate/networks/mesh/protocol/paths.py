@@ -3,7 +3,7 @@
 Dijkstra's algorithm over hop counts is a breadth-first search; among equals the lowest id wins.
 """
 
-from innervate.dialect.arith import MASK16, MASK30
+from innervate.dialect.arith import MASK30
 from innervate.dialect.rng import LOW15
 from innervate.networks.mesh.protocol.constants import LIST, TABLE_FREE
 
@@ -11,23 +11,38 @@ FAR = 255
 NONE = 255
 BITS = 15
 ROUNDS_VALID = 3
+LOW_BITS = 85  # of each of four pairs of bits
 
 
-def note_heard(gate, params, who, by, round):
+def note_heard(gate, params, who, by):
     """`by` heard `who` in this round."""
-    gate.reported[who * params.width + by] = (round + 1) & MASK16
+    at = who * params.width + by
+    gate.heard[at >> 2] = gate.heard[at >> 2] | ROUNDS_VALID << 2 * (at & 3)
 
 
-def is_reported(gate, params, who, by, round):
+def is_heard(gate, params, who, by):
     """1 if `by` heard `who` in one of the last rounds."""
-    said = gate.reported[who * params.width + by]
-    return said != 0 and ((round + 1 - said) & MASK16) < ROUNDS_VALID
+    at = who * params.width + by
+    return gate.heard[at >> 2] >> 2 * (at & 3) & 3 != 0
 
 
-def is_link(gate, params, a, b, round):
+def pair_bytes(params):
+    """Bytes of all pairs, of two bits each: for how many rounds it counts that one was heard."""
+    return (params.width * params.width + 3) >> 2
+
+
+def begin_round(gate, params):
+    """What was heard counts for one round less: 3 becomes 2, 2 becomes 1, 1 becomes 0."""
+    for k in range(pair_bytes(params)):
+        high = gate.heard[k] >> 1 & LOW_BITS
+        low = gate.heard[k] & LOW_BITS
+        gate.heard[k] = (high & low) << 1 | high & ~low
+
+
+def is_link(gate, params, a, b):
     """1 if packets can go between a and b, both ways."""
-    there = is_reported(gate, params, a, b, round)
-    back = is_reported(gate, params, b, a, round)
+    there = is_heard(gate, params, a, b)
+    back = is_heard(gate, params, b, a)
     if params.mode == TABLE_FREE:
         return there or back
     return there and back
@@ -38,24 +53,20 @@ def is_known(gate, params, a, b):
     return gate.known[a * params.row + b // BITS] >> (b % BITS) & 1
 
 
-def build_graph(gate, params, round):
+def build_graph(gate, params):
     """Links from reports; how many, and a mark that tells graphs apart in gate.sum_a."""
     links = 0
     mark = 1
+    gate.near_of = NONE
+    for k in range(params.width * params.row):
+        gate.known[k] = 0
     for a in range(params.nodes):
-        gate.degree[a] = 0
+        degree = 0
         for b in range(params.nodes):
-            if not is_reported(gate, params, a, b, round):
-                gate.reported[a * params.width + b] = 0
-        for word in range(params.row):
-            gate.known[a * params.row + word] = 0
-    for a in range(params.nodes):
-        for b in range(params.nodes):
-            if a != b and is_link(gate, params, a, b, round) and gate.degree[a] < params.places:
+            if a != b and is_link(gate, params, a, b) and degree < params.places:
                 at = a * params.row + b // BITS
                 gate.known[at] = gate.known[at] | 1 << (b % BITS)
-                gate.list[a * params.places + gate.degree[a]] = b
-                gate.degree[a] = gate.degree[a] + 1
+                degree = degree + 1
                 if a < b:
                     links = links + 1
                 mark = fold(mark, a * 256 + b)
@@ -72,6 +83,23 @@ def fold(mark, value):
     return x ^ (x >> 13)
 
 
+def list_near(gate, params, a):
+    """Neighbours of node a into gate.near, lowest first, should they not be there; how many."""
+    if gate.near_of != a:
+        gate.near_of = a
+        gate.near_count = 0
+        for word in range(params.row):
+            bits = gate.known[a * params.row + word]
+            b = word * BITS
+            while bits:
+                if bits & 1:
+                    gate.near[gate.near_count] = b
+                    gate.near_count = gate.near_count + 1
+                bits = bits >> 1
+                b = b + 1
+    return gate.near_count
+
+
 def measure(gate, params, source, without):
     """Hops from `source` to everyone into gate.far, not through `without` (255: all may be)."""
     for k in range(params.nodes):
@@ -85,8 +113,8 @@ def measure(gate, params, source, without):
             return
         a = gate.line[at]
         at = at + 1
-        for k in range(gate.degree[a]):
-            b = gate.list[a * params.places + k]
+        for k in range(list_near(gate, params, a)):
+            b = gate.near[k]
             if gate.far[b] == FAR and b != without:
                 gate.far[b] = gate.far[a] + 1
                 gate.line[last] = b
@@ -108,15 +136,16 @@ def hops(gate, params, a, b):
 
 def first_hop(gate, params, s, d, pick):
     """A first hop of a shortest path from s to d: of several the pick-th, from the lowest id on."""
+    degree = list_near(gate, params, s)
     count = 0
-    for k in range(gate.degree[s]):
-        if hops(gate, params, gate.list[s * params.places + k], d) + 1 == hops(gate, params, s, d):
+    for k in range(degree):
+        if hops(gate, params, gate.near[k], d) + 1 == hops(gate, params, s, d):
             count = count + 1
     if count == 0:
         return NONE
     left = pick % count
-    for k in range(gate.degree[s]):
-        who = gate.list[s * params.places + k]
+    for k in range(degree):
+        who = gate.near[k]
         if hops(gate, params, who, d) + 1 == hops(gate, params, s, d):
             if left == 0:
                 return who
@@ -131,8 +160,8 @@ def alternate_of(gate, params, s, d, main):
     """
     best = NONE
     best_protects = 0
-    for k in range(gate.degree[s]):
-        who = gate.list[s * params.places + k]
+    for k in range(list_near(gate, params, s)):
+        who = gate.near[k]
         far = hops(gate, params, who, d)
         if (
             who != main
@@ -173,8 +202,8 @@ def walk_back(gate, params, s, d, without):
         if gate.far[at] == 1:
             return at
         best = NONE
-        for k in range(gate.degree[at]):
-            who = gate.list[at * params.places + k]
+        for k in range(list_near(gate, params, at)):
+            who = gate.near[k]
             if (
                 who != without
                 and gate.far[who] + 1 == gate.far[at]
@@ -195,8 +224,9 @@ def make_table(gate, params, s):
         if d != s and hops(gate, params, s, d) != FAR:
             gate.next[d] = first_hop(gate, params, s, d, 0)
             gate.alt[d] = alternate_of(gate, params, s, d, gate.next[d])
-    for k in range(gate.degree[s]):
-        fill_around(gate, params, s, gate.list[s * params.places + k])
+    for main in range(params.nodes):
+        if is_known(gate, params, s, main):
+            fill_around(gate, params, s, main)
 
 
 def mark_table(gate, params, start):
@@ -207,7 +237,7 @@ def mark_table(gate, params, start):
     return mark
 
 
-def note_path(gate, params, frame, me, round):
+def note_path(gate, params, frame, me):
     """What a packet that climbed with acknowledgements proves: links both ways."""
     for k in range(frame.path_len):
         a = frame.path[k]
@@ -215,17 +245,16 @@ def note_path(gate, params, frame, me, round):
         if k + 1 < frame.path_len:
             b = frame.path[k + 1]
         if a < params.nodes and b < params.nodes and a != b:
-            note_heard(gate, params, a, b, round)
-            note_heard(gate, params, b, a, round)
+            note_heard(gate, params, a, b)
+            note_heard(gate, params, b, a)
 
 
 def note_list(gate, params, frame, at, count):
     """The neighbours that a response lists, from byte `at` on."""
-    round = frame.body[1] << 8 | frame.body[2]
     for k in range(count):
         who = frame.body[at + 2 * k]
         if who < params.nodes and at + 2 * k + 1 < frame.length:
-            note_heard(gate, params, who, frame.origin, round)
+            note_heard(gate, params, who, frame.origin)
 
 
 def trusts_lists(params):
