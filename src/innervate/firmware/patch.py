@@ -37,6 +37,11 @@ def images(plan: Any, folder: Path, in_python: list[str]) -> dict[str, Path]:
             f"{plan.kind}: --firmware brings up nodes whose ports are cables; a board of this kind "
             "takes its place among live nodes on serial lines (innervate docs firmware)"
         )
+    if network.has("packets"):
+        raise FirmwareError(
+            f"{plan.kind}: its live nodes have packets of their own, its boards the frames of "
+            "`frames`: they would not understand each other; leave --firmware out"
+        )
     find("qemu-system-arm")
     library = Library(roles[-1], plan.params)
     files = Files(library, files_of(library, network))
