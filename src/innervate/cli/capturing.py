@@ -142,8 +142,9 @@ class Recorder:
         network = known(about["kind"])
         what = network.interface_words.get(about["role"], "node")
         link_type, head = network.link_type, b""
-        if network.has("packets") and network.packets.wireshark:
-            link_type, head = pcapng.UPPER_PDU, pcapng.for_dissector(*network.packets.wireshark)
+        reader = getattr(network.packets, "wireshark", None) if network.has("packets") else None
+        if reader:
+            link_type, head = pcapng.UPPER_PDU, pcapng.for_dissector(*reader)
         numbers = {}
         for path, port, here, there in about["paths"]:
             several = len(about["paths"]) > 1
