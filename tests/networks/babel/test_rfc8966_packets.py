@@ -141,6 +141,7 @@ def test_4_4_sub_tlvs(values, octets):
     tlv = bytes.fromhex(octets)
     assert said(packet(SENDER, longer(tlv, b"\0\1\1\0\x05\2\1\1"))) == [values]
     assert said(packet(SENDER, longer(tlv, b"\0\x80\1\1"))) == NOTHING
+    assert said(packet(SENDER, longer(tlv, b"\5\2\1\1")[:-1])) == NOTHING, "cut short"
 
 
 def test_4_4_the_state_of_the_parser_is_kept_though():
@@ -215,6 +216,7 @@ def test_4_6_9_compressed_prefixes():
     assert said(packet(SENDER, other, short)) == told
     assert said(packet(SENDER, short)) == NOTHING
     assert said(packet(SENDER, other[:3] + b"\0" + other[4:], short)) == NOTHING
+    assert said(packet(SENDER, SOURCE, short, TOLD)) == told, "what is ignored sets no router-id"
 
 
 # "if there is no suitable TLV, then this update is ignored" [4.6.9]
@@ -297,7 +299,9 @@ def test_a_packet_of_many_parts_is_heard_in_its_order():
     alone = b"\x05\x0e\3\0\1\0\0\x0a" + router_id(US)
     data = packet(bytes.fromhex("04 06 00 00 00 09 01 90"), alone, SOURCE, foreign[:1] + b"\x12"
                   + foreign[2:], TOLD, b"\x09\2\0\0")  # fmt: skip
-    assert [one["kind"] for one in said(data)] == [HELLO, IHU, UPDATE, ROUTE_REQUEST]
+    found = said(data)
+    assert [one["kind"] for one in found] == [HELLO, IHU, UPDATE, ROUTE_REQUEST]
+    assert found[-1] == {"kind": ROUTE_REQUEST, "source": NOBODY}, "nothing is left of those before"
 
 
 LENGTHS = {"hello": (0, 6500), "update": (1, 65500)}

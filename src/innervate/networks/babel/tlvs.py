@@ -157,7 +157,7 @@ class Parser:
         prefix = self._prefix(encoding, bits, omitted, value[10:])
         if prefix is None or encoding not in OCTETS:
             return
-        if flags & PREFIX_FLAG and encoding != LOCAL:
+        if flags & PREFIX_FLAG:
             self._prefixes[encoding] = prefix
         if flags & ROUTER_ID_FLAG and prefix:
             self._router_id = prefix[-8:].rjust(8, b"\0")
