@@ -47,6 +47,8 @@ PARTS = {
     "protocol": "module: on_start, on_frame, on_timer, on_input of a node; OUTBOX, TIMERS",
     "fields": "module: PARAMS, STATE, FRAME: the declared fields of its protocol",
     "frames": "module: LAYOUTS, KIND_BITS of its frames; encode, decode, REASONS if it has own",
+    "packets": "(number, params) -> what live nodes say in place of `frames`: encode(frame), "
+    "read(data, frame) that yields 0 for every frame in it or else why, reasons",
     "node_file": "live.nodefile.NodeFile: the keys of its node files",
     "live_node": "(nodefile.Loaded) -> live.node.LiveNode: the node of a node file",
     "deployment": "class: live.deployment.Deployment, how a plan becomes node files and cables",

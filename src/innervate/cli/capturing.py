@@ -58,6 +58,7 @@ class Recorder:
         self.silent = len(sockets)  # nodes that have not answered yet
         self.here = 0  # nodes that are followed now
         self.numbers: dict[tuple[str, str], int] = {}  # interfaces by name and description
+        self.heads: dict[int, bytes] = {}  # what stands in front of all packets of an interface
         self.since_ns = 0
         self.waiting: list[tuple[int, int, bool, bytes, str]] = []
         self.sealed: list[str] = []
@@ -140,6 +141,10 @@ class Recorder:
             self.sealed.append(about["capturing"])
         network = known(about["kind"])
         what = network.interface_words.get(about["role"], "node")
+        link_type, head = network.link_type, b""
+        reader = getattr(network.packets, "wireshark", None) if network.has("packets") else None
+        if reader:
+            link_type, head = pcapng.UPPER_PDU, pcapng.for_dissector(*reader)
         numbers = {}
         for path, port, here, there in about["paths"]:
             several = len(about["paths"]) > 1
@@ -147,7 +152,8 @@ class Recorder:
             text = links.describe(what, about["number"], port, (here, there))
             if (name, text) not in self.numbers:
                 self.numbers[name, text] = len(self.numbers)
-                self.file.write(pcapng.interface(network.link_type, name, text))
+                self.file.write(pcapng.interface(link_type, name, text))
+                self.heads[self.numbers[name, text]] = head
             numbers[path] = self.numbers[name, text]
         self.file.flush()
         return numbers
@@ -166,7 +172,8 @@ class Recorder:
         for at_ns, number, is_out, data, why in self.waiting[:count]:
             flags = pcapng.OUTBOUND if is_out else pcapng.INBOUND
             comment = f"dropped: {why}" if why and not why.startswith(EVENT) else why
-            self.file.write(pcapng.packet(number, at_ns, data, flags, comment.encode()))
+            whole = self.heads[number] + data if data else data
+            self.file.write(pcapng.packet(number, at_ns, whole, flags, comment.encode()))
             self.frames += bool(data)
         del self.waiting[:count]
         self.file.flush()

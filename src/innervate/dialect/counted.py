@@ -3,6 +3,7 @@
 import ast
 
 PUTS = {"put", "send", "set_timer", "deliver", "report"}
+NEVER = -1  # there is no such way
 
 
 class Unknown(Exception):
@@ -24,29 +25,40 @@ def actions(name, functions, constants):
     Raises:
         Unknown: it puts actions in a loop whose rounds are not seen.
     """
-    return _of_block(functions[name].body, functions, constants)
+    return max(_of_block(functions[name].body, functions, constants))
 
 
 def _of_block(statements, functions, constants):
-    total = 0
+    """Most actions on ways that go on behind the block, and on those that return in it."""
+    on, ended = 0, NEVER
     for statement in statements:
-        total += _of(statement, functions, constants)
-    return total
+        more, returned = _of(statement, functions, constants)
+        ended = max(ended, _sum(on, returned))
+        on = _sum(on, more)
+    return on, ended
+
+
+def _sum(first, second):
+    return NEVER if NEVER in (first, second) else first + second
 
 
 def _of(node, functions, constants):
+    if isinstance(node, ast.Return):
+        return NEVER, _of_expression(node, functions, constants)
     if isinstance(node, ast.If):
-        most = max(_of_block(side, functions, constants) for side in (node.body, node.orelse))
-        return _of_expression(node.test, functions, constants) + most
+        first = _of_expression(node.test, functions, constants)
+        sides = [_of_block(side, functions, constants) for side in (node.body, node.orelse)]
+        return tuple(_sum(first, max(ways)) for ways in zip(*sides, strict=True))
     if isinstance(node, (ast.For, ast.While)):
-        each = _of_block(node.body, functions, constants)
-        if not each:
-            return 0
+        on, ended = _of_block(node.body, functions, constants)
+        if max(on, ended) <= 0:
+            return 0, ended
         rounds = _rounds(node, constants)
         if rounds is None:
             raise Unknown(node.lineno)
-        return rounds * each
-    return _of_expression(node, functions, constants)
+        each = max(on, 0)
+        return rounds * each, _sum(max(rounds - 1, 0) * each, ended) if rounds else NEVER
+    return _of_expression(node, functions, constants), NEVER
 
 
 def _of_expression(node, functions, constants):

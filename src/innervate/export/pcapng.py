@@ -16,6 +16,8 @@ NAME, DESCRIPTION, RESOLUTION = 2, 3, 9  # of an interface
 FLAGS = 2  # of a packet
 INBOUND, OUTBOUND, CRC_ERROR = 1, 2, 1 << 24
 NANOSECONDS = 9
+UPPER_PDU = 252  # a link type of Wireshark's own: in front of a packet stands who reads it
+DISSECTOR_TABLE, TABLE_NUMBER = 14, 32  # tags in front of such a packet
 OPTION_MAX = 65_000
 
 _HEAD = struct.Struct("<IIIIIII")
@@ -57,6 +59,16 @@ def packet(number: int, time_ns: int, data: bytes, flags: int, comment: bytes = 
     total = 32 + len(padded) + len(options)
     head = _HEAD.pack(PACKET, total, number, time_ns >> 32, time_ns & 0xFFFFFFFF, size, size)
     return head + padded + options + _LENGTH.pack(total)
+
+
+def for_dissector(table: str, number: int) -> bytes:
+    """What stands in front of a packet of UPPER_PDU: in which of Wireshark's tables its reader is.
+
+    Its dissectors have numbers there, as port 6696 of "udp.port".
+    """
+    padded = table.encode() + _PADDING[len(table) & 3]
+    found = struct.pack(">HH", DISSECTOR_TABLE, len(padded)) + padded
+    return found + struct.pack(">HHI", TABLE_NUMBER, 4, number) + _NO_MORE
 
 
 def _options(*given: tuple[int, str | bytes]) -> bytes:

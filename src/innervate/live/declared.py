@@ -7,7 +7,7 @@ was declared, so that its status and what it delivers can be told without knowin
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import AsyncGenerator, Callable
+from collections.abc import AsyncGenerator, Callable, Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,7 +17,7 @@ from innervate.dialect import plain
 from innervate.dialect.rng import seeded
 from innervate.live.build import links_of, sealer_of, state_of
 from innervate.live.errors import LiveError
-from innervate.live.links import Link
+from innervate.live.links import Link, Path
 from innervate.live.machine import machine
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import Loaded, NodeFile
@@ -43,6 +43,34 @@ class DeclaredFile(NodeFile, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     ports: list[Annotated[int, Meta(ge=0, le=255)]] = []  # noqa: RUF012
 
 
+class OneFrame:
+    """The coder of a network whose bytes hold a frame each.
+
+    Args:
+        frames: with encode and decode.
+        reasons: words for what `decode` says.
+    """
+
+    def __init__(self, frames: Any, reasons: tuple[str, ...]) -> None:
+        self.encode = frames.encode
+        self.reasons = reasons
+        self._decode = frames.decode
+
+    def read(self, data: bytes, frame: Any) -> Iterator[int]:
+        """Read bytes into a frame: 0, or why not."""
+        return iter((self._decode(data, frame),))
+
+
+def coder_of(network: Network, number: int, params: Any) -> Any:
+    """What says a node's frames in bytes: its network's packets, own functions, or layouts."""
+    if network.has("packets"):
+        return network.packets(number, params)
+    frames = network.frames
+    if hasattr(frames, "encode"):
+        return OneFrame(frames, frames.REASONS)
+    return OneFrame(Codec(frames.LAYOUTS, frames.KIND_BITS), REASONS)
+
+
 class DeclaredStack:
     """One node of a network, as an engine runs it.
 
@@ -61,14 +89,13 @@ class DeclaredStack:
         self.network = network
         self.number = number
         self._do, fields = network.protocol, network.fields
-        layout = network.frames  # a module that has its own functions, or only layouts
-        own = hasattr(layout, "encode")
-        self._frames = layout if own else Codec(layout.LAYOUTS, layout.KIND_BITS)
         self.timers: int = self._do.TIMERS
-        self.reasons: tuple[str, ...] = layout.REASONS if own else REASONS
         self.params = plain.make("Params", fields.PARAMS)()
         for name, value in params.items():
             setattr(self.params, name, value)
+        self._coder = coder_of(network, number, self.params)
+        self._rest: Iterator[int] = iter(())
+        self.reasons: tuple[str, ...] = self._coder.reasons
         self.silent_us = getattr(self.params, "silent_us", FOR_EVER_US)
         self.node = plain.make("Node", fields.STATE)()
         for name, value in zip(DRIVERS, (number, seeded(seed), -1), strict=True):
@@ -100,13 +127,17 @@ class DeclaredStack:
 
     def encode(self, frame: Any) -> bytes:
         """The bytes of a frame."""
-        data: bytes = self._frames.encode(frame)
+        data: bytes = self._coder.encode(frame)
         return data
 
     def decode(self, data: bytes) -> int:
         """Read bytes into the inbox; 0, or why not."""
-        why: int = self._frames.decode(data, self.inbox)
-        return why
+        self._rest = self._coder.read(data, self.inbox)
+        return next(self._rest)
+
+    def more(self) -> bool:
+        """Read the next frame that was in the same bytes into the inbox; False = there is none."""
+        return next(self._rest, None) == 0
 
     def objection(self, sender: int | None) -> str:
         """Frames are taken as they are."""
@@ -150,6 +181,11 @@ class DeclaredNode(LiveNode):
     ) -> None:
         super().__init__(name, stack, links, sealer, state)
         self.requests["input"] = self._asked_for_input
+
+    def _receive(self, path: Path, data: bytes) -> None:
+        super()._receive(path, data)
+        while self.engine is not None and self.stack.more():
+            self.engine.receive(path.port)
 
     def give(self, kind: int, values: dict[str, Any]) -> None:
         """Hand something down: the protocol's `on_input`; `values` are fields of its item.

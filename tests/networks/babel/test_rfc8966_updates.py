@@ -285,7 +285,7 @@ def test_a_2_2_etx():
     assert (rxcost_of(bench.node, bench.params, 0), bench.node.cost[0]) == (256, 256)
     bench.hello(0, skip=1, rxcost=512)
     assert (rxcost_of(bench.node, bench.params, 0), bench.node.cost[0]) == (307, 614)
-    bench.hello(0, rxcost=0)
+    bench.hello(0, rxcost=1)
     assert bench.node.cost[0] == 307
 
 

@@ -38,6 +38,7 @@ OWN = {
     "fit", "log", "rerun_parts", "recovery", "counterexample", "random", "papers", "event",
     "comparison",
     "boards", "invariants", "measures", "shows", "happenings",
+    "packets",
 }  # fmt: skip
 CUT = """
 [[event]]

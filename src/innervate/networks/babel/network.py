@@ -12,6 +12,7 @@ NETWORK = Network(
     protocol="protocol.node",
     fields="protocol.fields",
     frames="frames",
+    packets="packets:Packets",
     invariants="invariants",
     measures="measures:measures",
     comparison="comparison",

@@ -20,10 +20,10 @@ selected. So next hops never form a loop, as long as nobody loses its memory.
 *Requests* [3.8]. Who has no feasible route left asks for a greater seqno; the request goes hop by
 hop to the source, which counts up by one. Retractions and news go out at once.
 
-*Left out*, since the job has one source and cables: prefixes and router-ids, TLVs and their
-packets [4], multicast and unicast Hellos as two things, acknowledgments (retractions are repeated
-instead [3.7.2]), jitter (clocks run free), smoothed metrics (`margin` is the hysteresis [3.6]),
-authentication. Sequence numbers of the source outlive a restart, as in stable storage.
+*Left out*, since the job has one source and cables: all prefixes but the source's, Unicast Hellos,
+requests for acknowledgments (retractions are repeated instead [3.7.2]; they are answered), jitter
+(clocks run free), smoothed metrics (`margin` is the hysteresis [3.6]), authentication. Sequence
+numbers of the source outlive a restart, as in stable storage. Packets [4] are beside this folder.
 
 `node.py` has the functions; `links.py`, `routes.py`, `updates.py`, `requests.py` one table each;
 `common.py` what they share.
@@ -50,6 +50,8 @@ Events and transitions
 | `SEQNO_REQUEST = 4`  | `take_request`: the PC counts up; who can answers; others hand it        |
 |                      | `onward`                                                                 |
 | `DATA = 5`           | `forward` to the next hop; at the PC it is delivered                     |
+| `IHU = 6`            | `hear_ihu`: txcost, `judge` the link; `select`                           |
+| `ACK_REQUEST = 7`    | `frame_to` its sender: an `ACK = 8`, of which nothing comes there        |
 
 | state    | event                                   | action                      | next      |
 |----------|-----------------------------------------|-----------------------------|-----------|

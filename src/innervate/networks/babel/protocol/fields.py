@@ -44,17 +44,17 @@ STATE = (
     ("look_at", 0, *clock, "when"),
 )
 FRAME = (
-    ("kind", 0, 0, 15, "type", "1 Hello, 2 update, 3 route request, 4 seqno request, 5 data"),
+    ("kind", 0, 0, 15, "type", "1 Hello .. 8 acknowledgment, see frames.py"),
     ("source", 0, 0, 65535, "node", "who sends it; of data: who sent it first"),
     ("hello_no", 0, *number, "of the Hello"),
-    ("hello", 0, 0, 65535, "0.1 ms", "until the next Hello"),
-    ("rxcost", 0, *cost, "IHU: what came of the neighbour's Hellos; 65535 = infinite"),
+    ("hello", 0, 0, 65535, "0.1 ms", "until the next Hello or IHU, or for an ack; 0 = no promise"),
+    ("rxcost", 0, *cost, "IHU: what came of our Hellos; 65535 = infinite, 0 = there is none"),
     ("has_update", 0, 0, 1, "flag", "an update comes with the Hello"),
     ("seq", 0, *number, "of the route, or requested"),
     ("metric", 0, *cost, "of the route; 65535 = a retraction"),
     ("update", 0, 0, 65535, "0.1 ms", "until the next update"),
     ("hops", 0, 0, 255, "hops", "a seqno request may still go; of data: has gone"),
-    ("value", 0, 0, 65535, "raw", "what data says"),
+    ("value", 0, 0, 65535, "raw", "what data says; of an ack: what was in its request"),
     ("made_at", 0, *clock, "when data was handed in: a run's own, not sent"),
 )
 PARAMS = (

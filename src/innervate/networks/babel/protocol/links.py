@@ -5,6 +5,7 @@ from innervate.dialect.outbox import report
 from innervate.networks.babel.protocol.common import arm, forget_neighbour, frame_to
 from innervate.networks.babel.protocol.constants import (
     INFINITY,
+    NONE,
     REPORT_LINK,
     ROUTE_REQUEST,
     TENTH_MS,
@@ -12,10 +13,12 @@ from innervate.networks.babel.protocol.constants import (
 
 
 def hear(node, params, now, port, frame, out):
-    """A Hello and an IHU: history, txcost, cost [3.4.1, 3.4.2, A.1]."""
+    """A Hello, perhaps with an IHU: history, txcost, cost [3.4.1, 3.4.2, A.1]."""
     ahead = (frame.hello_no - node.hello_next[port]) & MASK16
     is_new = node.neighbour[port] != frame.source or (ahead > 16 and ahead < 65520)
     if is_new:
+        if frame.hello == 0:  # nothing is promised, so that nobody could miss it
+            return
         forget_neighbour(node, port)
         ahead = 0
     if ahead < 17:
@@ -25,14 +28,24 @@ def hear(node, params, now, port, frame, out):
     node.history[port] = ((node.history[port] << 1) | 1) & MASK16
     node.neighbour[port] = frame.source
     node.hello_next[port] = (frame.hello_no + 1) & MASK16
-    node.hello_us[port] = frame.hello * TENTH_MS
-    node.hello_at[port] = (now + node.hello_us[port] * 3 // 2) & MASK30
-    node.txcost[port] = frame.rxcost
-    node.ihu_at[port] = (now + node.hello_us[port] * 21 // 2) & MASK30
+    if frame.hello:
+        node.hello_us[port] = frame.hello * TENTH_MS
+        node.hello_at[port] = (now + node.hello_us[port] * 3 // 2) & MASK30
+    if frame.rxcost:
+        node.txcost[port] = frame.rxcost
+        node.ihu_at[port] = (now + node.hello_us[port] * 21 // 2) & MASK30
     arm(node, now, node.hello_at[port], out)
     judge(node, params, port, out)
     if is_new:
         frame_to(node, port, ROUTE_REQUEST, out)
+
+
+def hear_ihu(node, params, now, port, frame, out):
+    """An IHU that came without a Hello [3.4.2]."""
+    if node.neighbour[port] != NONE and frame.rxcost and frame.hello:
+        node.txcost[port] = frame.rxcost
+        node.ihu_at[port] = (now + frame.hello * TENTH_MS * 7 // 2) & MASK30
+        judge(node, params, port, out)
 
 
 def judge(node, params, p, out):

@@ -4,9 +4,12 @@ from innervate.dialect.arith import MASK16, MASK30, after
 from innervate.dialect.outbox import deliver, report, send, set_timer
 from innervate.networks.babel.protocol.common import arm, forget_neighbour, frame_to, own_metric
 from innervate.networks.babel.protocol.constants import (
+    ACK,
+    ACK_REQUEST,
     DATA,
     HELLO,
     HOPS_MAX,
+    IHU,
     INFINITY,
     NONE,
     PORTS,
@@ -18,7 +21,7 @@ from innervate.networks.babel.protocol.constants import (
     TICK,
     UPDATE,
 )  # fmt: skip
-from innervate.networks.babel.protocol.links import hear, look_at_link, rxcost_of
+from innervate.networks.babel.protocol.links import hear, hear_ihu, look_at_link, rxcost_of
 from innervate.networks.babel.protocol.requests import send_request, take_request, want
 from innervate.networks.babel.protocol.routes import look_at_route, select, take
 from innervate.networks.babel.protocol.updates import fill_route, send_update, trigger
@@ -61,6 +64,11 @@ def on_frame(node, params, now, port, frame, out):
         take_request(node, params, now, port, frame, out)
     elif frame.kind == DATA:
         forward(node, params, frame, out)
+    elif frame.kind == IHU:
+        hear_ihu(node, params, now, port, frame, out)
+        select(node, params, now, out)
+    elif frame.kind == ACK_REQUEST:  # "every Babel speaker MUST be able to reply" [3.3]
+        frame_to(node, port, ACK, out).value = frame.value
 
 
 def on_timer(node, params, now, timer, out):

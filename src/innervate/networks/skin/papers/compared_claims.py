@@ -11,18 +11,24 @@ from innervate.papers.jobs import Case, Compared, Words, entries
 OURS, FAST, STRICT = "skin, feasible", "skin, feasible, k = 2", "skin, strict"
 STATIC, RFC, SAME, ETX = "static trees", "Babel, 2 of 3", "Babel, 1 of k", "Babel, ETX"
 SLOW_TO_FIND = (
-    "a port is broken after k = 5 missing beacons, and Babel's link is down when two of three are "
-    "missing; the next two lines compare what is left when both find a failure as soon"
+    "measured, in the column found: a port is broken after k = 5 missing beacons, and Babel's link "
+    "is down when two of three are missing; the next two lines compare what is left when both find "
+    "a failure as soon"
 )
 NOTHING_TO_DO = (
-    "where another port is at hand both take it at once, and finding out is all there is"
+    "a reading: where another port is at hand both take it at once, and finding out is all there is"
 )
-LISTENS = "the PC of a skin listens for k periods before it says anything, as it may have restarted"
+LISTENS = (
+    "measured, with k = 2 it starts sooner: the PC of a skin listens for k periods before it says "
+    "anything, as it may have restarted"
+)
 WAVES = (
-    "every new sequence number goes out as a wave at once, and comes a little before the period; "
-    "periodic updates send no more than Babel"
+    "measured, with periodic updates it sends no more than Babel: every new sequence number goes "
+    "out as a wave at once, and comes a little before the period"
 )
-NO_TIES = "the wiring of this skin leaves few cells that have ports of two subnetworks as near"
+NO_TIES = (
+    "a reading: the wiring of this skin leaves few cells that have ports of two subnetworks as near"
+)
 
 
 def judge(compared: Compared) -> Iterator[Claim]:
