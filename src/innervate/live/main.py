@@ -120,7 +120,7 @@ class Process:
         self._say(f"keys reloaded: {keys.use} seals after {keys.grace_s:g} s{restart}")
 
     def _look(self) -> None:
-        """Say what is the matter with the state's file and with callers, once in a while."""
+        """Say what is the matter with state's file, callers and network, once in a while."""
         state = self.node.state
         if state.trouble:
             text = f"{state.path}: cannot be written: {state.trouble}; going on, trying again"
@@ -131,6 +131,8 @@ class Process:
             self._callers = Counter(self.node.callers)
             counts = ", ".join(f"{what} {count}" for what, count in self._callers.items())
             self.notices.tell("callers", f"too many callers: {counts} (since the start)")
+        for name, text in self.node.troubles().items():
+            self.notices.tell(name, text)
 
     async def _sleep(self, seconds: float) -> None:
         try:

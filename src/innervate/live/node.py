@@ -195,6 +195,10 @@ class LiveNode:
         """Wait until nothing of ours is under way, at most `limit_s` seconds: True if so."""
         return True
 
+    def troubles(self) -> dict[str, str]:
+        """What its user should mend, a line each, by a name for each."""
+        return {}
+
     def counters(self) -> Counter[str]:
         """What happened how often: handler calls, frames dropped by reason, outcomes."""
         total: Counter[str] = Counter() if self.engine is None else Counter(self.engine.counters)

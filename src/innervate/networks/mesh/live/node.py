@@ -17,7 +17,7 @@ from innervate.live.streams import Arrivals, Stream, message_line
 from innervate.networks.mesh.live.alarms import Alarm, Alarms, place_of, read_alarm
 from innervate.networks.mesh.live.chains import Chains
 from innervate.networks.mesh.live.order import BEFORE_BYTES, Callback, Message, Orderly
-from innervate.networks.mesh.live.stack import Item, MeshStack
+from innervate.networks.mesh.live.stack import TOO_LONG, MeshStack
 from innervate.networks.mesh.live.turns import Turns
 from innervate.networks.mesh.protocol.constants import (
     AGAIN,
@@ -87,9 +87,9 @@ class MeshNode(LiveNode):
         self._handle = 0
         self.arrivals = Arrivals(is_spread=True)
         self._arrived: list[tuple[Message, bool]] = []  # True = it came before
-        self._ending = Item()
+        self._ending = stack.item()
         self.alarms = Alarms()
-        self._place = Item()
+        self._place = stack.item()
         self._feeding = False
         self.requests["locate"] = self._located
 
@@ -131,7 +131,8 @@ class MeshNode(LiveNode):
 
         Args:
             recipient: a node's number; 255 = all, 254 = the monitor (else the gateway).
-            payload: at most 90 bytes at an MTU of 127, 27 at 64; two bytes less in order.
+            payload: what fits into a frame, 90 bytes at an MTU of 127 and two less in order;
+                longer ones, up to 65,536 bytes, go in pieces, and are always reliable.
             reliable: kept here until its recipient acknowledges it, or 5 retries fail.
             priority: before all other messages that wait here, also to the same recipient in order.
             in_order: recipients may put it in order; None = as the node's file says.
@@ -152,7 +153,7 @@ class MeshNode(LiveNode):
         if self.engine is None or not self._turns.has_room(recipient):
             receipt.move(REFUSED, "queue full" if self.engine else "node not started")
             return receipt
-        item = Item()
+        item = self.stack.item()
         item.handle = self._take_handle(receipt)
         item.dest = recipient
         item.flags = (END_TO_END if reliable else 0) | (PRIORITY if priority else 0)
@@ -160,7 +161,7 @@ class MeshNode(LiveNode):
             item.flags |= ORDERED
             payload = bytes(BEFORE_BYTES) + payload  # which one is before it is known when it goes
         item.length = len(payload)
-        item.body[: len(payload)] = payload
+        item.body = list(payload)
         self._turns.put(item.handle, item)
         self._feed()
         return receipt
@@ -225,6 +226,14 @@ class MeshNode(LiveNode):
         for task in pending:
             task.cancel()
         return not pending
+
+    def troubles(self) -> dict[str, str]:
+        """Neighbours have another MTU."""
+        if not self.counters()["dropped: " + TOO_LONG]:
+            return {}
+        mtu = self.stack.params.mtu
+        return {"mtu": f"frames come that are longer than protocol.mtu = {mtu}, and are dropped; "
+                "write the same mtu into all nodes' files"}  # fmt: skip
 
     def counters(self) -> Counter[str]:
         """Handler calls, frames dropped by reason, messages by what became of them."""
