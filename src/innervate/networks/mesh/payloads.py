@@ -75,6 +75,18 @@ LAYOUTS = (
     (POSITION, "position", (("robot", 0, 8, 0),) + MOVING + (("said", 0, 8, 0),)),
     (GRAPH, "graph", PART + (("part", REST, 8, 0),)),
 )
+# The payload of an ORDERED packet that is a piece of a message: no message is PIECE_AHEAD numbers
+# ahead of the one before it, which is what stands there else.
+PIECE = (
+    ("mark", 0, 16, 0),
+    ("message", 0, 16, 0),
+    ("in_order", 0, 8, 0),
+    ("at", 0, 16, 0),
+    ("size", 0, 16, 0),
+    ("data", REST, 8, 0),
+)
+PIECE_STRUCT = ">HHBHH"  # the same for struct, without its data
+PIECE_AHEAD = 16_384
 # What the parts of a graph are when put together: the links of every pair a < b, row by row.
 WHOLE_GRAPH = (("nodes", 0, 8, 0), ("ids", "nodes", 8, 0), ("links", PAIRS, 1, 0))
 

@@ -235,7 +235,7 @@ PUTS = st.lists(st.tuples(st.sampled_from([0, 1, 2, ALL, MONITOR]), st.booleans(
 @given(PUTS, st.integers(0, 40))
 def test_no_message_is_lost_doubled_or_overtaken_by_a_later_one_of_its_kind(puts, before):
     stack = MeshStack(1, -1, mesh_parameters(3, {}), 5)
-    waiting, taken = Turns(stack), []
+    waiting, taken = Turns(stack, None), []
     for handle, (dest, urgent) in enumerate(puts):
         if handle == before:
             taken += iter(waiting.take, None)

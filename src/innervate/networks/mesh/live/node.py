@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections import Counter
 from collections.abc import AsyncGenerator, Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from innervate.dialect.arith import MASK16
@@ -13,10 +14,13 @@ from innervate.live.machine import machine
 from innervate.live.node import LiveNode
 from innervate.live.receipts import DELIVERED, EXPIRED, HOP_ACKED, REFUSED, Receipt
 from innervate.live.state import State
-from innervate.live.streams import Arrivals, Stream, message_line
+from innervate.live.streams import Stream, message_line
 from innervate.networks.mesh.live.alarms import Alarm, Alarms, place_of, read_alarm
 from innervate.networks.mesh.live.chains import Chains
-from innervate.networks.mesh.live.order import BEFORE_BYTES, Callback, Message, Orderly
+from innervate.networks.mesh.live.inbox import Inbox
+from innervate.networks.mesh.live.long import WAITING_MAX, Long, PieceReceipt
+from innervate.networks.mesh.live.order import BEFORE_BYTES, Callback, Orderly
+from innervate.networks.mesh.live.pieces import SIZE_MAX
 from innervate.networks.mesh.live.stack import TOO_LONG, MeshStack
 from innervate.networks.mesh.live.turns import Turns
 from innervate.networks.mesh.protocol.constants import (
@@ -78,15 +82,14 @@ class MeshNode(LiveNode):
         super().__init__(name, stack, links, sealer, state)
         stack.epoch = self.state.epoch
         self.in_order = False
-        self.orderly = orderly or Orderly()
-        self.orderly.on_up = self._acknowledge
+        self.inbox = Inbox(orderly or Orderly(), self._acknowledge)
         self._chains = Chains()
         self.arrived_by: dict[int, list[int]] = {}  # the way of each sender's newest message
-        self._turns = Turns(stack)
+        self._turns = Turns(stack, self._new_item)
+        self._long_bytes = 0  # of long messages that have no end yet
         self._receipts: dict[int, Receipt] = {}
         self._handle = 0
-        self.arrivals = Arrivals(is_spread=True)
-        self._arrived: list[tuple[Message, bool]] = []  # True = it came before
+        self.arrivals = self.inbox.arrivals
         self._ending = stack.item()
         self.alarms = Alarms()
         self._place = stack.item()
@@ -142,29 +145,68 @@ class MeshNode(LiveNode):
         """
         chained = self.in_order if in_order is None else in_order
         chained = chained and recipient not in (ALL, self.stack.node.number)
-        most = payload_limit(self.stack.params) - (BEFORE_BYTES if chained else 0)
+        room = payload_limit(self.stack.params)
+        most = room - (BEFORE_BYTES if chained else 0)
         nodes = self.stack.params.nodes
         if not (0 <= recipient < nodes or recipient in (ALL, MONITOR)):
             raise ValueError(f"recipient must be 0 to {nodes - 1}, 254 or 255, not {recipient}")
         if len(payload) > most:
-            raise ValueError(f"payload of {len(payload)} bytes; at most {most} fit into a frame")
-        receipt = Receipt()
+            self._check_long(recipient, len(payload), most, reliable)
         self.outcomes["messages accepted"] += 1
         if self.engine is None or not self._turns.has_room(recipient):
-            receipt.move(REFUSED, "queue full" if self.engine else "node not started")
-            return receipt
-        item = self.stack.item()
-        item.handle = self._take_handle(receipt)
-        item.dest = recipient
-        item.flags = (END_TO_END if reliable else 0) | (PRIORITY if priority else 0)
+            return _refused("queue full" if self.engine else "node not started")
+        flags = (END_TO_END if reliable else 0) | (PRIORITY if priority else 0)
+        if len(payload) > most:
+            return self._send_long(recipient, flags, payload, chained)
+        receipt = Receipt()
+        handle, item = self._new_item(receipt)
+        item.dest, item.flags = recipient, flags
         if chained:
             item.flags |= ORDERED
             payload = bytes(BEFORE_BYTES) + payload  # which one is before it is known when it goes
         item.length = len(payload)
         item.body = list(payload)
-        self._turns.put(item.handle, item)
+        self._turns.put(handle, item)
         self._feed()
         return receipt
+
+    def _check_long(self, recipient: int, size: int, most: int, reliable: bool) -> None:
+        """Refuse what cannot go in pieces.
+
+        Raises:
+            ValueError: it is too long for that, too, or nobody would acknowledge its pieces.
+        """
+        if recipient == ALL or not (reliable and self.stack.params.reliable):
+            who = "to all" if recipient == ALL else "that is not reliable"
+            raise ValueError(f"payload of {size} bytes; a message {who} holds at most {most}")
+        if size > SIZE_MAX:
+            raise ValueError(f"payload of {size} bytes; a message holds at most {SIZE_MAX}")
+
+    def _send_long(self, recipient: int, flags: int, payload: bytes, chained: bool) -> Receipt:
+        """A message that goes in pieces."""
+        node, params = self.stack.node, self.stack.params
+        dest = resolve(node, params, recipient)
+        if dest == ALL:
+            return _refused(REASONS[NO_ROUTE])
+        if self._long_bytes + len(payload) > WAITING_MAX:
+            return _refused("queue full")
+        chains = self._chains if chained else None
+        long = Long(dest, flags | ORDERED, payload, payload_limit(params), chains)
+        handle = self._take_handle(long.receipt)
+        self._long_bytes += len(payload)
+        long.on_end = partial(self._end_long, handle, long)
+        if dest == node.number:
+            self.inbox.put_own(dest, payload)
+            long.on_end(DELIVERED, "")
+        else:
+            self._turns.put(handle, long)
+            self._feed()
+        return long.receipt
+
+    def _end_long(self, handle: int, long: Long, state: str, reason: str) -> None:
+        self._long_bytes -= len(long.payload)
+        self._turns.drop(handle, long)
+        self._end(handle, state, reason)
 
     def receive_messages(
         self, callback: Callback | None = None, *, in_order: bool | None = None
@@ -180,7 +222,7 @@ class MeshNode(LiveNode):
             An iterator over (sender, payload) of messages that come from now on.
         """
         ordered = self.in_order if in_order is None else in_order
-        return (self.orderly.arrivals if ordered else self.arrivals).receive(callback)
+        return (self.inbox.orderly.arrivals if ordered else self.arrivals).receive(callback)
 
     async def start(self) -> None:
         """Switch on; packets' numbers go on behind where they were.
@@ -193,7 +235,7 @@ class MeshNode(LiveNode):
 
     async def stop(self) -> None:
         """Stop at once; what waits for its turn is handed up."""
-        self.orderly.stop()
+        self.inbox.stop()
         await super().stop()
 
     def locate(
@@ -237,7 +279,7 @@ class MeshNode(LiveNode):
 
     def counters(self) -> Counter[str]:
         """Handler calls, frames dropped by reason, messages by what became of them."""
-        return super().counters() + self.orderly.counters()
+        return super().counters() + self.inbox.counters()
 
     def status(self) -> dict[str, Any]:
         """What is known here, besides how many messages wait and which way they came."""
@@ -246,10 +288,17 @@ class MeshNode(LiveNode):
             "backlog": len(self._turns),
             "waiting": {str(dest): count for dest, count in self._turns.waiting().items()},
             "under_way": len(self._receipts) - len(self._turns),
-            "out_of_turn": self.orderly.held(),
+            "out_of_turn": self.inbox.orderly.held(),
+            "in_pieces": self.inbox.held(),
             "alarms": self.alarms.status(),
             "arrived_by": {str(sender): path for sender, path in self.arrived_by.items()},
         }
+
+    def _new_item(self, receipt: Receipt) -> tuple[int, Any]:
+        """A handle, and an item that bears it."""
+        item = self.stack.item()
+        item.handle = self._take_handle(receipt)
+        return item.handle, item
 
     def _take_handle(self, receipt: Receipt) -> int:
         while self._handle in self._receipts or self._handle < IDS:  # alarms bear robots' numbers
@@ -269,14 +318,7 @@ class MeshNode(LiveNode):
         if kind in (DATA, AGAIN):
             self._turns.heard(frame.origin)
             self.arrived_by[frame.origin] = [*frame.path[: frame.path_len], frame.dest]
-            self.outcomes["messages received"] += kind == DATA
-            body = bytes(frame.body[: frame.length])
-            before = None
-            if frame.flags & ORDERED and frame.dest != ALL and len(body) >= BEFORE_BYTES:
-                before = int.from_bytes(body[:BEFORE_BYTES], "big")
-                body = body[BEFORE_BYTES:]
-            message = Message(frame.origin, frame.seq, before, body)
-            self._arrived.append((message, kind == AGAIN))
+            self.inbox.note(frame, kind == AGAIN)
 
     def _reported(self, code: int, a: int, b: int) -> None:
         if code == REPORT_GATEWAY and b != self.state.epoch:
@@ -306,19 +348,13 @@ class MeshNode(LiveNode):
         self._turns.ended(handle, is_there)
         self._chains.ended(handle, state == DELIVERED)
         if receipt is not None:
+            what = "pieces" if isinstance(receipt, PieceReceipt) else "messages"
+            self.outcomes[f"{what} {state}"] += 1
             receipt.move(state, reason)
-            self.outcomes[f"messages {state}"] += 1
 
     def _settled(self) -> None:
         self.alarms.arrivals.hand_up()
-        arrived, self._arrived = self._arrived, []
-        for message, again in arrived:
-            if again:
-                self.orderly.again(message)
-                continue
-            self.arrivals.put((message.sender, message.payload))
-            self.arrivals.hand_up()
-            self.orderly.take(message)
+        self.inbox.hand_up()
         if self._turns:
             self._feed()
         self._reserve()
@@ -348,7 +384,7 @@ class MeshNode(LiveNode):
         self._feeding = True
         while (waiting := self._turns.take()) is not None:
             handle, item = waiting
-            chained = self._chain(item) if item.flags & ORDERED else None
+            chained = self._head(handle, item) if item.flags & ORDERED else None
             self.engine.input(MESSAGE, item)
             if chained is not None and chained[1] == self.stack.node.seq:
                 self._chains.sent(handle, *chained, bool(item.flags & END_TO_END))
@@ -359,11 +395,18 @@ class MeshNode(LiveNode):
                 self._turns.ended(handle, None)
         self._feeding = False
 
-    def _chain(self, item: Any) -> tuple[int, int]:
-        """A message that is to come in order names the one before it; its recipient and number."""
-        stack = self.stack
+    def _head(self, handle: int, item: Any) -> tuple[int, int] | None:
+        """What stands in front of a message in order: the one before it; of a piece: which it is.
+
+        Recipient and number of what others are to come after; None = none are.
+        """
+        stack, receipt = self.stack, self._receipts[handle]
         seq = (stack.node.seq + 1) & MASK16  # the number that the router is about to give it
         dest = resolve(stack.node, stack.params, item.dest)
+        if isinstance(receipt, PieceReceipt):
+            head = receipt.long.head(receipt.at, seq)
+            item.body[: len(head)] = head
+            return (dest, seq) if receipt.is_last and receipt.long.in_order else None
         before = self._chains.before(dest, seq)
         item.body[:BEFORE_BYTES] = before.to_bytes(BEFORE_BYTES, "big")
         return dest, seq
@@ -371,6 +414,12 @@ class MeshNode(LiveNode):
 
 IN_VAIN = (NO_ROUTE, NO_ACK)
 REASONS = {1: "no route", 2: "no acknowledgement", 3: "path full", 4: "no room"}
+
+
+def _refused(reason: str) -> Receipt:
+    receipt = Receipt()
+    receipt.move(REFUSED, reason)
+    return receipt
 
 
 def _alarm_line(alarm: Alarm) -> dict[str, Any]:

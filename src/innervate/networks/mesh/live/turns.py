@@ -12,6 +12,7 @@ from itertools import compress
 from typing import Any
 
 from innervate.dialect.arith import MASK16
+from innervate.networks.mesh.live.long import Long, Maker
 from innervate.networks.mesh.live.stack import MeshStack
 from innervate.networks.mesh.protocol.constants import ALL, CONTROL, END_TO_END, OWN, PRIORITY
 from innervate.networks.mesh.protocol.messages import resolve
@@ -40,10 +41,12 @@ class Turns:
 
     Args:
         stack: the router.
+        make: gives a piece of a message the handle and the item that it goes by.
     """
 
-    def __init__(self, stack: MeshStack) -> None:
+    def __init__(self, stack: MeshStack, make: Maker) -> None:
         self._stack = stack
+        self._make = make
         self._urgent: dict[int, deque[Waiting]] = {}
         self._others: dict[int, deque[Waiting]] = {}
         self._count: Counter[int] = Counter()
@@ -77,7 +80,8 @@ class Turns:
         places = Places(self._stack, self._gone, all_wait, self._most)
         for queues in (self._urgent, self._others):
             for name, queue in queues.items():
-                if places.takes(queue[0][1]):
+                item = queue[0][1]
+                if places.takes(item) and not (isinstance(item, Long) and not item.may_go()):
                     return self._pop(queues, name)
         self._in_vain = self._facts()
         return None
@@ -93,6 +97,16 @@ class Turns:
             most = self._most.get(recipient, FIRST) + 1
             self._most[recipient] = min(most, self._stack.params.kept * 3 // 4)
 
+    def drop(self, handle: int, long: Long) -> None:
+        """A message that goes in pieces has its end before all were sent, perhaps."""
+        queues, name = self._urgent if long.flags & PRIORITY else self._others, long.dest
+        queue = queues.get(name, deque())
+        if (handle, long) in queue:
+            queue.remove((handle, long))
+            self._leave(name)
+            if not queue:
+                del queues[name]
+
     def heard(self, sender: int) -> None:
         """A message of this node came: it is there."""
         if sender in self._gone:
@@ -105,15 +119,24 @@ class Turns:
 
     def _pop(self, queues: dict[int, deque[Waiting]], name: int) -> Waiting:
         queue = queues.pop(name)
-        found = queue.popleft()
+        found = queue[0]
+        long = found[1] if isinstance(found[1], Long) else None
+        if long is not None:
+            found = long.cut(self._make)
+        if long is None or long.is_cut:
+            queue.popleft()
+            self._leave(name)
         if queue:
             queues[name] = queue  # behind all others
-        self._total -= 1
         self._under_way[found[0]] = name
+        return found
+
+    def _leave(self, name: int) -> None:
+        """One fewer waits for a recipient."""
+        self._total -= 1
         self._count[name] -= 1
         if not self._count[name]:
             del self._count[name]
-        return found
 
     def _name(self, recipient: int) -> int:
         """One queue for all names of a recipient, so that its messages keep their order."""
