@@ -1,13 +1,10 @@
 """Messages longer than a frame: whole, once, in order, or told; under simulated time."""
 
-import asyncio
 import random
 
 import pytest
 
-from innervate.live.receipts import DELIVERED, EXPIRED, REFUSED
-from innervate.networks.mesh.live import pieces
-from innervate.networks.mesh.live.pieces import SIZE_MAX
+from innervate.live.receipts import DELIVERED
 from tests.live import time_by_hand as live_time
 from tests.live.net import Mesh
 

@@ -20,17 +20,19 @@ class Inbox:
     Args:
         orderly: puts them in order.
         acknowledge: is told sender and number of each that may be acknowledged.
+        outcomes: how many came is counted here, by words.
 
     Attributes:
         arrivals: hands up messages as they come.
-        outcomes: how many came, by words.
     """
 
-    def __init__(self, orderly: Orderly, acknowledge: Callable[[int, int], None]) -> None:
+    def __init__(
+        self, orderly: Orderly, acknowledge: Callable[[int, int], None], outcomes: Counter[str]
+    ) -> None:
         self.arrivals: Arrivals[tuple[int, bytes]] = Arrivals(is_spread=True)
         self.orderly = orderly
         self.orderly.on_up = acknowledge
-        self.outcomes: Counter[str] = Counter()
+        self.outcomes = outcomes
         self.pieces = Pieces()
         self._acknowledge = acknowledge
         self._came: list[tuple[Message, Piece | None, bool]] = []  # True = it came before
@@ -56,10 +58,10 @@ class Inbox:
         self.hand_up()
 
     def counters(self) -> Counter[str]:
-        """What came, what came after its turn, messages that never became whole."""
-        forgotten = self.pieces.forgotten
-        lost = Counter({"messages never whole": forgotten} if forgotten else {})
-        return self.outcomes + lost + self.orderly.counters()
+        """What came after its turn, and messages that never became whole."""
+        never = self.pieces.forgotten
+        lost = Counter({"messages never whole": never} if never else {})
+        return lost + self.orderly.counters()
 
     def hand_up(self) -> None:
         """Call the user with all that came, and with what is whole now."""
