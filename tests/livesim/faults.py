@@ -24,6 +24,7 @@ OF_KIND = {
 }
 KILLS = {"hurts": ("crash", "restarts"), "storm_s": 60}
 LOSSES = {"hurts": ("lossy", "doubled", "cut")}
+LONG = {"long": 0.5, "mtu": 127}
 
 
 class Fault(NamedTuple):
@@ -134,6 +135,22 @@ FAULTS = (
     Fault("a damaged frame is taken", "innervate.networks.skin.frames",
           "        return BAD_CRC\n", "        pass\n",
           {"serial": True, "hurts": ("changing",), "storm_s": 60}, "skin"),
+    Fault("the last piece is acknowledged whatever is missing", MESH + "pieces",
+          "        if one.missing:\n            return False, None\n",
+          "        if one.missing:\n            return True, None\n", {**KILLS, **LONG}),
+    Fault("pieces are put one behind the other as they come", MESH + "pieces",
+          "        self.data[piece.at : piece.at + len(piece.data)] = piece.data\n",
+          "        at = len(self.data) - self.missing\n"
+          "            self.data[at : at + len(piece.data)] = piece.data\n", {**LOSSES, **LONG}),
+    Fault("pieces of who is gone are never forgotten", MESH + "pieces",
+          "            if now - one.heard_at >= idle_us:\n", "            if False:\n",
+          {**KILLS, **LONG}),
+    Fault("a sender may open as many messages as it likes", MESH + "pieces",
+          "        if len(own) >= EACH:", "        if False:", {**KILLS, **LONG}),
+    Fault("a piece that was given up is no matter", MESH + "long",
+          "        if state != DELIVERED:\n", "        if False:\n", {**KILLS, **LONG}),
+    Fault("nobody is told that a piece was given up", MESH + "long",
+          "            self.on_end(EXPIRED, reason)\n", "            pass\n", {**KILLS, **LONG}),
     Fault("packets' numbers begin anywhere after a restart", MESH + "node",
           "        if self.state.numbers >= 0:\n", "        if 0:\n",
           {**KILLS, "sealed": False, "in_order": False}),

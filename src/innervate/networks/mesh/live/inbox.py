@@ -10,7 +10,7 @@ from typing import Any
 from innervate.live.engine import clock_us
 from innervate.live.streams import Arrivals
 from innervate.networks.mesh.live.order import BEFORE_BYTES, Message, Orderly
-from innervate.networks.mesh.live.pieces import IDLE_US, Piece, Pieces, read_piece
+from innervate.networks.mesh.live.pieces import Piece, Pieces, read_piece
 from innervate.networks.mesh.protocol.constants import ALL, ORDERED
 
 
@@ -107,8 +107,8 @@ class Inbox:
 
     def _arm(self) -> None:
         if self._sweep is None and len(self.pieces):
-            loop = asyncio.get_running_loop()
-            self._sweep = loop.call_later(IDLE_US / 1e6, self._forget)
+            wait_s = (self.pieces.due() - clock_us()) / 1e6
+            self._sweep = asyncio.get_running_loop().call_later(wait_s, self._forget)
 
     def _forget(self) -> None:
         self._sweep = None

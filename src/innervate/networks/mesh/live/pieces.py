@@ -126,6 +126,10 @@ class Pieces:
                 self._close(name)
                 self.forgotten += 1
 
+    def due(self) -> int:
+        """When the first of them is to be forgotten, us; only while there is one."""
+        return min(one.heard_at for one in self._open.values()) + IDLE_US
+
     def _begin(self, name: Name, now: int) -> Open | None:
         """A place for a new message; None = there is none now."""
         sender, _, size = name
