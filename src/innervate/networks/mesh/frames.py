@@ -8,18 +8,21 @@ that a medium must say where a frame ends (a CRC alone does not see a zero behin
 import struct
 from typing import Any
 
-from innervate.networks.mesh.payloads import FIELDS, NAMES, describe, fits
+from innervate.networks.mesh.payloads import FIELDS, NAMES, PIECE, describe, fits, is_piece
 from innervate.networks.mesh.protocol.constants import (
     ACK,
     ACK_BYTES,
     ACK_MORE_BYTES,
+    ALL,
     CRC_BYTES,
+    DATA,
     HEADER_BYTES,
     MTU,
+    ORDERED,
     PATH_MAX,
 )
 from innervate.wire.crc import crc16, is_sealed
-from innervate.wire.layout import REST, pack, put_number
+from innervate.wire.layout import REST, pack, put_number, read
 
 VERSION = 1
 
@@ -213,7 +216,11 @@ def fields(frame: Any) -> list:  # type: ignore[type-arg]
     if kind != ACK:
         pairs.append(("path", list(frame.path[: frame.path_len])))
         body = bytes(list(frame.body[: frame.length]))
-        pairs.extend(describe(kind, frame.flags, body))
+        is_ordered = kind == DATA and frame.flags & ORDERED and frame.dest != ALL
+        if is_ordered and is_piece(frame.flags, frame.seq, body):
+            read(PIECE, body, 0, 8 * len(body), pairs)
+        else:
+            pairs.extend(describe(kind, frame.flags, body))
     return pairs
 
 

@@ -131,6 +131,13 @@ def fits(kind: int, flags: int, data: bytes | bytearray | memoryview, at: int, e
     return is_whole(kind, data, begin, end_of(kind, flags, data, begin, end))
 
 
+def is_piece(flags: int, seq: int, data: bytes) -> bool:
+    """True if the payload of ORDERED packet `seq` to one recipient is a piece of a message."""
+    if flags & SOURCE_ROUTE or 8 * len(data) <= width(PIECE):
+        return False
+    return int.from_bytes(data[:2], "big") == (seq + PIECE_AHEAD) & 65_535
+
+
 def describe(kind: int, flags: int, data: bytes) -> list:  # type: ignore[type-arg]
     """A payload as (name, value) pairs; one that does not fit as ("payload", its bytes)."""
     end = len(data)

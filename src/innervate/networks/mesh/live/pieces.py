@@ -12,8 +12,7 @@ import struct
 from collections import deque
 from typing import NamedTuple
 
-from innervate.dialect.arith import MASK16
-from innervate.networks.mesh.payloads import PIECE_AHEAD, PIECE_STRUCT
+from innervate.networks.mesh.payloads import PIECE_STRUCT, is_piece
 
 HEAD_BYTES = struct.calcsize(PIECE_STRUCT)
 SIZE_MAX = 65_536  # bytes of a message
@@ -51,11 +50,9 @@ class Piece(NamedTuple):
 
 def read_piece(seq: int, body: bytes) -> Piece | None:
     """The piece in the payload of an ORDERED packet; None = it is a whole message."""
-    if len(body) <= HEAD_BYTES:
+    if not is_piece(0, seq, body):
         return None
-    mark, message, in_order, at, size = struct.unpack_from(PIECE_STRUCT, body)
-    if mark != (seq + PIECE_AHEAD) & MASK16:
-        return None
+    _, message, in_order, at, size = struct.unpack_from(PIECE_STRUCT, body)
     return Piece(message, bool(in_order), at, size + 1, body[HEAD_BYTES:])
 
 
