@@ -245,7 +245,7 @@ def names_in(fields):
 
 
 def test_every_field_of_a_payload_has_a_meaning_and_no_other():
-    layouts = [*payloads.FIELDS.values(), payloads.WHOLE_GRAPH]
+    layouts = [*payloads.FIELDS.values(), payloads.PIECE, payloads.WHOLE_GRAPH]
     assert {name for fields in layouts for name in names_in(fields)} == set(MEANINGS)
 
 

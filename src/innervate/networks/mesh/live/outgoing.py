@@ -95,8 +95,8 @@ class Outgoing:
             payload = bytes(BEFORE_BYTES) + payload  # which one is before it is known when it goes
         item.length = len(payload)
         item.body = list(payload)
-        self.turns.put(handle, item)
-        self.feed()
+        if self.turns.put(handle, item):
+            self.feed()
         return receipt
 
     def _send_long(self, recipient: int, flags: int, payload: bytes) -> Receipt:
@@ -116,8 +116,8 @@ class Outgoing:
             self._hand_up(dest, payload)
             long.on_end(DELIVERED, "")
         else:
-            self.turns.put(handle, long)
-            self.feed()
+            if self.turns.put(handle, long):
+                self.feed()
         return long.receipt
 
     def _end_long(self, handle: int, long: Long, state: str, reason: str) -> None:

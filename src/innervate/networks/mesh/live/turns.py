@@ -17,7 +17,6 @@ from innervate.networks.mesh.live.stack import MeshStack
 from innervate.networks.mesh.protocol.constants import ALL, CONTROL, END_TO_END, OWN, PRIORITY
 from innervate.networks.mesh.protocol.messages import resolve
 from innervate.networks.mesh.protocol.neighbours import place_of
-from innervate.networks.mesh.protocol.queue import free_places
 from innervate.networks.mesh.protocol.retransmission import (
     FREE,
     SURE_AFTER,
@@ -63,14 +62,21 @@ class Turns:
         """True if a message more may wait for this recipient."""
         return self._total < MOST or self._count[self._name(recipient)] < FEW
 
-    def put(self, handle: int, item: Any) -> None:
-        """A message waits behind others to the same recipient; urgent ones apart."""
+    def put(self, handle: int, item: Any) -> bool:
+        """A message waits behind others to the same recipient; urgent ones apart.
+
+        False = behind others, which may not go as yet.
+        """
         queues = self._urgent if item.flags & PRIORITY else self._others
         name = self._name(item.dest)
-        queues.setdefault(name, deque()).append((handle, item))
+        queue = queues.setdefault(name, deque())
+        queue.append((handle, item))
         self._count[name] += 1
         self._total += 1
+        if len(queue) > 1:
+            return False
         self._in_vain = None
+        return True
 
     def take(self) -> Waiting | None:
         """The message that goes now, None = none may."""
@@ -146,7 +152,7 @@ class Turns:
     def _facts(self) -> Any:
         """What the answer depends on, but for what can only make it a no."""
         node = self._stack.node
-        queue = free_places(node)
+        queue = node.q_state.count(FREE)
         room = (queue > OWN, queue > CONTROL, node.gateway)
         suspects = (*node.neighbour, *node.suspect) if self._gone else ()
         return (*room, *suspects, *node.wait_kind, *node.wait_dest, *node.wait_seq,
@@ -170,13 +176,11 @@ class Places:
         self._node = node
         self._gone = gone
         self._params = stack.params
-        self._queue = free_places(node)
+        self._queue = node.q_state.count(FREE)
         self._most = most
         self._free = node.wait_kind.count(FREE)
         self._held = Counter(compress(node.wait_dest, node.wait_kind))
-        silent = [self._held[dest] for dest in self._held if self._is_silent(dest)]
-        self._silent = sum(silent)
-        self._all_held_up = all_wait and bool(is_ahead(node, ALL))
+        self._all_wait = all_wait
 
     def takes(self, item: Any) -> bool:
         """True if the router has a place for a message, with all others in mind."""
@@ -195,7 +199,8 @@ class Places:
             return False
         if not self._is_silent(dest):
             return True
-        return self._silent < SILENT + urgent and not self._all_held_up
+        silent = sum(self._held[other] for other in self._held if self._is_silent(other))
+        return silent < SILENT + urgent and not (self._all_wait and is_ahead(node, ALL))
 
     def _share(self, dest: int) -> int:
         """How many places a recipient may have now: half while a message is sent to it again."""
