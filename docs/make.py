@@ -150,6 +150,7 @@ PARTS = (
     ("wire.md", "wire-skin", lambda: layout_tables(skin.LAYOUTS, meanings(skin_fields.FRAME))),
     ("wire.md", "wire-mesh", mesh_frames),
     ("wire.md", "wire-mesh-payloads", lambda: layout_tables(mesh_payloads.LAYOUTS, MEANINGS)),
+    ("wire.md", "wire-mesh-piece", lambda: layout_table(mesh_payloads.PIECE, MEANINGS)),
     ("wire.md", "wire-mesh-graph", lambda: layout_table(mesh_payloads.WHOLE_GRAPH, MEANINGS)),
     ("wire.md", "wire-radio", lambda: layout_tables(radio.LAYOUTS, meanings(radio_fields.FRAME))),
     ("reading-a-report.md", "tables", lambda: run_tables(TABLES)),

@@ -92,6 +92,7 @@ def all_names(kind):
     if kind == "mesh":
         found += names_in(mesh.COMMON, "innervate.mesh")
         found += names_in(mesh.HOP_ACK, "innervate.mesh.ack")
+        found += names_in(mesh_payloads.PIECE, "innervate.mesh.piece")
         found += [f"innervate.mesh.{name}" for name in ("path", "source_route", "failed")]
     for _kind, name, fields in layouts:
         found += names_in(fields, f"innervate.{kind}.{dissector.abbreviation(name)}")
@@ -128,6 +129,17 @@ def mesh_record(kind, flags, path, body):
     return record, expected
 
 
+def mesh_piece():
+    """Data that is a piece of a longer message: its first number is 16384 ahead of its own."""
+    payload = Payload(mesh_payloads.PIECE, "innervate.mesh.piece")
+    body, expected = payload.data, payload.expected
+    record, more = mesh_record(mesh_const.DATA, mesh_const.ORDERED, [7], body)
+    record.dest, record.seq = 3, 65_000
+    body[:2] = record.body[:2] = (65_000 + 16_384 - 65_536).to_bytes(2, "big")
+    more |= {"innervate.mesh.dest": ["3"], "innervate.mesh.seq": ["65000"]}
+    return mesh.encode(record), more | expected | {"innervate.mesh.piece.mark": ["15848"]}
+
+
 def mesh_frames():
     around = (0, mesh_const.SOURCE_ROUTE, mesh_const.DETOURED)
     for i, (kind, name, fields) in enumerate(mesh_payloads.LAYOUTS * EACH):
@@ -142,6 +154,7 @@ def mesh_frames():
         path = [DRAW.randrange(254) for _ in range(DRAW.randint(0, 9))]
         record, expected = mesh_record(kind, flags, path, body)
         yield mesh.encode(record), expected | payload.expected | more
+    yield mesh_piece()
     record = plain.make("Frame", mesh_fields.FRAME)()
     expected = set_all(record, mesh.HOP_ACK, "innervate.mesh.ack")
     record.kind = mesh_const.ACK

@@ -10,12 +10,12 @@ import pytest
 from boards.errors import BoardFailed
 from boards.firmware import measure
 from boards.firmware.native import WARNINGS, run
+from innervate.dialect import plain
 from innervate.firmware import library, tools
 from innervate.firmware.errors import FirmwareError
 from innervate.firmware.packed import Packed
 from innervate.networks.mesh import frames as mesh_frames
 from innervate.networks.mesh import payloads as mesh_payloads
-from innervate.networks.mesh.live.stack import Frame as MeshFrame
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.protocol.constants import ACK
 from innervate.networks.radio import frames as radio_frames
@@ -27,6 +27,7 @@ from innervate.networks.skin.live.items import Frame
 from innervate.wire import cobs, crc
 
 HERE = Path(__file__).parent
+MeshFrame = plain.make("Frame", mesh_fields.FRAME)
 SEALED = ("sealed-skin", "sealed-mesh")
 SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g")
 

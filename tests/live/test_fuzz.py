@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from innervate.dialect import plain
 from innervate.live import status
 from innervate.live.channel import Medium
 from innervate.live.channel_radio import read_heard
@@ -18,7 +19,7 @@ from innervate.live.group import GroupContact
 from innervate.networks.mesh import frames as mesh
 from innervate.networks.mesh.live.alarms import KINDS, read_alarm
 from innervate.networks.mesh.live.order import Order
-from innervate.networks.mesh.live.stack import Frame as MeshFrame
+from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.radio import frames as radio
 from innervate.networks.radio.live.stack import Frame as RadioFrame
 from innervate.networks.skin import frames as skin
@@ -28,6 +29,7 @@ from tests.live.pair import Wire, network_sealer
 from tests.live.test_keys import FRAMES
 
 FEW, MANY = 200, 100_000
+MeshFrame = plain.make("Frame", mesh_fields.FRAME)
 
 
 def crc(body):

@@ -8,6 +8,7 @@ import socket
 
 import pytest
 
+from innervate.dialect import plain
 from innervate.live.channel import Medium
 from innervate.live.channel_radio import JOIN, PLUG, SEND, read_heard
 from innervate.live.engine import clock_us
@@ -18,7 +19,8 @@ from innervate.live.udp import MulticastLink, UdpLink
 from innervate.networks.mesh import frames as wire
 from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.parameters import mesh_parameters
-from innervate.networks.mesh.live.stack import Frame, MeshStack
+from innervate.networks.mesh.live.stack import MeshStack
+from innervate.networks.mesh.protocol import fields
 from innervate.networks.mesh.protocol.constants import ACK, ALL, SOURCE_ROUTE
 from innervate.wire import seal
 from tests.live.net import Mesh, Skin, until
@@ -26,6 +28,7 @@ from tests.live.test_fuzz import crc
 
 HOP_ACK_OF_255 = bytes.fromhex("50ff0100000000e5b7")
 KEY = bytes(range(32))
+Frame = plain.make("Frame", fields.FRAME)
 LINE = [(0, 1), (1, 2)]
 COUNT = 3
 ME = 1

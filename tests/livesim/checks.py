@@ -1,5 +1,6 @@
 """What must hold whatever happens; looked at all the time."""
 
+import random
 from collections import Counter
 from unittest import mock
 
@@ -94,7 +95,7 @@ class Messages:
     def new(self, sender, life, dest, length):
         """A message that nobody has sent yet; its payload says which one it is."""
         self._count += 1
-        payload = self._count.to_bytes(5, "big") + bytes([self._count % 251]) * (length - 5)
+        payload = self._count.to_bytes(5, "big") + random.Random(self._count).randbytes(length - 5)
         return Sent(self._count, sender, life, dest, payload)
 
     def accepted(self, sent):
@@ -111,7 +112,9 @@ class Messages:
             return
         sent = self.sent.get(int.from_bytes(payload[:5], "big"))
         if sent is None or sent.payload != payload or sent.sender != sender:
-            self.world.fail(f"{life.name}: from {sender} came {payload.hex()}, which nobody sent")
+            self.world.fail(
+                f"{life.name}: from {sender} came {payload[:90].hex()}, which nobody sent"
+            )
             return
         if sent.dest not in (who, 255):
             self.world.fail(f"{life.name}: has message {sent.ident}, which is for {sent.dest}")

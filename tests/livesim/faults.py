@@ -24,6 +24,7 @@ OF_KIND = {
 }
 KILLS = {"hurts": ("crash", "restarts"), "storm_s": 60}
 LOSSES = {"hurts": ("lossy", "doubled", "cut")}
+LONG = {"long": 0.5, "mtu": 127}
 
 
 class Fault(NamedTuple):
@@ -48,21 +49,20 @@ FAULTS = (
     Fault("one that was given up is told as delivered", PROTOCOL + "retransmission",
           "report(out, REPORT_EXPIRED, node.wait_handle[w], NO_ACK)",
           "report(out, REPORT_ARRIVED, node.wait_handle[w], node.wait_seq[w])", KILLS),
-    Fault("a hop's ack is taken for the recipient's", MESH + "node",
-          "receipt.move(HOP_ACKED)", "self._end(a, DELIVERED, is_there=True)", LOSSES),
+    Fault("a hop's ack is taken for the recipient's", MESH + "outgoing",
+          "receipt.move(HOP_ACKED)", "self._end(handle, DELIVERED, is_there=True)", LOSSES),
     Fault("a retry has another number", PROTOCOL + "retransmission",
           "        node.q_seq[i] = node.wait_seq[w]\n", "        node.q_seq[i] = node.seq + 1\n",
           LOSSES),
     Fault("a message is tried for ever", PROTOCOL + "retransmission",
           "    if node.wait_tries[w] > params.e2e_tries or is_expired(node, params, now, w):\n",
           "    if 0:\n", KILLS),
-    Fault("nobody is told of a message that has expired", MESH + "node",
-          'self._end(a, EXPIRED, REASONS.get(b, ""), False if b in IN_VAIN else None)', "pass",
-          KILLS),
+    Fault("nobody is told of a message that has expired", MESH + "outgoing",
+          'self._end(handle, EXPIRED, REASONS.get(detail, ""), is_there)', "pass", KILLS),
     Fault("retries are never due", PROTOCOL + "retransmission",
           "        set_timer(out, RETRY, (now + soonest) & MASK30)\n", "        return\n", LOSSES),
-    Fault("a delivered message's receipt is kept", MESH + "node",
-          "receipt = self._receipts.pop(handle, None)", "receipt = self._receipts.get(handle)",
+    Fault("a delivered message's receipt is kept", MESH + "outgoing",
+          "receipt = self.receipts.pop(handle, None)", "receipt = self.receipts.get(handle)",
           LOSSES),
     Fault("what is behind the newest is new", PROTOCOL + "duplicates",
           "    if node.window[word] & bit:\n        return 0\n", "", LOSSES),
@@ -135,6 +135,22 @@ FAULTS = (
     Fault("a damaged frame is taken", "innervate.networks.skin.frames",
           "        return BAD_CRC\n", "        pass\n",
           {"serial": True, "hurts": ("changing",), "storm_s": 60}, "skin"),
+    Fault("the last piece is acknowledged whatever is missing", MESH + "pieces",
+          "        if one.missing:\n            return False, None\n",
+          "        if one.missing:\n            return True, None\n", {**KILLS, **LONG}),
+    Fault("pieces are put one behind the other as they come", MESH + "pieces",
+          "        self.data[piece.at : piece.at + len(piece.data)] = piece.data\n",
+          "        at = len(self.data) - self.missing\n"
+          "            self.data[at : at + len(piece.data)] = piece.data\n", {**LOSSES, **LONG}),
+    Fault("pieces of who is gone are never forgotten", MESH + "pieces",
+          "            if now - one.heard_at >= idle_us:\n", "            if False:\n",
+          {**KILLS, **LONG}),
+    Fault("a sender may open as many messages as it likes", MESH + "pieces",
+          "        if len(own) >= EACH:", "        if False:", {**KILLS, **LONG}),
+    Fault("a piece that was given up is no matter", MESH + "long",
+          "        if state != DELIVERED:\n", "        if False:\n", {**KILLS, **LONG}),
+    Fault("nobody is told that a piece was given up", MESH + "long",
+          "            self.on_end(EXPIRED, reason)\n", "            pass\n", {**KILLS, **LONG}),
     Fault("packets' numbers begin anywhere after a restart", MESH + "node",
           "        if self.state.numbers >= 0:\n", "        if 0:\n",
           {**KILLS, "sealed": False, "in_order": False}),

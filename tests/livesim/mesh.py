@@ -1,5 +1,6 @@
 """A mesh of live nodes, its users, and what is done to it."""
 
+from collections import Counter
 from itertools import combinations
 
 from innervate.live import files
@@ -13,6 +14,8 @@ AGAIN_S = 45.0  # so long after all is whole again everybody reaches everybody
 ENDS_S = 60.0  # a message has its end, if its sender lives
 GONE_S = 30.0  # a message to a node that is not there has its end
 ALL = 255
+PIECES_MOST = 16 * 65_536  # bytes of messages that a node puts together
+PIECES_EACH = 2  # of a sender
 
 
 class Plan:
@@ -27,6 +30,7 @@ class Plan:
         storms: how often it is hurt and then left alone.
         storm_s: how long each time.
         rate: messages a second, of all nodes.
+        long: share of messages that are longer than a frame.
     """
 
     def __init__(self, world, **given):
@@ -42,6 +46,9 @@ class Plan:
         self.delay_us = chance.choice(((50, 150), (100, 400), (300, 900)))
         self.standbys = chance.randint(0, 2)
         self.multicast = self.nodes <= 8 and chance.random() < 0.2  # all hear all
+        longer = world.chance("long")
+        self.mtu = longer.choice((127, 127, 1200))
+        self.long = longer.choice((0.0, 0.05, 0.3))
         self.old_lives = False  # what a process received is played back to those after it, too
         for name, value in given.items():
             assert hasattr(self, name), name
@@ -70,6 +77,7 @@ class Mesh(Stage):
         self.messages = Messages(self, ENDS_S)
         self.places = {}
         self.is_sending = False
+        self.lengths = world.chance("lengths")
 
     def file(self, number):
         """The text of a node's file, with the keys as they are now."""
@@ -79,7 +87,7 @@ class Mesh(Stage):
         head["role"] = "gateway" if number == 0 else "standby" if number in standbys else "node"
         if number in standbys:
             head["rank"] = number
-        tables = {"protocol": {}, "deliver": {"in_order": plan.in_order}}
+        tables = {"protocol": {"mtu": plan.mtu}, "deliver": {"in_order": plan.in_order}}
         return files.text(head, tables | self.key_tables(), self.links(number))
 
     def listen(self, number, life):
@@ -99,7 +107,26 @@ class Mesh(Stage):
 
     def _look(self):
         self.messages.look()
+        for host in self.hosts:
+            if host.life is not None:
+                self._look_at_pieces(host.life)
         self.world.after(0.2, self._look)
+
+    def _look_at_pieces(self, life):
+        """What a node puts together is bounded, for each sender and in all."""
+        names = Counter()
+        held = life.node.inbox.pieces._open
+        names.update(sender for sender, *_ in held)
+        size = sum(len(one.data) for one in held.values())
+        if size > PIECES_MOST or max(names.values(), default=0) > PIECES_EACH:
+            self.world.fail(f"{life.name} holds {size} bytes in pieces, of {dict(names)}")
+
+    def _length(self, dest):
+        """Bytes of a message: now and then more than fit into a frame."""
+        if dest == ALL or self.lengths.random() >= self.plan.long:
+            return self.chance.randint(5, 88)
+        most = self.lengths.choice((200, 1000, 1000, 5000, 5000, 65_536))
+        return self.lengths.randint(90, min(most, 10 * self.plan.mtu * self.plan.mtu // 127))
 
     def _send_some(self):
         """Users send as they like, while they may."""
@@ -118,7 +145,7 @@ class Mesh(Stage):
         life = host.life
         if life is None or life.node.engine is None:
             return None
-        sent = self.messages.new(host.number, life, dest, self.chance.randint(5, 88))
+        sent = self.messages.new(host.number, life, dest, self._length(dest))
         sent.priority = priority
         sent.in_order = self.plan.in_order and dest != ALL
         key = (host.number, life.number, dest, priority)
@@ -154,6 +181,7 @@ class Mesh(Stage):
                 continue
             told = host.life.node.status()
             left = {name: told[name] for name in ("backlog", "under_way", "out_of_turn")}
+            left |= told["in_pieces"]
             if any(left.values()):
                 self.world.fail(f"{host.life.name} still has {left}")
             if self.plan.sealed and told["keys"]["accepted"] != [self.key_number]:

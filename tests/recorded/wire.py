@@ -122,7 +122,7 @@ def _sizes() -> Any:
     return {
         "skin": [list(skin.SIZES.items()), skin.SIZE_MIN, skin.SIZE_MAX],
         "radio": [list(radio.SIZES.items()), radio.SIZE_MIN, radio.PAYLOAD_MAX],
-        "mesh": [list(payloads.SIZES.items()), mesh.MTU_MAX, mesh.PATH_LEN_AT],
+        "mesh": [list(payloads.SIZES.items()), mesh.MTU, mesh.PATH_LEN_AT],
         "seal": [seal.OVERHEAD_BYTES, seal.HEADER_BYTES, seal.TAG_BYTES, seal.KEYS, seal.WINDOW],
         "cobs": cobs.BLOCK,
     }

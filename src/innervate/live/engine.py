@@ -12,6 +12,7 @@ from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
 from innervate.live.machine import machine
 
 OUTBOX = 32
+NEVER = 1 << 62  # us
 
 
 class Stack(Protocol):
@@ -104,7 +105,7 @@ class Engine:
         self._report = report
         self._settled = settled
         self._clock = clock
-        self._due: list[int | None] = [None] * stack.timers
+        self._due = [NEVER] * stack.timers
         self._wake: asyncio.TimerHandle | None = None
         self._wake_at = 0
         self._loop = asyncio.get_running_loop()
@@ -187,8 +188,8 @@ class Engine:
 
     def _arm(self, now: int) -> None:
         """One timer of the loop serves all: it is moved only if something is due before it."""
-        soonest = min((at for at in self._due if at is not None), default=None)
-        if soonest is None:
+        soonest = min(self._due, default=NEVER)
+        if soonest == NEVER:
             return
         if self._wake is not None:
             if self._wake_at <= soonest:
@@ -202,8 +203,8 @@ class Engine:
         self._wake = None
         now = self._clock()
         for timer, at in enumerate(self._due):
-            if at is not None and at <= now:
-                self._due[timer] = None
+            if at <= now:
+                self._due[timer] = NEVER
                 self.counters["timers"] += 1
                 self.stack.on_timer(now & MASK30, timer)
                 self._drain(now)

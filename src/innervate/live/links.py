@@ -54,9 +54,14 @@ class Path:
 
 
 class Link:
-    """A socket, a device or a group of them; opened, and opened again when it comes back."""
+    """A socket, a device or a group of them; opened, and opened again when it comes back.
+
+    Attributes:
+        frame_max: bytes that it carries at once, as sealed; on IP what Ethernet does not cut up.
+    """
 
     paths: list[Any]
+    frame_max = 1472
 
     async def open(self, receive: Receiver) -> None:
         """Start to receive.

@@ -26,7 +26,8 @@ from innervate.live.streams import Form
 
 DRAIN_S = 2.0
 SAVE_S = 10.0
-HEARD_MAX = 4096  # what waits for a listener that reads slowly, or not at all
+HEARD_MAX = 4096  # lines that wait for a listener that reads slowly, or not at all ...
+HEARD_CHARS = 1024  # ... a message counts once more for each so many of its line
 REQUESTS = ("status", "send", "listen", "cut", "restore", "loose", "capture", "revoke", "stop")
 
 
@@ -120,7 +121,7 @@ class Process:
         self._say(f"keys reloaded: {keys.use} seals after {keys.grace_s:g} s{restart}")
 
     def _look(self) -> None:
-        """Say what is the matter with the state's file and with callers, once in a while."""
+        """Say what is the matter with state's file, callers and network, once in a while."""
         state = self.node.state
         if state.trouble:
             text = f"{state.path}: cannot be written: {state.trouble}; going on, trying again"
@@ -131,6 +132,8 @@ class Process:
             self._callers = Counter(self.node.callers)
             counts = ", ".join(f"{what} {count}" for what, count in self._callers.items())
             self.notices.tell("callers", f"too many callers: {counts} (since the start)")
+        for name, text in self.node.troubles().items():
+            self.notices.tell(name, text)
 
     async def _sleep(self, seconds: float) -> None:
         try:
@@ -198,7 +201,7 @@ class Process:
                 await writer.line({"state": told, "reason": receipt.reason})
 
     async def _listen(self, request: dict[str, Any], writer: status.Writer) -> None:
-        heard: Pending[dict[str, Any]] = Pending(HEARD_MAX)
+        heard: Pending[dict[str, Any]] = Pending(HEARD_MAX, _weight)
         streams = self.node.streams(request)
         await writer.line({"listening": self.loaded.name})
         pumps = [asyncio.ensure_future(_pump(stream, form, heard)) for stream, form in streams]
@@ -220,6 +223,10 @@ async def _pump(
             heard.put(form(item))
     finally:
         await stream.aclose()
+
+
+def _weight(line: dict[str, Any]) -> int:
+    return 1 + len(str(line.get("payload", ""))) // HEARD_CHARS
 
 
 async def _tell(heard: Pending[dict[str, Any]], writer: status.Writer) -> None:

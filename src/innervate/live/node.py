@@ -156,9 +156,10 @@ class LiveNode:
         if not why:
             if opened is not None and self.sealer is not None:
                 self.sealer.take(opened)
-            path.heard_at = clock_us()
-            self.engine.receive(path.port)
-        self._tell(at_ns, path.port, False, data, why)
+            path.heard_at = at = clock_us()
+            self.engine.receive(path.port, at)
+        if self.taps:
+            self._tell(at_ns, path.port, False, data, why)
 
     def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
         bare = self.stack.encode(frame)
@@ -168,7 +169,8 @@ class LiveNode:
             data = bare if self.sealer is None else self.sealer.close(path, bare)
             if data is not None and not path.cut:
                 path.send(data)
-            self._tell(at_ns, path.port, True, bare, CUT if path.cut else "")
+            if self.taps:
+                self._tell(at_ns, path.port, True, bare, CUT if path.cut else "")
 
     def _tell(self, at_ns: int, port: int, out: bool, data: bytes, why: str) -> None:
         """Tell those who asked of a frame, in the clear."""
@@ -194,6 +196,10 @@ class LiveNode:
     async def drain(self, limit_s: float) -> bool:
         """Wait until nothing of ours is under way, at most `limit_s` seconds: True if so."""
         return True
+
+    def troubles(self) -> dict[str, str]:
+        """What its user should mend, a line each, by a name for each."""
+        return {}
 
     def counters(self) -> Counter[str]:
         """What happened how often: handler calls, frames dropped by reason, outcomes."""

@@ -27,6 +27,8 @@ class SerialLink(Link):
         far: the device at the other end, where both are on this machine; "" not known.
     """
 
+    frame_max = FRAME_MAX
+
     def __init__(self, device: str, baud: int, port: int = 0, far: str = "") -> None:
         self.device = device
         self.baud = baud

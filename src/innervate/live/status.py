@@ -19,7 +19,7 @@ from innervate.live.errors import LiveError
 from innervate.live.machine import ANSWER_S, machine
 from innervate.live.machine import answers as answers
 
-LINE_MAX = 65_536
+LINE_MAX = 163_840  # a request to send 64 KiB, in hexadecimal digits
 UP = "up"  # in a user's own folder: a link to where the newest `live up` has its nodes
 FULL = b'{"error": "64 are connected to this node already; end a listen or a capture"}\n'
 BOUNDS = Bounds(most=64, burst=64, full=FULL, limit=LINE_MAX)

@@ -17,7 +17,7 @@ from innervate.wire.layout import BROKEN, REST, read
 
 Frame = plain.make("Frame", FRAME)
 RANGES = {name: (length, low, high) for name, length, low, high, _unit, _meaning in FRAME}
-ROOM = wire.MTU_MAX - const.HEADER_BYTES - const.CRC_BYTES
+ROOM = const.MTU - const.HEADER_BYTES - const.CRC_BYTES
 
 
 def new(kind, path=(), body=b"", **values):
@@ -245,7 +245,7 @@ def names_in(fields):
 
 
 def test_every_field_of_a_payload_has_a_meaning_and_no_other():
-    layouts = [*payloads.FIELDS.values(), payloads.WHOLE_GRAPH]
+    layouts = [*payloads.FIELDS.values(), payloads.PIECE, payloads.WHOLE_GRAPH]
     assert {name for fields in layouts for name in names_in(fields)} == set(MEANINGS)
 
 
@@ -253,7 +253,7 @@ def test_every_field_of_a_payload_has_a_meaning_and_no_other():
 def test_round_trip(frame):
     back = new(const.DATA, path=[9], body=b"old", flags=3, rssi=-7)
     data = wire.encode(frame)
-    assert len(data) == wire.size_of(frame) <= wire.MTU_MAX
+    assert len(data) == wire.size_of(frame) <= const.MTU
     assert wire.decode(memoryview(data), back) == wire.OK
     assert carried(back) == carried(frame)
     assert back.rssi == (frame.rssi if frame.kind == const.ACK else -7)

@@ -16,6 +16,7 @@ from innervate.networks.mesh.protocol.constants import (
     BODY,
     DETOURED,
     MONITOR,
+    MTU,
     PATH_MAX,
     SOURCE_ROUTE,
     TIMERS,
@@ -37,7 +38,7 @@ CODED = Coded(
              {"path": (PATH_MAX, "path"), "body": (BODY, "length")}, "length",
              payloads=payloads.FIELDS),
     ),
-    frames.REASONS, frames.MTU_MAX, SOURCE_ROUTE, DETOURED,
+    frames.REASONS, MTU, SOURCE_ROUTE, DETOURED,
 )  # fmt: skip
 RUN = Watched("mesh", "innervate.networks.mesh.sim.simulate:simulation", node=3)
 HERE = "innervate.networks.mesh.board"
@@ -73,6 +74,8 @@ def node_parameters(nodes: int, changes: dict[str, int], where: str = "") -> dic
             raise LiveError(
                 f"{where}: {name}={wanted[name]} does not fit into {small[name]} places"
             )
+    if wanted.get("mtu", MTU) > MTU:
+        raise LiveError(f"{where}: mtu={wanted['mtu']} is more than a board's {MTU} bytes")
     own = {"width": nodes, "row": fields.words(nodes), "places": fields.places(nodes)}
     return {**mesh_parameters(count, wanted, where), **own}
 

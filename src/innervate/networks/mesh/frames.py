@@ -8,21 +8,23 @@ that a medium must say where a frame ends (a CRC alone does not see a zero behin
 import struct
 from typing import Any
 
-from innervate.networks.mesh.payloads import FIELDS, NAMES, describe, fits
+from innervate.networks.mesh.payloads import FIELDS, NAMES, PIECE, describe, fits, is_piece
 from innervate.networks.mesh.protocol.constants import (
     ACK,
     ACK_BYTES,
     ACK_MORE_BYTES,
-    BODY,
+    ALL,
     CRC_BYTES,
+    DATA,
     HEADER_BYTES,
+    MTU,
+    ORDERED,
     PATH_MAX,
 )
 from innervate.wire.crc import crc16, is_sealed
-from innervate.wire.layout import REST, pack, put_number
+from innervate.wire.layout import REST, pack, put_number, read
 
 VERSION = 1
-MTU_MAX = 127
 
 HEAD = (("version", 0, 2, 0), ("kind", 0, 6, 0))
 COMMON = (
@@ -74,7 +76,7 @@ def size_of(frame: Any) -> int:
     return size  # type: ignore[no-any-return]
 
 
-def encode(frame: Any, mtu: int = MTU_MAX) -> bytes:
+def encode(frame: Any, mtu: int = MTU) -> bytes:
     """The bytes of a frame record.
 
     Raises:
@@ -84,7 +86,7 @@ def encode(frame: Any, mtu: int = MTU_MAX) -> bytes:
     kind = frame.kind
     if kind != ACK and kind not in FIELDS:
         raise ValueError("no packet of the mesh has this kind")
-    for name, most in (("path_len", PATH_MAX), ("length", BODY)):
+    for name, most in (("path_len", PATH_MAX), ("length", len(frame.body))):
         if kind != ACK and not 0 <= getattr(frame, name) <= most:
             raise ValueError(name + " is more than a packet holds, or negative")
     size = size_of(frame)
@@ -120,14 +122,14 @@ def check(frame: Any) -> None:
         ValueError: that one.
     """
     is_ack = frame.kind == ACK
-    pack(HOP_ACK if is_ack else COMMON, bytearray(MTU_MAX), AT, frame)
+    pack(HOP_ACK if is_ack else COMMON, bytearray(MTU), AT, frame)
     parts = (("body", frame.length), ("path", 0 if is_ack else frame.path_len))
     for name, count in parts:
         for item in getattr(frame, name)[:count]:
             put_number(bytearray(1), 0, 8, 0, item, name)
 
 
-def reason_of(data: bytes | bytearray | memoryview, mtu: int = MTU_MAX) -> int:
+def reason_of(data: bytes | bytearray | memoryview, mtu: int = MTU) -> int:
     """OK if these bytes are a frame, else why not; any bytes at all will do."""
     size = len(data)
     if not ACK_BYTES <= size <= mtu:
@@ -147,12 +149,12 @@ def reason_of(data: bytes | bytearray | memoryview, mtu: int = MTU_MAX) -> int:
     if data[PATH_LEN_AT] > PATH_MAX:
         return BAD_PATH
     at = HEADER_BYTES + data[PATH_LEN_AT]
-    if not at <= end <= at + BODY:
+    if end < at:
         return BAD_LENGTH
     return OK if fits(kind, data[1], data, at, end) else BAD_PAYLOAD
 
 
-def decode(data: bytes | bytearray | memoryview, frame: Any, mtu: int = MTU_MAX) -> int:
+def decode(data: bytes | bytearray | memoryview, frame: Any, mtu: int = MTU) -> int:
     """Read received bytes into a frame record; any bytes at all will do.
 
     Sets everything but `rssi`, which is the receiver's, and of `path` and `body` what is used. An
@@ -165,6 +167,8 @@ def decode(data: bytes | bytearray | memoryview, frame: Any, mtu: int = MTU_MAX)
     if data[0] & 63 == ACK:
         decode_ack(data, frame)
         return OK
+    if len(data) - CRC_BYTES - HEADER_BYTES - data[PATH_LEN_AT] > len(frame.body):
+        return BAD_LENGTH
     f = frame
     (first, f.flags, f.link_src, f.link_dst, f.origin, f.dest,
      f.seq, f.table_ver, f.ttl, hops) = struct.unpack_from(PACKET_STRUCT, data)  # fmt: skip
@@ -212,7 +216,11 @@ def fields(frame: Any) -> list:  # type: ignore[type-arg]
     if kind != ACK:
         pairs.append(("path", list(frame.path[: frame.path_len])))
         body = bytes(list(frame.body[: frame.length]))
-        pairs.extend(describe(kind, frame.flags, body))
+        is_ordered = kind == DATA and frame.flags & ORDERED and frame.dest != ALL
+        if is_ordered and is_piece(frame.flags, frame.seq, body):
+            read(PIECE, body, 0, 8 * len(body), pairs)
+        else:
+            pairs.extend(describe(kind, frame.flags, body))
     return pairs
 
 

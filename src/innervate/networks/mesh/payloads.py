@@ -75,6 +75,18 @@ LAYOUTS = (
     (POSITION, "position", (("robot", 0, 8, 0),) + MOVING + (("said", 0, 8, 0),)),
     (GRAPH, "graph", PART + (("part", REST, 8, 0),)),
 )
+# The payload of an ORDERED packet that is a piece of a message: no message is PIECE_AHEAD numbers
+# ahead of the one before it, which is what stands there else.
+PIECE = (
+    ("mark", 0, 16, 0),
+    ("message", 0, 16, 0),
+    ("in_order", 0, 8, 0),
+    ("at", 0, 16, 0),
+    ("size", 0, 16, 0),
+    ("data", REST, 8, 0),
+)
+PIECE_STRUCT = ">HHBHH"  # the same for struct, without its data
+PIECE_AHEAD = 16_384
 # What the parts of a graph are when put together: the links of every pair a < b, row by row.
 WHOLE_GRAPH = (("nodes", 0, 8, 0), ("ids", "nodes", 8, 0), ("links", PAIRS, 1, 0))
 
@@ -117,6 +129,13 @@ def fits(kind: int, flags: int, data: bytes | bytearray | memoryview, at: int, e
     if kind == DATA:
         return begin <= end
     return is_whole(kind, data, begin, end_of(kind, flags, data, begin, end))
+
+
+def is_piece(flags: int, seq: int, data: bytes) -> bool:
+    """True if the payload of ORDERED packet `seq` to one recipient is a piece of a message."""
+    if flags & SOURCE_ROUTE or 8 * len(data) <= width(PIECE):
+        return False
+    return int.from_bytes(data[:2], "big") == (seq + PIECE_AHEAD) & 65_535
 
 
 def describe(kind: int, flags: int, data: bytes) -> list:  # type: ignore[type-arg]

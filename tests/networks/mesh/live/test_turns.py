@@ -10,7 +10,7 @@ from innervate.cli import live_status
 from innervate.live.receipts import DELIVERED, EXPIRED, REFUSED
 from innervate.networks.mesh.live import turns
 from innervate.networks.mesh.live.parameters import fence_parameters, mesh_parameters
-from innervate.networks.mesh.live.stack import Item, MeshStack
+from innervate.networks.mesh.live.stack import MeshStack
 from innervate.networks.mesh.live.turns import FEW, MOST, Turns
 from innervate.networks.mesh.protocol.constants import ALL, END_TO_END, MONITOR, PRIORITY
 from tests.live import time_by_hand as live_time
@@ -235,11 +235,11 @@ PUTS = st.lists(st.tuples(st.sampled_from([0, 1, 2, ALL, MONITOR]), st.booleans(
 @given(PUTS, st.integers(0, 40))
 def test_no_message_is_lost_doubled_or_overtaken_by_a_later_one_of_its_kind(puts, before):
     stack = MeshStack(1, -1, mesh_parameters(3, {}), 5)
-    waiting, taken = Turns(stack), []
+    waiting, taken = Turns(stack, None), []
     for handle, (dest, urgent) in enumerate(puts):
         if handle == before:
             taken += iter(waiting.take, None)
-        item = Item()
+        item = stack.item()
         item.dest, item.flags = dest, END_TO_END | (PRIORITY if urgent else 0)
         waiting.put(handle, item)
     assert len(waiting) == len(puts) - len(taken) == sum(waiting.waiting().values())

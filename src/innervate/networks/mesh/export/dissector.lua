@@ -30,6 +30,13 @@ local function mesh_payload(self, tvb, tree, known, flags, first, last)
   return found
 end
 
+-- True if the payload of data is a piece of a longer message.
+local function is_piece(tvb, kind, found, first, last)
+  if kind ~= DATA or found.dest == 255 or bitop.band(found.flags, ORDERED) == 0 then return false end
+  return bitop.band(found.flags, SOURCE_ROUTE) == 0 and last - first > PIECE_BYTES
+    and tvb(first, 2):uint() == (found.seq + PIECE_AHEAD) % 65536
+end
+
 local function mesh_flags(item, flags)
   local set = {}
   for _, flag in ipairs(FLAGS) do
@@ -74,8 +81,12 @@ local function run(self, tvb, tree)
       else
         list(self.path, tvb, path, first, tree)
         if known then
+          if is_piece(tvb, kind, found, first, last) then
+            tree:add(known.proto, tvb(first, last - first)):set_hidden()
+            known = self.kinds[PIECE]
+          end
           local own = mesh_payload(self, tvb, tree, known, found.flags, first, last)
-          info = line(name, known.fields, own)
+          info = line(known.name, known.fields, own)
         else
           complain(self, tree, MALFORMED, "Malformed: no packet has this type")
         end

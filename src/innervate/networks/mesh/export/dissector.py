@@ -7,6 +7,7 @@ from innervate.networks.mesh import frames, payloads
 from innervate.networks.mesh.meanings import MEANINGS
 from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol.fields import FRAME
+from innervate.wire.layout import width
 
 FLAGS = (
     (const.ACK_WANTED, "ack wanted"),
@@ -18,13 +19,14 @@ FLAGS = (
     (const.FIRST, "first after boot"),
     (const.PARITY, "parity of the retry"),
 )
+PIECE = 64  # stands for what no packet's type is: data that is a piece of a message
 
 
 def dissector() -> Frames:
     """Layouts by type, and how a frame is read."""
     says = meanings(FRAME) | {"more": "other packets that came from the same hop"}
     layouts = (
-        f"{{ kinds = {kinds(payloads.LAYOUTS, MEANINGS)},\n"
+        f"{{ kinds = {kinds((*payloads.LAYOUTS, (PIECE, 'piece', payloads.PIECE)), MEANINGS)},\n"
         f'  others = {{[{const.ACK}] = "ack"}},\n'
         f"  common = {fields_of(frames.COMMON, says)},\n"
         f"  ack = {fields_of(frames.HOP_ACK + frames.MORE, says)} }}"
@@ -32,6 +34,11 @@ def dissector() -> Frames:
     constants = {
         "VERSION": frames.VERSION,
         "ACK": const.ACK,
+        "DATA": const.DATA,
+        "ORDERED": const.ORDERED,
+        "PIECE": PIECE,
+        "PIECE_AHEAD": payloads.PIECE_AHEAD,
+        "PIECE_BYTES": width(payloads.PIECE) // 8,
         "ACK_BYTES": const.ACK_BYTES,
         "PATH_MAX": const.PATH_MAX,
         "SOURCE_ROUTE": const.SOURCE_ROUTE,

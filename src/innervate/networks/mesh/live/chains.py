@@ -21,6 +21,10 @@ class Chains:
         """The number of the message before a new one; its own = there is none to wait for."""
         return self._open[dest][-1] if self._open.get(dest) else seq
 
+    def is_open(self, dest: int) -> bool:
+        """True if the end of one to this recipient will be told."""
+        return any(to == dest for to, _ in self._by_handle.values())
+
     def sent(self, handle: int, dest: int, seq: int, is_reliable: bool) -> None:
         """A message went to the router; nobody tells the end of one that is not reliable."""
         if not is_reliable:

@@ -11,14 +11,14 @@ from innervate.dialect.arith import MASK16
 from innervate.live.links import Link
 from innervate.live.machine import machine
 from innervate.live.node import LiveNode
-from innervate.live.receipts import DELIVERED, EXPIRED, HOP_ACKED, REFUSED, Receipt
+from innervate.live.receipts import Receipt
 from innervate.live.state import State
-from innervate.live.streams import Arrivals, Stream, message_line
+from innervate.live.streams import Stream, message_line
 from innervate.networks.mesh.live.alarms import Alarm, Alarms, place_of, read_alarm
-from innervate.networks.mesh.live.chains import Chains
-from innervate.networks.mesh.live.order import BEFORE_BYTES, Callback, Message, Orderly
-from innervate.networks.mesh.live.stack import Item, MeshStack
-from innervate.networks.mesh.live.turns import Turns
+from innervate.networks.mesh.live.inbox import Inbox
+from innervate.networks.mesh.live.order import Callback, Orderly
+from innervate.networks.mesh.live.outgoing import Outgoing, refused
+from innervate.networks.mesh.live.stack import TOO_LONG, MeshStack
 from innervate.networks.mesh.protocol.constants import (
     AGAIN,
     ALARM,
@@ -26,23 +26,16 @@ from innervate.networks.mesh.protocol.constants import (
     DATA,
     END_TO_END,
     HANDED_UP,
-    IDS,
     MESSAGE,
     MONITOR,
-    NO_ACK,
-    NO_ROUTE,
     ORDERED,
     PRIORITY,
     REPORT_ACCEPTED,
     REPORT_ALARM,
-    REPORT_ARRIVED,
-    REPORT_EXPIRED,
     REPORT_FULL,
     REPORT_GATEWAY,
-    REPORT_HOP,
     SAMPLE,
 )
-from innervate.networks.mesh.protocol.messages import payload_limit, resolve
 
 if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
     from innervate.live.keys import Sealer
@@ -78,19 +71,13 @@ class MeshNode(LiveNode):
         super().__init__(name, stack, links, sealer, state)
         stack.epoch = self.state.epoch
         self.in_order = False
-        self.orderly = orderly or Orderly()
-        self.orderly.on_up = self._acknowledge
-        self._chains = Chains()
+        self.inbox = Inbox(orderly or Orderly(), self._acknowledge, self.outcomes)
         self.arrived_by: dict[int, list[int]] = {}  # the way of each sender's newest message
-        self._turns = Turns(stack)
-        self._receipts: dict[int, Receipt] = {}
-        self._handle = 0
-        self.arrivals = Arrivals(is_spread=True)
-        self._arrived: list[tuple[Message, bool]] = []  # True = it came before
-        self._ending = Item()
+        self.outgoing = Outgoing(stack, self._hand_down, self.inbox.put_own, self.outcomes)
+        self.arrivals = self.inbox.arrivals
+        self._ending = stack.item()
         self.alarms = Alarms()
-        self._place = Item()
-        self._feeding = False
+        self._place = stack.item()
         self.requests["locate"] = self._located
 
     def send_request(self, request: dict[str, Any]) -> Receipt:
@@ -131,7 +118,8 @@ class MeshNode(LiveNode):
 
         Args:
             recipient: a node's number; 255 = all, 254 = the monitor (else the gateway).
-            payload: at most 90 bytes at an MTU of 127, 27 at 64; two bytes less in order.
+            payload: what fits into a frame, 90 bytes at an MTU of 127 and two less in order;
+                longer ones, up to 65,536 bytes, go in pieces, and are always reliable.
             reliable: kept here until its recipient acknowledges it, or 5 retries fail.
             priority: before all other messages that wait here, also to the same recipient in order.
             in_order: recipients may put it in order; None = as the node's file says.
@@ -141,29 +129,16 @@ class MeshNode(LiveNode):
         """
         chained = self.in_order if in_order is None else in_order
         chained = chained and recipient not in (ALL, self.stack.node.number)
-        most = payload_limit(self.stack.params) - (BEFORE_BYTES if chained else 0)
         nodes = self.stack.params.nodes
         if not (0 <= recipient < nodes or recipient in (ALL, MONITOR)):
             raise ValueError(f"recipient must be 0 to {nodes - 1}, 254 or 255, not {recipient}")
-        if len(payload) > most:
-            raise ValueError(f"payload of {len(payload)} bytes; at most {most} fit into a frame")
-        receipt = Receipt()
+        flags = (END_TO_END if reliable else 0) | (PRIORITY if priority else 0)
+        flags |= ORDERED if chained else 0
+        most = self.outgoing.check(recipient, flags, len(payload))
         self.outcomes["messages accepted"] += 1
-        if self.engine is None or not self._turns.has_room(recipient):
-            receipt.move(REFUSED, "queue full" if self.engine else "node not started")
-            return receipt
-        item = Item()
-        item.handle = self._take_handle(receipt)
-        item.dest = recipient
-        item.flags = (END_TO_END if reliable else 0) | (PRIORITY if priority else 0)
-        if chained:
-            item.flags |= ORDERED
-            payload = bytes(BEFORE_BYTES) + payload  # which one is before it is known when it goes
-        item.length = len(payload)
-        item.body[: len(payload)] = payload
-        self._turns.put(item.handle, item)
-        self._feed()
-        return receipt
+        if self.engine is None:
+            return refused("node not started")
+        return self.outgoing.send(recipient, flags, payload, most)
 
     def receive_messages(
         self, callback: Callback | None = None, *, in_order: bool | None = None
@@ -179,7 +154,7 @@ class MeshNode(LiveNode):
             An iterator over (sender, payload) of messages that come from now on.
         """
         ordered = self.in_order if in_order is None else in_order
-        return (self.orderly.arrivals if ordered else self.arrivals).receive(callback)
+        return (self.inbox.orderly.arrivals if ordered else self.arrivals).receive(callback)
 
     async def start(self) -> None:
         """Switch on; packets' numbers go on behind where they were.
@@ -192,7 +167,7 @@ class MeshNode(LiveNode):
 
     async def stop(self) -> None:
         """Stop at once; what waits for its turn is handed up."""
-        self.orderly.stop()
+        self.inbox.stop()
         await super().stop()
 
     def locate(
@@ -218,7 +193,7 @@ class MeshNode(LiveNode):
 
     async def drain(self, limit_s: float) -> bool:
         """Wait until no message is under way, at most `limit_s` seconds: True if none is."""
-        waiting = [receipt.wait() for receipt in self._receipts.values()]
+        waiting = [receipt.wait() for receipt in self.outgoing.receipts.values()]
         if not waiting:
             return True
         _done, pending = await asyncio.wait(map(asyncio.ensure_future, waiting), timeout=limit_s)
@@ -226,29 +201,28 @@ class MeshNode(LiveNode):
             task.cancel()
         return not pending
 
+    def troubles(self) -> dict[str, str]:
+        """Neighbours have another MTU."""
+        if not self.counters()["dropped: " + TOO_LONG]:
+            return {}
+        mtu = self.stack.params.mtu
+        return {"mtu": f"frames come that are longer than protocol.mtu = {mtu}, and are dropped; "
+                "write the same mtu into all nodes' files"}  # fmt: skip
+
     def counters(self) -> Counter[str]:
         """Handler calls, frames dropped by reason, messages by what became of them."""
-        return super().counters() + self.orderly.counters()
+        return super().counters() + self.inbox.counters()
 
     def status(self) -> dict[str, Any]:
         """What is known here, besides how many messages wait and which way they came."""
         return {
             **super().status(),
-            "backlog": len(self._turns),
-            "waiting": {str(dest): count for dest, count in self._turns.waiting().items()},
-            "under_way": len(self._receipts) - len(self._turns),
-            "out_of_turn": self.orderly.held(),
+            **self.outgoing.status(),
+            "out_of_turn": self.inbox.orderly.held(),
+            "in_pieces": self.inbox.held(),
             "alarms": self.alarms.status(),
             "arrived_by": {str(sender): path for sender, path in self.arrived_by.items()},
         }
-
-    def _take_handle(self, receipt: Receipt) -> int:
-        while self._handle in self._receipts or self._handle < IDS:  # alarms bear robots' numbers
-            self._handle = (self._handle + 1) % HANDLES
-        handle = self._handle
-        self._handle = (self._handle + 1) % HANDLES
-        self._receipts[handle] = receipt
-        return handle
 
     def _deliver(self, kind: int, frame: Any) -> None:
         if kind == ALARM:
@@ -258,16 +232,9 @@ class MeshNode(LiveNode):
                 self.outcomes[f"alarms received: {alarm.kind}"] += 1
                 self.alarms.note(alarm)
         if kind in (DATA, AGAIN):
-            self._turns.heard(frame.origin)
+            self.outgoing.turns.heard(frame.origin)
             self.arrived_by[frame.origin] = [*frame.path[: frame.path_len], frame.dest]
-            self.outcomes["messages received"] += kind == DATA
-            body = bytes(frame.body[: frame.length])
-            before = None
-            if frame.flags & ORDERED and frame.dest != ALL and len(body) >= BEFORE_BYTES:
-                before = int.from_bytes(body[:BEFORE_BYTES], "big")
-                body = body[BEFORE_BYTES:]
-            message = Message(frame.origin, frame.seq, before, body)
-            self._arrived.append((message, kind == AGAIN))
+            self.inbox.note(frame, kind == AGAIN)
 
     def _reported(self, code: int, a: int, b: int) -> None:
         if code == REPORT_GATEWAY and b != self.state.epoch:
@@ -277,41 +244,13 @@ class MeshNode(LiveNode):
             self.outcomes["alarms raised"] += 1
         if not REPORT_ACCEPTED <= code <= REPORT_FULL:
             return
-        receipt = self._receipts.get(a)
-        if receipt is None:
-            return
-        if code == REPORT_ACCEPTED:
-            receipt.seq = b
-        elif code == REPORT_HOP:
-            receipt.move(HOP_ACKED)
-        elif code == REPORT_ARRIVED:
-            self._end(a, DELIVERED, is_there=True)
-        elif code == REPORT_EXPIRED:
-            self._end(a, EXPIRED, REASONS.get(b, ""), False if b in IN_VAIN else None)
-        else:
-            self._end(a, REFUSED, REASONS.get(b, ""))
-
-    def _end(self, handle: int, state: str, reason: str = "", is_there: bool | None = None) -> None:
-        """Nothing changes any more for a message; `is_there`: what that says of its recipient."""
-        receipt = self._receipts.pop(handle, None)
-        self._turns.ended(handle, is_there)
-        self._chains.ended(handle, state == DELIVERED)
-        if receipt is not None:
-            receipt.move(state, reason)
-            self.outcomes[f"messages {state}"] += 1
+        self.outgoing.told(code, a, b)
 
     def _settled(self) -> None:
         self.alarms.arrivals.hand_up()
-        arrived, self._arrived = self._arrived, []
-        for message, again in arrived:
-            if again:
-                self.orderly.again(message)
-                continue
-            self.arrivals.put((message.sender, message.payload))
-            self.arrivals.hand_up()
-            self.orderly.take(message)
-        if self._turns:
-            self._feed()
+        self.inbox.hand_up()
+        if self.outgoing.turns:
+            self.outgoing.feed()
         self._reserve()
 
     def _reserve(self) -> None:
@@ -331,37 +270,9 @@ class MeshNode(LiveNode):
             self._ending.dest, self._ending.handle = sender, seq
             self.engine.input(HANDED_UP, self._ending)
 
-    def _feed(self) -> None:
-        """Hand messages to the router while it has room; it calls us again when it has more."""
-        if self._feeding:
-            return
+    def _hand_down(self, item: Any) -> None:
         assert self.engine is not None
-        self._feeding = True
-        while (waiting := self._turns.take()) is not None:
-            handle, item = waiting
-            chained = self._chain(item) if item.flags & ORDERED else None
-            self.engine.input(MESSAGE, item)
-            if chained is not None and chained[1] == self.stack.node.seq:
-                self._chains.sent(handle, *chained, bool(item.flags & END_TO_END))
-            if resolve(self.stack.node, self.stack.params, item.dest) == self.stack.node.number:
-                self._end(handle, DELIVERED)  # to ourselves: it was handed up
-            elif not item.flags & END_TO_END or item.dest == ALL:
-                self._receipts.pop(handle, None)  # nobody will tell us more
-                self._turns.ended(handle, None)
-        self._feeding = False
-
-    def _chain(self, item: Any) -> tuple[int, int]:
-        """A message that is to come in order names the one before it; its recipient and number."""
-        stack = self.stack
-        seq = (stack.node.seq + 1) & MASK16  # the number that the router is about to give it
-        dest = resolve(stack.node, stack.params, item.dest)
-        before = self._chains.before(dest, seq)
-        item.body[:BEFORE_BYTES] = before.to_bytes(BEFORE_BYTES, "big")
-        return dest, seq
-
-
-IN_VAIN = (NO_ROUTE, NO_ACK)
-REASONS = {1: "no route", 2: "no acknowledgement", 3: "path full", 4: "no room"}
+        self.engine.input(MESSAGE, item)
 
 
 def _alarm_line(alarm: Alarm) -> dict[str, Any]:

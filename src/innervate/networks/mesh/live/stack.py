@@ -16,6 +16,7 @@ from innervate.networks.mesh.protocol.constants import (
     ACK_WANTED,
     ALL,
     ALTERNATE,
+    MTU_MAX,
     SEARCH,
     TABLE_FREE,
     TABLES,
@@ -39,8 +40,9 @@ RSSI = -50  # of every frame that comes over a cable, dBm
 
 FENCE_WORDS = ("inside", "about to cross", "outside")
 
-Frame = plain.make("Frame", fields.FRAME)
-Item = plain.make("Item", fields.ITEM)
+LONG = len(wire.REASONS)  # what `decode` says of a frame that only a longer MTU would let through
+TOO_LONG = "longer than our MTU"
+
 Params = plain.make("Params", fields.PARAMS)
 
 
@@ -56,7 +58,7 @@ class MeshStack:
     """
 
     timers = TIMERS
-    reasons: tuple[str, ...] = wire.REASONS
+    reasons: tuple[str, ...] = (*wire.REASONS, TOO_LONG)
 
     def __init__(
         self, number: int, rank: int, params: dict[str, Any], seed: int, robot: bool = False
@@ -67,13 +69,15 @@ class MeshStack:
         width = self.params.width
         # Every node sends in every round: three without a word are no accident.
         self.silent_us = 3 * self.params.period_max * self.params.tick_us + self.params.tick_us
-        sizes = self.params.queue, self.params.kept
+        mtu = self.params.mtu
+        sizes = self.params.queue, self.params.kept, mtu
         self.node = plain.make("Node", fields.node(width, *sizes))()
         self.gate = plain.make("Gate", fields.gate(width))() if rank >= 0 else None
         self.node.number, self.node.rank, self.node.robot = number, rank, int(robot)
         self.node.rng, self.node.choice = seeded(seed), -1
-        self.out = plain.Outbox(Frame, OUTBOX)
-        self.inbox = Frame()
+        frame = plain.make("Frame", fields.frame(mtu))
+        self.out, self.inbox = plain.Outbox(frame, OUTBOX), frame()
+        self.item = plain.make("Item", fields.item(mtu))
         self.epoch = 0  # newest one that was followed before a restart
         self.first = -1  # our packets' numbers go on from here after a restart; -1 = anywhere
         self.places: dict[int, list[int]] = {}  # neighbour: ports, the newest first
@@ -146,11 +150,14 @@ class MeshStack:
 
     def encode(self, frame: Any) -> bytes:
         """The bytes of a frame."""
-        return wire.encode(frame)
+        return wire.encode(frame, self.params.mtu)
 
     def decode(self, data: bytes) -> int:
         """Read bytes into the inbox; 0, or why not."""
-        return wire.decode(data, self.inbox)
+        mtu = self.params.mtu
+        if len(data) > mtu and wire.reason_of(data, MTU_MAX) == wire.OK:
+            return LONG
+        return wire.decode(data, self.inbox, mtu)
 
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """Where a frame leaves: on the path its receiver was heard on last; None = on all.

@@ -12,11 +12,11 @@ from itertools import compress
 from typing import Any
 
 from innervate.dialect.arith import MASK16
+from innervate.networks.mesh.live.long import Long, Maker
 from innervate.networks.mesh.live.stack import MeshStack
 from innervate.networks.mesh.protocol.constants import ALL, CONTROL, END_TO_END, OWN, PRIORITY
 from innervate.networks.mesh.protocol.messages import resolve
 from innervate.networks.mesh.protocol.neighbours import place_of
-from innervate.networks.mesh.protocol.queue import free_places
 from innervate.networks.mesh.protocol.retransmission import (
     FREE,
     SURE_AFTER,
@@ -40,10 +40,12 @@ class Turns:
 
     Args:
         stack: the router.
+        make: gives a piece of a message the handle and the item that it goes by.
     """
 
-    def __init__(self, stack: MeshStack) -> None:
+    def __init__(self, stack: MeshStack, make: Maker) -> None:
         self._stack = stack
+        self._make = make
         self._urgent: dict[int, deque[Waiting]] = {}
         self._others: dict[int, deque[Waiting]] = {}
         self._count: Counter[int] = Counter()
@@ -60,14 +62,21 @@ class Turns:
         """True if a message more may wait for this recipient."""
         return self._total < MOST or self._count[self._name(recipient)] < FEW
 
-    def put(self, handle: int, item: Any) -> None:
-        """A message waits behind others to the same recipient; urgent ones apart."""
+    def put(self, handle: int, item: Any) -> bool:
+        """A message waits behind others to the same recipient; urgent ones apart.
+
+        False = behind others, which may not go as yet.
+        """
         queues = self._urgent if item.flags & PRIORITY else self._others
         name = self._name(item.dest)
-        queues.setdefault(name, deque()).append((handle, item))
+        queue = queues.setdefault(name, deque())
+        queue.append((handle, item))
         self._count[name] += 1
         self._total += 1
+        if len(queue) > 1:
+            return False
         self._in_vain = None
+        return True
 
     def take(self) -> Waiting | None:
         """The message that goes now, None = none may."""
@@ -77,7 +86,8 @@ class Turns:
         places = Places(self._stack, self._gone, all_wait, self._most)
         for queues in (self._urgent, self._others):
             for name, queue in queues.items():
-                if places.takes(queue[0][1]):
+                item = queue[0][1]
+                if places.takes(item) and not (isinstance(item, Long) and not item.may_go()):
                     return self._pop(queues, name)
         self._in_vain = self._facts()
         return None
@@ -93,6 +103,16 @@ class Turns:
             most = self._most.get(recipient, FIRST) + 1
             self._most[recipient] = min(most, self._stack.params.kept * 3 // 4)
 
+    def drop(self, handle: int, long: Long) -> None:
+        """A message that goes in pieces has its end before all were sent, perhaps."""
+        queues, name = self._urgent if long.flags & PRIORITY else self._others, long.dest
+        queue = queues.get(name, deque())
+        if (handle, long) in queue:
+            queue.remove((handle, long))
+            self._leave(name)
+            if not queue:
+                del queues[name]
+
     def heard(self, sender: int) -> None:
         """A message of this node came: it is there."""
         if sender in self._gone:
@@ -105,15 +125,24 @@ class Turns:
 
     def _pop(self, queues: dict[int, deque[Waiting]], name: int) -> Waiting:
         queue = queues.pop(name)
-        found = queue.popleft()
+        found = queue[0]
+        long = found[1] if isinstance(found[1], Long) else None
+        if long is not None:
+            found = long.cut(self._make)
+        if long is None or long.is_cut:
+            queue.popleft()
+            self._leave(name)
         if queue:
             queues[name] = queue  # behind all others
-        self._total -= 1
         self._under_way[found[0]] = name
+        return found
+
+    def _leave(self, name: int) -> None:
+        """One fewer waits for a recipient."""
+        self._total -= 1
         self._count[name] -= 1
         if not self._count[name]:
             del self._count[name]
-        return found
 
     def _name(self, recipient: int) -> int:
         """One queue for all names of a recipient, so that its messages keep their order."""
@@ -123,7 +152,7 @@ class Turns:
     def _facts(self) -> Any:
         """What the answer depends on, but for what can only make it a no."""
         node = self._stack.node
-        queue = free_places(node)
+        queue = node.q_state.count(FREE)
         room = (queue > OWN, queue > CONTROL, node.gateway)
         suspects = (*node.neighbour, *node.suspect) if self._gone else ()
         return (*room, *suspects, *node.wait_kind, *node.wait_dest, *node.wait_seq,
@@ -147,13 +176,11 @@ class Places:
         self._node = node
         self._gone = gone
         self._params = stack.params
-        self._queue = free_places(node)
+        self._queue = node.q_state.count(FREE)
         self._most = most
         self._free = node.wait_kind.count(FREE)
         self._held = Counter(compress(node.wait_dest, node.wait_kind))
-        silent = [self._held[dest] for dest in self._held if self._is_silent(dest)]
-        self._silent = sum(silent)
-        self._all_held_up = all_wait and bool(is_ahead(node, ALL))
+        self._all_wait = all_wait
 
     def takes(self, item: Any) -> bool:
         """True if the router has a place for a message, with all others in mind."""
@@ -172,7 +199,8 @@ class Places:
             return False
         if not self._is_silent(dest):
             return True
-        return self._silent < SILENT + urgent and not self._all_held_up
+        silent = sum(self._held[other] for other in self._held if self._is_silent(other))
+        return silent < SILENT + urgent and not (self._all_wait and is_ahead(node, ALL))
 
     def _share(self, dest: int) -> int:
         """How many places a recipient may have now: half while a message is sent to it again."""

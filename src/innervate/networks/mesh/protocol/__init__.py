@@ -203,7 +203,8 @@ Frames
 |                 |                              | alternate, recipients)                          |
 | `TABLE_ACK = 4` | up                           | epoch, version, parts that are there            |
 | `ACTIVATE = 5`  | flooded                      | epoch, version; with `activation` only          |
-| `DATA = 8`      | routed or flooded            | the user's, at most `DATA_MAX = 90` bytes       |
+| `DATA = 8`      | routed or flooded            | the user's, at most `DATA_MAX = 90` bytes; 1163 |
+|                 |                              | at an MTU of 1200                               |
 | `E2E_ACK = 9`   | routed                       | the number of the packet                        |
 | `ALARM = 10`    | routed and flooded           | `ALARM_BYTES = 16`                              |
 | `POSITION = 11` | one hop; with `watch` routed | `POSITION_BYTES = 8`; `SAID_OUT = 1`,           |
@@ -252,8 +253,8 @@ Constants and settings
 |------------------------------------------------|-------------------------------------------------|
 | `PATH_MAX = 24`, `TTL = 48`                    | A9: a path bounds a packet; a search goes back  |
 |                                                | over it                                         |
-| `HEADER_BYTES = 11`, `CRC_BYTES = 2`,          | [mesh 2]; `mtu` 64 or 127                       |
-| `BODY = 114`                                   |                                                 |
+| `HEADER_BYTES = 11`, `CRC_BYTES = 2`,          | [mesh 2]; `mtu` 64 or `MTU = 127`, on IP links  |
+| `MTU_MAX = 1200`, `BODY = 114`                 | up to 1200: then records have more room         |
 | `NEIGHBOURS = 32`, `QUEUE = 8`, `WAITING = 8`  | memory: 4 KB a node (decision 0015)             |
 | `SMALL = 64`                                   | larger networks keep all that they hear         |
 | `queue`, `kept`, `PLACES_MAX = 64`             | places of both where memory is no matter        |

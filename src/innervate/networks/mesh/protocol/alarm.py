@@ -7,9 +7,7 @@ from innervate.networks.mesh.protocol.constants import (
     ALARM,
     ALARMS,
     ALL,
-    BODY,
     CROSS,
-    DATA_MAX,
     END_TO_END,
     FLOOD,
     MONITOR,
@@ -79,7 +77,7 @@ def raise_alarm(node, params, now, kind, robot, x, y, vx, vy, out):
     if i < 0:
         return 0
     note_alarm(node, kind, robot, gap, out)
-    write_alarm(node.q_body, i * BODY, node, params, now, kind, robot, x, y, vx, vy, gap)
+    write_alarm(node.q_body, i * node.q_room, node, params, now, kind, robot, x, y, vx, vy, gap)
     node.q_length[i] = ALARM_BYTES
     w = alarm_buffer(node, out)
     buffer_sent(node, params, now, w, i, robot, out)
@@ -139,7 +137,7 @@ def flood(node, params, now, w, instance, out):
     node.q_ttl[i] = instance
     node.q_copies[i] = 2
     for k in range(node.wait_length[w]):
-        add8(node, i, node.wait_body[w * DATA_MAX + k])
+        add8(node, i, node.wait_body[w * node.wait_room + k])
     add_hop(node, i)
     record_flood(node, node.number, node.wait_seq[w], FLOODED, instance)
 
@@ -147,7 +145,7 @@ def flood(node, params, now, w, instance, out):
 def flood_again(node, params, now, w, out):
     """The kept alarm w was not acknowledged in time: another instance of the flood."""
     instance = node.wait_tries[w] - 1 + (params.flood == 2)
-    body = w * DATA_MAX
+    body = w * node.wait_room
     if params.flood == 1 and node.wait_body[body + 3] == CROSS:
         instance = instance + 1
     if params.flood and 0 < instance <= params.instances:
@@ -202,12 +200,12 @@ def tell_monitor(node, params, now, kind, robot, x, y, vx, vy, gap, out):
 def is_telling(node):
     """1 if an alarm of ours, about ourselves, still waits for the monitor."""
     for w in range(node.kept):
-        if node.wait_kind[w] == ALARM and node.wait_body[w * DATA_MAX] == node.number:
+        if node.wait_kind[w] == ALARM and node.wait_body[w * node.wait_room] == node.number:
             return 1
     return 0
 
 
 def clear_raised(node, w):
     """The alarm that was kept in place w was given up: a witness raises it anew if it must."""
-    robot = node.wait_body[w * DATA_MAX]
+    robot = node.wait_body[w * node.wait_room]
     node.raised[robot] = node.raised[robot] & ~RAISED_OUT

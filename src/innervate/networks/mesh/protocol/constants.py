@@ -37,8 +37,10 @@ HEADER_BYTES = 11
 CRC_BYTES = 2
 ACK_BYTES = 9
 ACK_MORE_BYTES = 3  # for every packet after the first: whose, and its number
-DATA_MAX = 90  # most payload of a message; 27 at MTU 64
-BODY = 114  # room for a payload in a record: MTU 127 less header, path of one, CRC
+MTU = 127  # bytes of a frame, where a node is not told of more ...
+MTU_MAX = 1200  # ... as one on IP links may be
+DATA_MAX = 90  # most payload of a message at MTU 127; 27 at 64, 1163 at 1200
+BODY = 114  # room for a payload in a record at MTU 127: without header and CRC
 
 # Inputs; item.kind is not looked at.
 MESSAGE = 1  # item: send_message (see mesh_fields.ITEM)

@@ -4,7 +4,15 @@ Arrays over nodes are as long as a capacity class has nodes (32, 64 or 254): `no
 give the declarations of a class. Columns as in the skin's.
 """
 
-from innervate.networks.mesh.protocol.constants import BODY, DATA_MAX, PATH_MAX
+from innervate.networks.mesh.protocol.constants import (
+    BODY,
+    CRC_BYTES,
+    DATA_MAX,
+    HEADER_BYTES,
+    MTU,
+    MTU_MAX,
+    PATH_MAX,
+)
 
 TIME = 1073741823
 NEIGHBOURS = 32  # in a network of up to SMALL nodes; hubs of larger ones hear more than a hundred
@@ -19,7 +27,21 @@ WINDOW_WORDS = 5
 ADJACENCY_WORDS = 17  # of 15 bits: 254 nodes
 POINTS = 48  # corners of a fence, holes included
 
-FRAME = (
+
+def room(mtu):
+    """Bytes of a payload that a frame's record and a place of the queue hold."""
+    return max(BODY, mtu - HEADER_BYTES - CRC_BYTES)
+
+
+def wait_room(mtu):
+    """Bytes of a message that is kept."""
+    return max(DATA_MAX, mtu - HEADER_BYTES - CRC_BYTES - PATH_MAX)
+
+
+ROOM_MAX = room(MTU_MAX)
+WAIT_ROOM_MAX = wait_room(MTU_MAX)
+
+FRAME_HEAD = (
     ("kind", 0, 0, 63, "type", "type of the packet"),
     ("flags", 0, 0, 255, "flags", "see constants.py"),
     ("link_src", 0, 0, 255, "node", "transmitter of this hop"),
@@ -31,24 +53,49 @@ FRAME = (
     ("ttl", 0, 0, 255, "hops", "transmissions left; alarm floods: the instance"),
     ("path_len", 0, 0, PATH_MAX, "nodes", "how many in path"),
     ("path", PATH_MAX, 0, 255, "node", "every transmitter so far, the origin first"),
-    ("length", 0, 0, BODY, "bytes", "of the payload"),
-    ("body", BODY, 0, 255, "byte", "the payload, as on the wire"),
-    ("rssi", 0, -128, 127, "dBm", "as received; set by the driver; in an ACK: as our frame was"),
 )
+RSSI = ("rssi", 0, -128, 127, "dBm", "as received; set by the driver; in an ACK: as our frame was")
 
-ITEM = (
+
+def frame(mtu):
+    """Fields of a frame of so many bytes at most."""
+    most = room(mtu)
+    return (
+        *FRAME_HEAD,
+        ("length", 0, 0, most, "bytes", "of the payload"),
+        ("body", most, 0, 255, "byte", "the payload, as on the wire"),
+        RSSI,
+    )
+
+
+FRAME = frame(MTU)
+
+ITEM_HEAD = (
     ("handle", 0, 0, 65535, "number", "its owner's name for the message; SENT: which frame"),
     ("ok", 0, 0, 1, "flag", "SENT: 1 = on the air, 0 = the channel stayed busy"),
     ("dest", 0, 0, 255, "node", "recipient; 255 all, 254 the monitor"),
     ("flags", 0, 0, 255, "flags", "END_TO_END, PRIORITY"),
-    ("length", 0, 0, DATA_MAX, "bytes", "of the payload"),
-    ("body", DATA_MAX, 0, 255, "byte", "the payload"),
+)
+ITEM_PLACE = (
     ("x", 0, -32768, 32767, "unit", "position in fence.unit_cm"),
     ("y", 0, -32768, 32767, "unit", "position in fence.unit_cm"),
     ("vx", 0, -127, 127, "2 cm/s", "speed"),
     ("vy", 0, -127, 127, "2 cm/s", "speed"),
 )
 
+
+def item(mtu):
+    """Fields of what a user hands down, where a frame has so many bytes at most."""
+    most = wait_room(mtu)
+    return (
+        *ITEM_HEAD,
+        ("length", 0, 0, most, "bytes", "of the payload"),
+        ("body", most, 0, 255, "byte", "the payload"),
+        *ITEM_PLACE,
+    )
+
+
+ITEM = item(MTU)
 
 # What an action of a node's outbox has (dialect/outbox.py).
 ACTION = (
@@ -64,11 +111,11 @@ def places(n):
     return min(n, NEIGHBOURS) if n <= SMALL else n
 
 
-def node(n, queue=QUEUE, kept=WAITING):
+def node(n, queue=QUEUE, kept=WAITING, mtu=MTU):
     """Fields of a node in a network of up to n nodes, that queues and keeps so many packets."""
     k = places(n)
-    near, far = neighbours(k) + links(k), tables(n) + packets(n, kept)
-    return OWN + near + far + WATCH + watched(n) + queued(queue)
+    near, far = neighbours(k) + links(k), tables(n) + packets(n, kept, mtu)
+    return OWN + near + far + WATCH + watched(n) + queued(queue, mtu)
 
 
 OWN = (
@@ -164,8 +211,9 @@ def words(n):
     return (n + 14) // 15
 
 
-def packets(n, kept=WAITING):
+def packets(n, kept=WAITING, mtu=MTU):
     """What is remembered of packets."""
+    most = wait_room(mtu)
     return (
         ("newest", n, 0, 65535, "number", "per origin: newest seq delivered"),
         ("window", n * WINDOW_WORDS, 0, 32767, "bits", "per origin: which behind it were"),
@@ -195,8 +243,9 @@ def packets(n, kept=WAITING):
         ("wait_sent", kept, 0, TIME, "us", "... when it was sent last"),
         ("wait_handle", kept, 0, 65535, "number", "... its owner's name"),
         ("wait_hop", kept, 0, 1, "flag", "... its owner was told that it has left"),
-        ("wait_length", kept, 0, DATA_MAX, "bytes", "... payload"),
-        ("wait_body", kept * DATA_MAX, 0, 255, "byte", "... payload"),
+        ("wait_length", kept, 0, most, "bytes", "... payload"),
+        ("wait_body", kept * most, 0, 255, "byte", "... payload"),
+        ("wait_room", 0, DATA_MAX, WAIT_ROOM_MAX, "bytes", "... each has in wait_body"),
     )
 
 
@@ -220,8 +269,9 @@ def watched(n):
     )
 
 
-def queued(places):
+def queued(places, mtu=MTU):
     """Frames that wait to be sent, or for their hop's ack; not counted as state of a node."""
+    most = room(mtu)
     return (
         ("q_state", places, 0, 3, "state", "0 free, 1 waits, 2 handed down, 3 waits for its ack"),
         ("q_rank", places, 0, 3, "priority", "0 alarm, 1 control, 2 data"),
@@ -245,8 +295,9 @@ def queued(places):
         ("q_ttl", places, 0, 255, "hops", "the frame"),
         ("q_path_len", places, 0, PATH_MAX, "nodes", "the frame"),
         ("q_path", places * PATH_MAX, 0, 255, "node", "the frame"),
-        ("q_length", places, 0, BODY, "bytes", "the frame"),
-        ("q_body", places * BODY, 0, 255, "byte", "the frame"),
+        ("q_length", places, 0, most, "bytes", "the frame"),
+        ("q_body", places * most, 0, 255, "byte", "the frame"),
+        ("q_room", 0, BODY, ROOM_MAX, "bytes", "each has in q_body"),
         ("q_next", 0, 0, TIME, "number", "order of the next one"),
         ("busy", 0, -1, PLACES_MAX - 1, "place", "handed down, or waits for its ack; -1 none"),
     )
@@ -294,7 +345,7 @@ PARAMS = (
     ("row", 0, 1, 17, "words", "of an adjacency row in this capacity class"),
     ("places", 0, 1, 254, "neighbours", "in the neighbour table of this class"),
     ("width", 0, 1, 254, "nodes", "the capacity class"),
-    ("mtu", 0, 64, 127, "bytes", "a whole frame"),
+    ("mtu", 0, 64, MTU_MAX, "bytes", "a whole frame"),
     ("mode", 0, 0, 2, "mode", "0 tables, 1 whole graph, 2 table-free"),
     ("discovery", 0, 1, 3, "reading", "1 tree, 2 each, 3 list"),
     ("failover", 0, 0, 3, "reading", "0 random, 1 loudest, 2 alternate, 3 alternates then search"),

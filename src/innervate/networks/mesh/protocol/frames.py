@@ -5,7 +5,6 @@ from innervate.networks.mesh.protocol.constants import (
     ACK_BYTES,
     ALARM,
     ALL,
-    BODY,
     CRC_BYTES,
     DATA,
     E2E_ACK,
@@ -131,7 +130,7 @@ def store(node, i, frame):
     for k in range(frame.path_len):
         node.q_path[i * PATH_MAX + k] = frame.path[k]
     for k in range(frame.length):
-        node.q_body[i * BODY + k] = frame.body[k]
+        node.q_body[i * node.q_room + k] = frame.body[k]
 
 
 def load(node, i, frame):
@@ -151,12 +150,12 @@ def load(node, i, frame):
     for k in range(node.q_path_len[i]):
         frame.path[k] = node.q_path[i * PATH_MAX + k]
     for k in range(node.q_length[i]):
-        frame.body[k] = node.q_body[i * BODY + k]
+        frame.body[k] = node.q_body[i * node.q_room + k]
 
 
 def add8(node, i, value):
     """A byte more to the payload of place i."""
-    node.q_body[i * BODY + node.q_length[i]] = value & 255
+    node.q_body[i * node.q_room + node.q_length[i]] = value & 255
     node.q_length[i] = node.q_length[i] + 1
 
 

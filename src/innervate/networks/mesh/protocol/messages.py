@@ -9,7 +9,6 @@ from innervate.networks.mesh.protocol.constants import (
     CONTROL,
     CRC_BYTES,
     DATA,
-    DATA_MAX,
     DETOURED,
     E2E_ACK,
     END_TO_END,
@@ -57,7 +56,7 @@ def resolve(node, params, dest):
 
 def payload_limit(params):
     """Most bytes of a message [mesh 1]."""
-    return min(DATA_MAX, params.mtu - HEADER_BYTES - CRC_BYTES - PATH_MAX)
+    return params.mtu - HEADER_BYTES - CRC_BYTES - PATH_MAX
 
 
 def first_flag(node, params, dest):

@@ -25,13 +25,17 @@ from innervate.networks.mesh.protocol.constants import (
     ACTIVATE,
     ALARM,
     ALL,
+    BODY,
     CONTROL,
+    CRC_BYTES,
     DATA,
+    DATA_MAX,
     DETOURED,
     E2E_ACK,
     FLOOD,
     GRAPH,
     HANDED_UP,
+    HEADER_BYTES,
     JOBS,
     MESSAGE,
     POSITION,
@@ -58,7 +62,12 @@ from innervate.networks.mesh.protocol.frames import clear_queue, get16, is_route
 from innervate.networks.mesh.protocol.gateway import collect, lead, on_response, reset, tick
 from innervate.networks.mesh.protocol.hop import learn_late, learn_trip, widen
 from innervate.networks.mesh.protocol.jobs import on_ack, retry_jobs
-from innervate.networks.mesh.protocol.messages import on_handed_up, on_message, take
+from innervate.networks.mesh.protocol.messages import (
+    on_handed_up,
+    on_message,
+    payload_limit,
+    take,
+)
 from innervate.networks.mesh.protocol.neighbours import clear_neighbours, hear, hear_again, sweep
 from innervate.networks.mesh.protocol.overheard import drop_overheard
 from innervate.networks.mesh.protocol.queue import (
@@ -92,6 +101,8 @@ def on_start(node, gate, params, now, cause, out):
     """Switch on: nothing known. A gateway begins at once, one that had been on waits first."""
     node.places = params.queue
     node.kept = params.kept
+    node.q_room = max(BODY, params.mtu - HEADER_BYTES - CRC_BYTES)
+    node.wait_room = max(DATA_MAX, payload_limit(params))
     node.seq = draw(node, 65_536)
     node.ticks = 0
     node.tick_at = now

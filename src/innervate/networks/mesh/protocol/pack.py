@@ -1,6 +1,6 @@
 """Routing tables as bytes: groups of recipients with one next hop and alternate [mesh 2]."""
 
-from innervate.networks.mesh.protocol.constants import BODY, CRC_BYTES, HEADER_BYTES
+from innervate.networks.mesh.protocol.constants import CRC_BYTES, HEADER_BYTES
 from innervate.networks.mesh.protocol.frames import add8
 from innervate.networks.mesh.protocol.paths import NONE, hops, list_near
 from innervate.networks.mesh.protocol.table import GROUP_BYTES, PART_HEAD
@@ -56,4 +56,4 @@ def pack(node, gate, params, s, room, wanted, i):
 
 def set_count(node, i, at, count):
     """The group that begins its recipients behind byte `at` has so many."""
-    node.q_body[i * BODY + at] = count
+    node.q_body[i * node.q_room + at] = count

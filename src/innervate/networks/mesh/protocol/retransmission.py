@@ -6,11 +6,9 @@ from innervate.networks.mesh.protocol.constants import (
     ALARM,
     ALARMS,
     ALL,
-    BODY,
     CONTROL,
     CROSS,
     DATA,
-    DATA_MAX,
     MESSAGES,
     NO_ACK,
     NO_ROUTE,
@@ -71,7 +69,7 @@ def buffer_sent(node, params, now, w, i, handle, out):
     node.wait_handle[w] = handle
     node.wait_length[w] = node.q_length[i]
     for k in range(node.q_length[i]):
-        node.wait_body[w * DATA_MAX + k] = node.q_body[i * BODY + k]
+        node.wait_body[w * node.wait_room + k] = node.q_body[i * node.q_room + k]
     arm_retry(node, now, out)
 
 
@@ -90,7 +88,7 @@ def buffer_unsent(node, params, now, w, item, dest, flags, out):
     node.wait_handle[w] = item.handle
     node.wait_length[w] = item.length
     for k in range(item.length):
-        node.wait_body[w * DATA_MAX + k] = item.body[k]
+        node.wait_body[w * node.wait_room + k] = item.body[k]
     report(out, REPORT_ACCEPTED, item.handle, node.seq)
     arm_retry(node, now, out)
 
@@ -216,14 +214,14 @@ def retransmit(node, params, now, w, out):
         node.seq = (node.seq - 1) & 65_535  # it keeps its number
         node.q_seq[i] = node.wait_seq[w]
         for k in range(node.wait_length[w]):
-            add8(node, i, node.wait_body[w * DATA_MAX + k])
+            add8(node, i, node.wait_body[w * node.wait_room + k])
         send_buffered(node, params, now, i, w, node.wait_handle[w], out)
     return 1
 
 
 def get_before(node, w):
     """The number of the message before the ORDERED one in place w; its own = there is none."""
-    return node.wait_body[w * DATA_MAX] << 8 | node.wait_body[w * DATA_MAX + 1]
+    return node.wait_body[w * node.wait_room] << 8 | node.wait_body[w * node.wait_room + 1]
 
 
 def pass_over(node, w, before, due):
@@ -239,8 +237,8 @@ def pass_over(node, w, before, due):
         if v != w and node.wait_kind[v] == DATA and node.wait_dest[v] == node.wait_dest[w]:
             if node.wait_flags[v] & ORDERED and get_before(node, v) == seq:
                 found = node.wait_seq[v] if before == seq else before
-                node.wait_body[v * DATA_MAX] = found >> 8
-                node.wait_body[v * DATA_MAX + 1] = found & 255
+                node.wait_body[v * node.wait_room] = found >> 8
+                node.wait_body[v * node.wait_room + 1] = found & 255
                 if due >= 0:
                     node.wait_tries[v] = min(node.wait_tries[v], 1)
                     node.wait_due[v] = due
@@ -292,7 +290,7 @@ def advance_retries(node, params, now, dest, out):
 
 def is_own_crossing(node, w):
     """1 if the message kept in place w is our alarm that we are outside ourselves."""
-    body = w * DATA_MAX
+    body = w * node.wait_room
     if node.wait_kind[w] != ALARM or node.wait_body[body] != node.number:
         return 0
     return node.wait_body[body + 3] == CROSS

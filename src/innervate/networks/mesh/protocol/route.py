@@ -3,7 +3,6 @@
 from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.constants import (
     ALTERNATE,
-    BODY,
     CRC_BYTES,
     DETOURED,
     HEADER_BYTES,
@@ -205,8 +204,8 @@ def choose_by_route(node, params, i):
         if not node.leading:
             return uplink(node, params, i)
         plan_route(node, params, i)
-    if node.q_flags[i] & SOURCE_ROUTE and node.q_body[i * BODY] > 0:
-        return node.q_body[i * BODY + 1]
+    if node.q_flags[i] & SOURCE_ROUTE and node.q_body[i * node.q_room] > 0:
+        return node.q_body[i * node.q_room + 1]
     return NOBODY
 
 
@@ -224,12 +223,12 @@ def plan_route(node, params, i):
     if length + count + 1 > room_of(node, params, i):
         return
     for k in range(length):
-        at = i * BODY + length - 1 - k
+        at = i * node.q_room + length - 1 - k
         node.q_body[at + count + 1] = node.q_body[at]
-    node.q_body[i * BODY] = count
+    node.q_body[i * node.q_room] = count
     at = first
     for k in range(count):
-        node.q_body[i * BODY + 1 + k] = at
+        node.q_body[i * node.q_room + 1 + k] = at
         at = downhill(node, params, at)
     node.q_length[i] = length + count + 1
     node.q_flags[i] = node.q_flags[i] | SOURCE_ROUTE
@@ -275,20 +274,20 @@ def rewrite(node, params, i, failed):
 def strip_route(node, i):
     """Take the source route out of the packet in place i."""
     if node.q_flags[i] & SOURCE_ROUTE:
-        count = node.q_body[i * BODY] + 1
+        count = node.q_body[i * node.q_room] + 1
         for k in range(node.q_length[i] - count):
-            node.q_body[i * BODY + k] = node.q_body[i * BODY + k + count]
+            node.q_body[i * node.q_room + k] = node.q_body[i * node.q_room + k + count]
         node.q_length[i] = node.q_length[i] - count
         node.q_flags[i] = node.q_flags[i] & ~SOURCE_ROUTE
 
 
 def advance_route(node, i):
     """The first node of the source route is the next hop: it is no longer in it."""
-    if node.q_flags[i] & SOURCE_ROUTE and node.q_body[i * BODY] > 0:
-        count = node.q_body[i * BODY]
-        node.q_body[i * BODY] = count - 1
+    if node.q_flags[i] & SOURCE_ROUTE and node.q_body[i * node.q_room] > 0:
+        count = node.q_body[i * node.q_room]
+        node.q_body[i * node.q_room] = count - 1
         for k in range(1, node.q_length[i] - 1):
-            node.q_body[i * BODY + k] = node.q_body[i * BODY + k + 1]
+            node.q_body[i * node.q_room + k] = node.q_body[i * node.q_room + k + 1]
         node.q_length[i] = node.q_length[i] - 1
 
 

@@ -3,7 +3,7 @@
 Packets carry the nodes that failed on their way: the payload ends with them, then their number.
 """
 
-from innervate.networks.mesh.protocol.constants import BODY, DETOURED
+from innervate.networks.mesh.protocol.constants import DETOURED
 from innervate.networks.mesh.protocol.frames import add8, was_at
 from innervate.networks.mesh.protocol.neighbours import is_suspect
 
@@ -30,14 +30,14 @@ def failed_count(node, i):
     """How many failed nodes the packet in place i carries."""
     if node.q_flags[i] & DETOURED == 0 or node.q_length[i] == 0:
         return 0
-    count = node.q_body[i * BODY + node.q_length[i] - 1]
+    count = node.q_body[i * node.q_room + node.q_length[i] - 1]
     return min(count, node.q_length[i] - 1)
 
 
 def has_failed(node, i, who):
     """1 if the packet in place i says that `who` failed."""
     count = failed_count(node, i)
-    first = i * BODY + node.q_length[i] - 1 - count
+    first = i * node.q_room + node.q_length[i] - 1 - count
     for k in range(count):
         if node.q_body[first + k] == who:
             return 1

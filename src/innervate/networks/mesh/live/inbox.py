@@ -1,0 +1,116 @@
+"""What comes in for a node's user: messages, pieces put together, in order where asked for."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import Counter
+from collections.abc import Callable
+from typing import Any
+
+from innervate.live.engine import clock_us
+from innervate.live.streams import Arrivals
+from innervate.networks.mesh.live.order import BEFORE_BYTES, Message, Orderly
+from innervate.networks.mesh.live.pieces import Piece, Pieces, read_piece
+from innervate.networks.mesh.protocol.constants import ALL, ORDERED
+
+
+class Inbox:
+    """Messages that came, until they are handed up.
+
+    Args:
+        orderly: puts them in order.
+        acknowledge: is told sender and number of each that may be acknowledged.
+        outcomes: how many came is counted here, by words.
+
+    Attributes:
+        arrivals: hands up messages as they come.
+    """
+
+    def __init__(
+        self, orderly: Orderly, acknowledge: Callable[[int, int], None], outcomes: Counter[str]
+    ) -> None:
+        self.arrivals: Arrivals[tuple[int, bytes]] = Arrivals(is_spread=True)
+        self.orderly = orderly
+        self.orderly.on_up = acknowledge
+        self.outcomes = outcomes
+        self.pieces = Pieces()
+        self._acknowledge = acknowledge
+        self._came: list[tuple[Message, Piece | None, bool]] = []  # True = it came before
+        self._sweep: asyncio.TimerHandle | None = None
+
+    def note(self, frame: Any, is_again: bool) -> None:
+        """A message, or a piece of one, came; the record is used again."""
+        body, before = bytes(frame.body[: frame.length]), None
+        piece = None
+        if frame.flags & ORDERED and frame.dest != ALL and len(body) >= BEFORE_BYTES:
+            piece = read_piece(frame.seq, body)
+            before = int.from_bytes(body[:BEFORE_BYTES], "big")
+            body = body[BEFORE_BYTES:]
+        if not is_again:
+            self.outcomes["messages received" if piece is None else "pieces received"] += 1
+        message = Message(frame.origin, frame.seq, before, body)
+        self._came.append((message, piece, is_again))
+
+    def put_own(self, number: int, payload: bytes) -> None:
+        """A long message of this node to itself."""
+        self._came.append((Message(number, 0, None, payload), None, False))
+        self.outcomes["messages received"] += 1
+        self.hand_up()
+
+    def counters(self) -> Counter[str]:
+        """What came after its turn, and messages that never became whole."""
+        never = self.pieces.forgotten
+        lost = Counter({"messages never whole": never} if never else {})
+        return lost + self.orderly.counters()
+
+    def hand_up(self) -> None:
+        """Call the user with all that came, and with what is whole now."""
+        came, self._came = self._came, []
+        for message, piece, is_again in came:
+            if piece is not None:
+                self._put(message, piece)
+            elif is_again:
+                self.orderly.again(message)
+            else:
+                self._up(message)
+
+    def held(self) -> dict[str, int]:
+        """Messages of which pieces are here, and their bytes."""
+        return {"messages": len(self.pieces), "bytes": self.pieces.held}
+
+    def stop(self) -> None:
+        """Nothing is waited for any more."""
+        if self._sweep is not None:
+            self._sweep.cancel()
+            self._sweep = None
+        self.orderly.stop()
+
+    def _put(self, message: Message, piece: Piece) -> None:
+        sender, seq = message.sender, message.seq
+        is_kept, whole = self.pieces.take(sender, piece, clock_us())
+        self._arm()
+        ordered = seq if piece.in_order and piece.is_last else None
+        if whole is not None:
+            self.outcomes["messages received"] += 1
+            self._up(Message(sender, seq, ordered, whole))
+            if ordered is None:
+                self._acknowledge(sender, seq)
+        elif is_kept and ordered is None:
+            self._acknowledge(sender, seq)
+        elif is_kept:  # it came before, and may have been too late for its turn
+            self.orderly.again(Message(sender, seq, ordered, b""))
+
+    def _up(self, message: Message) -> None:
+        self.arrivals.put((message.sender, message.payload))
+        self.arrivals.hand_up()
+        self.orderly.take(message)
+
+    def _arm(self) -> None:
+        if self._sweep is None and len(self.pieces):
+            wait_s = (self.pieces.due() - clock_us()) / 1e6
+            self._sweep = asyncio.get_running_loop().call_later(wait_s, self._forget)
+
+    def _forget(self) -> None:
+        self._sweep = None
+        self.pieces.forget(clock_us())
+        self._arm()

@@ -1,0 +1,124 @@
+"""Messages that are longer than a frame, at their sender: cut into pieces as those go.
+
+A piece is a packet as any other: it has its turn, is tried again, and is acknowledged. The last one
+goes when all others are acknowledged, and when those before the message that are in order have
+their end; what becomes of it becomes of the message.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+from typing import Any
+
+from innervate.dialect.arith import MASK16
+from innervate.live.receipts import ACCEPTED, DELIVERED, EXPIRED, FINAL, HOP_ACKED, Receipt
+from innervate.networks.mesh.live.chains import Chains
+from innervate.networks.mesh.live.pieces import HEAD_BYTES, SIZE_MAX
+from innervate.networks.mesh.payloads import PIECE_AHEAD, PIECE_STRUCT
+
+WAITING_MAX = 64 * SIZE_MAX  # bytes of all long messages of a node that have no end yet
+
+
+# Takes the receipt of a piece; the handle and the item that it goes by.
+Maker = Callable[["PieceReceipt"], tuple[int, Any]]
+
+
+class Long:
+    """A message that goes in pieces; to those who give out turns it is an item as any other.
+
+    Args:
+        dest: its recipient, known by its own number.
+        flags: of its packets.
+        payload: what it says.
+        room: bytes of a packet's payload.
+        chains: those in order that have no end yet, where it has its turn among them; else None.
+
+    Attributes:
+        receipt: the user's.
+        on_end: is told its state and why, once.
+    """
+
+    def __init__(
+        self, dest: int, flags: int, payload: bytes, room: int, chains: Chains | None
+    ) -> None:
+        self.dest, self.flags, self.payload = dest, flags, payload
+        self.in_order = chains is not None
+        self.receipt = Receipt()
+        self.on_end: Callable[[str, str], None] = _nobody
+        self._chains = chains
+        self._room = room - HEAD_BYTES
+        self._at = 0  # where the next piece begins
+        self._message = -1  # the number of the first packet
+        self._under_way = 0
+
+    @property
+    def is_cut(self) -> bool:
+        """True if no piece is left to be sent."""
+        return self._at == len(self.payload)
+
+    @property
+    def is_ending(self) -> bool:
+        """True if the next piece is the last."""
+        return self._at + self._room >= len(self.payload)
+
+    def may_go(self) -> bool:
+        """True if the next piece may be sent."""
+        if not self.is_ending:
+            return True
+        return not self._under_way and not (self._chains and self._chains.is_open(self.dest))
+
+    def cut(self, make: Maker) -> tuple[int, Any]:
+        """The next piece, its head still to be written: its handle, and the item that goes."""
+        receipt = PieceReceipt(self, self._at, self.is_ending)
+        data = self.payload[self._at : self._at + self._room]
+        self._at += len(data)
+        self._under_way += 1
+        handle, item = make(receipt)
+        item.dest, item.flags = self.dest, self.flags
+        item.body = [*bytes(HEAD_BYTES), *data]
+        item.length = len(item.body)
+        return handle, item
+
+    def head(self, at: int, seq: int) -> bytes:
+        """What stands in front of the piece that begins at `at` and goes out as packet `seq`."""
+        if self._message < 0:
+            self._message = seq
+        mark, size = (seq + PIECE_AHEAD) & MASK16, len(self.payload) - 1
+        return struct.pack(PIECE_STRUCT, mark, self._message, int(self.in_order), at, size)
+
+    def told(self, piece: PieceReceipt, state: str, reason: str) -> None:
+        """What became of a piece."""
+        self.receipt.seq = piece.seq
+        if state == HOP_ACKED and self.receipt.state == ACCEPTED:
+            self.receipt.move(HOP_ACKED)
+        if state not in FINAL or self.receipt.state in FINAL:
+            return
+        self._under_way -= 1
+        if state != DELIVERED:
+            self.on_end(EXPIRED, reason)
+        elif piece.is_last:
+            self.on_end(DELIVERED, "")
+
+
+class PieceReceipt(Receipt):
+    """What becomes of a piece: its message hears of it.
+
+    Attributes:
+        long: the message.
+        at: where the piece begins.
+        is_last: it is sent when all others are acknowledged.
+    """
+
+    def __init__(self, long: Long, at: int, is_last: bool) -> None:
+        super().__init__()
+        self.long, self.at, self.is_last = long, at, is_last
+
+    def move(self, state: str, reason: str = "") -> None:
+        """Its state changes."""
+        super().move(state, reason)
+        self.long.told(self, state, reason)
+
+
+def _nobody(state: str, reason: str) -> None:
+    """Nobody wants to know as yet."""

@@ -1,0 +1,216 @@
+"""Messages of a node's user, until each has its end: handed to the router as it has room."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from innervate.dialect.arith import MASK16
+from innervate.live.receipts import DELIVERED, EXPIRED, HOP_ACKED, REFUSED, Receipt
+from innervate.networks.mesh.live.chains import Chains
+from innervate.networks.mesh.live.long import WAITING_MAX, Long, PieceReceipt
+from innervate.networks.mesh.live.order import BEFORE_BYTES
+from innervate.networks.mesh.live.pieces import SIZE_MAX
+from innervate.networks.mesh.live.stack import MeshStack
+from innervate.networks.mesh.live.turns import Turns
+from innervate.networks.mesh.protocol.constants import (
+    ALL,
+    END_TO_END,
+    IDS,
+    NO_ACK,
+    NO_ROUTE,
+    ORDERED,
+    REPORT_ACCEPTED,
+    REPORT_ARRIVED,
+    REPORT_EXPIRED,
+    REPORT_HOP,
+)
+from innervate.networks.mesh.protocol.messages import payload_limit, resolve
+
+HANDLES = 65_536
+IN_VAIN = (NO_ROUTE, NO_ACK)
+REASONS = {1: "no route", 2: "no acknowledgement", 3: "path full", 4: "no room"}
+
+
+class Outgoing:
+    """Messages on their way.
+
+    Args:
+        stack: the router.
+        hand_down: gives it a message.
+        hand_up: takes a long message to ourselves: our number, and what it says.
+        outcomes: what became of them is counted here, by words.
+
+    Attributes:
+        turns: those that wait for a place in the router.
+        receipts: by the router's name for them; pieces of long ones have their own.
+    """
+
+    def __init__(
+        self,
+        stack: MeshStack,
+        hand_down: Callable[[Any], None],
+        hand_up: Callable[[int, bytes], None],
+        outcomes: Counter[str],
+    ) -> None:
+        self._stack = stack
+        self._hand_down, self._hand_up = hand_down, hand_up
+        self.turns = Turns(stack, self._new_item)
+        self.receipts: dict[int, Receipt] = {}
+        self._outcomes = outcomes
+        self._chains = Chains()
+        self._handle = 0
+        self._long_bytes = 0  # of long messages
+        self._feeding = False
+
+    def check(self, recipient: int, flags: int, size: int) -> int:
+        """Refuse what is too long; how many bytes fit into one frame.
+
+        Raises:
+            ValueError: it is too long for pieces, or nobody would acknowledge them.
+        """
+        params = self._stack.params
+        most: int = payload_limit(params) - (BEFORE_BYTES if flags & ORDERED else 0)
+        if size <= most:
+            return most
+        if recipient == ALL or not (flags & END_TO_END and params.reliable):
+            who = "to all" if recipient == ALL else "that is not reliable"
+            raise ValueError(f"payload of {size} bytes; a message {who} holds at most {most}")
+        if size > SIZE_MAX:
+            raise ValueError(f"payload of {size} bytes; a message holds at most {SIZE_MAX}")
+        return most
+
+    def send(self, recipient: int, flags: int, payload: bytes, most: int) -> Receipt:
+        """A message goes when it has its turn, in pieces if it has more than `most` bytes."""
+        if not self.turns.has_room(recipient):
+            return refused("queue full")
+        if len(payload) > most:
+            return self._send_long(recipient, flags, payload)
+        receipt = Receipt()
+        handle, item = self._new_item(receipt)
+        item.dest, item.flags = recipient, flags
+        if flags & ORDERED:
+            payload = bytes(BEFORE_BYTES) + payload  # which one is before it is known when it goes
+        item.length = len(payload)
+        item.body = list(payload)
+        if self.turns.put(handle, item):
+            self.feed()
+        return receipt
+
+    def _send_long(self, recipient: int, flags: int, payload: bytes) -> Receipt:
+        """A message that goes in pieces."""
+        node, params = self._stack.node, self._stack.params
+        dest = resolve(node, params, recipient)
+        if dest == ALL:
+            return refused(REASONS[NO_ROUTE])
+        if self._long_bytes + len(payload) > WAITING_MAX:
+            return refused("queue full")
+        chains = self._chains if flags & ORDERED else None
+        long = Long(dest, flags | ORDERED, payload, payload_limit(params), chains)
+        handle = self._take_handle(long.receipt)
+        self._long_bytes += len(payload)
+        long.on_end = partial(self._end_long, handle, long)
+        if dest == node.number:
+            self._hand_up(dest, payload)
+            long.on_end(DELIVERED, "")
+        else:
+            if self.turns.put(handle, long):
+                self.feed()
+        return long.receipt
+
+    def _end_long(self, handle: int, long: Long, state: str, reason: str) -> None:
+        self._long_bytes -= len(long.payload)
+        self.turns.drop(handle, long)
+        self._end(handle, state, reason)
+
+    def told(self, code: int, handle: int, detail: int) -> None:
+        """The router says what becomes of a message."""
+        receipt = self.receipts.get(handle)
+        if receipt is None:
+            return
+        if code == REPORT_ACCEPTED:
+            receipt.seq = detail
+        elif code == REPORT_HOP:
+            receipt.move(HOP_ACKED)
+        elif code == REPORT_ARRIVED:
+            self._end(handle, DELIVERED, is_there=True)
+        elif code == REPORT_EXPIRED:
+            is_there = False if detail in IN_VAIN else None
+            self._end(handle, EXPIRED, REASONS.get(detail, ""), is_there)
+        else:
+            self._end(handle, REFUSED, REASONS.get(detail, ""))
+
+    def feed(self) -> None:
+        """Hand messages to the router while it has room; it calls us again when it has more."""
+        if self._feeding:
+            return
+        self._feeding = True
+        while (waiting := self.turns.take()) is not None:
+            handle, item = waiting
+            chained = self._head(handle, item) if item.flags & ORDERED else None
+            self._hand_down(item)
+            if chained is not None and chained[1] == self._stack.node.seq:
+                self._chains.sent(handle, *chained, bool(item.flags & END_TO_END))
+            if resolve(self._stack.node, self._stack.params, item.dest) == self._stack.node.number:
+                self._end(handle, DELIVERED)  # to ourselves: it was handed up
+            elif not item.flags & END_TO_END or item.dest == ALL:
+                self.receipts.pop(handle, None)  # nobody will tell us more
+                self.turns.ended(handle, None)
+        self._feeding = False
+
+    def _head(self, handle: int, item: Any) -> tuple[int, int] | None:
+        """What stands in front of a message in order: the one before it; of a piece: which it is.
+
+        Recipient and number of what others are to come after; None = none are.
+        """
+        stack, receipt = self._stack, self.receipts[handle]
+        seq = (stack.node.seq + 1) & MASK16  # the number that the router is about to give it
+        dest = resolve(stack.node, stack.params, item.dest)
+        if isinstance(receipt, PieceReceipt):
+            head = receipt.long.head(receipt.at, seq)
+            item.body[: len(head)] = head
+            return (dest, seq) if receipt.is_last and receipt.long.in_order else None
+        before = self._chains.before(dest, seq)
+        item.body[:BEFORE_BYTES] = before.to_bytes(BEFORE_BYTES, "big")
+        return dest, seq
+
+    def status(self) -> dict[str, Any]:
+        """How many wait, for whom, and how many the router has."""
+        return {
+            "backlog": len(self.turns),
+            "waiting": {str(dest): count for dest, count in self.turns.waiting().items()},
+            "under_way": len(self.receipts) - len(self.turns),
+        }
+
+    def _new_item(self, receipt: Receipt) -> tuple[int, Any]:
+        """A handle, and an item that bears it."""
+        item = self._stack.item()
+        item.handle = self._take_handle(receipt)
+        return item.handle, item
+
+    def _take_handle(self, receipt: Receipt) -> int:
+        while self._handle in self.receipts or self._handle < IDS:  # alarms bear robots' numbers
+            self._handle = (self._handle + 1) % HANDLES
+        handle = self._handle
+        self._handle = (self._handle + 1) % HANDLES
+        self.receipts[handle] = receipt
+        return handle
+
+    def _end(self, handle: int, state: str, reason: str = "", is_there: bool | None = None) -> None:
+        """Nothing changes any more for a message; `is_there`: what that says of its recipient."""
+        receipt = self.receipts.pop(handle, None)
+        self.turns.ended(handle, is_there)
+        self._chains.ended(handle, state == DELIVERED)
+        if receipt is not None:
+            what = "pieces" if isinstance(receipt, PieceReceipt) else "messages"
+            self._outcomes[f"{what} {state}"] += 1
+            receipt.move(state, reason)
+
+
+def refused(reason: str) -> Receipt:
+    """The receipt of a message that does not go."""
+    receipt = Receipt()
+    receipt.move(REFUSED, reason)
+    return receipt
