@@ -12,6 +12,7 @@ from innervate.networks.mesh.protocol.constants import (
     REQUEST,
     ROUND,
     TABLE_FREE,
+    WHOLE_GRAPH,
 )
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16
 from innervate.networks.mesh.protocol.jobs import give_jobs, install_own, note_lost_table, pump
@@ -25,6 +26,7 @@ from innervate.networks.mesh.protocol.paths import (
     trusts_lists,
 )
 from innervate.networks.mesh.protocol.queue import compose, kick
+from innervate.networks.mesh.protocol.search import is_edge
 
 IDLE = 0
 COLLECTING = 1
@@ -47,6 +49,8 @@ def reset(gate, params):
     gate.version = 0
     gate.open = 0
     gate.sum_a = 0
+    gate.part = 0
+    gate.whole = 0
 
 
 def lead(node, gate, params, now, out):
@@ -55,7 +59,10 @@ def lead(node, gate, params, now, out):
     Who knows of none draws it, and the version of its tables: it may have been gateway before, and
     a table of the same epoch and version would be taken for the one that is there.
     """
+    inherits = gate.whole or (params.mode == WHOLE_GRAPH and node.version)
     reset(gate, params)
+    if node.known and inherits:
+        inherit(node, gate, params)
     node.epoch = (node.epoch + 1) & 255 if node.known else draw(node, 256)
     node.known = 1
     node.leading = 1
@@ -66,6 +73,16 @@ def lead(node, gate, params, now, out):
     node.quiet = 0
     report(out, REPORT_GATEWAY, node.number, node.epoch)
     start_round(node, gate, params, now, out)
+    if inherits:
+        set_timer(out, ROUND, (now + params.listen_us) & MASK30)
+
+
+def inherit(node, gate, params):
+    """The links that the gateway before us knew, but for its own, count as just reported."""
+    for a in range(params.nodes):
+        for b in range(params.nodes):
+            if a != node.gateway and b != node.gateway and is_edge(node, params, a, b):
+                note_heard(gate, params, a, b, node.round)
 
 
 def start_round(node, gate, params, now, out):

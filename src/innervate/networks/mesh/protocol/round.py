@@ -9,6 +9,7 @@ from innervate.networks.mesh.protocol.constants import (
     CRC_BYTES,
     EACH,
     HEADER_BYTES,
+    JOBS,
     LIST,
     PATH_MAX,
     REPORT_GATEWAY,
@@ -60,6 +61,8 @@ def begin(node, params, gateway, epoch, round, out):
     """A round that is new to us."""
     if not node.known or node.gateway != gateway or node.epoch != epoch:
         report(out, REPORT_GATEWAY, gateway, epoch)
+    if node.known and node.gateway != gateway:
+        node.turn = max(node.turn - 1, 0)
     node.known = 1
     node.gateway = gateway
     node.epoch = epoch
@@ -67,6 +70,7 @@ def begin(node, params, gateway, epoch, round, out):
     node.depth = UNHEARD
     node.parent = ALL
     node.quiet = 0
+    node.silent = 0
     node.due = NOTHING
     if gateway != node.number:
         node.leading = 0
@@ -84,6 +88,7 @@ def on_request(node, params, now, frame, k, out):
         node.active = get16(frame, 4)
         activate(node, params, epoch, node.active, out)  # should the flood have passed us by
         node.jitter = frame.body[6]
+        arm_guard(node, params, now, out)
     elif gateway != node.gateway or epoch != node.epoch or round != node.round:
         return
     fresh = k < 0 or node.round_depth[k] == UNHEARD
@@ -100,6 +105,12 @@ def on_request(node, params, now, frame, k, out):
     if params.discovery == EACH and fresh:  # not to every copy
         respond_to(node, params, now, frame.link_src, out)
     kick(node, params, now, out)
+
+
+def arm_guard(node, params, now, out):
+    """A standby looks again whether the gateway lives, the later the more there are before it."""
+    if node.rank >= 0 and params.guard_us:
+        set_timer(out, JOBS, (now + params.guard_us * (1 + node.turn)) & MASK30)
 
 
 def note_request(node, frame, k):

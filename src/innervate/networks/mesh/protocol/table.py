@@ -10,8 +10,10 @@ from innervate.networks.mesh.protocol.constants import (
     CRC_BYTES,
     GRAPH,
     HEADER_BYTES,
+    PATH_MAX,
     REPORT_TABLE,
     TABLE_ACK,
+    TABLES,
 )
 from innervate.networks.mesh.protocol.duplicates import clear_bad, record_flood
 from innervate.networks.mesh.protocol.frames import add8, add16, get16, is_route
@@ -162,8 +164,14 @@ def spread(node, params, now, frame, out):
 
 
 def part_bytes(params):
-    """How much of the graph a fragment carries."""
-    return params.mtu - HEADER_BYTES - CRC_BYTES - 1 - PART_HEAD
+    """How much of the graph a fragment carries: flooded, its path is short; a standby's is not."""
+    path = PATH_MAX if params.mode == TABLES else 1
+    return params.mtu - HEADER_BYTES - CRC_BYTES - path - PART_HEAD
+
+
+def part_count(params):
+    """How many fragments the graph has."""
+    return (graph_bytes(params) + part_bytes(params) - 1) // part_bytes(params)
 
 
 def graph_bytes(params):

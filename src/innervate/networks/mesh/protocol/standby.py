@@ -1,0 +1,68 @@
+"""Standbys: is the gateway there? Who asks it is told, and given its graph, part by part.
+
+An answer costs two ways through the mesh, however many nodes it has. Whatever else the gateway
+sent and a standby hears is an answer, too.
+"""
+
+from innervate.networks.mesh.protocol.constants import CONTROL, GRAPH, PARTS_MAX, TABLES
+from innervate.networks.mesh.protocol.frames import get16, inner
+from innervate.networks.mesh.protocol.gateway import lead
+from innervate.networks.mesh.protocol.graph_jobs import fill_graph
+from innervate.networks.mesh.protocol.queue import compose, kick
+from innervate.networks.mesh.protocol.round import arm_guard
+from innervate.networks.mesh.protocol.send import send_on
+from innervate.networks.mesh.protocol.table import PART_HEAD, part_count, read_edges
+
+IN_VAIN = 3  # questions, each with a wait of its own: then the gateway is dead
+
+
+def guard(node, gate, params, now, out):
+    """A standby's wait is over: ask if there was no sign of life in it, lead if all were in vain."""
+    node.silent = node.silent + 1
+    if node.silent > IN_VAIN + 1:
+        lead(node, gate, params, now, out)
+        return
+    if node.silent > 1:
+        send_part(node, gate, params, now, node.gateway, gate.part, 0, out)
+        kick(node, params, now, out)
+    arm_guard(node, params, now, out)
+
+
+def send_part(node, gate, params, now, to, index, count, out):
+    """Part `index` of the graph to a standby; of 0 parts: the question for it."""
+    i = compose(node, now, CONTROL, GRAPH, to, 0, out)
+    if i >= 0:
+        fill_graph(node, gate, params, i, index, count)
+        send_on(node, params, now, i, out)
+
+
+def on_guard(node, gate, params, now, frame, out):
+    """A standby asks us, who lead; or the gateway answers us, a standby."""
+    at = inner(frame)
+    if frame.length < at + PART_HEAD:
+        return
+    version = get16(frame, at + 1)
+    index = frame.body[at + 3] >> 4
+    count = frame.body[at + 3] & 15
+    if node.leading:
+        if version != gate.version:
+            index = 0
+        send_part(node, gate, params, now, frame.origin, index, parts_told(gate, params), out)
+    elif node.rank >= 0 and frame.origin == node.gateway:
+        node.silent = 0
+        if version != gate.version:
+            gate.version = version
+            gate.part = 0
+        if index == gate.part and index < count:
+            read_edges(node, params, frame, index)
+            gate.part = index + 1
+            if gate.part == count:
+                gate.whole = 1
+
+
+def parts_told(gate, params):
+    """How many parts a standby can have of our graph: it needs none where all have it."""
+    count = part_count(params)
+    if params.mode != TABLES or count > PARTS_MAX or gate.links == 0:
+        return 0
+    return count
