@@ -6,6 +6,7 @@ from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.constants import (
     ALL,
     CONTROL,
+    PRIORITY,
     REPORT_GATEWAY,
     REPORT_GRAPH,
     REPORT_ROUND,
@@ -72,9 +73,9 @@ def lead(node, gate, params, now, out):
     gate.version = node.version if node.version else draw(node, 65_536)
     node.quiet = 0
     report(out, REPORT_GATEWAY, node.number, node.epoch)
-    start_round(node, gate, params, now, out)
+    start_round(node, gate, params, now, PRIORITY if inherits else 0, out)
     if inherits:
-        set_timer(out, ROUND, (now + params.listen_us) & MASK30)
+        set_timer(out, ROUND, (now + 2 * params.jitter_us) & MASK30)
 
 
 def inherit(node, gate, params):
@@ -85,8 +86,8 @@ def inherit(node, gate, params):
                 note_heard(gate, params, a, b, node.round)
 
 
-def start_round(node, gate, params, now, out):
-    """Broadcast a discovery request, and collect what comes back."""
+def start_round(node, gate, params, now, flags, out):
+    """Broadcast a discovery request, and collect what comes back; PRIORITY: nothing does."""
     node.round = (node.round + 1) & MASK16
     node.depth = 1
     for k in range(params.places):
@@ -94,7 +95,7 @@ def start_round(node, gate, params, now, out):
     gate.wait = gate.period
     gate.step = COLLECTING
     report(out, REPORT_ROUND, node.round, node.epoch)
-    i = compose(node, now, CONTROL, REQUEST, ALL, 0, out)
+    i = compose(node, now, CONTROL, REQUEST, ALL, flags, out)
     if i >= 0:
         add_hop(node, i)
         add8(node, i, node.number)
@@ -166,7 +167,7 @@ def tick(node, gate, params, now, out):
         if gate.wait > 0:
             gate.wait = gate.wait - 1
         if gate.wait == 0:
-            start_round(node, gate, params, now, out)
+            start_round(node, gate, params, now, 0, out)
         return
     if node.quiet >= params.dead + max(0, node.rank - 1) * params.dead_step:
         lead(node, gate, params, now, out)

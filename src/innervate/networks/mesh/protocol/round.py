@@ -12,6 +12,7 @@ from innervate.networks.mesh.protocol.constants import (
     JOBS,
     LIST,
     PATH_MAX,
+    PRIORITY,
     REPORT_GATEWAY,
     REQUEST,
     RESPONSE,
@@ -84,11 +85,12 @@ def on_request(node, params, now, frame, k, out):
     epoch = frame.body[1]
     round = get16(frame, 2)
     if is_newer(node, params, gateway, epoch, round):
+        settles = params.collect_us if gateway != node.gateway else 0
         begin(node, params, gateway, epoch, round, out)
         node.active = get16(frame, 4)
         activate(node, params, epoch, node.active, out)  # should the flood have passed us by
         node.jitter = frame.body[6]
-        arm_guard(node, params, now, out)
+        arm_guard(node, params, now + settles, out)
     elif gateway != node.gateway or epoch != node.epoch or round != node.round:
         return
     fresh = k < 0 or node.round_depth[k] == UNHEARD
@@ -101,7 +103,7 @@ def on_request(node, params, now, frame, k, out):
         else:
             node.parent = frame.link_src
             queue_request(node, params, now, frame, 0, out)
-            join(node, params, now, frame.path_len + 1, out)
+            join(node, params, now, frame.path_len + 1, frame.flags & PRIORITY, out)
     if params.discovery == EACH and fresh:  # not to every copy
         respond_to(node, params, now, frame.link_src, out)
     kick(node, params, now, out)
@@ -154,10 +156,10 @@ def await_better(node, params, now, frame, out):
     queue_request(node, params, now, frame, 2 * params.jitter_us, out)
 
 
-def join(node, params, now, depth, out):
-    """We know our depth in this round: respond later."""
+def join(node, params, now, depth, taken, out):
+    """We know our depth in this round: respond later, if it is none of a standby that takes over."""
     node.depth = depth
-    if params.discovery != EACH:
+    if params.discovery != EACH and not taken:
         node.due = RESPOND
         wait = params.listen_us + draw(node, params.spread_us + 1)
         set_timer(out, ROUND, (now + wait) & MASK30)
@@ -167,7 +169,7 @@ def look_again(node, params, now, out):
     """Nothing but weak requests came: the best of them has to do."""
     best = place_of(node, params, node.parent)
     if best >= 0 and node.round_depth[best] != UNHEARD:
-        join(node, params, now, node.round_depth[best] + 1, out)
+        join(node, params, now, node.round_depth[best] + 1, 0, out)
 
 
 def step(node, params, now, out):

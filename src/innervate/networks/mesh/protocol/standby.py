@@ -61,8 +61,8 @@ def on_guard(node, gate, params, now, frame, out):
 
 
 def parts_told(gate, params):
-    """How many parts a standby can have of our graph: it needs none where all have it."""
+    """How many parts a standby can have of our graph now: tables on their way need the channel."""
     count = part_count(params)
-    if params.mode != TABLES or count > PARTS_MAX or gate.links == 0:
+    if params.mode != TABLES or count > PARTS_MAX or gate.links == 0 or gate.open:
         return 0
     return count
