@@ -93,7 +93,9 @@ OWN = (
     ("quiet", 0, 0, 65535, "ticks", "since the newest request"),
     ("leading", 0, 0, 1, "flag", "we are the gateway now"),
     ("turn", 0, 0, 253, "standbys", "standby: that lead before us"),
-    ("silent", 0, 0, 255, "waits", "standby: since the gateway's newest sign of life"),
+    ("silent", 0, 0, 2, "waits", "standby: since the gateway's newest sign of life; 2 = or more"),
+    ("questions", 0, 0, 15, "number", "standby: since then"),
+    ("patience", 0, 0, 32, "quarters", "standby: questions more than three, and longer waits"),
     ("places", 0, QUEUE, PLACES_MAX, "frames", "our queue holds"),
     ("kept", 0, WAITING, PLACES_MAX, "messages", "are kept until acknowledged end to end"),
     ("round_trip", 0, 0, 16777215, "us", "smoothed, of end-to-end acks; 0 unknown"),
@@ -287,7 +289,7 @@ def gate(n):
         ("open", 0, 0, 1, "flag", "tables of this version are on their way"),
         ("sum_a", 0, 0, TIME, "hash", "of the graph of the newest tables"),
         ("part", 0, 0, 15, "fragment", "graph: next to be flooded; standby: next to be asked for"),
-    ("whole", 0, 0, 1, "flag", "standby: we have the gateway's graph"),
+        ("whole", 0, 0, 1, "flag", "standby: we have the gateway's graph"),
     )
 
 
@@ -326,7 +328,14 @@ PARAMS = (
     ("period_max", 0, 1, 65535, "ticks", "... at most, while nothing changes"),
     ("dead", 0, 1, 65535, "ticks", "standby: without a request"),
     ("dead_step", 0, 0, 65535, "ticks", "... more for every rank behind the first"),
-    ("guard_us", 0, 0, 2000000, "us", "standby: waits for a sign of the gateway's life; 0: for requests"),
+    (
+        "guard_us",
+        0,
+        0,
+        2000000,
+        "us",
+        "standby: wait for a sign of the gateway; 0: for requests",
+    ),
     ("standby", 0, 0, 1, "flag", "there is one: the period is not stretched"),
     ("jobs", 0, 1, 15, "nodes", "tables under way at the same time"),
     ("job_us", 0, 1, 67108863, "us", "wait for a table's ack, first try, near"),

@@ -80,7 +80,7 @@ from innervate.networks.mesh.protocol.retransmission import (
 )
 from innervate.networks.mesh.protocol.round import on_request, step
 from innervate.networks.mesh.protocol.send import is_upward, on_ack_timeout, send_up
-from innervate.networks.mesh.protocol.standby import guard, on_guard
+from innervate.networks.mesh.protocol.standby import PATIENCE, guard, on_guard
 from innervate.networks.mesh.protocol.table import on_activate, on_graph, on_table
 from innervate.networks.mesh.protocol.watch import NEVER, beacon, on_position, watch
 
@@ -108,6 +108,8 @@ def on_start(node, gate, params, now, cause, out):
     node.leading = 0
     node.turn = max(node.rank - 1, 0)
     node.silent = 0
+    node.questions = 0
+    node.patience = PATIENCE
     node.round_trip = 0
     node.strain = 0
     node.search_backoff = 0

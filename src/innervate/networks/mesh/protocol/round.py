@@ -3,6 +3,7 @@
 from innervate.dialect.arith import MASK30, later
 from innervate.dialect.outbox import report, set_timer
 from innervate.dialect.rng import draw
+from innervate.networks.mesh.protocol.alarm import redirect
 from innervate.networks.mesh.protocol.constants import (
     ALL,
     CONTROL,
@@ -32,6 +33,8 @@ LOOK_AGAIN = 1
 RESPOND = 2
 LISTED_MAX = 15
 SLACK = 2  # ticks: nodes count them from different moments
+PATIENCE_MAX = 32  # quarters
+TURNS_MAX = 8
 UPLINKS_TOLD = 3  # table-free: a node tells the gateway no more than that
 
 
@@ -64,6 +67,7 @@ def begin(node, params, gateway, epoch, round, out):
         report(out, REPORT_GATEWAY, gateway, epoch)
     if node.known and node.gateway != gateway:
         node.turn = max(node.turn - 1, 0)
+        node.questions = 0
     node.known = 1
     node.gateway = gateway
     node.epoch = epoch
@@ -85,8 +89,12 @@ def on_request(node, params, now, frame, k, out):
     epoch = frame.body[1]
     round = get16(frame, 2)
     if is_newer(node, params, gateway, epoch, round):
-        settles = params.collect_us if gateway != node.gateway else 0
+        old = node.gateway
         begin(node, params, gateway, epoch, round, out)
+        settles = 0
+        if old != gateway:
+            settles = params.collect_us
+            redirect(node, params, now, old, out)
         node.active = get16(frame, 4)
         activate(node, params, epoch, node.active, out)  # should the flood have passed us by
         node.jitter = frame.body[6]
@@ -112,7 +120,8 @@ def on_request(node, params, now, frame, k, out):
 def arm_guard(node, params, now, out):
     """A standby looks again whether the gateway lives, the later the more there are before it."""
     if node.rank >= 0 and params.guard_us:
-        set_timer(out, JOBS, (now + params.guard_us * (1 + node.turn)) & MASK30)
+        waits = min(1 + node.turn, TURNS_MAX) * (1 + (node.patience >> 2))
+        set_timer(out, JOBS, (now + params.guard_us * waits) & MASK30)
 
 
 def note_request(node, frame, k):
@@ -157,7 +166,7 @@ def await_better(node, params, now, frame, out):
 
 
 def join(node, params, now, depth, taken, out):
-    """We know our depth in this round: respond later, if it is none of a standby that takes over."""
+    """We know our depth in this round: respond later, unless a standby has just taken over."""
     node.depth = depth
     if params.discovery != EACH and not taken:
         node.due = RESPOND

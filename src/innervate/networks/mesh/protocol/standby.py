@@ -9,23 +9,37 @@ from innervate.networks.mesh.protocol.frames import get16, inner
 from innervate.networks.mesh.protocol.gateway import lead
 from innervate.networks.mesh.protocol.graph_jobs import fill_graph
 from innervate.networks.mesh.protocol.queue import compose, kick
-from innervate.networks.mesh.protocol.round import arm_guard
+from innervate.networks.mesh.protocol.round import PATIENCE_MAX, arm_guard
 from innervate.networks.mesh.protocol.send import send_on
 from innervate.networks.mesh.protocol.table import PART_HEAD, part_count, read_edges
 
-IN_VAIN = 3  # questions, each with a wait of its own: then the gateway is dead
+IN_VAIN = 4  # questions, each with a wait of its own: then the gateway is dead
+PATIENCE = 8  # quarters, at first
+LATE = 24  # quarters of patience more for each question too many
 
 
 def guard(node, gate, params, now, out):
-    """A standby's wait is over: ask if there was no sign of life in it, lead if all were in vain."""
-    node.silent = node.silent + 1
-    if node.silent > IN_VAIN + 1:
+    """A standby's wait is over: ask if no sign of life came, lead if all questions were in vain."""
+    node.silent = min(node.silent + 1, 2)
+    if node.silent == 1:
+        learn_patience(node)
+    elif node.questions >= IN_VAIN + (node.patience >> 2):
         lead(node, gate, params, now, out)
         return
-    if node.silent > 1:
+    else:
+        node.questions = node.questions + 1
         send_part(node, gate, params, now, node.gateway, gate.part, 0, out)
         kick(node, params, now, out)
     arm_guard(node, params, now, out)
+
+
+def learn_patience(node):
+    """The gateway lives. Where more than one question was needed, a few in vain prove nothing."""
+    if node.questions == 1:
+        node.patience = max(node.patience - 1, 0)
+    elif node.questions:
+        node.patience = min(node.patience + LATE * (node.questions - 1), PATIENCE_MAX)
+    node.questions = 0
 
 
 def send_part(node, gate, params, now, to, index, count, out):
