@@ -36,12 +36,12 @@ def kill(net, who):
 
 
 @pytest.mark.parametrize("settings", [{}, {"mode": 1}, {"mode": 2}, {"mtu": 64}, {"failover": 2}])
-def test_a_standby_leads_within_a_second_and_all_have_tables_within_three(settings):
+def test_a_standby_leads_within_two_seconds_and_all_have_tables_within_three(settings):
     net = guarded(**settings)
     died = kill(net, 0)
     net.run(died + SOON)
     assert leaders(net) == [3]
-    assert max(at for at, *_ in net.of(REPORT_GATEWAY)) - died < 1_300_000
+    assert max(at for at, *_ in net.of(REPORT_GATEWAY)) - died < 1_600_000
     live = [node for i, node in enumerate(net.nodes) if i]
     assert {node.gateway for node in live} == {3}
     if settings != {"mode": 2}:
@@ -87,15 +87,27 @@ def test_a_gateway_that_was_switched_on_anew_is_one_that_leads_no_more():
     assert net.nodes[0].gateway == 3
 
 
-@pytest.mark.parametrize(("loss", "most"), [(0.0, 300), (0.2, 300), (0.4, 150)])
-def test_nobody_takes_over_from_a_gateway_that_lives(loss, most):
-    """Where answers get lost standbys learn to wait, and ask less."""
-    net = Net(12, geometric(12, 5, 3), standbys=(7, 3), loss=loss, seed=4, **GUARD)
-    net.run(120_000_000)
+def test_nobody_takes_over_from_a_gateway_that_lives():
+    """One question in two waits, also where four frames in ten are lost."""
+    net = Net(8, geometric(8, 4, 3), standbys=(7, 3), loss=0.4, seed=4, **GUARD)
+    net.run(60_000_000)
     assert leaders(net) == [0]
     assert {i for _, i, *_ in net.of(REPORT_ROUND)} == {0}
     questions = {f.seq for _, i, f in net.sent if f.kind == GRAPH and f.origin == i == 7}
-    assert len(questions) <= most, "at most one in two waits"
+    assert 20 < len(questions) <= 150
+
+
+def test_where_answers_were_late_a_few_questions_in_vain_prove_nothing():
+    net = guarded(count=4, links=[(0, 1), (1, 2), (2, 3)], standbys=(3,))
+    assert net.nodes[3].patience == 0
+    for silence in (700_000, 1_500_000, 3_000_000):
+        since = net.now
+        net.lost = lambda frame, to, until=since + silence: to == 3 and net.now < until
+        net.run(since + 4_000_000)
+        assert leaders(net) == [0], "it waits the longer"
+    died = kill(net, 0)
+    net.run(died + 16_000_000)
+    assert leaders(net) == [3], "but not for ever"
 
 
 def test_parts_that_hear_each_other_again_have_one_gateway_within_a_period():

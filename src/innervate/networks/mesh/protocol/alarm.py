@@ -11,6 +11,7 @@ from innervate.networks.mesh.protocol.constants import (
     CROSS,
     DATA_MAX,
     END_TO_END,
+    FIRST,
     FLOOD,
     MONITOR,
     PRIORITY,
@@ -183,7 +184,7 @@ def redirect(node, params, now, old, out):
             node.seq = (node.seq + 1) & MASK16
             node.wait_seq[w] = node.seq
             node.wait_dest[w] = node.gateway
-            node.wait_flags[w] = END_TO_END | PRIORITY | first_flag(node, params, node.gateway)
+            node.wait_flags[w] = node.wait_flags[w] | FIRST
             node.wait_tries[w] = 0
             node.wait_due[w] = now
     arm_retry(node, now, out)

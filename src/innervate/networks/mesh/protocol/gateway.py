@@ -62,7 +62,7 @@ def lead(node, gate, params, now, out):
     """
     inherits = gate.whole or (params.mode == WHOLE_GRAPH and node.version)
     reset(gate, params)
-    if node.known and inherits:
+    if inherits:
         inherit(node, gate, params)
     node.epoch = (node.epoch + 1) & 255 if node.known else draw(node, 256)
     node.known = 1
@@ -73,9 +73,7 @@ def lead(node, gate, params, now, out):
     gate.version = node.version if node.version else draw(node, 65_536)
     node.quiet = 0
     report(out, REPORT_GATEWAY, node.number, node.epoch)
-    start_round(node, gate, params, now, PRIORITY if inherits else 0, out)
-    if inherits:
-        set_timer(out, ROUND, (now + 2 * params.jitter_us) & MASK30)
+    start_round(node, gate, params, now, out)
 
 
 def inherit(node, gate, params):
@@ -84,10 +82,17 @@ def inherit(node, gate, params):
         for b in range(params.nodes):
             if a != node.gateway and b != node.gateway and is_edge(node, params, a, b):
                 note_heard(gate, params, a, b, node.round)
+    gate.whole = 1
 
 
-def start_round(node, gate, params, now, flags, out):
-    """Broadcast a discovery request, and collect what comes back; PRIORITY: nothing does."""
+def start_round(node, gate, params, now, out):
+    """Broadcast a discovery request, and collect what comes back; who has a graph asks nobody."""
+    flags = 0
+    wait = params.collect_us
+    if gate.whole:
+        flags = PRIORITY
+        wait = 2 * params.jitter_us
+        gate.whole = 0
     node.round = (node.round + 1) & MASK16
     node.depth = 1
     for k in range(params.places):
@@ -104,7 +109,7 @@ def start_round(node, gate, params, now, flags, out):
         add16(node, i, node.active)
         add8(node, i, params.jitter_us // JITTER_UNIT_US)
         node.q_copies[i] = params.copies
-    set_timer(out, ROUND, (now + params.collect_us) & MASK30)
+    set_timer(out, ROUND, (now + wait) & MASK30)
     kick(node, params, now, out)
 
 
@@ -167,7 +172,7 @@ def tick(node, gate, params, now, out):
         if gate.wait > 0:
             gate.wait = gate.wait - 1
         if gate.wait == 0:
-            start_round(node, gate, params, now, 0, out)
+            start_round(node, gate, params, now, out)
         return
     if node.quiet >= params.dead + max(0, node.rank - 1) * params.dead_step:
         lead(node, gate, params, now, out)

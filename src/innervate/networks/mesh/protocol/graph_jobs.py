@@ -15,6 +15,7 @@ from innervate.networks.mesh.protocol.paths import is_known
 from innervate.networks.mesh.protocol.queue import compose
 from innervate.networks.mesh.protocol.table import (
     CROWD,
+    ends_of,
     graph_bytes,
     part_bytes,
     part_count,
@@ -103,7 +104,6 @@ def fill_graph(node, gate, params, i, index, count):
         return
     first = index * part_bytes(params)
     last = min(graph_bytes(params), first + part_bytes(params))
-    pairs = params.nodes * (params.nodes - 1) // 2
     for at in range(first, last):
         byte = 0
         if at == 0:
@@ -112,19 +112,7 @@ def fill_graph(node, gate, params, i, index, count):
             byte = at - 1
         else:
             for bit in range(8):
-                pair = (at - 1 - params.nodes) * 8 + bit
-                if pair < pairs and is_pair(gate, params, pair):
+                ends = ends_of(params, (at - 1 - params.nodes) * 8 + bit)
+                if ends >= 0 and is_known(gate, params, ends >> 8, ends & 255):
                     byte = byte | 128 >> bit
         add8(node, i, byte)
-
-
-def is_pair(gate, params, pair):
-    """1 if the graph has the link that is the pair-th of (0, 1), (0, 2) .. (n - 2, n - 1)."""
-    a = 0
-    for _ in range(params.nodes):
-        row = params.nodes - 1 - a
-        if pair < row:
-            return is_known(gate, params, a, a + 1 + pair)
-        pair = pair - row
-        a = a + 1
-    return 0

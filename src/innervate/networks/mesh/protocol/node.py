@@ -80,7 +80,7 @@ from innervate.networks.mesh.protocol.retransmission import (
 )
 from innervate.networks.mesh.protocol.round import on_request, step
 from innervate.networks.mesh.protocol.send import is_upward, on_ack_timeout, send_up
-from innervate.networks.mesh.protocol.standby import PATIENCE, guard, on_guard
+from innervate.networks.mesh.protocol.standby import PATIENCE, guard, hear_gateway, on_guard
 from innervate.networks.mesh.protocol.table import on_activate, on_graph, on_table
 from innervate.networks.mesh.protocol.watch import NEVER, beacon, on_position, watch
 
@@ -106,9 +106,6 @@ def on_start(node, gate, params, now, cause, out):
     node.due = 0
     node.quiet = 0
     node.leading = 0
-    node.turn = max(node.rank - 1, 0)
-    node.silent = 0
-    node.questions = 0
     node.patience = PATIENCE
     node.round_trip = 0
     node.strain = 0
@@ -160,8 +157,8 @@ def on_frame(node, gate, params, now, port, frame, out):
         hear_again(node, params, frame.link_src)
         return
     k = hear(node, params, frame.link_src, frame.rssi)
-    if frame.origin == node.gateway and frame.table_ver:
-        node.silent = 0  # who was switched on anew, and leads no more, has no table
+    if frame.origin == node.gateway and frame.table_ver:  # without a table it leads no more
+        hear_gateway(node)
     if frame.kind == ACK:
         on_hop_ack(node, params, now, frame, k, out)
     elif frame.link_dst == ALL:

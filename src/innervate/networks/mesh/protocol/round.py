@@ -33,8 +33,6 @@ LOOK_AGAIN = 1
 RESPOND = 2
 LISTED_MAX = 15
 SLACK = 2  # ticks: nodes count them from different moments
-PATIENCE_MAX = 32  # quarters
-TURNS_MAX = 8
 UPLINKS_TOLD = 3  # table-free: a node tells the gateway no more than that
 
 
@@ -65,9 +63,6 @@ def begin(node, params, gateway, epoch, round, out):
     """A round that is new to us."""
     if not node.known or node.gateway != gateway or node.epoch != epoch:
         report(out, REPORT_GATEWAY, gateway, epoch)
-    if node.known and node.gateway != gateway:
-        node.turn = max(node.turn - 1, 0)
-        node.questions = 0
     node.known = 1
     node.gateway = gateway
     node.epoch = epoch
@@ -92,12 +87,13 @@ def on_request(node, params, now, frame, k, out):
         old = node.gateway
         begin(node, params, gateway, epoch, round, out)
         settles = 0
-        if old != gateway:
+        if old != gateway and old != ALL:
             settles = params.collect_us
+            if node.rank > 1:
+                node.rank = node.rank - 1
             redirect(node, params, now, old, out)
         node.active = get16(frame, 4)
         activate(node, params, epoch, node.active, out)  # should the flood have passed us by
-        node.jitter = frame.body[6]
         arm_guard(node, params, now + settles, out)
     elif gateway != node.gateway or epoch != node.epoch or round != node.round:
         return
@@ -120,7 +116,7 @@ def on_request(node, params, now, frame, k, out):
 def arm_guard(node, params, now, out):
     """A standby looks again whether the gateway lives, the later the more there are before it."""
     if node.rank >= 0 and params.guard_us:
-        waits = min(1 + node.turn, TURNS_MAX) * (1 + (node.patience >> 2))
+        waits = max(node.rank, 1) + (node.patience >> 2)
         set_timer(out, JOBS, (now + params.guard_us * waits) & MASK30)
 
 

@@ -5,41 +5,38 @@ sent and a standby hears is an answer, too.
 """
 
 from innervate.networks.mesh.protocol.constants import CONTROL, GRAPH, PARTS_MAX, TABLES
-from innervate.networks.mesh.protocol.frames import get16, inner
+from innervate.networks.mesh.protocol.frames import get16
 from innervate.networks.mesh.protocol.gateway import lead
 from innervate.networks.mesh.protocol.graph_jobs import fill_graph
 from innervate.networks.mesh.protocol.queue import compose, kick
-from innervate.networks.mesh.protocol.round import PATIENCE_MAX, arm_guard
+from innervate.networks.mesh.protocol.round import arm_guard
 from innervate.networks.mesh.protocol.send import send_on
 from innervate.networks.mesh.protocol.table import PART_HEAD, part_count, read_edges
 
 IN_VAIN = 4  # questions, each with a wait of its own: then the gateway is dead
-PATIENCE = 8  # quarters, at first
-LATE = 24  # quarters of patience more for each question too many
+PATIENCE = 12  # quarters, at first
+PATIENCE_MAX = 24  # after an answer that came late
+
+
+def hear_gateway(node):
+    """The gateway lives. Where more than one question was needed, a few in vain prove nothing."""
+    if node.silent > 2:
+        node.patience = PATIENCE_MAX
+    node.silent = 0
 
 
 def guard(node, gate, params, now, out):
     """A standby's wait is over: ask if no sign of life came, lead if all questions were in vain."""
-    node.silent = min(node.silent + 1, 2)
+    node.silent = node.silent + 1
     if node.silent == 1:
-        learn_patience(node)
-    elif node.questions >= IN_VAIN + (node.patience >> 2):
+        node.patience = max(node.patience - 1, 0)
+    elif node.silent > 1 + IN_VAIN + (node.patience >> 2):
         lead(node, gate, params, now, out)
         return
     else:
-        node.questions = node.questions + 1
         send_part(node, gate, params, now, node.gateway, gate.part, 0, out)
         kick(node, params, now, out)
     arm_guard(node, params, now, out)
-
-
-def learn_patience(node):
-    """The gateway lives. Where more than one question was needed, a few in vain prove nothing."""
-    if node.questions == 1:
-        node.patience = max(node.patience - 1, 0)
-    elif node.questions:
-        node.patience = min(node.patience + LATE * (node.questions - 1), PATIENCE_MAX)
-    node.questions = 0
 
 
 def send_part(node, gate, params, now, to, index, count, out):
@@ -52,18 +49,16 @@ def send_part(node, gate, params, now, to, index, count, out):
 
 def on_guard(node, gate, params, now, frame, out):
     """A standby asks us, who lead; or the gateway answers us, a standby."""
-    at = inner(frame)
-    if frame.length < at + PART_HEAD:
+    if frame.length < PART_HEAD:
         return
-    version = get16(frame, at + 1)
-    index = frame.body[at + 3] >> 4
-    count = frame.body[at + 3] & 15
+    version = get16(frame, 1)
+    index = frame.body[3] >> 4
+    count = frame.body[3] & 15
     if node.leading:
         if version != gate.version:
             index = 0
         send_part(node, gate, params, now, frame.origin, index, parts_told(gate, params), out)
-    elif node.rank >= 0 and frame.origin == node.gateway:
-        node.silent = 0
+    elif node.rank >= 0 and params.mode == TABLES and frame.origin == node.gateway:
         if version != gate.version:
             gate.version = version
             gate.part = 0
