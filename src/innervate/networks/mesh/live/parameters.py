@@ -17,8 +17,8 @@ IP: dict[str, int] = {
     "hop_frames": 16, "gather": 1, "queue": 48, "kept": 32,
     "suspect_us": 2_000_000, "min_rssi": -93, "jitter_us": 5000, "copies": 2,
     "listen_us": 50_000, "spread_us": 50_000, "collect_us": 200_000, "tick_us": 250_000,
-    "period": 8, "period_max": 8, "dead": 20, "dead_step": 4, "standby": 0, "jobs": 4,
-    "job_us": 100_000, "job_tries": 3, "e2e_us": 30_000, "e2e_adapt": 1, "e2e_tries": 8,
+    "period": 8, "period_max": 8, "dead": 20, "dead_step": 4, "guard_us": 0, "standby": 0,
+    "jobs": 4, "job_us": 100_000, "job_tries": 3, "e2e_us": 30_000, "e2e_adapt": 1, "e2e_tries": 8,
     "forget": 120, "monitor": MONITOR, "watch": 0, "lost": 3, "flood": 1, "instances": 3,
     "clear_margin": 20, "predict_ms": 500, "unit_cm": 1, "points": 0, "fence": 0,
 }  # fmt: skip

@@ -32,6 +32,7 @@ PERIOD_S = 10
 AFTER_S = 60
 BIN_S = 2
 BEFORE = 5  # bins
+WAITS: Options = (("guard_s", 0),)  # for requests that stay away, as planned; it asks nobody
 SOONEST = 30.0  # seconds until there are new tables, at most
 
 
@@ -59,7 +60,7 @@ SETTINGS = (ALONE, ONE, SECOND, SILENT, BUSY)
 def point(setting: Setting, quick: bool) -> Point:
     """Networks with a setting's standbys that run until the table after next."""
     more: Options = (("standby", list(setting.standbys)),) if setting.standbys else ()
-    testbed = MeshTestbed(duration_s=DIES_S + PERIOD_S + AFTER_S + 3, more=more)
+    testbed = MeshTestbed(protocol=WAITS, duration_s=DIES_S + PERIOD_S + AFTER_S + 3, more=more)
     what = f"gateway dies, {setting.name}, every {setting.every_s} s"
     return testbed.point(what, seeds_of(quick), measure, setting)
 

@@ -40,6 +40,10 @@ the link. One that was heard in this tick is sent a frame the more often, the le
 *Backoff.* Acks that are missing beyond what the links explain make for growing pauses of searches,
 then of all messages, never of alarms: a full channel heals (decision 0016).
 
+*Standby.* A standby that has no sign of the gateway's life for a `guard_us` asks it. Each answer
+brings a part of the graph, until it has all. Questions in vain, more where answers used to be late:
+it leads, hands out tables of the graph that it has, and need not wait for a round.
+
 *Fence.* Robots judge their position at every sample; alarms are sent, flooded, retransmitted and
 raised again until the monitor has acknowledged them. Who hears a robot outside is its witness
 (A13).
@@ -48,8 +52,8 @@ raised again until the monitor has acknowledged them. Who hears a robot outside 
 `graph_jobs.py`, `pack.py`, `table.py` discovery and tables; `relay.py`, `send.py`, `route.py`,
 `search.py`, `upward.py`, `overheard.py` forwarding; `queue.py` what waits to be sent;
 `messages.py`, `retransmission.py`, `timeout.py` end to end; `neighbours.py`, `duplicates.py`,
-`backoff.py`, `hop.py`, `link_quality.py` what is remembered; `alarm.py`, `fence.py`, `watch.py` the
-fence; `frames.py` bytes.
+`backoff.py`, `hop.py`, `link_quality.py` what is remembered; `standby.py` who leads next;
+`alarm.py`, `fence.py`, `watch.py` the fence; `frames.py` bytes.
 Below it lies an access protocol: `csma.py`, or one of the radio's.
 
 States
@@ -95,6 +99,9 @@ lost may be made good by what is heard later: `drop_overheard`.
 |                                        |                  | `ready` is in force; `spread`        |
 | `GRAPH`                                | all              | `on_graph`: `read_edges`; `spread`;  |
 |                                        |                  | whole: `answer_graph`                |
+| `GRAPH`, to one                        | a hop            | `relay`; ours: `on_guard`: a standby |
+|                                        |                  | asks, or with `TABLES` takes a part: |
+|                                        |                  | `read_edges`                         |
 | `DATA`, flooded                        | all              | `flood_data`: deliver, pass on once  |
 | `ALARM`, flooded                       | all              | `on_flood`: the monitor takes it,    |
 |                                        |                  | others pass it on once an instance   |
@@ -116,6 +123,9 @@ A hop for which there is no room gets no ack, so that another is tried.
 | off        | on, else                        | `on_start`                       | unknown        |
 | any        | `REQUEST` that `is_newer`       | `on_request`, `begin`            | follows        |
 | a `rank`   | `TICK`, `dead` silent ticks     | `on_tick`, `tick`, `lead`        | leads          |
+| a `rank`   | `JOBS`, no sign of life         | `guard`: asks; learns patience   |                |
+| a `rank`   | ... and all questions in vain   | `guard`, `lead`, `inherit`       | leads          |
+| any        | `REQUEST` of another gateway    | `redirect`: alarms go to it      |                |
 | any        | `TICK`                          | `on_tick`: `sweep`, `age`,       |                |
 |            |                                 | `watch`, `beacon`,               |                |
 |            |                                 | `repeat_alarm`                   |                |
@@ -186,7 +196,9 @@ Timers
 |                | `lost` are counted in it                                                        |
 | `RETRY = 4`    | first end-to-end timeout: `e2e_us`, or with `e2e_adapt` 4 round trips; doubled, |
 |                | at most 4 times                                                                 |
-| `JOBS = 5`     | gateway: a table's acks: `job_us`, more by tries, parts and hops                |
+| `JOBS = 5`     | gateway: a table's acks: `job_us`, more by tries, parts and hops; standby:      |
+|                | `guard_us`, so many as stand by before it, more with `patience`; after the      |
+|                | request of a new gateway `collect_us` more                                      |
 | `BACKOFF = 0`  | access: a draw below 2^exponent times `backoff_us`                              |
 
 `TIMERS = 6`, of access `TIMERS = 1`. Exponents: `exponent_min` and a transmission each, at most
@@ -196,7 +208,8 @@ Frames
 ======
 | frame           | way                          | payload                                         |
 |-----------------|------------------------------|-------------------------------------------------|
-| `REQUEST = 1`   | flooded, `copies`            | gateway, epoch, round, version in force, jitter |
+| `REQUEST = 1`   | flooded, `copies`            | gateway, epoch, round, version in force, jitter;|
+|                 |                              | flag `PRIORITY`: nobody responds                |
 | `RESPONSE = 2`  | up                           | epoch, round, reading, who was heard and how    |
 |                 |                              | loud                                            |
 | `TABLE = 3`     | source-routed                | route; epoch, version, part; groups (next,      |
@@ -209,7 +222,8 @@ Frames
 | `ALARM = 10`    | routed and flooded           | `ALARM_BYTES = 16`                              |
 | `POSITION = 11` | one hop; with `watch` routed | `POSITION_BYTES = 8`; `SAID_OUT = 1`,           |
 |                 |                              | `SAID_HEARD = 2`                                |
-| `GRAPH = 12`    | flooded                      | epoch, version, part; links as bits             |
+| `GRAPH = 12`    | flooded; a standby's routed  | epoch, version, part; links as bits; nothing    |
+|                 |                              | more: a question, or an answer to it            |
 | `ACK = 16`      | to the hop before            | no common header: `ACK_BYTES = 9`               |
 
 Flags: `ACK_WANTED = 1`, `END_TO_END = 2`, `FLOOD = 4`, to one recipient `ORDERED = 4`,
@@ -277,6 +291,10 @@ Constants and settings
 | `GROUP_BYTES = 3`                              |                                                 |
 | `ROUNDS_VALID = 3`                             | rounds for which a report of a link counts      |
 | `SLACK = 2`                                    | ticks: nodes count them from different moments  |
+| `guard_us`                                     | decision 0042: a standby's wait; one more for   |
+|                                                | each that is before it                          |
+| `IN_VAIN = 4`, `PATIENCE = 12`,                | questions in vain; quarters of one more, and of |
+| `PATIENCE_MAX = 24`                            | a longer wait: at first, after a late answer    |
 | `LISTED_MAX = 15`, `UPLINKS_TOLD = 3`          | neighbours in a response; without tables        |
 | `PLACES_RESERVED = 3`                          | of the gateway's queue, for what others send    |
 |                                                | through it                                      |

@@ -1,6 +1,6 @@
 """The virtual fence: robots, monitor and witnesses raise alarms that get through [mesh 4 ALARM]."""
 
-from innervate.dialect.arith import MASK30
+from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.outbox import deliver, report
 from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.constants import (
@@ -9,6 +9,7 @@ from innervate.networks.mesh.protocol.constants import (
     ALL,
     CROSS,
     END_TO_END,
+    FIRST,
     FLOOD,
     MONITOR,
     PRIORITY,
@@ -22,7 +23,7 @@ from innervate.networks.mesh.protocol.fence import OUTSIDE, judge, margin
 from innervate.networks.mesh.protocol.frames import add8, add_hop, put16
 from innervate.networks.mesh.protocol.messages import first_flag, resolve, take
 from innervate.networks.mesh.protocol.queue import compose, kick, take_over
-from innervate.networks.mesh.protocol.retransmission import buffer_sent, free_buffer
+from innervate.networks.mesh.protocol.retransmission import arm_retry, buffer_sent, free_buffer
 from innervate.networks.mesh.protocol.send import send_on
 
 ALARM_BYTES = 16
@@ -169,6 +170,22 @@ def on_flood(node, params, now, frame, out):
         if not add_hop(node, i):
             node.q_state[i] = 0
     kick(node, params, now, out)
+
+
+def redirect(node, params, now, old, out):
+    """Alarms kept for a gateway that leads no more go to the new one, under a number of their own.
+
+    Floods of the old number have been everywhere, and would not be passed on again.
+    """
+    for w in range(node.kept):
+        if node.wait_kind[w] == ALARM and node.wait_dest[w] == old and params.monitor == MONITOR:
+            node.seq = (node.seq + 1) & MASK16
+            node.wait_seq[w] = node.seq
+            node.wait_dest[w] = node.gateway
+            node.wait_flags[w] = node.wait_flags[w] | FIRST
+            node.wait_tries[w] = 0
+            node.wait_due[w] = now
+    arm_retry(node, now, out)
 
 
 def take_alarm(node, params, now, frame, out):

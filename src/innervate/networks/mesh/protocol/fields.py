@@ -120,7 +120,7 @@ def node(n, queue=QUEUE, kept=WAITING, mtu=MTU):
 
 OWN = (
     ("number", 0, 0, 253, "node", "who we are"),
-    ("rank", 0, -1, 253, "rank", "0 gateway, 1.. standby, -1 neither"),
+    ("rank", 0, -1, 253, "rank", "0 gateway, 1.. standby: who is next, -1 neither"),
     ("robot", 0, 0, 1, "flag", "it moves and has a fence"),
     ("rng", 0, 1, TIME, "state", "generator of random choices"),
     ("choice", 0, -1, TIME, "value", "what the next draw shall return; -1 = generate"),
@@ -134,11 +134,12 @@ OWN = (
     ("active", 0, 0, 65535, "version", "tables in force, as the gateway says"),
     ("depth", 0, 0, 255, "hops", "ours, as advertised; 255 unknown"),
     ("due", 0, 0, 3, "step", "ROUND: 0 nothing, 1 look again, 2 respond"),
-    ("jitter", 0, 0, 255, "10 ms", "of the present round's requests"),
     ("tick_at", 0, 0, TIME, "us", "the newest tick"),
     ("parent", 0, 0, 255, "node", "who brought the round's first request; 255 nobody"),
     ("quiet", 0, 0, 65535, "ticks", "since the newest request"),
     ("leading", 0, 0, 1, "flag", "we are the gateway now"),
+    ("silent", 0, 0, 15, "waits", "standby: since the gateway's newest sign of life"),
+    ("patience", 0, 0, 24, "quarters", "standby: of a question more in vain, and of longer waits"),
     ("places", 0, QUEUE, PLACES_MAX, "frames", "our queue holds"),
     ("kept", 0, WAITING, PLACES_MAX, "messages", "are kept until acknowledged end to end"),
     ("round_trip", 0, 0, 16777215, "us", "smoothed, of end-to-end acks; 0 unknown"),
@@ -199,7 +200,6 @@ def tables(n):
         ("parts", 0, 0, 65535, "bits", "its fragments that are here"),
         ("part_count", 0, 0, 15, "fragments", "how many it has"),
         ("ready", 0, 0, 1, "flag", "it is whole and waits to be activated"),
-        ("size", 0, 0, 254, "nodes", "graph: rows that are known"),
         ("edges", n * words(n), 0, 32767, "bits", "graph: adjacency, 15 nodes a word"),
         ("far", n, 0, 255, "hops", "scratch: distances"),
         ("line", n, 0, 253, "node", "scratch: nodes in order of distance"),
@@ -336,7 +336,8 @@ def gate(n):
         ("version", 0, 0, 65535, "version", "of the tables on their way or in force"),
         ("open", 0, 0, 1, "flag", "tables of this version are on their way"),
         ("sum_a", 0, 0, TIME, "hash", "of the graph of the newest tables"),
-        ("part", 0, 0, 15, "fragment", "graph: next to be flooded"),
+        ("part", 0, 0, 15, "fragment", "graph: next to be flooded; standby: next to be asked for"),
+        ("whole", 0, 0, 1, "flag", "standby: we have the gateway's graph"),
     )
 
 
@@ -396,4 +397,5 @@ PARAMS = (
     ("py", POINTS, -32768, 32767, "unit", "corners"),
     ("after", POINTS, 0, 47, "corner", "the corner that follows in its ring"),
     ("fence", 0, 0, 255, "number", "name of the fence in alarms"),
+    ("guard_us", 0, 0, 2000000, "us", "standby: wait for a sign of the gateway; 0: for requests"),
 )

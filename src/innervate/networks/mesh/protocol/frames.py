@@ -8,6 +8,7 @@ from innervate.networks.mesh.protocol.constants import (
     CRC_BYTES,
     DATA,
     E2E_ACK,
+    GRAPH,
     HEADER_BYTES,
     PATH_MAX,
     POSITION,
@@ -94,7 +95,7 @@ def is_sound(params, frame):
 
 def is_routed(kind):
     """1 for what one node sends to another by tables, the graph or a source route."""
-    return kind == DATA or kind == E2E_ACK or kind == ALARM or kind == POSITION
+    return kind == DATA or kind == E2E_ACK or kind == ALARM or kind == POSITION or kind == GRAPH
 
 
 def is_route(params, frame):

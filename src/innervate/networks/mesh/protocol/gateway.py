@@ -6,12 +6,14 @@ from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.constants import (
     ALL,
     CONTROL,
+    PRIORITY,
     REPORT_GATEWAY,
     REPORT_GRAPH,
     REPORT_ROUND,
     REQUEST,
     ROUND,
     TABLE_FREE,
+    WHOLE_GRAPH,
 )
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16
 from innervate.networks.mesh.protocol.jobs import give_jobs, install_own, note_lost_table, pump
@@ -27,6 +29,7 @@ from innervate.networks.mesh.protocol.paths import (
     trusts_lists,
 )
 from innervate.networks.mesh.protocol.queue import compose, kick
+from innervate.networks.mesh.protocol.search import is_edge
 
 IDLE = 0
 COLLECTING = 1
@@ -48,6 +51,8 @@ def reset(gate, params):
     gate.version = 0
     gate.open = 0
     gate.sum_a = 0
+    gate.part = 0
+    gate.whole = 0
 
 
 def lead(node, gate, params, now, out):
@@ -56,7 +61,10 @@ def lead(node, gate, params, now, out):
     Who knows of none draws it, and the version of its tables: it may have been gateway before, and
     a table of the same epoch and version would be taken for the one that is there.
     """
+    inherits = gate.whole or (params.mode == WHOLE_GRAPH and node.version)
     reset(gate, params)
+    if inherits:
+        inherit(node, gate, params)
     node.epoch = (node.epoch + 1) & 255 if node.known else draw(node, 256)
     node.known = 1
     node.leading = 1
@@ -69,8 +77,23 @@ def lead(node, gate, params, now, out):
     start_round(node, gate, params, now, out)
 
 
+def inherit(node, gate, params):
+    """The links that the gateway before us knew, but for its own, count as just reported."""
+    for a in range(params.nodes):
+        for b in range(params.nodes):
+            if a != node.gateway and b != node.gateway and is_edge(node, params, a, b):
+                note_heard(gate, params, a, b, node.round)
+    gate.whole = 1
+
+
 def start_round(node, gate, params, now, out):
-    """Broadcast a discovery request, and collect what comes back."""
+    """Broadcast a discovery request, and collect what comes back; who has a graph asks nobody."""
+    flags = 0
+    wait = params.collect_us
+    if gate.whole:
+        flags = PRIORITY
+        wait = 2 * params.jitter_us
+        gate.whole = 0
     node.round = (node.round + 1) & MASK16
     node.depth = 1
     for k in range(params.places):
@@ -79,7 +102,7 @@ def start_round(node, gate, params, now, out):
     gate.wait = gate.period
     gate.step = COLLECTING
     report(out, REPORT_ROUND, node.round, node.epoch)
-    i = compose(node, now, CONTROL, REQUEST, ALL, 0, out)
+    i = compose(node, now, CONTROL, REQUEST, ALL, flags, out)
     if i >= 0:
         add_hop(node, i)
         add8(node, i, node.number)
@@ -88,7 +111,7 @@ def start_round(node, gate, params, now, out):
         add16(node, i, node.active)
         add8(node, i, params.jitter_us // JITTER_UNIT_US)
         node.q_copies[i] = params.copies
-    set_timer(out, ROUND, (now + params.collect_us) & MASK30)
+    set_timer(out, ROUND, (now + wait) & MASK30)
     kick(node, params, now, out)
 
 

@@ -13,12 +13,19 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop
 from innervate.networks.mesh.protocol.paths import is_known
 from innervate.networks.mesh.protocol.queue import compose
-from innervate.networks.mesh.protocol.table import CROWD, graph_bytes, part_bytes, spread_of_answers
+from innervate.networks.mesh.protocol.table import (
+    CROWD,
+    ends_of,
+    graph_bytes,
+    part_bytes,
+    part_count,
+    spread_of_answers,
+)
 
 
 def pump_graph(node, gate, params, now, out):
     """Flood the parts of the graph, and once more those that some node misses."""
-    count = (graph_bytes(params) + part_bytes(params) - 1) // part_bytes(params)
+    count = part_count(params)
     fresh = 0
     for s in range(params.nodes):
         if gate.job[s] == TO_SEND:
@@ -70,6 +77,7 @@ def flood_graph(node, gate, params, now, count, out):
                 gate.part = index
                 go_on_at(gate, params, (due + (params.jitter_us >> 1)) & MASK30)
                 return
+            add_hop(node, i)
             fill_graph(node, gate, params, i, index, count)
             node.q_due[i] = due & MASK30
             due = due + (params.jitter_us >> 1)
@@ -88,14 +96,14 @@ def go_on_at(gate, params, time):
 
 
 def fill_graph(node, gate, params, i, index, count):
-    """Part `index` of the graph into place i."""
-    add_hop(node, i)
+    """Part `index` of the graph into place i; beyond the last there is nothing in it."""
     add8(node, i, node.epoch)
     add16(node, i, gate.version)
     add8(node, i, index << 4 | count)
+    if index >= count:
+        return
     first = index * part_bytes(params)
     last = min(graph_bytes(params), first + part_bytes(params))
-    pairs = params.nodes * (params.nodes - 1) // 2
     for at in range(first, last):
         byte = 0
         if at == 0:
@@ -104,19 +112,7 @@ def fill_graph(node, gate, params, i, index, count):
             byte = at - 1
         else:
             for bit in range(8):
-                pair = (at - 1 - params.nodes) * 8 + bit
-                if pair < pairs and is_pair(gate, params, pair):
+                ends = ends_of(params, (at - 1 - params.nodes) * 8 + bit)
+                if ends >= 0 and is_known(gate, params, ends >> 8, ends & 255):
                     byte = byte | 128 >> bit
         add8(node, i, byte)
-
-
-def is_pair(gate, params, pair):
-    """1 if the graph has the link that is the pair-th of (0, 1), (0, 2) .. (n - 2, n - 1)."""
-    a = 0
-    for _ in range(params.nodes):
-        row = params.nodes - 1 - a
-        if pair < row:
-            return is_known(gate, params, a, a + 1 + pair)
-        pair = pair - row
-        a = a + 1
-    return 0

@@ -89,6 +89,7 @@ from innervate.networks.mesh.protocol.retransmission import (
 )
 from innervate.networks.mesh.protocol.round import on_request, step
 from innervate.networks.mesh.protocol.send import is_upward, on_ack_timeout, send_up
+from innervate.networks.mesh.protocol.standby import PATIENCE, guard, hear_gateway, on_guard
 from innervate.networks.mesh.protocol.table import on_activate, on_graph, on_table
 from innervate.networks.mesh.protocol.watch import NEVER, beacon, on_position, watch
 
@@ -116,6 +117,7 @@ def on_start(node, gate, params, now, cause, out):
     node.due = 0
     node.quiet = 0
     node.leading = 0
+    node.patience = PATIENCE
     node.round_trip = 0
     node.strain = 0
     node.search_backoff = 0
@@ -166,6 +168,8 @@ def on_frame(node, gate, params, now, port, frame, out):
         hear_again(node, params, frame.link_src)
         return
     k = hear(node, params, frame.link_src, frame.rssi)
+    if frame.origin == node.gateway and frame.table_ver:  # without a table it leads no more
+        hear_gateway(node)
     if frame.kind == ACK:
         on_hop_ack(node, params, now, frame, k, out)
     elif frame.link_dst == ALL:
@@ -250,7 +254,9 @@ def on_unicast(node, gate, params, now, frame, out):
     elif kind == POSITION and here:
         on_position(node, params, now, frame, out)
     elif is_routed(kind):
-        if here:
+        if here and kind == GRAPH:
+            on_guard(node, gate, params, now, frame, out)
+        elif here:
             take(node, params, now, frame, out)
         else:
             relay(node, params, now, frame, out)
@@ -306,6 +312,8 @@ def on_timer(node, gate, params, now, timer, out):
     elif timer == JOBS:
         if node.leading:
             retry_jobs(node, gate, params, now, out)
+        elif node.rank >= 0:
+            guard(node, gate, params, now, out)
 
 
 def on_tick(node, gate, params, now, out):

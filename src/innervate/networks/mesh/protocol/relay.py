@@ -9,6 +9,7 @@ from innervate.networks.mesh.protocol.constants import (
     CONTROL,
     DATA,
     E2E_ACK,
+    GRAPH,
     MESSAGES,
 )
 from innervate.networks.mesh.protocol.duplicates import (
@@ -28,7 +29,7 @@ def rank_of(frame):
     """How urgent a packet is."""
     if frame.kind == ALARM:
         return ALARMS
-    if frame.kind == E2E_ACK:
+    if frame.kind == E2E_ACK or frame.kind == GRAPH:
         return CONTROL
     return MESSAGES
 

@@ -3,14 +3,17 @@
 from innervate.dialect.arith import MASK30, later
 from innervate.dialect.outbox import report, set_timer
 from innervate.dialect.rng import draw
+from innervate.networks.mesh.protocol.alarm import redirect
 from innervate.networks.mesh.protocol.constants import (
     ALL,
     CONTROL,
     CRC_BYTES,
     EACH,
     HEADER_BYTES,
+    JOBS,
     LIST,
     PATH_MAX,
+    PRIORITY,
     REPORT_GATEWAY,
     REQUEST,
     RESPONSE,
@@ -67,6 +70,7 @@ def begin(node, params, gateway, epoch, round, out):
     node.depth = UNHEARD
     node.parent = ALL
     node.quiet = 0
+    node.silent = 0
     node.due = NOTHING
     if gateway != node.number:
         node.leading = 0
@@ -80,10 +84,17 @@ def on_request(node, params, now, frame, k, out):
     epoch = frame.body[1]
     round = get16(frame, 2)
     if is_newer(node, params, gateway, epoch, round):
+        old = node.gateway
         begin(node, params, gateway, epoch, round, out)
+        settles = 0
+        if old != gateway and old != ALL:
+            settles = params.collect_us
+            if node.rank > 1:
+                node.rank = node.rank - 1
+            redirect(node, params, now, old, out)
         node.active = get16(frame, 4)
         activate(node, params, epoch, node.active, out)  # should the flood have passed us by
-        node.jitter = frame.body[6]
+        arm_guard(node, params, now + settles, out)
     elif gateway != node.gateway or epoch != node.epoch or round != node.round:
         return
     fresh = k < 0 or node.round_depth[k] == UNHEARD
@@ -96,10 +107,17 @@ def on_request(node, params, now, frame, k, out):
         else:
             node.parent = frame.link_src
             queue_request(node, params, now, frame, 0, out)
-            join(node, params, now, frame.path_len + 1, out)
+            join(node, params, now, frame.path_len + 1, frame.flags & PRIORITY, out)
     if params.discovery == EACH and fresh:  # not to every copy
         respond_to(node, params, now, frame.link_src, out)
     kick(node, params, now, out)
+
+
+def arm_guard(node, params, now, out):
+    """A standby looks again whether the gateway lives, the later the more there are before it."""
+    if node.rank >= 0 and params.guard_us:
+        waits = max(node.rank, 1) + (node.patience >> 2)
+        set_timer(out, JOBS, (now + params.guard_us * waits) & MASK30)
 
 
 def note_request(node, frame, k):
@@ -143,10 +161,10 @@ def await_better(node, params, now, frame, out):
     queue_request(node, params, now, frame, 2 * params.jitter_us, out)
 
 
-def join(node, params, now, depth, out):
-    """We know our depth in this round: respond later."""
+def join(node, params, now, depth, taken, out):
+    """We know our depth in this round: respond later, unless a standby has just taken over."""
     node.depth = depth
-    if params.discovery != EACH:
+    if params.discovery != EACH and not taken:
         node.due = RESPOND
         wait = params.listen_us + draw(node, params.spread_us + 1)
         set_timer(out, ROUND, (now + wait) & MASK30)
@@ -156,7 +174,7 @@ def look_again(node, params, now, out):
     """Nothing but weak requests came: the best of them has to do."""
     best = place_of(node, params, node.parent)
     if best >= 0 and node.round_depth[best] != UNHEARD:
-        join(node, params, now, node.round_depth[best] + 1, out)
+        join(node, params, now, node.round_depth[best] + 1, 0, out)
 
 
 def step(node, params, now, out):

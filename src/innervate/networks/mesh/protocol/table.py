@@ -10,8 +10,10 @@ from innervate.networks.mesh.protocol.constants import (
     CRC_BYTES,
     GRAPH,
     HEADER_BYTES,
+    PATH_MAX,
     REPORT_TABLE,
     TABLE_ACK,
+    TABLES,
 )
 from innervate.networks.mesh.protocol.duplicates import clear_bad, record_flood
 from innervate.networks.mesh.protocol.frames import add8, add16, get16, is_route
@@ -162,8 +164,14 @@ def spread(node, params, now, frame, out):
 
 
 def part_bytes(params):
-    """How much of the graph a fragment carries."""
-    return params.mtu - HEADER_BYTES - CRC_BYTES - 1 - PART_HEAD
+    """How much of the graph a fragment carries: flooded, its path is short; a standby's is not."""
+    path = PATH_MAX if params.mode == TABLES else 1
+    return params.mtu - HEADER_BYTES - CRC_BYTES - path - PART_HEAD
+
+
+def part_count(params):
+    """How many fragments the graph has."""
+    return (graph_bytes(params) + part_bytes(params) - 1) // part_bytes(params)
 
 
 def graph_bytes(params):
@@ -207,25 +215,23 @@ def answer_graph(node, params, now, epoch, version, count, out):
     tell_parts(node, params, now, epoch, version, all_parts(count), wait, out)
 
 
+def ends_of(params, pair):
+    """Of (0, 1), (0, 2) .. (n - 2, n - 1) the pair-th, as 256 a + b; -1 beyond the last."""
+    for a in range(params.nodes):
+        row = params.nodes - 1 - a
+        if pair < row:
+            return a << 8 | a + 1 + pair
+        pair = pair - row
+    return -1
+
+
 def read_edges(node, params, frame, index):
     """The pairs a < b of a fragment, row by row, most significant bit first."""
-    first = index * part_bytes(params)
-    base = 1 + params.nodes
-    a = 0
-    pair = 0  # number of the pair (a, a + 1)
+    first = index * part_bytes(params) - 1 - params.nodes
     for k in range(frame.length - PART_HEAD):
-        byte = first + k - base
-        if byte < 0:
-            continue
         for bit in range(8):
-            number = byte * 8 + bit
-            for _ in range(params.nodes):
-                if a < params.nodes - 1 and number >= pair + params.nodes - 1 - a:
-                    pair = pair + params.nodes - 1 - a
-                    a = a + 1
-                else:
-                    break
-            if a < params.nodes - 1:
-                b = a + 1 + number - pair
-                there = frame.body[PART_HEAD + k] >> (7 - bit) & 1
-                set_edge(node, params, a, b, there)
+            if first + k >= 0:
+                ends = ends_of(params, (first + k) * 8 + bit)
+                if ends >= 0:
+                    there = frame.body[PART_HEAD + k] >> (7 - bit) & 1
+                    set_edge(node, params, ends >> 8, ends & 255, there)

@@ -16,6 +16,7 @@ from innervate.topology.placement import path_loss_cdb
 DELAY_US = (1, 2)  # from one node to another; detection included
 CABLE = "csma-cd-d1"
 PRACTICAL_NODES_MAX = 120  # places in a round of practical CSMA/CD-R
+GUARD_S_MAX = 2
 E2E_S_MAX = 16.0
 # Rounds of turns until all have passed a request on; over which responses are spread; until all
 # of these are at the gateway.
@@ -57,6 +58,7 @@ def suited(model: MeshScenario, profile: Profile, count: int) -> Profile:
         collect=ROUNDS_TO_COLLECT * round_s,
         settled=min(profile.settled, ceil(2 * ROUNDS_TO_COLLECT * round_s)),
         e2e=min(E2E_S_MAX, max(profile.e2e, 4 * round_s)),
+        guard=min(GUARD_S_MAX, max(profile.guard, 2 * round_s)),
     )
 
 

@@ -137,6 +137,7 @@ def _rounds(profile: Profile, chosen: _Chosen) -> dict[str, int]:
         "period_max": chosen.ticks("period_max_s", max(profile.period_max, period_s)),
         "dead": chosen.ticks("dead_s", STANDBY_PERIODS * period_s),
         "dead_step": chosen.ticks("dead_step_s", profile.dead_step),
+        "guard_us": chosen.micros("guard_s", 0 if chosen.settings.dead_s else profile.guard),
         "forget": min(FORGET_TICKS_MAX, chosen.ticks("forget_s", FORGET_S)),
     }
 

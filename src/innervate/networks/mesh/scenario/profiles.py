@@ -24,6 +24,7 @@ class Profile(NamedTuple):
         loss_1m_cdb: path loss at 1 m in free space, 0.01 dB.
         ack_us: wait for a hop's ack.
         dead_step: more for every standby behind the first.
+        guard: a standby waits so long for a sign of the gateway's life; 0 = for requests alone.
         settled: messages start then if nothing is said: the first tables are there.
         hop_acks: hops acknowledge; False where the medium access says what was received.
         ack_adapt: a hop's ack may take its neighbour's round trip longer.
@@ -54,6 +55,7 @@ class Profile(NamedTuple):
     job: float
     beacon: float
     dead_step: float
+    guard: float
     settled: float
     hop_acks: bool = True
     ack_adapt: bool = False
@@ -69,14 +71,14 @@ FAST = Profile(
     loss_1m_cdb=4000, mtu=127, collisions=True, period=10, period_max=60, jitter=0.1, copies=2,
     listen=0.3, spread=0.4, collect=1.5, transmissions=3, ack_us=_ack_us(192, 6, 32_000, 320),
     suspect=10, e2e=0.25, e2e_adapt=True, e2e_tries=5,
-    jobs=4, job=0.35, beacon=1, dead_step=5, settled=8,
+    jobs=4, job=0.35, beacon=1, dead_step=5, guard=0.2, settled=8,
 )  # fmt: skip
 SLOW = Profile(
     byte_ns=208_333, phy_bytes=7, turnaround_us=2000, backoff_us=2000, rssi50_cdb=-10_500,
     loss_1m_cdb=3100, mtu=64, collisions=True, period=60, period_max=300, jitter=1.0, copies=2,
     listen=3, spread=4, collect=13, transmissions=3, ack_us=_ack_us(2000, 7, 208_333, 2000),
     suspect=10, e2e=1.5, e2e_adapt=False, e2e_tries=5,
-    jobs=2, job=3, beacon=1, dead_step=5, settled=45,
+    jobs=2, job=3, beacon=1, dead_step=5, guard=2, settled=45,
 )  # fmt: skip
 # Nobody tells when a frame has left, so the wait begins when it is handed down: a whole frame more.
 IDEAL = FAST._replace(
@@ -88,7 +90,7 @@ IP = Profile(
     mtu=127, collisions=False, period=2, period_max=2, jitter=0.005, copies=2, listen=0.05,
     spread=0.05, collect=0.2, transmissions=3, ack_us=5000, suspect=2, e2e=0.03, e2e_adapt=True,
     e2e_tries=8,
-    jobs=4, job=0.1, beacon=0.25, dead_step=1, settled=1,
+    jobs=4, job=0.1, beacon=0.25, dead_step=1, guard=0, settled=1,
 )  # fmt: skip
 PROFILES = {"250k": FAST, "38k4": SLOW, "ideal": IDEAL, "ip": IP}
 

@@ -46,6 +46,7 @@ class MeshProtocolTable(keys.Table, frozen=True, kw_only=True):
     period_max_s: Slow | None = None
     dead_s: Slow | None = None
     dead_step_s: Slow | None = None
+    guard_s: Annotated[float, keys.number("seconds", 0, 2)] | None = None
     table_window: Annotated[int, keys.whole("nodes", 1, 15)] | None = None
     table_retry_s: Annotated[float, keys.above_0("seconds", 67)] | None = None
     table_tries: Tries | None = None

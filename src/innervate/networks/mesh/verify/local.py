@@ -290,7 +290,7 @@ class Locals:
             timers[const.RETRY] = NEVER
         if not node.due and not (node.leading and gate is not None and gate.step == COLLECTING):
             timers[const.ROUND] = NEVER
-        if not node.leading:
+        if not node.leading and (node.rank < 0 or not self.params.guard_us):
             timers[const.JOBS] = NEVER
 
     def _who(self, number: int, count: int) -> int:

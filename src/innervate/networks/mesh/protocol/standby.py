@@ -1,0 +1,77 @@
+"""Standbys: is the gateway there? Who asks it is told, and given its graph, part by part.
+
+An answer costs two ways through the mesh, however many nodes it has. Whatever else the gateway
+sent and a standby hears is an answer, too.
+"""
+
+from innervate.networks.mesh.protocol.constants import CONTROL, GRAPH, PARTS_MAX, TABLES
+from innervate.networks.mesh.protocol.frames import get16
+from innervate.networks.mesh.protocol.gateway import lead
+from innervate.networks.mesh.protocol.graph_jobs import fill_graph
+from innervate.networks.mesh.protocol.queue import compose, kick
+from innervate.networks.mesh.protocol.round import arm_guard
+from innervate.networks.mesh.protocol.send import send_on
+from innervate.networks.mesh.protocol.table import PART_HEAD, part_count, read_edges
+
+IN_VAIN = 4  # questions, each with a wait of its own: then the gateway is dead
+PATIENCE = 12  # quarters, at first
+PATIENCE_MAX = 24  # after an answer that came late
+
+
+def hear_gateway(node):
+    """The gateway lives. Where more than one question was needed, a few in vain prove nothing."""
+    if node.silent > 2:
+        node.patience = PATIENCE_MAX
+    node.silent = 0
+
+
+def guard(node, gate, params, now, out):
+    """A standby's wait is over: ask if no sign of life came, lead if all questions were in vain."""
+    node.silent = node.silent + 1
+    if node.silent == 1:
+        node.patience = max(node.patience - 1, 0)
+    elif node.silent > 1 + IN_VAIN + (node.patience >> 2):
+        lead(node, gate, params, now, out)
+        return
+    else:
+        send_part(node, gate, params, now, node.gateway, gate.part, 0, out)
+        kick(node, params, now, out)
+    arm_guard(node, params, now, out)
+
+
+def send_part(node, gate, params, now, to, index, count, out):
+    """Part `index` of the graph to a standby; of 0 parts: the question for it."""
+    i = compose(node, now, CONTROL, GRAPH, to, 0, out)
+    if i >= 0:
+        fill_graph(node, gate, params, i, index, count)
+        send_on(node, params, now, i, out)
+
+
+def on_guard(node, gate, params, now, frame, out):
+    """A standby asks us, who lead; or the gateway answers us, a standby."""
+    if frame.length < PART_HEAD:
+        return
+    version = get16(frame, 1)
+    index = frame.body[3] >> 4
+    count = frame.body[3] & 15
+    if node.leading:
+        if version != gate.version:
+            index = 0
+        send_part(node, gate, params, now, frame.origin, index, parts_told(gate, params), out)
+    elif node.rank >= 0 and params.mode == TABLES and frame.origin == node.gateway:
+        if version != gate.version:
+            gate.version = version
+            gate.part = 0
+        if index == gate.part and index < count:
+            read_edges(node, params, frame, index)
+            gate.part = index + 1
+            if gate.part == count:
+                gate.whole = 1
+
+
+def parts_told(gate, params):
+    """How many parts a standby can have of our graph now: tables on their way need the channel."""
+    count = part_count(params)
+    if params.mode != TABLES or count > PARTS_MAX or gate.links == 0 or gate.open:
+        return 0
+    return count
