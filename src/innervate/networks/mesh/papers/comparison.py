@@ -12,7 +12,7 @@ from innervate.networks.mesh.papers import testbed as beds
 from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options
 from innervate.networks.mesh.protocol.constants import END_TO_END, MONITOR, PRIORITY
 from innervate.networks.mesh.scenario.plan import MeshFault, Offer
-from innervate.networks.mesh.sim.simulate import simulate
+from innervate.networks.mesh.sim.simulate import MeshResult, simulate
 from innervate.papers import in_field
 from innervate.papers.experiment import Claim
 from innervate.papers.in_field import NEVER, Sent, World
@@ -111,8 +111,8 @@ def _through_an_outage(made: World, seed: int) -> list[Sent]:
     return found
 
 
-def measure(protocol: Options, more: Options, given: Given, seed: int) -> dict[str, Any]:
-    """One run of a mesh."""
+def played(protocol: Options, more: Options, given: Given, seed: int) -> tuple[World, MeshResult]:
+    """A world, and a mesh's run in it."""
     made = world(given, seed)
     plan = plan_of(given, seed, protocol, more)
     assert plan.radio.rssi_cdb == made.rssi_cdb
@@ -120,7 +120,12 @@ def measure(protocol: Options, more: Options, given: Given, seed: int) -> dict[s
     plan.faults = [MeshFault(at, action, node, 0, 0, i)
                    for i, (at, action, node) in enumerate(made.faults)]  # fmt: skip
     plan.offers = [_offer(one, flags) for one in made.sent]
-    result = simulate(plan, checks=False)
+    return made, simulate(plan, checks=False)
+
+
+def measure(protocol: Options, more: Options, given: Given, seed: int) -> dict[str, Any]:
+    """One run of a mesh."""
+    made, result = played(protocol, more, given, seed)
     came = []
     if made.sent:
         found = messages(result)

@@ -39,6 +39,7 @@ from innervate.networks.mesh.protocol.retransmission import (
     on_end_ack,
     send_buffered,
 )
+from innervate.networks.mesh.protocol.route import learn_way
 from innervate.networks.mesh.protocol.search import BITS
 from innervate.networks.mesh.protocol.send import send_on
 
@@ -207,6 +208,7 @@ def take(node, params, now, frame, out):
     """
     first = frame.flags & FIRST
     mark_reachable(node, frame.origin)
+    learn_way(node, params, frame)
     if frame.kind == E2E_ACK:
         on_end_ack(node, params, frame, now, out)
         return

@@ -22,6 +22,7 @@ from innervate.networks.mesh.protocol.duplicates import (
 from innervate.networks.mesh.protocol.frames import in_path
 from innervate.networks.mesh.protocol.messages import hand_up
 from innervate.networks.mesh.protocol.queue import kick, take_over
+from innervate.networks.mesh.protocol.route import learn_way
 from innervate.networks.mesh.protocol.send import send_on
 
 
@@ -43,6 +44,8 @@ def relay(node, params, now, frame, out):
         return
     if returned:
         mark_bad(node, frame.link_src, frame.dest)
+    else:
+        learn_way(node, params, frame)
     i = take_over(node, now, rank_of(frame), frame, out)
     if i < 0:
         return

@@ -14,6 +14,7 @@ from innervate.networks.mesh.protocol.constants import (
     SEARCH,
     SOURCE_ROUTE,
     TABLE_FREE,
+    TABLES,
     WHOLE_GRAPH,
 )
 from innervate.networks.mesh.protocol.duplicates import forwarded_at, is_bad, is_skipped, skip
@@ -43,6 +44,17 @@ def alternate(node, params, dest):
     return node.alt[node.bank * params.width + dest]
 
 
+def learn_way(node, params, frame):
+    """Who brought a packet leads to its origin, as far as no table says who does.
+
+    The answer goes back so, and what follows it: nobody has to search for a way that was found.
+    """
+    if params.mode == TABLES and params.failover == SEARCH:
+        at = node.bank * params.width + frame.origin
+        if node.version == 0 or node.next[at] == NONE:
+            node.next[at] = frame.link_src
+
+
 def is_usable(node, params, i, who):
     """1 if the packet in place i may go to `who`."""
     if who == NONE or was_at(node, i, who) or is_suspect(node, params, who):
@@ -68,7 +80,11 @@ def loudest_fit(node, params, i, bad):
 
 
 def search(node, params, i, bad):
-    """Recipient, table, alternate, uplink, any other neighbour: the first that may be next."""
+    """Recipient, table, alternate, uplink, any other neighbour: the first that may be next.
+
+    Uplinks are for the gateway, and for whom we know no way to: those nearer to it have tables
+    sooner than we.
+    """
     dest = node.q_dest[i]
     if is_strong(node, params, place_of(node, params, dest)) and is_fit(node, params, i, dest, bad):
         return dest
@@ -78,7 +94,7 @@ def search(node, params, i, bad):
     who = alternate(node, params, dest)
     if is_fit(node, params, i, who, bad):
         return who
-    if dest == node.gateway:
+    if dest == node.gateway or planned(node, params, dest) == NONE:
         who = uplink(node, params, i)
         if who != NOBODY and is_fit(node, params, i, who, bad):
             return who

@@ -8,7 +8,7 @@ from typing import Any
 from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.networks.mesh.scenario.network import Network
 from innervate.networks.mesh.scenario.plan import HEADER_SLOTS, Walk
-from innervate.networks.mesh.scenario.profiles import GOOD_CDB, Profile
+from innervate.networks.mesh.scenario.profiles import GOOD_CDB, Profile, crowded
 from innervate.networks.radio.scenario.baselines import baseline
 from innervate.networks.radio.scenario.plan import parameters
 from innervate.topology.placement import path_loss_cdb
@@ -35,15 +35,17 @@ def is_shared(mac: str) -> bool:
 
 
 def suited(model: MeshScenario, profile: Profile, count: int) -> Profile:
-    """The profile with the timers that suit the medium access [mesh 8.3].
+    """The profile with the timers that suit the medium access and the number of nodes [mesh 8.3].
 
     Where stations take turns a frame waits for a round at most, whatever the others send: rounds
     are the measure. Nobody has to keep out of others' way by waiting at random, so a request is
     sent once, with little jitter. Senders learn that their frame was received, so hops do not
     acknowledge: an ack would be a turn more for every frame.
     """
-    if not profile.collisions or not is_shared(mac_of(model, profile)):
+    if not profile.collisions:
         return profile
+    if not is_shared(mac_of(model, profile)):
+        return crowded(profile, count, len(model.standby) > 0)
     mtu = model.protocol.mtu or profile.mtu
     turnaround_us = model.radio.turnaround_us or profile.turnaround_us
     turn_us = (profile.phy_bytes + HEADER_SLOTS + mtu) * profile.byte_ns / 1000 + turnaround_us
@@ -52,6 +54,7 @@ def suited(model: MeshScenario, profile: Profile, count: int) -> Profile:
         hop_acks=False,
         ack_us=round(2e6 * round_s),
         jitter=min(profile.jitter, round_s),
+        flood=min(profile.flood, round_s / 8),
         copies=1,
         listen=ROUNDS_TO_LISTEN * round_s,
         spread=ROUNDS_TO_SPREAD * round_s,

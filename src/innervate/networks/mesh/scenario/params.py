@@ -98,7 +98,7 @@ def parameters(
         "standby": 0,
         "jobs": chosen.value("table_window", profile.jobs),
         "job_us": chosen.micros("table_retry_s", profile.job),
-        "job_tries": chosen.value("table_tries", 3),
+        "job_tries": chosen.value("table_tries", profile.job_tries),
         **_routing(settings),
         **{name: int(chosen.value(name, getattr(profile, name))) for name in OF_PROFILE},
         **_rounds(profile, chosen),
@@ -128,7 +128,7 @@ def _rounds(profile: Profile, chosen: _Chosen) -> dict[str, int]:
     rest_s = profile.collect - profile.listen - profile.spread
     return {
         "jitter_us": chosen.micros("jitter_s", profile.jitter),
-        "flood_us": chosen.micros("flood_s", profile.jitter / 8),
+        "flood_us": chosen.micros("flood_s", profile.flood),
         "listen_us": listen_us,
         "spread_us": spread_us,
         "collect_us": chosen.micros("collect_s", (listen_us + spread_us) / 1e6 + rest_s),

@@ -10,6 +10,8 @@ GOOD_CDB = 300  # a good link is so much above the 50 % point, both ways
 REPORT_CDB = 200  # one that is reported to the gateway, so much
 SMALL = 15  # up to so many nodes a slow radio can afford twice the rounds
 LARGE = 20  # above so many, it can only afford half the beacons
+CROWD = 32  # up to so many nodes rounds take the time of the profile; beyond, see `crowded`
+TRIES_IN_CROWD = 6  # of a table, more: who was given up waits for a round that is far off
 
 
 class Profile(NamedTuple):
@@ -25,6 +27,8 @@ class Profile(NamedTuple):
         ack_us: wait for a hop's ack.
         dead_step: more for every standby behind the first.
         guard: a standby waits so long for a sign of the gateway's life; 0 = for requests alone.
+        flood: floods are passed on within.
+        job_tries: of a table, after the first.
         settled: messages start then if nothing is said: the first tables are there.
         hop_acks: hops acknowledge; False where the medium access says what was received.
         ack_adapt: a hop's ack may take its neighbour's round trip longer.
@@ -57,8 +61,10 @@ class Profile(NamedTuple):
     dead_step: float
     guard: float
     settled: float
+    flood: float
     hop_acks: bool = True
     ack_adapt: bool = False
+    job_tries: int = 3
 
 
 def _ack_us(turnaround_us: int, phy_bytes: int, byte_ns: int, backoff_us: int) -> int:
@@ -71,14 +77,14 @@ FAST = Profile(
     loss_1m_cdb=4000, mtu=127, collisions=True, period=10, period_max=60, jitter=0.1, copies=2,
     listen=0.3, spread=0.4, collect=1.5, transmissions=3, ack_us=_ack_us(192, 6, 32_000, 320),
     suspect=10, e2e=0.25, e2e_adapt=True, e2e_tries=5,
-    jobs=4, job=0.35, beacon=1, dead_step=5, guard=0.2, settled=8,
+    jobs=4, job=0.35, beacon=1, dead_step=5, guard=0.2, settled=8, flood=0.0125,
 )  # fmt: skip
 SLOW = Profile(
     byte_ns=208_333, phy_bytes=7, turnaround_us=2000, backoff_us=2000, rssi50_cdb=-10_500,
     loss_1m_cdb=3100, mtu=64, collisions=True, period=60, period_max=300, jitter=1.0, copies=2,
     listen=3, spread=4, collect=13, transmissions=3, ack_us=_ack_us(2000, 7, 208_333, 2000),
     suspect=10, e2e=1.5, e2e_adapt=False, e2e_tries=5,
-    jobs=2, job=3, beacon=1, dead_step=5, guard=2, settled=45,
+    jobs=2, job=3, beacon=1, dead_step=5, guard=2, settled=45, flood=0.125,
 )  # fmt: skip
 # Nobody tells when a frame has left, so the wait begins when it is handed down: a whole frame more.
 IDEAL = FAST._replace(
@@ -90,7 +96,7 @@ IP = Profile(
     mtu=127, collisions=False, period=2, period_max=2, jitter=0.005, copies=2, listen=0.05,
     spread=0.05, collect=0.2, transmissions=3, ack_us=5000, suspect=2, e2e=0.03, e2e_adapt=True,
     e2e_tries=8,
-    jobs=4, job=0.1, beacon=0.25, dead_step=1, guard=0, settled=1,
+    jobs=4, job=0.1, beacon=0.25, dead_step=1, guard=0, settled=1, flood=0.000625,
 )  # fmt: skip
 PROFILES = {"250k": FAST, "38k4": SLOW, "ideal": IDEAL, "ip": IP}
 
@@ -103,3 +109,27 @@ def profile_of(name: str, nodes: int) -> Profile:
     if name == "38k4" and nodes > LARGE:
         found = found._replace(beacon=2)
     return found
+
+
+def crowded(profile: Profile, nodes: int, standby: bool) -> Profile:
+    """The same with time for what many nodes say: it meets about the gateway (decision 0044).
+
+    Twice as many nodes respond within three times the time, and rounds are as much further apart,
+    for tables grow with the nodes, too; but not where a standby waits for requests. Requests come
+    by more ways: twice the jitter.
+    """
+    if nodes <= CROWD:
+        return profile
+    more = 1 + 2 * (nodes - CROWD) / CROWD
+    listen, spread = 2 * profile.listen, more * profile.spread
+    rest = profile.collect - profile.listen - profile.spread
+    period = profile.period if standby else round(more * profile.period)
+    return profile._replace(
+        jitter=2 * profile.jitter,
+        listen=listen,
+        spread=spread,
+        collect=listen + spread + (5 + more) / 6 * rest,
+        period=period,
+        period_max=max(period, profile.period_max),
+        job_tries=TRIES_IN_CROWD,
+    )
