@@ -82,7 +82,7 @@ def inherit(node, gate, params):
     for a in range(params.nodes):
         for b in range(params.nodes):
             if a != node.gateway and b != node.gateway and is_edge(node, params, a, b):
-                note_heard(gate, params, a, b, node.round)
+                note_heard(gate, params, a, b)
     gate.whole = 1
 
 
