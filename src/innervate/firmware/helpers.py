@@ -34,11 +34,17 @@ static int32_t {p}_abs(int32_t a)
 }}
 """),
     "floor_div": Helper("""\
-/* Rounds down, where `/` of C rounds towards 0. */
+/* Rounds down, where `/` of C rounds towards 0; divides without signs, as all the rest. */
 static int32_t {p}_floor_div(int32_t a, int32_t b)
 {{
-    const int32_t quotient = a / b;
-    return (quotient * b != a && (a < 0) != (b < 0)) ? quotient - 1 : quotient;
+    if (b < 0) {{
+        a = -a;
+        b = -b;
+    }}
+    if (a < 0) {{
+        return -1 - (int32_t)((uint32_t)(-1 - a) / (uint32_t)b);
+    }}
+    return (int32_t)((uint32_t)a / (uint32_t)b);
 }}
 """),
     "floor_mod": Helper(
