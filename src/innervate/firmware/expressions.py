@@ -91,12 +91,13 @@ class Expressions:
                 floor = "floor_div" if isinstance(node.op, ast.FloorDiv) else "floor_mod"
                 text = f"{self.helper(floor)}({self.text(node.left)}, {self.text(node.right)})"
                 return text, ATOM
-            # Unsigned: small processors divide by a function, and need only one.
-            op = BINARY[type(node.op)]
-            left, right = self.text(node.left, UNARY), self.text(node.right, UNARY)
-            if not self._is_known(node.right):
-                right = f"(uint32_t){right}"
-            return f"(int32_t)((uint32_t){left} {op} {right})", UNARY
+            if not _is_power(node.right):
+                # Unsigned: small processors divide by a function, and need only one.
+                op = BINARY[type(node.op)]
+                left, right = self.text(node.left, UNARY), self.text(node.right, UNARY)
+                if not isinstance(node.right, ast.Constant) and not self._is_known(node.right):
+                    right = f"(uint32_t){right}"
+                return f"(int32_t)((uint32_t){left} {op} {right})", UNARY
         op = BINARY[type(node.op)]
         if op in "+-":
             return f"{self.text(node.left, PLUS)} {op} {self.text(node.right, TIMES)}", PLUS
@@ -110,9 +111,7 @@ class Expressions:
         return f"{left} {op} {self.text(node.right, UNARY)}", BITS
 
     def _is_known(self, node: ast.expr) -> bool:
-        """True for a constant, with a name or without."""
-        if isinstance(node, ast.Constant):
-            return True
+        """True for a constant with a name."""
         return isinstance(node, ast.Name) and node.id not in self.made.types
 
     def _UnaryOp(self, node: ast.UnaryOp, _as_test: bool) -> tuple[str, int]:
@@ -214,3 +213,8 @@ class Expressions:
 def local(name: str) -> str:
     """A variable's name in C."""
     return "turn_" if name == UNKNOWN else name_of(name)
+
+
+def _is_power(node: ast.expr) -> bool:
+    """True for a number that a shift or a mask divides by."""
+    return isinstance(node, ast.Constant) and int(node.value).bit_count() == 1  # type: ignore[arg-type]
