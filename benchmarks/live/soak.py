@@ -192,6 +192,7 @@ def _complain(task):
 SAID = (
     "ready",
     "keys reloaded",
+    "stopped; messages were still under way",
     "{}.state: cannot be written: No space left",
     "{}.state: written again",
 )
@@ -226,6 +227,7 @@ def faults(soak, found):
             yield f"{told['name']}: {received} frames received, not all accounted for: {counted}"
     for name in soak.network.names:
         for line in (soak.network.folder / f"{name}.log").read_text(errors="replace").splitlines():
+            line = line[line.rfind(f"{name}: ") :]  # a full disk tears lines
             if not line.startswith(tuple(f"{name}: {said.format(name)}" for said in SAID)):
                 yield f"{name} wrote: {line}"
     for name, before, after in soak.grown():
@@ -256,7 +258,7 @@ async def soaked(args, folder, disk):
         found = await soak.run(60 * args.minutes, not args.gentle)
         stayed = [p.pid for p in network.processes.values() if p.pid in before]
         used = sum(cpu_s(pid) - before[pid] for pid in stayed)
-        cpu = 100 * used / (time.monotonic() - began) / max(1, len(stayed))
+        cpu = 100 * used / (time.monotonic() - began) / len(stayed) if stayed else math.nan
     finally:
         await network.down()
     return soak, found, cpu
