@@ -1,5 +1,6 @@
 """What RFC 8966, section 4, says of packets: octet by octet, by its tables."""
 
+import asyncio
 import random
 from struct import pack
 
@@ -8,6 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from innervate.dialect import plain
+from innervate.live.declared import DeclaredNode, DeclaredStack
+from innervate.live.links import Link, Path
+from innervate.network import networks
 from innervate.networks.babel.packets import NOT_BABEL, NOTHING, Packets
 from innervate.networks.babel.protocol import fields
 from innervate.networks.babel.protocol.constants import (
@@ -293,18 +297,48 @@ def test_times_are_rounded_up_and_cut():
     assert [one["hello"] for one in said(packet(slow))] == [65535]
 
 
-def test_a_packet_of_many_parts_is_heard_in_its_order():
+def of_many_parts():
     """As babeld has it: a Hello, an IHU of its own interval, updates for others, a request."""
-    foreign = bytes.fromhex("08 14 02 80 40 00 06 40 00 05 01 00") + b"\xfd" + bytes(7)
+    foreign = bytes.fromhex("08 12 02 80 40 00 06 40 00 05 01 00") + b"\xfd" + bytes(7)
     alone = b"\x05\x0e\3\0\1\0\0\x0a" + router_id(US)
-    data = packet(bytes.fromhex("04 06 00 00 00 09 01 90"), alone, SOURCE, foreign[:1] + b"\x12"
-                  + foreign[2:], TOLD, b"\x09\2\0\0")  # fmt: skip
-    found = said(data)
+    hello = bytes.fromhex("04 06 00 00 00 09 01 90")
+    return packet(hello, alone, SOURCE, foreign, TOLD, b"\x09\2\0\0")
+
+
+def test_a_packet_of_many_parts_is_heard_in_its_order():
+    found = said(of_many_parts())
     assert [one["kind"] for one in found] == [HELLO, IHU, UPDATE, ROUTE_REQUEST]
     assert found[-1] == {"kind": ROUTE_REQUEST, "source": NOBODY}, "nothing is left of those before"
 
 
-LENGTHS = {"hello": (0, 6500), "update": (1, 65500)}
+def test_a_live_node_is_told_each_of_its_parts():
+    async def main():
+        network = networks()["babel"]
+        stack = DeclaredStack(network, US, {**fields.DEFAULTS, "pc": PC}, 1, [0])
+        path = Path("cable", 0)
+        path.send = sent.append
+        link = Link()
+        link.paths = [path]
+        link.open = opened
+        link.close = lambda: None
+        async with DeclaredNode("n7", stack, [link]) as node:
+            sent.clear()
+            node._receive(path, of_many_parts())
+            node._receive(path, b"nothing of Babel's")
+            return node.counters(), stack.node
+
+    async def opened(_receive):
+        """There is nothing to open."""
+
+    sent = []
+    counters, node = asyncio.run(main())
+    assert counters["frames"] == 4
+    assert counters["dropped: no Babel packet"] == 1
+    assert (node.neighbour[0], node.txcost[0], node.seq[0], node.metric[0]) == (NOBODY, 256, 5, 96)
+    asked, told = (said(data, OTHER) for data in sent)
+    assert [one["kind"] for one in (*asked, *told)] == [ROUTE_REQUEST, UPDATE]
+
+
 CARRIED = {
     HELLO: ("hello_no", "hello", "rxcost", "has_update"),
     UPDATE: ("seq", "metric", "update"),
