@@ -67,10 +67,10 @@ def test_data_by_hand():
 
 
 def test_report_by_hand():
-    frame = new(REPORT, pos=1, base=2, window=3, span=4, split=1, slots=7,
+    frame = new(REPORT, pos=1, base=2, window=3, span=4, split=1, kept=5, slots=7,
                 good=[0x0102, 0x0304], bad=[0x0506, 0x0708])  # fmt: skip
-    # 0000001 0000010 000011 0000000100 1 and five spare bits in front of twelve
-    body = bytes.fromhex("14 02083012 0007 0102 0304 0506 0708")
+    # 0000001 0000010 000011 0000000100 1 00 00101 and six spare bits in front of twelve
+    body = bytes.fromhex("14 02083012 140007 0102 0304 0506 0708")
     assert wire.encode(frame) == sealed(body)
 
 

@@ -38,10 +38,10 @@ def test_a_lone_packet_in_an_idle_channel_takes_the_turnaround_and_its_opening()
 
 
 @pytest.mark.parametrize(("n", "load", "most"), [(5, 0.1, 62), (20, 0.1, 70), (5, 0.3, 130),
-                                                 (20, 0.6, 450)])  # fmt: skip
+                                                 (20, 0.6, 250), (20, 0.9, 700)])  # fmt: skip
 def test_the_delay_at_light_load(n, load, most):
     # What it was when whoever had followed a sequence waited at random behind it, and a window had
-    # one minislot: 75, 81, 146, 488 slots.
+    # one minislot: 75, 81, 146, 488 slots. 405 and 1,053 when kept places passed turns on.
     assert mean_delay(PRACTICAL, n, load) < most
 
 

@@ -292,7 +292,8 @@ _REASONS = {
     "a pulse proves it: whoever pulses is deaf for two turnarounds; DCF is told for nothing",
     0.3: "who comes while others send asks for a place: a window and a report cost two "
     "turnarounds, more than its packet",
-    0.6: "as at 30 %; a place is kept over a few turns without a packet, three slots and a "
-    "turnaround each, where a token has two slots",
-    0.9: "windows for newcomers: the ring and TDMA know all their stations beforehand",
+    0.6: "as at 30 %: kept places are asked in one window, but a window and its report are two "
+    "turnarounds; a token asks few stations quicker",
+    0.9: "windows and reports: the ring and TDMA know all their stations beforehand, and a token "
+    "goes with a packet",
 }

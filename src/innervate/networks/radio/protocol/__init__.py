@@ -23,6 +23,8 @@ only when the station named next says that it received it. Stations with packets
 round: every data frame names the next place, and between two there is a turnaround and a delay,
 nothing else. Windows for newcomers open behind a round. In a window each newcomer sends one CR-R in
 a random minislot; the report says which held one. Those are places now; several in one split.
+With slow radios a place is kept when the queue is empty (decision 0039): it has no turn then, and
+the minislot of its number in each window that no report announced; newcomers' stand behind those.
 
 `station.py` is what both share; `modes.py`, `times.py`, `bounds.py`, `idle.py`, `turn.py`,
 `window.py`, `reporter.py`, `follow.py` belong to practical mode, `paper_idle.py`,
@@ -203,13 +205,15 @@ Frames
 | `CRR = 1`    | one slot                         | nothing: a CR-R, or a pulse that says "heard"  |
 | `DATA = 2`   | its packets, or `PASS_SLOTS = 3` | `pos`, `next`, `more`, `ok`, and up to         |
 |              |                                  | `per_turn` packets                             |
-| `OPEN = 3`   | u or its packets                 | as data; how wide the bounds are               |
-| `REPORT = 4` | `REPORT_SLOTS = 5` and more      | `good`, `bad` minislots, `base`; `window`,     |
-|              |                                  | `span`, `split`                                |
+| `OPEN = 3`   | u or its packets                 | as data; how wide the bounds are. `pos`:       |
+|              |                                  | `UNKNOWN = 31`: all places are free again      |
+| `REPORT = 4` | `REPORT_SLOTS = 5` and more      | `good`, `bad` minislots, `kept` ones ahead,    |
+|              |                                  | `base`; `window`, `span`, `split`              |
 
-In `next`: a place; its own: a window of one minislot; `ALONE = 127`: one, nobody else has a place;
-`WINDOWS = 120` and the `STEPS = 3` from there: 3, 6 or 12 minislots; `LONE_WINDOWS = 123`: those,
-and nobody else has a place; `NEXT_NONE = 126` is not used. Bit by bit: docs/wire.md.
+In `next`: a place; its own: a window of one minislot; `ALONE = 127`: one, nobody else has a turn;
+`WINDOWS = 120` and the `STEPS = 3` from there: 6, 11 or 21 minislots, with quick radios 3, 6 or 12;
+`LONE_WINDOWS = 123`: those, and nobody else has a turn; `NEXT_NONE = 126` is not used. Bit by bit:
+docs/wire.md.
 
 Inputs and reports
 ==================
@@ -242,11 +246,18 @@ Constants and settings
 | `WIDE_MOST = 3`                              | doublings of dmax that stations go to by          |
 |                                              | themselves; `LONGEST_US = 268435455`              |
 | `TURNS_MOST = 4095`, `TURNS_COUNTED = 65535` | counters stop there                               |
-| `turns`                                      | K: turns between windows; sooner if               |
-|                                              | `CROWD_WAITS = 4` quarters of one wait            |
+| `turns`                                      | K: turns between windows, two more for each kept  |
+|                                              | minislot; sooner if `CROWD_WAITS = 4` quarters    |
+|                                              | of a station wait                                 |
 | `CROWD_MOST = 1023`                          | bound of that estimate                            |
-| `CREDIT = 2`, `CREDIT_MOST = 4`              | turns without a packet that one with a packet     |
-|                                              | earns                                             |
+| `CREDIT = 2`, `CREDIT_MOST = 4`              | quick radios: turns without a packet that one     |
+|                                              | with a packet earns                               |
+| `KEPT = 20`                                  | places that can be kept: one less than the        |
+|                                              | minislots of the largest window                   |
+| `ACTIVE = 1`, `QUIET = 2`, `QUIET_MOST = 99` | of a place: it has turns; it is kept, one more    |
+|                                              | with each window, and free behind the last        |
+| `BUSY = 10`, `BUSY_MOST = 15`                | windows in which somebody asked, doubled, less    |
+|                                              | others: below `BUSY` an opening frees all places  |
 | `FAILS_MOST = 3`                             | packets without proof, then the round is left     |
 | `LONELY_MOST = 5`                            | doublings of Wr while nobody is heard             |
 | `LONELY_NOTICE = 3`                          | failed openings before noise counts as wrong      |
@@ -277,6 +288,8 @@ a slot above it; at most 120 stations.
 - Practical, bounds wrong: noticed where a CR-R or a hand-over can be measured, then widened up to
   `WIDE_MOST` times, and told to the others; slower, and it completes.
 - Practical, a station dies: its turn passes after D; who is passed over contends again.
+- Practical, two stations believe in one kept place: both ask in its minislot, which is noise, and
+  both contend as newcomers; or one asks, and the other sees that in the report and gives it up.
 - Paper: with packets of one length all that collide start within tau of each other, so that CR-Rs
   of a third and later station overlap: a reservation orders four stations at most (F1). Silence is
   taken for delivery: a dead reporter or a slow radio loses packets silently (Q9, F2).

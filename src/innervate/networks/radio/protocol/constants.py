@@ -13,8 +13,10 @@ ACT = 1
 
 POSITIONS = 120  # places in a round of turns; what 7 bits of a header leave
 MINISLOTS = 32  # in one window; two bits for each must fit into a report
+KEPT = 20  # places kept while there is nothing to send; in the largest window one more is left
 NONE = -1
 ALONE = 127  # in `next`: nobody else has a turn
+UNKNOWN = 31  # place of an opener that knows of no free one: all places are free again
 WINDOWS = 120  # in `next`: a window of several minislots follows, then the next place's turn
 LONE_WINDOWS = 123  # ... and nobody else has a place; up to 125
 NEXT_NONE = 126  # in `next`: not used

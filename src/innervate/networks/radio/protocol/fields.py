@@ -19,6 +19,7 @@ FRAME = (
     ("window", 0, 0, 63, "minislots", "report: size of the window that follows; 0 none"),
     ("span", 0, 0, 1023, "minislots", "report: what those without a minislot draw from"),
     ("split", 0, 0, 1, "flag", "report: collided ones split, two minislots each, ahead of others"),
+    ("kept", 0, 0, 31, "minislots", "report: so many are those of places, by their numbers"),
     ("wide", 0, 0, 3, "doublings", "open, report: of the greatest delay that is believed in"),
 )
 
@@ -64,7 +65,7 @@ PRACTICAL = (
     ("lonely", 0, 0, 31, "tries", "openings without hearing anybody"),
     ("fails", 0, 0, 255, "packets", "not proved, in a row"),
     ("pos", 0, -1, 119, "position", "our place in the round; -1 none"),
-    ("live", 120, 0, 1, "flag", "places in the round that are taken"),
+    ("live", 120, 0, 99, "windows", "0 free; 1 has turns; more: kept, unused for so many, less 2"),
     ("cur", 0, -1, 119, "position", "whose turn it is, or will be after the window; -1 nobody's"),
     ("turns", 0, 0, 65535, "turns", "since the last open window"),
     ("pending", 0, 0, 15, "packets", "sent, waiting for proof"),
@@ -83,9 +84,11 @@ PRACTICAL = (
     ("bad", 2, 0, 65535, "bits", "reporter: minislots with noise"),
     ("rest", 0, 0, 1023, "minislots", "reporter: drawn from but not yet opened"),
     ("opener", 0, 0, 1, "flag", "reporter: this window follows our opening"),
-    ("credit", 0, 0, 15, "turns", "with a packet, less those without: a place is kept for a while"),
+    ("credit", 0, 0, 15, "turns", "with a packet, less those without: quick radios pass them on"),
+    ("kept", 0, 0, 20, "minislots", "ahead in the present window, for kept places"),
     ("joined", 0, 0, 1023, "stations", "that were given a place since the last window was opened"),
     ("crowd", 0, 0, 1023, "quarters", "of a station: how many mostly wait for a window"),
+    ("busy", 0, 0, 15, "windows", "somebody asked, twice, less those in which nobody did"),
     ("wide", 0, 0, 3, "doublings", "of the greatest configured delay that we believe in"),
     ("used", 0, 0, 3, "doublings", "... that this sequence allows for"),
 )

@@ -5,6 +5,7 @@ from innervate.dialect.outbox import report
 from innervate.networks.radio.protocol.bounds import TRIP, adopt, notice
 from innervate.networks.radio.protocol.constants import (
     HEARD_TAIL,
+    KEPT,
     LONE_WINDOWS,
     NEXT_NONE,
     NO_PROOF,
@@ -16,19 +17,25 @@ from innervate.networks.radio.protocol.constants import (
 )
 from innervate.networks.radio.protocol.idle import leave_sequence
 from innervate.networks.radio.protocol.modes import (
+    ACTIVE,
     LEAD,
+    QUIET,
     clear_round,
+    code_for,
+    count_kept,
     disprove,
     following,
     is_passed_over,
     note_joined,
     prove,
+    rest,
+    rest_round,
     window_of,
 )
 from innervate.networks.radio.protocol.reporter import lead_first
 from innervate.networks.radio.protocol.times import guard, join_after, least_delay, most_delay
 from innervate.networks.radio.protocol.turn import enter_turn
-from innervate.networks.radio.protocol.window import enter_window
+from innervate.networks.radio.protocol.window import enter_first, enter_window
 
 TURNS_COUNTED = 65535
 TRIP_MOST = 1 << 20  # us; longer ones are clocks that wrapped
@@ -39,19 +46,26 @@ def hear_open(station, params, now, frame, out):
     if station.pending:
         disprove(station, NO_PROOF, out)
     adopt(station, params, frame, out)
-    clear_round(station)
+    place = frame.pos
+    if place >= KEPT:
+        clear_round(station)
+        place = 0
+    rest_round(station, params)
     station.collided = 0
     station.tail = 0
     station.last_ok = 1
-    station.slot = NONE
     station.joined = 0
+    if station.pos == place:
+        station.pos = NONE
+    if frame.pos < KEPT:
+        station.live[place] = QUIET
     if frame.more:
-        station.live[0] = 1
-        station.cur = 0
+        station.live[place] = ACTIVE
+        station.cur = place
     size = 1
     if LONE_WINDOWS <= frame.next < NEXT_NONE:
-        size = window_of(frame.next)
-    enter_window(station, params, now, size, size, size, 1, out)
+        size = window_of(params, frame.next)
+    enter_first(station, params, now, size, 1, out)
 
 
 def hear_data(station, params, now, frame, out):
@@ -63,40 +77,56 @@ def hear_data(station, params, now, frame, out):
     if station.pending:
         settle(station, params, now, frame, out)
     if station.mode == LEAD:
-        note_joined(station)  # the next turn has begun: nobody used our window
+        note_joined(station, 0)  # the next turn has begun: nobody used our window
     station.collided = 0
     station.tail = 0
     station.last_ok = 1
     station.slot = NONE
     station.turns = min(station.turns + 1, TURNS_COUNTED)
-    station.live[sender] = frame.more
+    note_turn(station, params, sender, frame.more)
     lone = behind >= LONE_WINDOWS
     opens = behind == sender or behind >= WINDOWS
     size = 1
     if WINDOWS <= behind < NEXT_NONE:
-        size = window_of(behind)
-    if station.pos != NONE:
-        skipped = lone or station.pos == sender
-        if not skipped and not opens:
-            skipped = is_passed_over(sender, behind, station.pos)
-        if skipped:
-            report(out, REPORT_SKIPPED, station.pos, 0)
-            station.pos = NONE
+        size = window_of(params, behind)
+    if station.pos != NONE and is_skipped(station, sender, behind):
+        report(out, REPORT_SKIPPED, station.pos, 0)
+        station.pos = NONE
     if lone:
-        clear_round(station)
+        rest_round(station, params)
         station.joined = 0
-        station.live[sender] = frame.more
+        note_turn(station, params, sender, frame.more)
         if frame.more:
             station.cur = sender
-        enter_window(station, params, now, size, size, size, 1, out)
+        enter_first(station, params, now, size, 1, out)
     elif opens:
         station.turns = 0
         station.joined = 0
         station.cur = following(station, sender)
-        enter_window(station, params, now, size, size, size, 0, out)
+        enter_first(station, params, now, size, 0, out)
     else:
-        station.live[behind] = 1
+        station.live[behind] = ACTIVE
         enter_turn(station, params, now, behind, out)
+
+
+def is_skipped(station, sender, behind):
+    """1 if a turn says that our place is not ours: somebody else has it, or it has no turn."""
+    if station.pos == sender:
+        return True
+    if station.live[station.pos] != ACTIVE:
+        return False
+    if behind >= LONE_WINDOWS:
+        return True
+    opens = behind == sender or behind >= WINDOWS
+    return not opens and is_passed_over(sender, behind, station.pos)
+
+
+def note_turn(station, params, place, more):
+    """The station in a place has sent; does it keep its turns?"""
+    if more:
+        station.live[place] = ACTIVE
+    else:
+        rest(station, params, place)
 
 
 def settle(station, params, now, frame, out):
@@ -119,7 +149,7 @@ def sent_data(station, params, now, out):
     opens = station.next == station.pos or station.next >= WINDOWS
     size = 1
     if WINDOWS <= station.next < NEXT_NONE:
-        size = window_of(station.next)
+        size = window_of(params, station.next)
     alone = station.next >= LONE_WINDOWS
     if not station.live[station.pos]:
         station.pos = NONE
@@ -127,7 +157,7 @@ def sent_data(station, params, now, out):
         report(out, REPORT_COLLISION, 0, 0)
         disprove(station, HEARD_TAIL, out)
         if alone:
-            leave_sequence(station, now, join_after(params, station.used))
+            leave_sequence(station, params, now, join_after(params, station.used))
         else:
             enter_turn(station, params, now, station.cur, out)
     elif opens:
@@ -147,7 +177,9 @@ def garbled_turn(station, params, now, out):
     if behind != NONE and behind <= station.cur:
         station.cur = behind
         station.slot = NONE
-        enter_window(station, params, now, 1, 0, 0, 0, out)
+        kept = count_kept(station)
+        size = window_of(params, code_for(params, kept + 1)) if kept else 1
+        enter_window(station, params, now, size, 0, 0, 0, out)
     else:
         enter_turn(station, params, now, behind, out)
 

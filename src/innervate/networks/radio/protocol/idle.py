@@ -12,15 +12,22 @@ from innervate.networks.radio.protocol.constants import (
     NOT_HEARD,
     OPEN,
     REPORT_COLLISION,
+    UNKNOWN,
     WINDOWS,
 )
 from innervate.networks.radio.protocol.modes import (
+    ACTIVE,
+    BUSY,
     IDLE,
+    QUIET,
     SEND_OPEN,
     arm,
     clear_round,
     code_for,
+    count_kept,
     disprove,
+    first_free,
+    rest_round,
     wanted_window,
 )
 from innervate.networks.radio.protocol.station import blank, load_packets
@@ -48,13 +55,14 @@ def listen_first(station, params, now, cause, out):
     station.slot = NONE
     if cause:
         wait = join_after(params, station.wide)
-    leave_sequence(station, now, wait)
+    leave_sequence(station, params, now, wait)
+    clear_round(station)
     schedule(station, now, out)
 
 
-def leave_sequence(station, now, wait_us):
+def leave_sequence(station, params, now, wait_us):
     """Leave the sequence; a new one may be opened `wait_us` from now."""
-    clear_round(station)
+    rest_round(station, params)
     station.mode = IDLE
     station.credit = 0
     station.pending = 0
@@ -81,7 +89,7 @@ def schedule(station, now, out):
 
 def end_sequence(station, params, now, out):
     """The sequence has ended, as all who followed it know: whoever has a packet may open."""
-    leave_sequence(station, now, guard(params, station.used) + 1)
+    leave_sequence(station, params, now, guard(params, station.used) + 1)
     schedule(station, now, out)
 
 
@@ -104,34 +112,51 @@ def open_now(station, params, now, out):
         count = load_packets(station, frame, params.per_turn)
         frame.slots = max(frame.slots, probe_slots)
     frame.kind = OPEN
-    frame.pos = 0
+    rest_round(station, params)
+    frame.pos = take_place(station, params)
+    more = station.queued > count
+    if more:
+        station.live[station.pos] = ACTIVE
+    elif frame.pos == UNKNOWN:
+        station.pos = NONE
+    else:
+        station.live[station.pos] = QUIET
     frame.next = ALONE
     size = wanted_window(station, params)
     if count == 0 and split_into(params) > 2:
         size = max(size, 2)  # there was a collision: more than one will ask
+    size = max(size, 1) + count_kept(station)
     if size > 1:
-        frame.next = code_for(size) + LONE_WINDOWS - WINDOWS
+        frame.next = code_for(params, size) + LONE_WINDOWS - WINDOWS
     station.next = frame.next
-    frame.more = 1 if station.queued > count else 0
+    frame.more = 1 if more else 0
     frame.wide = station.wide
     station.used = station.wide
     station.pending = count
     station.named = NONE
-    clear_round(station)
-    station.live[0] = frame.more
-    if frame.more:
-        station.pos = 0
-        station.cur = 0
+    if more:
+        station.cur = station.pos
     station.last_ok = 0
     station.end = (now + params.ta_us + frame.slots * params.slot_us) & MASK30
     station.mode = SEND_OPEN
+
+
+def take_place(station, params):
+    """Our place, or a free one; what to say of it in an opening."""
+    if station.pos == NONE:
+        station.pos = first_free(station, params)
+    if station.pos == NONE or station.busy < BUSY:
+        clear_round(station)
+        station.pos = 0
+        return UNKNOWN
+    return station.pos
 
 
 def retry(station, params, now, tail, out):
     """Our opening collided: with `tail` wait for the others' end, else draw the wait now."""
     report(out, REPORT_COLLISION, 0, 0)
     disprove(station, HEARD_TAIL if tail else NOT_HEARD, out)
-    leave_sequence(station, now, 0)
+    leave_sequence(station, params, now, 0)
     station.collided = 1
     station.tail = tail
     if not tail:
@@ -152,7 +177,8 @@ def wait_again(station, params, now, out):
 def notice_late_answer(station, params, out):
     """Nobody answered our opening in its window, but somebody does right behind it."""
     slot = minislot(params, station.wide)
-    close = station.end + params.ta_us + 2 * least_delay(params, station.wide) + 2 * slot
+    close = station.end + params.ta_us + 2 * least_delay(params, station.wide)
+    close = close + (station.window + station.ack) * slot
     late = (station.rise - close) & MASK30
     if station.lonely >= 2 and late < 2 * slot:
         notice(station, params, most_delay(params, station.wide) + late // 2, BEHIND, out)

@@ -4,6 +4,7 @@ from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import report, set_timer
 from innervate.networks.radio.protocol.constants import (
     ACT,
+    KEPT,
     MAIN,
     NONE,
     POSITIONS,
@@ -11,7 +12,7 @@ from innervate.networks.radio.protocol.constants import (
     WINDOWS,
 )
 from innervate.networks.radio.protocol.station import delivered
-from innervate.networks.radio.protocol.times import split_into
+from innervate.networks.radio.protocol.times import is_slow, keeps, split_into
 
 # Listening.
 IDLE = 0  # not in a sequence; opens one when it has a packet and may
@@ -26,7 +27,12 @@ SEND_DATA = 6
 SEND_REPORT = 7
 SEND_SLOT = 8
 CROWD_MOST = 1023
+BUSY_MOST = 15
+BUSY = 10  # from here on it is worth a minislot for each to keep places over an idle channel
 STEPS = 3  # sizes of announced windows
+ACTIVE = 1  # a place whose turn comes in each round
+QUIET = 2  # one that is kept for a window; more: windows since it was used
+QUIET_MOST = 99  # ... and after so many it is free
 
 
 def arm(station, now, delay_us, out):
@@ -50,13 +56,57 @@ def clear_round(station):
     station.turns = 0
 
 
+def rest(station, params, place):
+    """A station has sent all that it had: its place is kept, if a minislot can be its own."""
+    station.live[place] = QUIET if place < keeps(params) else 0
+
+
+def rest_round(station, params):
+    """The round is over: nobody has a turn, and places that can be kept are."""
+    for i in range(POSITIONS):
+        if station.live[i] == ACTIVE:
+            rest(station, params, i)
+    if station.pos >= keeps(params):
+        station.pos = NONE
+    station.cur = NONE
+    station.turns = 0
+
+
+def count_kept(station):
+    """How many minislots kept places need: one each, in the order of their numbers."""
+    count = 0
+    for i in range(KEPT):
+        if station.live[i] >= QUIET:
+            count = i + 1
+    return count
+
+
+def age_kept(station):
+    """A window for kept places begins: they are one window older, and free when too old."""
+    for i in range(KEPT):
+        if station.live[i] >= QUIET:
+            station.live[i] = station.live[i] + 1
+            if station.live[i] > QUIET_MOST:
+                station.live[i] = 0
+                if station.pos == i:
+                    station.pos = NONE
+
+
+def first_free(station, params):
+    """The first free place that can be kept; NONE if none is."""
+    for i in range(keeps(params)):
+        if station.live[i] == 0:
+            return i
+    return NONE
+
+
 def following(station, pos):
-    """The next taken place after `pos`, round the circle, `pos` itself last; NONE if none is."""
+    """The next place after `pos` that has turns, round the circle, `pos` itself last; or NONE."""
     for step in range(1, POSITIONS + 1):
         place = pos + step
         if place >= POSITIONS:
             place = place - POSITIONS
-        if station.live[place]:
+        if station.live[place] == ACTIVE:
             return place
     return NONE
 
@@ -68,15 +118,21 @@ def is_passed_over(first, last, place):
     return place > first or place < last
 
 
-def window_of(code):
-    """How many minislots the window has that a code in `next` announces: 3, 6 or 12."""
-    return 3 << ((code - WINDOWS) % STEPS)
+def window_of(params, code):
+    """How many minislots the window has that a code in `next` announces.
+
+    One for newcomers behind 5, 10 or 20 of kept places; 3, 6 or 12 where none are kept.
+    """
+    step = (code - WINDOWS) % STEPS
+    if is_slow(params):
+        return 1 + (5 << step)
+    return 3 << step
 
 
-def code_for(minislots):
+def code_for(params, minislots):
     """The code of the smallest such window that is no smaller, or of the largest."""
     code = WINDOWS
-    while code < WINDOWS + STEPS - 1 and window_of(code) < minislots:
+    while code < WINDOWS + STEPS - 1 and window_of(params, code) < minislots:
         code = code + 1
     return code
 
@@ -86,8 +142,12 @@ def wanted_window(station, params):
     return 3 * station.crowd * split_into(params) // 16
 
 
-def note_joined(station):
+def note_joined(station, asked):
     """A window is over, with all that followed from it: how many wait for the next?"""
+    if asked:
+        station.busy = min(station.busy + 2, BUSY_MOST)
+    else:
+        station.busy = max(station.busy - 1, 0)
     station.crowd = min(station.crowd // 2 + 2 * station.joined, CROWD_MOST)
     station.joined = 0
 

@@ -20,13 +20,18 @@ from innervate.networks.radio.protocol.constants import (
 )
 from innervate.networks.radio.protocol.idle import end_sequence, leave_sequence, retry, schedule
 from innervate.networks.radio.protocol.modes import (
+    ACTIVE,
     LEAD,
+    QUIET,
     SEND_REPORT,
+    age_kept,
     arm,
-    clear_round,
+    count_kept,
     disprove,
+    following,
     note_joined,
     prove,
+    rest_round,
     window_of,
 )
 from innervate.networks.radio.protocol.station import blank
@@ -60,10 +65,15 @@ def set_bit(words, place):
     words[place >> 4] = words[place >> 4] | (1 << (place & 15))
 
 
-def count_bits(words, size):
-    """How many of the first `size` bits are set."""
+def clear_bit(words, place):
+    """Clear the bit of a minislot in a mask."""
+    words[place >> 4] = words[place >> 4] & ~(1 << (place & 15))
+
+
+def count_bits(words, first, size):
+    """How many bits are set from the bit `first` to `size`, left out."""
     count = 0
-    for i in range(size):
+    for i in range(first, size):
         count = count + bit(words, i)
     return count
 
@@ -93,21 +103,23 @@ def opened(station, params, now, out):
     station.opener = 1
     size = 1
     if station.next < NEXT_NONE:
-        size = window_of(station.next)
+        size = window_of(params, station.next)
     lead_first(station, params, now, size, 1, out)
 
 
 def lead_first(station, params, now, window, ack, out):
     """Lead a window that no report announced."""
+    age_kept(station)
+    station.kept = min(count_kept(station), window)
     station.rest = 0
-    station.span = window
+    station.span = window - station.kept
     station.split = 0
     station.joined = 0
     lead(station, params, now, window, ack, out)
 
 
 def minislot_of(station, params, rise):
-    """The minislot, from 0 with that for pulses, in which a burst began; -1 outside."""
+    """The minislot in which a burst began, that for pulses last; -1 outside."""
     start = station.ref + window_start(station, params)
     since = (rise - start) & MASK30
     if not after(rise, start & MASK30):
@@ -145,8 +157,8 @@ def hear_slot(station, params, now, out):
     if check_bounds(station, params, rise, out):
         prove(station, out)
     station.heard = 1
-    place = minislot_of(station, params, rise) - station.ack
-    if place >= 0:
+    place = minislot_of(station, params, rise)
+    if 0 <= place < station.window:
         set_bit(station.good, place)
 
 
@@ -157,10 +169,11 @@ def end_burst(station, params, now, length, noise, out):
         overrun(station, params, now, out)
         return
     if noise:
-        if check_bounds(station, params, station.rise, out):
-            prove(station, out)
-        place = minislot_of(station, params, station.rise) - station.ack
-        if place >= 0:
+        fits = check_bounds(station, params, station.rise, out)
+        if fits and not (station.opener and length >= 2 * params.slot_us):
+            prove(station, out)  # else perhaps probes of others that collided with our opening
+        place = minislot_of(station, params, station.rise)
+        if 0 <= place < station.window:
             set_bit(station.bad, place)
     if not station.armed:
         close(station, params, now, out)
@@ -184,7 +197,7 @@ def overrun(station, params, now, out):
     disprove(station, NO_PROOF, out)
     station.last_ok = 0
     if station.opener:
-        clear_round(station)
+        rest_round(station, params)
     enter_turn(station, params, now, station.cur, out)
 
 
@@ -202,38 +215,58 @@ def close(station, params, now, out):
         else:
             disprove(station, NOT_HEARD, out)
             wait = join_after(params, station.used)
-            leave_sequence(station, now, wait + draw(station, retry_within(params, station.used)))
+            leave_sequence(
+                station, params, now, wait + draw(station, retry_within(params, station.used))
+            )
             schedule(station, now, out)
         return
-    good = count_bits(station.good, station.window)
-    bad = count_bits(station.bad, station.window)
-    if good + bad == 0 and station.rest == 0:
+    good = count_bits(station.good, 0, station.window)
+    bad = count_bits(station.bad, 0, station.window)
+    doubted = station.opener and station.pending
+    if good + bad == 0 and station.rest == 0 and not doubted:
         station.opener = 0
-        note_joined(station)
+        note_joined(station, 0)
         if station.cur == NONE and station.pending == 0:
             end_sequence(station, params, now, out)
         else:
             enter_turn(station, params, now, station.cur, out)
     else:
-        send_report(station, params, now, good, bad, out)
+        send_report(station, params, now, bad, out)
 
 
-def send_report(station, params, now, good, bad, out):
+def answer_kept(station):
+    """Kept places that were heard in their minislots have turns, and so has ours if we need it."""
+    kept = station.kept
+    place = station.pos
+    if 0 <= place < kept and station.live[place] >= QUIET:
+        if bit(station.good, place):
+            station.pos = NONE  # somebody else uses it
+        elif station.queued:
+            set_bit(station.good, place)
+    for i in range(kept):
+        if bit(station.good, i):
+            station.live[i] = ACTIVE
+
+
+def send_report(station, params, now, bad, out):
     """REPORT: minislots that are turns now, and the window that follows."""
     if station.pending:
         disprove(station, NO_PROOF, out)
     frame = blank(out)
     frame.kind = REPORT
+    frame.kept = station.kept
+    answer_kept(station)
+    good = count_bits(station.good, station.kept, station.window)
     wants = station.queued and station.pos == NONE
     own = 1 if wants and station.window < MINISLOTS else 0
-    frame.slots = REPORT_SLOTS + (station.window + own + 4) // 5
+    frame.slots = REPORT_SLOTS + (1 if station.kept else 0) + (station.window + own + 4) // 5
     base = free_places(station, good + own)
     if base == NONE:
         good = 0
         own = 0
         base = 0
-        for i in range(2):
-            station.good[i] = 0
+        for i in range(station.kept, MINISLOTS):
+            clear_bit(station.good, i)
     if own:
         # A minislot that nobody could use: all give it a place, and we know whose that is.
         set_bit(station.good, station.window)
@@ -245,17 +278,18 @@ def send_report(station, params, now, good, bad, out):
     station.joined = station.joined + good
     frame.base = base
     for i in range(good):
-        station.live[base + i] = 1
-    if station.cur == NONE and good:
-        station.cur = base
+        station.live[base + i] = ACTIVE
+    if station.cur == NONE:
+        station.cur = following(station, station.pos)
     plan_window(station, split_into(params), good - own, bad)
     frame.wide = station.wide
     station.used = station.wide
     if station.window == 0:
-        note_joined(station)
+        note_joined(station, 1)
     frame.window = station.window
     frame.span = station.span
     frame.split = 1 if station.split else 0
+    station.kept = 0
     frame.pos = station.cur & 127
     station.opener = 0
     station.last_ok = 0
@@ -266,30 +300,18 @@ def send_report(station, params, now, good, bad, out):
 
 
 def free_places(station, count):
-    """The first of `count` free places behind the last taken one, or in the largest gap."""
+    """The first of the first `count` free places side by side; NONE if there are none."""
     size = 0
-    first = 0
-    best = 0
-    best_first = NONE
     for i in range(POSITIONS):
-        if station.live[i]:
-            size = 0
-            first = i + 1
-        else:
-            size = size + 1
-            if size >= best:
-                best = size
-                best_first = first
-    if POSITIONS - first >= count:
-        return first
-    if best >= count:
-        return best_first
+        size = 0 if station.live[i] else size + 1
+        if size >= count:
+            return i + 1 - size
     return NONE
 
 
 def plan_window(station, parts, good, bad):
     """The next window: collided minislots split, and more of the span; or all is drawn anew."""
-    window = station.window
+    window = station.window - station.kept
     span = station.rest
     first = station.split == 0
     if first and bad and window == 1:

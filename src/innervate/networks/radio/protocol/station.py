@@ -20,6 +20,7 @@ def copy_frame(to, frm):
     to.window = frm.window
     to.span = frm.span
     to.split = frm.split
+    to.kept = frm.kept
     to.wide = frm.wide
     for i in range(2):
         to.good[i] = frm.good[i]
@@ -76,6 +77,7 @@ def blank(out):
     frame.window = 0
     frame.span = 0
     frame.split = 0
+    frame.kept = 0
     frame.wide = 0
     for i in range(2):
         frame.good[i] = 0

@@ -4,7 +4,7 @@
 and gives up the least: a sequence then takes longer and bears delays that the bounds exclude.
 """
 
-from innervate.networks.radio.protocol.constants import WIDE_MOST
+from innervate.networks.radio.protocol.constants import KEPT, WIDE_MOST
 
 LONGEST_US = (1 << 28) - 1
 
@@ -64,11 +64,19 @@ def turn_timeout(params, wide):
     return params.dead_us
 
 
+def is_slow(params):
+    """1 if the radio needs longer to switch than two minislots last: a window is dear."""
+    return params.ta_us > 2 * params.minislot_us
+
+
+def keeps(params):
+    """How many places are kept for stations without packets: quick radios pass their turns on."""
+    return KEPT if is_slow(params) else 0
+
+
 def split_into(params):
     """Minislots for each that collided: the slower the radio, the dearer another window."""
-    if params.ta_us > 2 * params.minislot_us:
-        return 4
-    return 2
+    return 4 if is_slow(params) else 2
 
 
 def guard(params, wide):

@@ -23,14 +23,17 @@ from innervate.networks.radio.protocol.modes import (
     arm,
     arm_act,
     code_for,
+    count_kept,
     disprove,
     following,
+    rest,
     wanted_window,
     window_of,
 )
 from innervate.networks.radio.protocol.station import blank, load_packets
 from innervate.networks.radio.protocol.times import (
     guard,
+    is_slow,
     join_after,
     minislot,
     most_delay,
@@ -78,7 +81,7 @@ def finish(station, params, now, out):
     if station.pending:
         disprove(station, NO_PROOF, out)
     wait = turn_timeout(params, station.used) + draw(station, retry_within(params, station.used))
-    leave_sequence(station, now, wait)
+    leave_sequence(station, params, now, wait)
     schedule(station, now, out)
 
 
@@ -88,13 +91,14 @@ def quit_round(station, params, now, out):
     station.pos = NONE
     station.fails = 0
     wait = join_after(params, station.used) + draw(station, retry_within(params, station.used))
-    leave_sequence(station, now, wait)
+    leave_sequence(station, params, now, wait)
     schedule(station, now, out)
 
 
-def is_due(station, params):
-    """1 if a window for newcomers is due behind this round."""
-    return station.turns + 1 >= params.turns or station.crowd >= CROWD_WAITS
+def is_due(station, params, size):
+    """1 if a window of so many minislots is due behind this round: the larger, the rarer."""
+    due = params.turns + 2 * (size - 1)
+    return station.turns + 1 >= due or station.crowd >= CROWD_WAITS
 
 
 def send_turn(station, params, now, out):
@@ -105,11 +109,12 @@ def send_turn(station, params, now, out):
     frame.kind = DATA
     behind = following(station, station.pos)
     alone = behind == station.pos or behind == NONE
-    if count:
-        station.credit = min(station.credit + (CREDIT if station.credit else 1), CREDIT_MOST)
-    else:
+    slow = is_slow(params)
+    if count == 0:
         station.credit = station.credit - 1
         frame.slots = PASS_SLOTS
+    elif not slow:
+        station.credit = min(station.credit + (CREDIT if station.credit else 1), CREDIT_MOST)
     more = station.queued > count or (station.credit and not alone)
     frame.pos = station.pos
     frame.more = 1 if more else 0
@@ -118,17 +123,20 @@ def send_turn(station, params, now, out):
     station.end = (now + params.ta_us + frame.slots * params.slot_us) & MASK30
     longest = most_delay(params, station.used)
     limit = params.ta_us + 2 * longest + guard(params, station.used)
-    size = wanted_window(station, params)
-    opens = alone or (wraps and (not more or is_due(station, params)))
+    if not more:
+        rest(station, params, station.pos)
+    size = max(wanted_window(station, params), 1) + count_kept(station)
+    ends = not more and not slow  # a window is soon over
+    opens = alone or (wraps and (ends or is_due(station, params, size)))
     station.named = NONE if alone else behind
     if opens:
         frame.next = ALONE if alone else station.pos
         if size > 1:
-            frame.next = code_for(size)
-            size = window_of(frame.next)
+            frame.next = code_for(params, size)
+            size = window_of(params, frame.next)
             if alone:
                 frame.next = frame.next + LONE_WINDOWS - WINDOWS
-        length = max(size, 1) * minislot(params, station.used)
+        length = size * minislot(params, station.used)
         limit = limit + params.ta_us + 3 * longest + length
     else:
         frame.next = behind
@@ -138,8 +146,6 @@ def send_turn(station, params, now, out):
     station.last_ok = 0
     station.armed = 0
     station.mode = SEND_DATA
-    if not more:
-        station.live[station.pos] = 0
     station.cur = behind
     if alone and not more:
         station.cur = NONE

@@ -5,10 +5,14 @@ from innervate.networks.radio.protocol.bounds import adopt
 from innervate.networks.radio.protocol.constants import MINISLOTS, NO_PROOF, NONE, POSITIONS
 from innervate.networks.radio.protocol.idle import end_sequence
 from innervate.networks.radio.protocol.modes import (
+    ACTIVE,
+    QUIET,
     SEND_SLOT,
     WINDOW,
+    age_kept,
     arm,
     arm_act,
+    count_kept,
     disprove,
     note_joined,
 )
@@ -24,6 +28,21 @@ from innervate.networks.radio.protocol.times import (
 from innervate.networks.radio.protocol.turn import enter_turn
 
 
+def enter_first(station, params, now, window, ack, out):
+    """A window that no report announced: kept places have their own minislots in it."""
+    age_kept(station)
+    kept = min(count_kept(station), window)
+    station.slot = NONE
+    if 0 <= station.pos < kept and station.live[station.pos] >= QUIET:
+        station.slot = station.pos
+    enter_window(station, params, now, window, window - kept, window - kept, ack, out)
+
+
+def asks(station):
+    """1 if we have a packet, and nothing on the air that waits for its proof."""
+    return station.queued > 0 and station.pending == 0
+
+
 def enter_window(station, params, now, window, fresh, span, ack, out):
     """A frame announced a window; if we want a place, take a minislot, else pulse if asked to.
 
@@ -36,16 +55,15 @@ def enter_window(station, params, now, window, fresh, span, ack, out):
     station.ref = now
     station.heard = 0
     station.act = 0
-    wants = station.queued and station.pos == NONE and station.pending == 0
-    if wants and span > 0 and station.slot == NONE:
+    if asks(station) and station.pos == NONE and span > 0 and station.slot == NONE:
         place = draw(station, span)
         if place < fresh:
             station.slot = window - fresh + place
     wait = guard(params, station.used)
-    if station.slot != NONE and wants:
-        arm_act(station, now, wait + (station.slot + ack) * minislot(params, station.used), out)
+    if station.slot != NONE:
+        arm_act(station, now, wait + station.slot * minislot(params, station.used), out)
     elif ack:
-        arm_act(station, now, wait, out)
+        arm_act(station, now, wait + window * minislot(params, station.used), out)
     last = (window + ack - 1) * minislot(params, station.used)
     farthest = 2 * most_delay(params, station.used) - least_delay(params, station.used)
     arm(station, now, wait + params.ta_us + last + farthest + 1, out)
@@ -53,6 +71,12 @@ def enter_window(station, params, now, window, fresh, span, ack, out):
 
 def use_slot(station, params, out):
     """Send our CR-R or pulse; deaf meanwhile, we only wait for the report."""
+    if station.slot != NONE and not asks(station):
+        station.slot = NONE
+        if station.ack:
+            behind = station.window * minislot(params, station.used)
+            arm_act(station, station.ref, guard(params, station.used) + behind, out)
+        return
     expect_report(station, params, out)
     station.mode = SEND_SLOT
     send_crr(out)
@@ -80,7 +104,7 @@ def pass_deadline(station, params, now, out):
 
 def go_on(station, params, now, out):
     """The window has ended without a report."""
-    note_joined(station)
+    note_joined(station, 0)
     if station.cur == NONE and station.pending == 0:
         end_sequence(station, params, now, out)
     else:
@@ -98,22 +122,28 @@ def hear_report(station, params, now, frame, out):
     places = 0
     groups = 0
     for i in range(MINISLOTS):
-        if bit(frame.good, i):
+        if bit(frame.good, i) and i < frame.kept:
+            if i == station.pos and i != mine and station.live[i] >= QUIET:
+                station.pos = NONE  # somebody else uses it
+            station.live[i] = ACTIVE
+        elif bit(frame.good, i):
             if frame.base + places < POSITIONS:
                 place = frame.base + places
-                station.live[place] = 1
+                station.live[place] = ACTIVE
                 if place == station.pos:
                     station.pos = NONE
                 if i == mine and station.mode == WINDOW:
                     station.pos = place
             places = places + 1
         elif bit(frame.bad, i):
+            if i == mine and station.mode == WINDOW:
+                station.pos = NONE  # a kept place of ours is somebody else's, too
             if i == mine and station.mode == WINDOW and frame.split:
                 station.slot = parts * groups + draw(station, parts)
             groups = groups + 1
     station.joined = station.joined + places
     if frame.window == 0:
-        note_joined(station)
+        note_joined(station, 1)
     station.turns = 0
     station.last_ok = 0
     station.collided = 0

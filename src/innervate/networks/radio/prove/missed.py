@@ -18,6 +18,7 @@ from innervate.prove.steps import Goal, Stage, Step
 from innervate.prove.theory import Source, Theory
 
 MISSED = "a station misses a report"
+ASKED = {("note_joined", "if asked:", False): "a report says that somebody asked"}
 OWN = "they have places of their own"
 
 
@@ -26,7 +27,7 @@ def theories(known: Source) -> list[Theory]:
     return [
         Theory("radio, a data frame missed", "Behind a report two stations have places of their "
                "own, whatever either had heard of the round before.", (),
-               (partial(_both, known),), turns.UNREACHABLE),
+               (partial(_both, known),), turns.UNREACHABLE | ASKED),
         Theory("radio, a report missed", "The same if one of them missed the report.", (),
                (partial(_one, known),), refuted_by=MISSED, is_example=True, tell=tell),
     ]  # fmt: skip

@@ -13,6 +13,7 @@ from innervate.dialect.arith import MASK30
 from innervate.dialect.source import Function
 from innervate.networks.radio.protocol import fields
 from innervate.networks.radio.protocol.constants import MINISLOTS, NONE, POSITIONS
+from innervate.networks.radio.protocol.modes import QUIET_MOST
 from innervate.prove.induction import Induction
 from innervate.prove.records import Array, Outbox, Record, State, Store
 from innervate.prove.steps import Goal, Stage
@@ -35,7 +36,7 @@ class Ending(Induction):
         self, function: Function, args: list[Any], store: Store, under: Term
     ) -> tuple[Store, Any]:
         """Follow a call, but of the handler's last."""
-        if function.name in ("enter_window", "enter_turn"):
+        if function.name in ("enter_first", "enter_window", "enter_turn"):
             return store, self.terms.number(0)
         return super().call(function, args, store, under)
 
@@ -64,7 +65,7 @@ class Hearing(Ending):
         state.store[one, "pos", None] = t.unknown(f"{one.name}.pos then", NONE, POSITIONS - 1)
         state.store[one, "slot", None] = t.unknown(f"{one.name}.slot then", NONE, SLOT_MOST)
         for k in range(POSITIONS):
-            state.store[one, "live", k] = t.unknown(f"{self.shared}.live[{k}] then", 0, 1)
+            state.store[one, "live", k] = t.unknown(f"{self.shared}.live[{k}] then", 0, QUIET_MOST)
 
 
 class Report:

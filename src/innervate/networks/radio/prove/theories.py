@@ -57,8 +57,8 @@ MUTANTS = tuple(
         ),
         (
             "who is passed over takes the sender's place",
-            "            station.pos = NONE\n    if lone:",
-            "            station.pos = sender\n    if lone:",
+            "        station.pos = NONE\n    if lone:",
+            "        station.pos = sender\n    if lone:",
         ),
     )
 )

@@ -44,11 +44,13 @@ UNREACHABLE = {
     ("hear_data", "if sender >= POSITIONS or behind == NEXT_NONE:", True): "a turn is named",
     ("hear_data", "if WINDOWS <= behind < NEXT_NONE:", True): OPENINGS,
     ("hear_data", "if lone:", True): OPENINGS,
+    ("is_skipped", "if behind >= LONE_WINDOWS:", True): OPENINGS,
     ("hear_data", "if frame.more:", False): OPENINGS,
     ("hear_data", "if frame.more:", True): OPENINGS,
     ("hear_data", "elif opens:", True): OPENINGS,
     ("enter_turn", "if cur == NONE:", True): "it is some place's turn",
     ("disprove", "if station.pending:", False): "it is asked where packets wait for their proof",
+    ("rest_round", "if station.pos >= keeps(params):", True): "who quits has no place left",
     ("prove", "if count:", False): "it is asked where packets wait for their proof",
     ("schedule", "if after(station.at, now):", False): "what is waited for is always to come",
 }
