@@ -139,14 +139,6 @@ def test_parameters(profile: str, nodes: int) -> None:
     assert p.starts_us.index(max(p.starts_us)) == p.ranks.index(0)
 
 
-def test_who_says_how_long_a_standby_waits_for_requests_has_it_wait_for_them() -> None:
-    for line, guard_us in (("", 200_000), ("radio.profile = '38k4'", 2_000_000),
-                           ("radio.profile = 'ip'", 0), ("protocol.dead_s = 25", 0),
-                           ("protocol.guard_s = 0.5\nprotocol.dead_s = 25", 500_000),
-                           ("protocol.guard_s = 0", 0)):  # fmt: skip
-        assert made(f"nodes = 3\nstandby = [1]\n{line}").params["guard_us"] == guard_us, line
-
-
 def test_the_documents_reading() -> None:
     params = plan(load("mesh-document")).params
     names = ("discovery", "failover", "retry", "reliable", "transmissions", "avoid_origin")

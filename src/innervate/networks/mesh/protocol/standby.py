@@ -34,17 +34,12 @@ def guard(node, gate, params, now, out):
         lead(node, gate, params, now, out)
         return
     else:
-        send_part(node, gate, params, now, node.gateway, gate.part, 0, out)
+        i = compose(node, now, CONTROL, GRAPH, node.gateway, 0, out)
+        if i >= 0:
+            fill_graph(node, gate, params, i, gate.part, 0)  # of no parts: a question
+            send_on(node, params, now, i, out)
         kick(node, params, now, out)
     arm_guard(node, params, now, out)
-
-
-def send_part(node, gate, params, now, to, index, count, out):
-    """Part `index` of the graph to a standby; of 0 parts: the question for it."""
-    i = compose(node, now, CONTROL, GRAPH, to, 0, out)
-    if i >= 0:
-        fill_graph(node, gate, params, i, index, count)
-        send_on(node, params, now, i, out)
 
 
 def on_guard(node, gate, params, now, frame, out):
@@ -57,7 +52,10 @@ def on_guard(node, gate, params, now, frame, out):
     if node.leading:
         if version != gate.version:
             index = 0
-        send_part(node, gate, params, now, frame.origin, index, parts_told(gate, params), out)
+        i = compose(node, now, CONTROL, GRAPH, frame.origin, 0, out)
+        if i >= 0:
+            fill_graph(node, gate, params, i, index, parts_told(gate, params))
+            send_on(node, params, now, i, out)
     elif node.rank >= 0 and params.mode == TABLES and frame.origin == node.gateway:
         if version != gate.version:
             gate.version = version
