@@ -99,6 +99,25 @@ def test_a_recipient_that_starts_anew_in_the_middle_has_no_half_of_it():
     assert len(node.inbox.pieces) == 0
 
 
+def test_those_after_one_that_expired_wait_for_nothing():
+    async def main():
+        async with Mesh(3, LINE) as mesh:
+            got, node = listening(mesh.nodes[2]), mesh.nodes[0]
+            mesh.nodes[2].inbox.pieces.take = lambda *given: (not given[1].is_last, None)
+            sent = [node.send_message(2, bytes(90), in_order=True) for _ in range(2)]
+            sent += [node.send_message(2, b"%d" % k, in_order=True) for k in range(3)]
+            told = [await receipt.wait() for receipt in sent[:2]]
+            loop = asyncio.get_running_loop()
+            at = loop.time()
+            told += [await receipt.wait() for receipt in sent[2:]]
+            return told, got, loop.time() - at
+
+    told, got, later_s = run(main)
+    assert told == [EXPIRED, EXPIRED, DELIVERED, DELIVERED, DELIVERED]
+    assert [data for _, data in got] == [b"0", b"1", b"2"]
+    assert later_s < 5  # else the 10 s for which one may be missing
+
+
 def test_pieces_of_a_sender_that_is_gone_are_forgotten():
     async def main():
         async with Mesh(3, LINE) as mesh:

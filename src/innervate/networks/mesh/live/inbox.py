@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
+from innervate.dialect.arith import later
 from innervate.live.engine import clock_us
 from innervate.live.streams import Arrivals
 from innervate.networks.mesh.live.order import BEFORE_BYTES, Message, Orderly
@@ -45,6 +46,8 @@ class Inbox:
         if frame.flags & ORDERED and frame.dest != ALL and len(body) >= BEFORE_BYTES:
             piece = read_piece(frame.seq, body)
             before = int.from_bytes(body[:BEFORE_BYTES], "big")
+            if later(before, frame.seq):  # the mark of a last piece that it came after, and expired
+                before = frame.seq
             body = body[BEFORE_BYTES:]
         if not is_again:
             self.outcomes["messages received" if piece is None else "pieces received"] += 1

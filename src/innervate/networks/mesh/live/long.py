@@ -115,7 +115,7 @@ class PieceReceipt(Receipt):
         self.long, self.at, self.is_last = long, at, is_last
 
     def move(self, state: str, reason: str = "") -> None:
-        """Its state changes."""
+        """Its state changes, and its message hears of that."""
         super().move(state, reason)
         self.long.told(self, state, reason)
 

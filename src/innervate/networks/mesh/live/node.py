@@ -202,7 +202,7 @@ class MeshNode(LiveNode):
         return not pending
 
     def troubles(self) -> dict[str, str]:
-        """Neighbours have another MTU."""
+        """Whether neighbours have a longer MTU than this node."""
         if not self.counters()["dropped: " + TOO_LONG]:
             return {}
         mtu = self.stack.params.mtu

@@ -54,7 +54,9 @@ FRAME_HEAD = (
     ("path_len", 0, 0, PATH_MAX, "nodes", "how many in path"),
     ("path", PATH_MAX, 0, 255, "node", "every transmitter so far, the origin first"),
 )
-RSSI = ("rssi", 0, -128, 127, "dBm", "as received; set by the driver; in an ACK: as our frame was")
+FRAME_TAIL = (
+    ("rssi", 0, -128, 127, "dBm", "as received; set by the driver; in an ACK: as our frame was"),
+)
 
 
 def frame(mtu):
@@ -64,7 +66,7 @@ def frame(mtu):
         *FRAME_HEAD,
         ("length", 0, 0, most, "bytes", "of the payload"),
         ("body", most, 0, 255, "byte", "the payload, as on the wire"),
-        RSSI,
+        *FRAME_TAIL,
     )
 
 
