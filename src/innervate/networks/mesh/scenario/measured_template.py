@@ -25,7 +25,10 @@ COMMENTS = {  # of the keys of [import], in their order
 }
 # What suits links that lose much: a hop or a request that is lost is sent again, and there is time
 # for it. Found on community meshes of 36 to 254 nodes (decision 0038).
-TUNED = {"copies": 4, "transmissions": 8, "listen_s": 1.0, "collect_s": 4.0, "e2e_s": 3.0}
+TUNED = {
+    "copies": 4, "transmissions": 8, "jitter_s": 0.1, "listen_s": 1.0, "spread_s": 0.4,
+    "collect_s": 4.0, "period_s": 10.0, "table_tries": 3, "e2e_s": 3.0,
+}  # fmt: skip
 # In large networks, and where a hub has many neighbours that do not hear each other, what they
 # pass on meets at it: they have to take their time, and tables do not get through.
 CROWD_TUNED = {

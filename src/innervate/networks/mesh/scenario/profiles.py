@@ -130,6 +130,5 @@ def crowded(profile: Profile, nodes: int, standby: bool) -> Profile:
         spread=spread,
         collect=listen + spread + (5 + more) / 6 * rest,
         period=period,
-        period_max=max(period, profile.period_max),
         job_tries=TRIES_IN_CROWD,
     )

@@ -1,0 +1,28 @@
+"""Timers by the number of nodes."""
+
+from typing import Any
+
+from innervate.networks.mesh.scenario.plan import MeshPlan
+from innervate.scenario import loads, plan
+
+
+def made(text: str, *sets: Any) -> MeshPlan:
+    found = plan(loads(f'kind = "mesh"\n{text}', sets))
+    assert isinstance(found, MeshPlan)
+    return found
+
+
+def test_rounds_of_many_nodes_take_their_time() -> None:
+    """As long as ever up to 32 nodes; what is chosen stands; a standby waits no longer."""
+    names = ("jitter_us", "flood_us", "listen_us", "spread_us", "collect_us", "period", "job_tries")
+    few, crowd, late = (
+        [made(f"nodes = {n}\n{more}").params[name] for name in names]
+        for n, more in ((32, ""), (64, ""), (64, "standby = [1]"))
+    )
+    assert few == [100_000, 12_500, 300_000, 400_000, 1_500_000, 10, 3]
+    assert crowd == [200_000, 12_500, 600_000, 1_200_000, 2_866_667, 30, 6]
+    assert late == [*crowd[:5], 10, 6]
+    chosen = made("nodes = 64", "protocol.spread_s=1", "protocol.period_s=20").params
+    assert (chosen["spread_us"], chosen["period"], chosen["period_max"]) == (1_000_000, 20, 60)
+    assert made("nodes = 254").params["period"] == made("nodes = 254").params["period_max"] == 149
+    assert made("nodes = 64\nradio.profile = 'ip'").params["period"] == 8
