@@ -2,7 +2,10 @@
 
 from typing import Any
 
+import pytest
+
 from innervate.networks.mesh.scenario.plan import MeshPlan
+from innervate.networks.mesh.scenario.words import warnings
 from innervate.scenario import loads, plan
 
 
@@ -26,3 +29,12 @@ def test_rounds_of_many_nodes_take_their_time() -> None:
     assert (chosen["spread_us"], chosen["period"], chosen["period_max"]) == (1_000_000, 20, 60)
     assert made("nodes = 254").params["period"] == made("nodes = 254").params["period_max"] == 149
     assert made("nodes = 64\nradio.profile = 'ip'").params["period"] == 8
+
+
+@pytest.mark.parametrize(
+    ("more", "most"), [("", 200), ("standby = [1]", 120), ("radio.profile = '38k4'", 50)]
+)
+def test_more_nodes_than_tables_reach_in_time_are_warned_of(more: str, most: int) -> None:
+    few, many = (warnings(made(f"nodes = {n}\n{more}")) for n in (most, most + 1))
+    assert not any("will not be everywhere" in line for line in few)
+    assert any(f"more than {most} fill a" in line for line in many)

@@ -6,7 +6,6 @@ from typing import Any
 
 from innervate.networks.mesh.protocol.fields import NEIGHBOURS
 from innervate.networks.mesh.scenario.nodes import NODES_MAX, Nodes, found_at, nodes_of
-from innervate.networks.mesh.scenario.words import TABLES_MAX
 from innervate.scenario.emit import inline
 from innervate.scenario.load import loads
 from innervate.topology.errors import TopologyError
@@ -31,6 +30,7 @@ TUNED = {
 }  # fmt: skip
 # In large networks, and where a hub has many neighbours that do not hear each other, what they
 # pass on meets at it: they have to take their time, and tables do not get through.
+CROWD = 120  # nodes
 CROWD_TUNED = {
     **TUNED, "transmissions": 5, "jitter_s": 1.0, "listen_s": 3.0, "spread_s": 3.0,
     "collect_s": 9.0, "period_s": 20.0, "tables": False,
@@ -118,7 +118,7 @@ def tuned(taken: Nodes) -> dict[str, Any]:
     """The keys of [protocol] that suit a measured network."""
     links = [pair for pair, both in taken.links.items() if min(both) > 0]
     most = max(len(near) for near in neighbours(len(taken.names), links))
-    crowd = len(taken.names) > TABLES_MAX["250k"] or most > NEIGHBOURS
+    crowd = len(taken.names) > CROWD or most > NEIGHBOURS
     return CROWD_TUNED if crowd else TUNED
 
 
