@@ -244,20 +244,18 @@ CLAIMS = (
           "with a standby alarms come again sooner than by RPL while the root is off", "", STOOD),
     Fewer("root", f"{ALARMS}_again_s", FLOOD,
           "with a standby alarms come again sooner than by flooding while the root is off",
-          "a reading: a standby leads when it has missed requests for so long; a flooded alarm is "
-          "for all",
+          "measured: a standby asks the gateway four times in vain before it leads, which takes a "
+          "second; a flooded alarm is for all",
           STOOD),
     Fewer(MANY, f"{FIRST}_lost", TREE, "fewer first messages are lost than by RPL, 100 nodes"),
     Fewer(MANY, f"{FIRST}_lost", FLOOD,
           "fewer first messages are lost than by flooding, 100 nodes",
           "measured: in many runs there is no difference"),
-    Fewer(MANY, "airtime", FLOOD, "less airtime than flooding, 100 nodes",
-          "measured: responses of its discovery and tables take most of it, while nobody writes, "
-          "too; a flood needs neither"),
+    Fewer(MANY, "airtime", FLOOD, "less airtime than flooding, 100 nodes"),
     Fewer(MOST, f"{FIRST}_lost", FLOOD,
           "fewer first messages are lost than by flooding, 254 nodes",
-          "measured: responses of its discovery alone take 98 % of the time or more, before "
-          "anybody writes, too; it is for about 150 nodes at 250 kbit/s"),
+          "measured: messages begin 20 s after the start, and all have their tables after 41 to "
+          "63 s; before that messages search, or go up to the gateway"),
 )  # fmt: skip
 
 
