@@ -1,6 +1,6 @@
 /* flood PORT RATE SECONDS SEED [OWN_PORT]: datagrams to 127.0.0.1:PORT, for flood.py.
 
-   A third is noise, a third has a mesh's first byte, a third that of a sealed frame; 0 to 160 bytes.
+   A third is noise, a third begins as frames of a mesh do, a third as sealed ones; 0 to 160 bytes.
    Says how many went, and how many datagrams came back to it. */
 #define _GNU_SOURCE
 #include <arpa/inet.h>

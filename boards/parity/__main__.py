@@ -39,7 +39,9 @@ def compare(role: Role, file: Path | None, quick: bool) -> bool:
     plain = transcript.marks[-1][0]
     compiled, fingerprint = record.compiled_mark(role, file)
     same = (compiled, fingerprint) == (plain, transcript.fingerprint)
-    print(f"{role.name}: {record.scenario_of(role, file).name}, node {role.watched.node}")
+    watched = file or record.own_file(role)
+    what = "as it is by itself" if watched is None else watched.name
+    print(f"{role.name}: {what}, node {role.watched.node}")
     print(f"  compiled     0x{compiled:08x} at the end")
     print(f"  plain        0x{plain:08x} after {len(transcript.marks)} calls")
     played = nodejs.play(transcript)

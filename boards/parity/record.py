@@ -195,12 +195,18 @@ def simulation(role: Role, plan: Any, plain: bool) -> Simulation:
     return made
 
 
+def own_file(role: Role) -> Path | None:
+    """The scenario of a role that lies here; None = it is watched as it is by itself."""
+    own = HERE / f"{role.watched.scenario or role.name}.toml"
+    return own if own.exists() else None
+
+
 def scenario_of(role: Role, file: Path | None = None, **changes: Any) -> scenario.Scenario:
     """What is watched: a file's scenario, that of the role here, or the network's plainest."""
-    own = HERE / f"{role.watched.scenario or role.name}.toml"
-    if file is None and not own.exists():
+    file = file or own_file(role)
+    if file is None:
         return scenario.from_dict({"kind": kind_of(role)}, **changes)
-    return scenario.load(file or own, **changes)
+    return scenario.load(file, **changes)
 
 
 def plan_of(role: Role, file: Path | None = None) -> Any:

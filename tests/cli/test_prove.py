@@ -32,7 +32,7 @@ def test_people_are_told_in_lines(sh, monkeypatch):
     monkeypatch.setattr(networks()["radio"].prove, "theories", lambda _: [queue])
     assert sh("prove", "radio") == 0
     *_, holds, _, last = sh.out.splitlines()
-    assert holds == "  Holds: 7 lemmas; 18 ways of branches reached, 2 cannot be, as said."
+    assert holds == "  Holds: 7 lemmas; 26 ways of branches reached, 2 cannot be, as said."
     assert last.startswith("All as it should be: 7 lemmas in ")
 
 

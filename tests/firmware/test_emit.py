@@ -151,7 +151,7 @@ def test_what_is_not_there_or_does_not_fit_is_one_line(alone, capsys):
         ("mesh", "nodes=40"): "40 nodes do not fit into a class of 32",
         ("mesh", "queue=9"): "does not fit into 8 places",
         ("mesh", "monitor=32"): "monitor=32 is none of 32 nodes",
-        ("radio", "packet_slots=300"): "frames of up to 315 bytes; lines carry 245",
+        ("radio", "packet_slots=300"): "frames of up to 316 bytes; lines carry 245",
         ("radio", "--sealed"): "--sealed is for nodes that speak on lines",
         ("skin", "--prefix", "9x"): "begin with a letter",
         ("skin", "--out", str(tmp_path / "full")): "not empty",

@@ -78,7 +78,7 @@ CASES = [
         ("mesh", f"{what} for {most + 1} nodes will not be everywhere in time: more than {most} ",
          grid(most + 1) + rest, grid(most) + rest)
         for what, profile, rule, most in (
-            ("tables", "38k4", "search", 50), ("tables", "250k", "search", 120),
+            ("tables", "38k4", "search", 50), ("tables", "250k", "search", 200),
             ("graph", "38k4", "graph", 70), ("graph", "250k", "graph", 100),
         )
         for rest in (f"[radio]\nprofile = '{profile}'\n[protocol]\nfailover = '{rule}'\nmtu = 127",)

@@ -217,4 +217,8 @@ def local(name: str) -> str:
 
 def _is_power(node: ast.expr) -> bool:
     """True for a number that a shift or a mask divides by."""
-    return isinstance(node, ast.Constant) and int(node.value).bit_count() == 1  # type: ignore[arg-type]
+    return (
+        isinstance(node, ast.Constant)
+        and isinstance(node.value, int)
+        and node.value.bit_count() == 1
+    )

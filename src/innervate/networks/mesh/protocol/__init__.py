@@ -290,7 +290,8 @@ Constants and settings
 | `SEARCH = 3`                                   |                                                 |
 | `PARTS_MAX = 15`, `PART_HEAD = 4`,             | tables and graphs on the wire                   |
 | `GROUP_BYTES = 3`                              |                                                 |
-| `ROUNDS_VALID = 3`                             | rounds for which a report of a link counts      |
+| `ROUNDS_VALID = 3`, `LOW_BITS = 85`            | rounds for which a report of a link counts, two |
+|                                                | bits a link; the lower ones of a byte           |
 | `SLACK = 2`                                    | ticks: nodes count them from different moments  |
 | `guard_us`                                     | decision 0042: a standby's wait; one more for   |
 |                                                | each that is before it                          |

@@ -38,9 +38,6 @@ def wait_room(mtu):
     return max(DATA_MAX, mtu - HEADER_BYTES - CRC_BYTES - PATH_MAX)
 
 
-ROOM_MAX = room(MTU_MAX)
-WAIT_ROOM_MAX = wait_room(MTU_MAX)
-
 FRAME_HEAD = (
     ("kind", 0, 0, 63, "type", "type of the packet"),
     ("flags", 0, 0, 255, "flags", "see constants.py"),
@@ -88,11 +85,10 @@ ITEM_PLACE = (
 
 def item(mtu):
     """Fields of what a user hands down, where a frame has so many bytes at most."""
-    most = wait_room(mtu)
     return (
         *ITEM_HEAD,
-        ("length", 0, 0, most, "bytes", "of the payload"),
-        ("body", most, 0, 255, "byte", "the payload"),
+        ("length", 0, 0, wait_room(mtu), "bytes", "of the payload"),
+        ("body", wait_room(mtu), 0, 255, "byte", "the payload"),
         *ITEM_PLACE,
     )
 
@@ -247,7 +243,7 @@ def packets(n, kept=WAITING, mtu=MTU):
         ("wait_hop", kept, 0, 1, "flag", "... its owner was told that it has left"),
         ("wait_length", kept, 0, most, "bytes", "... payload"),
         ("wait_body", kept * most, 0, 255, "byte", "... payload"),
-        ("wait_room", 0, DATA_MAX, WAIT_ROOM_MAX, "bytes", "... each has in wait_body"),
+        ("wait_room", 0, DATA_MAX, wait_room(MTU_MAX), "bytes", "... each has in wait_body"),
     )
 
 
@@ -299,7 +295,7 @@ def queued(places, mtu=MTU):
         ("q_path", places * PATH_MAX, 0, 255, "node", "the frame"),
         ("q_length", places, 0, most, "bytes", "the frame"),
         ("q_body", places * most, 0, 255, "byte", "the frame"),
-        ("q_room", 0, BODY, ROOM_MAX, "bytes", "each has in q_body"),
+        ("q_room", 0, BODY, room(MTU_MAX), "bytes", "each has in q_body"),
         ("q_next", 0, 0, TIME, "number", "order of the next one"),
         ("busy", 0, -1, PLACES_MAX - 1, "place", "handed down, or waits for its ack; -1 none"),
     )

@@ -99,7 +99,7 @@ def fill_graph(node, gate, params, i, index, count):
     """Part `index` of the graph into place i; beyond the last there is nothing in it."""
     add8(node, i, node.epoch)
     add16(node, i, gate.version)
-    add8(node, i, index << 4 | count)
+    add8(node, i, 16 * index + count)
     if index >= count:
         return
     first = index * part_bytes(params)
