@@ -54,4 +54,4 @@ def unread(sock: socket.socket) -> int:
         numbers = sock.getsockopt(socket.SOL_SOCKET, SO_MEMINFO, 4 * (DROPS + 1))
     except OSError:
         return 0
-    return int(struct.unpack(f"={DROPS + 1}I", numbers)[DROPS]) if len(numbers) >= 36 else 0
+    return int(struct.unpack(f"={DROPS + 1}I", numbers)[DROPS]) if len(numbers) > 4 * DROPS else 0
