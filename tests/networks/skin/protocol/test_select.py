@@ -59,9 +59,9 @@ def walk(seed, steps, **keys):
 @pytest.mark.parametrize("rule", RULES)
 def test_so_it_is_along_random_walks(rule, updates):
     compared = sum(
-        walk(seed, 100, rule=rule, updates=updates, k=1 + seed % 4) for seed in range(20)
+        walk(seed, 100, rule=rule, updates=updates, k=1 + seed % 4) for seed in range(8)
     )
-    assert compared > 800
+    assert compared > 320
 
 
 @pytest.mark.slow
