@@ -1,6 +1,7 @@
 """The protocol dialect (CONTRIBUTING.md): what compiles, explores and runs on boards alike."""
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -36,6 +37,7 @@ def dialect_sources():
     ]
 
 
+@cache
 def known_functions():
     return {
         function.name

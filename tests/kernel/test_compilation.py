@@ -188,15 +188,15 @@ print(told(loop.bind(made)))
 """
 
 
-def test_a_loop_is_known_by_the_same_words_whether_its_sources_were_translated_before(tmp_path):
+def test_a_loop_is_known_by_the_same_words_whether_its_sources_were_translated_before(copied):
     """By Numba's own key it is not: who edited a file waited for the compiler twice."""
     env = {name: os.environ[name] for name in os.environ if name != "PYTHONDONTWRITEBYTECODE"}
-    env |= {"PYTHONPYCACHEPREFIX": str(tmp_path)}
+    env |= {"PYTHONPATH": str(copied.parent)}
     at_first, again = (
         subprocess.run([sys.executable, "-c", BOUND], env=env, capture_output=True, text=True)
         for _ in range(2)
     )
-    assert list(tmp_path.rglob("loop.*.pyc"))
+    assert list(copied.rglob("loop.*.pyc"))
     assert "practical" in at_first.stdout, at_first.stderr
     assert at_first.stdout == again.stdout
 

@@ -1,6 +1,7 @@
 """A proof of nothing is an error, of every kind of lemma."""
 
 from dataclasses import replace
+from functools import cache
 
 import pytest
 
@@ -17,6 +18,7 @@ LEMMAS = ("mesh, delivery", "mesh, passing on", "mesh, hops", "radio, the queue 
           "beacons that repeat the last", "what the rule does not read")  # fmt: skip
 
 
+@cache
 def theories():
     nets = [networks()[name] for name in ("mesh", "radio")]
     found = [one for net in nets for one in net.prove.theories(net)]

@@ -5,6 +5,7 @@ A copy is a package of its own, with the dialect and the protocols of all networ
 
 from __future__ import annotations
 
+import functools
 import importlib
 import itertools
 import sys
@@ -15,6 +16,7 @@ from types import ModuleType
 
 PACKAGE = "innervate"
 HOME = Path(__file__).resolve().parents[1]
+COPY = "innervate_copy_of_these_sources"  # until its name is known
 _count = itertools.count()
 
 
@@ -53,23 +55,24 @@ def changed_copy(
             raise ValueError(f"{old!r} stands {count} times in the protocols' sources: {places}")
         texts[places[0]] = texts[places[0]].replace(old, new)
     copy = f"innervate_copy_{next(_count)}"
-    moved = {path.removesuffix(".py").replace("/", ".") for path in texts}
+    moved = frozenset(path.removesuffix(".py").replace("/", ".") for path in texts)
     with tempfile.TemporaryDirectory() as folder:
         for path, text in texts.items():
-            _write(Path(folder, copy, path), _renamed(text, copy, moved))
+            _write(Path(folder, copy, path), _renamed(text, moved).replace(COPY, copy))
         return _imported(folder, copy, names)
 
 
-def _renamed(text: str, copy: str, moved: set[str]) -> str:
-    """A source that imports from the copy what is in the copy."""
+@functools.lru_cache(1000)
+def _renamed(text: str, moved: frozenset[str]) -> str:
+    """A source that imports from COPY what is in the copy."""
     for name in sorted(moved, key=len, reverse=True):
         parent, _, leaf = name.rpartition(".")
-        text = text.replace(f"from {PACKAGE}.{name} import", f"from {copy}.{name} import")
+        text = text.replace(f"from {PACKAGE}.{name} import", f"from {COPY}.{name} import")
         text = text.replace(f"from {PACKAGE}.{parent} import {leaf}\n",
-                            f"from {copy}.{parent} import {leaf}\n")  # fmt: skip
+                            f"from {COPY}.{parent} import {leaf}\n")  # fmt: skip
     for folder in {name.rpartition(".")[0] for name in moved}:
         if folder.endswith("protocol") or folder == "dialect":
-            text = text.replace(f"from {PACKAGE}.{folder} import", f"from {copy}.{folder} import")
+            text = text.replace(f"from {PACKAGE}.{folder} import", f"from {COPY}.{folder} import")
     return text
 
 

@@ -29,7 +29,7 @@ def baseline_plans(draw):
 
 
 @given(baseline_plans())
-@settings(QUIET, max_examples=36)
+@settings(QUIET, max_examples=24)
 def test_baselines_compiled_equal_plain(plan):
     check(plan)
 

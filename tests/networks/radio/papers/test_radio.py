@@ -13,6 +13,7 @@ from innervate.papers import main
 from innervate.papers.experiment import FAILS, HOLDS
 from innervate.papers.words import spans
 from innervate.plot import style
+from tests.fixtures.papers import made_of_rows
 from tests.networks.skin.papers.test_figures import overlapping
 from tests.plot.self_contained import check_paper
 
@@ -195,22 +196,12 @@ def test_the_three_readings_of_fig_12_are_all_there(radio_made):
     assert all("image is not available" in reason for reason in reasons)
 
 
-def test_figures_have_the_same_bytes_twice(radio_made, tmp_path):
-    with style.house():
-        for folder in ("one", "two"):
-            (tmp_path / folder).mkdir()
-            figure = radio_made.experiments["limits"].draw(radio_made.values, True)
-            style.save(figure, tmp_path / folder, "limits")
-    for kind in ("png", "svg"):
-        one, two = ((tmp_path / f / f"limits.{kind}").read_bytes() for f in ("one", "two"))
-        assert one == two
-
-
-def test_a_figure_alone(tmp_path):
-    page = main("radio", tmp_path, quick=True, only=["fig1"])
-    assert page.name == "papers-radio.html"
-    assert (tmp_path / "fig1.png").exists()
+def test_a_figure_alone_has_the_same_bytes(radio_made, tmp_path):
+    made_of_rows(tmp_path, "radio", only=["limits"])
+    assert (tmp_path / "papers-radio.html").exists()
     assert not (tmp_path / "fig12.png").exists()
+    for name in ("limits.png", "limits.svg"):
+        assert (tmp_path / name).read_bytes() == (radio_made.folder / name).read_bytes()
 
 
 @pytest.mark.parametrize(

@@ -196,7 +196,7 @@ def test_who_is_off_is_shown(runs, parse, texts):
 
 @pytest.mark.parametrize("figure", radio_figures.FIGURES)
 @pytest.mark.parametrize("name", ["four", "hundred", "faults", "nothing"])
-@pytest.mark.few(8)
+@pytest.mark.few(6)
 def test_each_figure_draws(runs, name, figure, tmp_path):
     made = radio_figures.draw(SimpleNamespace(result=runs[name]), figure)
     with style.house():

@@ -38,7 +38,7 @@ def test_a_sample_takes_at_least_a_hop_latency_for_every_cable():
 def crowded():
     """Setup 1 with more samples than its ports can take: queues fill."""
     keys = setup_1(duration_s=0.12, data={"rate_hz": 800, "queue": 20})
-    return run(keys, plain=True, deliveries=True)
+    return run(keys, deliveries=True)
 
 
 def test_percentiles_are_those_of_the_received_samples(crowded):

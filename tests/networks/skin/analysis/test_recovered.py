@@ -162,7 +162,7 @@ def test_recoveries_are_what_their_sentences_say(seed):
         event["at_s"] = events[6]["at_s"]
     loose = {"at_s": 0.0, "action": "loose", "interface": 0, "loss": 0.1}
     keys["event"] = [loose, *events]  # at the very beginning
-    result = run(keys, plain=True)
+    result = run(keys)
     found = recoveries(result)
     expected = by_sentences(result)
     assert len(found) == len(expected) > 20

@@ -58,10 +58,8 @@ def walk(seed, steps, **keys):
 @pytest.mark.parametrize("updates", ["triggered", "wave"])
 @pytest.mark.parametrize("rule", RULES)
 def test_so_it_is_along_random_walks(rule, updates):
-    compared = sum(
-        walk(seed, 100, rule=rule, updates=updates, k=1 + seed % 4) for seed in range(20)
-    )
-    assert compared > 800
+    compared = sum(walk(seed, 100, rule=rule, updates=updates, k=1 + seed % 4) for seed in range(8))
+    assert compared > 320
 
 
 @pytest.mark.slow

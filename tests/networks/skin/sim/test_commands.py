@@ -88,7 +88,7 @@ def test_a_command_under_way_at_the_end_is_lost_to_nobody():
 
 @pytest.mark.parametrize("rule", ["feasible", "paper", "static"])
 @pytest.mark.parametrize("seed", range(3))
-@pytest.mark.few(4)
+@pytest.mark.few(3)
 def test_no_cell_that_stays_on_gets_a_command_twice_whatever_happens(rule, seed):
     events = [
         {"at_s": span, "action": action, "random": whom}

@@ -44,7 +44,7 @@ def test_no_loop_and_no_disorder_whatever_breaks(rule, updates, what):
     for number, shape in enumerate(SHAPES.values()):
         gap_s = (0.003, 0.02, 0.1)[number]
         soak(
-            range(8),
+            range(5),
             lambda seed, shape=shape, gap_s=gap_s: faulty(
                 seed, PLAN[what], shape, gap_s=gap_s, rule=rule, updates=updates, k=2 + seed % 5
             ),
@@ -57,7 +57,7 @@ def test_no_loop_and_no_disorder_whatever_breaks(rule, updates, what):
 def test_no_loop_when_cells_lose_their_memory_all_the_time(rule, updates):
     for gap_s in (0.002, 0.01):
         soak(
-            range(20),
+            range(12),
             lambda seed, gap_s=gap_s: faulty(
                 seed, ["restart"], (4, 4, ((0, 2), (3, 2))), count=40, gap_s=gap_s,
                 rule=rule, updates=updates, k=2 + seed % 4,
@@ -121,9 +121,9 @@ def test_no_loop_in_a_thousand_runs(rule, updates, what):
 def test_the_paper_rule_loops_in_the_same_runs(updates, what):
     loops = [
         loops_closed(run(faulty(seed, PLAN[what], rule="paper", updates=updates, k=2 + seed % 5)))
-        for seed in range(24)
+        for seed in range(12)
     ]
-    assert sum(count > 0 for count in loops) >= 4, loops
+    assert sum(count > 0 for count in loops) >= 2, loops
 
 
 def random_free_graph(seed, **protocol):
@@ -139,7 +139,7 @@ def random_free_graph(seed, **protocol):
 
 @pytest.mark.parametrize("rule", SAFE)
 def test_so_it_is_on_random_graphs(rule):
-    soak(range(30), lambda seed: random_free_graph(seed, rule=rule, updates=UPDATES[seed % 3]))
+    soak(range(12), lambda seed: random_free_graph(seed, rule=rule, updates=UPDATES[seed % 3]))
 
 
 @pytest.mark.slow

@@ -1,7 +1,10 @@
 """Whether a reduced search leaves nothing out: every state of the whole one has to be covered."""
 
 from dataclasses import replace
+from functools import cached_property
 from itertools import product
+
+import numpy as np
 
 from innervate.networks.skin.protocol.constants import INFINITY
 from innervate.networks.skin.verify import calm as skin_calm
@@ -30,6 +33,7 @@ class Cover:
         body = self.lay.body()
         self.same = [i for i, mask in enumerate(body) if mask]
         self.more = [i for i, mask in enumerate(body) if not mask]
+        self.played = {}
         self.kept = self.rows(self.lean_result)
         self.wanted = {self.tidied(row) for row in self.rows(self.whole_result)}
 
@@ -47,12 +51,20 @@ class Cover:
 
         States, and the periods that cells which cables connect to the PC had no route for.
         """
+        self.twin.put(row)
+        skin_calm.forget_budgets(self.twin.world)
+        calm = self.twin.row(), tuple(order)
+        if calm not in self.played:
+            self.played[calm] = set(self.played_out(*calm))
+        return self.played[calm]
+
+    def played_out(self, row, order):
+        """What follows a calm state, for each choice that draws can come to."""
         world, system = self.twin.world, self.twin.system
         world.at[w.FAIR] = 1
-        found = set()
         for choice in range(fair.CHOICES):
             self.twin.put(row)
-            skin_calm.forget_budgets(world)
+            world.found[1] = 0
             assert system.settle(world, choice)
             for node in 2 * order:
                 assert system.turn(world, node, choice)
@@ -61,9 +73,10 @@ class Cover:
                 world.work[at + w.HOLD] if world.depth[c] < INFINITY else 0
                 for c, at in enumerate(self.lay.cell_at)
             ]
-            found.add((self.tidied(self.twin.row()), *holds))
+            yield self.tidied(self.twin.row()), *holds
+            if world.found[1] == 0:  # nothing was drawn: the other choice is the same
+                break
         world.at[w.FAIR] = 0
-        return found
 
     def is_followed(self, order):
         """Whether both searches lead to the same in two rounds, but for periods without a route:
@@ -95,17 +108,17 @@ class Cover:
 
     def held_to(self, may):
         """The kept states that allow at least this much, allowing just this much."""
-        images, width = self.lay.images(), self.lay.width
-        found = set()
-        for row in self.kept:
-            for start in range(0, len(images), width):
-                image = bytearray(row[i] for i in images[start : start + width])
-                pairs = list(zip(self.more, may, strict=True))
-                if all(image[i] >= least for i, least in pairs):
-                    for i, least in pairs:
-                        image[i] = least
-                    found.add(self.tidied(bytes(image)))
-        return found
+        least = np.frombuffer(may, np.uint8)
+        allowing = self.mirrored[(self.mirrored[:, self.more] >= least).all(axis=1)]
+        allowing[:, self.more] = least
+        return {self.tidied(image) for image in {row.tobytes() for row in allowing}}
+
+    @cached_property
+    def mirrored(self):
+        """The kept states and their mirror images, a row of bytes each."""
+        images = np.array(self.lay.images()).reshape(-1, self.lay.width)
+        kept = np.frombuffer(b"".join(self.kept), np.uint8).reshape(-1, self.lay.width)
+        return kept[:, images].reshape(-1, self.lay.width)
 
     def is_faithful(self):
         """Whether both searches see the same; the reduced one more where the whole one, with

@@ -24,7 +24,7 @@ W, E, UP, DOWN = range(4)
 
 def react(protocol):
     """`hear` equals select(0)."""
-    for seed in range(20):
+    for seed in range(12):
         draw = random.Random(seed)
         history = [random_step(draw) for _ in range(80)]
         for rule in RULES:
@@ -45,7 +45,7 @@ def select(protocol):
 
 def network(protocol):
     """No loop, no disorder, in random networks."""
-    for seed in range(36):
+    for seed in range(12):
         keys = {"rule": "feasible", "updates": UPDATES[seed % 3], "steps": WITH_DETECT}
         check_random_network(seed, protocol, **keys)
 
@@ -109,7 +109,7 @@ def turns(protocol):
 def simulation(protocol):
     """No broken invariant in small plain simulations."""
     with plain_stack(protocol.skin_stack):
-        for seed in range(16):
+        for seed in range(6):
             keys = faulty(
                 seed, ["cut", "cut", "restore"], (3, 3, ((0, 1), (2, 1))), count=12, gap_s=0.008,
                 rule="strict", updates=UPDATES[seed % 3], k=2,

@@ -47,7 +47,8 @@ def test_the_paper_rule_closes_the_known_loops(name):
 @pytest.mark.parametrize("rule", ["strict", "feasible"])
 @pytest.mark.parametrize("name", KNOWN)
 def test_the_other_rules_do_not(name, rule):
-    result = explore.explore(model(name, rule), states=400_000)
+    # Of the five nodes twice as many states as it takes to find the published rule's loop.
+    result = explore.explore(model(name, rule), states=150_000)
     assert result.broken == 0
     assert result.tally.ended == ("limit" if "five" in name else "complete")
 
@@ -123,11 +124,12 @@ def test_a_beacon_that_is_late_by_more_than_fd_hold_closes_a_loop():
     assert "forgotten after 9 periods" in told.scenario
 
 
-@pytest.mark.parametrize("ticks", [20, ANY], ids=["20 ticks", "any ticks"])
-def test_what_a_reduced_walk_finds_is_told_of_whole_states(ticks):
+# Seeds whose first loop is soon retraced.
+@pytest.mark.parametrize(("ticks", "seed"), [(20, 2), (ANY, 3)], ids=["20 ticks", "any ticks"])
+def test_what_a_reduced_walk_finds_is_told_of_whole_states(ticks, seed):
     budget = Budget(ticks=ticks, counts=8, faults=4)
-    made = SkinModel(graphs.parse("ring"), "paper", "triggered", budget, lean=True)
-    found = explore.wander(made, 200_000)
+    made = SkinModel(graphs.parse("triangle"), "paper", "triggered", budget, lean=True)
+    found = explore.wander(made, 200_000, seed=seed)
     check_played(story.tell(retrace.retrace(found)))
 
 
@@ -151,7 +153,7 @@ def check_played(told):
 
 
 def test_a_story_is_drawn_with_its_ring():
-    told = story.tell(explore.explore(model("four nodes, nothing lost", "paper"), plain=True))
+    told = story.tell(explore.explore(model("four nodes, nothing lost", "paper")))
     text = counterexample.draw(told).render()
     assert text.count('class="ring"') == 3 * 3  # a line and two barbs each
     assert "closed loop" in text

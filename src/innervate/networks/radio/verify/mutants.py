@@ -40,7 +40,7 @@ def hunt(mutant: Mutant) -> Catch:
     (entry,) = copies(mutant, "innervate.networks.radio.protocol.practical")
     runs = 0
     for one in trees():
-        found = tree.search(one, entry, RUNS)
+        found = tree.search(one, entry, RUNS, lambda grown: bool(grown.broken))
         runs += found.runs
         if found.broken:
             where = f"{one.grid.stations} stations, turnaround {one.grid.turnaround_us} us"

@@ -278,7 +278,7 @@ class _Rows:
 
     def _room(self, count: int) -> Any:
         if self.plain:
-            return memoryview(bytearray(8 * max(count, 1))).cast("q")
+            return np.zeros(max(count, 1), np.int64).data
         return np.empty(count, np.int64)
 
     def none(self) -> _Rows:
