@@ -44,7 +44,7 @@ class Mark:
         """What came of a call; `gate` may be None.
 
         Raises:
-            ValueError, struct.error: a value is out of its declared range.
+            OverflowError, struct.error: a value is out of its declared range.
         """
         words = [out.count[0], out.overflow[0]]
         for i, act in enumerate(out.action[: out.count[0]]):
