@@ -82,7 +82,7 @@ def on_host(library: Library, folder: Path, script: Path, checks: Sequence[str] 
         BoardMissing, BoardFailed: no compiler, or it does not get through.
     """
     made = folder / "check"
-    _compile(library, folder, ["gcc", "-std=c99", "-O2", *checks], "host.c", made)
+    _compile(library, folder, ["gcc", "-std=c99", "-O1", *checks], "host.c", made)
     with script.open("rb") as file:
         done = subprocess.run([made], stdin=file, capture_output=True, text=True, check=True)
     return _result(done.stdout)

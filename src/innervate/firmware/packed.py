@@ -4,11 +4,18 @@ from __future__ import annotations
 
 import struct
 from array import array
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from innervate.firmware.records import Field, layout
 
 CODES = {"uint8_t": "B", "int8_t": "b", "uint16_t": "H", "int16_t": "h", "int32_t": "i"}
+
+
+def _packing(code: str) -> Callable[[Iterable[int]], bytes]:
+    """What makes bytes of an array's values."""
+    pack = struct.Struct(code).pack
+    return lambda values: pack(*values)
 
 
 class Packed:
@@ -24,19 +31,22 @@ class Packed:
             at = offset + max(1, length) * width
         self.struct = struct.Struct(f"{code}{self.size - at}x")
         self.arrays = [(name, CODES[kind] if length else "") for name, (_, kind, length) in places]
+        self.packs = [
+            (name, None if not length else bytes if CODES[kind] == "B"
+             else _packing(f"<{length}{CODES[kind]}"))
+            for name, (_, kind, length) in places
+        ]  # fmt: skip
 
     def of(self, record: Any) -> bytes:
         """The bytes of a record.
 
         Raises:
-            OverflowError: a value does not fit into its field.
+            ValueError, struct.error: a value does not fit into its field.
         """
         values: list[Any] = []
-        for name, code in self.arrays:
+        for name, pack in self.packs:
             value = getattr(record, name)
-            if code:
-                value = array(code, value).tobytes()
-            values.append(value)
+            values.append(pack(value) if pack else value)
         return self.struct.pack(*values)
 
     def put(self, data: bytes, record: Any) -> None:

@@ -19,9 +19,11 @@ class Term:
         low, high: its range.
         is_truth: it is a truth.
         made: how many were made before it, so that the same formula comes out every time.
+        opposite: the truth that says not so; None as long as nobody asked.
+        is_leafy: all that can be picked are known numbers, one after the other.
     """
 
-    __slots__ = ("args", "high", "is_truth", "low", "made", "op")
+    __slots__ = ("args", "high", "is_leafy", "is_truth", "low", "made", "op", "opposite")
 
     def __init__(
         self, op: str, args: tuple[object, ...], low: int, high: int, truth: bool, made: int
@@ -32,6 +34,8 @@ class Term:
         self.low = low
         self.high = high
         self.is_truth = truth
+        self.opposite: Term | None = None
+        self.is_leafy = op == "const" or (op == "pick" and _is_leafy(*_terms(self)[1:]))
 
     @property
     def value(self) -> int | None:
@@ -50,6 +54,7 @@ class Terms:
 
     def __init__(self) -> None:
         self._made: dict[tuple[object, ...], Term] = {}
+        self._same: dict[tuple[Term, Term], Term] = {}
         self._fresh = 0
         self.true = self._term("const", (1,), 1, 1, True)
         self.false = self._term("const", (0,), 0, 0, True)
@@ -57,7 +62,7 @@ class Terms:
     def _term(
         self, op: str, args: tuple[object, ...], low: int, high: int, truth: bool = False
     ) -> Term:
-        key = (op, truth, low, high, *(id(a) if isinstance(a, Term) else a for a in args))
+        key = (op, truth, low, high, args)
         found = self._made.get(key)
         if found is None:
             found = self._made[key] = Term(op, args, low, high, truth, len(self._made))
@@ -107,11 +112,12 @@ class Terms:
 
     def negated(self, a: Term) -> Term:
         """The opposite of a truth."""
-        if a.op == "const":
-            return self.truth_of(not a.low)
-        if a.op == "not":
-            return a.args[0]  # type: ignore[return-value]
-        return self._term("not", (a,), 0, 1, True)
+        if a.opposite is None:
+            if a.op == "const":
+                return self.truth_of(not a.low)
+            a.opposite = self._term("not", (a,), 0, 1, True)
+            a.opposite.opposite = a
+        return a.opposite
 
     def all(self, *parts: Term) -> Term:
         """True where all of them hold."""
@@ -122,19 +128,19 @@ class Terms:
         return self._joined("any", parts, self.false, self.true)
 
     def _joined(self, op: str, parts: Iterable[Term], idle: Term, end: Term) -> Term:
-        kept: dict[int, Term] = {}
+        kept: dict[Term, None] = {}
         for part in parts:
             for one in part.args if part.op == op else (part,):
                 assert isinstance(one, Term)
-                if one is end or id(self.negated(one)) in kept:
+                if one is end or one.opposite in kept:
                     return end
                 if one is not idle:
-                    kept[id(one)] = one
+                    kept[one] = None
         if not kept:
             return idle
         if len(kept) == 1:
-            return next(iter(kept.values()))
-        return self._term(op, tuple(kept.values()), 0, 1, True)
+            return next(iter(kept))
+        return self._term(op, tuple(kept), 0, 1, True)
 
     def implies(self, a: Term, b: Term) -> Term:
         """B holds where a does."""
@@ -151,9 +157,12 @@ class Terms:
             return self.false
         if b.op != "const" and (a.op == "const" or a.made > b.made):
             a, b = b, a
-        if a.op == "pick" and b.op == "const" and _is_leafy(a):
-            if_, x, y = _terms(a)
-            return self.pick(if_, self.same(x, b), self.same(y, b))
+        if a.op == "pick" and b.op == "const" and a.is_leafy:
+            found = self._same.get((a, b))
+            if found is None:
+                if_, x, y = _terms(a)
+                found = self._same[a, b] = self.pick(if_, self.same(x, b), self.same(y, b))
+            return found
         return self._term("eq", (a, b), 0, 1, True)
 
     def less(self, a: Term, b: Term) -> Term:
@@ -340,13 +349,6 @@ def _all_bits(a: Term, b: Term) -> tuple[int, int]:
     return (-high - 1 if min(a.low, b.low) < 0 else 0), high
 
 
-def _is_leafy(a: Term) -> bool:
-    """True if all that can be picked are known numbers, one after the other."""
-    while a.op == "pick":
-        _, one, other = _terms(a)
-        if one.op != "const":
-            one, other = other, one
-        if one.op != "const":
-            return False
-        a = other
-    return a.op == "const"
+def _is_leafy(a: Term, b: Term) -> bool:
+    """True if what can be picked is a known number, or one of such."""
+    return (a.op == "const" and b.is_leafy) or (b.op == "const" and a.is_leafy)

@@ -89,7 +89,9 @@ class Net(Bench):
     def fork(self, seed):
         """The same net once more, from here on with other chances."""
         other = copy.copy(self)
-        for name in ("nodes", "gates", "neighbours", "dead", "queue", "due", "out"):
+        other.nodes = [copied(node) for node in self.nodes]
+        other.gates = [gate and copied(gate) for gate in self.gates]
+        for name in ("neighbours", "dead", "queue", "due", "out"):
             setattr(other, name, copy.deepcopy(getattr(self, name)))
         other.reports, other.delivered, other.sent = [], [], []
         other.chance = random.Random(seed)
@@ -100,6 +102,16 @@ class Net(Bench):
 
     def lose_by_chance(self):
         self.lost = lambda frame, to: self.loss > 0 and self.chance.random() < self.loss
+
+
+def copied(record):
+    """A plain record once more; copy.deepcopy looks at each of its thousands of numbers."""
+    other = copy.copy(record)
+    for name in record.__slots__:
+        value = getattr(record, name)
+        if isinstance(value, list):
+            setattr(other, name, value.copy())
+    return other
 
 
 def line(count):

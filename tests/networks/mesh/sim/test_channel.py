@@ -148,8 +148,9 @@ def test_queues_grow_when_they_are_full(monkeypatch):
 # The mesh itself, as bundled.
 
 
-def team_plan(*sets, duration_us=14_000_000, seed=1):
-    made = plan(load("mesh-team", ["flow.0.start_s=4", "robot.0.start_s=3", *sets], seed))
+def team_plan(*sets, duration_us=6_500_000, seed=1):
+    soon = ("flow.0.start_s=3", "robot.0.start_s=3", "robot.0.speed_mps=4")
+    made = plan(load("mesh-team", [*soon, *sets], seed))
     return dataclasses.replace(made, duration_us=duration_us)
 
 
@@ -184,7 +185,7 @@ def test_an_alarm_arrives_over_every_medium_access(mac):
 
 
 def test_acknowledgements_of_hops_can_be_asked_for():
-    result = simulate(team_plan("protocol.hop_acks=true", duration_us=6_000_000), plain=True)
+    result = simulate(team_plan("protocol.hop_acks=true", duration_us=4_000_000), plain=True)
     assert ACK in result.sent["kind"]
 
 

@@ -12,8 +12,8 @@ from innervate.scenario import load, plan
 from tests.networks.mesh.sim.test_parity import TABLES, states
 
 EVENTS = (
-    "event=[{at_s=5.0, action='kill', node=3}, {at_s=6.0, action='restart', node=2},"
-    " {at_s=7.5, action='revive', node=3}, {at_s=8.0, action='restart', node=0}]"
+    "event=[{at_s=3.0, action='kill', node=3}, {at_s=3.4, action='restart', node=2},"
+    " {at_s=4.0, action='revive', node=3}, {at_s=4.5, action='restart', node=0}]"
 )
 BUSY = ("flow.0.every_s=0.3", "flow.0.jitter_s=0.2")
 LOSSY = ONE * 19 // 20
@@ -37,8 +37,8 @@ def station_states(result):
      pytest.param(4, (*BUSY, "protocol.hop_acks=true"), LOSSY, marks=pytest.mark.slow)],
 )  # fmt: skip
 def test_compiled_equals_plain(seed, sets, chance):
-    made = plan(load("mesh-team", ["flow.0.start_s=3", "robot.0.start_s=2", *sets], seed))
-    made = dataclasses.replace(made, duration_us=12_000_000)
+    made = plan(load("mesh-team", ["flow.0.start_s=2", "robot.0.start_s=1", *sets], seed))
+    made = dataclasses.replace(made, duration_us=6_000_000)
     made.radio.prob_q15 = [min(chance, here) for here in made.radio.prob_q15]
     one, other = (simulate(made, plain=plain, trail=True) for plain in (False, True))
     for name in TABLES:

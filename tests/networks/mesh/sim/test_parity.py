@@ -1,5 +1,7 @@
 """The mesh's simulator, compiled and plain: the same rows, states and fingerprint."""
 
+import functools
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -7,6 +9,9 @@ from hypothesis import strategies as st
 
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.scenario.plan import ONE, MeshFault, Offer, Walk
+from innervate.networks.mesh.sim.simulate import simulate
+from innervate.scenario import load
+from innervate.scenario import plan as plan_of
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.sim.tables import uniform
 from innervate.topology.placement import UNHEARD
@@ -74,8 +79,21 @@ def states(result):
     return found
 
 
-def check(plan):
-    one, other = (run(plan, plain=plain, trail=True) for plain in (False, True))
+@functools.cache
+def bundled():
+    return plan_of(load("mesh-field")).params
+
+
+def hurried(plan):
+    """The same network with the mesh itself, whose rounds take a fraction of a second."""
+    fast = {"tick_us": 20_000, "listen_us": 5_000, "spread_us": 40_000, "collect_us": 60_000,
+            "e2e_us": 40_000, "job_us": 30_000, "jitter_us": 5_000}  # fmt: skip
+    plan.params = bundled() | fast | {"nodes": plan.nodes}
+    return plan
+
+
+def check(plan, simulated=run):
+    one, other = (simulated(plan, plain=plain, trail=True) for plain in (False, True))
     for name in TABLES:
         assert np.array_equal(getattr(one, name), getattr(other, name)), f"{name}, {plan}"
     assert one.counts == other.counts
@@ -86,13 +104,13 @@ def check(plan):
 @given(plans())
 @settings(QUIET_RUN, max_examples=12)
 def test_compiled_equals_plain(plan):
-    check(plan)
+    check(hurried(plan), simulate)
 
 
 def test_compiled_equals_plain_where_there_is_much_traffic():
     n = 12
     offers = [(1_000 + 3_000 * k, k % n, 255, k % 60) for k in range(90)]
-    check(mesh_plan(n, offers=offers, duration_s=0.3, params={"period": 2, "tick_us": 20_000}))
+    check(hurried(mesh_plan(n, offers=offers, duration_s=0.3)), simulate)
 
 
 @pytest.mark.slow
@@ -100,3 +118,4 @@ def test_compiled_equals_plain_where_there_is_much_traffic():
 @settings(QUIET_RUN, max_examples=600)
 def test_many_compiled_runs_equal_plain_ones(plan):
     check(plan)
+    check(hurried(plan), simulate)

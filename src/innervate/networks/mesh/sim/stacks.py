@@ -14,6 +14,7 @@ from innervate.networks.mesh.protocol.constants import ACK
 from innervate.networks.mesh.protocol.frames import copy_frame, frame_bytes
 from innervate.networks.mesh.sim import orders, recorder
 from innervate.sim.field.calls import is_sound
+from innervate.sim.ranges import plain_check
 
 # What the loop asks of the layer below.
 BELOW = (
@@ -130,17 +131,7 @@ def plain(
     entry: ModuleType, layer: Layer, fields: Any, through: Callable[[Any], Any] | None
 ) -> ModuleType:
     """The same on plain objects; every frame sent is passed `through` a function if given."""
-    scalars = [(name, low, high) for name, length, low, high, *_ in fields if not length]
-    arrays = [(name, low, high) for name, length, low, high, *_ in fields if length]
-
-    def is_sound(world: Any, node: int) -> bool:
-        state = world.nodes[node]
-        return all(low <= getattr(state, name) <= high for name, low, high in scalars) and all(
-            low <= min(getattr(state, name)) and max(getattr(state, name)) <= high
-            for name, low, high in arrays
-        )
-
-    made = bind(entry, layer, is_sound)
+    made = bind(entry, layer, plain_check(fields, "nodes"))
     if through is not None:
         vars(made)["copy_frame"] = lambda to, frame: copy_frame(to, through(frame))
     return made

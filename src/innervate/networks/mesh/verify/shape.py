@@ -75,26 +75,41 @@ class Shape:
         self.bounds = [(field[2], field[3]) for field in declared]
         self.times = frozenset(times)
         self.pool: dict[Any, Any] = {}
+        self.known: list[dict[Any, Any]] = [{} for _ in self.names]  # arrays seen, by field
 
     def take(self, record: Any, now: int) -> tuple[Any, ...]:
         """The record's value; arrays that many states share are kept once."""
         found = []
-        for name, length, (low, high) in zip(self.names, self.lengths, self.bounds, strict=True):
+        for name, length, (low, high), known in zip(
+            self.names, self.lengths, self.bounds, self.known, strict=True
+        ):
             value = getattr(record, name)
             if name in self.times:
                 since, grain = age if name in AGES else ahead, self.grain
                 value = (
                     [since(t, now, grain) for t in value] if length else since(value, now, grain)
                 )
-            if not length:
-                if not low <= value <= high:
-                    raise OutOfRange(f"{name} = {value}")
-            elif min(value) < low or max(value) > high:
-                raise OutOfRange(f"{name} = {list(value)}")
-            else:
-                value = bytes(value) if low >= 0 and high <= 255 else tuple(value)
-            found.append(self.pool.setdefault(value, value) if length else value)
+            if length:
+                value = self._array(name, value, low, high, known)
+            elif not low <= value <= high:
+                raise OutOfRange(f"{name} = {value}")
+            found.append(value)
         return tuple(found)
+
+    def _array(
+        self, name: str, value: list[int], low: int, high: int, known: dict[Any, Any]
+    ) -> Any:
+        """An array as it is kept; one that was seen is known to lie in its range."""
+        try:
+            kept = bytes(value) if low >= 0 and high <= 255 else tuple(value)
+        except ValueError:
+            raise OutOfRange(f"{name} = {list(value)}") from None
+        found = known.get(kept)
+        if found is None:
+            if min(value) < low or max(value) > high:
+                raise OutOfRange(f"{name} = {list(value)}")
+            found = known[kept] = self.pool.setdefault(kept, kept)
+        return found
 
     def put(self, record: Any, value: tuple[Any, ...]) -> None:
         """Make a record what it was; its present is NOW."""
