@@ -9,7 +9,7 @@ from innervate.networks.mesh.analysis.messages import DELIVERED, counted, messag
 from innervate.networks.mesh.scenario.measured_template import CROWD_TUNED, TUNED, measured
 from innervate.networks.mesh.sim.simulate import simulate
 
-LEAVES = 36
+LEAVES = 40
 
 
 @pytest.fixture
@@ -47,13 +47,13 @@ def test_hubs_and_many_nodes_take_their_time_and_no_tables(star) -> None:
 def test_a_template_of_a_hub_with_hidden_leaves_delivers(star) -> None:
     """More neighbours than a node of a small network remembers: each has a place all the same."""
     text, _ = measured("mine", "star.txt", {}, str(star))
-    text = text.replace("duration_s = 60.0", "duration_s = 16.0")
-    plan = scenario.plan(
-        scenario.loads(text.replace("start_s = 20.0", "start_s = 6.0"), folder=str(star))
+    loaded = scenario.loads(
+        text.replace("duration_s = 60.0", "duration_s = 45.0"), folder=str(star)
     )
+    plan = scenario.plan(loaded)
     assert plan.params["places"] > LEAVES
     found = counted(messages(simulate(plan, plain=True)))
-    assert len(found.state) >= LEAVES
+    assert len(found.state) > 2 * LEAVES
     assert np.mean(found.state == DELIVERED) >= 0.99
 
 
