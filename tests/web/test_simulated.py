@@ -14,7 +14,9 @@ from innervate.web.history import LOG, SERIES, TIMELINE
 from innervate.web.simulated import Simulated
 from innervate.web.snapshot import DeltaEncoder, Part, Snapshot
 from tests.networks.skin.runs import patch
-from tests.web.runs import KINDS, MESH, RADIO, SKIN, go_to, simulated
+from tests.web.runs import KINDS, MESH, RADIO, SKIN, few_points, go_to, simulated
+
+__all__ = ["few_points"]
 
 ROLES = {"cell", "sink", "port", "node", "gateway", "standby", "robot", "post", "monitor",
          "station"}  # fmt: skip
@@ -141,6 +143,7 @@ def test_what_disturbs_nobody_is_over_at_once():
     assert made.fields()["recovery"]["recovered_ms"] == 0.0
 
 
+@pytest.mark.usefixtures("few_points")
 def test_a_mesh_finds_other_ways():
     made = simulated(MESH)
     go_to(made, 4.0)
@@ -160,6 +163,7 @@ def test_a_mesh_finds_other_ways():
     assert run({**MESH, "event": [event]}).summary["delivery_ratio"] == 1.0
 
 
+@pytest.mark.usefixtures("few_points")
 def test_who_is_behind_a_dead_node_of_a_mesh_is_cut_off_until_it_is_back():
     line = {**MESH, "flow": [], "radio": {"profile": "250k"}, "duration_s": 40.0,
             "link": [{"a": "g", "b": "x"}, {"a": "x", "b": "y"}, {"a": "y", "b": "z"}]}  # fmt: skip
@@ -180,6 +184,7 @@ def test_who_is_behind_a_dead_node_of_a_mesh_is_cut_off_until_it_is_back():
     assert not shown["nobody"]
 
 
+@pytest.mark.usefixtures("few_points")
 def test_the_recovery_of_a_mesh_does_not_depend_on_the_pace():
     found = set()
     for pieces in (1, 40):
@@ -279,6 +284,7 @@ def test_a_cell_alone_has_recovered_when_it_is_back():
     assert made.fields()["unconnected"] == 0
 
 
+@pytest.mark.usefixtures("few_points")
 def test_who_was_doubted_before_a_fault_did_not_notice_it():
     made = simulated(MESH)
     go_to(made, 4.0)
@@ -311,6 +317,7 @@ def test_a_thousand_cells_cost_little():
     assert sum(sizes) / 30 < 100_000
 
 
+@pytest.mark.usefixtures("few_points")
 def test_what_the_scenario_does_is_told_in_its_place():
     events = [
         {"at_s": 4.0, "action": "kill", "node": 5},
@@ -329,6 +336,7 @@ def test_what_the_scenario_does_is_told_in_its_place():
     assert shown[0] == shown[1]
 
 
+@pytest.mark.usefixtures("few_points")
 def test_a_node_at_the_edge_of_a_mesh_is_missed_by_nobody():
     leaf = {**MESH, "nodes": None, "radio": {"profile": "250k"},
             "link": [{"a": "g", "b": "x"}, {"a": "x", "b": "y"}], "flow": [],
@@ -338,6 +346,7 @@ def test_a_node_at_the_edge_of_a_mesh_is_missed_by_nobody():
     assert made.fields()["recovery"]["recovered_ms"] == 0.0
 
 
+@pytest.mark.usefixtures("few_points")
 def test_without_a_gateway_nobody_has_a_way_until_the_standby_leads():
     made = simulated(MESH, standby=[1], duration_s=30.0)
     go_to(made, 4.0)
