@@ -31,7 +31,7 @@ def simulated(tables, speed=0, **more):
 
 @pytest.fixture
 def few_points(monkeypatch):
-    """A tenth of the points of plots: of a mesh they take longer than the simulation."""
+    """A tenth of the points of plots, which take longer than what is simulated."""
     monkeypatch.setattr("innervate.web.simulated.POINTS", 50)
 
 

@@ -52,6 +52,7 @@ def test_scene_and_state_fit_together(kind):
     assert all(set(item.what) == names for item in items(made, SERIES))
 
 
+@pytest.mark.usefixtures("few_points")
 def test_cells_show_whose_tree_they_are_in():
     made = simulated(SKIN)
     go_to(made, 0.5)
@@ -69,6 +70,7 @@ def test_cells_show_whose_tree_they_are_in():
     assert 0 < state["load"].max() <= 1
 
 
+@pytest.mark.usefixtures("few_points")
 def test_a_cell_that_is_off_and_those_behind_it_have_no_way():
     line = {**SKIN, "patch": [{"columns": 5, "rows": 1}],
             "interface": [{"row": 0, "column": 0, "port": "W"}]}  # fmt: skip
@@ -101,6 +103,7 @@ def test_frames_on_their_way_only_where_they_can_be_seen():
 @pytest.mark.parametrize(
     "event", [("cut", {"interface": 0}), ("kill", {"cell": {"row": 1, "column": 2}})]
 )
+@pytest.mark.usefixtures("few_points")
 def test_the_recovery_is_that_of_the_batch_run(event):
     action, target = event
     batch = run({**SKIN, "event": [{"at_s": 0.5, "action": action, **target}]})
@@ -123,6 +126,7 @@ def test_the_recovery_is_that_of_the_batch_run(event):
 
 
 @pytest.mark.parametrize("column", [2, 5])
+@pytest.mark.usefixtures("few_points")
 def test_the_log_does_not_say_that_all_have_a_way_while_cells_are_cut_off(column):
     kill = {"at_s": 0.5, "action": "kill", "cell": {"row": 0, "column": column}}
     made = simulated(patch(6, 1, (0, 0), event=[kill], duration_s=0.7), speed=0)
@@ -132,6 +136,7 @@ def test_the_log_does_not_say_that_all_have_a_way_while_cells_are_cut_off(column
     assert made.fields()["recovery"]["apart"] == 5 - column
 
 
+@pytest.mark.usefixtures("few_points")
 def test_what_disturbs_nobody_is_over_at_once():
     made = simulated(SKIN)
     go_to(made, 0.5)
@@ -226,6 +231,7 @@ def test_the_timeline_is_what_was_sent():
     assert found == min(done.summary["collisions"], 8) > 0
 
 
+@pytest.mark.usefixtures("few_points")
 def test_received_touch_is_shown():
     made = simulated(SKIN, touch={"path": [[0.0, 0.0, 0.0]], "radius_mm": 30.0})
     go_to(made, 0.9)
@@ -251,6 +257,7 @@ def test_without_data_nothing_is_felt():
         made.carry_out(messages.Touch(3, 255))
 
 
+@pytest.mark.usefixtures("few_points")
 def test_healing_leaves_the_number_of_the_cut():
     made = simulated(SKIN)
     go_to(made, 0.5)
@@ -270,6 +277,7 @@ def test_healing_leaves_the_number_of_the_cut():
     assert made.fields()["since_cut_s"] == pytest.approx(0.3, abs=1e-5)
 
 
+@pytest.mark.usefixtures("few_points")
 def test_a_cell_alone_has_recovered_when_it_is_back():
     """A cut that nothing can get over, until it is healed."""
     line = {**SKIN, "patch": [{"columns": 3, "rows": 1}],
