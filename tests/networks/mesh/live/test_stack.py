@@ -1,5 +1,9 @@
 """What a node notes of who acknowledges its frames."""
 
+import asyncio
+
+import pytest
+
 from innervate.networks.mesh.live.stack import ASKED, MeshStack
 from tests.live.net import Mesh
 
@@ -29,3 +33,12 @@ def test_answers_to_what_was_asked_long_ago_are_none():
     stack._note_answer((1, 0, 0))
     stack._note_answer((1, 0, 1))
     assert stack.acked[1] == 1
+
+
+@pytest.mark.parametrize("leaves", [40, 63])
+def test_a_hub_of_live_nodes_has_all_others_as_neighbours(leaves):
+    async def up():
+        async with Mesh(1 + leaves, [(0, leaf) for leaf in range(1, 1 + leaves)]) as mesh:
+            return len(mesh.nodes[0].stack.status(0)["neighbours"])
+
+    assert asyncio.run(up()) == leaves

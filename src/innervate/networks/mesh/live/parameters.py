@@ -8,7 +8,7 @@ from innervate.live.errors import LiveError
 from innervate.live.parameters import check_parameters
 from innervate.networks.mesh.live.stack import CLASSES
 from innervate.networks.mesh.protocol.constants import LIST, MONITOR, SEARCH, TABLES
-from innervate.networks.mesh.protocol.fields import PARAMS, POINTS, places, words
+from innervate.networks.mesh.protocol.fields import PARAMS, POINTS, words
 
 IP: dict[str, int] = {
     "mtu": 127, "mode": TABLES, "discovery": LIST, "failover": SEARCH, "avoid_origin": 0,
@@ -53,11 +53,13 @@ def fence_parameters(rings: list[list[tuple[int, int]]], where: str = "") -> dic
 def mesh_parameters(nodes: int, changes: dict[str, int], where: str = "") -> dict[str, Any]:
     """The router's parameters for a network of so many nodes, with what is to be different.
 
+    Memory is no matter here: all others may be neighbours, unlike in the class of a board.
+
     Raises:
         LiveError: no such parameter, or out of its range; the message begins with `where`.
     """
     check_parameters(changes, (field for field in PARAMS if field[0] not in OURS), where)
     width = next(size for size in CLASSES if nodes <= size)
     corners = {name: [0] * POINTS for name in ("px", "py", "after")}
-    own = {"nodes": nodes, "width": width, "row": words(width), "places": places(width)}
+    own = {"nodes": nodes, "width": width, "row": words(width), "places": width}
     return {**IP, **corners, **own, **changes}

@@ -70,9 +70,10 @@ class MeshStack:
         # Every node sends in every round: three without a word are no accident.
         self.silent_us = 3 * self.params.period_max * self.params.tick_us + self.params.tick_us
         mtu = self.params.mtu
-        sizes = self.params.queue, self.params.kept, mtu
+        most = self.params.places
+        sizes = self.params.queue, self.params.kept, mtu, most
         self.node = plain.make("Node", fields.node(width, *sizes))()
-        self.gate = plain.make("Gate", fields.gate(width))() if rank >= 0 else None
+        self.gate = plain.make("Gate", fields.gate(width, most))() if rank >= 0 else None
         self.node.number, self.node.rank, self.node.robot = number, rank, int(robot)
         self.node.rng, self.node.choice = seeded(seed), -1
         frame = plain.make("Frame", fields.frame(mtu))

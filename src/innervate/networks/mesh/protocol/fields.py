@@ -109,9 +109,9 @@ def places(n):
     return min(n, NEIGHBOURS) if n <= SMALL else n
 
 
-def node(n, queue=QUEUE, kept=WAITING, mtu=MTU):
-    """Fields of a node in a network of up to n nodes, that queues and keeps so many packets."""
-    k = places(n)
+def node(n, queue=QUEUE, kept=WAITING, mtu=MTU, most=0):
+    """Fields of a node in a network of up to n, with room for so much and most neighbours."""
+    k = most or places(n)
     near, far = neighbours(k) + links(k), tables(n) + packets(n, kept, mtu)
     return OWN + near + far + WATCH + watched(n) + queued(queue, mtu)
 
@@ -304,14 +304,14 @@ def queued(places, mtu=MTU):
 QUEUED = queued(QUEUE)
 
 
-def gate(n):
-    """What a gateway, and only a gateway or standby, has besides."""
+def gate(n, most=0):
+    """What a gateway, and only a gateway or standby, has besides; of so many neighbours a node."""
     return (
         ("heard", (n * n + 3) // 4, 0, 255, "rounds", "who was heard by whom, 4 pairs a byte"),
         ("known", n * words(n), 0, 32767, "bits", "adjacency after the newest round"),
         ("dist", n * n, 0, 255, "hops", "from everyone to everyone; 255 none"),
-        ("near", places(n), 0, 253, "node", "scratch: neighbours of a node, in order of number"),
-        ("near_count", 0, 0, places(n), "nodes", "... how many"),
+        ("near", most or places(n), 0, 253, "node", "scratch: a node's neighbours, by number"),
+        ("near_count", 0, 0, most or places(n), "nodes", "... how many"),
         ("near_of", 0, 0, 255, "node", "... of whom; 255 nobody"),
         ("line", n, 0, 253, "node", "scratch: nodes in order of distance"),
         ("far", n, 0, 255, "hops", "scratch: distances without one node"),
