@@ -1,13 +1,14 @@
-"""A browser, and servers that it can look at: `innervate watch` as a user starts it."""
+"""A browser, and servers that it can look at."""
 
 import os
 import shutil
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 
 import pytest
 
-from tests.browser.servers import SKIN, WIDE, serving
+from tests.browser.servers import SKIN, WIDE, beside
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
@@ -24,32 +25,55 @@ def browser():
         started.close()
 
 
+@cache
+def blank(browser, device, number):
+    """A page for one test after the other: a new one takes four times as long to open, of a new
+    context eight. Pages of one test are of several contexts: behind another, one would hardly draw.
+    """
+    return browser.new_context(**dict(device)).new_page()
+
+
 @pytest.fixture
 def look(browser, request):
     """A function that opens a page; what it logged as an error fails the test.
 
     INNERVATE_SHOTS names a folder for a picture of every page as its test left it.
     """
-    contexts, wrong = [], []
+    pages, kept, wrong = [], [], []
     folder = Path(os.environ["INNERVATE_SHOTS"]) if "INNERVATE_SHOTS" in os.environ else None
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
 
-    def opened(address, size=WIDE, colours="light", **options):
-        context = browser.new_context(viewport=size, color_scheme=colours, **options)
-        contexts.append(context)
-        page = context.new_page()
+    def noted(error):
+        wrong.append(str(error))
+
+    def opened(address, size=WIDE, colours="light", script=None, **options):
+        page = blank(browser, tuple(options.items()), len(pages))
+        if script:
+            page = page.context.new_page()
+            page.add_init_script(script)
+        else:
+            kept.append(page)
+        pages.append(page)
+        page.set_viewport_size(size)
+        page.emulate_media(color_scheme=colours)
         page.set_default_timeout(20_000)
-        page.on("pageerror", lambda error: wrong.append(str(error)))
+        page.on("pageerror", noted)
         page.goto(address)
         page.locator("#stage[aria-label]").wait_for()
         return page
 
     yield opened
-    for number, context in enumerate(contexts):
-        for page in context.pages if folder is not None else ():
+    for number, page in enumerate(pages):
+        if folder is not None:
             page.screenshot(path=folder / f"{request.node.name}-{number}.png", full_page=True)
-        context.close()
+        page.evaluate("localStorage.clear()")
+        page.remove_listener("pageerror", noted)
+        if page in kept:
+            page.goto("about:blank")
+            page.mouse.move(0, 0)
+        else:
+            page.close()
     assert wrong == []
 
 
@@ -58,7 +82,7 @@ def small_skin(folder):
     """The address of a small skin, slowed down ten times."""
     path = folder / "skin.toml"
     path.write_text(SKIN)
-    with serving(path, "--speed", 0.1) as address:
+    with beside(path, 0.1) as address:
         yield address
 
 

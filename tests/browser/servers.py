@@ -1,14 +1,21 @@
-"""Servers to look at: `innervate watch` as a user starts it, and what a user does to its page."""
+"""Servers to look at: `innervate watch` as a user starts it, or a page served by a thread, and what
+a user does to it."""
 
+import asyncio
 import os
 import re
 import signal
 import subprocess
 import sys
 import threading
+from concurrent.futures import Future
 from contextlib import contextmanager
 
 import pytest
+
+from innervate import scenario
+from innervate.web.serve import serving as served
+from innervate.web.simulated import Simulated
 
 TOKEN = "a-token-of-the-tests"
 WAIT_MS = 20_000
@@ -60,6 +67,30 @@ def serving(what, *options, port=0):
         process.send_signal(signal.SIGINT)
         process.wait(timeout=20)
         process.stdout.close()
+
+
+@contextmanager
+def beside(path, speed):
+    """A scenario's page as `watch` serves it, by a thread of this process: its loops are loaded
+    once; gives the address."""
+    source = Simulated(scenario.plan(scenario.load(str(path))), speed)
+    source.prepare()
+    told = Future()
+
+    async def serve():
+        over = asyncio.Event()
+        async with served(source) as one:
+            told.set_result((one.address, asyncio.get_running_loop(), over))
+            await over.wait()
+
+    thread = threading.Thread(target=asyncio.run, args=(serve(),))
+    thread.start()
+    address, loop, over = told.result(WAIT_MS / 1000)
+    try:
+        yield address
+    finally:
+        loop.call_soon_threadsafe(over.set)
+        thread.join()
 
 
 def place(page, name):

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from innervate.scenario import load
-from tests.browser.servers import PHONE, SKIN, click, expect, place, seek, serving
+from tests.browser.servers import PHONE, SKIN, beside, click, expect, place, seek
 
 
 def text_of(name):
@@ -39,11 +39,11 @@ stations = 20
 kind = "saturated"
 """
 SCENARIOS = {
-    "skin": (SKIN, "--speed", 0.1),
-    "short": (SHORT, "--speed", 0.5),
-    "ring": (RING, "--speed", 0.01),
-    "field": (text_of("mesh-field"), "--speed", 1),
-    "legs": (text_of("icub-leg"), "--speed", 0.1),
+    "skin": (SKIN, 0.1),
+    "short": (SHORT, 0.5),
+    "ring": (RING, 0.01),
+    "field": (text_of("mesh-field"), 1),
+    "legs": (text_of("icub-leg"), 0.1),
 }
 SIZES = [{"width": 1200, "height": 760}, {"width": 1920, "height": 1080}, PHONE]
 # It has measured itself and drawn.
@@ -116,9 +116,9 @@ def served(tmp_path_factory):
 
         def address(name):
             if name not in kept:
-                text, *options = SCENARIOS[name]
+                text, speed = SCENARIOS[name]
                 (folder / f"{name}.toml").write_text(text)
-                kept[name] = open_.enter_context(serving(folder / f"{name}.toml", *options))
+                kept[name] = open_.enter_context(beside(folder / f"{name}.toml", speed))
             return kept[name]
 
         yield address
@@ -167,9 +167,7 @@ def test_a_phone_shows_what_is_selected_above_the_play_bar(look, skin):
 
 
 def test_plots_have_a_time_axis_and_values_in_a_gutter(look, short):
-    page = look(short)
-    page.add_init_script(WRITTEN)
-    page.reload()
+    page = look(short, script=WRITTEN)
     hold(page, 2.5)
     for words in page.evaluate(WORDS_OF, ".plot canvas"):
         values = [one for one in words if one[3] < 46]
@@ -262,16 +260,21 @@ def test_a_click_that_misses_the_middle_of_a_cable_does_not_cut_it(look, skin):
 
 
 def test_a_large_screen_is_used(look, skin):
-    small, large = (
-        look(skin, {"width": 1200, "height": 760}),
-        look(skin, {"width": 1920, "height": 1080}),
-    )
-    for selector in ("#stage", "#plots", "#numbers", "#log"):
-        assert box(large, selector)["width"] > 1.4 * box(small, selector)["width"]
+    page = look(skin, SIZES[0])
     font = "(one) => parseFloat(getComputedStyle(one).fontSize)"
-    for selector in ("body", "#since output", "#legend"):
-        assert large.locator(selector).evaluate(font) > small.locator(selector).evaluate(font)
-    assert large.evaluate("document.documentElement.scrollHeight") == 1080
+    small, large = [], []
+    for size, seen in zip(SIZES, (small, large), strict=False):
+        page.set_viewport_size(size)
+        page.evaluate(DRAWN)
+        for selector in ("#stage", "#plots", "#numbers", "#log"):
+            seen.append(box(page, selector)["width"])
+        seen.append(
+            [page.locator(one).evaluate(font) for one in ("body", "#since output", "#legend")]
+        )
+    *widths, fonts = zip(small, large, strict=True)
+    assert all(wide > 1.4 * narrow for narrow, wide in widths)
+    assert all(there > here for here, there in zip(*fonts, strict=True))
+    assert page.evaluate("document.documentElement.scrollHeight") == 1080
 
 
 @pytest.mark.parametrize(("what", "t_s", "names"), [
@@ -280,9 +283,7 @@ def test_a_large_screen_is_used(look, skin):
     ("legs", 0.2, {"0", "1"}),
 ])  # fmt: skip
 def test_names_on_maps_keep_apart_and_inside(look, served, what, t_s, names):
-    page = look(served(what), SIZES[0])
-    page.add_init_script(WRITTEN)
-    page.reload()
+    page = look(served(what), SIZES[0], script=WRITTEN)
     hold(page, t_s)
     check_names(page, names)
     for size in SIZES[1:]:

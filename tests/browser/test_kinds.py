@@ -1,6 +1,6 @@
 """The page of a radio team and of a mesh."""
 
-from tests.browser.servers import click, expect, serving
+from tests.browser.servers import beside, click, expect
 
 RADIO = """
 kind = "radio"
@@ -37,7 +37,7 @@ PAINTED = """(selector) => [...document.querySelectorAll(`${selector} canvas`)]
 def test_a_radio_team(look, tmp_path):
     path = tmp_path / "radio.toml"
     path.write_text(RADIO)
-    with serving(path, "--speed", 0.1) as address:
+    with beside(path, 0.1) as address:
         page = look(address)
         expect(page.locator("#timeline")).to_be_visible()
         expect(page.locator("#unconnected .more")).to_have_text("of 3 stations")
@@ -51,7 +51,7 @@ def test_a_radio_team(look, tmp_path):
 def test_a_mesh(look, tmp_path):
     path = tmp_path / "mesh.toml"
     path.write_text(MESH)
-    with serving(path) as address:
+    with beside(path, None) as address:
         page = look(address, colours="dark")
         expect(page.locator("#unconnected .more")).to_have_text("of 3 nodes")
         expect(page.locator("#unconnected output")).to_have_text("0")

@@ -185,11 +185,12 @@ def test_every_type_is_found_by_its_name(kind, tmp_path, tshark):
     layouts = {"skin": skin, "mesh": mesh_payloads, "radio": radio}[kind].LAYOUTS
     known = {str(number): dissector.abbreviation(name) for number, name, _fields in layouts}
     known |= {str(mesh_const.ACK): "ack"} if kind == "mesh" else {}
-    for number, name in known.items():
-        lines = tshark(capture, "-Y", f"innervate.{kind}.{name}", "-T", "fields", "-e",
-                       f"innervate.{kind}.kind")  # fmt: skip
-        expected = [1 for _, fields in made if fields.get(f"innervate.{kind}.kind") == [number]]
-        assert lines == [number] * len(expected), name
+    known = {number: f"innervate.{kind}.{name}" for number, name in known.items()}
+    of = f"innervate.{kind}.kind"
+    found = fields_of(tshark, capture, [of, *known.values()], "-Y", " or ".join(known.values()))
+    numbers = [fields[of][0] for _, fields in made if of in fields]
+    assert found == [{of: [number], known[number]: ["1"]} for number in numbers if number in known]
+    assert set(numbers) == set(known)
 
 
 def columns(tshark, capture):

@@ -18,7 +18,7 @@ from tests.networks.skin.runs import patch
 
 CUT = patch(
     4, 4, (0, 0), (3, 3),
-    duration_s=1.0, seed=3, protocol={"beacon_hz": 250, "k": 5}, data={"rate_hz": 100},
+    duration_s=0.9, seed=3, protocol={"beacon_hz": 250, "k": 5}, data={"rate_hz": 100},
     event=[{"at_s": 0.5, "action": "cut", "interface": 1},
            {"at_s": 0.8, "action": "restore", "interface": 1}],
 )  # fmt: skip

@@ -64,7 +64,13 @@ def table(folder):
     return (Path(folder) / "results.parquet").read_bytes()
 
 
-def test_a_cluster_gives_the_same_bytes_even_if_a_worker_is_killed(scheduler, workers, four):
+def test_a_cluster_loses_a_worker_then_its_scheduler_and_no_run(scheduler, workers, four):
+    """The same bytes though a worker is killed; one line where all is gone, and what was done."""
+    check_worker_killed(scheduler, workers, four)
+    check_scheduler_killed(scheduler, four)
+
+
+def check_worker_killed(scheduler, workers, four):
     address, _ = scheduler
     killed = []
 
@@ -84,7 +90,7 @@ def test_a_cluster_gives_the_same_bytes_even_if_a_worker_is_killed(scheduler, wo
     assert set(done.timings["pid"]) <= {process.pid for process in workers}
 
 
-def test_a_cluster_that_goes_away_is_one_line_and_loses_nothing(scheduler, workers, four):
+def check_scheduler_killed(scheduler, four):
     address, process = scheduler
 
     def stop(scheduler):

@@ -1,5 +1,7 @@
 """Networks to watch, small ones of each kind."""
 
+import pytest
+
 from innervate import scenario
 from innervate.web.simulated import Simulated
 from tests.networks.skin.runs import patch
@@ -25,6 +27,12 @@ def simulated(tables, speed=0, **more):
     made = Simulated(plan_of(tables, **more), speed)
     made.prepare()
     return made
+
+
+@pytest.fixture
+def few_points(monkeypatch):
+    """A tenth of the points of plots, which take longer than what is simulated."""
+    monkeypatch.setattr("innervate.web.simulated.POINTS", 50)
 
 
 def go_to(made, t_s):

@@ -3,7 +3,10 @@
 import pytest
 
 from innervate import run
-from tests.web.runs import MESH, RADIO, SKIN, go_to, simulated
+from tests.web.runs import MESH, RADIO, SKIN, few_points, go_to, simulated
+
+__all__ = ["few_points"]
+pytestmark = pytest.mark.usefixtures("few_points")
 
 
 @pytest.mark.parametrize(

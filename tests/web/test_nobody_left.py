@@ -3,8 +3,10 @@
 import pytest
 
 from tests.networks.skin.runs import patch
-from tests.web.runs import go_to, simulated
+from tests.web.runs import few_points, go_to, simulated
 
+__all__ = ["few_points"]
+pytestmark = pytest.mark.usefixtures("few_points")
 ROOT = {"row": 0, "column": 0}
 
 

@@ -9,7 +9,10 @@ from innervate.running import run
 from innervate.web import messages as m
 from innervate.web.errors import Refused
 from innervate.web.saving import saved
-from tests.web.runs import KINDS, simulated
+from tests.web.runs import KINDS, few_points, simulated
+
+__all__ = ["few_points"]
+pytestmark = pytest.mark.usefixtures("few_points")
 
 
 def command(draw, scene, duration_s):

@@ -14,7 +14,9 @@ from innervate.web.history import LOG, SERIES, TIMELINE
 from innervate.web.simulated import Simulated
 from innervate.web.snapshot import DeltaEncoder, Part, Snapshot
 from tests.networks.skin.runs import patch
-from tests.web.runs import KINDS, MESH, RADIO, SKIN, go_to, simulated
+from tests.web.runs import KINDS, MESH, RADIO, SKIN, few_points, go_to, simulated
+
+__all__ = ["few_points"]
 
 ROLES = {"cell", "sink", "port", "node", "gateway", "standby", "robot", "post", "monitor",
          "station"}  # fmt: skip
@@ -50,6 +52,7 @@ def test_scene_and_state_fit_together(kind):
     assert all(set(item.what) == names for item in items(made, SERIES))
 
 
+@pytest.mark.usefixtures("few_points")
 def test_cells_show_whose_tree_they_are_in():
     made = simulated(SKIN)
     go_to(made, 0.5)
@@ -67,6 +70,7 @@ def test_cells_show_whose_tree_they_are_in():
     assert 0 < state["load"].max() <= 1
 
 
+@pytest.mark.usefixtures("few_points")
 def test_a_cell_that_is_off_and_those_behind_it_have_no_way():
     line = {**SKIN, "patch": [{"columns": 5, "rows": 1}],
             "interface": [{"row": 0, "column": 0, "port": "W"}]}  # fmt: skip
@@ -99,6 +103,7 @@ def test_frames_on_their_way_only_where_they_can_be_seen():
 @pytest.mark.parametrize(
     "event", [("cut", {"interface": 0}), ("kill", {"cell": {"row": 1, "column": 2}})]
 )
+@pytest.mark.usefixtures("few_points")
 def test_the_recovery_is_that_of_the_batch_run(event):
     action, target = event
     batch = run({**SKIN, "event": [{"at_s": 0.5, "action": action, **target}]})
@@ -121,6 +126,7 @@ def test_the_recovery_is_that_of_the_batch_run(event):
 
 
 @pytest.mark.parametrize("column", [2, 5])
+@pytest.mark.usefixtures("few_points")
 def test_the_log_does_not_say_that_all_have_a_way_while_cells_are_cut_off(column):
     kill = {"at_s": 0.5, "action": "kill", "cell": {"row": 0, "column": column}}
     made = simulated(patch(6, 1, (0, 0), event=[kill], duration_s=0.7), speed=0)
@@ -130,6 +136,7 @@ def test_the_log_does_not_say_that_all_have_a_way_while_cells_are_cut_off(column
     assert made.fields()["recovery"]["apart"] == 5 - column
 
 
+@pytest.mark.usefixtures("few_points")
 def test_what_disturbs_nobody_is_over_at_once():
     made = simulated(SKIN)
     go_to(made, 0.5)
@@ -141,6 +148,7 @@ def test_what_disturbs_nobody_is_over_at_once():
     assert made.fields()["recovery"]["recovered_ms"] == 0.0
 
 
+@pytest.mark.usefixtures("few_points")
 def test_a_mesh_finds_other_ways():
     made = simulated(MESH)
     go_to(made, 4.0)
@@ -160,6 +168,7 @@ def test_a_mesh_finds_other_ways():
     assert run({**MESH, "event": [event]}).summary["delivery_ratio"] == 1.0
 
 
+@pytest.mark.usefixtures("few_points")
 def test_who_is_behind_a_dead_node_of_a_mesh_is_cut_off_until_it_is_back():
     line = {**MESH, "flow": [], "radio": {"profile": "250k"}, "duration_s": 40.0,
             "link": [{"a": "g", "b": "x"}, {"a": "x", "b": "y"}, {"a": "y", "b": "z"}]}  # fmt: skip
@@ -180,6 +189,7 @@ def test_who_is_behind_a_dead_node_of_a_mesh_is_cut_off_until_it_is_back():
     assert not shown["nobody"]
 
 
+@pytest.mark.usefixtures("few_points")
 def test_the_recovery_of_a_mesh_does_not_depend_on_the_pace():
     found = set()
     for pieces in (1, 40):
@@ -221,6 +231,7 @@ def test_the_timeline_is_what_was_sent():
     assert found == min(done.summary["collisions"], 8) > 0
 
 
+@pytest.mark.usefixtures("few_points")
 def test_received_touch_is_shown():
     made = simulated(SKIN, touch={"path": [[0.0, 0.0, 0.0]], "radius_mm": 30.0})
     go_to(made, 0.9)
@@ -246,6 +257,7 @@ def test_without_data_nothing_is_felt():
         made.carry_out(messages.Touch(3, 255))
 
 
+@pytest.mark.usefixtures("few_points")
 def test_healing_leaves_the_number_of_the_cut():
     made = simulated(SKIN)
     go_to(made, 0.5)
@@ -265,6 +277,7 @@ def test_healing_leaves_the_number_of_the_cut():
     assert made.fields()["since_cut_s"] == pytest.approx(0.3, abs=1e-5)
 
 
+@pytest.mark.usefixtures("few_points")
 def test_a_cell_alone_has_recovered_when_it_is_back():
     """A cut that nothing can get over, until it is healed."""
     line = {**SKIN, "patch": [{"columns": 3, "rows": 1}],
@@ -279,6 +292,7 @@ def test_a_cell_alone_has_recovered_when_it_is_back():
     assert made.fields()["unconnected"] == 0
 
 
+@pytest.mark.usefixtures("few_points")
 def test_who_was_doubted_before_a_fault_did_not_notice_it():
     made = simulated(MESH)
     go_to(made, 4.0)
@@ -311,6 +325,7 @@ def test_a_thousand_cells_cost_little():
     assert sum(sizes) / 30 < 100_000
 
 
+@pytest.mark.usefixtures("few_points")
 def test_what_the_scenario_does_is_told_in_its_place():
     events = [
         {"at_s": 4.0, "action": "kill", "node": 5},
@@ -329,6 +344,7 @@ def test_what_the_scenario_does_is_told_in_its_place():
     assert shown[0] == shown[1]
 
 
+@pytest.mark.usefixtures("few_points")
 def test_a_node_at_the_edge_of_a_mesh_is_missed_by_nobody():
     leaf = {**MESH, "nodes": None, "radio": {"profile": "250k"},
             "link": [{"a": "g", "b": "x"}, {"a": "x", "b": "y"}], "flow": [],
@@ -338,6 +354,7 @@ def test_a_node_at_the_edge_of_a_mesh_is_missed_by_nobody():
     assert made.fields()["recovery"]["recovered_ms"] == 0.0
 
 
+@pytest.mark.usefixtures("few_points")
 def test_without_a_gateway_nobody_has_a_way_until_the_standby_leads():
     made = simulated(MESH, standby=[1], duration_s=30.0)
     go_to(made, 4.0)

@@ -14,7 +14,9 @@ from innervate.web.history import LOG, SERIES, TIMELINE
 from innervate.web.recorded import Recorded
 from innervate.web.recorded import plan_of as plan_of_folder
 from innervate.web.saving import saved
-from tests.web.runs import KINDS, SKIN, go_to, plan_of, simulated
+from tests.web.runs import KINDS, SKIN, few_points, go_to, plan_of, simulated
+
+__all__ = ["few_points"]
 
 
 def items(made, stream):
@@ -41,6 +43,7 @@ def test_going_back_shows_what_was(kind):
         assert [i.what for i in items(made, stream)] == [i.what for i in items(straight, stream)]
 
 
+@pytest.mark.usefixtures("few_points")
 def test_what_was_done_stays_done_when_one_goes_back():
     made = simulated(SKIN)
     go_to(made, 0.6)
@@ -77,6 +80,7 @@ def handled_by(made):
     return int(made.engine.world.run[0]["handled"])
 
 
+@pytest.mark.usefixtures("few_points")
 def test_nothing_can_be_done_after_the_end():
     made = simulated(SKIN)
     made.run_to_end()
@@ -111,6 +115,7 @@ def test_a_broken_invariant_holds_the_network_and_is_said(monkeypatch):
 
 
 @pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.usefixtures("few_points")
 def test_a_run_folder_is_shown_as_it_was(kind, tmp_path):
     events = {"skin": [{"at_s": 0.5, "action": "cut", "interface": 0}], "radio": [], "mesh": []}
     done = run({**KINDS[kind], "event": events[kind]}, out=tmp_path / "run")
@@ -153,6 +158,7 @@ def test_of_an_interrupted_run_only_what_was_is_simulated_and_shown(tmp_path, mo
     assert shown["headline"]["level"] == done.summary["headline"]["level"]
 
 
+@pytest.mark.usefixtures("few_points")
 def test_another_run_than_the_recorded_one_is_refused(tmp_path):
     done = run(SKIN, out=tmp_path / "run")
     other = tmp_path / "run" / "scenario.toml"
@@ -194,6 +200,7 @@ def test_plans_are_not_altered():
 
 
 @pytest.mark.parametrize("touch", [{}, {"touch": {"path": [[0.0, 0.0, 0.0], [0.9, 80.0, 50.0]]}}])
+@pytest.mark.usefixtures("few_points")
 def test_a_touch_by_hand_is_felt_and_replayed(touch):
     made = simulated(SKIN, **touch)
     go_to(made, 0.3)
