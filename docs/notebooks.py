@@ -50,6 +50,8 @@ def executed(script: Path, folder: Path, kernel: Any = None) -> Any:
     """The notebook of a script with what its cells give, run in a folder.
 
     Args:
+        script: of examples/notebooks.
+        folder: what it writes goes there.
         kernel: a manager of a kernel that is up, and forgets first what it knows; None = its own.
     """
     made = notebook(script)

@@ -271,9 +271,10 @@ def recoveries(path: Path) -> list[Healing]:
     """
     capture = Capture(path)
     watcher = Watcher(capture)
-    for packet in sorted(capture.packets(), key=lambda packet: packet.time_ns):
-        if {links.kind_of(one.link_type) for one in capture.interfaces} != {"skin"}:
-            raise ExportError(f"{path} is no capture of a skin; only skins have parents")
+    packets = sorted(capture.packets(), key=lambda packet: packet.time_ns)
+    if packets and {links.kind_of(one.link_type) for one in capture.interfaces} != {"skin"}:
+        raise ExportError(f"{path} is no capture of a skin; only skins have parents")
+    for packet in packets:
         watcher.take(packet)
     return watcher.end()
 
