@@ -46,11 +46,22 @@ def notebook(script: Path) -> Any:
     return made
 
 
-def executed(script: Path, folder: Path) -> Any:
-    """The notebook of a script with what its cells give, run in a folder."""
+def executed(script: Path, folder: Path, kernel: Any = None) -> Any:
+    """The notebook of a script with what its cells give, run in a folder.
+
+    Args:
+        script: of examples/notebooks.
+        folder: what it writes goes there.
+        kernel: a manager of a kernel that is up, and forgets first what it knows; None = its own.
+    """
     made = notebook(script)
+    if kernel is not None:
+        forget = f"%reset -f\nimport os\nos.chdir({str(folder)!r})\ndel os"
+        made.cells.insert(0, nbformat.v4.new_code_cell(forget))
     where = {"metadata": {"path": str(folder)}}
-    NotebookClient(made, timeout=300, resources=where, coalesce_streams=True).execute()
+    NotebookClient(made, km=kernel, timeout=300, resources=where, coalesce_streams=True).execute()
+    if kernel is not None:
+        del made.cells[0]
     for cell in made.cells:  # neither times nor what was there only while it ran
         cell.metadata.clear()
         if cell.cell_type == "code":

@@ -18,6 +18,7 @@ import innervate
 from innervate import Mesh, Skin
 from innervate.cli import app as line
 from innervate.cli import main
+from innervate.network import networks
 from tests.docs.test_own_network import carried_out, commands
 from tests.live.test_in_code import until
 from tests.own import alone
@@ -35,6 +36,10 @@ TEXTS = {
     for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")),
                  ROOT / "boards/micropython/README.md")
 }  # fmt: skip
+LONG_PROOFS = {
+    "skin": {"skin, rule feasible", "skin, rule strict"},  # test_feasible.py
+    "mesh": {"mesh, delivery", "mesh, passing on"},  # test_caches.py
+}
 PAGES = [page for page, text in TEXTS.items() if BLOCK.search(text) and page not in OWN_TEST]
 
 
@@ -146,7 +151,12 @@ def live_nodes(monkeypatch):
         link=[Mesh.Link(a=i, b=(i + 1) % 4) for i in range(4)],
         radio=Mesh.Radio(profile="ip"),
     )
-    skin = Skin(patch=[Skin.Patch(columns=4, rows=2)], interface=[Skin.Interface(row=0, column=0)])
+    skin = Skin(
+        patch=[Skin.Patch(columns=4, rows=2)],
+        interface=[Skin.Interface(row=0, column=0)],
+        protocol=Skin.Protocol(beacon_hz=25),
+        data=Skin.Data(rate_hz=5),
+    )
     with (
         innervate.live_up(ring, folder=folder) as nodes,
         innervate.live_up(skin, folder=folder) as cells,
@@ -156,7 +166,24 @@ def live_nodes(monkeypatch):
         yield
 
 
+@contextmanager
+def short_proofs(monkeypatch):
+    """Of what is proved the short: tests/networks/*/prove prove the long ones in `make test`."""
+    for kind, long in LONG_PROOFS.items():
+        room = networks()[kind].prove
+        every = room.theories
+
+        def short(network, change=None, every=every, long=long):
+            found = every(network, change)
+            assert long <= {one.name for one in found}
+            return [one for one in found if one.name not in long]
+
+        monkeypatch.setattr(room, "theories", short)
+    yield
+
+
 BEFORE = {
+    "docs/prove.md": short_proofs,
     "docs/sweeps.md": a_skin,
     "docs/scenarios.md": a_mistake,
     "docs/live.md": live_nodes,

@@ -5,6 +5,7 @@ import re
 
 import nbformat
 import pytest
+from jupyter_client import KernelManager
 from nbclient import NotebookClient
 
 from docs import notebooks
@@ -18,11 +19,20 @@ def kept(script):
     return nbformat.read(script.with_suffix(".ipynb"), as_version=4)
 
 
-def run_in_jupyter(*sources):
+@pytest.fixture(scope="module")
+def kernel():
+    """One Jupyter for all of them: to load what they import takes most of their time."""
+    manager = KernelManager(kernel_name="python3")
+    manager.start_kernel()
+    yield manager
+    manager.shutdown_kernel(now=True)
+
+
+def run_in_jupyter(kernel, *sources):
     """A notebook of these cells that was run."""
     cells = [nbformat.v4.new_code_cell(source) for source in sources]
     made = nbformat.v4.new_notebook(cells=cells, metadata=notebooks.KERNEL)
-    NotebookClient(made, timeout=120).execute()
+    NotebookClient(made, km=kernel, timeout=120).execute()
     return made.cells
 
 
@@ -51,15 +61,16 @@ def shown(notebook):
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=STEMS)
-def test_the_notebook_runs_in_jupyter_and_shows_what_it_showed(script, tmp_path):
-    fresh = notebooks.executed(script, tmp_path)
+def test_the_notebook_runs_in_jupyter_and_shows_what_it_showed(script, tmp_path, kernel):
+    fresh = notebooks.executed(script, tmp_path, kernel)
     assert said(fresh) == said(kept(script))
     assert shown(fresh) == shown(kept(script))
 
 
-def test_a_bar_is_shown_while_work_goes_on_and_gone_afterwards():
+def test_a_bar_is_shown_while_work_goes_on_and_gone_afterwards(kernel):
     """In Jupyter itself: an output is replaced by a later one of the same display."""
     begun, ended, ran = run_in_jupyter(
+        kernel,
         "from innervate.running.showing import Bar\n"
         "bar = Bar('counting').__enter__()\nbar.show('half of it', 1, 2)",
         "import json, innervate\nfrom innervate.running import showing\n"

@@ -8,8 +8,9 @@ from __future__ import annotations
 import difflib
 import re
 import sys
-from collections.abc import Iterator
-from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+from collections.abc import Hashable, Iterator
+from functools import lru_cache
+from typing import Any, Literal, TypeVar, cast, get_args, get_origin, get_type_hints
 
 import msgspec
 from msgspec import inspect
@@ -33,13 +34,19 @@ def convert(source: Source, raw: dict[str, Any], model: type[Model]) -> Model:
         ScenarioError: an unknown key (with the nearest known one), a missing key, a value of the
             wrong type or out of range.
     """
-    _refuse_unknown(source, raw, inspect.type_info(model), ())
+    _refuse_unknown(source, raw, _described(cast(Hashable, model)), ())
     try:
         return msgspec.convert(raw, model)
     except msgspec.ValidationError as error:
         raise _in_words(source, raw, model, str(error)) from None
     except (OverflowError, RecursionError) as error:
         raise source.error((), f"a value is too large: {error}") from None
+
+
+@lru_cache(maxsize=32)
+def _described(model: Hashable) -> inspect.Type:
+    """A model's keys and types; to find them takes longer than all else that is read."""
+    return inspect.type_info(model)
 
 
 def nearest(word: str, known: list[str]) -> str:

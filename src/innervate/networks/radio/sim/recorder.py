@@ -60,6 +60,7 @@ def watch(world, node, time, handler, port):
     if run.checks and run.broken == 0:
         words = world.words[node]
         for i in range(len(world.low)):
-            if words[i] < world.low[i] or words[i] > world.high[i]:
+            word = words[i]
+            if word < world.low[i] or word > world.high[i]:
                 run.broken, run.broken_node = BROKEN_RANGE, node
     record_step(world, node, time, handler, port)
