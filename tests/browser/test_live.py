@@ -152,7 +152,7 @@ def dist_of(here, number):
 def pc_restarted():
     """The same of all cells in a simulation of this patch whose PC restarts."""
     given = {**tomllib.loads(scenario()), "event": [{"at_s": 5, "action": "restart", "pc": True}]}
-    running = simulation(scenarios.plan(scenarios.from_dict(given)), plain=True)
+    running = simulation(scenarios.plan(scenarios.from_dict(given)))
     running.advance(20_000_000, 1 << 30)
     return hops(running)
 
