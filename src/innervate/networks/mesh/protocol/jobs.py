@@ -160,7 +160,7 @@ def queue_parts(node, gate, params, now, s, out):
             return
         if gate.job_parts[s] >> index & 1 == 0:
             if free_places(node) <= PLACES_RESERVED:
-                gate.job_due[s] = (now + (params.job_us >> 4)) & MASK30
+                gate.job_due[s] = (now + (params.job_us >> 2)) & MASK30
                 return
             queue_part(node, gate, params, now, s, index, out)
             gate.job_due[s] = job_due(node, gate, params, now, s)
