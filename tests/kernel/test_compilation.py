@@ -241,6 +241,6 @@ def test_while_a_loop_is_compiled_nothing_is_collected_and_then_as_before(collec
 def test_a_cache_folder_is_made_with_those_above_it(monkeypatch, tmp_path):
     wanted = tmp_path / "a" / "b"
     monkeypatch.setenv("INNERVATE_CACHE", str(wanted))
-    assert compilation.cache_root() == wanted
+    assert cache.cache_root() == wanted
     assert wanted.is_dir()
-    assert compilation.cache_root() == wanted  # there already
+    assert cache.cache_root() == wanted  # there already

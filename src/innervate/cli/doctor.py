@@ -80,9 +80,9 @@ def _version(package: str) -> str | None:
 
 def _cache() -> dict[str, Any]:
     """Where compiled loops are kept, with what room, and which are there."""
-    from innervate.kernel import compilation, ready
+    from innervate.kernel import cache, compilation, ready
 
-    folder = compilation.cache_root()
+    folder = cache.cache_root()
     kept = folder / compilation.source_hash()
     existing = next(one for one in (folder, *folder.parents) if one.exists())
     return {

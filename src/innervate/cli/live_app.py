@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from cyclopts import App, Parameter
 
@@ -20,23 +20,33 @@ live_app = App(
 
 
 @live_app.command(name="node")
-def live_node(file: Path, /, *, firmware: Path | None = None) -> int:
+def live_node(
+    file: Path,
+    /,
+    *,
+    engine: Literal["python", "c", "auto"] | None = None,
+    firmware: Path | None = None,
+) -> int:
     """Run one node until SIGTERM or Ctrl-C; SIGHUP reads its keys again.
 
     Parameters
     ----------
     file
         A node file (see: innervate docs live).
+    engine
+        What runs its protocol here, in place of what the file says; auto: C where it can be made.
     firmware
         What runs its protocol, on an emulated board: an image (see: innervate docs firmware).
     """
     from innervate.live.main import run as command
 
     if firmware is None:
-        return command(file)
+        return command(file, engine=engine or "")
+    if engine is not None:
+        raise errors.UserError("--engine and --firmware exclude each other; name one")
     from innervate.cli.firmware import engine_for
 
-    return command(file, engine_for(file, firmware))
+    return command(file, engine_for(file, firmware), "python")
 
 
 @live_app.command(name="up")
