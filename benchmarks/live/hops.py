@@ -33,14 +33,14 @@ def free_ports(count):
     return ports
 
 
-def ours(folder, count, sealed=False, settings=None):
+def ours(folder, count, sealed=False, settings=None, engine="python"):
     """Commands that start nodes of ours; node 1 is the gateway."""
     ports, commands = free_ports(count), []
     for i in range(count):
         peers = [f"127.0.0.1:{ports[k]}" for k in (i - 1, i + 1) if 0 <= k < count]
         lines = ['kind = "mesh"', f"number = {i}", f"nodes = {count}",
                  f'role = "{"gateway" if i == 1 else "node"}"',
-                 f'socket = "{folder / f"n{i}.sock"}"',
+                 f'socket = "{folder / f"n{i}.sock"}"', f'engine = "{engine}"',
                  *(["[keys]", "use = 1", f'secret.1 = "{KEY}"'] if sealed else []),
                  "[protocol]", *(f"{k} = {v}" for k, v in (settings or {}).items()),
                  "[[link]]", 'kind = "udp"', f'bind = "127.0.0.1:{ports[i]}"',
@@ -113,15 +113,18 @@ def main():
     parser.add_argument("--size", type=int, default=64, help="bytes of a message")
     parser.add_argument("--hops", type=int, default=2)
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
+    parser.add_argument("--engines", nargs="+", default=["python", "c"], metavar="ENGINE")
     args = parser.parse_args()
     settings = dict(one.split("=") for one in args.set)
     found = [name for name, package in PACKAGES.items() if find_spec(package)]
-    for side in ("plain", "sealed", *(found if args.hops == 2 else ())):
+    own = [f"{side} {engine}" for side in ("plain", "sealed") for engine in args.engines]
+    for side in (*own, *(found if args.hops == 2 else ())):
         with tempfile.TemporaryDirectory() as folder:
             if side in PACKAGES:
                 line = Line(others(side, Path(folder)))
             else:
-                line = Line(ours(Path(folder), args.hops + 1, side == "sealed", settings))
+                how, engine = side.split()
+                line = Line(ours(Path(folder), args.hops + 1, how == "sealed", settings, engine))
             for plan in ("r50", "w64") if side in PACKAGES else ("r50", "w1", "w64"):
                 tell(side, plan, line.measure(args.size, args.seconds, plan))
             line.stop()
@@ -130,7 +133,7 @@ def main():
 def tell(side, plan, found):
     """A row of the table."""
     cpu = " / ".join(f"{us:.0f}" for us in found["cpu_us"])
-    print(f"{side:6} {plan:4} {found['per_s']:7.0f} /s  p50 {found['p50_us']:7.0f} us  "
+    print(f"{side:13} {plan:4} {found['per_s']:7.0f} /s  p50 {found['p50_us']:7.0f} us  "
           f"p99 {found['p99_us']:7.0f} us  CPU us a message {cpu}  {found['states']}  "
           f"load {os.getloadavg()[0]:.1f}", flush=True)  # fmt: skip
 

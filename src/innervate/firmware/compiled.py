@@ -23,6 +23,7 @@ from innervate.kernel.sources import ROOT, hash_of
 from innervate.live.board import Coded, Role
 
 COMPILER = "cc"
+SHIPPED, QUICK = ("innervate_wire.h", "innervate_wire.c"), frozenset({"quick"})
 FOLDER = "nodes"  # below the cache
 KEPT_MOST = 32  # libraries; those not used for longest go first
 MAKERS = ("firmware", "dialect", "wire")  # rooms that have a part in what is made
@@ -116,10 +117,7 @@ def texts_of(role: Role, coded: Coded | None, key: str) -> dict[str, str]:
     if coded is not None:
         wire = Wire(library, coded)
         texts |= {f"{name}_wire.h": wire.header(), f"{name}_wire.c": wire.source()}
-        quick = frozenset({"quick"})
-        texts |= {
-            file: shipped(file, "", quick) for file in ("innervate_wire.c", "innervate_wire.h")
-        }
+        texts |= {file: shipped(file, "", QUICK) for file in SHIPPED}
     texts["node.c"] = _entries(role, name, key)
     return texts
 

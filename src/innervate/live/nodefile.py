@@ -86,7 +86,7 @@ class NodeFile(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     role: str | None = None
     socket: str | None = None
     state: str | None = None
-    engine: Literal["python", "c", "auto"] = PYTHON
+    engine: Literal["python", "c", "auto"] = "python"
     metrics: str | None = None
     keys: KeysTable | None = None
     protocol: dict[str, int] = {}

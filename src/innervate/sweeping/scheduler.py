@@ -10,7 +10,7 @@ from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from dataclasses import dataclass, field
 from typing import Any
 
-from innervate.kernel import compilation
+from innervate.kernel import cache, compilation
 from innervate.scenario.explain import nearest
 from innervate.sweeping.engines import Engine
 from innervate.sweeping.errors import SweepError

@@ -152,11 +152,11 @@ class Turns:
     def _facts(self) -> Any:
         """What the answer depends on, but for what can only make it a no."""
         node = self._stack.node
-        queue = node.q_state.count(FREE)
+        queue = node.q_state[:].count(FREE)
         room = (queue > OWN, queue > CONTROL, node.gateway)
-        suspects = (*node.neighbour, *node.suspect) if self._gone else ()
-        return (*room, *suspects, *node.wait_kind, *node.wait_dest, *node.wait_seq,
-                *node.bad_neighbour, *node.bad_dest)  # fmt: skip
+        suspects = (node.neighbour[:], node.suspect[:]) if self._gone else ()
+        return (*room, *suspects, node.wait_kind[:], node.wait_dest[:], node.wait_seq[:],
+                node.bad_neighbour[:], node.bad_dest[:])  # fmt: skip
 
 
 class Places:
@@ -176,10 +176,11 @@ class Places:
         self._node = node
         self._gone = gone
         self._params = stack.params
-        self._queue = node.q_state.count(FREE)
+        self._queue = node.q_state[:].count(FREE)
         self._most = most
-        self._free = node.wait_kind.count(FREE)
-        self._held = Counter(compress(node.wait_dest, node.wait_kind))
+        self._kinds, self._dests = node.wait_kind[:], node.wait_dest[:]
+        self._free = self._kinds.count(FREE)
+        self._held = Counter(compress(self._dests, self._kinds))
         self._all_wait = all_wait
 
     def takes(self, item: Any) -> bool:
@@ -188,14 +189,18 @@ class Places:
         dest = resolve(node, self._params, item.dest)
         if dest == node.number:
             return True
-        if self._queue <= (CONTROL if urgent else OWN) or is_ahead(node, dest):
+        if self._queue <= (CONTROL if urgent else OWN):
+            return False
+        held = self._held[dest]
+        if (held or dest == ALL) and is_ahead(node, dest):
             return False
         if dest == ALL or not item.flags & END_TO_END:
             return True
-        held = self._held[dest]
         if held >= FIRST and held >= self._share(dest) + SPARE * urgent:
             return False
-        if self._free < (1 if urgent else 2) + (SPARE if held else 0) or crowds(node, dest):
+        if self._free < (1 if urgent else 2) + (SPARE if held else 0):
+            return False
+        if held >= node.kept >> 1 and crowds(node, dest):
             return False
         if not self._is_silent(dest):
             return True
@@ -205,8 +210,8 @@ class Places:
     def _share(self, dest: int) -> int:
         """How many places a recipient may have now: half while a message is sent to it again."""
         node, most = self._node, self._most.get(dest, FIRST)
-        tries = max((node.wait_tries[w] for w in range(node.kept)
-                     if node.wait_kind[w] and node.wait_dest[w] == dest), default=0)  # fmt: skip
+        kept = zip(node.wait_tries[:], self._dests, self._kinds, strict=True)
+        tries = max((tries for tries, to, kind in kept if kind and to == dest), default=0)
         if tries > SURE_AFTER:
             self._most.pop(dest, None)
             return FIRST
