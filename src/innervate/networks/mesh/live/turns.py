@@ -15,6 +15,7 @@ from innervate.dialect.arith import MASK16
 from innervate.networks.mesh.live.long import Long, Maker
 from innervate.networks.mesh.live.stack import MeshStack
 from innervate.networks.mesh.protocol.constants import ALL, CONTROL, END_TO_END, OWN, PRIORITY
+from innervate.networks.mesh.protocol.duplicates import UNREACHABLE
 from innervate.networks.mesh.protocol.messages import resolve
 from innervate.networks.mesh.protocol.neighbours import place_of
 from innervate.networks.mesh.protocol.retransmission import (
@@ -178,9 +179,11 @@ class Places:
         self._params = stack.params
         self._queue = node.q_state[:].count(FREE)
         self._most = most
-        self._kinds, self._dests = node.wait_kind[:], node.wait_dest[:]
-        self._free = self._kinds.count(FREE)
-        self._held = Counter(compress(self._dests, self._kinds))
+        kinds = node.wait_kind[:]
+        self._free = kinds.count(FREE)
+        self._held = list(compress(node.wait_dest[:], kinds))  # recipients
+        self._tries = list(compress(node.wait_tries[:], kinds))
+        self._is_calm = max(self._tries, default=0) <= SURE_AFTER and not any_unreachable(node)
         self._all_wait = all_wait
 
     def takes(self, item: Any) -> bool:
@@ -191,7 +194,7 @@ class Places:
             return True
         if self._queue <= (CONTROL if urgent else OWN):
             return False
-        held = self._held[dest]
+        held = self._held.count(dest)
         if (held or dest == ALL) and is_ahead(node, dest):
             return False
         if dest == ALL or not item.flags & END_TO_END:
@@ -200,18 +203,19 @@ class Places:
             return False
         if self._free < (1 if urgent else 2) + (SPARE if held else 0):
             return False
-        if held >= node.kept >> 1 and crowds(node, dest):
+        if not self._is_calm and held >= node.kept >> 1 and crowds(node, dest):
             return False
         if not self._is_silent(dest):
             return True
-        silent = sum(self._held[other] for other in self._held if self._is_silent(other))
+        silent = sum(self._held.count(other) for other in set(self._held)
+                     if self._is_silent(other))  # fmt: skip
         return silent < SILENT + urgent and not (self._all_wait and is_ahead(node, ALL))
 
     def _share(self, dest: int) -> int:
         """How many places a recipient may have now: half while a message is sent to it again."""
-        node, most = self._node, self._most.get(dest, FIRST)
-        kept = zip(node.wait_tries[:], self._dests, self._kinds, strict=True)
-        tries = max((tries for tries, to, kind in kept if kind and to == dest), default=0)
+        most = self._most.get(dest, FIRST)
+        kept = zip(self._tries, self._held, strict=True)
+        tries = max((tries for tries, to in kept if to == dest), default=0)
         if tries > SURE_AFTER:
             self._most.pop(dest, None)
             return FIRST
@@ -226,4 +230,9 @@ class Places:
         if dest in self._gone:
             k = place_of(node, self._params, dest)
             return k < 0 or bool(node.suspect[k])
-        return bool(is_in_vain(node, dest, (node.seq + 1) & MASK16))
+        return not self._is_calm and bool(is_in_vain(node, dest, (node.seq + 1) & MASK16))
+
+
+def any_unreachable(node: Any) -> bool:
+    """True if everything to some recipient was in vain, and nothing was heard of it since."""
+    return UNREACHABLE in node.bad_neighbour[:]
