@@ -14,7 +14,7 @@ import pytest
 
 from innervate.analysis import intervals
 from innervate.dialect import arith
-from innervate.kernel import compilation
+from innervate.kernel import cache, compilation
 from innervate.kernel.linking import as_one
 from innervate.networks.mesh.protocol import node
 

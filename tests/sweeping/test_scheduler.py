@@ -5,7 +5,7 @@ from concurrent.futures import Future
 
 import pytest
 
-from innervate.kernel import compilation
+from innervate.kernel import cache, compilation
 from innervate.sweeping import SweepError, make_plan, scheduler
 from innervate.sweeping.engines import Engine
 from innervate.sweeping.jobs import Jobs

@@ -11,11 +11,13 @@ import os
 import platform
 import sys
 import tempfile
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from innervate.dialect.source import reached
 from innervate.firmware.errors import FirmwareError
+from innervate.firmware.program import GIVEN
 from innervate.firmware.records import records_of
 from innervate.firmware.tools import find, run
 from innervate.kernel.cache import alone, cache_root
@@ -27,10 +29,7 @@ SHIPPED, QUICK = ("innervate_wire.h", "innervate_wire.c"), frozenset({"quick"})
 FOLDER = "nodes"  # below the cache
 KEPT_MOST = 32  # libraries; those not used for longest go first
 MAKERS = ("firmware", "dialect", "wire")  # rooms that have a part in what is made
-HANDLERS = {
-    "on_start": "int32_t cause", "on_frame": "int32_t port, const {p}_frame_t *frame",
-    "on_timer": "int32_t timer", "on_input": "int32_t kind, const {p}_item_t *item",
-}  # fmt: skip
+TYPES = {"int": "int32_t", "frame": "const {p}_frame_t *", "item": "const {p}_item_t *"}
 ENTRY = """
 void innervate_{name}({p}_state_t *state, {gate}const {p}_params_t *params, int32_t now,
         {given}, {p}_out_t *out);
@@ -50,6 +49,12 @@ def key_of(role: Role) -> str:
         files |= {path for path in (ROOT / room).rglob("*") if path.suffix in (".py", ".c", ".h")}
     begun = f"{sys.platform} {platform.machine()}\0{role}"
     return hash_of(begun, sorted(files), ROOT)
+
+
+def handlers_of(role: Role) -> list[str]:
+    """Names of the handlers that a role has."""
+    module = import_module(role.entry)
+    return [name for name in GIVEN if hasattr(module, name)]
 
 
 def library_of(role: Role, coded: Coded | None) -> Any:
@@ -75,14 +80,12 @@ def _open(path: Path, key: str) -> Any:
         about = path.stat()
         if about.st_uid not in (0, os.getuid()) or about.st_mode & 0o022:
             return None  # somebody else could have written it
-        found = ctypes.CDLL(str(path))
-        source = (ctypes.c_char * (len(key) + 1)).in_dll(found, "innervate_source")
-        if source.value != key.encode():
+        if key.encode() not in path.read_bytes():
             return None
         os.utime(path)
-    except (OSError, ValueError):
+        return ctypes.CDLL(str(path))
+    except OSError:
         return None
-    return found
 
 
 def _made(role: Role, coded: Coded | None, path: Path, key: str) -> Any:
@@ -129,9 +132,11 @@ def _entries(role: Role, name: str, key: str) -> str:
              "has_gate": "gate, " if role.has_gate else ""}  # fmt: skip
     parts = [f'#include "{name}.h"', "", f'const char innervate_source[] = "{key}";',
              f"const int32_t innervate_sizes[] = {{{', '.join(sizes)}}};"]  # fmt: skip
-    for handler, given in HANDLERS.items():
-        names = ", ".join(one.split()[-1].lstrip("*") for one in given.split(", "))
-        parts.append(ENTRY.format(name=handler, given=given.format(**words), names=names, **words))
+    for handler in handlers_of(role):
+        given = [(f"{TYPES[kind].format(**words)} a{i}", f"a{i}")
+                 for i, kind in enumerate(GIVEN[handler])]  # fmt: skip
+        declared, names = (", ".join(column) for column in zip(*given, strict=True))
+        parts.append(ENTRY.format(name=handler, given=declared, names=names, **words))
     return "\n".join(parts)
 
 

@@ -13,6 +13,7 @@ from typing import Any
 
 from innervate.firmware import compiled, views
 from innervate.firmware.errors import FirmwareError
+from innervate.firmware.program import GIVEN
 from innervate.firmware.records import name_of, records_of
 from innervate.firmware.wire import coded_of
 from innervate.live.board import Coded, Role, roles_of
@@ -36,11 +37,14 @@ class Handlers:
     def __init__(self, library: Any, role: Role, item: views.Fields) -> None:
         self.__name__ = role.entry
         self.Item = views.struct_of(item)
-        start, frame, timer, given = (_typed(library, name) for name in compiled.HANDLERS)
+        pointers = {"frame": lambda frame: frame.ref, "item": self._pointer_of}
         call, call_with = (_gated, _gated_with) if role.has_gate else (_plain, _plain_with)
-        self.on_start, self.on_timer = call(start), call(timer)
-        self.on_frame = call_with(frame, lambda frame: frame.ref)
-        self.on_input = call_with(given, self._pointer_of)
+        for name in compiled.handlers_of(role):
+            entry = getattr(library, f"innervate_{name}")
+            entry.restype = None
+            _, *more = GIVEN[name]
+            made = call_with(entry, pointers.get(more[0], int)) if more else call(entry)
+            setattr(self, name, made)
         self._fields, self._given = list(item.values()), self.Item()
 
     def _pointer_of(self, item: Any) -> Any:
@@ -84,8 +88,7 @@ def _gated_with(call: Any, pointer: Any) -> Any:
 class Coder:
     """A role's coder in C."""
 
-    def __init__(self, library: Any, name: str, reasons: tuple[str, ...]) -> None:
-        self.reasons = reasons
+    def __init__(self, library: Any, name: str) -> None:
         self._encode = getattr(library, f"{name}_encode")
         self._decode = getattr(library, f"{name}_decode")
         self._data = ctypes.create_string_buffer(WIRE_MAX)
@@ -141,13 +144,14 @@ def take_place(stack: Any, network: Network) -> str:
     if isinstance(getattr(stack, "item", None), type):
         stack.item = stack.do.Item
     if coded is not None:
-        stack.coder = Coder(library, name_of(role.name), stack.coder.reasons)
+        stack.coder = Coder(library, name_of(role.name))
     return ""
 
 
 def _role_of(stack: Any, network: Network) -> tuple[Role, Coded | None] | None:
     """What a stack runs, with arrays and outbox as it has them, and its frames' coder in C."""
-    role = next((one for one in roles_of(network) if one.entry == stack.do.__name__), None)
+    entry = getattr(getattr(stack, "do", None), "__name__", "")
+    role = next((one for one in roles_of(network) if one.entry == entry), None)
     if role is None or not role.frame:
         return None
     if role.live:
@@ -168,9 +172,3 @@ def _check(library: Any, records: dict[str, views.Fields], out: views.Outbox) ->
     sizes = (ctypes.c_int32 * len(structs)).in_dll(library, "innervate_sizes")
     if list(sizes) != list(map(ctypes.sizeof, structs)):
         raise FirmwareError("this compiler lays structs out in another way than Python expects")
-
-
-def _typed(library: Any, name: str) -> Any:
-    call = getattr(library, f"innervate_{name}")
-    call.restype = None
-    return call

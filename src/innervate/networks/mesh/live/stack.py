@@ -49,8 +49,6 @@ Params = plain.make("Params", fields.PARAMS)
 class Coder:
     """Frames of at most as many bytes as a node's parameters say."""
 
-    reasons = wire.REASONS
-
     def __init__(self, params: Any) -> None:
         self._params = params
 
