@@ -12,6 +12,7 @@ from boards.firmware.play import Player
 from innervate import scenario
 from innervate.dialect import plain
 from innervate.firmware import compiled, dropin
+from innervate.firmware.wire import coded_of
 from innervate.live.build import build
 from innervate.live.declared import DeclaredStack
 from innervate.live.errors import LiveError
@@ -250,7 +251,7 @@ def test_a_library_is_kept_and_one_of_other_sources_is_never_taken(tmp_path, mon
     assert node_of("skin", tmp_path, engine="c").not_in_c == ""
     assert made.stat().st_ino == before  # not made anew
     key = compiled.key_of
-    monkeypatch.setattr(compiled, "key_of", lambda role: key(role)[::-1])
+    monkeypatch.setattr(compiled, "key_of", lambda *of: key(*of)[::-1])
     stale = made.rename(made.with_stem(made.stem[::-1])).stat().st_ino  # as if sources had changed
     assert node_of("skin", tmp_path, engine="c").not_in_c == ""
     assert libraries()[0].stat().st_ino != stale
@@ -268,11 +269,12 @@ def test_a_library_that_somebody_else_could_have_written_is_not_taken(tmp_path, 
 
 def test_a_hash_is_of_all_that_has_a_part_in_it(monkeypatch):
     role = calls.library("skin").role
-    was = compiled.key_of(role)
-    assert compiled.key_of(role) == was
-    assert compiled.key_of(role._replace(room=13)) != was
+    was = compiled.key_of(role, None)
+    assert compiled.key_of(role, None) == was
+    assert compiled.key_of(role._replace(room=13), None) != was
+    assert compiled.key_of(role, coded_of(role, networks()["skin"])) != was
     monkeypatch.setattr(compiled, "MAKERS", ("dialect", "wire"))
-    assert compiled.key_of(role) != was
+    assert compiled.key_of(role, None) != was
 
 
 def test_without_a_compiler_python_does_it_and_says_so(tmp_path, monkeypatch):

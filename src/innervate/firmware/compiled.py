@@ -42,12 +42,13 @@ void innervate_{name}({p}_state_t *state, {gate}const {p}_params_t *params, int3
 """
 
 
-def key_of(role: Role) -> str:
+def key_of(role: Role, coded: Coded | None) -> str:
     """A hash of all that a role's library is made from, and for which machine."""
     files = {Path(module.__file__ or "") for module in reached(role.entry)}
     for room in MAKERS:
         files |= {path for path in (ROOT / room).rglob("*") if path.suffix in (".py", ".c", ".h")}
-    begun = f"{sys.platform} {platform.machine()}\0{role}"
+    of = role._replace(noted=frozenset())  # which C does not have, nor an order
+    begun = f"{sys.platform} {platform.machine()}\0{of}\0{coded}"
     return hash_of(begun, sorted(files), ROOT)
 
 
@@ -63,7 +64,7 @@ def library_of(role: Role, coded: Coded | None) -> Any:
     Raises:
         FirmwareError: the role cannot be said in C, there is no compiler, or it does not take it.
     """
-    key = key_of(role)
+    key = key_of(role, coded)
     path = cache_root() / FOLDER / f"{key}.so"
     found = _open(path, key)
     if found is None:

@@ -19,8 +19,6 @@ from innervate.firmware.wire import coded_of
 from innervate.live.board import Coded, Role, roles_of
 from innervate.network import Network
 
-WIRE_MAX = 2048  # bytes of a frame at most
-
 
 class Handlers:
     """The handlers of a role in C, called as those of its module are, with records of C's memory.
@@ -56,42 +54,34 @@ class Handlers:
 
 # With their arguments by name: unpacked ones take twice as long.
 def _plain(call: Any) -> Any:
-    def handler(node: Any, params: Any, now: int, what: int, out: Any) -> None:
-        call(node.ref, params.ref, now, what, out.ref)
-
-    return handler
+    return lambda node, params, now, what, out: call(node.ref, params.ref, now, what, out.ref)
 
 
 def _plain_with(call: Any, pointer: Any) -> Any:
-    def handler(node: Any, params: Any, now: int, what: int, given: Any, out: Any) -> None:
-        call(node.ref, params.ref, now, what, pointer(given), out.ref)
-
-    return handler
+    return lambda node, params, now, what, given, out: call(
+        node.ref, params.ref, now, what, pointer(given), out.ref
+    )
 
 
 def _gated(call: Any) -> Any:
-    def handler(node: Any, gate: Any, params: Any, now: int, what: int, out: Any) -> None:
-        call(node.ref, gate and gate.ref, params.ref, now, what, out.ref)
-
-    return handler
+    return lambda node, gate, params, now, what, out: call(
+        node.ref, gate and gate.ref, params.ref, now, what, out.ref
+    )
 
 
 def _gated_with(call: Any, pointer: Any) -> Any:
-    def handler(
-        node: Any, gate: Any, params: Any, now: int, what: int, given: Any, out: Any
-    ) -> None:
-        call(node.ref, gate and gate.ref, params.ref, now, what, pointer(given), out.ref)
-
-    return handler
+    return lambda node, gate, params, now, what, given, out: call(
+        node.ref, gate and gate.ref, params.ref, now, what, pointer(given), out.ref
+    )
 
 
 class Coder:
-    """A role's coder in C."""
+    """A role's coder in C; its frames have `size_max` bytes at most."""
 
-    def __init__(self, library: Any, name: str) -> None:
+    def __init__(self, library: Any, name: str, size_max: int) -> None:
         self._encode = getattr(library, f"{name}_encode")
         self._decode = getattr(library, f"{name}_decode")
-        self._data = ctypes.create_string_buffer(WIRE_MAX)
+        self._data = ctypes.create_string_buffer(size_max)
         self._seen = memoryview(self._data).cast("B")
 
     def encode(self, frame: Any) -> bytes:
@@ -127,13 +117,14 @@ def take_place(stack: Any, network: Network) -> str:
     if found is None:
         return "there is no C of what it runs"
     role, coded = found
+    records = records_of(role)
+    out = views.Outbox(records["frame"], records["action"], role.room)
     try:
         library = compiled.library_of(role, coded)
+        _check(library, records, out)
     except FirmwareError as error:
         return str(error)
-    records = records_of(role)
-    stack.out = views.Outbox(records["frame"], records["action"], role.room)
-    _check(library, records, stack.out)
+    stack.out = out
     for name, record in (("node", "state"), ("gate", "gate"), ("params", "params"),
                          ("inbox", "frame")):  # fmt: skip
         if record in records and getattr(stack, name, None) is not None:
@@ -144,7 +135,7 @@ def take_place(stack: Any, network: Network) -> str:
     if isinstance(getattr(stack, "item", None), type):
         stack.item = stack.do.Item
     if coded is not None:
-        stack.coder = Coder(library, name_of(role.name))
+        stack.coder = Coder(library, name_of(role.name), coded.size_max)
     return ""
 
 
