@@ -1,8 +1,9 @@
 """python -m benchmarks.live.hops: messages a second and their delay over a line of nodes.
 
 Three processes on loopback, node 0 to node 2 over node 1, at a window of messages without an end
-and at 50 a second; plain, sealed, and through Reticulum and Zenoh where `rns` and `eclipse-zenoh`
-are installed, in turn. Those two are sent to as fast as they take it.
+and at 50 a second; plain and sealed, in Python and as C, through bare sockets (`hop_bare.py`: what
+asyncio costs at the least), and through Reticulum and Zenoh where `rns` and `eclipse-zenoh` are
+installed, in turn. Those two are sent to as fast as they take it.
 """
 
 import argparse
@@ -16,7 +17,7 @@ import tempfile
 from importlib.util import find_spec
 from pathlib import Path
 
-ENDS = str(Path(__file__).with_name("hop_ends.py"))
+ENDS = ("-m", "benchmarks.live.hop_ends")
 OTHERS = "benchmarks.live.hop_others"
 KEY = "ab" * 32
 PACKAGES = {"rns": "RNS", "zenoh": "zenoh"}
@@ -47,8 +48,14 @@ def ours(folder, count, sealed=False, settings=None, engine="python"):
                  f"peers = {json.dumps(peers)}"]  # fmt: skip
         file = folder / f"n{i}.toml"
         file.write_text("\n".join(lines) + "\n")
-        commands.append([ENDS, str(file)])
+        commands.append([*ENDS, str(file)])
     return commands
+
+
+def bare():
+    """Commands that start three nodes that do the least that any in Python can do."""
+    ports = list(map(str, free_ports(3)))
+    return [[*ENDS, "bare", str(i), *ports] for i in range(3)]
 
 
 def others(which, folder):
@@ -118,10 +125,12 @@ def main():
     settings = dict(one.split("=") for one in args.set)
     found = [name for name, package in PACKAGES.items() if find_spec(package)]
     own = [f"{side} {engine}" for side in ("plain", "sealed") for engine in args.engines]
-    for side in (*own, *(found if args.hops == 2 else ())):
+    for side in (*own, *(("bare", *found) if args.hops == 2 else ())):
         with tempfile.TemporaryDirectory() as folder:
             if side in PACKAGES:
                 line = Line(others(side, Path(folder)))
+            elif side == "bare":
+                line = Line(bare())
             else:
                 how, engine = side.split()
                 line = Line(ours(Path(folder), args.hops + 1, how == "sealed", settings, engine))
