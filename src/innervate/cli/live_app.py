@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 from cyclopts import App, Parameter
 
 from innervate.cli import errors
-from innervate.cli.options import SEND_DEFAULTS, UP_DEFAULTS, SendOptions, UpOptions
+from innervate.cli.options import SEND_DEFAULTS, UP_DEFAULTS, Engine, SendOptions, UpOptions
 
 Json = Annotated[bool, Parameter(negative="")]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
@@ -24,7 +24,7 @@ def live_node(
     file: Path,
     /,
     *,
-    engine: Literal["python", "c", "auto"] | None = None,
+    engine: Engine | None = None,
     firmware: Path | None = None,
 ) -> int:
     """Run one node until SIGTERM or Ctrl-C; SIGHUP reads its keys again.
