@@ -29,7 +29,7 @@ EXTRAS = {
 }
 # Programs by what they are for.
 PROGRAMS = {
-    "cc": "compiles and tries what `firmware` writes",
+    "cc": "compiles what `firmware` writes, and live nodes as C (engine)",
     "arm-none-eabi-gcc": "firmware for Cortex-M",
     "qemu-system-arm": "live up --firmware: emulated cells",
     "tshark": "reads what `export --pcapng` writes",

@@ -19,6 +19,7 @@ from innervate.networks.mesh.protocol.duplicates import UNREACHABLE
 from innervate.networks.mesh.protocol.messages import resolve
 from innervate.networks.mesh.protocol.neighbours import place_of
 from innervate.networks.mesh.protocol.retransmission import (
+    AHEAD_MAX,
     FREE,
     SURE_AFTER,
     crowds,
@@ -183,7 +184,11 @@ class Places:
         self._free = kinds.count(FREE)
         self._held = list(compress(node.wait_dest[:], kinds))  # recipients
         self._tries = list(compress(node.wait_tries[:], kinds))
-        self._is_calm = max(self._tries, default=0) <= SURE_AFTER and not any_unreachable(node)
+        self._tries_most = max(self._tries, default=0)
+        self._is_calm = self._tries_most <= SURE_AFTER and not any_unreachable(node)
+        after = node.seq + 1
+        ages = [(after - seq) & MASK16 for seq in compress(node.wait_seq[:], kinds)]
+        self._is_near = max(ages, default=0) <= AHEAD_MAX
         self._all_wait = all_wait
 
     def takes(self, item: Any) -> bool:
@@ -195,7 +200,7 @@ class Places:
         if self._queue <= (CONTROL if urgent else OWN):
             return False
         held = self._held.count(dest)
-        if (held or dest == ALL) and is_ahead(node, dest):
+        if not self._is_near and (held or dest == ALL) and is_ahead(node, dest):
             return False
         if dest == ALL or not item.flags & END_TO_END:
             return True
@@ -214,6 +219,8 @@ class Places:
     def _share(self, dest: int) -> int:
         """How many places a recipient may have now: half while a message is sent to it again."""
         most = self._most.get(dest, FIRST)
+        if self._tries_most <= 1:
+            return most
         kept = zip(self._tries, self._held, strict=True)
         tries = max((tries for tries, to in kept if to == dest), default=0)
         if tries > SURE_AFTER:
