@@ -121,7 +121,10 @@ def main():
     parser.add_argument("--hops", type=int, default=2)
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
     parser.add_argument("--engines", nargs="+", default=["python", "c"], metavar="ENGINE")
+    parser.add_argument("--realtime", action="store_true", help="before other work (as root)")
     args = parser.parse_args()
+    if args.realtime:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(20))
     settings = dict(one.split("=") for one in args.set)
     found = [name for name, package in PACKAGES.items() if find_spec(package)]
     own = [f"{side} {engine}" for side in ("plain", "sealed") for engine in args.engines]
