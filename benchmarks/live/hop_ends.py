@@ -1,4 +1,4 @@
-"""One node of a line, run as a process: hop_ends.py FILE [TO SECONDS PLAN].
+"""One node of a line, run as a process: hop_ends.py FILE, or hop_ends.py bare NUMBER PORTS...
 
 Without more it relays, or tells what it hears: after each line on stdin, {"got": count, "late_us":
 [...]} since the last. With more it sends to node TO for so many seconds by a plan, a window of
@@ -15,6 +15,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
+from benchmarks.live.hop_bare import Bare
 from innervate.live.build import build
 from innervate.live.nodefile import load
 
@@ -80,7 +81,10 @@ async def send(node, to, size, seconds, plan):
 
 async def main():
     path, *words = sys.argv[1:]
-    node = build(load(Path(path)))
+    if path == "bare":
+        node = Bare(int(words[0]), [int(word) for word in words[1:]])
+    else:
+        node = build(load(Path(path)))
     late_us, cpu = [], cpu_s()
 
     def hear(_sender, payload):

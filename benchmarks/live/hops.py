@@ -1,8 +1,9 @@
 """python -m benchmarks.live.hops: messages a second and their delay over a line of nodes.
 
 Three processes on loopback, node 0 to node 2 over node 1, at a window of messages without an end
-and at 50 a second; plain, sealed, and through Reticulum and Zenoh where `rns` and `eclipse-zenoh`
-are installed, in turn. Those two are sent to as fast as they take it.
+and at 50 a second; plain and sealed, in Python and as C, through bare sockets (`hop_bare.py`: what
+asyncio costs at the least), and through Reticulum and Zenoh where `rns` and `eclipse-zenoh` are
+installed, in turn. Those two are sent to as fast as they take it.
 """
 
 import argparse
@@ -16,7 +17,7 @@ import tempfile
 from importlib.util import find_spec
 from pathlib import Path
 
-ENDS = str(Path(__file__).with_name("hop_ends.py"))
+ENDS = ("-m", "benchmarks.live.hop_ends")
 OTHERS = "benchmarks.live.hop_others"
 KEY = "ab" * 32
 PACKAGES = {"rns": "RNS", "zenoh": "zenoh"}
@@ -33,22 +34,28 @@ def free_ports(count):
     return ports
 
 
-def ours(folder, count, sealed=False, settings=None):
+def ours(folder, count, sealed=False, settings=None, engine="python"):
     """Commands that start nodes of ours; node 1 is the gateway."""
     ports, commands = free_ports(count), []
     for i in range(count):
         peers = [f"127.0.0.1:{ports[k]}" for k in (i - 1, i + 1) if 0 <= k < count]
         lines = ['kind = "mesh"', f"number = {i}", f"nodes = {count}",
                  f'role = "{"gateway" if i == 1 else "node"}"',
-                 f'socket = "{folder / f"n{i}.sock"}"',
+                 f'socket = "{folder / f"n{i}.sock"}"', f'engine = "{engine}"',
                  *(["[keys]", "use = 1", f'secret.1 = "{KEY}"'] if sealed else []),
                  "[protocol]", *(f"{k} = {v}" for k, v in (settings or {}).items()),
                  "[[link]]", 'kind = "udp"', f'bind = "127.0.0.1:{ports[i]}"',
                  f"peers = {json.dumps(peers)}"]  # fmt: skip
         file = folder / f"n{i}.toml"
         file.write_text("\n".join(lines) + "\n")
-        commands.append([ENDS, str(file)])
+        commands.append([*ENDS, str(file)])
     return commands
+
+
+def bare():
+    """Commands that start three nodes that do the least that any in Python can do."""
+    ports = list(map(str, free_ports(3)))
+    return [[*ENDS, "bare", str(i), *ports] for i in range(3)]
 
 
 def others(which, folder):
@@ -113,15 +120,23 @@ def main():
     parser.add_argument("--size", type=int, default=64, help="bytes of a message")
     parser.add_argument("--hops", type=int, default=2)
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
+    parser.add_argument("--engines", nargs="+", default=["python", "c"], metavar="ENGINE")
+    parser.add_argument("--realtime", action="store_true", help="before other work (as root)")
     args = parser.parse_args()
+    if args.realtime:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(20))
     settings = dict(one.split("=") for one in args.set)
     found = [name for name, package in PACKAGES.items() if find_spec(package)]
-    for side in ("plain", "sealed", *(found if args.hops == 2 else ())):
+    own = [f"{side} {engine}" for side in ("plain", "sealed") for engine in args.engines]
+    for side in (*own, *(("bare", *found) if args.hops == 2 else ())):
         with tempfile.TemporaryDirectory() as folder:
             if side in PACKAGES:
                 line = Line(others(side, Path(folder)))
+            elif side == "bare":
+                line = Line(bare())
             else:
-                line = Line(ours(Path(folder), args.hops + 1, side == "sealed", settings))
+                how, engine = side.split()
+                line = Line(ours(Path(folder), args.hops + 1, how == "sealed", settings, engine))
             for plan in ("r50", "w64") if side in PACKAGES else ("r50", "w1", "w64"):
                 tell(side, plan, line.measure(args.size, args.seconds, plan))
             line.stop()
@@ -130,7 +145,7 @@ def main():
 def tell(side, plan, found):
     """A row of the table."""
     cpu = " / ".join(f"{us:.0f}" for us in found["cpu_us"])
-    print(f"{side:6} {plan:4} {found['per_s']:7.0f} /s  p50 {found['p50_us']:7.0f} us  "
+    print(f"{side:13} {plan:4} {found['per_s']:7.0f} /s  p50 {found['p50_us']:7.0f} us  "
           f"p99 {found['p99_us']:7.0f} us  CPU us a message {cpu}  {found['states']}  "
           f"load {os.getloadavg()[0]:.1f}", flush=True)  # fmt: skip
 

@@ -14,7 +14,7 @@ import pytest
 
 from innervate.analysis import intervals
 from innervate.dialect import arith
-from innervate.kernel import compilation
+from innervate.kernel import cache, compilation
 from innervate.kernel.linking import as_one
 from innervate.networks.mesh.protocol import node
 
@@ -241,6 +241,6 @@ def test_while_a_loop_is_compiled_nothing_is_collected_and_then_as_before(collec
 def test_a_cache_folder_is_made_with_those_above_it(monkeypatch, tmp_path):
     wanted = tmp_path / "a" / "b"
     monkeypatch.setenv("INNERVATE_CACHE", str(wanted))
-    assert compilation.cache_root() == wanted
+    assert cache.cache_root() == wanted
     assert wanted.is_dir()
-    assert compilation.cache_root() == wanted  # there already
+    assert cache.cache_root() == wanted  # there already

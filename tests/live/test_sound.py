@@ -240,7 +240,7 @@ def test_damaged_frames_change_nothing_in_a_skin():
             cell.taps.append(lambda _at, port, out, data, _why: frames.append((port, data, out)))
             await until(skin.fresh())
             came = [(port, data) for port, data, out in frames if not out]
-            record = cell.stack.cell
+            record = cell.stack.node
             for port, data in came:
                 bad = bytearray(data)
                 bad[chance.randrange(len(bad))] ^= 1 << chance.randrange(8)

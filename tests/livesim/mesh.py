@@ -31,6 +31,7 @@ class Plan:
         storm_s: how long each time.
         rate: messages a second, of all nodes.
         long: share of messages that are longer than a frame.
+        in_c: every so many-th node runs its protocol as C; 0 = none does.
     """
 
     def __init__(self, world, **given):
@@ -49,6 +50,7 @@ class Plan:
         longer = world.chance("long")
         self.mtu = longer.choice((127, 127, 1200))
         self.long = longer.choice((0.0, 0.05, 0.3))
+        self.in_c = 0
         self.old_lives = False  # what a process received is played back to those after it, too
         for name, value in given.items():
             assert hasattr(self, name), name
@@ -87,6 +89,8 @@ class Mesh(Stage):
         head["role"] = "gateway" if number == 0 else "standby" if number in standbys else "node"
         if number in standbys:
             head["rank"] = number
+        if plan.in_c and number % plan.in_c == 0:
+            head["engine"] = "c"
         tables = {"protocol": {"mtu": plan.mtu}, "deliver": {"in_order": plan.in_order}}
         return files.text(head, tables | self.key_tables(), self.links(number))
 

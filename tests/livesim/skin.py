@@ -29,6 +29,7 @@ class Plan:
         self.storm_s = chance.choice((20, 60))
         self.calm_s = chance.choice((0, 60, 300))
         self.delay_us = (50, 300)
+        self.in_c = 0
         self.old_lives = False
         for name, value in given.items():
             assert hasattr(self, name), name
@@ -82,6 +83,8 @@ class Skin(Stage):
                 "socket": f"/run/{number}.sock", "role": "sink" if is_pc else "cell"}  # fmt: skip
         if not is_pc:
             head |= {"ports": plan.ports[number], "rate_hz": RATE_HZ}
+            if plan.in_c and number % plan.in_c == 0:
+                head["engine"] = "c"
         return files.text(head, {"protocol": PROTOCOL} | self.key_tables(), self.links(number))
 
     def links(self, number):

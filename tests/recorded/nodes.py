@@ -76,7 +76,7 @@ class House:
             more = self._more.get(name, self._more[""])
             path.write_text(FILE.format(kind=self._more["kind"], name=name, number=number,
                                         folder=self.folder, more=more))  # fmt: skip
-            with mock.patch.object(main, "build", lambda _loaded, one=one: one):
+            with mock.patch.object(main, "build", lambda *_asked, one=one: one):
                 process = main.Process(load(path))
             process.notices._say = lambda text, name=name: self.said.append([name, text])
             self._processes.append(process)

@@ -5,7 +5,7 @@ from concurrent.futures import Future
 
 import pytest
 
-from innervate.kernel import compilation
+from innervate.kernel import cache, compilation
 from innervate.sweeping import SweepError, make_plan, scheduler
 from innervate.sweeping.engines import Engine
 from innervate.sweeping.jobs import Jobs
@@ -46,7 +46,7 @@ class Noting(Engine):
 def conducted(tmp_path, monkeypatch):
     """A sweep of so many points under way, on a machine that has compiled something."""
     monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path / "cache"))
-    folder = compilation.cache_root() / compilation.source_hash()
+    folder = cache.cache_root() / compilation.source_hash()
     folder.mkdir(parents=True)
     (folder / "skin.compiled").touch()
 

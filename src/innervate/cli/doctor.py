@@ -29,7 +29,7 @@ EXTRAS = {
 }
 # Programs by what they are for.
 PROGRAMS = {
-    "cc": "compiles and tries what `firmware` writes",
+    "cc": "compiles what `firmware` writes, and live nodes as C (engine)",
     "arm-none-eabi-gcc": "firmware for Cortex-M",
     "qemu-system-arm": "live up --firmware: emulated cells",
     "tshark": "reads what `export --pcapng` writes",
@@ -80,9 +80,9 @@ def _version(package: str) -> str | None:
 
 def _cache() -> dict[str, Any]:
     """Where compiled loops are kept, with what room, and which are there."""
-    from innervate.kernel import compilation, ready
+    from innervate.kernel import cache, compilation, ready
 
-    folder = compilation.cache_root()
+    folder = cache.cache_root()
     kept = folder / compilation.source_hash()
     existing = next(one for one in (folder, *folder.parents) if one.exists())
     return {

@@ -28,10 +28,12 @@ def up(file: str, options: UpOptions) -> int:
     if not options.firmware:
         if options.in_python:
             raise errors.UserError("--in-python says who stays in Python beside --firmware")
-        way = room.Way(options.folder, options.cables, options.keys)
+        way = room.Way(options.folder, options.cables, options.keys, {}, options.engine or "")
         return asyncio.run(room.run(plan, way, text, options.for_s, options.json))
     from innervate.firmware import patch
 
+    if options.engine is not None:
+        raise errors.UserError("--engine and --firmware exclude each other; name one")
     with tempfile.TemporaryDirectory(prefix="innervate-firmware-") as folder:
         images = patch.images(plan, Path(folder), options.in_python or [])
         way = room.Way(options.folder, options.cables, options.keys, images)

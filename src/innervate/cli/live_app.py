@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from innervate.cli import errors
-from innervate.cli.options import SEND_DEFAULTS, UP_DEFAULTS, SendOptions, UpOptions
+from innervate.cli.options import SEND_DEFAULTS, UP_DEFAULTS, Engine, SendOptions, UpOptions
 
 Json = Annotated[bool, Parameter(negative="")]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
@@ -20,23 +20,33 @@ live_app = App(
 
 
 @live_app.command(name="node")
-def live_node(file: Path, /, *, firmware: Path | None = None) -> int:
+def live_node(
+    file: Path,
+    /,
+    *,
+    engine: Engine | None = None,
+    firmware: Path | None = None,
+) -> int:
     """Run one node until SIGTERM or Ctrl-C; SIGHUP reads its keys again.
 
     Parameters
     ----------
     file
         A node file (see: innervate docs live).
+    engine
+        What runs its protocol here, in place of what the file says; auto: C where it can be made.
     firmware
         What runs its protocol, on an emulated board: an image (see: innervate docs firmware).
     """
     from innervate.live.main import run as command
 
     if firmware is None:
-        return command(file)
+        return command(file, engine=engine or "")
+    if engine is not None:
+        raise errors.UserError("--engine and --firmware exclude each other; name one")
     from innervate.cli.firmware import engine_for
 
-    return command(file, engine_for(file, firmware))
+    return command(file, engine_for(file, firmware), "python")
 
 
 @live_app.command(name="up")

@@ -38,7 +38,7 @@ def broken(told: list[dict[str, Any]]) -> list[str]:
 def lines(told: dict[str, Any]) -> list[str]:
     """A node's status, line by line."""
     words = known(told["kind"]).live_words
-    key = "sealed" if told["sealed"] else "no key"
+    key = ("sealed" if told["sealed"] else "no key") + ", in C" * (told.get("engine") == "c")
     found = [f"{told['name']}: {told['kind']} {told['role']}, up {told['up_s']:g} s, {key}"]
     state = told.get("state")
     if state is not None and state["trouble"]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -223,6 +223,9 @@ class ExportOptions:
 EXPORT_DEFAULTS = ExportOptions()
 
 
+Engine = Literal["python", "c", "auto"]
+
+
 @dataclass(frozen=True)
 class UpOptions:
     """How a scenario is brought up as processes.
@@ -239,6 +242,8 @@ class UpOptions:
         Nodes as C on emulated boards (QEMU), where there is such a library of them.
     in_python
         With --firmware: a node that stays in Python, by name; may be given again.
+    engine
+        What runs the nodes' protocols here: python, c, or auto: C where it can be made.
     sealed
         With a key made for this run.
     identities
@@ -256,6 +261,7 @@ class UpOptions:
     pty: Flag = False
     firmware: Flag = False
     in_python: Annotated[list[str] | None, Parameter(negative="")] = None
+    engine: Engine | None = None
     sealed: Flag = False
     identities: Flag = False
     folder: Path | None = None

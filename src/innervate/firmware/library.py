@@ -182,7 +182,7 @@ def _driven(
 def _sections(library: Library, sealed: bool) -> frozenset[str]:
     """The parts of the driver that a role has: see `shipped`."""
     role = library.role
-    found = {"lines" if role.driver == "node" else "air", "sealed" if sealed else "clear"}
+    found = {"lines" if role.driver == "node" else "air", "sealed" if sealed else "clear", "small"}
     if role.driver == "node":
         found.add("hooks" if role.hooks else "ports")
     return frozenset(found | ({"gate"} if role.has_gate else set()))

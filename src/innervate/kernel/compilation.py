@@ -12,8 +12,7 @@ import inspect
 import os
 import shutil
 import sys
-import tempfile
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from functools import cache
 from importlib import metadata
 from pathlib import Path
@@ -21,13 +20,9 @@ from types import ModuleType
 from typing import Any
 
 from innervate.kernel import ready
+from innervate.kernel.cache import alone, cache_root
 from innervate.kernel.ready import Loop
 from innervate.kernel.sources import NAME_LENGTH, ROOT, hash_of, homes, source_files
-
-try:
-    import fcntl
-except ImportError:  # not on Windows
-    fcntl = None  # type: ignore[assignment]
 
 CACHE_FOLDERS_MAX = 8
 
@@ -108,22 +103,6 @@ def source_hash(root: Path = ROOT) -> str:
     """
     begun = f"{root}\0{sys.version_info[:3]} {metadata.version('numba')}"
     return hash_of(begun, source_files(root), root)
-
-
-def cache_root() -> Path:
-    """Where compiled code is kept: INNERVATE_CACHE, the user's cache folder, or a temporary one.
-
-    The first that can be written.
-    """
-    chosen = os.environ.get("INNERVATE_CACHE")
-    home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
-    spare = Path(tempfile.gettempdir()) / f"innervate-{os.getuid() if hasattr(os, 'getuid') else 0}"
-    for root in ([Path(chosen)] if chosen else []) + [Path(home) / "innervate"]:
-        with contextlib.suppress(OSError):
-            root.mkdir(parents=True, exist_ok=True)
-            if os.access(root, os.W_OK):
-                return root
-    return spare
 
 
 def open_cache() -> Path:
@@ -276,14 +255,3 @@ def told(thing: Any, above: tuple[Any, ...] = ()) -> Any:
     if thing is None or isinstance(thing, str | int | float):
         return thing
     return hashlib.sha256(dumps(thing)).hexdigest()
-
-
-@contextlib.contextmanager
-def alone(path: Path) -> Iterator[None]:
-    """While nobody else is here with a file of this name, where files can be locked at all."""
-    with contextlib.ExitStack() as opened:
-        with contextlib.suppress(OSError):
-            file = opened.enter_context(path.open("ab"))
-            if fcntl is not None:
-                fcntl.flock(file, fcntl.LOCK_EX)
-        yield

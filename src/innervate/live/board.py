@@ -148,6 +148,8 @@ class Role(NamedTuple):
         driver: what carries it on a board: "node" over cables, "station" on a channel, "" nothing.
         hooks: "package:file", C of its own beside the driver: where frames leave, which come in.
         sized: "module:function", nodes -> the role with arrays for so many; "" = there is one size.
+        live: "module:function", parameters -> the role as a live node with these has it; "" = the
+            same as on a board.
     """
 
     name: str
@@ -172,6 +174,7 @@ class Role(NamedTuple):
     driver: str = "node"
     hooks: str = ""
     sized: str = ""
+    live: str = ""
     watched: Watched = Watched()
     emulated: Emulated | None = None
     program: Program | None = None

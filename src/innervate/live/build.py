@@ -8,6 +8,8 @@ from innervate.live.errors import LiveError
 from innervate.live.links import Link
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import (
+    PYTHON,
+    C,
     KeysTable,
     Loaded,
     MulticastTable,
@@ -22,13 +24,19 @@ if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
     from innervate.live.keys import Sealer
 
 
-def build(loaded: Loaded) -> LiveNode:
-    """The node of a node file, not yet started.
+def build(loaded: Loaded, engine: str = "") -> LiveNode:
+    """The node of a node file, not yet started; `engine` in place of what the file says.
 
     Raises:
         LiveError: it cannot be as written.
     """
-    node: LiveNode = networks()[loaded.table.kind].live_node(loaded)
+    network = networks()[loaded.table.kind]
+    node: LiveNode = network.live_node(loaded)
+    wanted = engine or loaded.table.engine
+    if wanted != PYTHON:
+        node.not_in_c = why = network.in_c(node.stack, network)
+        if why and wanted == C:
+            raise LiveError(f'{loaded.path}: engine = "c": {why}; or write engine = "auto"')
     return node
 
 

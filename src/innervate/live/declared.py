@@ -88,21 +88,22 @@ class DeclaredStack:
     ) -> None:
         self.network = network
         self.number = number
-        self._do, fields = network.protocol, network.fields
-        self.timers: int = self._do.TIMERS
+        fields = network.fields
+        self.do: Any = network.protocol
+        self.timers: int = self.do.TIMERS
         self.params = plain.make("Params", fields.PARAMS)()
         for name, value in params.items():
             setattr(self.params, name, value)
-        self._coder = coder_of(network, number, self.params)
+        self.coder = coder_of(network, number, self.params)
         self._rest: Iterator[int] = iter(())
-        self.reasons: tuple[str, ...] = self._coder.reasons
+        self.reasons: tuple[str, ...] = self.coder.reasons
         self.silent_us = getattr(self.params, "silent_us", FOR_EVER_US)
         self.node = plain.make("Node", fields.STATE)()
         for name, value in zip(DRIVERS, (number, seeded(seed), -1), strict=True):
             if hasattr(self.node, name):
                 setattr(self.node, name, value)
         frame = plain.make("Frame", fields.FRAME)
-        self.out = plain.Outbox(frame, getattr(self._do, "OUTBOX", OUTBOX))
+        self.out = plain.Outbox(frame, getattr(self.do, "OUTBOX", OUTBOX))
         self.inbox = frame()
         self.item = frame()
         self.port_of_path = ports
@@ -110,29 +111,29 @@ class DeclaredStack:
 
     def on_start(self, now: int, cause: int) -> None:
         """Switch the node on at `now`, us; `cause` 0 is the first time."""
-        self._do.on_start(self.node, self.params, now, cause, self.out)
+        self.do.on_start(self.node, self.params, now, cause, self.out)
 
     def on_frame(self, now: int, port: int) -> None:
         """The frame in the inbox was received on a path."""
         own = self.port_of_path[port]
-        self._do.on_frame(self.node, self.params, now, own, self.inbox, self.out)
+        self.do.on_frame(self.node, self.params, now, own, self.inbox, self.out)
 
     def on_timer(self, now: int, timer: int) -> None:
         """A timer of the node's protocol fires at `now`, us."""
-        self._do.on_timer(self.node, self.params, now, timer, self.out)
+        self.do.on_timer(self.node, self.params, now, timer, self.out)
 
     def on_input(self, now: int, kind: int, item: Any) -> None:
         """The node's own user hands something down."""
-        self._do.on_input(self.node, self.params, now, kind, item, self.out)
+        self.do.on_input(self.node, self.params, now, kind, item, self.out)
 
     def encode(self, frame: Any) -> bytes:
         """The bytes of a frame."""
-        data: bytes = self._coder.encode(frame)
+        data: bytes = self.coder.encode(frame)
         return data
 
     def decode(self, data: bytes) -> int:
         """Read bytes into the inbox; 0, or why not."""
-        self._rest = self._coder.read(data, self.inbox)
+        self._rest = self.coder.read(data, self.inbox)
         return next(self._rest)
 
     def more(self) -> bool:

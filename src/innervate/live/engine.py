@@ -107,7 +107,8 @@ class Engine:
         self._clock = clock
         self._due = [NEVER] * stack.timers
         self._wake: asyncio.TimerHandle | None = None
-        self._wake_at = 0
+        self._wake_at = NEVER
+        self._at_once: asyncio.Handle | None = None
         self._loop = asyncio.get_running_loop()
         self._stopped = False
         self.now = 0
@@ -122,9 +123,10 @@ class Engine:
     def stop(self) -> None:
         """No timer fires any more, nothing is received."""
         self._stopped = True
-        if self._wake is not None:
-            self._wake.cancel()
-            self._wake = None
+        for handle in (self._wake, self._at_once):
+            if handle is not None:
+                handle.cancel()
+        self._wake = self._at_once = None
 
     def read(self, data: bytes, sender: int | None = None) -> str:
         """Read received bytes into the inbox: "", or why they are not taken (counted).
@@ -187,20 +189,30 @@ class Engine:
         self._settled()
 
     def _arm(self, now: int) -> None:
-        """One timer of the loop serves all: it is moved only if something is due before it."""
+        """One timer of the loop serves all: it is moved only if something is due before it.
+
+        What is due at once has its turn when all sockets that are ready now were read.
+        """
         soonest = min(self._due, default=NEVER)
-        if soonest == NEVER:
-            return
-        if self._wake is not None:
-            if self._wake_at <= soonest:
-                return
-            self._wake.cancel()
-        self._wake_at = soonest
-        wait = max(0, soonest - now) / 1e6
-        self._wake = self._loop.call_at(self._loop.time() + wait, self._fire)
+        if soonest <= now:
+            if self._at_once is None:
+                self._at_once = self._loop.call_soon(self._fire_at_once)
+        elif soonest < self._wake_at:
+            if self._wake is not None:
+                self._wake.cancel()
+            self._wake_at = soonest
+            wait = (soonest - now) / 1e6
+            self._wake = self._loop.call_at(self._loop.time() + wait, self._fire_in_time)
+
+    def _fire_at_once(self) -> None:
+        self._at_once = None
+        self._fire()
+
+    def _fire_in_time(self) -> None:
+        self._wake, self._wake_at = None, NEVER
+        self._fire()
 
     def _fire(self) -> None:
-        self._wake = None
         now = self._clock()
         for timer, at in enumerate(self._due):
             if at <= now:

@@ -30,7 +30,7 @@ class FieldStack(DeclaredStack):
         """The frame in the inbox was received, on whatever path."""
         if hasattr(self.inbox, "rssi"):
             self.inbox.rssi = RSSI
-        self._do.on_frame(self.node, self.params, now, 0, self.inbox, self.out)
+        self.do.on_frame(self.node, self.params, now, 0, self.inbox, self.out)
 
     def objection(self, sender: int | None) -> str:
         """A frame that is for another node is not for us."""
@@ -43,10 +43,10 @@ class FieldStack(DeclaredStack):
 
     def on_sent(self, now: int) -> None:
         """Our own frame has ended, at once; the channel is free, as ever."""
-        if hasattr(self._do, "on_sent"):
-            self._do.on_sent(self.node, self.params, now, 1, self.out)
-        elif hasattr(self._do, "on_carrier"):
-            self._do.on_carrier(self.node, self.params, now, 0, 0, self.out)
+        if hasattr(self.do, "on_sent"):
+            self.do.on_sent(self.node, self.params, now, 1, self.out)
+        elif hasattr(self.do, "on_carrier"):
+            self.do.on_carrier(self.node, self.params, now, 0, 0, self.out)
 
 
 class FieldNode(DeclaredNode):

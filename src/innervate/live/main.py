@@ -17,7 +17,7 @@ from innervate.live.errors import LiveError
 from innervate.live.machine import machine
 from innervate.live.metrics import MetricsPage
 from innervate.live.node import LiveNode
-from innervate.live.nodefile import Loaded, address, load
+from innervate.live.nodefile import PYTHON, Loaded, address, load
 from innervate.live.notices import Notices
 from innervate.live.pending import Pending
 from innervate.live.receipts import FINAL
@@ -31,15 +31,15 @@ HEARD_CHARS = 1024  # ... a message counts once more for each so many of its lin
 REQUESTS = ("status", "send", "listen", "cut", "restore", "loose", "capture", "revoke", "stop")
 
 
-def run(path: Path, engine_of: Callable[..., Engine] | None = None) -> int:
+def run(path: Path, engine_of: Callable[..., Engine] | None = None, engine: str = "") -> int:
     """Run the node of a file until SIGTERM or Ctrl-C; 0, or 1 if it ended by itself.
 
-    `engine_of` makes what runs its protocol; None = it runs here.
+    `engine_of` makes what runs its protocol; None = it runs here, by `engine` if that is given.
 
     Raises:
         LiveError: it cannot run as written.
     """
-    process = Process(load(path))
+    process = Process(load(path), engine)
     if engine_of is not None:
         process.node.engine_of = engine_of
     asyncio.run(process.run())
@@ -49,9 +49,10 @@ def run(path: Path, engine_of: Callable[..., Engine] | None = None) -> int:
 class Process:
     """A node, its status socket, its Prometheus page, its signals."""
 
-    def __init__(self, loaded: Loaded) -> None:
+    def __init__(self, loaded: Loaded, engine: str = "") -> None:
         self.loaded = loaded
-        self.node: LiveNode = build(loaded)
+        self.engine = engine or loaded.table.engine
+        self.node: LiveNode = build(loaded, engine)
         sealer = self.node.sealer
         self.rotation = None if sealer is None else Rotation(sealer)
         named = loaded.table.socket
@@ -147,6 +148,9 @@ class Process:
         of = f" of {table.nodes}" if table.nodes else ""
         text = f"ready: {table.kind} {table.role or 'node'} {table.number}{of}, "
         text += f"{len(self.node.paths)} paths"
+        if self.engine != PYTHON:
+            why = self.node.not_in_c
+            text += f", not in C: {why}" if why else ", in C"
         if self.node.sealer is None:
             text += "; no key: frames can be read and forged by anybody in reach"
         return text

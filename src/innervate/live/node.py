@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from innervate.live.engine import Engine, Stack, clock_us
 from innervate.live.links import Link, Path
 from innervate.live.machine import machine
+from innervate.live.nodefile import PYTHON, C
 from innervate.live.receipts import Receipt
 from innervate.live.state import State
 from innervate.live.streams import Arrivals, Stream
@@ -43,6 +44,7 @@ class LiveNode:
         callers: how often callers of the node's process could not be let in, and why.
         engine_of: makes what runs the stack; an `Engine` unless somebody runs it elsewhere.
         ended: is told why, if what runs the stack ends by itself; then nothing moves any more.
+        not_in_c: why its protocol does not run as C; "" = it does.
         requests: what may be asked of it on its status socket besides what all nodes answer.
     """
 
@@ -66,6 +68,7 @@ class LiveNode:
         self.taps: list[Tap] = []
         self.callers: Counter[str] = Counter()
         self.requests: dict[str, Answerer] = {}
+        self.not_in_c = "not asked for"
         self.engine_of: Callable[..., Engine] = Engine
         self.engine: Engine | None = None
         self.ended: Callable[[str], None] = lambda why: machine().say(f"{name}: {why}")
@@ -225,6 +228,7 @@ class LiveNode:
             "name": self.name,
             "up_s": round((clock_us() - self.started_at) / 1e6, 1),
             "sealed": self.sealer is not None,
+            "engine": PYTHON if self.not_in_c else C,
             "keys": self._keys_status(),
             "state": self.state.status(),
             "paths": paths,

@@ -6,7 +6,7 @@ import tomllib
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal
 
 import msgspec
 from msgspec import Meta, Struct, field
@@ -15,6 +15,7 @@ from innervate.live.errors import LiveError
 from innervate.live.machine import machine
 from innervate.network import find, networks
 
+PYTHON, C, AUTO = "python", "c", "auto"  # what runs a node's protocol
 Port = Annotated[int, Meta(ge=1, le=65_535)]
 
 
@@ -85,6 +86,7 @@ class NodeFile(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     role: str | None = None
     socket: str | None = None
     state: str | None = None
+    engine: Literal["python", "c", "auto"] = "python"
     metrics: str | None = None
     keys: KeysTable | None = None
     protocol: dict[str, int] = {}

@@ -81,7 +81,7 @@ class DeclaredAirStack(DeclaredStack):
 
     def on_carrier(self, now: int, cd: bool, voc: bool) -> None:
         """The carrier came or went, or our own frame has ended."""
-        self._do.on_carrier(self.node, self.params, now, int(cd), int(voc), self.out)
+        self.do.on_carrier(self.node, self.params, now, int(cd), int(voc), self.out)
 
 
 class DeclaredAirNode(AirNode, DeclaredNode):

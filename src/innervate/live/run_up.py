@@ -27,12 +27,14 @@ class Way(NamedTuple):
         cables: "udp", "pty" or "netns".
         sealed: with a "key" of all nodes, with "identities", or in the clear ("").
         images: by name, what runs a node's protocol on an emulated board.
+        engine: what runs it here: "python", "c" or "auto"; "" = as node files have it.
     """
 
     folder: Path | None
     cables: str
     sealed: str
     images: Mapping[str, Path] = {}
+    engine: str = ""
 
 
 async def run(plan: Any, way: Way, scenario: str, for_s: float, as_json: bool) -> int:
@@ -59,6 +61,7 @@ def prepared(plan: Any, way: Way) -> Processes:
     folder = Path(tempfile.mkdtemp(prefix="innervate-")) if way.folder is None else way.folder
     keys = {"use": 1, "secret.1": secrets.token_hex(32)} if way.sealed == "key" else None
     network = Processes(plan, folder.absolute(), way.cables, keys, way.images)
+    network.engine = way.engine
     if way.sealed == "identities":
         network.keys = _identities(network)
     return network

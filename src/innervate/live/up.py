@@ -41,6 +41,7 @@ class Processes:
         names: every node's name, by number.
         links: cables: pairs of nodes.
         absent: who is not started until an event says so.
+        engine: what runs the nodes' protocols; "" = as their files have it.
     """
 
     def __init__(
@@ -56,6 +57,7 @@ class Processes:
         self.cables = cables
         self.keys = keys
         self.images = dict(images or {})
+        self.engine = ""
         self.processes: dict[str, subprocess.Popen[bytes]] = {}
         self.lab: Lab | None = None
         self.relay: Cables | None = None
@@ -119,6 +121,8 @@ class Processes:
         command = [sys.executable, "-m", "innervate.cli", "live", "node", f"{name}.toml"]
         if name in self.images:
             command += ["--firmware", str(self.images[name])]
+        elif self.engine:
+            command += ["--engine", self.engine]
         if self.lab is not None:
             command = self.lab.inside(self.names.index(name), command)
         with (self.folder / f"{name}.log").open("a") as log, hangup.held():

@@ -17,7 +17,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from innervate.dialect.source import Function
-from innervate.kernel.compilation import alone, cache_root
+from innervate.kernel.cache import alone, cache_root
 
 ROOT = Path(__file__).resolve().parent.parent
 ROOMS = ("dialect", "prove")

@@ -10,7 +10,7 @@ from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from dataclasses import dataclass, field
 from typing import Any
 
-from innervate.kernel import compilation
+from innervate.kernel import cache, compilation
 from innervate.scenario.explain import nearest
 from innervate.sweeping.engines import Engine
 from innervate.sweeping.errors import SweepError
@@ -158,7 +158,7 @@ class Scheduler:
 
     def _first_alone(self) -> None:
         """On a machine that has compiled nothing yet, one run goes first, and compiles for all."""
-        folder = compilation.cache_root() / compilation.source_hash()
+        folder = cache.cache_root() / compilation.source_hash()
         if self._ready and not any(folder.glob("*.compiled")):
             self._submit(self._next_jobs(1))
             self._collect()

@@ -110,7 +110,20 @@ def node(nodes: int) -> Role:
         room=32, counted=COUNTED, gate=fields.gate(size), action=fields.ACTION, timers=TIMERS,
         nodes=size, sized=f"{HERE}:node", parameters=f"{HERE}:{OF_CLASS[size]}_parameters",
         watched=RUN._replace(table="nodes"), coded=CODED, frame_bytes=FRAME_BYTES,
-        hooks="innervate.networks.mesh:board_links",
+        hooks="innervate.networks.mesh:board_links", live=f"{HERE}:live_node",
+    )  # fmt: skip
+
+
+def live_node(params: Any) -> Role:
+    """A node with the queue, the frames and the neighbours that a live one has."""
+    size, mtu, most = params.width, params.mtu, params.places
+    room, ack, packet = fields.room(mtu), CODED.forms[0], CODED.forms[1]
+    body = {"body": (room, "length")}
+    forms = (ack._replace(most=body), packet._replace(most={**packet.most, **body}))
+    return node(size)._replace(
+        state=fields.node(size, params.queue, params.kept, mtu, most),
+        gate=fields.gate(size, most), frame=fields.frame(mtu), item=fields.item(mtu),
+        coded=CODED._replace(forms=forms, size_max=mtu),
     )  # fmt: skip
 
 

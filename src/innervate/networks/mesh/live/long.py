@@ -76,8 +76,8 @@ class Long:
         self._under_way += 1
         handle, item = make(receipt)
         item.dest, item.flags = self.dest, self.flags
-        item.body = [*bytes(HEAD_BYTES), *data]
-        item.length = len(item.body)
+        item.length = HEAD_BYTES + len(data)
+        item.body[HEAD_BYTES : item.length] = data
         return handle, item
 
     def head(self, at: int, seq: int) -> bytes:

@@ -94,7 +94,7 @@ class Outgoing:
         if flags & ORDERED:
             payload = bytes(BEFORE_BYTES) + payload  # which one is before it is known when it goes
         item.length = len(payload)
-        item.body = list(payload)
+        item.body[: len(payload)] = payload
         if self.turns.put(handle, item):
             self.feed()
         return receipt

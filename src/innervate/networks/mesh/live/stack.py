@@ -46,6 +46,21 @@ TOO_LONG = "longer than our MTU"
 Params = plain.make("Params", fields.PARAMS)
 
 
+class Coder:
+    """Frames of at most as many bytes as a node's parameters say."""
+
+    def __init__(self, params: Any) -> None:
+        self._params = params
+
+    def encode(self, frame: Any) -> bytes:
+        """The bytes of a frame."""
+        return wire.encode(frame, self._params.mtu)
+
+    def decode(self, data: bytes, frame: Any) -> int:
+        """Read bytes into a frame; OK, or why not."""
+        return wire.decode(data, frame, self._params.mtu)
+
+
 class MeshStack:
     """One node of a mesh.
 
@@ -79,6 +94,8 @@ class MeshStack:
         frame = plain.make("Frame", fields.frame(mtu))
         self.out, self.inbox = plain.Outbox(frame, OUTBOX), frame()
         self.item = plain.make("Item", fields.item(mtu))
+        self.do: Any = mesh
+        self.coder: Any = Coder(self.params)
         self.epoch = 0  # newest one that was followed before a restart
         self.first = -1  # our packets' numbers go on from here after a restart; -1 = anywhere
         self.places: dict[int, list[int]] = {}  # neighbour: ports, the newest first
@@ -92,7 +109,7 @@ class MeshStack:
 
         A gateway's requests are heeded only if their epoch, or their round, is newer than before.
         """
-        mesh.on_start(self.node, self.gate, self.params, now, cause, self.out)
+        self.do.on_start(self.node, self.gate, self.params, now, cause, self.out)
         if self.first >= 0:
             self.node.seq = self.first
         if cause != 0 and self.epoch:
@@ -121,7 +138,7 @@ class MeshStack:
         elif self.inbox.link_dst == self.node.number:
             for origin, seq in wire.acked(self.inbox):
                 self._note_answer((self.inbox.link_src, origin, seq))
-        mesh.on_frame(self.node, self.gate, self.params, now, 0, self.inbox, self.out)
+        self.do.on_frame(self.node, self.gate, self.params, now, 0, self.inbox, self.out)
 
     def _note_answer(self, what: tuple[int, int, int]) -> None:
         if self._unanswered.get(what):
@@ -143,22 +160,24 @@ class MeshStack:
 
     def on_timer(self, now: int, timer: int) -> None:
         """A timer of the router fires at `now`, us."""
-        mesh.on_timer(self.node, self.gate, self.params, now, timer, self.out)
+        self.do.on_timer(self.node, self.gate, self.params, now, timer, self.out)
 
     def on_input(self, now: int, kind: int, item: Any) -> None:
         """A message to send, or where a robot is."""
-        mesh.on_input(self.node, self.gate, self.params, now, kind, item, self.out)
+        self.do.on_input(self.node, self.gate, self.params, now, kind, item, self.out)
 
     def encode(self, frame: Any) -> bytes:
         """The bytes of a frame."""
-        return wire.encode(frame, self.params.mtu)
+        data: bytes = self.coder.encode(frame)
+        return data
 
     def decode(self, data: bytes) -> int:
         """Read bytes into the inbox; 0, or why not."""
         mtu = self.params.mtu
         if len(data) > mtu and wire.reason_of(data, MTU_MAX) == wire.OK:
             return LONG
-        return wire.decode(data, self.inbox, mtu)
+        reason: int = self.coder.decode(data, self.inbox)
+        return reason
 
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """Where a frame leaves: on the path its receiver was heard on last; None = on all.

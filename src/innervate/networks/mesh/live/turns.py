@@ -15,9 +15,11 @@ from innervate.dialect.arith import MASK16
 from innervate.networks.mesh.live.long import Long, Maker
 from innervate.networks.mesh.live.stack import MeshStack
 from innervate.networks.mesh.protocol.constants import ALL, CONTROL, END_TO_END, OWN, PRIORITY
+from innervate.networks.mesh.protocol.duplicates import UNREACHABLE
 from innervate.networks.mesh.protocol.messages import resolve
 from innervate.networks.mesh.protocol.neighbours import place_of
 from innervate.networks.mesh.protocol.retransmission import (
+    AHEAD_MAX,
     FREE,
     SURE_AFTER,
     crowds,
@@ -152,11 +154,11 @@ class Turns:
     def _facts(self) -> Any:
         """What the answer depends on, but for what can only make it a no."""
         node = self._stack.node
-        queue = node.q_state.count(FREE)
+        queue = node.q_state[:].count(FREE)
         room = (queue > OWN, queue > CONTROL, node.gateway)
-        suspects = (*node.neighbour, *node.suspect) if self._gone else ()
-        return (*room, *suspects, *node.wait_kind, *node.wait_dest, *node.wait_seq,
-                *node.bad_neighbour, *node.bad_dest)  # fmt: skip
+        suspects = (node.neighbour[:], node.suspect[:]) if self._gone else ()
+        return (*room, *suspects, node.wait_kind[:], node.wait_dest[:], node.wait_seq[:],
+                node.bad_neighbour[:], node.bad_dest[:])  # fmt: skip
 
 
 class Places:
@@ -176,10 +178,17 @@ class Places:
         self._node = node
         self._gone = gone
         self._params = stack.params
-        self._queue = node.q_state.count(FREE)
+        self._queue = node.q_state[:].count(FREE)
         self._most = most
-        self._free = node.wait_kind.count(FREE)
-        self._held = Counter(compress(node.wait_dest, node.wait_kind))
+        kinds = node.wait_kind[:]
+        self._free = kinds.count(FREE)
+        self._held = list(compress(node.wait_dest[:], kinds))  # recipients
+        self._tries = list(compress(node.wait_tries[:], kinds))
+        self._tries_most = max(self._tries, default=0)
+        self._is_calm = self._tries_most <= SURE_AFTER and not any_unreachable(node)
+        after = node.seq + 1
+        ages = [(after - seq) & MASK16 for seq in compress(node.wait_seq[:], kinds)]
+        self._is_near = max(ages, default=0) <= AHEAD_MAX
         self._all_wait = all_wait
 
     def takes(self, item: Any) -> bool:
@@ -188,25 +197,32 @@ class Places:
         dest = resolve(node, self._params, item.dest)
         if dest == node.number:
             return True
-        if self._queue <= (CONTROL if urgent else OWN) or is_ahead(node, dest):
+        if self._queue <= (CONTROL if urgent else OWN):
+            return False
+        held = self._held.count(dest)
+        if not self._is_near and (held or dest == ALL) and is_ahead(node, dest):
             return False
         if dest == ALL or not item.flags & END_TO_END:
             return True
-        held = self._held[dest]
         if held >= FIRST and held >= self._share(dest) + SPARE * urgent:
             return False
-        if self._free < (1 if urgent else 2) + (SPARE if held else 0) or crowds(node, dest):
+        if self._free < (1 if urgent else 2) + (SPARE if held else 0):
+            return False
+        if not self._is_calm and held >= node.kept >> 1 and crowds(node, dest):
             return False
         if not self._is_silent(dest):
             return True
-        silent = sum(self._held[other] for other in self._held if self._is_silent(other))
+        silent = sum(self._held.count(other) for other in set(self._held)
+                     if self._is_silent(other))  # fmt: skip
         return silent < SILENT + urgent and not (self._all_wait and is_ahead(node, ALL))
 
     def _share(self, dest: int) -> int:
         """How many places a recipient may have now: half while a message is sent to it again."""
-        node, most = self._node, self._most.get(dest, FIRST)
-        tries = max((node.wait_tries[w] for w in range(node.kept)
-                     if node.wait_kind[w] and node.wait_dest[w] == dest), default=0)  # fmt: skip
+        most = self._most.get(dest, FIRST)
+        if self._tries_most <= 1:
+            return most
+        kept = zip(self._tries, self._held, strict=True)
+        tries = max((tries for tries, to in kept if to == dest), default=0)
         if tries > SURE_AFTER:
             self._most.pop(dest, None)
             return FIRST
@@ -221,4 +237,9 @@ class Places:
         if dest in self._gone:
             k = place_of(node, self._params, dest)
             return k < 0 or bool(node.suspect[k])
-        return bool(is_in_vain(node, dest, (node.seq + 1) & MASK16))
+        return not self._is_calm and bool(is_in_vain(node, dest, (node.seq + 1) & MASK16))
+
+
+def any_unreachable(node: Any) -> bool:
+    """True if everything to some recipient was in vain, and nothing was heard of it since."""
+    return UNREACHABLE in node.bad_neighbour[:]

@@ -109,7 +109,7 @@ class CellNode(LiveNode):
         self.arrivals.put(found)
 
     def _sample_again(self) -> None:
-        self.sample(force=(self.stack.cell.number, self.stack.cell.seq, 0))
+        self.sample(force=(self.stack.node.number, self.stack.node.seq, 0))
         loop = asyncio.get_running_loop()
         self._due = max(self._due + self._period_s, loop.time())
         self._beat = loop.call_at(self._due, self._sample_again)

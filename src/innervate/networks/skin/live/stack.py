@@ -36,15 +36,18 @@ class SkinStack:
         self.silent_us = self.params.k * self.params.beacon_us
         self.out = plain.Outbox(Frame, room)
         self.inbox = Frame()
+        self.coder: Any = wire
         self.port = 0  # on which the frame in the inbox came
 
     def encode(self, frame: Any) -> bytes:
         """The bytes of a frame."""
-        return wire.encode(frame)
+        data: bytes = self.coder.encode(frame)
+        return data
 
     def decode(self, data: bytes) -> int:
         """Read bytes into the inbox; 0, or why not."""
-        return wire.decode(data, self.inbox)
+        reason: int = self.coder.decode(data, self.inbox)
+        return reason
 
     def objection(self, sender: int | None) -> str:
         """A beacon names nobody: it speaks for the far end of its cable, whoever that is."""
@@ -67,28 +70,28 @@ class CellStack(SkinStack):
 
     def __init__(self, number: int, params: dict[str, int], seed: int, ports: list[int]) -> None:
         super().__init__(params, OUTBOX)
-        self.cell = plain.make("Cell", fields.CELL)()
-        self.cell.number, self.cell.rng, self.cell.choice = number, seeded(seed), -1
-        self.node = self.cell
+        self.do: Any = skin
+        self.node = plain.make("Cell", fields.CELL)()
+        self.node.number, self.node.rng, self.node.choice = number, seeded(seed), -1
         self.port_of_path = ports
         self.path_of_port = {port: path for path, port in enumerate(ports)}
         self.moves = 0
 
     def on_start(self, now: int, cause: int) -> None:
         """Switch the cell on at `now`, us; `cause` 0 is the first time."""
-        skin.on_start(self.cell, self.params, now, cause, self.out)
+        self.do.on_start(self.node, self.params, now, cause, self.out)
 
     def on_frame(self, now: int, port: int) -> None:
         """The frame in the inbox was received on a path."""
-        skin.on_frame(self.cell, self.params, now, self.port_of_path[port], self.inbox, self.out)
+        self.do.on_frame(self.node, self.params, now, self.port_of_path[port], self.inbox, self.out)
 
     def on_timer(self, now: int, timer: int) -> None:
         """A timer of the cell's protocol fires at `now`, us."""
-        skin.on_timer(self.cell, self.params, now, timer, self.out)
+        self.do.on_timer(self.node, self.params, now, timer, self.out)
 
     def on_input(self, now: int, kind: int, item: Any) -> None:
         """What the cell's sensors say."""
-        skin.on_input(self.cell, self.params, now, kind, item, self.out)
+        self.do.on_input(self.node, self.params, now, kind, item, self.out)
 
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """The path of a port; a free socket has none."""
@@ -97,7 +100,7 @@ class CellStack(SkinStack):
 
     def status(self, now: int) -> dict[str, Any]:
         """The way to the PC, and which ports are broken."""
-        cell = self.cell
+        cell = self.node
         ports = [
             {
                 "port": port,
@@ -131,26 +134,27 @@ class SinkStack(SkinStack):
 
     def __init__(self, params: dict[str, int], ports: int) -> None:
         super().__init__(params, ports + OUTBOX)
+        self.do: Any = skin_sink
         self.pc = plain.make("Pc", (("own", 1, 0, 0, "", ""),), fields.SINK_PORT, ports=ports)()
         self.pc.own = [plain.make("Sink", fields.SINK)()]
         self.pc.own[0].ports = ports
 
     def on_start(self, now: int, cause: int) -> None:
         """Switch the PC on at `now`, us; `cause` 0 is the first time."""
-        skin_sink.on_start(self.pc, self.params, now, cause, self.out)
+        self.do.on_start(self.pc, self.params, now, cause, self.out)
 
     def on_frame(self, now: int, port: int) -> None:
         """The frame in the inbox was received on an interface port."""
         self.port = port
-        skin_sink.on_frame(self.pc, self.params, now, port, self.inbox, self.out)
+        self.do.on_frame(self.pc, self.params, now, port, self.inbox, self.out)
 
     def on_timer(self, now: int, timer: int) -> None:
         """A timer of the PC's protocol fires at `now`, us."""
-        skin_sink.on_timer(self.pc, self.params, now, timer, self.out)
+        self.do.on_timer(self.pc, self.params, now, timer, self.out)
 
     def on_input(self, now: int, kind: int, item: Any) -> None:
         """A command, to be sent down."""
-        skin_sink.on_input(self.pc, self.params, now, kind, item, self.out)
+        self.do.on_input(self.pc, self.params, now, kind, item, self.out)
 
     def status(self, now: int) -> dict[str, Any]:
         """How many cells each interface port serves."""

@@ -1,0 +1,148 @@
+"""A role compiled for this machine: a shared library, made once for its sources and kept.
+
+It knows neither Python nor a C library. A name in the cache is a hash of all that it is made from,
+and stands in the library, too: what was made from other sources is never taken.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import platform
+import sys
+import tempfile
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from innervate.dialect.source import reached
+from innervate.firmware.errors import FirmwareError
+from innervate.firmware.program import GIVEN
+from innervate.firmware.records import records_of
+from innervate.firmware.tools import find, run
+from innervate.kernel.cache import alone, cache_root
+from innervate.kernel.sources import ROOT, hash_of
+from innervate.live.board import Coded, Role
+
+COMPILER = "cc"
+SHIPPED, QUICK = ("innervate_wire.h", "innervate_wire.c"), frozenset({"quick"})
+FOLDER = "nodes"  # below the cache
+KEPT_MOST = 32  # libraries; those not used for longest go first
+MAKERS = ("firmware", "dialect", "wire")  # rooms that have a part in what is made
+TYPES = {"int": "int32_t", "frame": "const {p}_frame_t *", "item": "const {p}_item_t *"}
+ENTRY = """
+void innervate_{name}({p}_state_t *state, {gate}const {p}_params_t *params, int32_t now,
+        {given}, {p}_out_t *out);
+void innervate_{name}({p}_state_t *state, {gate}const {p}_params_t *params, int32_t now,
+        {given}, {p}_out_t *out)
+{{
+    {p}_clear(out);
+    {p}_{name}(state, {has_gate}params, now, {names}, out);
+}}
+"""
+
+
+def key_of(role: Role, coded: Coded | None) -> str:
+    """A hash of all that a role's library is made from, and for which machine."""
+    files = {Path(module.__file__ or "") for module in reached(role.entry)}
+    for room in MAKERS:
+        files |= {path for path in (ROOT / room).rglob("*") if path.suffix in (".py", ".c", ".h")}
+    of = role._replace(noted=frozenset())  # which C does not have, nor an order
+    begun = f"{sys.platform} {platform.machine()}\0{of}\0{coded}"
+    return hash_of(begun, sorted(files), ROOT)
+
+
+def handlers_of(role: Role) -> list[str]:
+    """Names of the handlers that a role has."""
+    module = import_module(role.entry)
+    return [name for name in GIVEN if hasattr(module, name)]
+
+
+def library_of(role: Role, coded: Coded | None) -> Any:
+    """A role's library, from the cache or made now.
+
+    Raises:
+        FirmwareError: the role cannot be said in C, there is no compiler, or it does not take it.
+    """
+    key = key_of(role, coded)
+    path = cache_root() / FOLDER / f"{key}.so"
+    found = _open(path, key)
+    if found is None:
+        find(COMPILER)
+        path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with alone(path.with_suffix(".lock")):
+            found = _open(path, key) or _made(role, coded, path, key)
+    return found
+
+
+def _open(path: Path, key: str) -> Any:
+    """The library in a file, if it is ours, whole, and made from this very role."""
+    try:
+        about = path.stat()
+        if about.st_uid not in (0, os.getuid()) or about.st_mode & 0o022:
+            return None  # somebody else could have written it
+        if key.encode() not in path.read_bytes():
+            return None
+        os.utime(path)
+        return ctypes.CDLL(str(path))
+    except OSError:
+        return None
+
+
+def _made(role: Role, coded: Coded | None, path: Path, key: str) -> Any:
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix="making-") as name:
+        folder = Path(name)
+        for file, text in texts_of(role, coded, key).items():
+            (folder / file).write_text(text, encoding="utf-8")
+        run(COMPILER, "-std=c99", "-O2", "-fPIC", "-shared", "-I", folder,
+            *sorted(folder.glob("*.c")), "-o", folder / path.name)  # fmt: skip
+        (folder / path.name).chmod(0o700)
+        os.replace(folder / path.name, path)
+    _forget(path.parent)
+    found = _open(path, key)
+    if found is None:
+        raise FirmwareError(f"{path}: was made, and cannot be taken; set INNERVATE_CACHE")
+    return found
+
+
+def texts_of(role: Role, coded: Coded | None, key: str) -> dict[str, str]:
+    """What a library is made from, by file.
+
+    Raises:
+        FirmwareError: see Library.
+    """
+    from innervate.firmware.emit import Library  # half a second that a library at hand spares
+    from innervate.firmware.library import shipped
+    from innervate.firmware.wire import Wire
+
+    library = Library(role, {})
+    name = library.prefix
+    texts = {f"{name}.h": library.header(), f"{name}.c": library.source(f"{name}.h")}
+    if coded is not None:
+        wire = Wire(library, coded)
+        texts |= {f"{name}_wire.h": wire.header(), f"{name}_wire.c": wire.source()}
+        texts |= {file: shipped(file, "", QUICK) for file in SHIPPED}
+    texts["node.c"] = _entries(role, name, key)
+    return texts
+
+
+def _entries(role: Role, name: str, key: str) -> str:
+    """What Python calls: the handlers, each with an empty outbox; sizes of the records."""
+    sizes = [f"sizeof({name}_{record}_t)" for record in (*records_of(role), "out")]
+    words = {"p": name, "gate": f"{name}_gate_t *gate, " if role.has_gate else "",
+             "has_gate": "gate, " if role.has_gate else ""}  # fmt: skip
+    parts = [f'#include "{name}.h"', "", f'const char innervate_source[] = "{key}";',
+             f"const int32_t innervate_sizes[] = {{{', '.join(sizes)}}};"]  # fmt: skip
+    for handler in handlers_of(role):
+        given = [(f"{TYPES[kind].format(**words)} a{i}", f"a{i}")
+                 for i, kind in enumerate(GIVEN[handler])]  # fmt: skip
+        declared, names = (", ".join(column) for column in zip(*given, strict=True))
+        parts.append(ENTRY.format(name=handler, given=declared, names=names, **words))
+    return "\n".join(parts)
+
+
+def _forget(folder: Path) -> None:
+    """Those that were not used for longest are deleted."""
+    found = sorted(folder.glob("*.so"), key=lambda path: path.stat().st_mtime, reverse=True)
+    for path in found[KEPT_MOST:]:
+        path.unlink(missing_ok=True)
