@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Collection, Mapping, Sequence
+from itertools import repeat
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -75,6 +76,8 @@ class Tables:
         if self.plain:
             declaration = tuple((*_named(name), 0, 0, "", "") for name in names)
             make = plain.make("Record", declaration)
+            if fresh and all(isinstance(name, str) for name in names):
+                return list(map(object.__new__, repeat(make, count)))
             return [make() for _ in range(count)]
         dtype = row_dtype(names, wide)
         return np.empty(count, dtype) if fresh else np.zeros(count, dtype)
