@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -68,23 +69,23 @@ def _places(declaration: Declaration) -> list[tuple[str, int]]:
 
 
 @cache
-def _limits(declaration: Declaration) -> tuple[list[Limits], list[Limits]]:
-    """Lowest and highest value of single numbers, and of arrays, by their names."""
-    numbers, arrays = [], []
-    for name, length, low, high, *_ in declaration:
-        (arrays if int(length) else numbers).append((name, low, high))
-    return numbers, arrays
+def _limits(declaration: Declaration) -> tuple[Callable[[Any], bool], list[Limits]]:
+    """If an object's single numbers are in range, written out; arrays with their limits."""
+    numbers = (one for one in declaration if not int(one[1]))
+    text = " and ".join(f"{low} <= it.{name} <= {high}" for name, _, low, high, *_ in numbers)
+    arrays = [(name, low, high) for name, length, low, high, *_ in declaration if int(length)]
+    return eval(compile(f"lambda it: {text or True}", "declared ranges", "eval")), arrays
 
 
 class Words:
     """A plain object's fields as one row of numbers, in order of declaration."""
 
-    __slots__ = ("_arrays", "_known", "_numbers", "_target", "_where")
+    __slots__ = ("_arrays", "_known", "_numbers_are_declared", "_target", "_where")
 
     def __init__(self, target: Any, declaration: Declaration) -> None:
         self._target = target
         self._where = _places(declaration)
-        self._numbers, self._arrays = _limits(declaration)
+        self._numbers_are_declared, self._arrays = _limits(declaration)
         self._known: list[Any] = [None] * len(self._arrays)  # as they were seen to be in range
 
     def __getitem__(self, index: int) -> int:
@@ -102,9 +103,8 @@ class Words:
     def are_declared(self) -> bool:
         """True if each lies in its declared range; of arrays those are looked at that changed."""
         target, known = self._target, self._known
-        for name, low, high in self._numbers:
-            if not low <= getattr(target, name) <= high:
-                return False
+        if not self._numbers_are_declared(target):
+            return False
         for place, (name, low, high) in enumerate(self._arrays):
             value = getattr(target, name)
             if value != known[place]:

@@ -113,7 +113,7 @@ def _packets(tables: Tables, plan: Any) -> dict[str, Any]:
 
 
 def _repeated(sizes: Any, count: int) -> np.ndarray[Any, Any]:
-    """So many of these, from the first on again and again; `np.resize` takes twenty times as long."""
+    """So many of these, again and again from the first; `np.resize` takes twenty times as long."""
     return np.tile(sizes, count // len(sizes) + 1)[:count]
 
 

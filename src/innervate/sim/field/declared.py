@@ -320,9 +320,6 @@ def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> DeclaredField
     if not network.has("frames") or not hasattr(network.frames, "LAYOUTS"):
         raise Unfit("frames.LAYOUTS is missing: it says how long a frame is on the air")
     kept.pop("deliveries", None)
-    if plain:
-        advance = loop.bind(functions(network))
-    else:
-        advance = compiled_loop(network)
+    advance = loop.bind(functions(network)) if plain else compiled_loop(network)
     world = build.build(plan, network, plain, Recorded(**kept))
     return DeclaredField(plan, world, advance, "" if plain else plan.kind)
