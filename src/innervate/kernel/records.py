@@ -118,5 +118,4 @@ def within(words: Any, low: Any, high: Any) -> bool:
     """True if every word of a record lies in its declared range; lowering.py compiles it."""
     if isinstance(words, Words):
         return words.are_declared()
-    own = words[: len(low)]
-    return bool((low <= own).all() and (own <= high).all())
+    return all(least <= word <= most for least, word, most in zip(low, words, high, strict=False))

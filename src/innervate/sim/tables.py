@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Collection, Mapping, Sequence
-from itertools import repeat
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,7 +25,7 @@ WIDE = frozenset(
 TAP = ("time", "start", "at", "sender", "out", "why")
 ACTION = ("kind", "a", "b", "c")
 ROWS = 1 << 16  # that a table holds before the loop stops for them to be moved out
-PLAIN_ROWS = 1 << 12  # objects: dear to make
+PLAIN_ROWS = 1 << 11  # objects: dear to make
 
 
 Name = str | tuple[str, int]  # of a field of rows; with a length, of an array
@@ -76,8 +75,6 @@ class Tables:
         if self.plain:
             declaration = tuple((*_named(name), 0, 0, "", "") for name in names)
             make = plain.make("Record", declaration)
-            if fresh and all(isinstance(name, str) for name in names):
-                return list(map(object.__new__, repeat(make, count)))
             return [make() for _ in range(count)]
         dtype = row_dtype(names, wide)
         return np.empty(count, dtype) if fresh else np.zeros(count, dtype)
