@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from innervate.dialect import arith, rng
-from innervate.kernel import bits, compilation, lowering  # noqa: F401 - Numba has to know bits
+from innervate.dialect import arith, plain, rng
+from innervate.kernel import bits, compilation, lowering, records  # noqa: F401 - known to Numba
 from innervate.networks.skin.protocol import cell as skin
 
 SIGNED = st.integers(-(2**63), 2**63 - 1)
@@ -30,9 +30,13 @@ def compiled():
     def compare(a, b):
         return arith.after(a, b), arith.later(a, b), rng.step(a)
 
+    @numba.njit
+    def within(words, low, high):
+        return records.within(words, low, high)
+
     for function, arguments in ((mix, (0, 0)), (lowest_bit, (1,)), (compare, (0, 0))):
         function(*arguments)  # compiled before examples have to keep a deadline
-    return mix, lowest_bit, compare
+    return mix, lowest_bit, compare, within
 
 
 @given(state=SIGNED, word=SIGNED)
@@ -66,3 +70,18 @@ def test_comparisons_and_generator(compiled, a, b):
 def test_mix_tells_sequences_apart():
     marks = {bits.mix(bits.mix(0, one), two) for one in range(64) for two in range(64)}
     assert len(marks) == 64 * 64
+
+
+FIELDS = (("mode", 0, 2, 9, "", ""), ("dist", 3, 0, 31, "", ""), ("one", 1, -7, -4, "", ""))
+
+
+@pytest.mark.parametrize("place", range(5))
+def test_every_word_is_seen_to_be_within_its_range(compiled, place):
+    low, high = records.bounds(FIELDS)
+    row = records.zeros(FIELDS, 1).view("i4")
+    words = records.Words(plain.make("Twin", FIELDS)(), FIELDS)
+    before, lowest, highest = words[place], int(low[place]), int(high[place])
+    for value in (before, lowest - 1, lowest, highest, highest + 1, before):
+        words[place] = row[place] = value
+        for form, within in ((words, records.within), (row, records.within), (row, compiled[3])):
+            assert within(form, low, high) == (lowest <= value <= highest), value

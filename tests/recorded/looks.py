@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import Collection, QuadMesh
 from matplotlib.colors import to_hex
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.image import AxesImage
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
@@ -83,10 +83,19 @@ def picture(figure: Figure) -> Picture:
     for one in figure.legends:
         whole += legend(one)
     found = {"figure": whole}
-    for place, ax in enumerate(figure.findobj(Axes, include_self=False)):
+    for place, ax in enumerate(axes_in(figure)):
         name = ax.get_title("left") or ax.get_title() or ax.get_ylabel() or ax.get_label()
         found[f"{place + 1} {name}".strip()] = panel(ax)
     return found
+
+
+def axes_in(holder: Any) -> Iterator[Axes]:
+    """All axes, as `findobj` finds them: that makes every tick, to look for axes in it."""
+    for child in holder.get_children():
+        if isinstance(child, Axes | SubFigure):
+            yield from axes_in(child)
+        if isinstance(child, Axes):
+            yield child
 
 
 def panel(ax: Axes) -> list[str]:

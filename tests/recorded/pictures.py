@@ -58,12 +58,18 @@ def drawn(experiment: Any, system: str) -> Any:
         return experiment.draw(rows(system), True)
 
 
+@cache
+def judged(system: str, quick: bool = True) -> dict[str, Any]:
+    """What each figure's claims come to, of the rows kept."""
+    return {one.name: one.judge(rows(system), quick) for one in experiments(system)}
+
+
 def page(system: str, quick: bool = True) -> str:
     """The page of a paper, with one empty picture for all, as its rows make it."""
     paper = book.book_of(system)
     chosen = experiments(system)
     made = output.Made(
-        {one.name: one.judge(rows(system), quick) for one in chosen},
+        judged(system, quick),
         {one.name: one.sheets(rows(system), quick) for one in chosen},
     )
     heading = output.Heading(
@@ -140,6 +146,8 @@ def differences(name: str, was: Picture, found: Picture) -> list[str]:
         old, new = was.get(panel), found.get(panel)
         if old is None or new is None:
             lines.append(f"{name}, {panel}: {'was not there' if old is None else 'is gone'}")
+            continue
+        if old == new:
             continue
         for kind, a, b, c, d in SequenceMatcher(None, old, new, autojunk=False).get_opcodes():
             if kind != "equal":

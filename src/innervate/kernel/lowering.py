@@ -1,7 +1,7 @@
 """What Numba is told of our tables, and of the few things that it spells in its own way.
 
-Of `tables.Table`, `tables.fetch`, `bits.lowest_bit` and `bits.mix`; compiling imports it, a plain
-run and a ready loop (ready.py) do not.
+Of `tables.Table`, `tables.fetch`, `records.within`, `bits.lowest_bit` and `bits.mix`; compiling
+imports it, a plain run and a ready loop (ready.py) do not.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from numba.extending import (
 from numba.np import numpy_support
 
 from innervate.kernel.bits import FACTOR, lowest_bit, mix
+from innervate.kernel.records import within
 from innervate.kernel.tables import Table, fetch
 
 INSIDE = {"forceinline": True, "no_cfunc_wrapper": True}  # becomes part of its callers
@@ -189,3 +190,14 @@ def _lowest_bit(word):
 @overload(mix, inline="always")  # type: ignore[untyped-decorator]
 def _mix(state, word):
     return lambda state, word: _mix64(state, word)
+
+
+@overload(within, jit_options=INSIDE)  # type: ignore[untyped-decorator]
+def _within(words, low, high):
+    def every(words, low, high):  # type: ignore[no-untyped-def]
+        wrong = 0
+        for i in range(len(low)):
+            wrong |= (words[i] < low[i]) | (words[i] > high[i])
+        return wrong == 0
+
+    return every

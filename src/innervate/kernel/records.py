@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -10,6 +12,7 @@ CACHE_LINE = 64
 
 Field = tuple[str, int | str, int, int, str, str]
 Declaration = tuple[Field, ...]
+Limits = tuple[str, int, int]
 
 
 def dtype(declaration: Declaration, itemsize: int = 0, word: Any = np.int32) -> np.dtype[Any]:
@@ -55,16 +58,35 @@ def bounds(declaration: Declaration) -> tuple[np.ndarray[Any, Any], np.ndarray[A
     return np.array(low, np.int32), np.array(high, np.int32)
 
 
+@cache
+def _places(declaration: Declaration) -> list[tuple[str, int]]:
+    """Field of each word, and its place in it; place -1: the field is no array."""
+    return [
+        (name, i) if int(length) else (name, -1)
+        for name, length, *_ in declaration
+        for i in range(max(int(length), 1))
+    ]
+
+
+@cache
+def _limits(declaration: Declaration) -> tuple[Callable[[Any], bool], list[Limits]]:
+    """If an object's single numbers are in range, written out; arrays with their limits."""
+    numbers = (one for one in declaration if not int(one[1]))
+    text = " and ".join(f"{low} <= it.{name} <= {high}" for name, _, low, high, *_ in numbers)
+    arrays = [(name, low, high) for name, length, low, high, *_ in declaration if int(length)]
+    return eval(compile(f"lambda it: {text or True}", "declared ranges", "eval")), arrays
+
+
 class Words:
     """A plain object's fields as one row of numbers, in order of declaration."""
 
+    __slots__ = ("_arrays", "_known", "_numbers_are_declared", "_target", "_where")
+
     def __init__(self, target: Any, declaration: Declaration) -> None:
         self._target = target
-        self._where = [
-            (name, i) if int(length) else (name, -1)
-            for name, length, *_ in declaration
-            for i in range(max(int(length), 1))
-        ]
+        self._where = _places(declaration)
+        self._numbers_are_declared, self._arrays = _limits(declaration)
+        self._known: list[Any] = [None] * len(self._arrays)  # as they were seen to be in range
 
     def __getitem__(self, index: int) -> int:
         name, i = self._where[index]
@@ -77,3 +99,23 @@ class Words:
             setattr(self._target, name, word)
         else:
             getattr(self._target, name)[i] = word
+
+    def are_declared(self) -> bool:
+        """True if each lies in its declared range; of arrays those are looked at that changed."""
+        target, known = self._target, self._known
+        if not self._numbers_are_declared(target):
+            return False
+        for place, (name, low, high) in enumerate(self._arrays):
+            value = getattr(target, name)
+            if value != known[place]:
+                if min(value) < low or max(value) > high:
+                    return False
+                known[place] = list(value)
+        return True
+
+
+def within(words: Any, low: Any, high: Any) -> bool:
+    """True if every word of a record lies in its declared range; lowering.py compiles it."""
+    if isinstance(words, Words):
+        return words.are_declared()
+    return all(least <= word <= most for least, word, most in zip(low, words, high, strict=False))

@@ -2,27 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from innervate.kernel.records import Declaration
-
-
-def plain_check(declaration: Declaration, table: str) -> Callable[[Any, int], bool]:
-    """Says if a plain node's record, of a table of the world, is in its declared ranges."""
-    scalars = [(name, low, high) for name, length, low, high, *_ in declaration if not length]
-    arrays = [(name, low, high) for name, length, low, high, *_ in declaration if length]
-
-    def is_sound(world: Any, node: int) -> bool:
-        state = getattr(world, table)[node]
-        return all(low <= getattr(state, name) <= high for name, low, high in scalars) and all(
-            low <= min(getattr(state, name)) and max(getattr(state, name)) <= high
-            for name, low, high in arrays
-        )
-
-    return is_sound
 
 
 def is_in_range(record: Any, declaration: Declaration) -> bool:

@@ -25,7 +25,7 @@ WIDE = frozenset(
 TAP = ("time", "start", "at", "sender", "out", "why")
 ACTION = ("kind", "a", "b", "c")
 ROWS = 1 << 16  # that a table holds before the loop stops for them to be moved out
-PLAIN_ROWS = 1 << 12  # objects: dear to make
+PLAIN_ROWS = 1 << 11  # objects: dear to make
 
 
 Name = str | tuple[str, int]  # of a field of rows; with a length, of an array

@@ -6,10 +6,11 @@ import random
 
 from innervate.dialect.arith import MASK30
 from innervate.dialect.rng import seeded
+from innervate.kernel.records import Words
 from innervate.networks.mesh.protocol import node as mesh
 from innervate.networks.mesh.protocol.constants import SAMPLE
 from innervate.networks.mesh.protocol.neighbours import place_of
-from tests.networks.mesh.bench import Bench, Item
+from tests.networks.mesh.bench import DECLARED, Bench, Item
 
 LOUD = -60
 
@@ -90,6 +91,7 @@ class Net(Bench):
         """The same net once more, from here on with other chances."""
         other = copy.copy(self)
         other.nodes = [copied(node) for node in self.nodes]
+        other.words = [Words(node, DECLARED) for node in other.nodes]
         other.gates = [gate and copied(gate) for gate in self.gates]
         for name in ("neighbours", "dead", "queue", "due", "out"):
             setattr(other, name, copy.deepcopy(getattr(self, name)))

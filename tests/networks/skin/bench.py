@@ -98,7 +98,8 @@ def out_of_range(state, declaration):
     wrong = []
     for name, _length, low, high, *_ in declaration:
         field = getattr(state, name)
-        if not all(low <= item <= high for item in (field if isinstance(field, list) else [field])):
+        items = field if isinstance(field, list) else (field,)
+        if min(items) < low or max(items) > high:
             wrong.append(f"{name} = {field} outside {low} .. {high}")
     return ", ".join(wrong)
 

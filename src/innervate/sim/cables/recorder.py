@@ -3,6 +3,7 @@
 A row of every report, one of every delivered frame, and the declared range of every field.
 """
 
+from innervate.kernel.records import within
 from innervate.sim import delays
 from innervate.sim.cables.wires import DELIVERED
 from innervate.sim.cables.world import BROKEN_RANGE
@@ -56,11 +57,6 @@ def check(world, node):
 
 def check_range(world, node):
     """Every word of a node's record lies in its declared range."""
-    words = world.words[node]
-    wrong = 0
-    for i in range(len(world.low)):
-        value = words[i]
-        wrong |= (value < world.low[i]) | (value > world.high[i])
-    if wrong and world.run[0].broken == 0:
+    if world.run[0].broken == 0 and not within(world.words[node], world.low, world.high):
         world.run[0].broken = BROKEN_RANGE
         world.run[0].broken_node = node

@@ -4,6 +4,7 @@ The counters stand in `world.above.counters`.
 """
 
 from innervate.dialect.access import PACKET as PACKET
+from innervate.kernel.records import within
 from innervate.sim import taps
 from innervate.sim.channel.loop import BROKEN_OUTBOX
 from innervate.sim.channel.medium import BROKEN_AIR, BROKEN_DEAF
@@ -74,9 +75,6 @@ def note_delivered(world, node, handle, time):
 def check_range(world, node):
     """Every word of a node's record lies in its declared range."""
     run = world.run[0]
-    if run.checks and run.broken == 0:
-        words = world.words[node]
-        for i in range(len(world.low)):
-            if words[i] < world.low[i] or words[i] > world.high[i]:
-                run.broken = BROKEN_RANGE
-                run.broken_node = node
+    if run.checks and run.broken == 0 and not within(world.words[node], world.low, world.high):
+        run.broken = BROKEN_RANGE
+        run.broken_node = node

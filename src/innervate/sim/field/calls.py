@@ -3,6 +3,7 @@
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
 from innervate.kernel.bits import mix
+from innervate.kernel.records import within
 from innervate.sim import rows
 from innervate.sim.field.medium import BROKEN_OUTBOX, breaks
 from innervate.sim.field.timers import set_timer
@@ -63,8 +64,4 @@ def take(world, do, node, frame, time):
 
 def is_sound(world, node):
     """True if every word of a node's record is in its range."""
-    words, low, high = world.words[node], world.low, world.high
-    wrong = 0
-    for i in range(len(low)):
-        wrong += (words[i] < low[i]) | (words[i] > high[i])
-    return wrong == 0
+    return within(world.words[node], world.low, world.high)

@@ -31,7 +31,6 @@ from innervate.sim.field import world as w
 from innervate.sim.field.simulation import Field
 from innervate.sim.field.states import ALIVE
 from innervate.sim.own import check_of, words_of
-from innervate.sim.ranges import plain_check
 from innervate.sim.recorded import Recorded
 from innervate.sim.status import POOL_FULL
 from innervate.sim.tables import get
@@ -53,9 +52,7 @@ WORDS = {
 }
 
 
-def functions(
-    network: Network, is_sound: Callable[[Any, int], bool] = calls.is_sound
-) -> ModuleType:
+def functions(network: Network) -> ModuleType:
     """What the loop calls (see `sim/field`)."""
     protocol, fields = network.protocol, network.fields
     names = {name for name, length, *_ in fields.FRAME if not length}
@@ -65,7 +62,7 @@ def functions(
         f"{protocol.__name__} over a field",
         (whole, frames["digest"], frames["kind_of"], _frame_bytes(network.frames)),
         _entries(protocol, names), _mac(network), _noted(whole, frames["kind_of"], names),
-        _checks(list(invariants_of(network, "node_").values()), is_sound), BELOW, KEPT,
+        _checks(list(invariants_of(network, "node_").values())), BELOW, KEPT,
     )  # fmt: skip
     return do
 
@@ -235,14 +232,12 @@ def _noted(copy: Any, kind_of: Any, names: set[str]) -> tuple[Callable[..., Any]
     )  # fmt: skip
 
 
-def _checks(
-    own: list[Callable[..., Any]], is_sound: Callable[[Any, int], bool]
-) -> tuple[Callable[..., Any], ...]:
+def _checks(own: list[Callable[..., Any]]) -> tuple[Callable[..., Any], ...]:
     """The checks after every call; and what is left of a node that lost its memory."""
     check_own = check_of(own, "stations")
 
     def check(world, do, node, time):  # type: ignore[no-untyped-def]
-        if not is_sound(world, node):
+        if not calls.is_sound(world, node):
             medium.breaks(world, medium.BROKEN_RANGE, node)
         check_own(world, node, (time + world.radios[node].offset) & arith.MASK30)
 
@@ -325,10 +320,6 @@ def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> DeclaredField
     if not network.has("frames") or not hasattr(network.frames, "LAYOUTS"):
         raise Unfit("frames.LAYOUTS is missing: it says how long a frame is on the air")
     kept.pop("deliveries", None)
-    if plain:
-        is_sound = plain_check(network.fields.STATE, "stations")
-        advance = loop.bind(functions(network, is_sound))
-    else:
-        advance = compiled_loop(network)
+    advance = loop.bind(functions(network)) if plain else compiled_loop(network)
     world = build.build(plan, network, plain, Recorded(**kept))
     return DeclaredField(plan, world, advance, "" if plain else plan.kind)

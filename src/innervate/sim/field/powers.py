@@ -8,6 +8,7 @@ for the ratio of capture, is 4e18: below 2^63.
 from __future__ import annotations
 
 import math
+from functools import cache
 
 FLOOR_CDB = -15_000  # power 1
 CEILING_CDB = 0
@@ -23,26 +24,29 @@ OCTAVES = 44  # of squared distance: 1,000 km
 NEAR_CM2 = 10_000  # nearer than 1 m is as 1 m
 
 
-def strength_table() -> list[int]:
+@cache
+def strength_table() -> tuple[int, ...]:
     """Power per 0.1 dB from FLOOR_CDB to CEILING_CDB."""
     steps = range(0, CEILING_CDB - FLOOR_CDB + 1, STEP_CDB)
-    return [round(10 ** (step / 1000)) for step in steps]
+    return tuple(round(10 ** (step / 1000)) for step in steps)
 
 
-def chance_table() -> list[int]:
+@cache
+def chance_table() -> tuple[int, ...]:
     """Chance of reception in 1/32768, per 0.1 dB from -SPREAD_CDB to SPREAD_CDB about rssi50."""
     steps = range(-SPREAD_CDB, SPREAD_CDB + 1, STEP_CDB)
-    return [round(ONE_Q15 / (1 + math.exp(-step / 100))) for step in steps]
+    return tuple(round(ONE_Q15 / (1 + math.exp(-step / 100))) for step in steps)
 
 
-def loss_table(exponent_c: int) -> list[int]:
+@cache
+def loss_table(exponent_c: int) -> tuple[int, ...]:
     """Path loss in 0.01 dB by octave and mantissa of the squared distance in cm."""
     scale = exponent_c / 100 * 5 * 100
-    return [
+    return tuple(
         round(scale * (octave * math.log10(2) + math.log10((m + MANTISSA + 0.5) / NEAR_CM2)))
         for octave in range(OCTAVES)
         for m in range(MANTISSA)
-    ]
+    )
 
 
 def capture_ratio(capture_cdb: int) -> int:

@@ -71,7 +71,7 @@ def sample(world, do, index, time):
 
 def check(world, do, node, _time):
     """A node's record is in its ranges after a call."""
-    if not do.is_sound(world, node):
+    if not calls.is_sound(world, node):
         medium.breaks(world, medium.BROKEN_RANGE, node)
 
 

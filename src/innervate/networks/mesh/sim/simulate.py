@@ -197,8 +197,7 @@ def simulation(
     _check_mac(plan.mac)
     router = entry or stacks.mesh()
     if plain:
-        fields = mesh_fields.node(plan.capacity, mtu=plan.params["mtu"])
-        advance = loop.bind(stacks.plain(router, _plain_layer(plan.mac), fields, through))
+        advance = loop.bind(stacks.plain(router, _plain_layer(plan.mac), through))
     else:
         advance = compiled_loop(router, plan.mac)
     world = builder.build(plan, plain, **kept)

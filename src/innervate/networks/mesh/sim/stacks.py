@@ -13,8 +13,6 @@ from innervate.networks.mesh.protocol import csma
 from innervate.networks.mesh.protocol.constants import ACK
 from innervate.networks.mesh.protocol.frames import copy_frame, frame_bytes
 from innervate.networks.mesh.sim import orders, recorder
-from innervate.sim.field.calls import is_sound
-from innervate.sim.ranges import plain_check
 
 # What the loop asks of the layer below.
 BELOW = (
@@ -63,17 +61,16 @@ def digest(frame):
     return mark
 
 
-def bind(entry: ModuleType, layer: Layer, *others: Callable[..., Any]) -> ModuleType:
+def bind(entry: ModuleType, layer: Layer) -> ModuleType:
     """What a mesh's loop calls, of a router and what lies below it.
 
     The handlers of both, `mac_` before those of the medium access, with the world first; of frames
-    `digest`, `copy_frame`, `frame_bytes`; `is_sound` of a node's record; and of the layer below
-    what the loop asks of it (BELOW). `others` take the place of those that have their names.
+    `digest`, `copy_frame`, `frame_bytes`; and of the layer below what the loop asks of it (BELOW).
     """
     below = (getattr(layer.part, name) for name in BELOW)
     made = compilation.bound(
         f"{entry.on_start.__module__} {layer.part.__name__}",
-        others, _router(entry), _csma(), (digest, copy_frame, frame_bytes, is_sound), ORDERS, below,
+        _router(entry), _csma(), (digest, copy_frame, frame_bytes), ORDERS, below,
     )  # fmt: skip
     vars(made)["channel"] = layer.channel
     return made
@@ -127,11 +124,9 @@ def _csma() -> tuple[Callable[..., Any], ...]:
     return mac_on_start, mac_on_frame, mac_on_timer, mac_on_input, mac_on_carrier
 
 
-def plain(
-    entry: ModuleType, layer: Layer, fields: Any, through: Callable[[Any], Any] | None
-) -> ModuleType:
+def plain(entry: ModuleType, layer: Layer, through: Callable[[Any], Any] | None) -> ModuleType:
     """The same on plain objects; every frame sent is passed `through` a function if given."""
-    made = bind(entry, layer, plain_check(fields, "nodes"))
+    made = bind(entry, layer)
     if through is not None:
         vars(made)["copy_frame"] = lambda to, frame: copy_frame(to, through(frame))
     return made

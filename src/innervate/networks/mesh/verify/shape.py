@@ -192,19 +192,14 @@ def _tidy_queue(node: Any, now: int) -> None:
 
 def _sort_forwarded(node: Any) -> None:
     """As long as none was overwritten, the order of what was forwarded says nothing."""
-    rows = [
-        tuple(getattr(node, name)[k] for name in FORWARDED)
-        for k in range(fields.FORWARDED)
-        if node.done_origin[k] != const.ALL
-    ]
+    columns = [getattr(node, name) for name in FORWARDED]
+    rows = sorted(row for row in zip(*columns, strict=True) if row[0] != const.ALL)
     if len(rows) >= fields.FORWARDED:
         return
-    rows.sort()
     node.done_at = len(rows)
-    for k in range(fields.FORWARDED):
-        row = rows[k] if k < len(rows) else (const.ALL, 0, 0, 0, 0)
-        for name, value in zip(FORWARDED, row, strict=True):
-            getattr(node, name)[k] = value
+    rows += [(const.ALL, 0, 0, 0, 0)] * (fields.FORWARDED - len(rows))
+    for column, values in zip(columns, zip(*rows, strict=True), strict=True):
+        column[:] = values
 
 
 def classes(nodes: int, who: Callable[[int, int], int]) -> tuple[type, type, type, type]:

@@ -1,5 +1,6 @@
 """What a run of a radio channel leaves behind: rows, and what is checked on the way."""
 
+from innervate.kernel.records import within
 from innervate.networks.radio.protocol.constants import DATA
 from innervate.networks.radio.protocol.station import copy_frame
 from innervate.sim import taps
@@ -57,10 +58,6 @@ def record_received(world, node, what, time, clear, received):
 def watch(world, node, time, handler, port):
     """Checkers, and the trail of all handler calls."""
     run = world.run[0]
-    if run.checks and run.broken == 0:
-        words = world.words[node]
-        for i in range(len(world.low)):
-            word = words[i]
-            if word < world.low[i] or word > world.high[i]:
-                run.broken, run.broken_node = BROKEN_RANGE, node
+    if run.checks and run.broken == 0 and not within(world.words[node], world.low, world.high):
+        run.broken, run.broken_node = BROKEN_RANGE, node
     record_step(world, node, time, handler, port)

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from innervate.dialect.outbox import REPORT, SEND
+from innervate.kernel.records import within
 from innervate.networks.skin.protocol.constants import (
     INFINITY,
     MEMORY_LOST,
@@ -167,11 +168,7 @@ def change_link(world, link, down):
 
 def check_range(world):
     """Note a value of scratch record 0 that is outside its declared range."""
-    words = world.words[0]
-    wrong = 0
-    for i in range(len(world.low)):
-        wrong |= (words[i] < world.low[i]) | (words[i] > world.high[i])
-    if wrong:
+    if not within(world.words[0], world.low, world.high):
         world.found[0] = BROKEN_RANGE
 
 
