@@ -16,16 +16,7 @@ from innervate.networks.skin.live.node import CellNode, SinkNode
 from innervate.networks.skin.live.parameters import skin_parameters
 from innervate.networks.skin.live.stack import CellStack, SinkStack
 from tests.boards.test_boards_cell import PARAMS
-from tests.firmware.test_boards_live import (
-    BAUD,
-    BOARD,
-    FIRST_S,
-    PATIENT,
-    QUICKLY,
-    board,
-    needed,
-    serial,
-)
+from tests.firmware.test_boards_live import BAUD, BOARD, FIRST_S, PATIENT, board, needed, serial
 from tests.live.net import until
 from tests.live.pair import KEY, OTHER
 
@@ -37,7 +28,7 @@ def image(tmp_path, role, settings, key=KEY):
     given = [f"{name}={value}" for name, value in settings.items()]
     library.write(library.made_of(role, given, sealed=True), tmp_path / "lib")
     options = (
-        *QUICKLY,
+        *tools.CORTEX_M3,
         f"-DNUMBER={BOARD}",
         "-DSEED=4711",
         f"-DKEY={','.join(map(str, key))}",
