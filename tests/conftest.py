@@ -99,12 +99,17 @@ def spread_out(items):
                 item.add_marker(pytest.mark.slow)
 
 
+@cache
+def is_in_real_time(path):
+    return not REAL_TIME.isdisjoint(path.relative_to(HERE).parts)
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
     """What works against a clock outside this process has a second try, which is counted."""
     spread_out(items)
     for item in items:
-        if REAL_TIME & set(item.path.relative_to(HERE).parts):
+        if is_in_real_time(item.path):
             item.add_marker(pytest.mark.flaky(reruns=1))
 
 

@@ -102,13 +102,15 @@ def emulate(role: Role, calls: int, seed: int, counted: bool = False) -> dict[st
             replayed, heard = replay(native, calls // 2, seed)
             draw(native.library, heard, seed, native.script, calls - replayed)
             native.script.end()
-        wanted = list(Player(native.library).play(path.read_bytes()))
-        found = {"here": qemu.on_host(native.library, folder, path)}
-        for target in qemu.TARGETS:
-            found[target] = qemu.on_target(native.library, folder, path, target, counted)
-        for where, there in found.items():
+        wanted, found = list(Player(native.library).play(path.read_bytes())), {}
+        for where in ("here", *qemu.TARGETS):
+            if where == "here":
+                there = qemu.on_host(native.library, folder, path)
+            else:
+                there = qemu.on_target(native.library, folder, path, where, counted)
             if there.marks != wanted:
                 raise BoardFailed(f"{where}: hashes {shown(there.marks)}, Python {shown(wanted)}")
+            found[where] = there
         return found
 
 

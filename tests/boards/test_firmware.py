@@ -101,7 +101,7 @@ def test_the_longest_frames_of_one_call_have_room(lacks, tmp_path):
     node, params = full_mesh_node(library), plain.make("Params", role.params)()
     for name, value in small_parameters({"gather": 1, "hop_frames": 4}).items():
         setattr(params, name, value)
-    native = Native(library, tmp_path, sanitized=True)
+    native = Native(library, tmp_path, sanitized=True, level="-O0")
     twin, out = Twin(native, node), plain.Outbox(plain.make("Frame", role.frame), role.room)
     packed = native.records["params"].of(params)
     import_module(role.entry).on_timer(node, None, params, 0, TX, out)

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from collections import Counter
+from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -17,7 +18,8 @@ from innervate.topology import cells_from_urdf, normals_from_urdf
 from tests.export.test_captures import RADIO
 from tests.export.test_files import FENCED
 
-chunk = pytest.importorskip("rerun.chunk", reason="rerun-sdk is missing")
+if find_spec("rerun") is None:  # to import it takes a while, in every process that collects tests
+    pytest.skip("rerun-sdk is missing", allow_module_level=True)
 URDF = """<robot name="bar">
 <link name="base"><visual><geometry><box size="0.02 0.02 0.3"/></geometry></visual></link>
 {links}</robot>"""
@@ -41,7 +43,9 @@ def written(done, path):
     frames = {name: table.collect() for name, table in done.tables.items()}
     count = rrd.write(done.plan, frames, path)
     found, rows = {}, 0
-    for part in chunk.RrdReader(path).stream():
+    from rerun.chunk import RrdReader
+
+    for part in RrdReader(path).stream():
         assert part.is_static or part.timeline_names == [rrd.TIMELINE]
         rows += 0 if part.is_static else part.num_rows
         for row in part.to_record_batch().to_pylist():

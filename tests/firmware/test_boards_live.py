@@ -28,6 +28,7 @@ FIRST_S = 60.0
 BAUD = 1_000_000
 PATIENT = {"ack_us": 30_000, "e2e_us": 300_000}  # a busy machine is no dead neighbour
 BOARD = 1
+QUICKLY = (*tools.CORTEX_M3, "-O0")  # a third of the time that -Os takes, as test_million.py has it
 
 
 @pytest.fixture(autouse=True)
@@ -40,7 +41,7 @@ def needed():
 def image(tmp_path, role, main, settings, *more):
     files = library.made_of(role, [f"{name}={value}" for name, value in settings.items()])
     library.write(files, tmp_path / "lib")
-    options = (*tools.CORTEX_M3, *(more or (f"-DNUMBER={BOARD}",)), "-DSEED=4711")
+    options = (*QUICKLY, *(more or (f"-DNUMBER={BOARD}",)), "-DSEED=4711")
     return tools.image(tmp_path / "lib", role, tmp_path, main, options)
 
 

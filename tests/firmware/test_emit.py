@@ -13,6 +13,7 @@ from innervate.firmware import library
 from innervate.firmware.emit import Library
 from innervate.firmware.errors import FirmwareError, Refused
 from innervate.live.board import Role
+from tests.firmware.made import files_of
 from tests.own import alone
 
 __all__ = ["alone"]
@@ -38,7 +39,7 @@ ROLES = ["skin", "radio", "csma", "mesh"]
 def made(tmp_path_factory):
     folder = tmp_path_factory.mktemp("lib")
     for role in ROLES:
-        library.write(library.made_of(role, []), folder / role)
+        library.write(files_of(role), folder / role)
     return folder
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from boards.firmware.native import run
 from innervate.firmware import library
+from tests.firmware.made import files_of
 
 USER = """cmake_minimum_required(VERSION 3.16)
 project(user LANGUAGES C)
@@ -49,7 +50,7 @@ static unsigned long micros() { return 0; }
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    folder, files = tmp_path_factory.mktemp("lib"), library.made_of("skin", [])
+    folder, files = tmp_path_factory.mktemp("lib"), files_of("skin")
     library.write(files, folder)
     return files.library, folder
 
@@ -129,7 +130,7 @@ def test_a_zephyr_module_compiles_with_what_it_calls_of_zephyr(made, tmp_path):
     [("skin", False), ("mesh", False), ("radio", False), ("skin", True), ("mesh", True)],
 )
 def test_every_port_names_files_that_are_there(role, sealed, tmp_path):
-    library.write(library.made_of(role, [], sealed=sealed), tmp_path)
+    library.write(files_of(role, sealed), tmp_path)
     folder, own = tmp_path, {path.name for path in tmp_path.glob("*.c")}
     platformio = json.loads((folder / "library.json").read_text())
     assert platformio["name"] == f"innervate_{role}"

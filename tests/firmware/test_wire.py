@@ -25,6 +25,7 @@ from innervate.networks.radio.protocol.constants import CRR, DATA, OPEN
 from innervate.networks.skin import frames as skin_frames
 from innervate.networks.skin.live.items import Frame
 from innervate.wire import cobs, crc
+from tests.firmware.made import files_of
 
 HERE = Path(__file__).parent
 MeshFrame = plain.make("Frame", mesh_fields.FRAME)
@@ -38,26 +39,26 @@ def needs(*names):
             pytest.skip(f"{name} is not installed")
 
 
-@pytest.fixture(scope="module")
-def files():
-    return library.made_of("skin", [])
+class Folders(dict):
+    """Where the libraries are written that are asked for."""
+
+    def __init__(self, new):
+        self.new = new
+
+    def __missing__(self, role):
+        self[role] = self.new(role)
+        library.write(files_of(role.removeprefix("sealed-"), role in SEALED), self[role])
+        return self[role]
 
 
 @pytest.fixture(scope="module")
-def folder(files, tmp_path_factory):
-    made = tmp_path_factory.mktemp("skin")
-    library.write(files, made)
-    return made
+def folders(tmp_path_factory):
+    return Folders(tmp_path_factory.mktemp)
 
 
 @pytest.fixture(scope="module")
-def folders(folder, tmp_path_factory):
-    found = {"skin": folder}
-    for role in ("mesh", "radio", *SEALED):
-        found[role] = tmp_path_factory.mktemp(role)
-        made = library.made_of(role.removeprefix("sealed-"), [], sealed=role in SEALED)
-        library.write(made, found[role])
-    return found
+def folder(folders):
+    return folders["skin"]
 
 
 @pytest.fixture(scope="module")
@@ -105,8 +106,8 @@ def values(frame, fields):
     return found
 
 
-def test_c_codes_frames_byte_by_byte_as_python_does(native, files):
-    draw, packed = random.Random(1), Packed(files.library.records["frame"])
+def test_c_codes_frames_byte_by_byte_as_python_does(native):
+    draw, packed = random.Random(1), Packed(files_of("skin").library.records["frame"])
     for _ in range(3000):
         frame = drawn(draw, skin_frames, Frame())
         data, other = ctypes.create_string_buffer(skin_frames.SIZE_MAX), Frame()
@@ -125,7 +126,7 @@ def shared(folder, role):
     sources = [folder / name for name in (f"{role}_wire.c", "innervate_wire.c")]
     run(["gcc", "-std=c99", "-O1", "-fPIC", "-shared", "-fsanitize=undefined,bounds",
          "-fno-sanitize-recover=all", *sources, "-o", made])  # fmt: skip
-    return ctypes.CDLL(str(made)), Packed(library.made_of(role, []).library.records["frame"])
+    return ctypes.CDLL(str(made)), Packed(files_of(role).library.records["frame"])
 
 
 def test_c_codes_packets_and_acks_of_a_mesh_as_python_does(folders):
@@ -284,7 +285,10 @@ def test_compilers_and_cppcheck_have_nothing_to_say(role, folders):
          "-DKEY=1", "-I", folder, *beside, *board])  # fmt: skip
 
 
-@pytest.mark.parametrize("image", [*measure.WHOLE, *measure.OF_MESH])
+# A mesh's node that leads is the larger one, and held to the same bounds.
+@pytest.mark.parametrize(
+    "image", ["skin", "radio", pytest.param("mesh", marks=pytest.mark.slow), *measure.OF_MESH]
+)
 def test_a_node_is_as_small_as_it_has_to_be(image, folders, tmp_path):
     """With coder, driver, port layer, vectors, and the deepest stack with an interrupt on it."""
     needs("arm-none-eabi-gcc", "arm-none-eabi-size")

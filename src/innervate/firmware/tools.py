@@ -69,13 +69,13 @@ def image(
         prefix: of its names.
         out: folder for the image.
         main: "main", which can be looked into, or "small".
-        options: of the compiler: which processor.
+        options: of the compiler: which processor; what is said here counts.
 
     Raises:
         FirmwareError: there is no compiler, or it does not take it.
     """
     made = out / f"{prefix}_{main}.elf"
-    run("arm-none-eabi-gcc", *options, *SMALL, "-I", folder, *sources(folder, prefix, main),
+    run("arm-none-eabi-gcc", *SMALL, *options, "-I", folder, *sources(folder, prefix, main),
         "-nostdlib", "-nostartfiles", "-Wl,--gc-sections", "-T", folder / "bare/link.ld", "-lgcc",
         "-o", made)  # fmt: skip
     return made

@@ -84,13 +84,15 @@ def all_graphs(cells: int) -> Iterator[Graph]:
     """All connected graphs of a PC and so many cells, one of each shape; no double cables."""
     pairs = list(combinations(range(cells + 1), 2))
     orders = [(0, *order) for order in permutations(range(1, cells + 1))]
-    seen = set()
+    seen: set[tuple[Edge, ...]] = set()
     for size in range(cells, len(pairs) + 1):
         for edges in combinations(pairs, size):
-            shape = min(_renamed(edges, order) for order in orders)
-            if shape not in seen and is_connected(cells, set(edges)):
-                seen.add(shape)
-                yield from_edges(set(shape))
+            if edges in seen:
+                continue
+            alike = {_renamed(edges, order) for order in orders}
+            seen |= alike
+            if is_connected(cells, set(edges)):
+                yield from_edges(set(min(alike)))
 
 
 def _renamed(edges: tuple[Edge, ...], order: tuple[int, ...]) -> tuple[Edge, ...]:
