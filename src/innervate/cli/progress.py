@@ -52,8 +52,10 @@ class Display:
         if self._bars is not None:
             self._bars.update(self._task, description=what, completed=done, total=total or None)
             return
-        if self._silent or time.monotonic() - self._last_line <= LINE_EVERY_S or (
-            0 < total <= done
+        if (
+            self._silent
+            or time.monotonic() - self._last_line <= LINE_EVERY_S
+            or (0 < total <= done)
         ):
             return
         self._line(what if left_s is None else f"{what}, about {left_s:.0f} s left")
