@@ -91,3 +91,12 @@ def test_a_state_that_cannot_be_written_is_said_and_when_it_is_again(node):
         f"n3: {state.path}: cannot be written: No space left on device; going on, trying again",
         f"n3: {state.path}: written again",
     ]
+
+
+def test_a_node_whose_protocol_is_gone_says_why_and_ends(node):
+    process, machine = node
+    assert not process.failed
+    process.node.ended("n3: the board does not answer")
+    assert process.failed
+    assert process.ending.is_set()
+    assert machine.said == ["n3: n3: the board does not answer"]
