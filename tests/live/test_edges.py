@@ -5,7 +5,7 @@ import asyncio
 import pytest
 
 from innervate.live.channel import Medium
-from innervate.live.channel_radio import JOIN, PLUG, SEND
+from innervate.live.channel_radio import JOIN, PLUG, SEND, read_heard
 from innervate.live.engine import Engine, clock_us
 from innervate.live.machine import Machine, on
 from innervate.live.pending import Pending
@@ -66,14 +66,17 @@ def test_items_wait_up_to_their_weight(weights):
 
 
 class Noted:
-    """A medium, and what it told whom: (the kind, the address)."""
+    """A medium, and what it told whom: (kind, us since it began, carrier, one voice, port)."""
 
-    def __init__(self):
-        self.medium, self.told = Medium(), []
+    def __init__(self, **medium):
+        self.medium, self.told, self.began = Medium(**medium), [], clock_us()
         self.medium._socket = self
 
     def sendto(self, data, where):
-        self.told.append((data[:1], where))
+        what, at, cd, voc, frame = read_heard(data)
+        self.told.append(
+            (what.decode(), at - self.began, cd, voc, where[1], *filter(None, [frame]))
+        )
 
     def fileno(self):
         return -1
@@ -164,7 +167,84 @@ def test_a_plug_is_in_or_out_and_its_station_is_told_once():
 
     unsound, told = time_by_hand.run(main())
     assert unsound == 1
-    assert told == [(b"C", HERE)] * 2
+    assert told == [("C", 0, False, False, 9), ("C", 10_000, False, False, 9)]
+
+
+def test_a_frame_is_on_the_air_a_turnaround_later_for_its_slots():
+    """Two hear it, half a millisecond later each time; who sent is deaf until it has turned."""
+
+    async def main():
+        air = Noted()
+        for station in range(3):
+            air.join(station, ("127.0.0.1", station))
+        assert [told[:1] + told[4:] for told in air.told] == [("R", 0), ("R", 1), ("R", 2)]
+        air.told.clear()
+        air.send(1, slots=2, size=3, where=("127.0.0.1", 1))
+        await asyncio.sleep(1.0)
+        assert [(a - air.began, b - air.began, who) for a, b, who, _ in air.medium.log] == [
+            (5_000, 25_000, 1)
+        ]
+        return air.told
+
+    assert time_by_hand.run(main()) == [
+        ("C", 5_500, True, True, 0),
+        ("C", 5_500, True, True, 2),
+        ("F", 25_500, True, True, 0, bytes(3)),
+        ("F", 25_500, True, True, 2, bytes(3)),
+        ("C", 25_500, False, False, 0),
+        ("C", 25_500, False, False, 2),
+        ("R", 30_000, False, False, 1),
+    ]
+
+
+def test_where_two_send_at_once_nobody_hears_either():
+    async def main():
+        air = Noted(slot_us=1000, turnaround_us=1000)
+        for station in range(3):
+            air.join(station, ("127.0.0.1", station))
+        air.told.clear()
+        air.send(0, slots=3, where=("127.0.0.1", 0))
+        await asyncio.sleep(0.001)
+        air.send(1, slots=3, where=("127.0.0.1", 1))
+        await asyncio.sleep(1.0)
+        return air.told, air.medium.collisions, air.medium.late
+
+    told, collisions, late = time_by_hand.run(main())
+    assert (collisions, late) == (1, 0)
+    assert [one for one in told if one[4] == 2] == [
+        ("C", 1500, True, True, 2),
+        ("C", 2500, True, False, 2),
+        ("C", 4500, True, True, 2),
+        ("C", 5500, False, False, 2),
+    ]
+    assert [one for one in told if one[4] == 0] == [
+        ("R", 5000, True, True, 0),
+        ("C", 5500, False, False, 0),
+    ]
+
+
+@pytest.mark.parametrize(("late_us", "is_late"), [(5000, 0), (5001, 1)])
+def test_what_should_have_begun_before_it_was_known_is_counted(late_us, is_late):
+    async def main():
+        air = Noted()
+        air.join(0)
+        air.send(0, late_us=late_us)
+        (sent,) = air.medium.log
+        assert sent[0] == air.began
+        return air.medium.late
+
+    assert time_by_hand.run(main()) == is_late
+
+
+@pytest.mark.parametrize(("gone_s", "is_let_in"), [(2.499, False), (2.5, True)])
+def test_an_address_may_be_another_station_once_its_own_is_gone(gone_s, is_let_in):
+    async def main():
+        air = Noted()
+        air.join(3)
+        await asyncio.sleep(gone_s)
+        return air.join(4), list(air.medium._ears)
+
+    assert time_by_hand.run(main()) == (is_let_in, [4 if is_let_in else 3])
 
 
 @pytest.mark.parametrize(
