@@ -4,8 +4,7 @@ import asyncio
 
 import pytest
 
-from innervate.live.channel import Medium
-from innervate.live.channel_radio import JOIN, PLUG, SEND, read_heard
+from innervate.live.channel_radio import PLUG
 from innervate.live.engine import Engine, clock_us
 from innervate.live.machine import Machine, on
 from innervate.live.pending import Pending
@@ -14,8 +13,7 @@ from innervate.networks.mesh.live.alarms import place_of
 from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
 from tests.live import time_by_hand
-
-HERE, THERE = ("127.0.0.1", 9), ("127.0.0.1", 10)
+from tests.live.noted import HERE, THERE, Noted
 
 
 class Full:
@@ -63,36 +61,6 @@ def test_items_wait_up_to_their_weight(weights):
             assert missed == len(weights) - len(there)
 
     asyncio.run(main())
-
-
-class Noted:
-    """A medium, and what it told whom: (kind, us since it began, carrier, one voice, port)."""
-
-    def __init__(self, **medium):
-        self.medium, self.told, self.began = Medium(**medium), [], clock_us()
-        self.medium._socket = self
-
-    def sendto(self, data, where):
-        what, at, cd, voc, frame = read_heard(data)
-        self.told.append(
-            (what.decode(), at - self.began, cd, voc, where[1], *filter(None, [frame]))
-        )
-
-    def fileno(self):
-        return -1
-
-    def join(self, station, where=HERE):
-        """True if the station is let in."""
-        before = self.medium.unsound
-        self.medium.take(JOIN.pack(b"J", station), where)
-        return self.medium.unsound == before
-
-    def send(self, station, slots=1, size=1, late_us=0, where=HERE):
-        """True if a frame is taken."""
-        before = self.medium.unsound
-        data = SEND.pack(b"T", station, clock_us() - late_us, slots) + bytes(size)
-        self.medium.take(data, where)
-        return self.medium.unsound == before
 
 
 @pytest.mark.parametrize(
