@@ -71,6 +71,24 @@ def test_a_later_change_that_is_quicker_ends_the_one_before():
     }  # fmt: skip
 
 
+def test_the_key_of_a_change_that_is_over_is_not_used_again():
+    assert seen((1, [1], 1), (4, [1, 2], 2, 2.0)) == {
+        0: ([0], 0), 1: ([0, 1], 0), 4: ([0, 1, 2], 0), 6: ([0, 1, 2], 2), 21: ([1, 2], 2),
+    }  # fmt: skip
+
+
+def test_a_node_that_ends_changes_nothing_more():
+    async def main():
+        sealer = Sealer(ring_of("mesh", some(0), 0), 1)
+        rotation = Rotation(sealer)
+        rotation.begin(some(1), 1, GRACE_S)
+        rotation.stop()
+        await asyncio.sleep(5 * GRACE_S)
+        return sorted(sealer.keys), sealer.use
+
+    assert time_by_hand.run(main()) == ([0, 1], 0)
+
+
 def test_a_key_that_leaves_is_used_no_more():
     assert seen((1, [0, 1], 1, 20.0), (2, [1], 1, 2.0)) == {
         0: ([0], 0), 1: ([0, 1], 0), 6: ([1], 1),
