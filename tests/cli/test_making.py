@@ -56,6 +56,10 @@ def test_an_outbox_that_is_too_small_and_loops_that_are_not_counted(own, capsys)
         "breaks it (see above); at most 5 actions a call of 4"
     )
     assert code == 1
+    own.change("protocol.py", "OUTBOX = 4", "OUTBOX = 5")
+    code, said = checked(capsys, "--no-tests")
+    assert "the outbox holds 5; write" not in said
+    assert "the outbox is too small" not in said.splitlines()[-1]
 
 
 def test_every_mistake_is_told_at_once(own, capsys):

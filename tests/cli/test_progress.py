@@ -56,3 +56,25 @@ def test_a_terminal_gets_bars(monkeypatch):
         show(500_000, 2_000_000)
         assert task.description == "simulated 0.50 of 2 s"
         assert (task.completed, task.total) == (500_000, 2_000_000)
+
+
+@pytest.mark.parametrize(("total", "lines"), [(0, 1), (3, 0), (4, 1)])
+def test_lines_come_where_there_is_more_to_do_or_nobody_knows(clock, capsys, total, lines):
+    with progress.Display() as display:
+        clock.now += progress.LINE_EVERY_S
+        display.show("too early", 3, total, None)
+        clock.now += 0.1
+        display.show("working", 3, total, None)
+        display.show("too soon", 3, total, None)
+    assert capsys.readouterr().err == lines * "working\n"
+
+
+def test_a_bar_of_which_nobody_knows_the_end_has_none(monkeypatch):
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
+    with progress.Display() as display:
+        display.begin("looking", line=False)
+        display.show("looking on", 7, 0, None)
+        (task,) = display._bars.tasks
+        assert (task.description, task.completed, task.total) == ("looking on", 7, None)
+        display.show("looking on", 8, 9, 1.0)
+        assert (task.completed, task.total) == (8, 9)

@@ -351,3 +351,25 @@ def test_an_address_that_is_not_ours_is_the_users_mistake():
         await node.stop()
 
     asyncio.run(main())
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the system counts them on Linux")
+def test_what_the_system_dropped_is_counted_when_the_socket_is_gone_too():
+    async def main():
+        port = free_port()
+        link = UdpLink(("127.0.0.1", port), [("127.0.0.1", free_port())])
+        await link.open(print)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger:
+            for _ in range(3):
+                stranger.sendto(b"x", ("127.0.0.1", port))
+            counts = [link.unread()]
+            link.close()
+            counts.append(link.unread())
+            await link.open(print)
+            counts.append(link.unread())
+            stranger.sendto(b"x", ("127.0.0.1", port))
+            counts.append(link.unread())
+        link.close()
+        return [*counts, link.unread()]
+
+    assert asyncio.run(main()) == [3, 3, 3, 4, 4]

@@ -8,24 +8,39 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Iterator
 from functools import partial
+from inspect import Parameter
 from typing import Any
 
 import msgspec
 
 from innervate import scenario as scenarios
+from innervate.cli.app import app
 from innervate.live import play
 from innervate.network import Network, networks
 from innervate.networks.mesh.live.parameters import fence_parameters, mesh_parameters
+from innervate.networks.mesh.verify.model import MeshBudget
 from innervate.networks.radio.live.parameters import radio_parameters
+from innervate.networks.radio.slotted.drive import Options
+from innervate.networks.radio.slotted.model import Setting
+from innervate.networks.radio.verify.grid import Grid
 from innervate.networks.skin.live.parameters import skin_parameters
+from innervate.networks.skin.sizing import Question
+from innervate.networks.skin.verify.system import Budget as SkinBudget
 from innervate.running import simulating
+from innervate.scenario.declared.cables import CablesScenario
+from innervate.scenario.declared.channel import ChannelScenario
+from innervate.scenario.declared.field import FieldScenario
 from innervate.sweeping.planfile import PlanFile
+from innervate.verify.states import Budget
 from tests.recorded import plans
 from tests.recorded.data import plain
 
 UP = ("mesh-grid", "mesh-near", "mesh-fence", "mesh-links", "radio-few", "radio-all",
       "skin-patches", "skin-copies", "skin-links")  # fmt: skip
 OURS = ("skin", "radio", "mesh")
+DECLARED = {"cables": CablesScenario, "channel": ChannelScenario, "field": FieldScenario}
+# What a user or a proof leaves out is as these have it.
+ASKED = (MeshBudget, SkinBudget, Budget, Grid, Question, Options, Setting)
 FENCE = [[(0, 0), (900, 0), (23_000, 800), (0, 800)], [(50, 50), (60, 50), (60, 60)]]
 
 
@@ -38,6 +53,11 @@ def found() -> Iterator[tuple[str, Callable[[], Any]]]:
         yield f"keys of {name} node files", partial(node_file, network)
         yield f"tables of {name} runs", partial(tables, network)
         yield f"template of {name}", partial(template, name)
+    for medium, model in DECLARED.items():
+        yield f"keys of own scenarios over {medium}", partial(keys, model)
+    for asked in ASKED:
+        yield f"usual {asked.__module__}.{asked.__name__}", partial(usual, asked)
+    yield "options of commands", lambda: dict(options(app, "innervate"))
     yield "record with nothing said", lambda: record(Network("kind", "package"))
     yield "keys of plan files", partial(keys, PlanFile)
     yield "tables of any run", lambda: plain([told(table) for table in simulating.TABLES])
@@ -49,6 +69,24 @@ def found() -> Iterator[tuple[str, Callable[[], Any]]]:
     yield "live skin", partial(live, skin_parameters)
     for name in UP:
         yield f"brought up: {name}", partial(brought_up, name)
+
+
+def options(group: Any, name: str) -> Iterator[tuple[str, Any]]:
+    """For each command what may be given, and what holds where it is not."""
+    inner = [word for word in group if not word.startswith("-")]
+    for word in inner:
+        yield from options(group[word], f"{name} {word}")
+    if not inner:
+        asked = group.assemble_argument_collection()
+        given = {" ".join(one.names): one.field_info.default for one in asked}
+        yield name, {key: "needed" if has is Parameter.empty else str(has)
+                     for key, has in given.items()}  # fmt: skip
+
+
+def usual(made: Any) -> dict[str, str]:
+    """What of a record holds where nothing else is said."""
+    fields = dataclasses.fields(made)
+    return {f.name: str(f.default) for f in fields if f.default is not dataclasses.MISSING}
 
 
 def live(parameters: Callable[..., Any], *given: Any) -> Any:

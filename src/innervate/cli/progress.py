@@ -48,11 +48,15 @@ class Display:
             self._line(what)
 
     def show(self, what: str, done: int, total: int, left_s: float | None) -> None:
-        """So far `done` of `total`; lines come only now and then."""
+        """So far `done` of `total`, 0 = nobody knows; lines come only now and then."""
         if self._bars is not None:
             self._bars.update(self._task, description=what, completed=done, total=total or None)
             return
-        if self._silent or time.monotonic() - self._last_line <= LINE_EVERY_S or done >= total:
+        if (
+            self._silent
+            or time.monotonic() - self._last_line <= LINE_EVERY_S
+            or (0 < total <= done)
+        ):
             return
         self._line(what if left_s is None else f"{what}, about {left_s:.0f} s left")
 

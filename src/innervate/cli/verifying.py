@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from innervate.cli.options import VerifyOptions
     from innervate.verify.cases import Case
 
-UNKNOWN = 1 << 40  # of how much
-
 
 def verify(system: str, options: VerifyOptions, as_json: bool, out: Path | None) -> int:
     """Explore a protocol with the options of the command line; 1 if something is broken."""
@@ -57,7 +55,7 @@ def _explore(network: Network, options: VerifyOptions, as_json: bool, out: Path 
             display.begin(notice, line=True)
 
         def tell(what: str, part: int, of: int) -> bool:
-            display.show(what, part, of or UNKNOWN, None)
+            display.show(what, part, of, None)
             return stop.asked
 
         for explore in wanted:

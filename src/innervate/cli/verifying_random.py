@@ -18,7 +18,7 @@ def search(seed: int | None, count: int, as_json: bool, out: Path | None) -> int
     first, done, broken = seed or 1, 0, None
     with Stop() as stop, Display(as_json) as display:
         for number in numbers(first):
-            display.show(f"network {number}: {done} fine so far", done, count or 1 << 40, None)
+            display.show(f"network {number}: {done} fine so far", done, count, None)
             broken = fuzz.attempt(number)
             done += 1
             if broken is not None or stop.asked or done == count:

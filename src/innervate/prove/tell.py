@@ -33,10 +33,8 @@ def _listed(step: Step, question: Question, before: bool) -> str:
 
 def _changed(step: Step, question: Question) -> Iterable[Key]:
     """Places whose value the step changes; those of declared records, in their order."""
+    value = question.value
     for record in step.records.values():
         for key, _low, _high in record.places():
-            was, now = step.before.get(key), step.after.get(key)
-            if was is None or now is None or was is now:
-                continue
-            if question.value(was) != question.value(now):
+            if key in step.after and value(step.before[key]) != value(step.after[key]):
                 yield key

@@ -109,3 +109,19 @@ def test_the_practical_protocol_as_it_is_passes():
     text = radio_mutants.MUTANTS[-1].old
     same = mutants.Mutant("none", text, text)
     assert radio_mutants.hunt(same).by == ""
+
+
+def test_what_was_found_is_told_to_programs():
+    point = grid.Point((0, 52), (104,), ((1,), (2,)))
+    asked = grid.Grid(2, "practical", offers_us=(0, 52), delays_us=(52, 104), parts=3)
+    found = grid.Found(asked, 7, 1.23456, {grid.ORDER: 3}, {grid.ORDER: point}, "interrupted")
+    told = found.as_dict()
+    said = "a turn is not the one that was announced"
+    assert {key: told[key] for key in told if key not in ("grid", "first")} == {
+        "points": 2 * 2 * 9, "done": 7, "wall_s": 1.235, "ended": "interrupted",
+        "broken": {said: 3},
+    }  # fmt: skip
+    assert told["grid"]["packet_slots"] == 5
+    assert told["first"] == {
+        said: {"offers_us": (0, 52), "delays_us": (104,), "parts": ((1,), (2,))}
+    }

@@ -56,3 +56,18 @@ def test_what_is_compiled_of_a_formula_is_what_the_solver_makes_of_it():
             solved = z3.simplify(z3.substitute(one, *values))
             is_truth = z3.is_bool(solved)
             assert (z3.is_true(solved) if is_truth else solved.as_long()) == found, (one, known)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("set_timer(out, TICK, now)", "set_timer(out, TICK, now); set_timer(out, 1, now)",
+         "action 1 is in the formula alone"),
+        ("set_timer(out, TICK, now)", "now = now", "1 actions, not 0"),
+        ("set_timer(out, TICK, now)", "set_timer(out, 1, now)", "action 0 is "),
+    ],
+)  # fmt: skip
+def test_actions_of_one_side_alone_are_told(old, new, says):
+    start = twins((old, new))[0]
+    assert start.step.name == "on_start"
+    assert says in start.calls(50, 1)

@@ -178,7 +178,7 @@ class _Player:
         at, chunk = 0, PLAIN_CHUNK if target.plain else CHUNK
         while at < source.count:
             end = min(at + chunk, source.count)
-            target.search.run[s.NEXT] = -1 << 40
+            target.search.run[s.NEXT] = -end
             self._play(self._world, source.seen, target.seen, nodes, at, end)
             at = -int(target.search.run[s.NEXT])
             status = int(target.search.run[s.STATUS])

@@ -1,0 +1,102 @@
+"""What is the matter with a node is said by its process: what its sealer finds, too."""
+
+import asyncio
+
+import pytest
+
+from innervate.live import main
+from innervate.live.machine import Machine, on
+from innervate.live.nodefile import load
+
+KEY = bytes(range(32))
+FILE = """\
+kind = "mesh"
+number = 3
+nodes = 5
+[keys]
+use = 1
+secret.1 = "{key}"
+[[link]]
+kind = "udp"
+bind = "127.0.0.1:0"
+peers = ["127.0.0.1:9"]
+"""
+
+
+class Listening(Machine):
+    """This machine; it keeps what is said on it, and its clock is moved by hand."""
+
+    def __init__(self):
+        self.said, self.now_s = [], 0.0
+
+    def say(self, text):
+        self.said.append(text)
+
+    def monotonic_ns(self):
+        return round(1e9 * self.now_s)
+
+
+@pytest.fixture
+def node(tmp_path):
+    path = tmp_path / "n3.toml"
+    path.write_text(FILE.format(key=KEY.hex()))
+    machine = Listening()
+    with on(machine):
+
+        async def made():
+            return main.Process(load(path))
+
+        yield asyncio.run(made()), machine
+
+
+def test_two_nodes_with_one_number_are_said_once_a_minute(node):
+    process, machine = node
+    sealer = process.node.sealer
+    for now_s in (0.0, 1.0, 59.9, 60.0, 61.0):
+        machine.now_s = now_s
+        sealer.note_twin(3, "at 10.0.0.7")
+    said = "n3: two nodes have our number, 3: at 10.0.0.7; give one of them another"
+    assert machine.said == [said, said]
+    sealer.note_twin(4, "both are heard here")
+    assert machine.said == [said, said], "the same matter"
+    assert sealer.counts["two nodes with one number"] == 6
+    assert sealer.twins == {3: "at 10.0.0.7", 4: "both are heard here"}
+
+
+def test_callers_that_are_turned_away_are_said_when_they_are_more(node):
+    process, machine = node
+    process._look()
+    assert machine.said == []
+    process.node.callers["status: turned away"] = 2
+    for now_s in (0.0, 61.0):
+        machine.now_s = now_s
+        process._look()
+    said = "n3: too many callers: status: turned away {} (since the start)"
+    assert machine.said == [said.format(2)]
+    process.node.callers["status: turned away"] = 3
+    process._look()
+    assert machine.said == [said.format(2), said.format(3)]
+
+
+def test_a_state_that_cannot_be_written_is_said_and_when_it_is_again(node):
+    process, machine = node
+    state = process.node.state
+    state.trouble = "No space left on device"
+    process._look()
+    process._look()
+    state.trouble = ""
+    process._look()
+    process._look()
+    assert machine.said == [
+        f"n3: {state.path}: cannot be written: No space left on device; going on, trying again",
+        f"n3: {state.path}: written again",
+    ]
+
+
+def test_a_node_whose_protocol_is_gone_says_why_and_ends(node):
+    process, machine = node
+    assert not process.failed
+    process.node.ended("n3: the board does not answer")
+    assert process.failed
+    assert process.ending.is_set()
+    assert machine.said == ["n3: n3: the board does not answer"]

@@ -1,0 +1,91 @@
+"""A walk of a scenario is told to its robot's node: where it is, how fast, so often as it says."""
+
+import asyncio
+import json
+from types import SimpleNamespace
+
+import pytest
+
+from innervate.live.errors import LiveError
+from innervate.networks.mesh.live.walks import STANDING_S, place_at, walk
+from tests.live import time_by_hand
+
+POINTS = [(1_000_000, 100, 100), (2_000_000, 300, 0), (4_000_000, 500, 400)]
+PLAN = SimpleNamespace(sample_us=250_000, origin_cm=(100, -50))
+
+
+@pytest.mark.parametrize(
+    ("at_us", "place", "speed"),
+    [
+        (0, (100, 100), (0, 0)),
+        (999_999, (100, 100), (0, 0)),
+        (1_000_000, (100, 100), (200, -100)),
+        (1_500_000, (200, 50), (200, -100)),
+        (2_000_000, (300, 0), (100, 200)),
+        (3_500_000, (450, 300), (100, 200)),
+        (4_000_000, (500, 400), (0, 0)),
+        (9_000_000, (500, 400), (0, 0)),
+    ],
+)
+def test_where_it_is_and_how_fast(at_us, place, speed):
+    assert place_at(POINTS, at_us) == (place, speed)
+
+
+def told(folder, until_s, answer=lambda _: {"ok": True}):
+    """What a node was told within so long: (when, request); and what the walk raised."""
+    heard, over = [], asyncio.Event()
+
+    async def serve(reader, writer):
+        while line := await reader.readline():
+            heard.append((round(asyncio.get_running_loop().time() - 1000, 3), json.loads(line)))
+            said = answer(len(heard))
+            if said is None:
+                break
+            if said == "nothing":
+                await over.wait()
+            writer.write(json.dumps(said).encode() + b"\n")
+        writer.close()
+
+    async def main():
+        server = await asyncio.start_unix_server(serve, folder / "r.sock")
+        task = asyncio.ensure_future(walk(PLAN, POINTS, folder / "r.sock"))
+        await asyncio.wait([task], timeout=until_s)
+        task.cancel()
+        over.set()
+        server.close()
+        (raised,) = await asyncio.gather(task, return_exceptions=True)
+        await asyncio.sleep(0.1)
+        return raised
+
+    return heard, time_by_hand.run(main())
+
+
+def test_it_is_told_each_period_and_seldom_once_it_stands(tmp_path):
+    heard, _ = told(tmp_path, 6.1)
+    times = [at for at, _ in heard]
+    assert times == [0.25 * k for k in range(17)] + [4.25 + STANDING_S * k for k in range(4)]
+    places = {at: request["at_cm"] for at, request in heard}
+    assert places[0.0] == [0, 150]
+    assert places[1.5] == [100, 100]
+    assert places[4.0] == places[5.75] == [400, 450]
+    assert {request["do"] for _, request in heard} == {"locate"}
+    speeds = [request["speed_cm_s"] for _, request in heard]
+    assert speeds[3:9] == [[0, 0], *[[200, -100]] * 4, [100, 200]]
+    assert speeds[15:18] == [[100, 200], [0, 0], [0, 0]]
+
+
+def test_a_node_that_is_away_for_a_while_is_told_again(tmp_path):
+    heard, _ = told(tmp_path, 1.1, lambda count: None if count == 2 else {"ok": True})
+    assert [at for at, _ in heard] == [0.0, 0.25, 0.5, 0.75, 1.0]
+
+
+def test_a_node_that_does_not_answer_is_told_later_without_a_burst(tmp_path):
+    heard, _ = told(tmp_path, 6.1, lambda count: "nothing" if count == 2 else {"ok": True})
+    assert [at for at, _ in heard] == [0.0, 0.25, 5.25, 5.5, 6.0]
+    assert heard[2][1]["at_cm"] == [400, 450]
+
+
+def test_a_node_that_is_no_robot_ends_it(tmp_path):
+    _, raised = told(tmp_path, 1.0, lambda _: {"error": "it bears no robot"})
+    assert isinstance(raised, LiveError)
+    assert str(raised) == "r: it bears no robot"
