@@ -123,7 +123,8 @@ def save(made: Figure, folder: str | os.PathLike[str], name: str) -> list[Path]:
     """Write `name`.png and `name`.svg, the same bytes for the same figure; their paths."""
     paths = [Path(folder) / f"{name}.{kind}" for kind in ("png", "svg")]
     layout = made.get_layout_engine()
-    layout.execute(made)
+    if layout is not None:
+        layout.execute(made)
     made.set_layout_engine(None)  # saving would lay it out anew each time, and draw it once more
     for path in paths:
         fresh = path.with_name(path.name + ".part")
