@@ -30,6 +30,8 @@ from numba.core.cpu import CPUContext
 from numba.core.registry import cpu_target
 from numba.core.runtime.context import NRTContext
 
+from innervate.kernel.spared import spared
+
 NEEDED = ("_linking_libraries", "_final_module", "_finalized", "_reload_init")
 
 NOT_CALLED = "linked into the loop that calls it; not to be called from Python"
@@ -53,7 +55,8 @@ def as_one(name: str) -> Iterator[None]:
         collects = gc.isenabled()
         gc.disable()  # a tenth of the time went into looking for what is in use to the end
         try:
-            yield
+            with spared():
+                yield
         finally:
             _top.pop()
             if collects:

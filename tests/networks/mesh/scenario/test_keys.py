@@ -78,7 +78,7 @@ MISTAKES = (
     ("from = 5", "from = 0", "15: flow.0 goes from n0 to n0; name two nodes"),
     ("from = 5", "from = 5\npairs = 2", '17: flow.0.pairs goes with from = "random"'),
     ("from = 5", 'from = "random"\npairs = 12', "but only 11 nodes can be drawn"),
-    ("from = 5", "from = 5\nbytes = 91", "17: flow.0.bytes must be"),
+    ("from = 5", "from = 5\nbytes = 1164", "17: flow.0.bytes must be"),
     ("from = 5", "from = 5\nevery_s = 1\nrate_hz = 1", "18: flow.0.every_s and rate_hz say the"),
     ("from = 5", "from = 5\nevery_s = 0.0001\nstart_s = 0", "more than 500,000 messages"),
     ("at_s = 10.0", "at_s = 60.0", "20: event.0.at_s = 60 is the end of the run, so it would"),

@@ -4,6 +4,7 @@ import itertools
 
 import pytest
 
+from innervate.networks.mesh.analysis import network
 from innervate.networks.mesh.protocol.constants import (
     DATA,
     GRAPH,
@@ -14,6 +15,8 @@ from innervate.networks.mesh.protocol.constants import (
     SOURCE_ROUTE,
     TABLE,
 )
+from innervate.networks.mesh.sim.simulate import simulate
+from innervate.scenario import loads, plan
 from tests.networks.mesh.net import Net, geometric, line, ring
 
 
@@ -34,6 +37,33 @@ def test_everybody_gets_its_table_over_lossy_links(mode, mtu):
     assert not without(net)
     parts = [f for _, _, f in net.sent if f.kind == (GRAPH if mode else TABLE)]
     assert all(11 + f.path_len + f.length + 2 <= mtu for f in parts)
+
+
+def test_tables_of_more_parts_than_the_queue_has_room_for_go_on():
+    """Once they waited for an ack that nobody owed: two such tables at once held up all others."""
+    net = Net(30, geometric(30, 5, 3), mtu=44, queue=6)
+    net.run(5_000_000)
+    assert not without(net)
+    assert max(part_count(f) for _, _, f in net.sent if f.kind == TABLE) > net.params.queue - 3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("nodes", "within_s"), [(50, 200), (120, 1200)])
+def test_everybody_gets_its_table_at_38k4(nodes, within_s):
+    for seed in range(1, 6):
+        made = plan(loads(
+            f'kind="mesh"\nnodes={nodes}\nduration_s={within_s}\nseed={seed}\n'
+            'radio.profile="38k4"\nradio.mean_degree=8'
+        ))  # fmt: skip
+        ran = simulate(made, checks=False)
+        found = network.discovery(ran, network.acked_kinds(ran.sent))
+        assert found["with_tables"] == nodes, f"seed {seed}: {found}"
+        assert found["recall"] >= 0.95, f"seed {seed}"
+
+
+def part_count(frame):
+    """Of how many a table's part is one: behind the route, the epoch and the version."""
+    return frame.body[frame.body[0] + 4] & 15
 
 
 @pytest.mark.parametrize("mode", [0, 1])

@@ -8,6 +8,7 @@ import numpy as np
 
 from innervate.export import links
 from innervate.networks.mesh import frames as mesh
+from innervate.networks.mesh.protocol.constants import MTU_MAX
 from innervate.networks.mesh.sim.simulate import simulate
 
 __all__ = ["LATE_US", "frames", "interfaces", "numbers", "refusal", "simulate"]
@@ -58,4 +59,4 @@ def _mesh_frame(given: Any) -> bytes:
     for name in _Record.__slots__:
         value = given[name]
         setattr(record, name, value.tolist() if value.ndim else int(value))
-    return mesh.encode(record)
+    return mesh.encode(record, MTU_MAX)

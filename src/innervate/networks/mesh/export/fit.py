@@ -17,8 +17,6 @@ from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol import fields
 from innervate.networks.mesh.scenario.profiles import PROFILES
 
-DATA_MAX = 90
-
 
 class Flow(NamedTuple):
     """Messages from one node to another."""
@@ -38,11 +36,13 @@ class Mesh(Measured):
     Attributes:
         gateway: -1 nobody seen to be it.
         flows: who sends what to whom.
+        longest: of all frames, bytes.
     """
 
     kind: str = "mesh"
     gateway: int = -1
     flows: list[Flow] = field(default_factory=list)
+    longest: int = 0
 
 
 class Reader(measure.Reader):
@@ -52,7 +52,7 @@ class Reader(measure.Reader):
 
     def __init__(self, path: Path, capture: Capture) -> None:
         super().__init__(Mesh(), path, capture)
-        self.frame = plain.make("Frame", fields.FRAME)()
+        self.frame = plain.make("Frame", fields.frame(const.MTU_MAX))()
         self.data, self.answer = b"", -1  # what was decoded last, into the frame
         self.there: dict[str, int] = {}  # address: node
         self.sent: dict[tuple[int, int], dict[int, tuple[int, int]]] = {}
@@ -68,10 +68,12 @@ class Reader(measure.Reader):
         if place.here:
             self.there[place.here] = place.number
         if packet.data != self.data:  # one frame comes in at many
-            self.data, self.answer = packet.data, frames.decode(packet.data, self.frame)
+            self.data = packet.data
+            self.answer = frames.decode(packet.data, self.frame, const.MTU_MAX)
         if self.answer != frames.OK:
             return
         sender = self.frame.link_src
+        self.found.longest = max(self.found.longest, len(packet.data))
         if packet.flags & pcapng.OUTBOUND:
             if packet.comment:  # onto a cable that is cut
                 return
@@ -125,6 +127,10 @@ def tables_of(found: Any) -> dict[str, Any]:
     ]
     tables: dict[str, Any] = {"node": [{"name": f"n{node}"} for node in nodes], "link": links}
     tables["radio"] = {"profile": profile_of(found)}
+    mtu = const.MTU
+    if found.longest > mtu:
+        mtu = const.MTU_MAX
+        tables["radio"], tables["protocol"] = {"profile": "ip"}, {"mtu": mtu}
     if found.gateway in number:
         tables["gateway"] = f"n{found.gateway}"
     flows = []
@@ -133,7 +139,7 @@ def tables_of(found: Any) -> dict[str, Any]:
         if dest is None and flow.dest not in number:
             continue
         one = {"from": f"n{flow.origin}", "to": dest or f"n{flow.dest}"}
-        one |= {"bytes": min(flow.size, DATA_MAX), "count": flow.messages}
+        one |= {"bytes": min(flow.size, const.DATA_MAX + mtu - const.MTU), "count": flow.messages}
         flows.append(one | {"every_s": round(max(flow.every_s, 0.0001), 4),
                             "start_s": round(flow.first_s, 3)})  # fmt: skip
     tables["flow"] = flows

@@ -153,13 +153,14 @@ def job_due(node, gate, params, now, s):
 
 
 def queue_parts(node, gate, params, now, s, out):
-    """Queue those parts for node s that are still missing there, as far as there is room."""
+    """Queue those parts for node s that are still missing there; without room, a little later."""
     for _ in range(PARTS_MAX):
         index = gate.job_next[s]
         if index >= gate.job_count[s]:
             return
         if gate.job_parts[s] >> index & 1 == 0:
             if free_places(node) <= PLACES_RESERVED:
+                gate.job_due[s] = (now + (params.job_us >> 4)) & MASK30
                 return
             queue_part(node, gate, params, now, s, index, out)
             gate.job_due[s] = job_due(node, gate, params, now, s)
@@ -226,10 +227,12 @@ def on_ack(node, gate, params, now, frame, out):
 def retry_jobs(node, gate, params, now, out):
     """The JOBS timer: what was not acknowledged in time is sent again, or given up.
 
-    A flood of the graph that only waited for room goes on.
+    What only waited for room goes on.
     """
     for s in range(params.nodes):
-        waits = params.mode == WHOLE_GRAPH and is_unasked(gate, s)
+        waits = gate.job_next[s] < gate.job_count[s]
+        if params.mode == WHOLE_GRAPH:
+            waits = is_unasked(gate, s)
         if gate.job[s] == UNDER_WAY and after(now, gate.job_due[s]) and not waits:
             gate.job_tries[s] = gate.job_tries[s] + 1
             gate.job_next[s] = 0

@@ -121,7 +121,7 @@ class FlowTable(keys.Table, frozen=True, kw_only=True):
     rate_hz: Rate | None = None
     jitter_s: Seconds = 0.0
     count: Annotated[int, keys.whole("messages", 1, 2_000_000)] | None = None
-    bytes: Annotated[int, keys.whole("bytes", 0, 90)] = 16
+    bytes: Annotated[int, keys.whole("bytes", 0, 1163)] = 16
     start_s: Seconds | None = None
     stop_s: Seconds | None = None
     reliable: bool | None = None

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
-from innervate.networks.mesh.protocol.constants import ALL, MONITOR, WHOLE_GRAPH
+from innervate.networks.mesh.protocol import table
+from innervate.networks.mesh.protocol.constants import ALL, MONITOR, MTU, PARTS_MAX, WHOLE_GRAPH
 from innervate.networks.mesh.scenario import events as mesh_events
 from innervate.networks.mesh.scenario import fence as mesh_fence
 from innervate.networks.mesh.scenario import robots as mesh_robots
@@ -12,7 +14,7 @@ from innervate.networks.mesh.scenario import traffic as mesh_traffic
 from innervate.networks.mesh.scenario.access import access, suited
 from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.networks.mesh.scenario.network import Network, linked, placed
-from innervate.networks.mesh.scenario.nodes import Nodes, nodes_of
+from innervate.networks.mesh.scenario.nodes import NODES_MAX, Nodes, nodes_of
 from innervate.networks.mesh.scenario.params import parameters
 from innervate.networks.mesh.scenario.plan import MeshPlan
 from innervate.networks.mesh.scenario.profiles import Profile, profile_of
@@ -20,7 +22,7 @@ from innervate.topology.placement import neighbours
 from innervate.trace.streams import stream
 
 START_US = 100_000  # nodes are switched on within this time, the gateway right after it
-GRAPH_NODES_MAX = {64: 85, 127: 145}  # a flooded graph has 15 fragments [mesh 8.1]
+GRAPH_NODES_MAX = {64: 85, MTU: 145}  # by the bytes of a radio's frame
 
 
 def plan(scenario: Any) -> MeshPlan:
@@ -146,7 +148,13 @@ def _parameters(
         key, _, message = str(error).partition(":")
         raise source.error(("protocol", key), message) from None
     params["standby"] = int(len(model.standby) > 0)
-    most = GRAPH_NODES_MAX[params["mtu"]]
+    if params["mtu"] not in GRAPH_NODES_MAX and model.radio.profile != "ip":
+        raise source.error(
+            ("protocol", "mtu"),
+            f"protocol.mtu = {params['mtu']}, but a frame on the air has 64 or {MTU} bytes; longer "
+            'ones need cables: radio.profile = "ip"',
+        )
+    most = graph_nodes_max(params)
     if params["mode"] == WHOLE_GRAPH and count > most:
         raise source.error(
             ("protocol", "failover"),
@@ -154,3 +162,15 @@ def _parameters(
             f'an MTU of {params["mtu"]}, not {count}; use "search", or protocol.tables = false',
         )
     return params
+
+
+def graph_nodes_max(params: dict[str, Any]) -> int:
+    """How many nodes a flooded graph holds: by the document on radios [mesh 8.1], else by room."""
+
+    def parts(nodes: int) -> int:
+        return int(
+            table.part_count(SimpleNamespace(mtu=params["mtu"], nodes=nodes, mode=WHOLE_GRAPH))
+        )
+
+    by_room = (nodes for nodes in range(NODES_MAX, 0, -1) if parts(nodes) <= PARTS_MAX)
+    return GRAPH_NODES_MAX.get(params["mtu"]) or next(by_room)

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from msgspec import Meta
-
+from innervate.networks.mesh.protocol.constants import MTU_MAX
 from innervate.scenario import keys
 
 Wait = Annotated[float, keys.above_0("seconds", 268)]
@@ -28,7 +27,7 @@ class MeshProtocolTable(keys.Table, frozen=True, kw_only=True):
     retry: bool = True
     reliable: bool = True
     activation: bool = False
-    mtu: Annotated[Literal[64, 127], Meta(description="64 or 127 bytes")] | None = None
+    mtu: Annotated[int, keys.whole("bytes", 64, MTU_MAX)] | None = None
     transmissions: Annotated[int, keys.whole("tries", 1, 15)] | None = None
     hop_acks: bool | None = None
     ack_us: Annotated[int, keys.whole("microseconds", 1, limit=16_777_215)] | None = None

@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from innervate.networks.mesh.protocol.constants import ALL, END_TO_END, MONITOR, PRIORITY
+from innervate.networks.mesh.protocol.constants import (
+    ALL,
+    CRC_BYTES,
+    END_TO_END,
+    HEADER_BYTES,
+    MONITOR,
+    PATH_MAX,
+    PRIORITY,
+)
 from innervate.networks.mesh.scenario.model import FlowTable, MeshScenario
 from innervate.networks.mesh.scenario.nodes import Nodes
 from innervate.networks.mesh.scenario.plan import Offer
@@ -10,7 +18,6 @@ from innervate.networks.radio.scenario.traffic import exponential
 from innervate.trace.streams import Stream, stream
 
 OFFERS_MAX = 500_000
-DATA_MAX = {64: 27, 127: 90}
 
 Pair = tuple[int, int]
 
@@ -89,16 +96,17 @@ def offers(
         flows: what pairs() found.
         settled_s: flows that do not say when start then.
         duration_us: the run's length; nothing is offered later.
-        mtu: 64 or 127 bytes.
+        mtu: of a frame, bytes.
 
     Raises:
         ScenarioError: longer than a frame, or more than can be kept.
     """
     found: list[tuple[int, int, int, Offer]] = []
     for index, flow in enumerate(model.flow):
-        if flow.bytes > DATA_MAX[mtu]:
+        most = mtu - HEADER_BYTES - CRC_BYTES - PATH_MAX
+        if flow.bytes > most:
             message = f"flow.{index}.bytes = {flow.bytes}, but at an MTU of {mtu} it is at most"
-            raise nodes.source.error(("flow", index, "bytes"), f"{message} {DATA_MAX[mtu]}")
+            raise nodes.source.error(("flow", index, "bytes"), f"{message} {most}")
         for place, (node, dest) in enumerate(flows[index]):
             draw = stream(model.seed, f"flow/{index}/{place}")
             flags = _flags(model, flow, dest)

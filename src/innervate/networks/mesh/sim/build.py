@@ -11,6 +11,7 @@ from innervate.kernel import records
 from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import csma_fields
 from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.mesh.protocol.constants import MTU
 from innervate.networks.mesh.sim import channel, recorder
 from innervate.networks.mesh.sim import world as m
 from innervate.networks.mesh.sim.over_channel import KEPT
@@ -36,7 +37,9 @@ def build(plan: Any, plain: bool, **kept: bool) -> m.World:
     """The world of a plan, before its first event; `kept` as in `sim.recorded`."""
     tables, asked = Tables(plain, np.int64), Recorded(**kept)
     n = plan.nodes
-    fields = mesh_fields.node(plan.capacity)
+    mtu = plan.params["mtu"]
+    fields = mesh_fields.node(plan.capacity, mtu=mtu)
+    frame = mesh_fields.frame(mtu)
     nodes = tables.states(fields, n + 1)
     low, high = records.bounds(fields)
     heap = Heap(tables.numbers(128 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64))
@@ -56,13 +59,13 @@ def build(plan: Any, plain: bool, **kept: bool) -> m.World:
         due=tables.numbers(n * m.TIMERS, NEVER, np.int64),
         **_gates(tables, plan),
         **_access(tables, n),
-        **_medium(tables, plan),
+        **_medium(tables, plan, frame),
         **_script(tables, plan),
-        item=tables.states(mesh_fields.ITEM, 1),
-        out=tables.outbox(OUTBOX, mesh_fields.FRAME, ACTION),
+        item=tables.states(mesh_fields.item(mtu), 1),
+        out=tables.outbox(OUTBOX, frame, ACTION),
         duplicate_key=tables.numbers(DUPLICATES, 0, np.int64),
         duplicate_at=tables.numbers(DUPLICATES, 0, np.int64),
-        **_rows(tables, n, asked),
+        **_rows(tables, n, frame, asked),
     )
     _set_limits(world, tables.rows, asked)
     _set_run(world, plan)
@@ -88,7 +91,7 @@ def _access(tables: Tables, nodes: int) -> dict[str, Any]:
     }
 
 
-def _rows(tables: Tables, nodes: int, asked: Recorded) -> dict[str, Any]:
+def _rows(tables: Tables, nodes: int, frame: Any, asked: Recorded) -> dict[str, Any]:
     """Tables of what is kept, with room for what one event can add."""
     room, margin = tables.rows, _margin(nodes)
     kept = room + margin if asked.observe else 1
@@ -99,7 +102,7 @@ def _rows(tables: Tables, nodes: int, asked: Recorded) -> dict[str, Any]:
         **{name: tables.records(names[name], kept, True, m.WIDE) for name in names},
         "trail": tables.records(m.TRAIL, trail, True, m.WIDE),
         "taps": tables.records(TAP, tapped, True, m.WIDE),
-        "tapped": tables.states(mesh_fields.FRAME, tapped),
+        "tapped": tables.states(frame, tapped),
     }
 
 
@@ -128,7 +131,7 @@ def _margin(nodes: int) -> int:
     return (nodes + 1) * (OUTBOX + 1)
 
 
-def _medium(tables: Tables, plan: Any) -> dict[str, Any]:
+def _medium(tables: Tables, plan: Any, frame: Any) -> dict[str, Any]:
     """Tables of the ideal or fading medium: frames in the air, powers between nodes."""
     n, radio = plan.nodes, plan.radio
     places = min(PLACES_PER_NODE * n + 64, queue.PLACES_MAX)
@@ -151,7 +154,7 @@ def _medium(tables: Tables, plan: Any) -> dict[str, Any]:
         "losses": tables.given(powers.loss_table(radio.exponent_c)),
         "chances": tables.given(powers.chance_table()),
         "air": tables.records(m.AIR, places, wide=m.AIR),
-        "frames": tables.states(mesh_fields.FRAME, places, FRAME_BYTES),
+        "frames": tables.states(frame, places, FRAME_BYTES if plan.params["mtu"] <= MTU else 0),
         "worst": tables.numbers(places * n, 0, np.int64),
         "on_air": tables.numbers(places),
         "free": tables.given(range(places - 1, -1, -1)),

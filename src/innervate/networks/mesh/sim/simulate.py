@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 from innervate.kernel import compilation
 from innervate.networks.mesh.protocol import csma
 from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.mesh.protocol.constants import MTU
 from innervate.networks.mesh.sim import build as builder
 from innervate.networks.mesh.sim import (
     channel,
@@ -196,7 +197,7 @@ def simulation(
     _check_mac(plan.mac)
     router = entry or stacks.mesh()
     if plain:
-        fields = mesh_fields.node(plan.capacity)
+        fields = mesh_fields.node(plan.capacity, mtu=plan.params["mtu"])
         advance = loop.bind(stacks.plain(router, _plain_layer(plan.mac), fields, through))
     else:
         advance = compiled_loop(router, plan.mac)
@@ -216,7 +217,8 @@ def loop_name(plan: Any) -> str:
     """Which loop a plan runs on, for `kernel.compilation.is_compiled`."""
     access = radio_stacks.PROTOCOLS.get(plan.mac)
     below = f"-{access.entry.__name__.rpartition('.')[2]}" if access else ""
-    return f"mesh-{plan.capacity}{below}"
+    longer = f"-{plan.params['mtu']}" if plan.params["mtu"] > MTU else ""
+    return f"mesh-{plan.capacity}{longer}{below}"
 
 
 def _plain_layer(mac: str) -> stacks.Layer:
