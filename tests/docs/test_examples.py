@@ -111,7 +111,7 @@ def test_which_medium_access(monkeypatch, capsys):
 
 def test_standby_or_posts(monkeypatch, capsys, tmp_path):
     monkeypatch.chdir(tmp_path)
-    lines = run_script("standby_or_posts.py", monkeypatch, capsys, "2")
+    lines = run_script("standby_or_posts.py", monkeypatch, capsys, "1")
     rows = [line.split("dead", 1)[1] for line in lines if line[:3].strip().isdigit()
             and "posts" not in line]  # fmt: skip
     shares = [[float(cell.split()[-1]) for cell in row.split("%")[:-1]] for row in rows]

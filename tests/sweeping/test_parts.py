@@ -78,7 +78,7 @@ def test_a_summary_as_a_row():
 def test_a_terminal_shows_a_table_with_the_means(four):
     above, below = pty.openpty()
     command = [sys.executable, "-m", "innervate.cli", "sweep", "four.toml", "--vary",
-               "protocol.k=2,4", "--repeat", "60", "--workers", "1"]  # fmt: skip
+               "protocol.k=2,4", "--repeat", "20", "--workers", "1"]  # fmt: skip
     size = {"COLUMNS": "120", "LINES": "30", "TERM": "xterm"}
     process = subprocess.Popen(command, cwd=four.parent, env=environment() | size, stderr=below,
                                stdout=subprocess.PIPE, text=True)  # fmt: skip
@@ -96,8 +96,8 @@ def test_a_terminal_shows_a_table_with_the_means(four):
     out, _ = process.communicate(timeout=TIMEOUT_S)
     text = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", shown.decode())
     assert process.returncode == 0
-    assert "four: 120 of 120 runs done" in text
-    assert re.search(r"protocol\.k=2 +60/60 done +[\d.]+ \+- [\d.]+", text)
+    assert "four: 40 of 40 runs done" in text
+    assert re.search(r"protocol\.k=2 +20/20 done +[\d.]+ \+- [\d.]+", text)
     assert "Written: sweeps/four/results.parquet" in out
 
 

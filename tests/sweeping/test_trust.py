@@ -14,11 +14,12 @@ import pytest
 import innervate
 from innervate.sweeping import scheduler as conduct
 from innervate.sweeping.engines import Here
-from tests.sweeping.conftest import TIMEOUT_S, start, until
+from tests.sweeping.conftest import FOUR, TIMEOUT_S, start, until
 
 VARY = {"protocol.beacon_hz": [100, 250], "protocol.k": "2..4"}
 COMMAND = ("sweep", "four.toml", "--vary", "protocol.beacon_hz=100,250", "--vary",
            "protocol.k=2..4")  # fmt: skip
+RULES = {"until": "recoveries.routed_ms.ci=8%", "repeat": 24, "batch": 6}
 REPEATS = 40
 STARTS_MAX = 12  # the first ones can be killed before anything is done
 KILLS = 2  # the second comes to what was left by one
@@ -26,6 +27,15 @@ KILLS = 2  # the second comes to what was left by one
 
 def table(folder):
     return (Path(folder) / "results.parquet").read_bytes()
+
+
+@pytest.fixture(scope="module")
+def one(tmp_path_factory):
+    """The table of one worker: its bytes do not say in which folder it was made."""
+    folder = tmp_path_factory.mktemp("one")
+    (folder / "four.toml").write_text(FOUR)
+    innervate.sweep(folder / "four.toml", vary=VARY, out=folder / "out", workers=1, **RULES)
+    return table(folder / "out")
 
 
 def stored(folder):
@@ -39,11 +49,9 @@ def stored(folder):
 @pytest.mark.parametrize("how", [
     {"workers": 2}, {"workers": 3, "kind": "threads"}, {"kind": "here"},
 ], ids=["processes", "threads", "here"])  # fmt: skip
-def test_every_engine_gives_the_same_bytes(four, how):
-    rules = {"until": "recoveries.routed_ms.ci=8%", "repeat": 24, "batch": 6}
-    innervate.sweep(four, vary=VARY, out="one", workers=1, **rules)
-    innervate.sweep(four, vary=VARY, out="other", **how, **rules)
-    assert table("one") == table("other")
+def test_every_engine_gives_the_same_bytes(one, four, how):
+    innervate.sweep(four, vary=VARY, out="other", **how, **RULES)
+    assert table("other") == one
 
 
 class Later(Future):
@@ -76,10 +84,7 @@ class Shuffled(Here):
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
 @pytest.mark.few(1)
-def test_any_order_gives_the_same_bytes(four, seed, monkeypatch):
-    rules = {"until": "recoveries.routed_ms.ci=8%", "repeat": 24, "batch": 6}
-    innervate.sweep(four, vary=VARY, out="one", workers=1, **rules)
-
+def test_any_order_gives_the_same_bytes(one, four, seed, monkeypatch):
     made = Shuffled(seed)
 
     def settle(futures, **_):
@@ -90,8 +95,8 @@ def test_any_order_gives_the_same_bytes(four, seed, monkeypatch):
         import_module("innervate.sweeping.sweep"), "engine", lambda *_: nullcontext(made)
     )
     monkeypatch.setattr(conduct, "wait", settle)
-    innervate.sweep(four, vary=VARY, out="other", **rules)
-    assert table("one") == table("other")
+    innervate.sweep(four, vary=VARY, out="other", **RULES)
+    assert table("other") == one
 
 
 def test_kill_9_at_any_moment_loses_nothing_and_does_nothing_twice(four):

@@ -123,11 +123,13 @@ def save(made: Figure, folder: str | os.PathLike[str], name: str) -> list[Path]:
     """Write `name`.png and `name`.svg, the same bytes for the same figure; their paths."""
     paths = [Path(folder) / f"{name}.{kind}" for kind in ("png", "svg")]
     layout = made.get_layout_engine()
+    if layout is not None:
+        layout.execute(made)
+    made.set_layout_engine(None)  # saving would lay it out anew each time, and draw it once more
     for path in paths:
         fresh = path.with_name(path.name + ".part")
         metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
         made.savefig(fresh, format=path.suffix[1:], metadata=metadata)
         fresh.replace(path)
-        made.set_layout_engine(None)  # the second has its parts where the first has them
     made.set_layout_engine(layout)
     return paths

@@ -78,6 +78,21 @@ def test_the_overlap_check_can_fail():
         assert overlapping(figure) == [("other", "one")]
 
 
+def test_a_saved_figure_is_laid_out_as_a_shown_one(tmp_path):
+    def drawn():
+        figure, (ax,) = style.panels(2, 2)
+        ax.set(xlabel="time", ylabel="load")
+        return figure, ax
+
+    with style.house():
+        (saved, ours), (shown, theirs) = drawn(), drawn()
+        before = ours.get_position().bounds
+        style.save(saved, tmp_path, "one")
+        shown.draw_without_rendering()
+    assert ours.get_position().bounds == theirs.get_position().bounds != before
+    assert saved.get_layout_engine() is not None
+
+
 @pytest.mark.parametrize("name", CHEAP)
 def test_every_claim_is_whole(made, name):
     for claim in made.claims[name]:
