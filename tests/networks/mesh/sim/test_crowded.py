@@ -30,6 +30,8 @@ from innervate.networks.mesh.protocol.duplicates import (
     UNREACHABLE,
     accept,
     clear_bad,
+    forgive,
+    is_bad,
     is_unreachable,
     mark_bad,
 )
@@ -155,6 +157,28 @@ def test_new_tables_give_hope_for_whom_they_know(mode, left_out, kept):
     mark_bad(node, UNREACHABLE, 2)
     clear_bad(node, bench.params)
     assert is_unreachable(node, 2) == kept
+
+
+def test_a_new_round_asks_again_who_gave_packets_back_but_not_for_whom_nobody_reaches():
+    """Else, where links lose much and no table changes, ever more good neighbours came last."""
+    bench = settled(3, LINE)
+    node = bench.nodes[0]
+    mark_bad(node, 1, 2)
+    mark_bad(node, UNREACHABLE, 2)
+    round = node.round
+    bench.run(bench.now + 1_000_000)
+    assert (node.round, is_bad(node, 1, 2)) == (round, 1)
+    bench.run(bench.now + 20_000_000)
+    assert node.round != round
+    assert is_bad(node, 1, 2) == 0
+
+
+@pytest.mark.parametrize("who", [1, UNREACHABLE])
+def test_forgiven_is_who_is_somebody(who):
+    node = settled(3, LINE).nodes[0]
+    mark_bad(node, who, 2)
+    forgive(node)
+    assert is_bad(node, who, 2) == (who == UNREACHABLE)
 
 
 def test_despair_fades_once_there_is_nobody_to_despair_of():

@@ -227,6 +227,17 @@ def retry_unreachable(node):
         node.search_backoff = max(node.search_backoff - 1, 0)
 
 
+def forgive(node):
+    """A new round: whoever gave packets back may lead on now, even where no table changes.
+
+    Where links lose much a packet comes back from good neighbours, too, one by one; without new
+    tables they would never be asked first again.
+    """
+    for k in range(SKIPS):
+        if node.bad_neighbour[k] != UNREACHABLE:
+            node.bad_neighbour[k] = ALL
+
+
 def clear_bad(node, params):
     """New tables: whoever gave packets back may know a way now, but not to whom they leave out."""
     for k in range(SKIPS):

@@ -15,6 +15,7 @@ from innervate.networks.mesh.protocol.constants import (
     TABLE_FREE,
     WHOLE_GRAPH,
 )
+from innervate.networks.mesh.protocol.duplicates import forgive
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16
 from innervate.networks.mesh.protocol.jobs import give_jobs, install_own, note_lost_table, pump
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
@@ -98,6 +99,7 @@ def start_round(node, gate, params, now, out):
     node.depth = 1
     for k in range(params.places):
         node.round_depth[k] = UNHEARD
+    forgive(node)
     begin_round(gate, params)
     gate.wait = gate.period
     gate.step = COLLECTING

@@ -21,6 +21,7 @@ from innervate.networks.mesh.protocol.constants import (
     TABLE_FREE,
     TREE,
 )
+from innervate.networks.mesh.protocol.duplicates import forgive
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16, store
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD, place_of
 from innervate.networks.mesh.protocol.queue import NOBODY_GAVE, WAITS, compose, drop, enqueue, kick
@@ -76,6 +77,7 @@ def begin(node, params, gateway, epoch, round, out):
         node.leading = 0
     for k in range(params.places):
         node.round_depth[k] = UNHEARD
+    forgive(node)
 
 
 def on_request(node, params, now, frame, k, out):
