@@ -107,6 +107,16 @@ def test_compiled_equals_plain(plan):
     check(hurried(plan), simulate)
 
 
+def test_what_a_node_says_to_itself_is_none_of_what_it_numbers():
+    """A message to oneself has its handle for a number, which an alarm of its own may have, too."""
+    walk = Walk(0, ((0, 0, 0), (END_US // 2, 900, 400), (END_US, 900, -100)))
+    places = {"positions_cm": [(2244, 2604)], "robots": [1], "walks": [walk]}
+    plan = mesh_plan(1, radio(1, {}, ONE), duration_s=END_US / 1e6, seed=0, starts_us=[0], **places)
+    plan.offers = [Offer(0, 0, dest, 0, 0, 0) for dest in (255, 0)]
+    found = simulate(hurried(plan), plain=True)
+    assert found.delivered["seq"].tolist() == [1, 1, 2]
+
+
 def test_compiled_equals_plain_where_there_is_much_traffic():
     n = 12
     offers = [(1_000 + 3_000 * k, k % n, 255, k % 60) for k in range(90)]

@@ -49,9 +49,12 @@ def tap(world, place, at, time, out, why):
 
 
 def record_delivered(world, node, frame, time):
-    """A row of what a node's user was given, and: never the same twice."""
+    """A row of what a node's user was given, and: never the same twice.
+
+    What a node says to itself is on no path, and has its handle for a number.
+    """
     run = world.run[0]
-    if run.checks and frame.origin < run.nodes:
+    if run.checks and frame.origin < run.nodes and frame.path_len > 0:
         check_once(world, node, frame, time)
     if run.delivered_limit > 0:
         row = world.delivered[run.delivered]
