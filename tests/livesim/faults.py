@@ -116,7 +116,7 @@ FAULTS = (
           {"sealed": True, "serial": False, "hurts": ("replays", "doubled"), "storm_s": 60},
           "skin"),
     Fault("a node's timers are late by a second", LIVE + "engine",
-          "wait = max(0, soonest - now) / 1e6", "wait = 1.0 + max(0, soonest - now) / 1e6", {}),
+          "wait = (soonest - now) / 1e6", "wait = 1.0 + (soonest - now) / 1e6", {}),
     Fault("a station's frame is taken twice", LIVE + "on_air",
           "            self.engine.receive(0, at)\n",
           "            self.engine.receive(0, at)\n            self.engine.receive(0, at)\n", {},

@@ -9,7 +9,6 @@ from __future__ import annotations
 import ast
 import importlib
 import inspect
-from functools import cache
 from types import ModuleType
 
 # (old, new): a text that stands once in the sources, and what is read in its place.
@@ -66,20 +65,14 @@ def functions(*entries: str, change: Change | None = None) -> dict[str, Function
         if change is not None:
             changed += text.count(change[0])
             text = text.replace(*change)
-        for node in _parsed(text):
-            if (module.__name__, node.name) in wanted:
+        for node in ast.parse(text).body:
+            if isinstance(node, ast.FunctionDef) and (module.__name__, node.name) in wanted:
                 made = Function(names[module.__name__, node.name], node, module)
                 made.calls = _calls(module, names)
                 found[made.name] = made
     if change is not None and changed != 1:
         raise ValueError(f"{change[0]!r} stands {changed} times in {', '.join(entries)}")
     return found
-
-
-@cache
-def _parsed(text: str) -> list[ast.FunctionDef]:
-    """The functions of a source: the same nodes to all who ask, and nobody changes them."""
-    return [node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef)]
 
 
 def reached(entry: str) -> list[ModuleType]:

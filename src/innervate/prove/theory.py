@@ -6,6 +6,7 @@ import ast
 import inspect
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 from innervate.dialect.source import Change, Function, functions, reached
@@ -53,14 +54,15 @@ def source(entry: str, change: Change | None) -> Source:
     found: dict[str, Function] = functions(entry, change=planted)
     if planted is None:
         return Source(found, frozenset())
-    shipped = {name: one.node for name, one in functions(entry).items()}
-    changed = (name for name, one in found.items() if _differs(one.node, shipped.get(name)))
+    shipped = _texts(entry)
+    changed = (name for name, one in found.items() if ast.dump(one.node) != shipped.get(name))
     return Source(found, frozenset(changed))
 
 
-def _differs(node: ast.FunctionDef, other: ast.FunctionDef | None) -> bool:
-    """True if a function says something else than another, wherever the two stand."""
-    return node is not other and (other is None or ast.dump(node) != ast.dump(other))
+@cache
+def _texts(entry: str) -> dict[str, str]:
+    """What every function of a protocol says as it is shipped."""
+    return {name: ast.dump(one.node) for name, one in functions(entry).items()}
 
 
 def is_touched(step: Step) -> bool:
