@@ -1,7 +1,7 @@
 # Everything by one word; each target sets up what it needs, in .venv, by itself.
 #
 #   make demo     the main job: a skin, a cut cable, the recovery
-#   make test     the tests in small sizes (8 to 10 minutes)    make full    all of them (long)
+#   make test     the tests in small sizes (7 to 9 minutes)     make full    all of them (long)
 #   make lint     style, types, import walls             make bench   how fast it is
 #   make papers   the published figures, redrawn         make parity  the same code on boards' Python
 #   make mutants  faults planted all over, and how many the tests find (long)
@@ -21,8 +21,8 @@ WORKERS ?= 2
 # Tests start hundreds of processes: to translate the sources anew takes up to a second in each.
 unexport PYTHONDONTWRITEBYTECODE
 
-# One worker more than there are processors: tests that wait leave theirs to others.
-PYTEST = $(BIN)/python -m pytest -n $$(( $(WORKERS) + 1 )) --dist worksteal
+# Two workers more than there are processors: tests that wait leave theirs to others.
+PYTEST = $(BIN)/python -m pytest -n $$(( $(WORKERS) + 2 )) --dist worksteal
 
 # What many tests run is compiled before they start, where it is not compiled yet.
 COMPILE = $(BIN)/python -m tests.loops $(WORKERS)

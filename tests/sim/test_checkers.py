@@ -86,15 +86,16 @@ def test_data_begins_where_the_data_before_it_has_ended(time, kind, exclusive, f
 FORGET_US = 1000
 
 
-def delivered(*deliveries, boots=((0, 0, 0),)):
-    """What is found of deliveries (receiver, origin, number, time)."""
+def delivered(*deliveries, boots=((0, 0, 0),), hops=1):
+    """What is found of deliveries (receiver, origin, number, time) over so many hops."""
     run = SimpleNamespace(nodes=3, broken=0, broken_node=-1, duplicates=0, forget=FORGET_US,
                           checks=1, delivered_limit=0)  # fmt: skip
     world = SimpleNamespace(run=[run], duplicate_key=[0] * 16, duplicate_at=[0] * 16, radios=[])
     for k, (node, origin, seq, time) in enumerate(deliveries):
         now = boots[min(k, len(boots) - 1)]
         world.radios = [SimpleNamespace(boots=count) for count in now]
-        mesh.record_delivered(world, node, SimpleNamespace(origin=origin, seq=seq), time)
+        frame = SimpleNamespace(origin=origin, seq=seq, path_len=hops)
+        mesh.record_delivered(world, node, frame, time)
     return (run.broken, run.broken_node)
 
 
@@ -112,6 +113,10 @@ TWICE = (mesh.BROKEN_TWICE, 1)
 )  # fmt: skip
 def test_a_packet_that_is_delivered_again_is_found(again, found):
     assert delivered((1, 2, 7, 500), again) == found
+
+
+def test_what_a_node_says_to_itself_is_on_no_path_and_none_of_them():
+    assert delivered((1, 1, 7, 500), (1, 1, 7, 900), hops=0) == (0, -1)
 
 
 def test_a_packet_that_keeps_coming_is_found_each_time_since_the_last():
