@@ -32,7 +32,7 @@ TUNED = {
 # pass on meets at it: they have to take their time, and tables do not get through.
 CROWD = 120  # nodes
 CROWD_TUNED = {
-    **TUNED, "transmissions": 5, "jitter_s": 1.0, "listen_s": 3.0, "spread_s": 3.0,
+    **TUNED, "transmissions": 3, "jitter_s": 1.0, "listen_s": 3.0, "spread_s": 3.0,
     "collect_s": 9.0, "period_s": 20.0, "tables": False,
 }  # fmt: skip
 
