@@ -36,6 +36,7 @@ def test_its_nodes_show_what_they_declare(source):
     assert state["headline"]["level"] == "ok"
 
 
+@pytest.mark.flaky(reruns=1)  # a page stops advancing when its turn of wall time is over
 def test_its_cables_are_cut_and_its_nodes_switched_off(source):
     source.do(Cut(0))
     assert source.fields()["link_up"].tolist() == [0, 1, 1, 1, 1, 1]
