@@ -231,8 +231,7 @@ class Simulated(Source):
         at_us = self.engine.next_us()
         if at_us is None or at_us >= self.plan.duration_us or self.at_end:
             raise Refused("nothing more happens")
-        self._advance(at_us + 1)
-        self.playback.start_from(self.engine.now_us)
+        self._pass(at_us)
 
     def _change(self, command: Command) -> None:
         """Something is done to the network, now."""
@@ -241,5 +240,10 @@ class Simulated(Source):
         at_us = self.engine.earliest_us
         self.view.apply(command)
         self._marks = [kept for kept in self._marks if kept.engine.now_us <= at_us]
-        self._advance(at_us + 1)
+        self._pass(at_us)
+
+    def _pass(self, at_us: int) -> None:
+        """Go on until all of that moment has happened, in however many slices; stay there."""
+        while self.engine.now_us <= at_us and not self.at_end:
+            self._advance(at_us + 1)
         self.playback.start_from(self.engine.now_us)
