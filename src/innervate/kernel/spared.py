@@ -14,7 +14,6 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from functools import cache
 from typing import Any
-from unittest.mock import patch
 
 from llvmlite.binding import ffi
 from numba.core import compiler_machinery, errors, event, ir, itanium_mangler
@@ -32,7 +31,8 @@ def spared() -> Iterator[None]:
     with ExitStack() as until_compiled:
         for owner, name, instead in _instead():
             if hasattr(owner, name):
-                until_compiled.enter_context(patch.object(owner, name, instead))
+                until_compiled.callback(setattr, owner, name, getattr(owner, name))
+                setattr(owner, name, instead)
         yield
 
 
