@@ -28,7 +28,7 @@ def up(file: str, options: UpOptions) -> int:
     if not options.firmware:
         if options.in_python:
             raise errors.UserError("--in-python says who stays in Python beside --firmware")
-        way = room.Way(options.folder, options.cables, options.keys, {}, options.engine or "")
+        way = room.Way(options.folder, options.cables, options.keys, engine=options.engine or "")
         return asyncio.run(room.run(plan, way, text, options.for_s, options.json))
     from innervate.firmware import patch
 

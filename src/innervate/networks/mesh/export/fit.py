@@ -16,6 +16,7 @@ from innervate.networks.mesh import frames
 from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol import fields
 from innervate.networks.mesh.scenario.profiles import PROFILES
+from innervate.networks.mesh.scenario.traffic import payload_max
 
 
 class Flow(NamedTuple):
@@ -139,7 +140,7 @@ def tables_of(found: Any) -> dict[str, Any]:
         if dest is None and flow.dest not in number:
             continue
         one = {"from": f"n{flow.origin}", "to": dest or f"n{flow.dest}"}
-        one |= {"bytes": min(flow.size, const.DATA_MAX + mtu - const.MTU), "count": flow.messages}
+        one |= {"bytes": min(flow.size, payload_max(mtu)), "count": flow.messages}
         flows.append(one | {"every_s": round(max(flow.every_s, 0.0001), 4),
                             "start_s": round(flow.first_s, 3)})  # fmt: skip
     tables["flow"] = flows

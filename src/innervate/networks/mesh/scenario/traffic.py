@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from innervate.networks.mesh.protocol.constants import (
-    ALL,
-    CRC_BYTES,
-    END_TO_END,
-    HEADER_BYTES,
-    MONITOR,
-    PATH_MAX,
-    PRIORITY,
-)
+from types import SimpleNamespace
+
+from innervate.networks.mesh.protocol.constants import ALL, END_TO_END, MONITOR, PRIORITY
+from innervate.networks.mesh.protocol.messages import payload_limit
 from innervate.networks.mesh.scenario.model import FlowTable, MeshScenario
 from innervate.networks.mesh.scenario.nodes import Nodes
 from innervate.networks.mesh.scenario.plan import Offer
@@ -103,7 +98,7 @@ def offers(
     """
     found: list[tuple[int, int, int, Offer]] = []
     for index, flow in enumerate(model.flow):
-        most = mtu - HEADER_BYTES - CRC_BYTES - PATH_MAX
+        most = payload_max(mtu)
         if flow.bytes > most:
             message = f"flow.{index}.bytes = {flow.bytes}, but at an MTU of {mtu} it is at most"
             raise nodes.source.error(("flow", index, "bytes"), f"{message} {most}")
@@ -120,6 +115,11 @@ def offers(
             found += [(at, index, place, Offer(at, node, dest, flags, flow.bytes, index))
                       for at in times]  # fmt: skip
     return [offer for *_, offer in sorted(found, key=lambda item: item[:3])]
+
+
+def payload_max(mtu: int) -> int:
+    """The longest message, in bytes, that goes in one frame."""
+    return int(payload_limit(SimpleNamespace(mtu=mtu)))
 
 
 def _flags(model: MeshScenario, flow: FlowTable, dest: int) -> int:
