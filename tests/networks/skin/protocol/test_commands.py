@@ -2,7 +2,7 @@
 
 from collections import deque
 
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from innervate.dialect import plain
@@ -111,6 +111,7 @@ def test_a_command_goes_no_further_than_a_route_can_and_not_over_a_broken_port()
     assert sorted(net.came[1:]) == [(0, 2), (2, 2)]
 
 
+@example([-1, 0], 65_513)  # a cell that was just started, and the PC's numbers near their end
 @given(st.lists(st.integers(-WINDOW + 1, WINDOW - 1), max_size=40), st.integers(0, 65_535))
 def test_a_number_counts_once_in_any_order_within_the_window(steps, start):
     cell, seen, newest = Cell(), set(), start

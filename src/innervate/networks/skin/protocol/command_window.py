@@ -12,10 +12,11 @@ WINDOW = 24
 def accept_command(cell, number):
     """1 if this command was not here before; it was from now on.
 
-    A number behind the window is no old one, none lives that long: the PC has started anew.
+    A number behind the window is no old one, none lives that long: the PC has started anew. The
+    first that a cell hears is its newest, so that one just behind it does not look like that.
     """
     behind = (cell.last_command - number) & MASK16
-    if behind < WINDOW:
+    if behind < WINDOW and cell.commands:
         bit = 1 << behind
         if cell.commands & bit:
             return False
