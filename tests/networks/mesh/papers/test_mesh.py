@@ -19,9 +19,8 @@ from innervate.networks.mesh.papers.bars import wire_bytes
 from innervate.networks.mesh.papers.testbed import GATEWAY, MeshTestbed, dying, kill, send_rounds
 from innervate.papers import main
 from innervate.papers.experiment import FAILS, HOLDS, Measured
-from innervate.plot import style
 from tests.fixtures.papers import read
-from tests.networks.skin.papers.test_figures import overlapping
+from tests.plot.labels import covered
 from tests.plot.self_contained import check_paper
 
 VERDICT = re.compile(r"holds|does not hold|holds with reading A\d+(, A\d+)*")
@@ -78,9 +77,7 @@ def test_a_figure_is_drawn(mesh_made, name):
 
 @pytest.mark.parametrize("name", FIGURES)
 def test_no_labels_overlap(mesh_made, name):
-    with style.house():
-        figure = mesh_made.experiments[name].draw(mesh_made.values, True)
-        assert overlapping(figure) == []
+    assert covered(mesh_made.folder, name) == []
 
 
 @pytest.mark.parametrize("name", FIGURES)

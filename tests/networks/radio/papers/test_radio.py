@@ -12,9 +12,8 @@ from innervate.networks.radio.papers.fairness import longest
 from innervate.papers import main
 from innervate.papers.experiment import FAILS, HOLDS
 from innervate.papers.words import spans
-from innervate.plot import style
 from tests.fixtures.papers import made_of_rows
-from tests.networks.skin.papers.test_figures import overlapping
+from tests.plot.labels import covered
 from tests.plot.self_contained import check_paper
 
 VERDICT = re.compile(r"holds|does not hold|holds with reading [QF]\d+(, [QF]\d+)*")
@@ -72,9 +71,7 @@ def test_a_figure_is_drawn(radio_made, name):
 
 @pytest.mark.parametrize("name", FIGURES)
 def test_no_labels_overlap(radio_made, name):
-    with style.house():
-        figure = radio_made.experiments[name].draw(radio_made.values, True)
-        assert overlapping(figure) == []
+    assert covered(radio_made.folder, name) == []
 
 
 @pytest.mark.parametrize("name", FIGURES)

@@ -3,13 +3,12 @@ import re
 import matplotlib.image
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
-from matplotlib.text import Text
 
 from innervate.networks.skin.papers import FIGURES, experiment
 from innervate.papers.experiment import FAILS, HOLDS, reading
 from innervate.plot import style
 from tests.fixtures.papers import CHEAP
+from tests.plot.labels import covered, noted
 from tests.plot.self_contained import check_paper
 
 VERDICT = re.compile(r"holds|does not hold|holds with reading [EF]\d+(, [EF]\d+)*")
@@ -28,54 +27,16 @@ def test_a_figure_is_drawn(made, name):
 
 @pytest.mark.parametrize("name", CHEAP)
 def test_no_labels_overlap(made, name):
-    with style.house():
-        figure = made.experiments[name].draw(made.values, True)
-        assert overlapping(figure) == []
+    assert covered(made.folder, name) == []
 
 
-def overlapping(figure):
-    """Pairs of texts that cover each other."""
-    figure.draw_without_rendering()
-    renderer = figure.canvas.get_renderer()
-    frame = figure.bbox
-    unseen = {id(label) for ax in figure.findobj(Axes) for label in outside(ax)}
-    texts = [
-        text
-        for text in figure.findobj(Text)
-        if text.get_visible() and text.get_text().strip() and id(text) not in unseen
-    ]
-    boxes = [(t.get_text(), t.get_window_extent(renderer)) for t in texts]
-    boxes = [(words, box) for words, box in boxes if box.width > 0 and frame.overlaps(box)]
-    return [
-        (first, second)
-        for i, (first, a) in enumerate(boxes)
-        for second, b in boxes[:i]
-        if shared(a, b) > 0.02 * min(a.width * a.height, b.width * b.height)
-    ]
-
-
-def outside(ax):
-    """Labels of ticks beyond the axes' limits, which are not drawn."""
-    for axis in (ax.xaxis, ax.yaxis):
-        low, high = sorted(axis.get_view_interval())
-        for tick in axis.get_major_ticks():
-            if not low <= tick.get_loc() <= high:
-                yield tick.label1
-
-
-def shared(a, b):
-    """Area that two boxes share."""
-    wide = min(a.x1, b.x1) - max(a.x0, b.x0)
-    high = min(a.y1, b.y1) - max(a.y0, b.y0)
-    return max(wide, 0) * max(high, 0)
-
-
-def test_the_overlap_check_can_fail():
-    with style.house():
+def test_the_overlap_check_can_fail(tmp_path):
+    with style.house(), noted(tmp_path):
         figure, (ax,) = style.panels(2, 2)
         ax.text(0.5, 0.5, "one")
         ax.text(0.52, 0.5, "other")
-        assert overlapping(figure) == [("other", "one")]
+        style.save(figure, tmp_path, "two")
+    assert covered(tmp_path, "two") == [["other", "one"]]
 
 
 def test_a_saved_figure_is_laid_out_as_a_shown_one(tmp_path):
