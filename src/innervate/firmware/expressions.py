@@ -178,7 +178,10 @@ class Expressions:
         Raises:
             Refused: one part changes what another one may read.
         """
-        reads, writes = [self._reads(part) for part in parts], [self._writes(p) for p in parts]
+        writes = [self._writes(part) for part in parts]
+        if not any(writes):
+            return
+        reads = [self._reads(part) for part in parts]
         for i in range(len(parts)):
             for k in range(i):
                 if writes[i] & (reads[k] | writes[k]) or writes[k] & reads[i]:

@@ -5,9 +5,14 @@ from __future__ import annotations
 import ast
 
 
+def names_in(node: ast.AST) -> set[str]:
+    """The variables that occur in there."""
+    return {inner.id for inner in ast.walk(node) if isinstance(inner, ast.Name)}
+
+
 def mentions(node: ast.AST, name: str) -> bool:
     """True if a variable occurs in there."""
-    return any(isinstance(inner, ast.Name) and inner.id == name for inner in ast.walk(node))
+    return name in names_in(node)
 
 
 def is_changed(body: list[ast.stmt], name: str) -> bool:
@@ -68,8 +73,9 @@ def declared_at(
         are declared within a statement of it.
     """
     ahead, at, inner = [], {}, {}  # type: ignore[var-annotated]
+    held = [names_in(statement) for statement in body]
     for name in names:
-        found = [statement for statement in body if mentions(statement, name)]
+        found = [statement for statement, own in zip(body, held, strict=True) if name in own]
         if not found:
             continue
         if all(_is_inside(statement, name) for statement in found):

@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 
 from innervate.firmware.expressions import BINARY, PLUS, Expressions, local
-from innervate.firmware.locals import declared_at, is_changed
+from innervate.firmware.locals import declared_at, is_changed, names_in
 from innervate.firmware.program import Type
 
 COLUMNS = 100
@@ -40,10 +40,9 @@ class Statements:
     def body(self) -> list[str]:
         """The lines between the braces."""
         node = self.made.function.node
+        used = names_in(node)
         for name in self.made.arguments:
-            if not any(
-                isinstance(inner, ast.Name) and inner.id == name for inner in ast.walk(node)
-            ):
+            if name not in used:
                 self._put(1, f"(void){local(name)};")
         rest = node.body[1:]
         names = [name for name in self.made.types if name not in self.made.arguments]

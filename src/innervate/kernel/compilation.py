@@ -177,8 +177,7 @@ def loop(name: str, jitted: Callable[[], Any]) -> Loop:
     def advance() -> Callable[[Any, int, int], None]:
         from innervate.kernel import tables
 
-        made = jitted()
-        return lambda world, until, budget: made(tables.borrowed(world), until, budget)
+        return tables.Lending(jitted())
 
     return Loop(name, advance)
 

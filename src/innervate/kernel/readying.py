@@ -85,7 +85,7 @@ def made(scenario: str, settings: tuple[str, ...]) -> tuple[tuple[str, bytes, st
     loop = running._advance
     count = len(list(ready._arrays(running.world)))
     loop.compiled(running.world, 0, 1)
-    code = object_code(_jitted_of(loop._compiled))
+    code = object_code(loop._compiled.compiled)
     running._advance = loop.compiled
     running.finish()
     again = network.simulation(wanted)
@@ -96,13 +96,6 @@ def made(scenario: str, settings: tuple[str, ...]) -> tuple[tuple[str, bytes, st
         raise RuntimeError(f"{scenario}: the ready loop runs otherwise than the compiled one")
     names = getattr(running, "loop_names", lambda: {running.name})()
     return packed(loop.name, running.world, code), set(names)
-
-
-def _jitted_of(advance: Any) -> Any:
-    """The function that Numba compiled, of what `compilation.loop` made around it."""
-    (found,) = (cell.cell_contents for cell in advance.__closure__
-                if hasattr(cell.cell_contents, "overloads"))  # fmt: skip
-    return found
 
 
 def object_code(jitted: Any) -> bytes:

@@ -155,8 +155,7 @@ def compiled_loop(network: Network) -> Callable[..., None]:
         modules += compilation.modules_of(network.invariants)
     compilation.register(*modules)
     compilation.register_functions(loop.pressing, *loop.FUNCTIONS, hot=False)
-    advance = compilation.compiled_as_one(loop.bind(do))
-    return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
+    return tables.Lending(compilation.compiled_as_one(loop.bind(do)))
 
 
 class DeclaredChannel(Channel):

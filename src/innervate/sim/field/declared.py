@@ -263,8 +263,7 @@ def compiled_loop(network: Network) -> Callable[..., None]:
     compilation.register(*modules, hot=False)
     compilation.register(calls, loop, access, timers, hot=False)
     compilation.register_functions(*filter(callable, vars(do).values()), hot=False)
-    advance = compilation.compiled_as_one(loop.bind(do))
-    return lambda world, until, budget: advance(tables.borrowed(world), until, budget)
+    return tables.Lending(compilation.compiled_as_one(loop.bind(do)))
 
 
 class DeclaredField(Field):
