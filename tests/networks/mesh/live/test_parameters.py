@@ -1,0 +1,41 @@
+"""Live nodes run by the numbers of the simulator's profile "ip", but for what a machine is."""
+
+import pytest
+
+from innervate import scenario
+from innervate.live.errors import LiveError
+from innervate.networks.mesh.live.parameters import OURS, mesh_parameters
+
+# [mesh 5] and docs/live.md: waits for acks follow the round trips; a machine has room for more
+# packets than a board, and several frames go in one datagram.
+LIVE = {"ack_adapt": 1, "hop_frames": 16, "gather": 1, "queue": 48, "kept": 32}
+FENCE = {"clear_m": 0.2, "predict_s": 0.5, "polygon": [[0, 0], [9, 0], [9, 9]]}
+
+
+def simulated(**more):
+    tables = {"kind": "mesh", "nodes": 3, "radio": {"profile": "ip"}, **more}
+    return scenario.plan(scenario.from_dict(tables)).params
+
+
+@pytest.mark.parametrize("name", sorted(mesh_parameters(3, {}).keys() - set(OURS) - {"places"}))
+def test_a_number_is_that_of_the_simulated_network(name):
+    ours = mesh_parameters(3, {})[name]
+    if name in ("clear_margin", "predict_ms", "lost", "instances", "flood", "unit_cm"):
+        assert ours == simulated(fence=FENCE)[name]
+    else:
+        assert ours == LIVE.get(name, simulated()[name])
+
+
+@pytest.mark.parametrize(("nodes", "width"), [(2, 32), (32, 32), (33, 64), (64, 64), (65, 254)])
+def test_all_others_may_be_neighbours(nodes, width):
+    made = mesh_parameters(nodes, {})
+    assert (made["width"], made["places"]) == (width, width)
+    assert (made["nodes"], made["points"], set(made["px"])) == (nodes, 0, {0})
+
+
+@pytest.mark.parametrize(("changes", "words"), [({"e2e_us": 1}, "e2e_us"), ({"nodes": 4}, "nodes"),
+                                                ({"px": 1}, "px"), ({"nosuch": 1}, "nosuch")])  # fmt: skip
+def test_what_is_to_be_different_is_known_and_in_its_range(changes, words):
+    with pytest.raises(LiveError, match=f"^here.*{words}"):
+        mesh_parameters(3, changes, "here")
+    assert mesh_parameters(3, {"e2e_us": 1000})["e2e_us"] == 1000
