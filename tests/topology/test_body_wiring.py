@@ -133,5 +133,7 @@ def test_the_first_interface_is_at_the_border():
     assert propose(graph, 1)[0] in corners
     assert set(propose(graph, 4)) == corners
     assert propose(graph, 0) == []
+    graph.add_interface(0)
+    assert set(propose(graph, 4)) == corners  # the PC is no way from cell to cell
     with pytest.raises(TopologyError, match=r"only \d+ cells have a free port for 25"):
         propose(graph, 25)

@@ -202,6 +202,7 @@ def test_a_fence_in_its_own_coordinates() -> None:
         (0, 0), (6000, 0), (6000, 6000), (0, 6000), (2000, 2000), (3000, 2000), (3000, 3000),
     ]  # fmt: skip
     assert params["after"][:7] == [1, 2, 3, 0, 5, 6, 4]
+    assert {0} == {value for name in ("px", "py", "after") for value in params[name][7:]}
     assert (params["unit_cm"], params["clear_margin"], params["predict_ms"]) == (1, 20, 500)
     assert params["watch"] == 1
     assert p.sample_us == 20_000
