@@ -7,6 +7,7 @@ import pytest
 
 from innervate.networks.skin.verify import calm, fair
 from innervate.networks.skin.verify.row import IS_PARENT
+from innervate.verify import search as s
 from tests.networks.skin.verify.tiny import PC, Tiny
 
 BEACON = (1, 40, 0)
@@ -85,3 +86,17 @@ def test_the_last_beacon_of_each_direction_may_have_been_lost(loss, queues, more
         lost = max(queues, key=lambda way: tiny.way(*way))
         assert tiny.queue(*lost) == [BEACON, OTHER][: queues[lost] - 1]
         assert tiny.budget()[0] == loss - 1
+
+
+def test_a_table_that_grows_still_knows_its_states():
+    tiny = Tiny(3, keep=True)
+    row = tiny.twin.row()
+    given = np.frombuffer(row, np.int64).copy()
+    rows = fair._Rows(tiny.model, True, given.data, len(row) // 8, 1 << 20).none()
+    assert s.insert(tiny.world, rows.search, 0)
+    slots = len(rows.search.table)
+    rows.grow()
+    assert rows.seen is rows.search  # plain: what is played on is the table itself
+    assert len(rows.search.table) == 2 * slots == rows.search.run[s.SLOTS]
+    assert not s.insert(tiny.world, rows.seen, 0)
+    assert rows.count == 1
