@@ -18,7 +18,8 @@ STRINGS = [
 @pytest.mark.parametrize("text", STRINGS)
 @pytest.mark.parametrize("form", [
     "a = {}\nb = 1\n", "a = [{}, 2]\nb = 1\n", "a = {{ c = {}, d = 4 }}\nb = 1\n",
-    "[t]\na = {} # x = 1\n[u]\nb = 1\n", "a = [\n  {},\n  {},\n]\nb = 1\n",
+    "a = [{}]\nb = 1\n", "a = {{ c = {}}}\nb = 1\n", "[t]\na = {}#x = 1\n[u]\nb = 1\n",
+    "a = [\n  {},\n  {},\n]\nb = 1\n",
 ])  # fmt: skip
 def test_a_key_behind_a_text_is_found_on_its_line(form, text):
     whole = form.format(text, text)
