@@ -143,3 +143,14 @@ def test_descriptions_say_what_they_said():
     assert links.place_of(text) == ("cell", 7, 1, "p0 r1 c2 E", "p0 r1 c3 W")
     assert links.place_of(links.describe("node", 3)) == ("node", 3, -1, "", "")
     assert links.place_of("eth0") == ("", -1, -1, "", "")
+
+
+@pytest.mark.parametrize(("table", "padding"), [("udp.port", 0), ("ip.proto", 0), ("a", 3),
+                                                ("abcde", 3), ("ab", 2), ("abc", 1)])  # fmt: skip
+def test_who_reads_a_packet_stands_in_front_of_it_by_wiresharks_tags(table, padding):
+    """epan/exported_pdu.h: 14 the name of a table, 32 a number in it, 0 the end; big-endian."""
+    name = table.encode() + bytes(padding)
+    assert len(name) % 4 == 0
+    assert pcapng.for_dissector(table, 6696) == (
+        bytes([0, 14, 0, len(name)]) + name + bytes([0, 32, 0, 4, 0, 0, 0x1A, 0x28]) + bytes(4)
+    )

@@ -19,8 +19,8 @@ NOBODY, ONE, SOME = (False, False), (True, True), (True, False)  # (carrier, voi
 class Team:
     """Stations on a channel; times are from the beginning of the test, us."""
 
-    def __init__(self, count):
-        self.medium = Medium(SLOT, TURN)
+    def __init__(self, count, turnaround_us=TURN):
+        self.medium = Medium(SLOT, turnaround_us)
         self.sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(count)]
 
     async def __aenter__(self):
@@ -64,13 +64,13 @@ class Team:
             found.append((what.decode(), at - self.began, frame or tuple(carrier)))
 
 
-def with_team(count):
+def with_team(count, turnaround_us=TURN):
     """A test that is run with a team, under simulated time."""
 
     def decorate(test):
         def run(*args, **keys):
             async def main():
-                async with Team(count) as team:
+                async with Team(count, turnaround_us) as team:
                     await test(team, *args, **keys)
 
             time_by_hand.run(main())
@@ -134,6 +134,31 @@ def test_who_turns_round_is_deaf_to_what_begins_meanwhile(behind_us, hears):
         assert heard[0] == ("R", 20_000, NOBODY if hears else ONE)
         assert (("C", begin, ONE) in heard) == hears
         assert heard[-1] == ("C", end, NOBODY)
+
+    play()
+
+
+@pytest.mark.parametrize("turn_us", [0, 1, DELAY_US - 1, DELAY_US, DELAY_US + 1])
+@pytest.mark.parametrize("behind_us", [None, 0, 100, DELAY_US, 2_000])
+def test_a_stations_own_signal_is_no_carrier_to_it(turn_us, behind_us):
+    """It may listen again before the others have heard its end. As in the simulator's medium, a
+    station counts what the others send; here an answer begins so long after its own end."""
+
+    @with_team(3, turn_us)
+    async def play(team):
+        end, answer = turn_us + SLOT, behind_us is not None
+        team.send(0, 0, 1)
+        if answer:
+            team.send(1, SLOT + behind_us, 1, b"answer")
+        await team.until(100_000)
+        ready, began = end + turn_us, end + (behind_us or 0) + DELAY_US
+        told = [("C", began, ONE), ("F", began + SLOT, b"answer"), ("C", began + SLOT, NOBODY)]
+        if not answer:
+            assert team.heard(0) == [("R", ready, NOBODY)]
+        elif began > ready:
+            assert team.heard(0) == [("R", ready, NOBODY), *told]
+        elif began < ready:  # its beginning was missed
+            assert team.heard(0) == [("R", ready, ONE), told[-1]]
 
     play()
 

@@ -4,7 +4,10 @@ import asyncio
 import re
 from pathlib import Path
 
+import pytest
+
 from innervate.live.build import build
+from innervate.live.errors import LiveError
 from innervate.live.nodefile import load
 from tests.live.test_process import free_port
 
@@ -55,3 +58,38 @@ def test_commands_of_pages_are_marked_as_such():
         for block in re.findall(r"```console\n(.*?)```", page.read_text("utf-8"), re.DOTALL):
             bare = [line for line in block.splitlines() if re.match(r"(innervate|make|pip) ", line)]
             assert not bare, (page.name, bare)
+
+
+DEFAULTS = ("engine", "grace_s", "ends", "wait_ms", "buffer", "far")
+
+
+def node_file(text, folder):
+    path = folder / "node.toml"
+    path.write_text(text, encoding="utf-8")
+    return load(path).table
+
+
+def test_the_documented_node_file_is_one_and_names_the_defaults(tmp_path):
+    """What its comments do not call left out is as it would be if it were left out."""
+    (text,) = re.findall(r"## A node file\n\n```toml\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
+    given = [line for line in text.splitlines() if line.partition(" ")[0] in DEFAULTS]
+    assert sorted(line.partition(" ")[0] for line in given) == sorted(DEFAULTS)
+    short = "\n".join(line for line in text.splitlines() if line not in given)
+    assert node_file(text, tmp_path) == node_file(short, tmp_path)
+    # It takes the second role's key only with that role.
+    assert node_file(text, tmp_path).keys.grace_s == 10
+
+
+@pytest.mark.parametrize("engine", ["python", "auto", "c"])
+def test_only_who_insists_on_c_is_refused_where_nothing_compiles_it(tmp_path, monkeypatch, engine):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("CC", "")
+    monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path / "cache"))
+    path = tmp_path / "n0.toml"
+    path.write_text(NODE.format(number=0, role="node", own=0, other=1))
+    if engine == "c":
+        with pytest.raises(LiveError, match=r'engine = "c": .*; or write engine = "auto"'):
+            build(load(path), engine)
+    else:
+        not_asked = build(load(path), engine).not_in_c == "not asked for"
+        assert not_asked == (engine == "python")

@@ -11,6 +11,7 @@ import pytest
 
 from innervate.scenario import (
     Scenario,
+    ScenarioError,
     bundled,
     check,
     dump,
@@ -188,3 +189,13 @@ def test_lines_of_keys() -> None:
     assert [lines[("list", i)] for i in range(2)] == [13, 15]
     assert lines[("list", 1, "x")] == 16
     assert lines[("list", 1, "sub", "y")] == 18
+
+
+@pytest.mark.parametrize(("more", "words"), [(0, "not valid TOML"), (1, "over 64 MiB")])
+def test_the_largest_file_that_is_read(tmp_path: Path, more: int, words: str) -> None:
+    """Holes of a file read as zeros, which are no TOML."""
+    path = tmp_path / "large.toml"
+    with path.open("wb") as file:
+        file.truncate(64 * 2**20 + more)
+    with pytest.raises(ScenarioError, match=words):
+        load(path)

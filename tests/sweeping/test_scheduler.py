@@ -111,6 +111,20 @@ def test_batches_take_a_while_and_leave_something_for_everybody(conducted):
     assert max(quick.sizes()) == scheduler.BATCH_MAX == 500
 
 
+def test_a_batch_is_as_large_as_runs_of_late_took_long(conducted):
+    """The mean of a run's time, of which the newest batch is three tenths."""
+    engine = Noting()
+    engine.ahead = 1
+    engine.outcome = lambda job: Noting.outcome(engine, job)._replace(
+        wall_s={0: 0.02, 1: 0.01}.get(len(engine.batches) - 1, 0.05)
+    )
+    conducted(engine, repeat=200).run()
+    means = [0.02]
+    for took in (0.01, 0.05, 0.05):
+        means.append(0.7 * means[-1] + 0.3 * took)
+    assert engine.sizes()[:5] == [1, *(int(0.25 / mean) for mean in means)]
+
+
 @pytest.mark.parametrize("points", [1, 3])
 def test_one_run_goes_first_where_nothing_is_compiled(conducted, tmp_path, points):
     (compiled,) = (tmp_path / "cache").rglob("*.compiled")

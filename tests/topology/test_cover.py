@@ -96,13 +96,34 @@ def robot_of(folder, shape):
     return str(path)
 
 
-@pytest.mark.parametrize("shape", [
-    '<sphere radius="0"/>', '<sphere radius="-1"/>', "<sphere/>", '<sphere radius="big"/>',
-    '<box size="1 1"/>', '<box size="1 0 1"/>', '<cylinder radius="1" length="nan"/>',
+@pytest.mark.parametrize(("shape", "words"), [
+    ('<sphere radius="0"/>', 'a sphere of size "0"; it takes a number'),
+    ('<sphere radius="-1"/>', 'a sphere of size "-1"; it takes a number'),
+    ("<sphere/>", 'a sphere of size ""; it takes a number'),
+    ('<sphere radius="big"/>', 'a sphere of size "big"; it takes a number'),
+    ('<box size="1 1"/>', 'a box of size "1 1"; it takes 3 numbers'),
+    ('<box size="1 0 1"/>', 'a box of size "1 0 1"; it takes 3 numbers'),
+    ('<cylinder radius="1" length="nan"/>', 'a cylinder of size "nan"; it takes a number'),
 ])  # fmt: skip
-def test_shapes_without_a_size_are_refused_by_the_links_name(tmp_path, shape):
-    with pytest.raises(TopologyError, match=r"link arm has a .* above 0"):
+def test_shapes_without_a_size_are_refused_by_the_links_name(tmp_path, shape, words):
+    with pytest.raises(TopologyError) as caught:
         cells_from_urdf(robot_of(tmp_path, shape), "*", None, 10.0)
+    assert str(caught.value) == f"link arm has {words} above 0"
+
+
+def test_a_box_is_as_large_as_it_says_each_way(tmp_path):
+    box = robot_of(tmp_path, '<box size="0.1 0.2 0.3"/>')
+    _, places = cells_from_urdf(box, "*", None, 20.0)
+    for axis, half_mm in enumerate((50, 100, 150)):
+        assert max(abs(place[axis]) for place in places) == pytest.approx(half_mm, abs=0.01)
+
+
+def test_a_mesh_may_be_mirrored_by_its_scale(robot, tmp_path):
+    tile = robot_of(tmp_path, '<mesh filename="tile.stl" scale="-0.001 0.002 0.001"/>')
+    _, places = cells_from_urdf(tile, "*", None, 10.0)
+    assert all(-100 <= x <= 0 and 0 <= y <= 200 for x, y, _ in places)
+    assert min(x for x, *_ in places) < -80
+    assert max(y for _, y, _ in places) > 160
 
 
 def collada(folder, unit_m="1"):
@@ -135,6 +156,20 @@ def test_links_whose_shapes_cannot_be_read_are_named(tmp_path):
     path = robot_of(tmp_path, '<mesh filename="arm.step"/>')
     with pytest.raises(TopologyError, match=r"no shape of arm can be read \(meshes: \.step\)"):
         cells_from_urdf(path, "*", None, 50.0)
+
+
+@pytest.mark.parametrize(("count", "more"), [(8, ""), (9, " and 1 more"), (11, " and 3 more")])
+def test_of_many_links_eight_are_named(tmp_path, count, more):
+    shape = '<visual><geometry><mesh filename="a.{}"/></geometry></visual>'
+    links = "".join(f'<link name="l{i}">{shape.format("step" if i else "xyz")}</link>'
+                    for i in range(count))  # fmt: skip
+    (tmp_path / "one.urdf").write_text(f'<robot name="r">{links}</robot>')
+    with pytest.raises(TopologyError) as caught:
+        cells_from_urdf(str(tmp_path / "one.urdf"), "*", None, 50.0)
+    assert str(caught.value).startswith(
+        f"one.urdf: no shape of l0, l1, l2, l3, l4, l5, l6, l7{more} can be read "
+        "(meshes: .step, .xyz); convert them to one of .stl, .obj, .ply, .off, .glb, .dae, or"
+    )
 
 
 @pytest.mark.parametrize(("robot", "links"), [("kinova", 11), ("anymal-kinova", 35)])

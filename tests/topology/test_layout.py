@@ -1,10 +1,13 @@
 """Where cells are drawn, to the millimetre: patches by their cables or in a grid, layers."""
 
 import math
+import random
+from itertools import combinations
 
+import numpy as np
 import pytest
 
-from innervate.topology import from_patches
+from innervate.topology import body_graph, from_patches
 from innervate.topology.free import free_graph
 from innervate.topology.layout import CABLED_PATCHES_MAX, GAP_MM, PITCH_MM, ROW_MM, cell_places
 
@@ -68,3 +71,94 @@ def test_layers_of_a_free_graph_are_centred():
     assert [places[name] for name in "bce"] == near((0, step), (step, step), (2 * step, step))
     assert places["d"] == pytest.approx((step, 2 * step))
     assert math.dist(places["a"], places["d"]) == pytest.approx(2 * step)
+
+
+SIDES = ((-PITCH_MM, 0.0), (PITCH_MM, 0.0), (0.0, -ROW_MM), (0.0, ROW_MM))  # as ports are
+
+
+def boxes(graph):
+    """(low x, high x, low y, high y) of every patch as it is drawn."""
+    places, found, first = cell_places(graph), [], 0
+    for patch in graph.patches:
+        xs, ys = zip(*places[first : first + patch.columns * patch.rows], strict=True)
+        found.append((min(xs), max(xs), min(ys), max(ys)))
+        first += patch.columns * patch.rows
+    return found
+
+
+def are_apart(a, b, share=1.0):
+    """True if there is a cell's room between two boxes, one way or the other."""
+    x, y = share * PITCH_MM - 1e-6, share * ROW_MM - 1e-6
+    return a[1] + x < b[0] or b[1] + x < a[0] or a[3] + y < b[2] or b[3] + y < a[2]
+
+
+def shapes(rng, count):
+    return [(rng.randint(1, 4), rng.randint(1, 4), rng.choice("ZS")) for _ in range(count)]
+
+
+def cable(graph, rng, a, b):
+    """Joins two patches somewhere, if both have a port left; the two (cell, port)."""
+    ends = []
+    for patch in (a, b):
+        free = [(cell, port) for cell in range(graph.cells) for port in graph.free_ports(cell)
+                if graph.patch_of(cell) == patch]  # fmt: skip
+        if not free:
+            return None
+        ends.append(rng.choice(free))
+    graph.connect(*(graph.end(*end) for end in ends))
+    return ends
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_a_patch_lies_as_near_its_cable_as_there_is_room(seed):
+    """The cabled cells come to lie one, two ... steps apart, first on the side of their ports."""
+    rng = random.Random(seed)
+    graph = from_patches(shapes(rng, 2))
+    (mine, port_a), (theirs, port_b) = cable(graph, rng, 0, 1)
+    places = cell_places(graph)
+    first, second = boxes(graph)
+    ax, ay = places[mine]
+    towards = [SIDES[port_a], SIDES[port_b ^ 1], *SIDES]
+    for steps in (1, 2, 3, 5, 8):
+        for dx, dy in towards:
+            x, y = ax + steps * dx - places[theirs][0], ay + steps * dy - places[theirs][1]
+            moved = (second[0] + x, second[1] + x, second[2] + y, second[3] + y)
+            if are_apart(first, moved):
+                assert (x, y) == pytest.approx((0, 0), abs=1e-6)
+                return
+    raise AssertionError("patches of four by four have room eight steps away")
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_patches_do_not_lie_on_each_other(seed):
+    rng = random.Random(seed)
+    count = rng.randint(3, 7)
+    graph = from_patches(shapes(rng, count))
+    for _ in range(rng.randint(0, 2 * count)):
+        cable(graph, rng, *rng.sample(range(count), 2))
+    drawn = boxes(graph)
+    assert all(are_apart(a, b, 0.99) for a, b in combinations(drawn, 2))
+    assert (min(box[0] for box in drawn), min(box[2] for box in drawn)) == pytest.approx((0, 0))
+
+
+@pytest.mark.parametrize("count", [3, 4, 5, 8, 13, 21])
+def test_a_skin_round_a_limb_is_unrolled_where_it_has_most_room(count):
+    """Points of a long cylinder that stands anywhere: heights stay, and arcs become straight."""
+    rng = np.random.default_rng(count)
+    turns, heights = np.sort(rng.uniform(0, math.tau, count)), np.linspace(-900, 900, count)
+    turns = np.concatenate([turns, turns + math.pi])  # so that their middle is the axis
+    heights = np.concatenate([heights, heights])
+    straight = np.stack([30 * np.cos(turns), 30 * np.sin(turns), heights], axis=1)
+    basis = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    solid = straight @ basis.T + rng.uniform(-500, 500, 3)
+    graph = body_graph(
+        [f"c{i}" for i in range(2 * count)], [tuple(point) for point in solid.tolist()], 1e6, 1
+    )
+    x, y = np.array(cell_places(graph)).T
+    assert sorted(y) == pytest.approx(sorted(heights + 900), abs=0.5)
+    arcs = np.sort(turns % math.tau)
+    widest = np.max(np.diff([*arcs, arcs[0] + math.tau]))
+    assert x.min() == pytest.approx(0, abs=0.5)
+    assert x.max() == pytest.approx(30 * (math.tau - widest), abs=0.5)
+    gaps = np.sort(np.diff(np.sort(x)))
+    assert gaps == pytest.approx(np.sort(np.diff([*arcs, arcs[0] + math.tau]))[:-1] * 30, abs=0.5)

@@ -1,5 +1,7 @@
 """What is done to a watched network happens as if it had stood in the scenario."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -97,6 +99,8 @@ def test_a_saved_network_is_replayed(kind, events):
     engine, view = watched(kind, OWN[kind] if events else ())
     again = run(scenario.loads(saved(view)))
     assert again.result.fingerprint == engine.fingerprint
+    planned = [replace(fault, index=0) for fault in again.plan.faults]
+    assert [fault for fault in engine.given if replace(fault, index=0) not in planned] == []
     untouched = run({**KINDS[kind], "event": OWN[kind] if events else []})
     assert untouched.result.fingerprint != engine.fingerprint
 

@@ -82,7 +82,9 @@ def test_a_radio_team_is_a_ring_of_stations():
         for i in range(3)
     }  # fmt: skip
     where = Map(told)
-    fields = RadioState(where, {i: told[i] for i in (0, 1)}).fields()
+    state = RadioState(where, {i: told[i] for i in (0, 1)})
+    assert (state.unconnected, state.lacking, state.left) == (1, 0, 2)
+    fields = state.fields()
     assert fields["node_up"].tolist() == [1, 1, 0]
     assert fields["radio"] == {"now": [0, 4, 0], "turn": [4, -1, -1]}
     assert fields["unconnected"] == 1  # one that is off

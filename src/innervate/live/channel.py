@@ -52,6 +52,7 @@ class Ear:
     """What a station's radio does.
 
     Attributes:
+        station: whose.
         where: its address.
         joined_at: when it said last that it is there, us.
         ends: when its newest transmission is over, us.
@@ -63,6 +64,7 @@ class Ear:
         owed: one is to be told when the slot is over.
     """
 
+    station: int
     where: Any
     joined_at: int
     ends: int = 0
@@ -160,7 +162,7 @@ class Medium:
             return False
         if not self._makes_room(where, now):
             return False
-        self._ears[station] = ear = Ear(where, now)
+        self._ears[station] = ear = Ear(station, where, now)
         ear.told = self._carrier(ear)
         self._say(ear, b"R", now, b"")  # it may have sent when no channel was there
         return True
@@ -195,8 +197,11 @@ class Medium:
             self._say(ear, b"C", ear.told_at, b"")
 
     def _carrier(self, ear: Ear) -> tuple[bool, bool]:
-        """What a station hears: somebody, just one."""
-        return ear.plugged and bool(self._present), ear.plugged and len(self._present) == 1
+        """What a station hears of others: somebody, just one. Its own signal may still be under
+        way to them when it listens again.
+        """
+        others = sum(air.station != ear.station for air in self._present)
+        return ear.plugged and others > 0, ear.plugged and others == 1
 
     def _transmit(self, station: int, at: int, slots: int, data: bytes) -> bool:
         """A station sends: one frame at a time, decided now; False if that cannot be."""
@@ -226,27 +231,25 @@ class Medium:
         if self._present:
             self.collisions += 1
         self._present.append(air)
-        alone = len(self._present) == 1
-        for station, ear in self._ears.items():
-            if station != air.station:
-                hears = alone and ear.plugged and not ear.deaf_until
-                ear.candidate = air if hears else None
-        self._tell(air.start + DELAY_US, air.station)
+        for ear in self._ears.values():
+            if ear.station != air.station:
+                _, alone = self._carrier(ear)
+                ear.candidate = air if alone and not ear.deaf_until else None
+        self._tell(air.start + DELAY_US)
 
     def _end(self, air: Air) -> None:
         self._present.remove(air)
-        for station, ear in self._ears.items():
-            if station != air.station and ear.candidate is air and not ear.deaf_until:
-                self._say(ear, b"F", air.end + DELAY_US, air.data)
+        for ear in self._ears.values():
             if ear.candidate is air:
                 ear.candidate = None
-        self._tell(air.end + DELAY_US, air.station)
+                self._say(ear, b"F", air.end + DELAY_US, air.data)
+        self._tell(air.end + DELAY_US)
 
-    def _tell(self, at: int, sender: int) -> None:
+    def _tell(self, at: int) -> None:
         """Who listens hears that the carrier has changed."""
-        for station, ear in self._ears.items():
+        for ear in self._ears.values():
             carrier = self._carrier(ear)
-            if station != sender and not ear.deaf_until and ear.told != carrier:
+            if not ear.deaf_until and ear.told != carrier:
                 ear.told = carrier
                 self._say(ear, b"C", at, b"")
 

@@ -110,12 +110,7 @@ def _body_graph(
     pairs = [pair for pair in _pairs(positions) if pair[0] <= reach_mm]
     group = _hold_together(graph, pairs)
     _say_if_apart(graph, group, positions, reach_mm)
-    spare = max(0, PORTS * cells - 2 * (cells - 1) - wanted)
-    for _, a, b in pairs:
-        free_a, free_b = graph.free_ports(a), graph.free_ports(b)
-        if spare >= 2 and free_a and free_b and b not in graph.neighbours(a):
-            graph.connect(graph.end(a, free_a[0]), graph.end(b, free_b[0]))
-            spare -= 2
+    _add_others(graph, pairs, wanted, wanted if isinstance(interfaces, int) else 0)
     chosen = propose(graph, interfaces) if isinstance(interfaces, int) else []
     for name in [] if isinstance(interfaces, int) else interfaces:
         if name not in names:
@@ -151,6 +146,20 @@ def _hold_together(graph: Graph, pairs: Sequence[Pair]) -> list[int]:
             old, new = group[b], group[a]
             group = [new if g == old else g for g in group]
     return group
+
+
+def _add_others(graph: Graph, pairs: Sequence[Pair], ports: int, cells: int) -> None:
+    """Plug the shortest others, as long as so many ports, on so many cells, stay free."""
+    spare = PORTS * graph.cells - 2 * (graph.cells - 1) - ports
+    left = sum(bool(graph.free_ports(cell)) for cell in range(graph.cells)) - cells
+    for _, a, b in pairs:
+        free_a, free_b = graph.free_ports(a), graph.free_ports(b)
+        filled = (len(free_a) == 1) + (len(free_b) == 1)
+        if spare < 2 or not free_a or not free_b or filled > left or b in graph.neighbours(a):
+            continue
+        graph.connect(graph.end(a, free_a[0]), graph.end(b, free_b[0]))
+        spare -= 2
+        left -= filled
 
 
 def _say_if_apart(

@@ -1,5 +1,8 @@
 """A skin's tables out of made-up measurements whose answers are known beforehand."""
 
+from pathlib import Path
+from types import SimpleNamespace
+
 import pytest
 
 from innervate.export.errors import ExportError
@@ -124,3 +127,10 @@ def test_rates_are_those_measured(beacon_us, told):
 def test_a_skin_without_its_pc_is_none():
     with pytest.raises(ExportError, match="the PC was not captured"):
         fit.tables_of(skin({"c0.1-c1.0": way()}))
+
+
+@pytest.mark.parametrize(("comment", "lost"), [("simulated", 0), ("live nodes", 1)])
+def test_what_came_in_nowhere_was_lost_unless_the_capture_says_what_was(comment, lost):
+    reader = fit.Reader(Path("capture.pcapng"), SimpleNamespace(comment=comment))
+    reader.give_up(("c0.1", "c1.0"), SimpleNamespace(data=b""))
+    assert reader.found.way("c0.1", "c1.0").lost == lost

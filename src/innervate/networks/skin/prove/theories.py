@@ -27,7 +27,7 @@ from innervate.networks.skin.prove import (
 )
 from innervate.networks.skin.prove.faults import EXPLORERS
 from innervate.networks.skin.prove.faults import FAULTS as MUTANTS
-from innervate.networks.skin.prove.neighbours import ANY_RULE
+from innervate.networks.skin.prove.neighbours import ANY_RULE, base_of
 from innervate.networks.skin.prove.words import tell
 from innervate.prove.errors import ProveError
 from innervate.prove.steps import Step
@@ -155,7 +155,7 @@ def _stories(change: Change | None) -> list[Theory]:
 def simple(step: Step) -> list[Term]:
     """Counterexamples with small numbers, on few ports."""
     t = step.terms
-    wishes = [t.same(t.unknown("base", 0, 65535), t.number(1))]
+    wishes = [t.same(base_of(t), t.number(1))]
     for record in step.records.values():
         for key, low, high in record.places():
             value = step.before[key]

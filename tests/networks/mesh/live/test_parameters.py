@@ -1,0 +1,86 @@
+"""Live nodes run by the numbers of the simulator's profile "ip", but for what a machine is."""
+
+import pytest
+
+from innervate import scenario
+from innervate.live.errors import LiveError
+from innervate.networks.mesh.live.parameters import OURS, fence_parameters, mesh_parameters
+from innervate.networks.mesh.protocol.fields import POINTS
+
+# [mesh 5] and docs/live.md: waits for acks follow the round trips; a machine has room for more
+# packets than a board, and several frames go in one datagram.
+LIVE = {"ack_adapt": 1, "hop_frames": 16, "gather": 1, "queue": 48, "kept": 32}
+FENCE = {"clear_m": 0.2, "predict_s": 0.5, "polygon": [[0, 0], [9, 0], [9, 9]]}
+
+
+def simulated(**more):
+    tables = {"kind": "mesh", "nodes": 3, "radio": {"profile": "ip"}, **more}
+    return scenario.plan(scenario.from_dict(tables)).params
+
+
+@pytest.mark.parametrize("name", sorted(mesh_parameters(3, {}).keys() - set(OURS) - {"places"}))
+def test_a_number_is_that_of_the_simulated_network(name):
+    ours = mesh_parameters(3, {})[name]
+    if name in ("clear_margin", "predict_ms", "lost", "instances", "flood", "unit_cm"):
+        assert ours == simulated(fence=FENCE)[name]
+    else:
+        assert ours == LIVE.get(name, simulated()[name])
+
+
+@pytest.mark.parametrize(("nodes", "width"), [(2, 32), (32, 32), (33, 64), (64, 64), (65, 254)])
+def test_all_others_may_be_neighbours(nodes, width):
+    made = mesh_parameters(nodes, {})
+    assert (made["width"], made["places"]) == (width, width)
+    assert (made["nodes"], made["points"], set(made["px"])) == (nodes, 0, {0})
+
+
+@pytest.mark.parametrize(("changes", "words"), [
+    ({"e2e_us": 1}, "e2e_us"), ({"nodes": 4}, "nodes"), ({"px": 1}, "px"), ({"no": 1}, "no"),
+])  # fmt: skip
+def test_what_is_to_be_different_is_known_and_in_its_range(changes, words):
+    with pytest.raises(LiveError, match=f"^here.*{words}"):
+        mesh_parameters(3, changes, "here")
+    assert mesh_parameters(3, {"e2e_us": 1000})["e2e_us"] == 1000
+
+
+def square(low, high):
+    return [(low, low), (high, low), (high, high), (low, high)]
+
+
+def test_a_fence_and_its_holes_are_rings_in_one_table():
+    """Each corner has the place of the next one, and the last that of its ring's first."""
+    rings = [square(0, 900), square(100, 200), [(300, 300), (400, 300), (400, 500)]]
+    made = fence_parameters(rings)
+    assert made["points"] == 11
+    found, at = [], 0
+    while at < made["points"]:
+        ring, place = [], at
+        while not ring or place != at:
+            ring.append((made["px"][place], made["py"][place]))
+            place = made["after"][place]
+        found.append(ring)
+        at += len(ring)
+    assert found == rings
+    assert {0} == {value for name in ("px", "py", "after") for value in made[name][11:]}
+
+
+@pytest.mark.parametrize(("corner", "fits"), [((0, 23_000), True), ((23_000, 0), True),
+                                              ((0, 23_001), False), ((23_001, 0), False),
+                                              ((-1, 0), False), ((0, -1), False)])  # fmt: skip
+def test_corners_of_a_fence_lie_within_23000_units(corner, fits):
+    ring = [corner, (5, 5), (5, 6)]
+    if fits:
+        assert fence_parameters([ring])["px"][0] == corner[0]
+        return
+    with pytest.raises(LiveError, match="must be 0 to 23000 units both ways"):
+        fence_parameters([ring])
+
+
+@pytest.mark.parametrize("more", [0, 1])
+def test_a_fence_has_so_many_corners_at_most(more):
+    ring = [(k, k * k) for k in range(POINTS + more)]
+    if not more:
+        assert fence_parameters([ring])["points"] == POINTS
+        return
+    with pytest.raises(LiveError, match=f"here: the fence has {POINTS + 1} corners, more than"):
+        fence_parameters([ring], "here")

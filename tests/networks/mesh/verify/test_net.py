@@ -1,0 +1,45 @@
+"""The state that an exploration of a mesh starts from, and states as bytes."""
+
+import pytest
+
+from innervate.networks.mesh.verify import model as mesh_model
+from innervate.networks.mesh.verify.cases import SHORT
+from innervate.networks.mesh.verify.local import GRAIN_US, NEVER
+from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
+from innervate.networks.mesh.verify.net import Net, Nets
+
+BUDGET = MeshBudget(deaths=1, revivals=2, frames=3, acks=4, ticks=5)
+
+
+@pytest.fixture(scope="module")
+def nets():
+    links = mesh_model.parse("0-1 1-2")
+    return Nets(MeshModel(links, "search", settings=SHORT, offers=((1, 0),), budget=BUDGET))
+
+
+@pytest.fixture(scope="module")
+def first(nets):
+    return nets.first()
+
+
+def test_it_starts_with_all_that_may_happen_and_nothing_handed_in(first):
+    assert first.left == (1, 2, 3, 4)
+    assert first.ticks == (5, 5, 5)
+    assert (first.offered, first.got, first.lags) == (0, 0, (0, 0, 0))
+
+
+def test_from_then_on_clocks_go_in_coarse_steps(nets, first):
+    waits = [due for number in first.nodes for due in nets.locals.states[number].timers]
+    assert any(due > 0 for due in waits)
+    assert all(due == NEVER or due % GRAIN_US == 0 for due in waits)
+    assert nets.locals.shape.grain == nets.locals.gate_shape.grain == GRAIN_US
+
+
+@pytest.mark.parametrize("net", [
+    Net((7, 8, 9), (1, 2, 3), (4, 5, 6, 10), (11, 12, 13), 14, 15),
+    Net((0, 2**30, 1), (0, 0, 0), (0, 0, 0, 0), (1 << 20,) * 3, 1 << 20, 0),
+])  # fmt: skip
+def test_a_state_comes_back_from_its_bytes(nets, net):
+    row = nets.pack(net)
+    assert nets.unpack(row) == net
+    assert len(row) == 4 * 15

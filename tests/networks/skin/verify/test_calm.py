@@ -1,0 +1,102 @@
+"""What a fair schedule starts from: a state, and those that the search may have left out."""
+
+from itertools import chain, combinations
+
+import numpy as np
+import pytest
+
+from innervate.networks.skin.verify import calm, fair
+from innervate.networks.skin.verify.row import IS_PARENT
+from innervate.verify import search as s
+from tests.networks.skin.verify.tiny import PC, Tiny
+
+BEACON = (1, 40, 0)
+OTHER = (2, 41, 0)
+
+
+def kept(tiny, insert, index=0, among=1):
+    """The states that an insertion keeps of one, beside others that are no matter."""
+    here = tiny.twin.row()
+    rows = np.frombuffer(here * among, np.int64).copy()
+    source = fair._Rows(tiny.model, True, rows.data, len(here) // 8, 1 << 20)
+    target = source.none()
+    insert(tiny.world, source.search, target.search, index)
+    tiny.twin.put(here)
+    return [target.row(i) for i in range(target.count)], list(target.search.before[: target.count])
+
+
+def changed(tiny, change):
+    """The state as a change of the world would leave it, and the world as it was."""
+    here = tiny.twin.row()
+    change(tiny)
+    after = tiny.twin.image()
+    tiny.twin.put(here)
+    return after
+
+
+def waiting(*holds):
+    """Cells that have had no route for so long, by what is known."""
+    tiny = Tiny(3, keep=True)
+    for cell, hold in enumerate(holds):
+        tiny.cell(cell, HOLD=hold)
+    return tiny
+
+
+@pytest.mark.parametrize(("holds", "may"), [
+    ((5, 5), (0, 1)), ((4, 5), (1,)), ((5, 4), (0,)), ((4, 4), ()),
+])  # fmt: skip
+def test_any_of_those_that_may_have_waited_long_enough_may_forget_in_the_next_round(holds, may):
+    tiny = waiting(*holds)
+    periods = int(tiny.world.params[0].hold_periods)
+    some = chain.from_iterable(combinations(may, count) for count in range(len(may) + 1))
+
+    def forgets(cells):
+        return changed(tiny, lambda one: [one.cell(c, HOLD=periods - 1) for c in cells])
+
+    wanted = {forgets(cells) for cells in some}
+    found, before = kept(tiny, calm.insert_expiring, index=1, among=2)
+    assert set(found) == wanted
+    assert len(found) == len(wanted) == 2 ** len(may)
+    assert set(before) == {1}
+
+
+def test_who_is_cut_off_or_has_a_parent_does_not_forget():
+    tiny = waiting(5, 5).cut(0, 1)
+    tiny.port(0, PC, 0, 40, IS_PARENT)
+    assert len(kept(tiny, calm.insert_expiring)[0]) == 1
+
+
+@pytest.mark.parametrize(("loss", "queues", "more"), [
+    (1, {}, 0), (0, {(0, 1): 1}, 0), (1, {(0, 1): 1}, 1), (1, {(0, 1): 2, (1, 0): 1}, 2),
+])  # fmt: skip
+def test_the_last_beacon_of_each_direction_may_have_been_lost(loss, queues, more):
+    def put(tiny, counts):
+        for way, count in counts.items():
+            tiny.queue(*way, *[BEACON, OTHER][:count])
+        return tiny
+
+    tiny = put(Tiny(updates="periodic", lean=False, faults={"loss": loss}), queues)
+    assert tiny.model.merges
+    found, before = kept(tiny, calm.insert_lost)
+    assert len(found) == 1 + more
+    assert found[0] == changed(tiny, lambda one: None)
+    assert set(before) == {0}
+    tiny.twin.put(found[-1])
+    if more:
+        lost = max(queues, key=lambda way: tiny.way(*way))
+        assert tiny.queue(*lost) == [BEACON, OTHER][: queues[lost] - 1]
+        assert tiny.budget()[0] == loss - 1
+
+
+def test_a_table_that_grows_still_knows_its_states():
+    tiny = Tiny(3, keep=True)
+    row = tiny.twin.row()
+    given = np.frombuffer(row, np.int64).copy()
+    rows = fair._Rows(tiny.model, True, given.data, len(row) // 8, 1 << 20).none()
+    assert s.insert(tiny.world, rows.search, 0)
+    slots = len(rows.search.table)
+    rows.grow()
+    assert rows.seen is rows.search  # plain: what is played on is the table itself
+    assert len(rows.search.table) == 2 * slots == rows.search.run[s.SLOTS]
+    assert not s.insert(tiny.world, rows.seen, 0)
+    assert rows.count == 1
