@@ -119,3 +119,16 @@ def test_a_ring_heals_when_a_robot_with_the_token_dies():
                           duration_s=2.0, faults=faults, wanted=0)  # fmt: skip
     late = result.packets[result.packets["end"] > 1_000_000]["node"]
     assert sorted(set(late.tolist())) == [0, 2, 3]
+
+
+@pytest.mark.parametrize(("load", "per_turn"), [(0.3, 1), (0.6, 1), (0.6, 4), (0.9, 4)])
+def test_few_stations_are_quicker_than_tdma_and_a_ring(load, per_turn):
+    # 107, 142, 103 and 106 slots when their rounds ended without packets.
+    ours = mean_delay(PRACTICAL, 5, load, per_turn)
+    assert ours < mean_delay(TDMA, 5, load)
+    assert ours < mean_delay(DCF if load < 0.5 else RING, 5, load, per_turn)
+
+
+def test_up_to_eight_stations_keep_their_rounds_going_and_nine_ask_in_windows():
+    assert mean_delay(PRACTICAL, 8, 0.3) < 95  # 122 when they did not
+    assert mean_delay(PRACTICAL, 9, 0.3) > 110

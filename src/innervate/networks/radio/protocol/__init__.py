@@ -23,8 +23,10 @@ only when the station named next says that it received it. Stations with packets
 round: every data frame names the next place, and between two there is a turnaround and a delay,
 nothing else. Windows for newcomers open behind a round. In a window each newcomer sends one CR-R in
 a random minislot; the report says which held one. Those are places now; several in one split.
-With slow radios a place is kept when the queue is empty (decision 0039): it has no turn then, and
-the minislot of its number in each window that no report announced; newcomers' stand behind those.
+With slow radios a place is kept when the queue is empty. Where few have places each has a turn in
+every round, two slots without a packet, until nobody has sent for long (decision 0048). Where many
+have (decision 0039) such a place has no turn, and the minislot of its number in each window that no
+report announced; newcomers' stand behind those.
 
 `station.py` is what both share; `modes.py`, `times.py`, `bounds.py`, `idle.py`, `turn.py`,
 `window.py`, `reporter.py`, `follow.py` belong to practical mode, `paper_idle.py`,
@@ -189,7 +191,8 @@ minislot, CR-R or delayed turn, void unless `act`. With ta = `ta_us`, delays fro
 |                   |                                      | up to `wait_us`                       |
 | after a collision | ta, dmax and a draw below Wr:        | T - Tc0, or `window_slots`            |
 |                   | `retry_us`, doubled from             |                                       |
-|                   | `LONELY_FREE = 3` on                 |                                       |
+|                   | `LONELY_FREE = 3` on; slow radios    |                                       |
+|                   | draw one of `STEPS = 6` parts of it  |                                       |
 | on switching on   | J: `join_us`                         | T and D                               |
 | minislot w        | `minislot_us`: a CR-R, twice the     | -                                     |
 |                   | spread of delays                     |                                       |
@@ -203,8 +206,8 @@ Frames
 | frame        | length                           | what it carries                                |
 |--------------|----------------------------------|------------------------------------------------|
 | `CRR = 1`    | one slot                         | nothing: a CR-R, or a pulse that says "heard"  |
-| `DATA = 2`   | its packets, or `PASS_SLOTS = 3` | `pos`, `next`, `more`, `ok`, and up to         |
-|              |                                  | `per_turn` packets                             |
+| `DATA = 2`   | its packets, or `pass_slots`: 3, | `pos`, `next`, `more`, `ok`, and up to         |
+|              | 2 with slow radios               | `per_turn` packets                             |
 | `OPEN = 3`   | u or its packets                 | as data; how wide the bounds are. `pos`:       |
 |              |                                  | `UNKNOWN = 31`: all places are free again      |
 | `REPORT = 4` | `REPORT_SLOTS = 5` and more      | `good`, `bad` minislots, `kept` ones ahead,    |
@@ -248,10 +251,17 @@ Constants and settings
 | `TURNS_MOST = 4095`, `TURNS_COUNTED = 65535` | counters stop there                               |
 | `turns`                                      | K: turns between windows, two more for each kept  |
 |                                              | minislot; sooner if `CROWD_WAITS = 4` quarters    |
-|                                              | of a station wait                                 |
+|                                              | of a station wait. Slow radios, newcomers only:   |
+|                                              | a round, doubled by each window that nobody came  |
+|                                              | to (`CALM_MOST = 7`), up to `RAREST = 4` K        |
 | `CROWD_MOST = 1023`                          | bound of that estimate                            |
 | `CREDIT = 2`, `CREDIT_MOST = 4`              | quick radios: turns without a packet that one     |
 |                                              | with a packet earns                               |
+| `EARNED = 48`, `EARNED_MOST = 1600`          | slow radios: of a packet; an own turn without one |
+|                                              | costs the square of the places. With none left    |
+|                                              | turns are not handed on                           |
+| `CALM = 2`                                   | windows without newcomers: all who send have      |
+|                                              | places, and if `is_few` the round goes on         |
 | `KEPT = 20`                                  | places that can be kept: one less than the        |
 |                                              | minislots of the largest window                   |
 | `ACTIVE = 1`, `QUIET = 2`, `QUIET_MOST = 99` | of a place: it has turns; it is kept, one more    |

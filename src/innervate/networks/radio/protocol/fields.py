@@ -84,11 +84,12 @@ PRACTICAL = (
     ("bad", 2, 0, 65535, "bits", "reporter: minislots with noise"),
     ("rest", 0, 0, 1023, "minislots", "reporter: drawn from but not yet opened"),
     ("opener", 0, 0, 1, "flag", "reporter: this window follows our opening"),
-    ("credit", 0, 0, 15, "turns", "with a packet, less those without: quick radios pass them on"),
+    ("credit", 0, 0, 4095, "credit", "by packets, less turns without: so long they are handed on"),
     ("kept", 0, 0, 20, "minislots", "ahead in the present window, for kept places"),
     ("joined", 0, 0, 1023, "stations", "that were given a place since the last window was opened"),
     ("crowd", 0, 0, 1023, "quarters", "of a station: how many mostly wait for a window"),
     ("busy", 0, 0, 15, "windows", "somebody asked, twice, less those in which nobody did"),
+    ("calm", 0, 0, 7, "windows", "since one that brought a newcomer"),
     ("wide", 0, 0, 3, "doublings", "of the greatest configured delay that we believe in"),
     ("used", 0, 0, 3, "doublings", "... that this sequence allows for"),
 )

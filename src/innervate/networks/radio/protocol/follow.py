@@ -24,6 +24,7 @@ from innervate.networks.radio.protocol.modes import (
     code_for,
     count_kept,
     disprove,
+    earn,
     following,
     is_passed_over,
     note_joined,
@@ -33,7 +34,13 @@ from innervate.networks.radio.protocol.modes import (
     window_of,
 )
 from innervate.networks.radio.protocol.reporter import lead_first
-from innervate.networks.radio.protocol.times import guard, join_after, least_delay, most_delay
+from innervate.networks.radio.protocol.times import (
+    guard,
+    is_slow,
+    join_after,
+    least_delay,
+    most_delay,
+)
 from innervate.networks.radio.protocol.turn import enter_turn
 from innervate.networks.radio.protocol.window import enter_first, enter_window
 
@@ -82,7 +89,7 @@ def hear_data(station, params, now, frame, out):
     station.tail = 0
     station.last_ok = 1
     station.slot = NONE
-    station.turns = min(station.turns + 1, TURNS_COUNTED)
+    count_turn(station, params, frame.count)
     note_turn(station, params, sender, frame.more)
     lone = behind >= LONE_WINDOWS
     opens = behind == sender or behind >= WINDOWS
@@ -119,6 +126,13 @@ def is_skipped(station, sender, behind):
         return True
     opens = behind == sender or behind >= WINDOWS
     return not opens and is_passed_over(sender, behind, station.pos)
+
+
+def count_turn(station, params, packets):
+    """Somebody else has had a turn."""
+    station.turns = min(station.turns + 1, TURNS_COUNTED)
+    if packets and is_slow(params):
+        earn(station, packets)
 
 
 def note_turn(station, params, place, more):

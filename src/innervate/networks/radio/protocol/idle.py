@@ -33,6 +33,7 @@ from innervate.networks.radio.protocol.modes import (
 from innervate.networks.radio.protocol.station import blank, load_packets
 from innervate.networks.radio.protocol.times import (
     guard,
+    is_slow,
     join_after,
     least_delay,
     minislot,
@@ -44,6 +45,7 @@ from innervate.networks.radio.protocol.times import (
 
 LONELY_FREE = 3  # openings into silence before the wait grows
 LONELY_MOST = 5  # doublings
+STEPS = 6  # of a turnaround and a delay in Wr
 
 
 def listen_first(station, params, now, cause, out):
@@ -165,11 +167,20 @@ def retry(station, params, now, tail, out):
 
 
 def wait_again(station, params, now, out):
-    """Those who collided go first: their set shrinks with every try."""
+    """Those who collided go first: their set shrinks with every try.
+
+    Slow radios draw one of few moments, so far apart that the later one hears the earlier: those
+    who had begun together collide again half as often as if they drew any moment.
+    """
     bound = retry_within(params, station.wide)
+    step = 1
+    if is_slow(params):
+        step = bound // STEPS
+        bound = bound + step
     for _ in range(min(max(station.lonely - LONELY_FREE, 0), LONELY_MOST)):
         bound = bound * 2
-    wait = params.ta_us + most_delay(params, station.wide) + draw(station, bound)
+    wait = params.ta_us + most_delay(params, station.wide)
+    wait = wait + step * draw(station, bound // step)
     station.at = (now + wait) & MASK30
     schedule(station, now, out)
 

@@ -12,7 +12,7 @@ from innervate.networks.radio.protocol.constants import (
     WINDOWS,
 )
 from innervate.networks.radio.protocol.station import delivered
-from innervate.networks.radio.protocol.times import is_slow, keeps, split_into
+from innervate.networks.radio.protocol.times import is_few, is_slow, keeps, split_into
 
 # Listening.
 IDLE = 0  # not in a sequence; opens one when it has a packet and may
@@ -28,6 +28,10 @@ SEND_REPORT = 7
 SEND_SLOT = 8
 CROWD_MOST = 1023
 BUSY_MOST = 15
+EARNED = 48  # of a packet; a turn without one costs the square of the places
+EARNED_MOST = 1600
+CALM = 2  # windows without newcomers: all who send have places
+CALM_MOST = 7
 BUSY = 10  # from here on it is worth a minislot for each to keep places over an idle channel
 STEPS = 3  # sizes of announced windows
 ACTIVE = 1  # a place whose turn comes in each round
@@ -54,6 +58,7 @@ def clear_round(station):
     station.pos = NONE
     station.cur = NONE
     station.turns = 0
+    station.calm = 0
 
 
 def rest(station, params, place):
@@ -79,6 +84,33 @@ def count_kept(station):
         if station.live[i] >= QUIET:
             count = i + 1
     return count
+
+
+def count_places(station):
+    """How many places are somebody's, with turns or without."""
+    count = 0
+    for i in range(POSITIONS):
+        if station.live[i]:
+            count = count + 1
+    return count
+
+
+def earn(station, packets):
+    """Slow radios: packets were sent in the round, by whomever."""
+    station.credit = min(station.credit + EARNED * packets, EARNED_MOST)
+
+
+def spend(station):
+    """Slow radios: a turn of ours had no packet. The dearer a round, the sooner it ends."""
+    places = count_places(station)
+    station.credit = max(station.credit - places * places, 0)
+
+
+def goes_on(station, params):
+    """1 if slow radios hand on turns without packets: few have places, and nobody else sends."""
+    if not is_slow(params) or station.credit == 0 or station.calm < CALM:
+        return False
+    return is_few(params, count_places(station))
 
 
 def age_kept(station):
@@ -109,6 +141,19 @@ def following(station, pos):
         if station.live[place] == ACTIVE:
             return place
     return NONE
+
+
+def next_turn(station, params, pos):
+    """Whose turn follows that of `pos`; while the round goes on kept places have theirs, too."""
+    if not goes_on(station, params):
+        return following(station, pos)
+    for step in range(1, POSITIONS):
+        place = pos + step
+        if place >= POSITIONS:
+            place = place - POSITIONS
+        if station.live[place]:
+            return place
+    return pos
 
 
 def is_passed_over(first, last, place):
@@ -148,6 +193,7 @@ def note_joined(station, asked):
         station.busy = min(station.busy + 2, BUSY_MOST)
     else:
         station.busy = max(station.busy - 1, 0)
+    station.calm = 0 if station.joined else min(station.calm + 1, CALM_MOST)
     station.crowd = min(station.crowd // 2 + 2 * station.joined, CROWD_MOST)
     station.joined = 0
 

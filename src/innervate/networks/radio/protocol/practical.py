@@ -46,7 +46,7 @@ from innervate.networks.radio.protocol.reporter import (
     sent_report,
 )
 from innervate.networks.radio.protocol.station import enqueue, hand_up, leave, reset
-from innervate.networks.radio.protocol.times import frame_from, join_after, turn_timeout
+from innervate.networks.radio.protocol.times import frame_from, join_after, pass_slots, turn_timeout
 from innervate.networks.radio.protocol.turn import enter_turn, send_turn
 from innervate.networks.radio.protocol.window import hear_report, pass_deadline, use_slot
 
@@ -150,7 +150,7 @@ def carrier_went(station, params, now, length, out):
         elif not station.armed:
             enter_turn(station, params, now, station.cur, out)
     elif mode == TURN:
-        if noise and length >= 3 * params.slot_us:
+        if noise and length >= pass_slots(params) * params.slot_us:
             garbled_turn(station, params, now, out)
         else:
             arm(station, now, turn_timeout(params, station.used), out)

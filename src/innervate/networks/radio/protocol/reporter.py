@@ -38,6 +38,7 @@ from innervate.networks.radio.protocol.station import blank
 from innervate.networks.radio.protocol.times import (
     frame_from,
     guard,
+    is_slow,
     join_after,
     least_delay,
     minislot,
@@ -184,6 +185,8 @@ def run_together(station, params, length, out):
 
     Other openers' probes can look alike, so an opener waits until it has failed several times.
     """
+    if is_slow(params) and length <= 2 * params.slot_us + params.bit_us:
+        return  # as long as a turn without a packet
     if length < 3 * params.slot_us:
         if station.opener:
             station.lonely = min(station.lonely + 1, 31)

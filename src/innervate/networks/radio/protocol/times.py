@@ -6,6 +6,7 @@ and gives up the least: a sequence then takes longer and bears delays that the b
 
 from innervate.networks.radio.protocol.constants import KEPT, WIDE_MOST
 
+REPORT_SLOTS = 7  # of a report for a few kept places
 LONGEST_US = (1 << 28) - 1
 
 
@@ -67,6 +68,23 @@ def turn_timeout(params, wide):
 def is_slow(params):
     """1 if the radio needs longer to switch than two minislots last: a window is dear."""
     return params.ta_us > 2 * params.minislot_us
+
+
+def pass_slots(params):
+    """Length of a turn without a packet; quick radios tell it from CR-Rs by its length."""
+    return 2 if is_slow(params) else 3
+
+
+def is_few(params, places):
+    """1 if a round of so many places goes on without packets, with a turn for each.
+
+    Half of such a round is then no longer than a window for all of them, its report and what the
+    turn behind that waits; a quarter longer where a turn may have several packets, as a longer
+    round carries no less then.
+    """
+    turn = params.ta_us + pass_slots(params) * params.slot_us
+    asked = 3 * params.ta_us + REPORT_SLOTS * params.slot_us + (places + 1) * params.minislot_us
+    return 2 * places * turn <= (5 if params.per_turn > 1 else 4) * asked
 
 
 def keeps(params):

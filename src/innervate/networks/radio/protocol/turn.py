@@ -24,9 +24,13 @@ from innervate.networks.radio.protocol.modes import (
     arm_act,
     code_for,
     count_kept,
+    count_places,
     disprove,
-    following,
+    earn,
+    goes_on,
+    next_turn,
     rest,
+    spend,
     wanted_window,
     window_of,
 )
@@ -37,14 +41,15 @@ from innervate.networks.radio.protocol.times import (
     join_after,
     minislot,
     most_delay,
+    pass_slots,
     retry_within,
     turn_timeout,
 )
 
 FAILS_MOST = 3  # packets without proof, then we leave the round
-PASS_SLOTS = 3  # a turn without a packet
 CREDIT = 2  # turns without a packet that one with a packet earns; the first earns one
 CREDIT_MOST = 4
+RAREST = 4  # times `turns`: between windows that nobody comes to
 CROWD_WAITS = 4  # quarters of a station: somebody mostly waits for a window
 
 
@@ -59,7 +64,7 @@ def enter_turn(station, params, now, cur, out):
         if station.pending:
             disprove(station, NO_PROOF, out)
         wait = guard(params, station.used)
-        passes = station.queued == 0 and station.credit == 0
+        passes = station.queued == 0 and station.credit == 0 and not is_slow(params)
         if passes or station.fails >= FAILS_MOST:
             quit_round(station, params, now, out)
         elif wait:
@@ -96,9 +101,29 @@ def quit_round(station, params, now, out):
 
 
 def is_due(station, params, size):
-    """1 if a window of so many minislots is due behind this round: the larger, the rarer."""
+    """1 if a window of so many minislots is due behind this round: the larger, the rarer.
+
+    With slow radios one for newcomers only is rarer with each that nobody came to.
+    """
     due = params.turns + 2 * (size - 1)
+    if size == 1 and is_slow(params):
+        due = min(count_places(station) << station.calm, RAREST * due)
     return station.turns + 1 >= due or station.crowd >= CROWD_WAITS
+
+
+def stays(station, params, count, alone):
+    """1 if we keep our turns without having more packets; `count` are in this one."""
+    if is_slow(params):
+        if count:
+            earn(station, count)
+        else:
+            spend(station)
+        return goes_on(station, params) and not alone and not station.leaving
+    if count:
+        station.credit = min(station.credit + (CREDIT if station.credit else 1), CREDIT_MOST)
+    else:
+        station.credit = station.credit - 1
+    return station.credit > 0 and not alone
 
 
 def send_turn(station, params, now, out):
@@ -107,15 +132,11 @@ def send_turn(station, params, now, out):
     frame = blank(out)
     count = load_packets(station, frame, params.per_turn)
     frame.kind = DATA
-    behind = following(station, station.pos)
-    alone = behind == station.pos or behind == NONE
-    slow = is_slow(params)
     if count == 0:
-        station.credit = station.credit - 1
-        frame.slots = PASS_SLOTS
-    elif not slow:
-        station.credit = min(station.credit + (CREDIT if station.credit else 1), CREDIT_MOST)
-    more = station.queued > count or (station.credit and not alone)
+        frame.slots = pass_slots(params)
+    behind = next_turn(station, params, station.pos)
+    alone = behind == station.pos or behind == NONE
+    more = stays(station, params, count, alone) or station.queued > count
     frame.pos = station.pos
     frame.more = 1 if more else 0
     frame.ok = station.last_ok
@@ -126,7 +147,7 @@ def send_turn(station, params, now, out):
     if not more:
         rest(station, params, station.pos)
     size = max(wanted_window(station, params), 1) + count_kept(station)
-    ends = not more and not slow  # a window is soon over
+    ends = not more and not is_slow(params)  # a window is soon over
     opens = alone or (wraps and (ends or is_due(station, params, size)))
     station.named = NONE if alone else behind
     if opens:

@@ -16,8 +16,7 @@ MUTANTS = tuple(
         ("minislots that collided do not split",
          "station.slot = parts * groups + draw(station, parts)", "station.slot = parts * groups"),
         ("a collision's wait is not drawn",
-         "params.ta_us + most_delay(params, station.wide) + draw(station, bound)",
-         "params.ta_us + most_delay(params, station.wide)"),
+         "wait + step * draw(station, bound // step)", "wait"),
         ("who was given a place does not note it",
          "                if i == mine and station.mode == WINDOW:\n"
          "                    station.pos = place\n", ""),
