@@ -115,8 +115,8 @@ nobody left, by `finish` to `IDLE`.
 | `TURN`        | `ACT`, our own turn           | `send_turn`                       | SEND_DATA    |
 | `TURN`        | `MAIN`: D of silence          | `silent_turn`: its place is free; | TURN         |
 |               |                               | next                              |              |
-| `TURN`        | a burst ends: long noise      | `garbled_turn`: proves nothing;   | TURN, WINDOW |
-|               |                               | next                              |              |
+| `TURN`        | a burst ends: noise as long   | `garbled_turn`: proves nothing;   | TURN, WINDOW |
+|               | as `pass_slots` or longer     | next                              |              |
 | `SEND_DATA`   | radio listens: carrier        | `sent_data`: collision, not       | TURN, IDLE   |
 |               |                               | delivered                         |              |
 | `SEND_DATA`   | radio listens: opened window  | `sent_data`, `lead_first`         | LEAD         |
@@ -260,6 +260,8 @@ Constants and settings
 | `EARNED = 48`, `EARNED_MOST = 1600`          | slow radios: of a packet; an own turn without one |
 |                                              | costs the square of the places. With none left    |
 |                                              | turns are not handed on                           |
+| `ASKING_SLOTS = 7`                           | length of a report for few kept places, which     |
+|                                              | `is_few` reckons with                             |
 | `CALM = 2`                                   | windows without newcomers: all who send have      |
 |                                              | places, and if `is_few` the round goes on         |
 | `KEPT = 20`                                  | places that can be kept: one less than the        |

@@ -6,7 +6,7 @@ and gives up the least: a sequence then takes longer and bears delays that the b
 
 from innervate.networks.radio.protocol.constants import KEPT, WIDE_MOST
 
-REPORT_SLOTS = 7  # of a report for a few kept places
+ASKING_SLOTS = 7  # of a report for a few kept places
 LONGEST_US = (1 << 28) - 1
 
 
@@ -83,7 +83,7 @@ def is_few(params, places):
     round carries no less then.
     """
     turn = params.ta_us + pass_slots(params) * params.slot_us
-    asked = 3 * params.ta_us + REPORT_SLOTS * params.slot_us + (places + 1) * params.minislot_us
+    asked = 3 * params.ta_us + ASKING_SLOTS * params.slot_us + (places + 1) * params.minislot_us
     return 2 * places * turn <= (5 if params.per_turn > 1 else 4) * asked
 
 
