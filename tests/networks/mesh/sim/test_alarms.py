@@ -70,6 +70,30 @@ def test_the_first_frame_of_a_crossing_is_the_flood():
     assert not own[1].flags & FLOOD
 
 
+def test_a_flood_ends_where_others_passed_it_on_or_the_monitor_has_it():
+    """Twelve nodes that all hear each other, but the robot the monitor: two of each would be 22."""
+    links = [(a, b) for a in range(12) for b in range(a) if (a, b) != (11, 0)]
+    for seed in range(5):
+        net = fenced(12, links, 11, seed=seed)
+        net.sample(11, *OUT)
+        net.run(net.now + 200_000)
+        assert len(alarms(net)) == 1
+        copies = [i for _, i, f in net.sent if f.kind == ALARM and f.flags & FLOOD]
+        assert len(copies) <= 11, "fewer than one of each"
+
+
+def test_a_flood_passes_the_only_node_that_leads_on():
+    """0 - 1 - three others - the robot: 1 hears all copies of the three, and sends its own."""
+    links = [(0, 1), (1, 2), (1, 3), (1, 4), (2, 3), (2, 4), (3, 4), (2, 5), (3, 5), (4, 5)]
+    for seed in range(10):
+        net = fenced(6, links, 5, seed=seed)
+        net.lost = lambda frame, to: frame.kind == ALARM and not frame.flags & FLOOD
+        crossed = net.now
+        net.sample(5, *OUT)
+        net.run(crossed + 100_000)
+        assert len(alarms(net)) == 1, seed
+
+
 def test_three_instances_and_then_it_is_raised_anew():
     net = fenced(3, line(3), 2)
     net.kill(1)

@@ -84,7 +84,7 @@ States
 Events and transitions
 ======================
 Any frame first: what is not sound (`is_sound`) is dropped; `hear` notes its sender. An ack that is
-lost may be made good by what is heard later: `drop_overheard`.
+lost may be made good by what is heard later: `drop_overheard`, which also ends floods.
 
 | frame                                  | to               | action                               |
 |----------------------------------------|------------------|--------------------------------------|
@@ -105,7 +105,9 @@ lost may be made good by what is heard later: `drop_overheard`.
 |                                        |                  | `read_edges`                         |
 | `DATA`, flooded                        | all              | `flood_data`: deliver, pass on once  |
 | `ALARM`, flooded                       | all              | `on_flood`: the monitor takes it,    |
-|                                        |                  | others pass it on once an instance   |
+|                                        |                  | others pass it on once an instance,  |
+|                                        |                  | nearer ones first; `yield_routed`    |
+| ... again, of who is as near           | all              | `spare_copy`: one less of ours       |
 | `POSITION`                             | all, the monitor | `on_position`: noted; a witness      |
 |                                        |                  | raises the alarm                     |
 | `ALARM`                                | the monitor      | `take_alarm`, `take`                 |

@@ -22,7 +22,7 @@ from innervate.networks.mesh.protocol.duplicates import FLOODED, record_flood
 from innervate.networks.mesh.protocol.fence import OUTSIDE, judge, margin
 from innervate.networks.mesh.protocol.frames import add8, add_hop, put16
 from innervate.networks.mesh.protocol.messages import first_flag, resolve, take
-from innervate.networks.mesh.protocol.queue import compose, kick, take_over
+from innervate.networks.mesh.protocol.queue import FREE, WAITS, compose, kick, take_over
 from innervate.networks.mesh.protocol.retransmission import arm_retry, buffer_sent, free_buffer
 from innervate.networks.mesh.protocol.send import send_on
 
@@ -154,22 +154,55 @@ def flood_again(node, params, now, w, out):
         kick(node, params, now, out)
 
 
-def on_flood(node, params, now, frame, out):
-    """A flooded alarm: the monitor takes it, everyone passes it on once per instance."""
+def on_flood(node, params, now, frame, k, out):
+    """A flooded alarm of the neighbour in place k: the monitor takes it, others pass it on once.
+
+    A copy of who is as near to the gateway as we are or nearer, heard meanwhile, stands for one of
+    ours; who is nearer goes first where other alarms wait. Six robots that leave at once fill the
+    channel else.
+    """
+    ahead = k >= 0 and node.round_depth[k] <= node.depth
     if record_flood(node, frame.origin, frame.seq, FLOODED, min(frame.ttl, 3)):
+        if ahead:
+            spare_copy(node, frame)
         return
     if frame.dest == node.number:
         take_alarm(node, params, now, frame, out)
         kick(node, params, now, out)
         return
+    crowded = yield_routed(node, params, now)
     i = take_over(node, now, ALARMS, frame, out)
     if i >= 0:
+        wait = draw(node, params.flood_us + 1)
+        if ahead and crowded:
+            wait = params.flood_us + wait
         node.q_link_dst[i] = ALL
         node.q_copies[i] = 2
-        node.q_due[i] = (now + draw(node, params.flood_us + 1)) & MASK30
+        node.q_due[i] = (now + wait) & MASK30
         if not add_hop(node, i):
-            node.q_state[i] = 0
+            node.q_state[i] = FREE
     kick(node, params, now, out)
+
+
+def yield_routed(node, params, now):
+    """1 if other alarms wait here; their routed copies may not be needed, and wait longer."""
+    others = False
+    for i in range(node.places):
+        if node.q_state[i] == WAITS and node.q_kind[i] == ALARM:
+            others = True
+            if node.q_link_dst[i] != ALL:
+                node.q_due[i] = (now + 4 * params.flood_us) & MASK30
+    return others
+
+
+def spare_copy(node, frame):
+    """Somebody else has passed on the flooded alarm: a copy of ours less."""
+    for i in range(node.places):
+        waits = node.q_state[i] == WAITS and node.q_kind[i] == ALARM and node.q_link_dst[i] == ALL
+        if waits and node.q_seq[i] == frame.seq and node.q_origin[i] == frame.origin:
+            node.q_copies[i] = node.q_copies[i] - 1
+            if node.q_copies[i] == 0:
+                node.q_state[i] = FREE
 
 
 def redirect(node, params, now, old, out):

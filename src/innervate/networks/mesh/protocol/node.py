@@ -217,7 +217,7 @@ def on_broadcast(node, params, now, frame, k, out):
             on_request(node, params, now, frame, k, out)
     elif kind == ALARM:
         if frame.flags & FLOOD:
-            on_flood(node, params, now, frame, out)
+            on_flood(node, params, now, frame, k, out)
     elif kind == POSITION:
         on_position(node, params, now, frame, out)
     elif kind == GRAPH:

@@ -19,6 +19,8 @@ def drop_overheard(node, params, frame, out):
                 note_answer(node, place_of(node, params, node.q_link_dst[i]))
                 tell_hop(node, i, out)
                 drop(node, params, i)
+        elif state == WAITS and node.q_kind[i] == ALARM and is_confirmed(node, i, frame):
+            drop(node, params, i)
 
 
 def is_passed_on(node, i, frame):
