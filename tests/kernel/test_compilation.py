@@ -16,7 +16,9 @@ from innervate.analysis import intervals
 from innervate.dialect import arith
 from innervate.kernel import cache, compilation
 from innervate.kernel.linking import as_one
+from innervate.network import networks
 from innervate.networks.mesh.protocol import node
+from innervate.sim.cables import declared
 
 
 @pytest.fixture
@@ -244,3 +246,10 @@ def test_a_cache_folder_is_made_with_those_above_it(monkeypatch, tmp_path):
     assert cache.cache_root() == wanted
     assert wanted.is_dir()
     assert cache.cache_root() == wanted  # there already
+
+
+def test_a_network_that_is_set_up_and_not_run_has_no_part_in_what_is_compiled_next():
+    """The toolkit's own loops were compiled anew then, in a folder of that network."""
+    folder = compilation.open_cache()
+    declared.compiled_loop.__wrapped__(networks()["babel"])
+    assert compilation.open_cache() == folder

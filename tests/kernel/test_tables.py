@@ -40,7 +40,7 @@ def test_each_call_is_of_the_world_that_it_is_given(loop):
     loop(one, 5, 2)
     loop(other, 1, 1)
     loop(one, 1, 1)
-    loop(narrow, np.int64(2), 1)
+    loop(narrow, np.int32(2), np.int16(1))  # of whatever kind numbers are
     grown = one._replace(seen=np.zeros(4, np.int64))
     loop(grown, 100, 1)
     loop(one, 1, 0)
@@ -48,6 +48,7 @@ def test_each_call_is_of_the_world_that_it_is_given(loop):
     assert told(grown) == (111, [0, 0, 0, 1])
     assert told(other) == (1, [0, 0, 1])
     assert told(narrow) == (2, [0, 1])
+    assert len(loop.compiled.overloads) == 2
 
 
 def test_threads_have_worlds_of_their_own(loop, request):

@@ -55,7 +55,7 @@ class Lending:
         known, lent, entry = self._last  # as one: other threads may have other worlds
         if world is not known:
             lent = borrowed(world)
-            entry = self._entry(tuple(map(self.compiled.typeof_pyval, (lent, until, budget))))
+            entry = self._entry(tuple(map(self.compiled.typeof_pyval, (lent, 0, 0))))
             self._last = world, lent, entry
         entry(lent, until, budget)
 

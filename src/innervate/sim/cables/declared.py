@@ -167,11 +167,11 @@ def plain_loop(kind: str) -> Callable[..., None]:
 def compiled_loop(network: Network) -> Callable[..., None]:
     """The loop of a network over cables, compiled with its protocol."""
     do = _functions(network)
-    compilation.register_functions(*(f for f in vars(do).values() if callable(f)))
+    own = tuple(filter(callable, vars(do).values()))
     hot = [recorder, *compilation.modules_of(network.protocol)]
     if network.has("invariants"):
         hot += compilation.modules_of(network.invariants)
-    advance: Callable[..., None] = loop.compiled(do, tuple(hot), ())
+    advance: Callable[..., None] = loop.compiled(do, tuple(hot), (), own=own)
     return advance
 
 

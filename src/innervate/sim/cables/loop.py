@@ -134,8 +134,9 @@ def bind(do: Any) -> Callable[..., None]:
 
 
 def compiled(
-    do: ModuleType, hot: tuple[ModuleType, ...], rare: tuple[ModuleType, ...], name: str = ""
-) -> Callable[..., None]:
+    do: ModuleType, hot: tuple[ModuleType, ...], rare: tuple[ModuleType, ...], name: str = "",
+    own: tuple[Callable[..., Any], ...] = (),
+) -> Callable[..., None]:  # fmt: skip
     """The loop over a network's functions, compiled.
 
     Args:
@@ -143,9 +144,11 @@ def compiled(
         hot: the modules that they stand in, and all that they call.
         rare: those of them that run too seldom to be worth copying into every caller.
         name: under which it may have come with the toolkit (see kernel/ready.py).
+        own: of the network's functions, those that stand in none of these modules.
     """
 
     def jitted() -> Any:
+        compilation.register_functions(*own)
         compilation.register(*rare, commands, rows, taps, hot=False)
         compilation.register(arith, outbox, rng, *hot, queue, clocks, wires, delays, calls)
         compilation.register_functions(pressing, foresee, dispatch, run_batch, run_until)

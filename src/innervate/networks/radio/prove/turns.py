@@ -23,10 +23,12 @@ from innervate.networks.radio.protocol.constants import (
 )
 from innervate.networks.radio.protocol.modes import TURN
 from innervate.networks.radio.prove.reports import ROOM, STATION, Ending, Report, apart
+from innervate.prove.answers import Answers
 from innervate.prove.records import Outbox, Record
 from innervate.prove.steps import Goal, Stage, Step
 from innervate.prove.theory import Source
 
+LOOKED_UP = ("count_kept", "count_places", "goes_on")  # whatever they answer
 PLANNED = ("dmin_us", "dmax_us", "ta_us", "minislot_us", "dead_us")
 CLAIM = (
     "Of two stations that heard the same frames one takes a turn, alone on it. NOT proved: "
@@ -127,6 +129,7 @@ def _taken(known: dict[str, Any]) -> Step:
     """The turn of a place comes, at a station that may have it."""
     stage, (a,), params = _stage(known, "a")
     t = stage.terms
+    stage.machine = Answers(known, t, stage.out, LOOKED_UP)
     place = t.unknown("place", 0, POSITIONS - 1)
     step = stage.play("a place's turn comes", "enter_turn",
                       [a, params, stage.clock(), place, stage.out], [])  # fmt: skip
