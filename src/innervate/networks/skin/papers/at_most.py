@@ -24,7 +24,7 @@ HZ = 250
 KS = (2, 3, 5)
 K = 2  # the paper gives none; the least that tolerates one lost beacon
 PRINTED = (("Abstract", 50.0), ("IV", 40.0))
-ALL = Span(1.0)  # share of the recoveries
+ALL = Span(1.0, 1.0)  # share of the recoveries
 
 
 def seeds(quick: bool) -> range:

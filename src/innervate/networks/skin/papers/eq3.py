@@ -32,11 +32,11 @@ CAPTION = (
     f"{HZ} Hz, rule feasible. a: moves after {SETTLE} periods and more. b: balance factor at the "
     "end, a dot a run. c: periods until all cells know the size of their subnetwork again."
 )
-BALANCED = Span(0.999)
+BALANCED = Span(0.999, 1.0)
 QUIET = Span(0, 0)  # moves while watched
-UP_TO_DATE = Span(high=1.0)  # of 2 max(H) periods
-ONE = Span(high=1)  # cells at one distance to two roots
-FEW = Span(high=1.0)  # cells that may balance, of d_max |N_R|
+UP_TO_DATE = Span(0.0, 1.0)  # of 2 max(H) periods
+ONE = Span(0, 1)  # cells at one distance to two roots
+FEW = Span(0.0, 1.0)  # cells that may balance, of d_max |N_R|
 
 
 class Rate(NamedTuple):

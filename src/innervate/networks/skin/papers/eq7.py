@@ -25,7 +25,7 @@ CAPTION = (
 HZ = 250
 K = 3
 BAND = 3
-ALL = Span(1.0)  # share of the failures: a bound has no exceptions
+ALL = Span(1.0, 1.0)  # share of the failures: a bound has no exceptions
 # ceil(h/2) where the interfaces lie opposite each other.
 HALF = {"setup-1": 7, "setup-2": 5, "setup-3": 4, "setup-4": 3}
 KINDS = {"random": "a random cable", "interface": "an interface cable"}

@@ -34,7 +34,7 @@ CAPTION = (
     "is counted after settling (static 4 s, dynamic 120 s). Static: set-up frames forwarded after "
     "0 to 2 ms; even: after 0 to 160 us."
 )
-BALANCED = Span(0.999)
+BALANCED = Span(0.999, 1.0)
 OFF_BOUND = Span(-0.002, 0.02)  # loss beyond the capacity bound; below it only by chance
 
 

@@ -23,7 +23,7 @@ TEN_POINTS = about(0.10)
 ASKED_POINTS = Span(0.10)
 ASKED = SETUPS[:2]
 THIRTY_POINTS = about(0.30)
-STEADIER = Span(high=1 / 3)  # spread of the dynamic losses, of the static one
+STEADIER = Span(0.0, 1 / 3)  # spread of the dynamic losses, of the static one
 FIFTH = about(0.20)
 UPPER = 95  # percentile of the trees that stands for "at most"
 

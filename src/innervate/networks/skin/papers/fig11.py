@@ -32,8 +32,8 @@ LEAD_S = 4.0  # until the slowest start-up is over; the figure's time starts her
 UNPLUG_S = 2.6
 DURATION_S = 8.0
 AROUND_500 = about(500.0)  # ms, the mean
-OFF = Span(high=0.1)  # largest difference from no failure, of the whole movement
-FASTER = Span(high=1.1)  # highest joint speed after the unplugging, of the usual one
+OFF = Span(0.0, 0.1)  # largest difference from no failure, of the whole movement
+FASTER = Span(0.0, 1.1)  # highest joint speed after the unplugging, of the usual one
 TWO_SECONDS = about(2000.0)  # ms without a route beyond the detection
 KEPT = 5  # of the arm's steps one in five is stored
 # Name, rule, unplugged.

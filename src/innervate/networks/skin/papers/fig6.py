@@ -40,8 +40,8 @@ REPLUG_K = (2, 3, 5, 8)
 RARE = 0.05  # a loss at which misses are rare for r_f = r_r
 WATCHED_S = 60.0
 JUDGED_S = 8.0
-NOT_DETECTED = Span(high=0.05)  # share of the cables found broken in JUDGED_S
-DETECTED = Span(0.95)
+NOT_DETECTED = Span(0.0, 0.05)  # share of the cables found broken in JUDGED_S
+DETECTED = Span(0.95, 1.0)
 AT_LIMIT = Span(-0.1, 0.1)  # loss at which a cable is held broken half of the time, off the limit
 
 Watched = tuple[float, float, float]  # r_f, r_r and loss of cables watched until found broken

@@ -26,7 +26,7 @@ SETUP = "setup-1"
 BAND = 3  # periods, Eq. 5
 IN_BAND = Span(-BAND, BAND)
 BAR_K = (2, 3, 5, 8)
-INSIDE = Span(0.95)  # share of the recoveries in the band
+INSIDE = Span(0.95, 1.0)  # share of the recoveries in the band
 DETECTION = Span(-1.0, 1.0)  # periods from k
 DETECTION_MEAN = Span(-0.25, 0.25)
 

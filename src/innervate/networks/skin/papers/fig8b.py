@@ -30,9 +30,9 @@ HZ = 250
 BAND = 2  # periods, Eq. 6
 COLUMNS = 11  # of setup 2, which is wider than high
 WIDE = Case("setup-2", HZ, 3)
-INSIDE = Span(0.95)  # share of the recoveries in the band
+INSIDE = Span(0.95, 1.0)  # share of the recoveries in the band
 SLOPE = Span(0.4, 0.6)  # periods a cell
-FIT = Span(0.8)  # R2 of the line
+FIT = Span(0.8, 1.0)  # R2 of the line
 
 
 def case(setup: str, k: int, rule: Rule) -> Case:
