@@ -7,8 +7,9 @@ from functools import partial
 
 import numpy as np
 import pytest
+from numba.core import compiler
 
-from innervate.kernel import compilation
+from innervate.kernel import compilation, records
 from innervate.kernel.tables import Lending
 
 World = namedtuple("World", "counts seen")
@@ -68,3 +69,59 @@ def test_threads_have_worlds_of_their_own(loop, request):
 def test_a_table_needs_its_memory_in_one_piece(loop):
     with pytest.raises(ValueError, match="contiguous"):
         loop(World(np.zeros(1, KIND), np.zeros(4, np.int64)[::2]), 1, 1)
+
+
+Records = namedtuple("Records", "near far counts")
+DECLARED = (("low", 0, -9, 9, "", ""), ("row", 3, -9, 9, "", ""), ("high", 0, 0, 9, "", ""))
+
+
+def added(value, more):
+    return value + more
+
+
+def moved(record, more):
+    record.low = added(record.low, more)
+    for i in range(len(record.row)):
+        record.row[i] = added(record.row[i], record.high)
+
+
+def moving(world, until, budget):
+    for i in range(len(world.near)):
+        moved(world.near[i], budget)
+        moved(world.far[i], until)
+        record = world.far[i]
+        record.high = added(record.high, 1)
+        world.counts[i] = added(world.counts[i], record.low)
+
+
+@pytest.fixture
+def compiles(monkeypatch):
+    """Names of the functions that are compiled, each as often as it is."""
+    found, compile_extra = [], compiler.CompilerBase.compile_extra
+
+    def noted(self, function):
+        found.append(function.__name__)
+        return compile_extra(self, function)
+
+    monkeypatch.setattr(compiler.CompilerBase, "compile_extra", noted)
+    return found
+
+
+def test_fields_are_read_and_written_where_they_lie_and_a_function_is_compiled_once(
+    compiles, tmp_path, monkeypatch
+):
+    """In records with and without padding; whoever calls it, with numbers of 32 bits or of 64."""
+    monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path))
+    compilation.register_functions(added, moved, hot=True)
+    near, far = records.zeros(DECLARED, 2), records.zeros(DECLARED, 2, itemsize=64)
+    for each in (near, far):
+        each["low"], each["row"], each["high"] = [-3, 4], [[1, -2, 3], [-4, 5, -6]], [7, 8]
+    world = Records(near, far, np.array([-100, 100], np.int32))
+    Lending(compilation.compiled_as_one(moving))(world, 2, 1)
+    assert near["low"].tolist() == [-2, 5]
+    assert far["low"].tolist() == [-1, 6]
+    for each in (near, far):
+        assert each["row"].tolist() == [[8, 5, 10], [4, 13, 2]]
+    assert (near["high"].tolist(), far["high"].tolist()) == ([7, 8], [8, 9])
+    assert world.counts.tolist() == [-101, 106]
+    assert [compiles.count(name) for name in ("moving", "moved", "added")] == [1, 1, 1]

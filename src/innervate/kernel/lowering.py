@@ -1,12 +1,16 @@
 """What Numba is told of our tables, and of the few things that it spells in its own way.
 
-Of `tables.Table`, `tables.fetch`, `records.within`, `bits.lowest_bit` and `bits.mix`; compiling
-imports it, a plain run and a ready loop (ready.py) do not.
+Of `tables.Table` and the records in it, `tables.fetch`, `records.within`, `bits.lowest_bit` and
+`bits.mix`; compiling imports it, a plain run and a ready loop (ready.py) do not.
+
+Whatever is read has 64 bits, however many it is kept in, and an array in a record is a table, too:
+a function is compiled for each mix of types that it is called with, half of all would be twice.
 """
 
 from __future__ import annotations
 
 import functools
+import hashlib
 import operator
 from typing import Any
 
@@ -14,9 +18,12 @@ import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.core.datamodel import StructModel
+from numba.core.datamodel import PrimitiveModel, StructModel
+from numba.core.imputils import lower_getattr_generic, lower_setattr_generic
+from numba.core.typing.templates import AttributeTemplate
 from numba.extending import (
     NativeValue,
+    infer_getattr,
     intrinsic,
     overload,
     register_model,
@@ -35,10 +42,11 @@ INSIDE = {"forceinline": True, "no_cfunc_wrapper": True}  # becomes part of its 
 class TableType(types.Type):  # type: ignore[misc]
     """Numba's type of a Table; `row` > 0 makes its items rows of that many numbers."""
 
-    def __init__(self, dtype: Any, row: int) -> None:
+    def __init__(self, dtype: Any, row: int, step: int) -> None:
         self.dtype = dtype
         self.row = row
-        super().__init__(name=f"Table({dtype}, {row})")
+        self.step = step  # bytes from one item to the next
+        super().__init__(name=f"Table({dtype}, {row}, {step})")
 
 
 @register_model(TableType)
@@ -46,6 +54,64 @@ class _TableModel(StructModel):  # type: ignore[misc]
     def __init__(self, manager: Any, table: Any) -> None:
         members = [("address", types.CPointer(types.uint8)), ("length", types.int64)]
         super().__init__(manager, table, members)
+
+
+class RecordType(types.Type):  # type: ignore[misc]
+    """Numba's type of a record where it lies in a table; what stands behind its fields is none."""
+
+    def __init__(self, kept: types.Record) -> None:
+        self.kept = kept
+        fields = [(name, str(kept.typeof(name)), kept.offset(name)) for name in kept.fields]
+        told = hashlib.blake2b(str(fields).encode(), digest_size=8).hexdigest()
+        super().__init__(name=f"Record({told})")
+
+
+@register_model(RecordType)
+class _RecordModel(PrimitiveModel):  # type: ignore[misc]
+    def __init__(self, manager: Any, record: Any) -> None:
+        super().__init__(manager, record, ir.IntType(8).as_pointer())
+
+
+@infer_getattr
+class _Fields(AttributeTemplate):  # type: ignore[misc]
+    key = RecordType
+
+    def generic_resolve(self, record: Any, name: str) -> Any:
+        field = record.kept.typeof(name)
+        if isinstance(field, types.NestedArray):
+            return _array_of(field)
+        return types.int64 if isinstance(field, types.Integer) else field
+
+
+def _array_of(field: types.NestedArray) -> TableType:
+    return TableType(field.dtype, 0, field.dtype.bitwidth // 8)
+
+
+def _place(context: Any, builder: Any, record: Any, value: Any, name: str) -> tuple[Any, Any]:
+    """What is kept under a name, and where."""
+    field = record.kept.typeof(name)
+    place = builder.gep(value, [ir.Constant(ir.IntType(64), record.kept.offset(name))])
+    kind = field.dtype if isinstance(field, types.NestedArray) else field
+    return field, builder.bitcast(place, context.get_data_type(kind).as_pointer())
+
+
+@lower_getattr_generic(RecordType)  # type: ignore[untyped-decorator]
+def _read_field(context: Any, builder: Any, record: Any, value: Any, name: str) -> Any:
+    field, place = _place(context, builder, record, value, name)
+    if not isinstance(field, types.NestedArray):
+        kept = context.unpack_value(builder, field, place)
+        return context.cast(builder, kept, field, _Fields(context).generic_resolve(record, name))
+    proxy = cgutils.create_struct_proxy(_array_of(field))(context, builder)
+    proxy.address = builder.bitcast(place, ir.IntType(8).as_pointer())
+    proxy.length = ir.Constant(ir.IntType(64), field.nitems)
+    return proxy._getvalue()
+
+
+@lower_setattr_generic(RecordType)  # type: ignore[untyped-decorator]
+def _write_field(context: Any, builder: Any, signature: Any, args: Any, name: str) -> Any:
+    record, given = signature.args
+    field, place = _place(context, builder, record, args[0], name)
+    context.pack_value(builder, field, context.cast(builder, args[1], given, field), place)
 
 
 @typeof_impl.register(Table)
@@ -56,7 +122,9 @@ def _typeof_table(value: Table, _context: Any) -> TableType:
 @functools.cache
 def _type_of(dtype: np.dtype[Any], row: int) -> TableType:
     """Worked out anew for every table, this was nine tenths of calling a compiled loop."""
-    return TableType(numpy_support.from_dtype(dtype), row)
+    kept = numpy_support.from_dtype(dtype)
+    item = RecordType(kept) if isinstance(kept, types.Record) else kept
+    return TableType(item, row, dtype.itemsize * max(row, 1))
 
 
 @unbox(TableType)
@@ -75,15 +143,14 @@ def _unbox_table(table: Any, obj: Any, c: Any) -> Any:
 
 def _item_pointer(context: Any, builder: Any, table: Any, value: Any, index: Any) -> Any:
     proxy = cgutils.create_struct_proxy(table)(context, builder, value=value)
-    size = context.get_abi_sizeof(context.get_data_type(table.dtype)) * max(table.row, 1)
-    offset = builder.mul(index, ir.Constant(ir.IntType(64), size), flags=["nsw"])
+    offset = builder.mul(index, ir.Constant(ir.IntType(64), table.step), flags=["nsw"])
     return builder.gep(proxy.address, [offset], inbounds=True)
 
 
 @intrinsic  # type: ignore[untyped-decorator]
 def _load(typing_context: Any, table: Any, index: Any) -> Any:
     if table.row:
-        result: Any = TableType(table.dtype, 0)
+        result: Any = TableType(table.dtype, 0, table.step // table.row)
     else:
         result = table.dtype
     widen = isinstance(result, types.Integer)
@@ -99,7 +166,7 @@ def _load(typing_context: Any, table: Any, index: Any) -> Any:
         if widen:
             value = builder.load(builder.bitcast(pointer, data.as_pointer()))
             return context.cast(builder, value, table.dtype, types.int64)
-        return builder.bitcast(pointer, context.get_value_type(table.dtype))
+        return pointer
 
     return (types.int64 if widen else result)(table, types.int64), generate
 
