@@ -129,6 +129,7 @@ OWN = (
     ("round", 0, 0, 65535, "round", "newest discovery round"),
     ("known", 0, 0, 1, "flag", "we follow a gateway"),
     ("gateway", 0, 0, 255, "node", "whom we follow; 255 nobody"),
+    ("gone", 0, 0, 255, "node", "whom we followed till this round's gateway led; 255 nobody"),
     ("active", 0, 0, 65535, "version", "tables in force, as the gateway says"),
     ("depth", 0, 0, 255, "hops", "ours, as advertised; 255 unknown"),
     ("due", 0, 0, 3, "step", "ROUND: 0 nothing, 1 look again, 2 respond"),

@@ -111,6 +111,7 @@ def on_start(node, gate, params, now, cause, out):
     node.round = 0
     node.known = 0
     node.gateway = ALL
+    node.gone = ALL
     node.active = 0
     node.depth = NONE
     node.parent = ALL
@@ -168,6 +169,8 @@ def on_frame(node, gate, params, now, port, frame, out):
         hear_again(node, params, frame.link_src)
         return
     k = hear(node, params, frame.link_src, frame.rssi)
+    if frame.origin == node.gone:
+        node.gone = ALL
     if frame.origin == node.gateway and frame.table_ver:  # without a table it leads no more
         hear_gateway(node)
     if frame.kind == ACK:
@@ -236,8 +239,6 @@ def on_unicast(node, gate, params, now, frame, out):
     """A frame for us: acknowledge it if we can take it over, then handle it."""
     here = frame.dest == node.number
     rank = rank_of(frame)
-    if is_upward(frame.kind) or frame.kind == TABLE:
-        rank = CONTROL
     if not here and not has_room(node, rank):
         if frame.flags & DETOURED or not make_room(node, rank, out):
             return

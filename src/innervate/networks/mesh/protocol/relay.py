@@ -8,9 +8,8 @@ from innervate.networks.mesh.protocol.constants import (
     ALL,
     CONTROL,
     DATA,
-    E2E_ACK,
-    GRAPH,
     MESSAGES,
+    POSITION,
 )
 from innervate.networks.mesh.protocol.duplicates import (
     accept,
@@ -30,9 +29,9 @@ def rank_of(frame):
     """How urgent a packet is."""
     if frame.kind == ALARM:
         return ALARMS
-    if frame.kind == E2E_ACK or frame.kind == GRAPH:
-        return CONTROL
-    return MESSAGES
+    if frame.kind == DATA or frame.kind == POSITION:
+        return MESSAGES
+    return CONTROL
 
 
 def relay(node, params, now, frame, out):
@@ -50,7 +49,6 @@ def relay(node, params, now, frame, out):
     if i < 0:
         return
     send_on(node, params, now, i, out)
-    kick(node, params, now, out)
 
 
 def flood_data(node, params, now, frame, out):
