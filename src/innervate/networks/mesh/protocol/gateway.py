@@ -30,6 +30,7 @@ from innervate.networks.mesh.protocol.paths import (
     trusts_lists,
 )
 from innervate.networks.mesh.protocol.queue import compose, kick
+from innervate.networks.mesh.protocol.round import NOTHING
 from innervate.networks.mesh.protocol.search import is_edge
 
 IDLE = 0
@@ -69,6 +70,7 @@ def lead(node, gate, params, now, out):
     node.epoch = (node.epoch + 1) & 255 if node.known else draw(node, 256)
     node.known = 1
     node.leading = 1
+    node.due = NOTHING
     node.gateway = node.number
     node.depth = 1
     node.parent = ALL

@@ -233,6 +233,7 @@ def on_broadcast(node, params, now, frame, k, out):
             flood_data(node, params, now, frame, out)
     else:
         report(out, REPORT_UNKEYED, kind, 0)
+    kick(node, params, now, out)
 
 
 def on_unicast(node, gate, params, now, frame, out):

@@ -20,7 +20,7 @@ from innervate.networks.mesh.protocol.duplicates import (
 )
 from innervate.networks.mesh.protocol.frames import in_path
 from innervate.networks.mesh.protocol.messages import hand_up
-from innervate.networks.mesh.protocol.queue import kick, take_over
+from innervate.networks.mesh.protocol.queue import take_over
 from innervate.networks.mesh.protocol.route import learn_way
 from innervate.networks.mesh.protocol.send import send_on
 
@@ -63,4 +63,3 @@ def flood_data(node, params, now, frame, out):
         node.q_link_dst[i] = ALL
         node.q_copies[i] = params.copies
         node.q_due[i] = (now + draw(node, params.flood_us + 1)) & MASK30
-    kick(node, params, now, out)

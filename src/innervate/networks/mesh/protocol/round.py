@@ -23,9 +23,9 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.networks.mesh.protocol.duplicates import forgive
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16, store
-from innervate.networks.mesh.protocol.hop import HUSHED
+from innervate.networks.mesh.protocol.hop import HUSHED, NOBODY_GAVE
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD, place_of
-from innervate.networks.mesh.protocol.queue import NOBODY_GAVE, WAITS, compose, drop, enqueue, kick
+from innervate.networks.mesh.protocol.queue import WAITS, compose, drop, enqueue, kick
 from innervate.networks.mesh.protocol.send import send_up
 from innervate.networks.mesh.protocol.table import activate
 from innervate.networks.mesh.protocol.upward import is_uplink, is_weak
@@ -114,7 +114,6 @@ def on_request(node, params, now, frame, k, out):
             join(node, params, now, frame.path_len + 1, frame.flags & PRIORITY, out)
     if params.discovery == EACH and fresh:  # not to every copy
         respond_to(node, params, now, frame.link_src, out)
-    kick(node, params, now, out)
 
 
 def arm_guard(node, params, now, out):
@@ -147,7 +146,7 @@ def queue_request(node, params, now, frame, wait, out):
     if i >= 0:
         store(node, i, frame)
         node.q_link_dst[i] = ALL
-        node.q_copies[i] = params.copies
+        node.q_copies[i] = params.copies + (frame.flags & PRIORITY != 0)
         node.q_due[i] = (now + wait + draw(node, params.jitter_us + 1)) & MASK30
         if not add_hop(node, i):
             drop(node, params, i)

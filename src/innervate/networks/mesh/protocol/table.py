@@ -17,7 +17,7 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.networks.mesh.protocol.duplicates import clear_bad, record_flood
 from innervate.networks.mesh.protocol.frames import add8, add16, get16, is_route
-from innervate.networks.mesh.protocol.queue import compose, kick, take_over
+from innervate.networks.mesh.protocol.queue import compose, take_over
 from innervate.networks.mesh.protocol.search import set_edge
 from innervate.networks.mesh.protocol.send import enter, pass_on, send_on, send_up
 
@@ -159,7 +159,6 @@ def spread(node, params, now, frame, out):
         node.q_link_dst[i] = ALL
         node.q_copies[i] = params.copies
         node.q_due[i] = (now + draw(node, params.flood_us + 1)) & MASK30
-    kick(node, params, now, out)
 
 
 def part_bytes(params):
