@@ -131,10 +131,12 @@ A hop for which there is no room gets no ack, so that another is tried.
 | any        | `REQUEST` that `is_newer`       | `on_request`, `begin`            | follows        |
 | a `rank`   | `TICK`, `dead` silent ticks     | `on_tick`, `tick`, `lead`        | leads          |
 | a `rank`   | `JOBS`, no sign of life         | `guard`: asks; learns patience   |                |
+| a `rank`   | the gateway's frames, or for it | `hear_of_gateway`: it lives; it  |                |
+|            |                                 | is looked for everywhere         |                |
 | a `rank`   | ... and all questions in vain   | `guard`, `lead`, `inherit`       | leads          |
 | any        | `REQUEST` of another gateway    | `redirect`: alarms go to it; who |                |
 |            |                                 | led before is `gone`             |                |
-| any        | a frame of who is `gone`        | it is not                        |                |
+| any        | a frame of who is `gone`        | `hear_of_gateway`: it is not     |                |
 | any        | `TICK`                          | `on_tick`: `sweep`, `age`,       |                |
 |            |                                 | `watch`, `beacon`,               |                |
 |            |                                 | `repeat_alarm`                   |                |
@@ -221,7 +223,7 @@ Frames
 | frame           | way                          | payload                                         |
 |-----------------|------------------------------|-------------------------------------------------|
 | `REQUEST = 1`   | flooded, `copies`            | gateway, epoch, round, version in force, jitter;|
-|                 |                              | flag `PRIORITY`: nobody responds; a copy more   |
+|                 |                              | flag `PRIORITY`: nobody responds; more copies   |
 | `RESPONSE = 2`  | up                           | epoch, round, reading, who was heard and how    |
 |                 |                              | loud                                            |
 | `TABLE = 3`     | source-routed                | route; epoch, version, part; groups (next,      |
@@ -308,6 +310,8 @@ Constants and settings
 |                                                | each that is before it                          |
 | `IN_VAIN = 4`, `PATIENCE = 12`,                | questions in vain; quarters of one more, and of |
 | `PATIENCE_MAX = 24`                            | a longer wait: at first, after a late answer    |
+| `EVERYWHERE = 14`                              | decision 0049: so many had a packet for the     |
+|                                                | gateway: no patience                            |
 | `LISTED_MAX = 15`, `UPLINKS_TOLD = 3`          | neighbours in a response; without tables        |
 | `PLACES_RESERVED = 3`                          | of the gateway's queue, for what others send    |
 |                                                | through it                                      |
@@ -336,6 +340,7 @@ Constants and settings
 | `CROWD = 32`                                   | nodes whose answers find their way in a         |
 |                                                | `spread_us`                                     |
 | `JITTER_UNIT_US = 10000`                       | of a request's jitter                           |
+| `COPIES_MORE = 4`                              | decision 0049: of the request of who takes over |
 | `POINTS = 48`, `FAR = 16384`, `REACH = 23170`, | the fence in whole numbers below 2^30           |
 | `FULL = 268435456`, `ROOT_BITS = 15`           |                                                 |
 | `TIME = 1073741823`, `TICKS_MAX = 32767`       | clocks wrap at 2^30; longest suspicion          |

@@ -281,7 +281,7 @@ def queued(places, mtu=MTU):
         ("q_begun", places, 0, TIME, "us", "handed down first, for this hop"),
         ("q_tries", places, 0, 255, "tries", "transmissions of this hop so far"),
         ("q_fails", places, 0, 255, "failures", "hops that failed here"),
-        ("q_copies", places, 0, 16, "copies", "broadcasts: still to be sent"),
+        ("q_copies", places, 0, 19, "copies", "broadcasts: still to be sent"),
         ("q_from", places, 0, 255, "node", "who gave it to us; 255 = we made it"),
         ("q_owner", places, -1, PLACES_MAX - 1, "place", "of the message kept; -1 none"),
         ("q_kind", places, 0, 63, "type", "the frame"),

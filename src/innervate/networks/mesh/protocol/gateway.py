@@ -36,6 +36,7 @@ from innervate.networks.mesh.protocol.search import is_edge
 IDLE = 0
 COLLECTING = 1
 JITTER_UNIT_US = 10_000
+COPIES_MORE = 4  # of the request of who takes over: the channel is full of what looks for the dead
 
 
 def reset(gate, params):
@@ -93,8 +94,10 @@ def start_round(node, gate, params, now, out):
     """Broadcast a discovery request, and collect what comes back; who has a graph asks nobody."""
     flags = 0
     wait = params.collect_us
+    copies = params.copies
     if gate.whole:
         flags = PRIORITY
+        copies = copies + COPIES_MORE
         wait = 2 * params.jitter_us
         gate.whole = 0
     node.round = (node.round + 1) & MASK16
@@ -114,7 +117,7 @@ def start_round(node, gate, params, now, out):
         add16(node, i, node.round)
         add16(node, i, node.active)
         add8(node, i, params.jitter_us // JITTER_UNIT_US)
-        node.q_copies[i] = params.copies
+        node.q_copies[i] = copies
     set_timer(out, ROUND, (now + wait) & MASK30)
     kick(node, params, now, out)
 

@@ -89,7 +89,7 @@ from innervate.networks.mesh.protocol.retransmission import (
 )
 from innervate.networks.mesh.protocol.round import on_request, step
 from innervate.networks.mesh.protocol.send import is_upward, on_ack_timeout, send_up
-from innervate.networks.mesh.protocol.standby import PATIENCE, guard, hear_gateway, on_guard
+from innervate.networks.mesh.protocol.standby import PATIENCE, guard, hear_of_gateway, on_guard
 from innervate.networks.mesh.protocol.table import on_activate, on_graph, on_table
 from innervate.networks.mesh.protocol.watch import NEVER, beacon, on_position, watch
 
@@ -169,10 +169,7 @@ def on_frame(node, gate, params, now, port, frame, out):
         hear_again(node, params, frame.link_src)
         return
     k = hear(node, params, frame.link_src, frame.rssi)
-    if frame.origin == node.gone:
-        node.gone = ALL
-    if frame.origin == node.gateway and frame.table_ver:  # without a table it leads no more
-        hear_gateway(node)
+    hear_of_gateway(node, params, now, frame, out)
     if frame.kind == ACK:
         on_hop_ack(node, params, now, frame, k, out)
     elif frame.link_dst == ALL:

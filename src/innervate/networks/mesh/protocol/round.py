@@ -146,7 +146,7 @@ def queue_request(node, params, now, frame, wait, out):
     if i >= 0:
         store(node, i, frame)
         node.q_link_dst[i] = ALL
-        node.q_copies[i] = params.copies + (frame.flags & PRIORITY != 0)
+        node.q_copies[i] = params.copies
         node.q_due[i] = (now + wait + draw(node, params.jitter_us + 1)) & MASK30
         if not add_hop(node, i):
             drop(node, params, i)
