@@ -6,12 +6,15 @@ import innervate
 from innervate.networks.mesh.protocol.constants import (
     ALL,
     DATA,
+    DETOURED,
     PRIORITY,
     REPORT_GATEWAY,
     REPORT_TABLE,
     TABLE,
 )
 from innervate.networks.mesh.protocol.hop import HUSHED
+from innervate.networks.mesh.protocol.standby import EVERYWHERE, PATIENCE_MAX
+from tests.networks.mesh.bench import Frame
 from tests.networks.mesh.net import Net, line
 from tests.networks.mesh.sim.test_standby import GUARD, SOON, SURE, guarded, kill, leaders
 
@@ -138,3 +141,26 @@ def test_a_gateway_that_lives_is_not_gone_for_long():
     net.run(since + 20_000_000)
     assert leaders(net) == [3]
     assert [f for _, i, f in net.delivered if i == 0 and f.kind == DATA and f.origin == 2]
+
+
+def impatient(net, path_len, flags=DETOURED):
+    """How patient a standby is that hears a packet for the gateway, after so many nodes."""
+    frame = Frame()
+    frame.kind, frame.flags, frame.link_src, frame.link_dst = DATA, flags, 1, 2
+    frame.origin, frame.dest, frame.path_len = 2, 0, path_len
+    frame.path[:path_len] = [1] * path_len
+    net.nodes[3].patience, net.nodes[3].silent = PATIENCE_MAX, 2
+    net.push(net.now, ("frame", 3, frame))
+    net.run(net.now + 1)
+    return net.nodes[3].patience
+
+
+def test_a_standby_whose_gateway_is_looked_for_everywhere_has_no_patience():
+    net = guarded(count=5, links=line(5), standbys=(3,))
+    assert impatient(net, EVERYWHERE - 1) == PATIENCE_MAX
+    assert impatient(net, EVERYWHERE, flags=0) == PATIENCE_MAX, "a long way is no search"
+    assert impatient(net, EVERYWHERE) == 0
+    died = kill(net, 0)
+    impatient(net, EVERYWHERE)
+    net.run(died + 1_000_000)
+    assert leaders(net) == [3]
