@@ -4,6 +4,7 @@ from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.outbox import report, set_timer
 from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.constants import (
+    ALARMS,
     ALL,
     CONTROL,
     PRIORITY,
@@ -95,8 +96,10 @@ def start_round(node, gate, params, now, out):
     flags = 0
     wait = params.collect_us
     copies = params.copies
+    rank = CONTROL
     if gate.whole:
         flags = PRIORITY
+        rank = ALARMS  # there is a place for it, whatever waits
         copies = copies + COPIES_MORE
         wait = 2 * params.jitter_us
         gate.whole = 0
@@ -109,7 +112,7 @@ def start_round(node, gate, params, now, out):
     gate.wait = gate.period
     gate.step = COLLECTING
     report(out, REPORT_ROUND, node.round, node.epoch)
-    i = compose(node, now, CONTROL, REQUEST, ALL, flags, out)
+    i = compose(node, now, rank, REQUEST, ALL, flags, out)
     if i >= 0:
         add_hop(node, i)
         add8(node, i, node.number)

@@ -197,7 +197,7 @@ def most_tries(node, params, i, who):
     what climbs to the gateway have few to choose from.
     """
     kind = node.q_kind[i]
-    if who >= 0 and node.suspect[who] & DOUBT and not is_upward(kind):
+    if who >= 0 and node.suspect[who] & DOUBT and kind != TABLE and not is_upward(kind):
         return 1
     return tries_for(node, params, who)
 
